@@ -1,0 +1,183 @@
+//! The proof that a guard stays inside its corridor between two evaluations.
+//!
+//! Let H be the polynomial of degree seven that shares the guard's value and three derivatives at
+//! both ends of a piece of length L. Then G - H = G8(z) s^4 (L - s)^4 / 8! for some z in the piece.
+//! In the Bernstein basis of degree eight, s^4 (L - s)^4 is L^8/70 times the middle member alone, so
+//! with M <= G8 <= N in the piece the coefficients of H, with M L^8/2822400 (N L^8/2822400) added to
+//! the middle one, bound G from below (above): a polynomial lies within the hull of its Bernstein
+//! coefficients. If all of them are inside the corridor, so is the guard. The end coefficients are
+//! the guard's own values: where a guard is known to start or to end on a threshold, they may equal it.
+//! With L small the hull is as narrow as the guard itself, so halving always decides, up to rounding.
+
+/// 8! * C(8, 4): the middle Bernstein coefficient of s^4 (1 - s)^4/8!.
+const MIDDLE: f64 = 2_822_400.0;
+
+/// Between which values a guard stays as long as its phase lasts.
+#[derive(Clone, Copy, Debug)]
+pub struct Corridor {
+    /// The phase ends when the guard falls to this.
+    pub low: f64,
+    /// The phase ends when the guard rises to this.
+    pub high: f64,
+}
+
+impl Corridor {
+    /// How far `value` is outside: negative inside, zero on a threshold.
+    #[inline]
+    pub fn excess(&self, value: f64) -> f64 {
+        (value - self.high).max(self.low - value)
+    }
+
+    /// Narrower by `margin` on both sides.
+    #[inline]
+    pub fn narrowed(&self, margin: f64) -> Self {
+        Self { low: self.low + margin, high: self.high - margin }
+    }
+}
+
+/// The guard, or something that bounds it, on a piece.
+#[derive(Clone, Copy, Debug)]
+pub struct Piece {
+    /// Value and three derivatives at the left end.
+    pub left: [f64; 4],
+    /// Value and three derivatives at the right end.
+    pub right: [f64; 4],
+    /// Length of the piece.
+    pub length: f64,
+    /// A lower and an upper bound of the eighth derivative inside.
+    pub eighth: (f64, f64),
+}
+
+/// What a certificate says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// Proved: inside.
+    Inside,
+    /// Inside but for a touch that is smaller than the rounding error.
+    Touches,
+    /// Nothing proved.
+    Open,
+}
+
+/// Which ends of a piece are known to lie on a threshold.
+#[derive(Clone, Copy, Debug)]
+pub struct Ends {
+    /// The left value is a threshold, exactly, by the switch that began the phase.
+    pub left: bool,
+    /// So is the left slope zero.
+    pub left_double: bool,
+    /// The right end is a root.
+    pub right: bool,
+}
+
+impl Ends {
+    /// For pieces that bound the guard from outside at their left end, and do not share its value.
+    #[inline]
+    pub fn loose_left(self) -> Self {
+        Self { left: false, left_double: false, ..self }
+    }
+}
+
+impl Piece {
+    /// Checks all Bernstein coefficients against the corridor, with `slack` for rounding.
+    #[inline]
+    pub fn verdict(&self, corridor: &Corridor, ends: Ends, slack: f64) -> Verdict {
+        let coefficients = self.coefficients();
+        let scale = self.length.powi(8) / MIDDLE;
+        let lift = [self.eighth.0.min(0.0) * scale, self.eighth.1.max(0.0) * scale];
+        let first = if ends.left_double { 2 } else { usize::from(ends.left) };
+        let last = if ends.right { 8 } else { 9 };
+        let mut worst = f64::NEG_INFINITY;
+        let mut size = 0.0_f64;
+        for (index, &coefficient) in coefficients.iter().enumerate().take(last).skip(first) {
+            let [down, up] = if index == 4 { lift } else { [0.0; 2] };
+            let excess = (coefficient + up - corridor.high).max(corridor.low - coefficient - down);
+            // Next to a root the sign alone is asked for: the slope there is known to be outward.
+            if index == 7 && ends.right && excess < 0.0 {
+                continue;
+            }
+            size = size.max(coefficient.abs());
+            if excess > worst || excess.is_nan() {
+                worst = excess;
+            }
+        }
+        let slack = slack + f64::EPSILON * size;
+        if worst < -slack {
+            Verdict::Inside
+        } else if worst <= slack {
+            Verdict::Touches
+        } else {
+            Verdict::Open
+        }
+    }
+
+    /// Bernstein coefficients of degree eight of the Hermite interpolant.
+    #[inline]
+    fn coefficients(&self) -> [f64; 9] {
+        let [a, b, c, d] = from_end(&self.left, self.length);
+        let [h, g, f, e] = from_end(&self.right, -self.length);
+        [
+            a,
+            (a + 7.0 * b) * 0.125,
+            (b + 3.0 * c) * 0.25,
+            (3.0 * c + 5.0 * d) * 0.125,
+            (d + e) * 0.5,
+            (5.0 * e + 3.0 * f) * 0.125,
+            (3.0 * f + g) * 0.25,
+            (7.0 * g + h) * 0.125,
+            h,
+        ]
+    }
+
+    /// Where to divide: at the place of the largest excess, so that a near miss is met at its crest,
+    /// where both halves are easily certified.
+    pub fn worst_place(&self, from: f64, corridor: &Corridor) -> f64 {
+        let step =
+            self.crest_next_to_an_end(corridor).unwrap_or_else(|| self.sampled_crest(corridor));
+        let place = from + step;
+        let inside = place > from && place < from + self.length;
+        if inside { place } else { from + 0.5 * self.length }
+    }
+
+    /// One Newton step on the slope, where an end is already near a crest of the excess.
+    fn crest_next_to_an_end(&self, corridor: &Corridor) -> Option<f64> {
+        const NEAR: f64 = 0.1; // of the piece
+        let newton = |orders: &[f64; 4]| {
+            let [value, slope, bend, _] = *orders;
+            let outward = if value - corridor.high >= corridor.low - value { 1.0 } else { -1.0 };
+            (bend * outward < 0.0).then(|| -slope / bend)
+        };
+        let near = NEAR * self.length;
+        let from_left = newton(&self.left).filter(|step| *step > 0.0 && *step < near);
+        let from_right = newton(&self.right).filter(|step| *step < 0.0 && *step > -near);
+        from_left.or(from_right.map(|step| self.length + step))
+    }
+
+    fn sampled_crest(&self, corridor: &Corridor) -> f64 {
+        const PLACES: i32 = 32;
+        let coefficients = self.coefficients();
+        let excess = |s: &f64| corridor.excess(de_casteljau(coefficients, *s));
+        let places = (3..=PLACES - 3).map(|k| f64::from(k) / f64::from(PLACES));
+        let crest = places.max_by(|s, t| excess(s).total_cmp(&excess(t)));
+        self.length * crest.unwrap_or(0.5)
+    }
+}
+
+/// The four Bernstein coefficients of degree seven next to an end.
+#[inline]
+fn from_end(orders: &[f64; 4], length: f64) -> [f64; 4] {
+    let first = orders[1] * length / 7.0;
+    let second = orders[2] * length * length / 42.0;
+    let third = orders[3] * length * length * length / 210.0;
+    let value = orders[0];
+    [value, value + first, value + (2.0 * first + second), value + (3.0 * (first + second) + third)]
+}
+
+fn de_casteljau(mut points: [f64; 9], s: f64) -> f64 {
+    for order in (1..9).rev() {
+        for i in 0..order {
+            points[i] += s * (points[i + 1] - points[i]);
+        }
+    }
+    points[0]
+}

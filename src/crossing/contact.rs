@@ -1,0 +1,246 @@
+//! The guards of a contact: the trial force rises to 1 (progression) or falls to 0 (separation).
+
+use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
+use crate::crossing::guarded::{Guarded, Outlook, slack};
+use crate::flow::contact::Contact;
+use crate::flow::damped::Damping;
+use crate::flow::forced::Forced;
+use crate::flow::{Flow, Point};
+
+/// Contact's trial force split into what is forced for ever and what dies out.
+#[derive(Clone, Copy, Debug)]
+pub struct Split {
+    /// Free part and its first three derivatives.
+    free: [f64; 4],
+    /// Amplitude of the forced part.
+    amplitude: f64,
+}
+
+/// The forced part of the trial force is b + Re((F - b) H) with this complex H, and its amplitude.
+#[derive(Clone, Copy, Debug)]
+pub struct Steady {
+    re: f64,
+    im_over_omega: f64,
+    amplitude: f64,
+}
+
+impl Steady {
+    /// H = (1 + 2 i xi omega)/(1 - omega^2 + 2 i xi omega).
+    #[must_use]
+    pub fn new(a: f64, xi: f64, omega: f64) -> Self {
+        let stiffness = (1.0 - omega) * (1.0 + omega);
+        let damping = 2.0 * xi * omega;
+        let inverse = Forced::<f64>::amplitude(xi, omega);
+        let square = inverse * inverse;
+        Self {
+            re: (stiffness + damping * damping) * square,
+            im_over_omega: damping * (stiffness - 1.0) * square / omega,
+            amplitude: a * (1.0 + damping * damping).sqrt() * inverse,
+        }
+    }
+}
+
+/// Free motion leaves the fast exponential behind after this many of its times.
+const FAST_IS_GONE: f64 = 40.0;
+
+impl Contact<f64> {
+    fn steady(&self) -> Steady {
+        let constants = &self.constants;
+        Steady::new(constants.a, constants.xi, constants.omega)
+    }
+
+    fn split(&self, at: &Point<f64>) -> Split {
+        let Steady { re, im_over_omega, amplitude } = self.steady();
+        let constants = &self.constants;
+        let omega2 = constants.omega * constants.omega;
+        let harmonic = at.force[0] - constants.b;
+        // a sin(omega tau + phi) = -F'/omega
+        let value = re * harmonic + im_over_omega * at.force[1];
+        let rate = re * at.force[1] + im_over_omega * at.force[2];
+        let [f, f1, f2, f3] = at.guard.orders;
+        let level = f + (self.reference - constants.b);
+        let free = [level - value, f1 - rate, f2 + omega2 * value, f3 + omega2 * rate];
+        Split { free, amplitude }
+    }
+
+    /// A bound of the eighth derivative of the free part from `at` on.
+    ///
+    /// x'' + 2 xi x' + x = 0 holds for every derivative of x as well, and x^2 + x'^2 never grows.
+    fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
+        if let Damping::Over { fast, slow, .. } = self.constants.damping
+            && fast * at.elapsed > FAST_IS_GONE + 8.0 * fast.ln()
+        {
+            // Only the slow exponential is left; twice its size covers the rest.
+            return 2.0 * split.free[0].abs() * slow.powi(8) + f64::EPSILON;
+        }
+        let two_xi = self.constants.two_xi;
+        let (mut x, mut rate) = (split.free[0], split.free[1]);
+        for _ in 0..8 {
+            (x, rate) = (rate, -(two_xi * rate + x));
+        }
+        x.hypot(rate)
+    }
+
+    /// A bound of |f''| from `at` on: the free part's by its energy, the forced part's amplitude.
+    pub(crate) fn second_derivative_bound(&self, at: &Point<f64>) -> f64 {
+        let split = self.split(at);
+        let [.., x2, x3] = split.free;
+        x2.hypot(x3) + split.amplitude * self.constants.omega * self.constants.omega
+    }
+
+    /// Whether f can never leave (0, 1) again: amplitude and energy of the free part fit inside.
+    fn rests(&self, split: &Split) -> bool {
+        const ROOM: f64 = 1e-12; // for rounding; all terms are of order 1 here
+        let b = self.constants.b;
+        let reach = split.amplitude + split.free[0].hypot(split.free[1]) + ROOM * (1.0 + b.abs());
+        b + reach < 1.0 && b - reach > 0.0
+    }
+
+    /// The first place where a cubic from `left` leaves the corridor, if that is soon.
+    fn soon(&self, left: &Point<f64>) -> Option<f64> {
+        const SOON: f64 = 0.4;
+        let [f, f1, f2, f3] = left.guard.orders;
+        let horizon = SOON / self.fastest_rate();
+        let cubic = |d: f64| f + d * (f1 + d * (0.5 * f2 + d * f3 / 6.0));
+        let corridor = self.corridor();
+        let outside = |d: &f64| corridor.excess(cubic(*d)) >= 0.0;
+        let mut right = (1..=4).map(|k| horizon * f64::from(k) / 4.0).find(outside)?;
+        let mut left_end = (right - 0.25 * horizon).max(0.0);
+        for _ in 0..8 {
+            let middle = 0.5 * (left_end + right);
+            if outside(&middle) { right = middle } else { left_end = middle }
+        }
+        // Where the interval is short the last step is a secant's.
+        let (near, far) = (corridor.excess(cubic(left_end)), corridor.excess(cubic(right)));
+        let weight = if far > near { (-near / (far - near)).clamp(0.0, 1.0) } else { 1.0 };
+        Some(left.elapsed + left_end + weight * (right - left_end))
+    }
+
+    /// Steps through the free and the forced part by rotation, cheaply, until f leaves the corridor.
+    fn swing(&self, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
+        const STEPS: usize = 24;
+        const STEP: f64 = std::f64::consts::PI / 16.0;
+        let constants = &self.constants;
+        let corridor = self.corridor();
+        let free = constants.damping.at(STEP);
+        let (s, c) = (free.s, 1.0 + free.c_minus_1);
+        let (sin, cos) = self.step_angle();
+        let (mut x, mut rate) = (split.free[0], split.free[1]);
+        let Steady { re, im_over_omega, .. } = self.steady();
+        let (mut harmonic, mut quadrature) =
+            (left.force[0] - constants.b, left.force[1] / constants.omega);
+        let level = constants.b - self.reference;
+        let mut last = left.guard.orders[0];
+        for k in 1..=STEPS {
+            (x, rate) = (
+                x * c + (rate + constants.two_xi * x) * s,
+                rate * (c - constants.two_xi * s) - x * s,
+            );
+            (harmonic, quadrature) =
+                (harmonic * cos + quadrature * sin, quadrature * cos - harmonic * sin);
+            let f = level + x + re * harmonic + im_over_omega * constants.omega * quadrature;
+            if corridor.excess(f) >= 0.0 {
+                let threshold = if f >= corridor.high { corridor.high } else { corridor.low };
+                let rise = rate
+                    + constants.omega
+                        * (re * quadrature - im_over_omega * constants.omega * harmonic);
+                return Ok(left.elapsed + STEP * (k as f64 - back(last, f, rise * STEP, threshold)));
+            }
+            last = f;
+        }
+        Err(left.elapsed + STEP * STEPS as f64)
+    }
+
+    fn step_angle(&self) -> (f64, f64) {
+        libm::sincos(std::f64::consts::PI / 16.0 * self.constants.omega)
+    }
+}
+
+/// How far before its right end, in steps, a parabola through both values with the right slope
+/// meets the threshold.
+fn back(left: f64, right: f64, slope: f64, threshold: f64) -> f64 {
+    let over = right - threshold;
+    let bend = left - right + slope;
+    let mut t = over / (right - left);
+    for _ in 0..3 {
+        t -= (over - slope * t + bend * t * t) / (2.0 * bend * t - slope);
+    }
+    if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.5 }
+}
+
+impl Guarded for Contact<f64> {
+    fn corridor(&self) -> Corridor {
+        Corridor { low: -self.reference, high: 1.0 - self.reference }
+    }
+
+    fn entry(&self) -> Point<f64> {
+        self.at(0.0)
+    }
+
+    fn imposed(&self) -> Ends {
+        Ends { left: self.offset == 0.0, left_double: false, right: false }
+    }
+
+    fn outlook(&self, left: &Point<f64>, limit: f64) -> Outlook {
+        if let Some(time) = self.soon(left) {
+            return Outlook::Root(time);
+        }
+        let split = self.split(left);
+        if self.rests(&split) {
+            return Outlook::ClearFrom(left.elapsed);
+        }
+        match self.swing(left, &split) {
+            Ok(time) => Outlook::Root(time),
+            Err(time) => Outlook::Onward(time.min(limit)),
+        }
+    }
+
+    fn certify(&self, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
+        let corridor = self.corridor();
+        let slack = slack(left, right);
+        let length = right.elapsed - left.elapsed;
+        let split = self.split(left);
+        let free = self.free_eighth(left, &split);
+        let eighth = free + split.amplitude * self.constants.omega.powi(8);
+        let whole = Piece {
+            left: left.guard.orders,
+            right: right.guard.orders,
+            length,
+            eighth: (-eighth, eighth),
+        };
+        let verdict = whole.verdict(&corridor, ends, slack);
+        if verdict != Verdict::Open || length * self.constants.omega < 2.0 {
+            return verdict;
+        }
+        // Fast forcing: the free part alone, in a corridor narrowed by the forced amplitude.
+        let b = self.constants.b - self.reference;
+        let slow = |split: &Split| {
+            let [x, x1, x2, x3] = split.free;
+            [x + b, x1, x2, x3]
+        };
+        let slow = Piece {
+            left: slow(&split),
+            right: slow(&self.split(right)),
+            length,
+            eighth: (-free, free),
+        };
+        slow.verdict(&corridor.narrowed(split.amplitude), ends.loose_left(), slack)
+    }
+
+    fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
+        let piece = Piece {
+            left: left.guard.orders,
+            right: right.guard.orders,
+            length: right.elapsed - left.elapsed,
+            eighth: (0.0, 0.0),
+        };
+        if piece.length * self.fastest_rate() > 4.0 {
+            return left.elapsed + 0.5 * piece.length;
+        }
+        piece.worst_place(left.elapsed, &self.corridor())
+    }
+
+    fn fastest_rate(&self) -> f64 {
+        1.0_f64.max(self.constants.omega).max(self.constants.two_xi)
+    }
+}

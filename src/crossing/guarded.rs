@@ -1,0 +1,48 @@
+//! What the search asks of a phase.
+
+use crate::crossing::certificate::{Corridor, Ends, Verdict};
+use crate::flow::{Flow, Point};
+
+/// Where the search should look next.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outlook {
+    /// The next crossing may be near this elapsed time (a guess).
+    Root(f64),
+    /// Go on to this elapsed time; nothing is guessed before it.
+    Onward(f64),
+    /// No crossing from this elapsed time on (proved).
+    ClearFrom(f64),
+}
+
+/// A phase with its guard.
+pub trait Guarded: Flow<f64> {
+    /// Where the guard stays while the phase lasts.
+    fn corridor(&self) -> Corridor;
+
+    /// The evaluation at the start, with what is known there imposed.
+    fn entry(&self) -> Point<f64>;
+
+    /// Which zeros of the guard are imposed at the start.
+    fn imposed(&self) -> Ends;
+
+    /// A guess, or a proof, about what comes after `left`; nothing after `limit` matters.
+    fn outlook(&self, left: &Point<f64>, limit: f64) -> Outlook;
+
+    /// Tries to prove that the guard stays inside between two evaluations.
+    fn certify(&self, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict;
+
+    /// Where to divide a piece that could not be certified.
+    fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64;
+
+    /// The fastest rate at which the motion changes: Taylor steps must be short against its inverse.
+    fn fastest_rate(&self) -> f64;
+}
+
+/// Four eps times the largest term: three roundings in the guard, one in the coefficients.
+const SLACK: f64 = 4.0 * f64::EPSILON;
+
+/// Rounding room of a piece: the guard's terms and those of its coefficients.
+#[inline]
+pub fn slack(left: &Point<f64>, right: &Point<f64>) -> f64 {
+    SLACK * left.guard.largest_term.max(right.guard.largest_term)
+}

@@ -1,0 +1,75 @@
+//! The first crossing of a guard: guessed, evaluated, certified.
+//!
+//! # Why no crossing is ever passed
+//!
+//! [`search`] walks from the start of the phase in pieces. A piece counts as done only if a
+//! [`certificate`] proves that the guard stays inside its corridor there, and a root is accepted only
+//! as the right end of a certified piece. Guesses propose where pieces end; a bad guess costs
+//! evaluations, never a crossing. Where a certificate fails the piece is divided; if the guard is
+//! outside at the division, an earlier crossing is bracketed and takes the place of the right end.
+//! What the guards can prove about whole futures (the mass never returns, never stops, rests for
+//! ever) comes from bounds on the slow part of the motion ([`trend`], and the energy of the free
+//! oscillation in contact).
+//!
+//! Rounding enters through one number a piece, `slack`: a few eps times the largest term that went
+//! into the guard. A guard that comes closer to its threshold than that, without passing it by more,
+//! is undecidable in f64; it is counted and taken as a touch, which is no switch.
+//!
+//! [`stepping`] is the same question answered in the plainest way, by one-sided steps with a bound on
+//! the curvature. It is several times dearer and serves as the judge in the tests.
+
+pub mod certificate;
+pub mod contact;
+pub mod guarded;
+pub mod no_contact;
+pub mod progression;
+pub mod root;
+pub mod search;
+pub mod stepping;
+pub mod trend;
+
+use crate::flow::Point;
+use crate::two_word::TwoWord;
+
+/// How a phase ends.
+#[derive(Clone, Copy, Debug)]
+pub enum Crossing {
+    /// The guard reaches a threshold.
+    At(Root),
+    /// It does not before the horizon.
+    Horizon,
+    /// It never does.
+    Never,
+}
+
+/// A certified first crossing.
+#[derive(Clone, Copy, Debug)]
+pub struct Root {
+    /// The last evaluation, next to the crossing.
+    pub point: Point<f64>,
+    /// What is left from there to the crossing, small enough for a Taylor step.
+    pub step: f64,
+    /// Whether the guard rises through the upper threshold (else it falls through the lower one).
+    pub rises: bool,
+}
+
+impl Root {
+    /// Time from the start of the phase to the crossing.
+    #[must_use]
+    pub fn elapsed(&self) -> TwoWord {
+        TwoWord::sum(self.point.elapsed, self.step)
+    }
+}
+
+/// What the search has cost and met so far.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Switches found.
+    pub switches: u64,
+    /// Closed-form evaluations (sine, cosine, exponential) spent on finding them.
+    pub evaluations: u64,
+    /// Touches and near misses whose margin is below the rounding error.
+    pub undecidable: u64,
+    /// Pieces that had to be divided.
+    pub divisions: u64,
+}

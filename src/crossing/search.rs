@@ -1,0 +1,137 @@
+//! The first crossing: pieces proposed by guesses, accepted by certificates.
+
+use crate::crossing::certificate::{Ends, Verdict};
+use crate::crossing::guarded::{Guarded, Outlook, slack};
+use crate::crossing::root::{bracketed, evaluate, follow};
+use crate::crossing::{Counters, Crossing, Root};
+use crate::flow::Point;
+
+/// The right end of a piece.
+#[derive(Clone, Copy)]
+enum Target {
+    Point(Point<f64>),
+    Root(Root),
+}
+
+impl Target {
+    fn point(&self) -> &Point<f64> {
+        match self {
+            Self::Point(point) => point,
+            Self::Root(root) => &root.point,
+        }
+    }
+
+    fn is_root(&self) -> bool {
+        matches!(self, Self::Root(_))
+    }
+}
+
+/// The first crossing after the start of the phase and not after `horizon` (elapsed, may be infinite).
+pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counters) -> Crossing {
+    let mut left = phase.entry();
+    let mut ends = phase.imposed();
+    loop {
+        let target = match onwards(phase.outlook(&left, horizon), &left, phase.fastest_rate()) {
+            Outlook::ClearFrom(time) if time <= left.elapsed => return Crossing::Never,
+            Outlook::Root(time) if time < horizon => {
+                match follow(phase, left.elapsed, time, horizon, counters) {
+                    Ok(root) => Target::Root(root),
+                    Err(point) => Target::Point(point),
+                }
+            }
+            Outlook::Root(time) | Outlook::Onward(time) | Outlook::ClearFrom(time) => {
+                let time = time.min(horizon);
+                if !time.is_finite() {
+                    return Crossing::Horizon;
+                }
+                Target::Point(evaluate(phase, time, counters))
+            }
+        };
+        match settle(phase, left, ends, target, counters) {
+            Target::Root(root) if root.elapsed().high <= horizon => return Crossing::At(root),
+            Target::Point(point) if point.elapsed < horizon => left = point,
+            _ => return Crossing::Horizon,
+        }
+        ends = Ends { left: false, left_double: false, right: false };
+    }
+}
+
+/// An outlook that does not stay where it is: a guess that falls on `left` is no guess.
+fn onwards(outlook: Outlook, left: &Point<f64>, fastest_rate: f64) -> Outlook {
+    const STEP: f64 = 0.1;
+    match outlook {
+        Outlook::Root(time) | Outlook::Onward(time)
+            if time.is_nan() || time <= left.elapsed * (1.0 + 8.0 * f64::EPSILON) =>
+        {
+            Outlook::Onward(left.elapsed * (1.0 + 16.0 * f64::EPSILON) + STEP / fastest_rate)
+        }
+        other => other,
+    }
+}
+
+/// Certifies everything from `left` to `target`, or to the earlier crossing that turns up.
+#[inline]
+fn settle<G: Guarded>(
+    phase: &G,
+    left: Point<f64>,
+    mut ends: Ends,
+    target: Target,
+    counters: &mut Counters,
+) -> Target {
+    let target = inside_or_root(phase, &left, target, counters);
+    ends.right = target.is_root();
+    if phase.certify(&left, target.point(), ends) == Verdict::Inside {
+        return target;
+    }
+    divide(phase, left, ends, target, counters)
+}
+
+/// The piecewise way, where one certificate does not reach from `left` to `target`.
+#[cold]
+fn divide<G: Guarded>(
+    phase: &G,
+    mut left: Point<f64>,
+    mut ends: Ends,
+    target: Target,
+    counters: &mut Counters,
+) -> Target {
+    let mut pending = vec![target];
+    while let Some(target) = pending.last().copied() {
+        let right = target.point();
+        ends.right = target.is_root();
+        let verdict = phase.certify(&left, right, ends);
+        let resolvable = right.elapsed - left.elapsed > 8.0 * f64::EPSILON * right.elapsed;
+        if verdict == Verdict::Open && resolvable {
+            counters.divisions += 1;
+            let middle = evaluate(phase, phase.divide(&left, right), counters);
+            match inside_or_root(phase, &left, Target::Point(middle), counters) {
+                earlier @ Target::Root(_) => pending = vec![earlier],
+                inside @ Target::Point(_) => pending.push(inside),
+            }
+            continue;
+        }
+        counters.undecidable += u64::from(verdict != Verdict::Inside);
+        left = *right;
+        ends = Ends { left: false, left_double: false, right: false };
+        pending.pop();
+        if pending.is_empty() {
+            return target;
+        }
+    }
+    Target::Point(left)
+}
+
+/// If the guard is outside at the target by more than rounding, the crossing before it.
+fn inside_or_root<G: Guarded>(
+    phase: &G,
+    left: &Point<f64>,
+    target: Target,
+    counters: &mut Counters,
+) -> Target {
+    let Target::Point(point) = target else { return target };
+    if phase.corridor().excess(point.guard.orders[0]) > slack(left, &point) {
+        Target::Root(bracketed(phase, left, &point, counters))
+    } else {
+        target
+    }
+}

@@ -1,0 +1,239 @@
+//! The slow part of a guard without its harmonic: what decides about long phases, and for ever.
+//!
+//! Without contact and in progression the guard, counted so that it rises to zero, is
+//! G(d) = c + s d + k d^2/2 - K cos(omega d + angle) - e exp(-rate d). With e >= 0 it never exceeds
+//! the parabola plus K; with e < 0 it never exceeds that plus what is left of the exponential.
+//! While that bound is negative nothing can happen, however many forcing cycles pass; and where the
+//! harmonic is at its crest the bound is attained, so that of a crossing no more than one period
+//! has to be searched each time the bound becomes positive.
+
+use crate::crossing::guarded::Outlook;
+use crate::remainders::decay;
+use std::f64::consts::TAU;
+
+/// See the module's text.
+#[derive(Clone, Copy, Debug)]
+pub struct Trend {
+    /// c
+    pub offset: f64,
+    /// s
+    pub slope: f64,
+    /// k
+    pub curvature: f64,
+    /// K >= 0
+    pub amplitude: f64,
+    /// Sine of `angle`.
+    pub sin: f64,
+    /// Cosine of `angle`.
+    pub cos: f64,
+    /// e
+    pub exponential: f64,
+    /// rate
+    pub rate: f64,
+    /// omega
+    pub omega: f64,
+}
+
+/// What the bound says about the time from some instant on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Bound {
+    /// It is positive now, or will be from this elapsed time on at the earliest.
+    OpenFrom(f64),
+    /// It is negative from now on.
+    Never,
+    /// It may be positive until this elapsed time, and never is afterwards.
+    NeverAfter(f64),
+}
+
+/// Relative room for rounding in statements about the parabola.
+const ROOM: f64 = 1e-13;
+
+impl Trend {
+    /// What the bound says from elapsed time `from` on.
+    pub fn bound(&self, from: f64) -> Bound {
+        let Self { slope, curvature, .. } = *self;
+        let exponential = if self.exponential < 0.0 {
+            -self.exponential * decay(self.rate * from).exp
+        } else {
+            0.0
+        };
+        let size = self.offset.abs() + (slope * from).abs() + (curvature * from * from).abs();
+        let room = ROOM * (size + self.amplitude);
+        let value = self.parabola(from) + self.amplitude + exponential + room;
+        let rising = slope + curvature * from;
+        if value >= 0.0 {
+            let gone = (curvature < 0.0 || (curvature == 0.0 && rising < 0.0))
+                .then(|| last_root(value, rising, curvature))
+                .flatten();
+            return match gone {
+                Some(time) => Bound::NeverAfter(from + time * (1.0 + 1e-6)),
+                None => Bound::OpenFrom(from),
+            };
+        }
+        match first_root(value, rising, curvature) {
+            Some(time) => Bound::OpenFrom(from + time),
+            None => Bound::Never,
+        }
+    }
+
+    /// Where the search should look after elapsed time `from`; `inside` as for [`Self::guess`].
+    pub fn outlook(&self, from: f64, inside: bool, limit: f64) -> Outlook {
+        let bound = self.bound(from);
+        match bound {
+            Bound::Never => return Outlook::ClearFrom(from),
+            Bound::NeverAfter(time) | Bound::OpenFrom(time) if time > limit => {
+                return Outlook::Onward(limit);
+            }
+            _ => {}
+        }
+        match (self.guess(from, inside, limit), bound) {
+            (Some(time), _) => Outlook::Root(time),
+            (None, Bound::NeverAfter(time)) => Outlook::Onward(time),
+            _ => Outlook::Onward(from + TAU / self.omega),
+        }
+    }
+
+    /// Where to divide a long piece: after the first `decay_times` of the exponential, and around
+    /// the time in which the bound is negative. None if the piece is short in both respects.
+    pub fn division(&self, from: f64, to: f64, decay_times: f64) -> Option<f64> {
+        let length = to - from;
+        let settled = 0.9 * decay_times / self.rate;
+        if length * self.rate > decay_times && from < settled {
+            return Some(from + settled);
+        }
+        let period = TAU / self.omega;
+        if length <= 2.0 * period {
+            return None;
+        }
+        let within = |time: f64| time > from + 0.5 * period && time < to - 0.5 * period;
+        match (self.bound(from), self.bound(from + period)) {
+            (_, Bound::OpenFrom(time)) | (Bound::NeverAfter(time), _) if within(time) => Some(time),
+            (Bound::OpenFrom(_), _) => Some(from + period),
+            _ => Some(from + 0.5 * length),
+        }
+    }
+
+    /// c + s d + k d^2/2
+    fn parabola(&self, d: f64) -> f64 {
+        self.offset + d * (self.slope + 0.5 * self.curvature * d)
+    }
+
+    /// A guess, not a proof, of the first rise of G to zero after `from`; `inside` says that G is
+    /// known to be negative just after `from`. None if the bound forbids it before `limit`.
+    pub fn guess(&self, from: f64, inside: bool, limit: f64) -> Option<f64> {
+        const STEP: f64 = 0.5; // radians of forcing angle
+        const STEPS: usize = 40; // three periods
+        let step = STEP / self.omega;
+        let mut inside = inside;
+        let mut last = from;
+        for _ in 0..STEPS {
+            let mut next = last + step;
+            if self.parabola(next) + self.amplitude < 0.0 {
+                inside = true;
+                match self.bound(next) {
+                    Bound::OpenFrom(open) => {
+                        last = open.max(next);
+                        next = last + step;
+                    }
+                    Bound::Never | Bound::NeverAfter(_) => return None,
+                }
+            }
+            if next.is_nan() || last > limit {
+                return None;
+            }
+            if self.estimate(next).0 >= 0.0 {
+                if inside {
+                    return Some(self.refine(last, next));
+                }
+            } else {
+                inside = true;
+            }
+            last = next;
+        }
+        None
+    }
+
+    /// A few safeguarded Newton steps on the estimate, from the right end.
+    fn refine(&self, mut left: f64, mut right: f64) -> f64 {
+        let mut d = right;
+        for _ in 0..5 {
+            let (value, rate) = self.estimate(d);
+            if value >= 0.0 {
+                right = d;
+            } else {
+                left = d;
+            }
+            let newton = d - value / rate;
+            let next = if newton > left && newton < right { newton } else { 0.5 * (left + right) };
+            if (next - d).abs() < 1e-7 * step_scale(self.omega) {
+                return next;
+            }
+            d = next;
+        }
+        d
+    }
+
+    /// G and its slope to about 1e-6, without a call of a library function.
+    fn estimate(&self, d: f64) -> (f64, f64) {
+        let (sin, cos) = quick_sin_cos(self.omega * d);
+        let cosine = self.cos * cos - self.sin * sin;
+        let sine = self.sin * cos + self.cos * sin;
+        let lasting = self.exponential * quick_decay(self.rate * d);
+        (
+            self.parabola(d) - self.amplitude * cosine - lasting,
+            self.slope
+                + self.curvature * d
+                + self.amplitude * self.omega * sine
+                + self.rate * lasting,
+        )
+    }
+}
+
+fn step_scale(omega: f64) -> f64 {
+    1.0 / (1.0 + omega)
+}
+
+/// The first t > 0 with value + rising t + curvature t^2/2 = 0, for value < 0.
+fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
+    let discriminant = rising * rising - 2.0 * curvature * value;
+    if discriminant < 0.0 {
+        return None; // curvature < 0 and the crest stays below zero
+    }
+    let root = discriminant.sqrt();
+    // Of the two forms of the root the one that adds.
+    let time =
+        if rising >= 0.0 { -2.0 * value / (rising + root) } else { (root - rising) / curvature };
+    (time >= 0.0 && time.is_finite()).then_some(time)
+}
+
+/// The last t >= 0 with value + rising t + curvature t^2/2 = 0, for value >= 0 and a parabola that
+/// opens downwards or a falling line.
+fn last_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
+    let root = (rising * rising - 2.0 * curvature * value).sqrt();
+    let time =
+        if rising < 0.0 { 2.0 * value / (root - rising) } else { (rising + root) / -curvature };
+    time.is_finite().then_some(time)
+}
+
+/// Sine and cosine to about 1e-7.
+fn quick_sin_cos(x: f64) -> (f64, f64) {
+    let turns = (x * std::f64::consts::FRAC_2_PI).round();
+    let r = x - turns * std::f64::consts::FRAC_PI_2;
+    let s = r * r;
+    let sin = r * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s / 5040.0)));
+    let cos = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s * (1.0 / 720.0 - s / 40320.0)));
+    match (turns as i64).rem_euclid(4) {
+        0 => (sin, cos),
+        1 => (cos, -sin),
+        2 => (-sin, -cos),
+        _ => (-cos, sin),
+    }
+}
+
+/// exp(-z) to a per cent or so.
+fn quick_decay(z: f64) -> f64 {
+    let base = 1.0 + z * (1.0 / 16.0 + z * (1.0 / 512.0));
+    let fourth = base * base * (base * base);
+    let eighth = fourth * fourth;
+    1.0 / (eighth * eighth)
+}

@@ -1,0 +1,49 @@
+//! The state at which a phase begins: what a row of Table 1 holds.
+
+use crate::instant::Instant;
+use crate::phase::Phase;
+use crate::state::State;
+use crate::two_word::TwoWord;
+
+/// Where and when a phase begins.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Entry {
+    /// When.
+    pub instant: Instant,
+    /// Bounded co-ordinates.
+    pub state: State,
+    /// Displacement of the slider's bottom, v, in two words: it grows without bound by small steps.
+    pub drift: TwoWord,
+    pub(crate) onset: Onset,
+}
+
+/// How a phase begins: its kind, and what is known exactly at that instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Onset {
+    /// No contact, the mass away from the slider: only ever at a start.
+    Apart,
+    /// No contact, on the surface with this rate of h; zero at a separation.
+    Separation { h_rate: f64 },
+    /// Contact with trial force `reference + offset`.
+    Contact { offset: f64, reference: f64 },
+    /// Progression with this drift velocity and velocity of the slider's top.
+    Progression { drift_rate: f64, closing: f64 },
+}
+
+impl Entry {
+    /// The phase that begins.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        match self.onset {
+            Onset::Apart | Onset::Separation { .. } => Phase::NoContact,
+            Onset::Contact { .. } => Phase::Contact,
+            Onset::Progression { .. } => Phase::Progression,
+        }
+    }
+
+    /// Drift v, rounded to one word.
+    #[must_use]
+    pub fn v(&self) -> f64 {
+        self.drift.value()
+    }
+}

@@ -1,0 +1,157 @@
+//! Free oscillation in contact: x'' + 2 xi x' + x = 0 for every xi > 0.
+//!
+//! C and S are its solutions with C(0) = 1, C'(0) = 0 and S(0) = 0, S'(0) = 1. The paper's Eqs.
+//! (15)-(17) have sqrt(1 - xi^2) in a denominator and exist below critical damping only; C and S
+//! are entire functions of 1 - xi^2 and exist everywhere. C' = -S and S' = C - 2 xi S.
+
+use crate::number::Number;
+use crate::remainders::{circular_of, decay};
+
+/// How the free oscillation is computed at this damping ratio.
+#[derive(Clone, Copy, Debug)]
+pub enum Damping<T> {
+    /// xi < 1 and not near it: exp(-xi d) times a rotation.
+    Under {
+        /// Damping ratio.
+        xi: T,
+        /// Damped frequency sqrt(1 - xi^2)
+        nu: T,
+        /// What rounding took from nu.
+        nu_low: T,
+    },
+    /// xi near 1: a series in m = (1 - xi^2) d^2 as long as that is small.
+    NearCritical {
+        /// Damping ratio.
+        xi: T,
+        /// (1 - xi)(1 + xi), of either sign.
+        discriminant: T,
+    },
+    /// xi > 1 and not near it: two exponentials.
+    Over {
+        /// The larger rate, xi + sqrt(xi^2 - 1).
+        fast: T,
+        /// The smaller rate, 1/fast: as a difference it would lose its digits.
+        slow: T,
+        /// 2 sqrt(xi^2 - 1)
+        spread: T,
+    },
+}
+
+/// The fundamental solutions at one elapsed time.
+#[derive(Clone, Copy, Debug)]
+pub struct Free<T> {
+    /// S
+    pub s: T,
+    /// C - 1
+    pub c_minus_1: T,
+    /// S' - 1
+    pub s_rate_minus_1: T,
+    /// The damped rotation (all zero near and above critical damping, where nothing reads it).
+    pub rotation: Rotation<T>,
+}
+
+/// The factors of exp((-xi + i nu) d), from which resonance takes its divided difference.
+#[derive(Clone, Copy, Debug)]
+pub struct Rotation<T> {
+    /// exp(-xi d) - 1
+    pub decay_minus_1: T,
+    /// cos(nu d) - 1
+    pub cos_minus_1: T,
+    /// sin(nu d)
+    pub sin: T,
+}
+
+impl<T: Number> Rotation<T> {
+    fn none() -> Self {
+        Self { decay_minus_1: T::zero(), cos_minus_1: T::zero(), sin: T::zero() }
+    }
+}
+
+/// |1 - xi^2| below which the series may serve.
+const NEAR_CRITICAL: f64 = 0.5;
+
+impl<T: Number> Damping<T> {
+    /// Picks the form for this damping ratio.
+    #[must_use]
+    pub fn new(xi: T) -> Self {
+        let discriminant = (T::one() - xi) * (T::one() + xi);
+        if discriminant > T::exact(NEAR_CRITICAL) {
+            let (nu, nu_low) = T::damped_frequency(xi);
+            Self::Under { xi, nu, nu_low }
+        } else if discriminant.abs() <= T::exact(NEAR_CRITICAL) {
+            Self::NearCritical { xi, discriminant }
+        } else {
+            let root = (-discriminant).sqrt();
+            let fast = xi + root;
+            Self::Over { fast, slow: T::one() / fast, spread: root + root }
+        }
+    }
+
+    /// The fundamental solutions after `d >= 0`.
+    #[inline]
+    pub fn at(&self, d: T) -> Free<T> {
+        match *self {
+            Self::Under { xi, nu, nu_low } => under(xi, nu, nu_low, d),
+            Self::NearCritical { xi, discriminant } => {
+                let m = discriminant * d * d;
+                if m.abs() < T::exact(0.5) {
+                    return near_critical(xi, m, d);
+                }
+                let root = discriminant.abs().sqrt();
+                if discriminant > T::zero() {
+                    under(xi, root, T::zero(), d)
+                } else {
+                    let fast = xi + root;
+                    over(fast, T::one() / fast, root + root, d)
+                }
+            }
+            Self::Over { fast, slow, spread } => {
+                let half = spread * T::exact(0.5);
+                let m = half * half * d * d;
+                if m < T::exact(0.5) {
+                    near_critical(slow + half, -m, d)
+                } else {
+                    over(fast, slow, spread, d)
+                }
+            }
+        }
+    }
+}
+
+#[inline]
+fn under<T: Number>(xi: T, nu: T, nu_low: T, d: T) -> Free<T> {
+    let angle = nu * d;
+    let turn = circular_of(angle, nu.product_error(d) + nu_low * d);
+    let shrink = decay(xi * d);
+    let s = shrink.exp * turn.sin / nu;
+    let c_minus_1 = shrink.minus_1 + shrink.exp * turn.cos_minus_1 + xi * s;
+    let rotation =
+        Rotation { decay_minus_1: shrink.minus_1, cos_minus_1: turn.cos_minus_1, sin: turn.sin };
+    Free { s, c_minus_1, s_rate_minus_1: c_minus_1 - (xi + xi) * s, rotation }
+}
+
+/// With m = (1 - xi^2) d^2: S = d exp(-xi d) (1 - m/3! + m^2/5! - ...), C alike.
+#[inline]
+fn near_critical<T: Number>(xi: T, m: T, d: T) -> Free<T> {
+    let (mut cosine_minus_1, mut sine_over_x) = (T::zero(), T::zero());
+    for k in (0..T::TERMS).rev() {
+        cosine_minus_1 = T::inverse_factorial(2 * k + 2) - m * cosine_minus_1;
+        sine_over_x = T::inverse_factorial(2 * k + 1) - m * sine_over_x;
+    }
+    cosine_minus_1 = -(m * cosine_minus_1);
+    let shrink = decay(xi * d);
+    let s = shrink.exp * d * sine_over_x;
+    let c_minus_1 = shrink.minus_1 + shrink.exp * cosine_minus_1 + xi * s;
+    Free { s, c_minus_1, s_rate_minus_1: c_minus_1 - (xi + xi) * s, rotation: Rotation::none() }
+}
+
+#[inline]
+fn over<T: Number>(fast: T, slow: T, spread: T, d: T) -> Free<T> {
+    let (quick, lasting) = (decay(fast * d), decay(slow * d));
+    Free {
+        s: (lasting.minus_1 - quick.minus_1) / spread,
+        c_minus_1: (fast * lasting.minus_1 - slow * quick.minus_1) / spread,
+        s_rate_minus_1: (fast * quick.minus_1 - slow * lasting.minus_1) / spread,
+        rotation: Rotation::none(),
+    }
+}

@@ -1,0 +1,52 @@
+//! The external force a cos(omega tau + phi) + b and its integrals over elapsed time.
+
+use crate::constants::Constants;
+use crate::number::Number;
+use crate::remainders::{Circular, circular_of};
+
+/// Sine and cosine of the forcing angle `omega tau + phi` when the phase begins.
+#[derive(Clone, Copy, Debug)]
+pub struct EntryAngle<T> {
+    /// sin(omega tau0 + phi)
+    pub sin: T,
+    /// cos(omega tau0 + phi)
+    pub cos: T,
+}
+
+/// The harmonic force over an elapsed time d, by its remainders.
+#[derive(Clone, Copy, Debug)]
+pub struct Harmonic<T> {
+    /// a cos(omega tau + phi) and its first two derivatives.
+    pub force: [T; 3],
+    /// Its integral from 0 to d: (a/omega) (sin(omega tau + phi) - sin(omega tau0 + phi)).
+    pub impulse: T,
+    /// Its second integral: -(a/omega^2) (cos(omega tau + phi) - cos(omega tau0 + phi) + omega d sin(omega tau0 + phi)).
+    pub displacement: T,
+    /// An upper bound of the terms that made `displacement`.
+    pub displacement_terms: T,
+    /// An upper bound of the terms that made `impulse`.
+    pub impulse_terms: T,
+    /// The remainders themselves.
+    pub turn: Circular<T>,
+}
+
+impl<T: Number> EntryAngle<T> {
+    /// The harmonic force and its integrals after `d` (Eqs. 14, 18, 20, without cancellation).
+    #[inline]
+    pub fn harmonic(&self, constants: &Constants<T>, d: T) -> Harmonic<T> {
+        let Constants { a, omega, a_over_omega, a_over_omega2, .. } = *constants;
+        let angle = omega * d;
+        let turn = circular_of(angle, omega.product_error(d));
+        let Circular { sin, cos_minus_1, sin_minus_x } = turn;
+        let cosine = self.cos + (self.cos * cos_minus_1 - self.sin * sin);
+        let sine = self.sin + (self.sin * cos_minus_1 + self.cos * sin);
+        Harmonic {
+            force: [a * cosine, -(a * omega * sine), -(a * omega * omega * cosine)],
+            impulse: a_over_omega * (self.sin * cos_minus_1 + self.cos * sin),
+            displacement: -(a_over_omega2 * (self.cos * cos_minus_1 - self.sin * sin_minus_x)),
+            displacement_terms: a_over_omega2 * (sin_minus_x.abs() - cos_minus_1),
+            impulse_terms: a_over_omega * (sin.abs() - cos_minus_1),
+            turn,
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! No contact: Eq. (14). The mass flies, the slider's top returns to its rest.
+
+use crate::constants::Constants;
+use crate::flow::forcing::EntryAngle;
+use crate::flow::{Flow, Jet, Point};
+use crate::number::Number;
+use crate::remainders::decay;
+use crate::state::State;
+
+/// One flight; its guard is h = p - q - g, negative until the impact.
+#[derive(Clone, Copy, Debug)]
+pub struct NoContact<T> {
+    /// The model's constants.
+    pub constants: Constants<T>,
+    /// State when the flight begins.
+    pub entry: State<T>,
+    /// Forcing angle then.
+    pub angle: EntryAngle<T>,
+    /// If the flight begins on the contact surface, h = 0 there exactly, and this is h': zero at a
+    /// separation (f = 0), negative where a start state has f < 0.
+    pub surface: Option<T>,
+}
+
+impl<T: Number> Flow<T> for NoContact<T> {
+    #[inline]
+    fn at(&self, d: T) -> Point<T> {
+        let Constants { b, g, rate, .. } = self.constants;
+        let State { p: p0, y: y0, q: q0 } = self.entry;
+        let harmonic = self.angle.harmonic(&self.constants, d);
+        let decay = decay(rate * d);
+
+        let lift = b * d * d * T::exact(0.5);
+        let y_change = b * d + harmonic.impulse;
+        let p = p0 + (y0 * d + (lift + harmonic.displacement));
+        let y = y0 + y_change;
+        let q = q0 * decay.exp;
+
+        let force = b + harmonic.force[0];
+        let spring = q * rate;
+        let direct_terms = p0.abs() + (y0 * d).abs() + lift.abs() + q0.abs() + g.abs();
+        let (h, h_rate, terms) = match self.surface {
+            // The remainder is the better form where z is short, and everywhere after a separation,
+            // where its linear term is the flight's own.
+            Some(h_rate) if h_rate == T::zero() || rate * d < T::one() => {
+                // h = h' d - q0 (exp(-z) - 1 + z) + b d^2/2 + ..., because p0 = q0 + g.
+                let sink = q0 * decay.remainder;
+                let h = (h_rate * d + (lift - sink)) + harmonic.displacement;
+                let terms = (h_rate * d).abs() + lift.abs() + sink.abs();
+                (h, h_rate + (y_change + q0 * rate * decay.minus_1), terms)
+            }
+            _ => ((p - g) - q, y + spring, direct_terms),
+        };
+        let largest_term = terms + harmonic.displacement_terms;
+        let orders = [h, h_rate, force - spring * rate, harmonic.force[1] + spring * rate * rate];
+        Point {
+            elapsed: d,
+            state: State { p, y, q },
+            slider_velocity: -spring,
+            drift: T::zero(),
+            force: [force, harmonic.force[1], harmonic.force[2]],
+            guard: Jet { orders, largest_term },
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! Contact with progression: Eqs. (18) and (20), the latter with its sign put right.
+
+use crate::constants::Constants;
+use crate::flow::forcing::EntryAngle;
+use crate::flow::{Flow, Jet, Point};
+use crate::number::Number;
+use crate::remainders::decay;
+use crate::state::State;
+
+/// One progression; its guard is the drift velocity w = v' = (f - 1)/(2 xi), positive until the
+/// slider's bottom stops. In w the exit state keeps the digits that f - 1 would cost it.
+#[derive(Clone, Copy, Debug)]
+pub struct Progression<T> {
+    /// The model's constants.
+    pub constants: Constants<T>,
+    /// State when the progression begins; p = q + g.
+    pub entry: State<T>,
+    /// Forcing angle then.
+    pub angle: EntryAngle<T>,
+    /// Drift velocity then: 0 exactly when entered from contact, positive from an impact.
+    pub drift_rate: T,
+    /// Velocity of the slider's top then, (1 - q)/(2 xi): y exactly when entered from contact.
+    pub closing: T,
+}
+
+impl<T: Number> Flow<T> for Progression<T> {
+    #[inline]
+    fn at(&self, d: T) -> Point<T> {
+        let Constants { b, g, rate, .. } = self.constants;
+        let Self { entry: State { y: y0, q: q0, .. }, drift_rate: w0, closing, .. } = *self;
+        let harmonic = self.angle.harmonic(&self.constants, d);
+        let decay = decay(rate * d);
+        let one = T::one();
+
+        let push = (b - one) * d;
+        let y_change = push + harmonic.impulse;
+        let y = y0 + y_change;
+        // 1 - q decays; (1 - q)/(2 xi) = y - w at all times.
+        let lag = closing * decay.exp;
+        let w = w0 + (y_change - closing * decay.minus_1);
+        let q = one + (q0 - one) * decay.exp;
+        // Eq. (20) with - (p0 - g - 1) exp(..), its linear terms collected: y0 - (1 - q0)/(2 xi) = w0.
+        let settling = (one - q0) * decay.remainder;
+        let drift = w0 * d + (push * d * T::exact(0.5) + harmonic.displacement) + settling;
+
+        let force = b + harmonic.force[0];
+        let lag_rate = lag * rate;
+        let orders = [
+            w,
+            force - one + lag_rate,
+            harmonic.force[1] - lag_rate * rate,
+            harmonic.force[2] + lag_rate * rate * rate,
+        ];
+        let largest_term =
+            w0.abs() + (push.abs() + harmonic.impulse_terms) + (closing * decay.minus_1).abs();
+        Point {
+            elapsed: d,
+            state: State { p: q + g, y, q },
+            slider_velocity: lag,
+            drift,
+            force: [force, harmonic.force[1], harmonic.force[2]],
+            guard: Jet { orders, largest_term },
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! One phase of a run: where it begins, how long it lasts, and anything inside it on demand.
+
+use crate::crossing::search::first_crossing;
+use crate::crossing::stepping;
+use crate::crossing::{Counters, Crossing, Root};
+use crate::entry::{Entry, Onset};
+use crate::flow::{Flow, Point};
+use crate::instant::Instant;
+use crate::model::{Model, Motion};
+use crate::phase::Phase;
+use crate::state::State;
+use crate::surface;
+use crate::two_word::TwoWord;
+
+/// The motion at some instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Bounded co-ordinates.
+    pub state: State,
+    /// Drift v.
+    pub v: f64,
+}
+
+/// Why a phase has no end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Endless {
+    /// The mass never returns to the slider (b too small).
+    NeverReturns,
+    /// The slider's bottom never stops (b too large).
+    NeverStops,
+    /// The mass rests on the slider for ever (a small).
+    RestsForEver,
+}
+
+/// How a phase ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Exit {
+    /// By a switch; the next phase begins so.
+    Switch(Entry),
+    /// Not before the horizon.
+    Horizon,
+    /// Never: proved.
+    Endless(Endless),
+}
+
+/// One phase of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Leg {
+    entry: Entry,
+    exit: Exit,
+    duration: TwoWord,
+    motion: Motion,
+    omega: f64,
+}
+
+impl Leg {
+    /// Finds how the phase that begins at `entry` ends; switches after `horizon` do not count.
+    pub(crate) fn new(
+        model: &Model,
+        entry: Entry,
+        horizon: Option<&Instant>,
+        counters: &mut Counters,
+    ) -> Self {
+        let omega = model.parameters().omega;
+        let motion = model.motion(&entry);
+        let limit = horizon.map_or(f64::INFINITY, |h| h.since(&entry.instant, omega).value());
+        let crossing = match &motion {
+            Motion::NoContact(flight) => first_crossing(flight, limit, counters),
+            Motion::Contact(contact) => first_crossing(contact, limit, counters),
+            Motion::Progression(progression) => first_crossing(progression, limit, counters),
+        };
+        let (exit, duration) = match crossing {
+            Crossing::At(root) => {
+                counters.switches += 1;
+                let elapsed = root.elapsed();
+                let mut next = land(model, &entry, &motion, &root);
+                next.instant = entry.instant.after(elapsed, omega);
+                (Exit::Switch(next), elapsed)
+            }
+            Crossing::Horizon => (Exit::Horizon, TwoWord::new(limit)),
+            Crossing::Never => (Exit::Endless(endless(entry.phase())), TwoWord::new(f64::INFINITY)),
+        };
+        Self { entry, exit, duration, motion, omega }
+    }
+
+    /// Where the phase begins.
+    #[must_use]
+    pub fn entry(&self) -> &Entry {
+        &self.entry
+    }
+
+    /// How it ends.
+    #[must_use]
+    pub fn exit(&self) -> &Exit {
+        &self.exit
+    }
+
+    /// Which phase it is.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.entry.phase()
+    }
+
+    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.duration.value()
+    }
+
+    /// The motion a time `elapsed` after the phase began, at most [`Self::duration`].
+    #[must_use]
+    pub fn at(&self, elapsed: f64) -> Sample {
+        let point = match &self.motion {
+            Motion::NoContact(flight) => flight.at(elapsed),
+            Motion::Contact(contact) => contact.at(elapsed),
+            Motion::Progression(progression) => progression.at(elapsed),
+        };
+        let v = self.entry.drift.plus(TwoWord::new(point.drift)).value();
+        Sample { state: point.state, v }
+    }
+
+    /// The motion at an instant inside the phase.
+    #[must_use]
+    pub fn at_instant(&self, instant: &Instant) -> Sample {
+        self.at(instant.since(&self.entry.instant, self.omega).value())
+    }
+
+    /// How long the phase lasts by plain one-sided stepping (the judge): infinite if it does not end
+    /// within `horizon`, none if that takes more than `evaluations`.
+    #[must_use]
+    pub fn judged_duration(&self, horizon: f64, evaluations: u64) -> Option<f64> {
+        let mut counters = Counters::default();
+        let crossing = match &self.motion {
+            Motion::NoContact(flight) => {
+                stepping::first_crossing(flight, horizon, evaluations, &mut counters)
+            }
+            Motion::Contact(contact) => {
+                stepping::first_crossing(contact, horizon, evaluations, &mut counters)
+            }
+            Motion::Progression(slip) => {
+                stepping::first_crossing(slip, horizon, evaluations, &mut counters)
+            }
+        };
+        crossing.map(|crossing| match crossing {
+            Crossing::At(root) => root.elapsed().value(),
+            Crossing::Horizon | Crossing::Never => f64::INFINITY,
+        })
+    }
+
+    /// Whether the phase is over by then.
+    #[must_use]
+    pub fn ends_by(&self, instant: &Instant) -> bool {
+        matches!(&self.exit, Exit::Switch(next) if next.instant <= *instant)
+    }
+}
+
+fn endless(phase: Phase) -> Endless {
+    match phase {
+        Phase::NoContact => Endless::NeverReturns,
+        Phase::Contact => Endless::RestsForEver,
+        Phase::Progression => Endless::NeverStops,
+    }
+}
+
+/// The next phase's beginning (its instant still that of `entry`), with what is known imposed.
+fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
+    let Root { point, step, rises } = root;
+    let constants = model.constants();
+    let (state, onset) = match motion {
+        Motion::NoContact(_) => {
+            let [_, h_rate, h_rate2, _] = point.guard.orders;
+            let f = constants.two_xi * (h_rate + h_rate2 * step);
+            surface::onset(constants, shifted(constants.rate, point, *step), Some(f), point.force)
+        }
+        Motion::Contact(_) => {
+            let threshold = f64::from(u8::from(*rises));
+            let pull = point.force[0] - (threshold);
+            let pull_rate = point.force[1] - point.guard.orders[1];
+            let y = point.state.y + step * (pull + 0.5 * step * pull_rate);
+            let q = threshold - constants.two_xi * y;
+            let onset = if *rises {
+                Onset::Progression { drift_rate: 0.0, closing: y }
+            } else {
+                Onset::Separation { h_rate: 0.0 }
+            };
+            (State { p: q + constants.g, y, q }, onset)
+        }
+        Motion::Progression(_) => {
+            let decayed = constants.rate * step;
+            let y = point.slider_velocity * (1.0 - decayed * (1.0 - 0.5 * decayed));
+            let q = 1.0 - constants.two_xi * y;
+            (State { p: q + constants.g, y, q }, Onset::Contact { offset: 0.0, reference: 1.0 })
+        }
+    };
+    let [w, w_rate, ..] = point.guard.orders;
+    let last_slip = match motion {
+        Motion::Progression(_) => step * (w + 0.5 * step * w_rate),
+        _ => 0.0,
+    };
+    let drift = entry.drift.plus(TwoWord::sum(point.drift, last_slip));
+    Entry { instant: entry.instant, state, drift, onset }
+}
+
+/// A flight's state a Taylor step later, on the contact surface.
+fn shifted(rate: f64, point: &Point<f64>, step: f64) -> State {
+    let decayed = rate * step;
+    let y = point.state.y + step * (point.force[0] + 0.5 * step * point.force[1]);
+    let q = point.state.q * (1.0 - decayed * (1.0 - 0.5 * decayed));
+    State { p: point.state.p, y, q }
+}

@@ -1,0 +1,49 @@
+//! Exact solver for the visco-elastic impact oscillator with drift of Pavlovskaia and Wiercigroch,
+//! *Chaos, Solitons and Fractals* 19 (2004) 151-161.
+//!
+//! A mass driven by a cos(omega tau + phi) + b strikes a weightless visco-elastic slider that sticks
+//! by dry friction. In each of three phases the motion is known in closed form; this crate joins the
+//! phases at their switches, every one of which it proves to be the first.
+//!
+//! ```
+//! use percuss::{Model, Parameters, Start};
+//!
+//! let model = Model::new(Parameters { omega: 0.1, ..Parameters::default() })?;
+//! let from_rest = model.start(&Start::default())?;
+//! for leg in model.trajectory(from_rest).take(5) {
+//!     println!("{} for {}", leg.phase(), leg.duration());
+//! }
+//! # Ok::<(), percuss::InputError>(())
+//! ```
+
+pub mod angle;
+mod constants;
+pub mod crossing;
+mod entry;
+mod error;
+pub mod flow;
+mod instant;
+mod leg;
+mod model;
+pub mod number;
+mod parameters;
+mod phase;
+pub mod remainders;
+mod start;
+mod state;
+mod surface;
+mod trajectory;
+pub mod two_word;
+
+pub use constants::Constants;
+pub use crossing::Counters;
+pub use entry::Entry;
+pub use error::InputError;
+pub use instant::Instant;
+pub use leg::{Endless, Exit, Leg, Sample};
+pub use model::Model;
+pub use parameters::Parameters;
+pub use phase::{Phase, UnknownPhase};
+pub use start::Start;
+pub use state::State;
+pub use trajectory::Trajectory;

@@ -1,0 +1,98 @@
+//! A validated model, ready to be started.
+
+use crate::angle;
+use crate::constants::Constants;
+use crate::entry::{Entry, Onset};
+use crate::error::InputError;
+use crate::flow::contact::Contact;
+use crate::flow::forcing::EntryAngle;
+use crate::flow::no_contact::NoContact;
+use crate::flow::progression::Progression;
+use crate::instant::Instant;
+use crate::parameters::Parameters;
+use crate::two_word::TwoWord;
+
+/// Parameters that have been checked, with the constants of the closed forms.
+#[derive(Clone, Copy, Debug)]
+pub struct Model {
+    parameters: Parameters,
+    constants: Constants<f64>,
+    phi: TwoWord,
+}
+
+/// The closed form of one phase.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Motion {
+    NoContact(NoContact<f64>),
+    Contact(Contact<f64>),
+    Progression(Progression<f64>),
+}
+
+impl Model {
+    /// Checks the parameters and prepares the closed forms.
+    ///
+    /// # Errors
+    /// [`InputError::OutOfRange`] names the first parameter outside its range.
+    pub fn new(parameters: Parameters) -> Result<Self, InputError> {
+        parameters.check()?;
+        let (_, phi) = angle::reduce(TwoWord::new(parameters.phi));
+        Ok(Self { parameters, constants: Constants::new(&parameters), phi })
+    }
+
+    /// The parameters as given.
+    #[must_use]
+    pub fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    /// One forcing period, 2 pi/omega.
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        std::f64::consts::TAU / self.parameters.omega
+    }
+
+    pub(crate) fn constants(&self) -> &Constants<f64> {
+        &self.constants
+    }
+
+    /// Sine and cosine of omega tau + phi.
+    pub(crate) fn forcing_angle(&self, instant: &Instant) -> EntryAngle<f64> {
+        let (sin, cos) = instant.forcing(self.phi);
+        EntryAngle { sin, cos }
+    }
+
+    /// The external force a cos(omega tau + phi) + b and its first two derivatives.
+    #[must_use]
+    pub fn force(&self, instant: &Instant) -> [f64; 3] {
+        let EntryAngle { sin, cos } = self.forcing_angle(instant);
+        let Parameters { a, b, omega, .. } = self.parameters;
+        [b + a * cos, -(a * omega * sin), -(a * omega * omega * cos)]
+    }
+
+    pub(crate) fn motion(&self, entry: &Entry) -> Motion {
+        let constants = self.constants;
+        let angle = self.forcing_angle(&entry.instant);
+        let state = entry.state;
+        match entry.onset {
+            Onset::Apart => {
+                Motion::NoContact(NoContact { constants, entry: state, angle, surface: None })
+            }
+            Onset::Separation { h_rate } => Motion::NoContact(NoContact {
+                constants,
+                entry: state,
+                angle,
+                surface: Some(h_rate),
+            }),
+            Onset::Contact { offset, reference } => {
+                Motion::Contact(Contact { constants, entry: state, angle, offset, reference })
+            }
+            Onset::Progression { drift_rate, closing } => Motion::Progression(Progression {
+                constants,
+                entry: state,
+                angle,
+                drift_rate,
+                closing,
+            }),
+        }
+    }
+}

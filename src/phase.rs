@@ -1,0 +1,59 @@
+//! The three phases of the motion (Section 2 of the paper).
+
+use std::fmt;
+use std::str::FromStr;
+
+/// In which of its three ways the oscillator moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Phase {
+    /// Mass and slider top move separately, p < q + g (Eq. 11).
+    NoContact,
+    /// They move together, the slider's bottom sticks, 0 < 2 xi y + q < 1 (Eq. 12).
+    Contact,
+    /// They move together, the slider's bottom slips, 2 xi y + q > 1 (Eq. 13).
+    Progression,
+}
+
+impl Phase {
+    /// All phases, in the order of the paper.
+    pub const ALL: [Self; 3] = [Self::NoContact, Self::Contact, Self::Progression];
+
+    /// The name used in files and on the command line.
+    #[must_use]
+    pub const fn token(self) -> &'static str {
+        match self {
+            Self::NoContact => "no-contact",
+            Self::Contact => "contact",
+            Self::Progression => "progression",
+        }
+    }
+}
+
+impl fmt::Display for Phase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.token())
+    }
+}
+
+/// The token that names no phase.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownPhase(pub String);
+
+impl fmt::Display for UnknownPhase {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?} is no phase: accepted are no-contact, contact, progression", self.0)
+    }
+}
+
+impl std::error::Error for UnknownPhase {}
+
+impl FromStr for Phase {
+    type Err = UnknownPhase;
+
+    fn from_str(token: &str) -> Result<Self, Self::Err> {
+        Self::ALL
+            .into_iter()
+            .find(|phase| phase.token() == token)
+            .ok_or_else(|| UnknownPhase(token.to_owned()))
+    }
+}

@@ -1,0 +1,94 @@
+//! What is left of sine, cosine and exponential after their leading terms, without cancellation.
+//!
+//! In Eqs. (14), (18) and (20) differences such as cos(omega tau) - cos(omega tau0) + omega (tau -
+//! tau0) sin(omega tau0) lose every digit in short phases. In the elapsed time d they are
+//! combinations of the remainders below, each computed to within a few units in the last place.
+
+use crate::number::Number;
+
+/// Sine and cosine of x with their remainders.
+#[derive(Clone, Copy, Debug)]
+pub struct Circular<T> {
+    /// sin x
+    pub sin: T,
+    /// cos x - 1
+    pub cos_minus_1: T,
+    /// sin x - x
+    pub sin_minus_x: T,
+}
+
+/// exp(-z) with its remainders.
+#[derive(Clone, Copy, Debug)]
+pub struct Decay<T> {
+    /// exp(-z)
+    pub exp: T,
+    /// exp(-z) - 1
+    pub minus_1: T,
+    /// exp(-z) - 1 + z
+    pub remainder: T,
+}
+
+/// Sine, cosine and remainders of `x`: relative error of a few eps for `|x| <= 1`, absolute beyond.
+#[inline]
+pub fn circular<T: Number>(x: T) -> Circular<T> {
+    if x.abs() < T::one() {
+        let square = x * x;
+        let cos_minus_1 = square * alternating::<T>(square, 2);
+        let sin_minus_x = x * square * alternating::<T>(square, 3);
+        return Circular { sin: x + sin_minus_x, cos_minus_1, sin_minus_x };
+    }
+    let (s, c) = (x * T::exact(0.5)).sin_cos();
+    let two = T::exact(2.0);
+    let sin = two * s * c;
+    Circular { sin, cos_minus_1: -(two * s * s), sin_minus_x: sin - x }
+}
+
+/// Circular functions of the product `rate * time`, whose rounding error is known and put back.
+#[inline]
+pub fn circular_of<T: Number>(x: T, correction: T) -> Circular<T> {
+    let mut it = circular(x);
+    // First order in the correction, which is below eps |x|.
+    let d_sin = correction + correction * it.cos_minus_1;
+    it.cos_minus_1 = it.cos_minus_1 - correction * it.sin;
+    it.sin_minus_x = it.sin_minus_x + correction * it.cos_minus_1;
+    it.sin = it.sin + d_sin;
+    it
+}
+
+/// exp(-z) and its remainders: relative error of a few eps where `|z| <= 1/2`, absolute beyond.
+#[inline]
+pub fn decay<T: Number>(z: T) -> Decay<T> {
+    if z.abs() < T::exact(0.5) {
+        let square = z * z;
+        // Even and odd powers apart, so that the two chains run side by side.
+        let even = same_sign::<T>(square, 2);
+        let odd = same_sign::<T>(square, 3);
+        let remainder = square * (even - z * odd);
+        let minus_1 = remainder - z;
+        return Decay { exp: T::one() + minus_1, minus_1, remainder };
+    }
+    let exp = (-z).exp();
+    let minus_1 = exp - T::one();
+    Decay { exp, minus_1, remainder: minus_1 + z }
+}
+
+/// -1/n! + s/(n+2)! - s^2/(n+4)! + ...
+#[inline]
+fn alternating<T: Number>(square: T, n: usize) -> T {
+    let mut sum = T::zero();
+    for k in (0..T::TERMS).rev() {
+        sum = T::inverse_factorial(n + 2 * k) - square * sum;
+    }
+    -sum
+}
+
+/// 1/n! + s/(n+2)! + s^2/(n+4)! + ...
+#[inline]
+fn same_sign<T: Number>(square: T, n: usize) -> T {
+    let mut sum = T::zero();
+    // s < 1/4 here: one term in four less than at argument 1.
+    for k in (0..T::TERMS - T::TERMS / 4).rev() {
+        sum = T::inverse_factorial(n + 2 * k) + square * sum;
+    }
+    sum
+}

@@ -1,0 +1,157 @@
+//! Start states as users give them, and the phase in which they begin.
+
+use crate::entry::{Entry, Onset};
+use crate::error::InputError;
+use crate::instant::Instant;
+use crate::model::Model;
+use crate::parameters::within;
+use crate::phase::Phase;
+use crate::state::State;
+use crate::surface::{self, FOUR_ULPS};
+use crate::two_word::TwoWord;
+
+/// A start: `cycle` forcing periods after `tau`.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Start {
+    /// Time, -1e15 to 1e15.
+    pub tau: f64,
+    /// Forcing periods after `tau`, up to 2^53 in size.
+    pub cycle: i64,
+    /// Displacement of the mass, -1e9 to 1e9.
+    pub p: f64,
+    /// Its velocity, -1e9 to 1e9.
+    pub y: f64,
+    /// Displacement of the slider's top, -1e9 to 1e9; where not given, the slider touches a mass at
+    /// p >= g and is at rest otherwise.
+    pub q: Option<f64>,
+    /// Drift, -1e9 to 1e9.
+    pub v: f64,
+    /// The phase, for states copied from rounded tables.
+    pub phase: Option<Phase>,
+}
+
+/// How far a stated phase may move what was given.
+const PROJECTION: f64 = 1e-4;
+
+impl Model {
+    /// Checks a start and decides its phase.
+    ///
+    /// # Errors
+    /// [`InputError`] names what is out of range, a mass beyond the slider's top, or a stated phase
+    /// further than 1e-4 from the state.
+    pub fn start(&self, start: &Start) -> Result<Entry, InputError> {
+        check(start)?;
+        let instant = Instant::at(self.parameters().omega, start.tau, start.cycle);
+        let g = self.parameters().g;
+        let q = start.q.unwrap_or(if start.p >= g { start.p - g } else { 0.0 });
+        let state = State { p: start.p, y: start.y, q };
+        let (state, onset) = match start.phase {
+            None => self.decided(state, &instant)?,
+            Some(phase) => self.stated(state, phase, &instant)?,
+        };
+        Ok(Entry { instant, state, drift: TwoWord::new(start.v), onset })
+    }
+
+    fn decided(&self, state: State, instant: &Instant) -> Result<(State, Onset), InputError> {
+        let g = self.parameters().g;
+        let scale = state.p.abs().max(state.q.abs()).max(g);
+        let limit = state.q + g;
+        if (state.p - limit).abs() <= FOUR_ULPS * scale {
+            return Ok(surface::onset(self.constants(), state, None, self.force(instant)));
+        }
+        if state.p > limit {
+            return Err(InputError::Penetrates { p: state.p, limit });
+        }
+        Ok((state, Onset::Apart))
+    }
+
+    /// Projects a rounded state onto where its phase can begin.
+    fn stated(
+        &self,
+        given: State,
+        phase: Phase,
+        instant: &Instant,
+    ) -> Result<(State, Onset), InputError> {
+        let two_xi = self.constants().two_xi;
+        let g = self.parameters().g;
+        let mut state = given;
+        let force = two_xi * state.y + state.q;
+        let onset = match phase {
+            Phase::NoContact => {
+                let near =
+                    (state.p - (state.q + g)).abs() <= PROJECTION && force.abs() <= PROJECTION;
+                if !near {
+                    return self.apart(state, instant);
+                }
+                state.q = -(two_xi * state.y);
+                state.p = state.q + g;
+                Onset::Separation { h_rate: 0.0 }
+            }
+            Phase::Contact => {
+                state.p = state.q + g;
+                let settled = force.clamp(0.0, 1.0);
+                if settled != force {
+                    state.y = (settled - state.q) / two_xi;
+                }
+                let reference = f64::from(u8::from(settled >= 0.5 && settled == 1.0));
+                Onset::Contact { offset: settled - reference, reference }
+            }
+            Phase::Progression => {
+                state.p = state.q + g;
+                let rate = self.constants().rate;
+                let closing = (1.0 - state.q) * rate;
+                if force < 1.0 {
+                    state.y = closing;
+                }
+                let drift_rate = ((force - 1.0) * rate).max(0.0);
+                Onset::Progression { drift_rate, closing }
+            }
+        };
+        near(phase, "p", given.p, state.p)?;
+        near(phase, "q", given.q, state.q)?;
+        near(phase, "y", given.y, state.y)?;
+        Ok((state, onset))
+    }
+
+    /// A start stated to be without contact and not at a separation must be so.
+    fn apart(&self, state: State, instant: &Instant) -> Result<(State, Onset), InputError> {
+        let (settled, onset) = self.decided(state, instant)?;
+        match onset {
+            Onset::Apart | Onset::Separation { .. } => Ok((settled, onset)),
+            // In contact: the force would have to fall to zero.
+            _ => Err(InputError::FarFromPhase {
+                phase: Phase::NoContact,
+                name: "q",
+                from: state.q,
+                to: -(self.constants().two_xi * state.y),
+            }),
+        }
+    }
+}
+
+fn near(phase: Phase, name: &'static str, from: f64, to: f64) -> Result<(), InputError> {
+    // Written so that a NaN is refused.
+    if (from - to).abs() <= PROJECTION {
+        Ok(())
+    } else {
+        Err(InputError::FarFromPhase { phase, name, from, to })
+    }
+}
+
+fn check(start: &Start) -> Result<(), InputError> {
+    const SIZE: &str = "-1e9 to 1e9";
+    within("tau", start.tau, -1e15, 1e15, "-1e15 <= tau <= 1e15")?;
+    let limit = 1_i64 << 53;
+    if !(-limit..=limit).contains(&start.cycle) {
+        let value = start.cycle as f64;
+        return Err(InputError::OutOfRange {
+            name: "cycle",
+            value,
+            accepted: "-2^53 <= cycle <= 2^53",
+        });
+    }
+    within("p", start.p, -1e9, 1e9, SIZE)?;
+    within("y", start.y, -1e9, 1e9, SIZE)?;
+    within("q", start.q.unwrap_or(0.0), -1e9, 1e9, SIZE)?;
+    within("v", start.v, -1e9, 1e9, SIZE)
+}

@@ -1,0 +1,12 @@
+//! The bounded co-ordinates of Eq. (10).
+
+/// Displacements relative to the slider's bottom, and the velocity of the mass.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct State<T = f64> {
+    /// Displacement of the mass, p = x - v.
+    pub p: T,
+    /// Velocity of the mass, y = x'.
+    pub y: T,
+    /// Displacement of the slider's top, q = z - v.
+    pub q: T,
+}

@@ -1,0 +1,79 @@
+//! Which phase begins on the contact surface: the trial force decides, then its derivatives.
+//!
+//! f = 2 xi y + q at the thresholds 0 and 1 is decided by the first derivative that is not zero. As
+//! the contact sees it f' = 2 xi (F - f) + y, f'' = 2 xi (F' - f') + F - f; the other phases' guards
+//! have these derivatives divided by 2 xi, so the two sides cannot contradict each other.
+
+use crate::constants::Constants;
+use crate::entry::Onset;
+use crate::state::State;
+
+/// A sum within this of its largest term counts as zero: four units in the last place.
+pub(crate) const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
+
+/// The state with its force imposed where it lies on a threshold, and the phase that begins.
+///
+/// `force` is the external force with its first two derivatives; `f` is the trial force if it is
+/// known better than as 2 xi y + q.
+pub(crate) fn onset(
+    constants: &Constants<f64>,
+    mut state: State,
+    f: Option<f64>,
+    force: [f64; 3],
+) -> (State, Onset) {
+    let Constants { two_xi, g, rate, .. } = *constants;
+    let (damper, spring) = (two_xi * state.y, state.q);
+    let largest = damper.abs().max(spring.abs());
+    let f = f.unwrap_or(damper + spring);
+    if f.abs() <= FOUR_ULPS * largest {
+        state.q = -damper;
+        state.p = state.q + g;
+        return (state, at_zero(ladder(constants, state.y, 0.0, largest, force)));
+    }
+    if (f - 1.0).abs() <= FOUR_ULPS * largest.max(1.0) {
+        state.q = 1.0 - damper;
+        state.p = state.q + g;
+        let direction = ladder(constants, state.y, 1.0, largest.max(1.0), force);
+        return (state, at_one(direction, state.y));
+    }
+    state.p = state.q + g;
+    let onset = if f < 0.0 {
+        Onset::Separation { h_rate: f * rate }
+    } else if f < 1.0 {
+        Onset::Contact { offset: f, reference: 0.0 }
+    } else {
+        Onset::Progression { drift_rate: (f - 1.0) * rate, closing: (1.0 - state.q) * rate }
+    };
+    (state, onset)
+}
+
+fn at_zero(direction: f64) -> Onset {
+    if direction < 0.0 {
+        Onset::Separation { h_rate: 0.0 }
+    } else {
+        Onset::Contact { offset: 0.0, reference: 0.0 }
+    }
+}
+
+fn at_one(direction: f64, y: f64) -> Onset {
+    if direction > 0.0 {
+        Onset::Progression { drift_rate: 0.0, closing: y }
+    } else {
+        Onset::Contact { offset: 0.0, reference: 1.0 }
+    }
+}
+
+/// The first derivative of the trial force, on a threshold, that is not zero within its rounding.
+fn ladder(constants: &Constants<f64>, y: f64, f: f64, scale: f64, force: [f64; 3]) -> f64 {
+    let Constants { a, b, two_xi, omega, .. } = *constants;
+    let pull = force[0] - f;
+    // On the threshold with all lower derivatives zero each rung is the one before, differentiated.
+    let rungs = [
+        (two_xi * pull + y, two_xi * (a + b.abs() + f) + y.abs()),
+        (two_xi * force[1] + pull, two_xi * a * omega + a + b.abs() + f),
+        (two_xi * force[2] + force[1], a * omega * (two_xi * omega + 1.0)),
+        (omega * omega * (b - f), omega * omega * (b.abs() + f)),
+    ];
+    let room = |size: f64| FOUR_ULPS * size.max(f64::MIN_POSITIVE) * scale.max(1.0);
+    rungs.iter().find(|(rung, size)| rung.abs() > room(*size)).map_or(0.0, |(rung, _)| *rung)
+}
