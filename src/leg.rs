@@ -49,7 +49,7 @@ pub struct Leg {
     entry: Entry,
     exit: Exit,
     duration: TwoWord,
-    motion: Motion,
+    pub(crate) motion: Motion,
     omega: f64,
 }
 
@@ -110,13 +110,17 @@ impl Leg {
     /// The motion a time `elapsed` after the phase began, at most [`Self::duration`].
     #[must_use]
     pub fn at(&self, elapsed: f64) -> Sample {
-        let point = match &self.motion {
+        let point = self.point(elapsed);
+        let v = self.entry.drift.plus(TwoWord::new(point.drift)).value();
+        Sample { state: point.state, v }
+    }
+
+    pub(crate) fn point(&self, elapsed: f64) -> Point<f64> {
+        match &self.motion {
             Motion::NoContact(flight) => flight.at(elapsed),
             Motion::Contact(contact) => contact.at(elapsed),
             Motion::Progression(progression) => progression.at(elapsed),
-        };
-        let v = self.entry.drift.plus(TwoWord::new(point.drift)).value();
-        Sample { state: point.state, v }
+        }
     }
 
     /// The motion at an instant inside the phase.
@@ -172,9 +176,9 @@ fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
             let f = constants.two_xi * (h_rate + h_rate2 * step);
             surface::onset(constants, shifted(constants.rate, point, *step), Some(f), point.force)
         }
-        Motion::Contact(_) => {
+        Motion::Contact(contact) => {
             let threshold = f64::from(u8::from(*rises));
-            let pull = point.force[0] - (threshold);
+            let pull = point.force[0] - (contact.reference + point.guard.orders[0]);
             let pull_rate = point.force[1] - point.guard.orders[1];
             let y = point.state.y + step * (pull + 0.5 * step * pull_rate);
             let q = threshold - constants.two_xi * y;

@@ -71,7 +71,10 @@ pub struct Ends {
 }
 
 impl Ends {
-    /// For pieces that bound the guard from outside at their left end, and do not share its value.
+    /// No end is known to lie on a threshold: for pieces that bound the guard from outside.
+    pub const FREE: Self = Self { left: false, left_double: false, right: false };
+
+    /// For pieces that bound the guard from outside at their left end and share its value at the right.
     #[inline]
     pub fn loose_left(self) -> Self {
         Self { left: false, left_double: false, ..self }

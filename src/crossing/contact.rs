@@ -224,7 +224,7 @@ impl Guarded for Contact<f64> {
             length,
             eighth: (-free, free),
         };
-        slow.verdict(&corridor.narrowed(split.amplitude), ends.loose_left(), slack)
+        slow.verdict(&corridor.narrowed(split.amplitude), Ends::FREE, slack)
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {

@@ -80,7 +80,7 @@ impl Guarded for Progression<f64> {
         if whole != Verdict::Open || length * constants.omega < 4.0 {
             return whole;
         }
-        self.slow(left, right).verdict(&corridor, ends.loose_left(), slack)
+        self.slow(left, right).verdict(&corridor, Ends::FREE, slack)
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {

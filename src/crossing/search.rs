@@ -52,7 +52,7 @@ pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counte
             Target::Point(point) if point.elapsed < horizon => left = point,
             _ => return Crossing::Horizon,
         }
-        ends = Ends { left: false, left_double: false, right: false };
+        ends = Ends::FREE;
     }
 }
 
@@ -112,7 +112,7 @@ fn divide<G: Guarded>(
         }
         counters.undecidable += u64::from(verdict != Verdict::Inside);
         left = *right;
-        ends = Ends { left: false, left_double: false, right: false };
+        ends = Ends::FREE;
         pending.pop();
         if pending.is_empty() {
             return target;
