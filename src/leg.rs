@@ -110,9 +110,30 @@ impl Leg {
     /// The motion a time `elapsed` after the phase began, at most [`Self::duration`].
     #[must_use]
     pub fn at(&self, elapsed: f64) -> Sample {
-        let point = self.point(elapsed);
-        let v = self.entry.drift.plus(TwoWord::new(point.drift)).value();
-        Sample { state: point.state, v }
+        self.at_two_word(TwoWord::new(elapsed))
+    }
+
+    /// As [`Self::at`]; late in a long phase the second word of the time matters.
+    fn at_two_word(&self, elapsed: TwoWord) -> Sample {
+        let point = self.point(elapsed.high);
+        let rest = elapsed.low;
+        let [p_rate, y_rate, q_rate, v_rate] = self.field(&point);
+        let State { p, y, q } = point.state;
+        let state = State { p: p + rest * p_rate, y: y + rest * y_rate, q: q + rest * q_rate };
+        let drift = TwoWord::sum(point.drift, rest * v_rate);
+        Sample { state, v: self.entry.drift.plus(drift).value() }
+    }
+
+    /// The right-hand sides of Eqs. (11) to (13): rates of p, y, q and v.
+    fn field(&self, point: &Point<f64>) -> [f64; 4] {
+        let [force, ..] = point.force;
+        let [guard, ..] = point.guard.orders;
+        let slider = point.slider_velocity;
+        match &self.motion {
+            Motion::NoContact(_) => [point.state.y, force, slider, 0.0],
+            Motion::Contact(contact) => [slider, force - (contact.reference + guard), slider, 0.0],
+            Motion::Progression(_) => [slider, force - 1.0, slider, guard],
+        }
     }
 
     pub(crate) fn point(&self, elapsed: f64) -> Point<f64> {
@@ -126,7 +147,7 @@ impl Leg {
     /// The motion at an instant inside the phase.
     #[must_use]
     pub fn at_instant(&self, instant: &Instant) -> Sample {
-        self.at(instant.since(&self.entry.instant, self.omega).value())
+        self.at_two_word(instant.since(&self.entry.instant, self.omega))
     }
 
     /// How long the phase lasts by plain one-sided stepping (the judge): infinite if it does not end
@@ -172,8 +193,8 @@ fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
     let constants = model.constants();
     let (state, onset) = match motion {
         Motion::NoContact(_) => {
-            let [_, h_rate, h_rate2, _] = point.guard.orders;
-            let f = constants.two_xi * (h_rate + h_rate2 * step);
+            let [_, h1, h2, h3] = point.guard.orders;
+            let f = constants.two_xi * (h1 + step * (h2 + 0.5 * step * h3));
             surface::onset(constants, shifted(constants.rate, point, *step), Some(f), point.force)
         }
         Motion::Contact(contact) => {

@@ -26,7 +26,7 @@ pub struct Progression<T> {
 impl<T: Number> Flow<T> for Progression<T> {
     #[inline]
     fn at(&self, d: T) -> Point<T> {
-        let Constants { b, g, rate, .. } = self.constants;
+        let Constants { b, g, rate, two_xi, .. } = self.constants;
         let Self { entry: State { y: y0, q: q0, .. }, drift_rate: w0, closing, .. } = *self;
         let harmonic = self.angle.harmonic(&self.constants, d);
         let decay = decay(rate * d);
@@ -38,9 +38,10 @@ impl<T: Number> Flow<T> for Progression<T> {
         // 1 - q decays; (1 - q)/(2 xi) = y - w at all times.
         let lag = closing * decay.exp;
         let w = w0 + (y_change - closing * decay.minus_1);
-        let q = one + (q0 - one) * decay.exp;
+        let q = q0 - two_xi * closing * decay.minus_1;
         // Eq. (20) with - (p0 - g - 1) exp(..), its linear terms collected: y0 - (1 - q0)/(2 xi) = w0.
-        let settling = (one - q0) * decay.remainder;
+        // 1 - q0 as 2 xi times the closing velocity keeps the digits that q0 near 1 has lost.
+        let settling = two_xi * closing * decay.remainder;
         let drift = w0 * d + (push * d * T::exact(0.5) + harmonic.displacement) + settling;
 
         let force = b + harmonic.force[0];
