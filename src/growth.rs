@@ -1,0 +1,80 @@
+//! How much a run amplifies an error made at, or before, any of its switches.
+//!
+//! An accuracy bound at switch n reads |error| <= k eps (1 + |value|) G_n n. Here G_n is the
+//! largest, over m <= n and at least 1, of the Euclidean norm of D(m, n): the gradient of the compared
+//! quantity at switch n with respect to the state just before switch m (m = 0 is the start). The
+//! start alone would not do: on a stable orbit its influence dies out while every step still rounds.
+
+use crate::leg::Leg;
+use crate::variation::{IDENTITY, Matrix, P, Q, SwitchDerivative, V, Y, product, times};
+
+/// The growth of tau, p, y, q and v at one switch or sample.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Growth {
+    /// Of the switch time; of a sample 1.
+    pub tau: f64,
+    /// Of p, y, q.
+    pub state: [f64; 3],
+    /// Of the drift.
+    pub v: f64,
+}
+
+impl Growth {
+    const NONE: Self = Self { tau: 1.0, state: [1.0; 3], v: 1.0 };
+
+    fn raise(&mut self, derivative: &Matrix) {
+        for (growth, row) in self.state.iter_mut().zip([P, Y, Q]) {
+            *growth = growth.max(norm(&derivative[row]));
+        }
+        self.v = self.v.max(norm(&derivative[V]));
+    }
+}
+
+/// Collects the growth along a run. Its memory and the cost of a switch grow with the number of
+/// switches: it is for scoring, not for running.
+#[derive(Clone, Debug, Default)]
+pub struct GrowthRecorder {
+    /// Derivatives of the state at the start of the current phase by the states at which errors entered.
+    sources: Vec<Matrix>,
+}
+
+impl GrowthRecorder {
+    /// A run at its start.
+    #[must_use]
+    pub fn new() -> Self {
+        Self { sources: vec![IDENTITY] }
+    }
+
+    /// Passes a phase; gives the growth at the switch that ends it, none if no switch does.
+    pub fn pass(&mut self, leg: &Leg) -> Option<Growth> {
+        let SwitchDerivative { time, state } = leg.switch_derivative()?;
+        let flow = leg.variation(leg.duration());
+        let saltation = leg.saltation();
+        let mut growth = Growth::NONE;
+        for source in &mut self.sources {
+            *source = product(&flow, source);
+        }
+        self.sources.push(IDENTITY);
+        for source in &mut self.sources {
+            growth.tau = growth.tau.max(norm(&times(&time, source)));
+            growth.raise(&product(&state, source));
+            *source = product(&saltation, source);
+        }
+        Some(growth)
+    }
+
+    /// The growth of a sample at fixed time, `elapsed` into the phase that the run is in.
+    #[must_use]
+    pub fn at(&self, leg: &Leg, elapsed: f64) -> Growth {
+        let flow = leg.variation(elapsed);
+        let mut growth = Growth::NONE;
+        for source in &self.sources {
+            growth.raise(&product(&flow, source));
+        }
+        growth
+    }
+}
+
+fn norm(gradient: &[f64; 5]) -> f64 {
+    gradient.iter().map(|slope| slope * slope).sum::<f64>().sqrt()
+}
