@@ -30,8 +30,13 @@ impl Target {
 pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counters) -> Crossing {
     let mut left = phase.entry();
     let mut ends = phase.imposed();
+    let mut stride = STRIDE / phase.fastest_rate();
+    if horizon <= 0.0 {
+        return Crossing::Horizon;
+    }
     loop {
-        let target = match onwards(phase.outlook(&left, horizon), &left, phase.fastest_rate()) {
+        let outlook = phase.outlook(&left, horizon);
+        let target = match onwards(outlook, left.elapsed, &mut stride) {
             Outlook::ClearFrom(time) if time <= left.elapsed => return Crossing::Never,
             Outlook::Root(time) if time < horizon => {
                 match follow(phase, left.elapsed, time, horizon, counters) {
@@ -56,14 +61,19 @@ pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counte
     }
 }
 
-/// An outlook that does not stay where it is: a guess that falls on `left` is no guess.
-fn onwards(outlook: Outlook, left: &Point<f64>, fastest_rate: f64) -> Outlook {
-    const STEP: f64 = 0.1;
+/// The first step of its own that the search takes, against the inverse of the fastest rate.
+const STRIDE: f64 = 0.1;
+
+/// An outlook that does not stay where it is: a guess that falls on `left` is no guess, and is
+/// replaced by a stride, longer each time.
+fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
+    let resolution = 8.0 * f64::EPSILON * left;
     match outlook {
         Outlook::Root(time) | Outlook::Onward(time)
-            if time.is_nan() || time <= left.elapsed * (1.0 + 8.0 * f64::EPSILON) =>
+            if time.is_nan() || time <= left + resolution =>
         {
-            Outlook::Onward(left.elapsed * (1.0 + 16.0 * f64::EPSILON) + STEP / fastest_rate)
+            *stride *= 2.0;
+            Outlook::Onward(left + (*stride).max(2.0 * resolution))
         }
         other => other,
     }
