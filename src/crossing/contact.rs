@@ -1,5 +1,6 @@
 //! The guards of a contact: the trial force rises to 1 (progression) or falls to 0 (separation).
 
+use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
 use crate::flow::contact::Contact;
@@ -96,6 +97,25 @@ impl Contact<f64> {
         b + reach < 1.0 && b - reach > 0.0
     }
 
+    /// A time for which f certainly stays inside, by one of two slow changes.
+    ///
+    /// With x = f - b the equation x'' + 2 xi x' + x = a cos(..) - 2 xi a omega sin(..) lets the
+    /// energy norm of (x, x') grow no faster than the amplitude of its right-hand side: that
+    /// carries over many oscillations where the forcing is weak, resonant or not. And the steady
+    /// part moves no faster than its amplitude times omega, around which the free part keeps
+    /// within its own energy norm: that carries where the forcing is slow.
+    fn calm(&self, left: &Point<f64>, split: &Split) -> f64 {
+        const ROOM: f64 = 1e-12;
+        let Constants { a, b, two_xi, omega, .. } = self.constants;
+        let f = left.guard.orders[0] + self.reference;
+        let push = a * 1.0_f64.hypot(two_xi * omega);
+        let weak = (b.min(1.0 - b) - (f - b).hypot(left.guard.orders[1]) - ROOM) / push;
+        let free = split.free[0].hypot(split.free[1]);
+        let steady = f - split.free[0];
+        let slow = (steady.min(1.0 - steady) - free - ROOM) / (split.amplitude * omega);
+        weak.max(slow)
+    }
+
     /// The first place where a cubic from `left` leaves the corridor, if that is soon.
     fn soon(&self, left: &Point<f64>) -> Option<f64> {
         const SOON: f64 = 0.4;
@@ -188,6 +208,10 @@ impl Guarded for Contact<f64> {
         let split = self.split(left);
         if self.rests(&split) {
             return Outlook::ClearFrom(left.elapsed);
+        }
+        let calm = self.calm(left, &split);
+        if calm > 8.0 {
+            return Outlook::ClearUntil(left.elapsed + calm);
         }
         match self.swing(left, &split) {
             Ok(time) => Outlook::Root(time),

@@ -10,6 +10,8 @@ pub enum Outlook {
     Root(f64),
     /// Go on to this elapsed time; nothing is guessed before it.
     Onward(f64),
+    /// No crossing before this elapsed time (proved).
+    ClearUntil(f64),
     /// No crossing from this elapsed time on (proved).
     ClearFrom(f64),
 }

@@ -38,6 +38,14 @@ pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counte
         let outlook = phase.outlook(&left, horizon);
         let target = match onwards(outlook, left.elapsed, &mut stride) {
             Outlook::ClearFrom(time) if time <= left.elapsed => return Crossing::Never,
+            Outlook::ClearUntil(time) => {
+                if time >= horizon {
+                    return Crossing::Horizon;
+                }
+                left = evaluate(phase, time, counters);
+                ends = Ends::FREE;
+                continue;
+            }
             Outlook::Root(time) if time < horizon => {
                 match follow(phase, left.elapsed, time, horizon, counters) {
                     Ok(root) => Target::Root(root),
@@ -69,7 +77,7 @@ const STRIDE: f64 = 0.1;
 fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
     let resolution = 8.0 * f64::EPSILON * left;
     match outlook {
-        Outlook::Root(time) | Outlook::Onward(time)
+        Outlook::Root(time) | Outlook::Onward(time) | Outlook::ClearUntil(time)
             if time.is_nan() || time <= left + resolution =>
         {
             *stride *= 2.0;

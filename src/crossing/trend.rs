@@ -80,6 +80,9 @@ impl Trend {
     pub fn outlook(&self, from: f64, inside: bool, limit: f64) -> Outlook {
         let bound = self.bound(from);
         match bound {
+            Bound::OpenFrom(time) if time > from + TAU / self.omega => {
+                return Outlook::ClearUntil(time);
+            }
             Bound::Never => return Outlook::ClearFrom(from),
             Bound::NeverAfter(time) | Bound::OpenFrom(time) if time > limit => {
                 return Outlook::Onward(limit);
