@@ -1,0 +1,22 @@
+//! Tells the program which compiler and which commit it was built from, for its reports.
+
+use std::process::Command;
+
+fn main() {
+    println!("cargo:rerun-if-changed=build.rs");
+    for head in ["../.git/HEAD", "../.git/logs/HEAD"] {
+        if std::path::Path::new(head).exists() {
+            println!("cargo:rerun-if-changed={head}");
+        }
+    }
+    let rustc = std::env::var("RUSTC").unwrap_or_else(|_| "rustc".to_owned());
+    println!("cargo:rustc-env=PERCUSS_RUSTC={}", said(&rustc, &["--version"]));
+    println!("cargo:rustc-env=PERCUSS_COMMIT={}", said("git", &["rev-parse", "HEAD"]));
+}
+
+/// What a command prints, or nothing.
+fn said(command: &str, arguments: &[&str]) -> String {
+    let output = Command::new(command).args(arguments).output();
+    let text = output.ok().filter(|output| output.status.success()).map(|output| output.stdout);
+    String::from_utf8_lossy(&text.unwrap_or_default()).trim().to_owned()
+}

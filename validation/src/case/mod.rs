@@ -1,0 +1,46 @@
+//! Cases are data: a model, a start, a horizon, and what is expected of each engine.
+
+mod bound;
+mod expectations;
+mod library;
+mod located;
+mod problem;
+mod wire;
+
+pub use bound::{Bound, Quantity, Shortcoming, Statistic};
+pub use library::{default_bounds, embedded, from_directory};
+pub use located::{FileError, Origins};
+pub use problem::{Given, Problem};
+pub use wire::{parse_case, parse_problem, read_problem};
+
+use percuss::{Parameters, Start};
+
+/// Where a run ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Horizon {
+    /// This many forcing periods after the start.
+    Periods(u32),
+    /// At this time tau.
+    Until(f64),
+}
+
+/// One case of the harness.
+#[derive(Clone, Debug)]
+pub struct Case {
+    /// Name, as in `-c` and in the reference data's file names.
+    pub name: String,
+    /// The regime it stands for.
+    pub regime: String,
+    /// Why it is here.
+    pub why: String,
+    /// The model, checked.
+    pub parameters: Parameters,
+    /// The start, checked.
+    pub start: Start,
+    /// The horizon, after the start.
+    pub horizon: Horizon,
+    /// Bounds of this case; they come before the default ones.
+    pub bounds: Vec<Bound>,
+    /// Known shortcomings of engines, with their reasons.
+    pub shortcomings: Vec<Shortcoming>,
+}

@@ -1,0 +1,223 @@
+//! The files' own shape, turned into checked values.
+
+use super::expectations::{BoundTable, ShortcomingTable};
+use super::located::{FileError, Source};
+use super::problem::Given;
+use super::{Case, Horizon};
+use percuss::{Instant, Phase};
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use std::path::Path;
+use toml::Spanned;
+
+/// The longest horizon, in forcing periods.
+const MAX_PERIODS: i64 = 1_000_000_000;
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CaseFile {
+    case: CaseTable,
+    #[serde(default)]
+    parameters: ParameterTable,
+    #[serde(default)]
+    start: StartTable,
+    horizon: Spanned<HorizonTable>,
+    #[serde(default)]
+    bounds: Vec<Spanned<BoundTable>>,
+    #[serde(default)]
+    shortcomings: Vec<Spanned<ShortcomingTable>>,
+}
+
+/// A problem file; a harness case serves as one, and its other tables are left alone.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ProblemFile {
+    #[serde(default)]
+    parameters: ParameterTable,
+    #[serde(default)]
+    start: StartTable,
+    #[serde(rename = "case")]
+    _case: Option<IgnoredAny>,
+    #[serde(rename = "horizon")]
+    _horizon: Option<IgnoredAny>,
+    #[serde(rename = "bounds")]
+    _bounds: Option<IgnoredAny>,
+    #[serde(rename = "shortcomings")]
+    _shortcomings: Option<IgnoredAny>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct CaseTable {
+    name: Spanned<String>,
+    regime: String,
+    why: String,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ParameterTable {
+    a: Option<Spanned<f64>>,
+    b: Option<Spanned<f64>>,
+    xi: Option<Spanned<f64>>,
+    omega: Option<Spanned<f64>>,
+    g: Option<Spanned<f64>>,
+    phi: Option<Spanned<f64>>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StartTable {
+    tau: Option<Spanned<f64>>,
+    p: Option<Spanned<f64>>,
+    y: Option<Spanned<f64>>,
+    q: Option<Spanned<f64>>,
+    v: Option<Spanned<f64>>,
+    cycle: Option<Spanned<i64>>,
+    phase: Option<Spanned<String>>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct HorizonTable {
+    periods: Option<Spanned<i64>>,
+    until: Option<Spanned<f64>>,
+}
+
+/// Reads `[parameters]` and `[start]` of a problem file or of a harness case.
+///
+/// # Errors
+/// A [`FileError`] for what cannot be read or understood; ranges are checked by [`Given::check`].
+pub fn read_problem(path: &Path) -> Result<Given, FileError> {
+    let text =
+        std::fs::read_to_string(path).map_err(|error| FileError::unreadable(path, &error))?;
+    parse_problem(&path.display().to_string(), &text)
+}
+
+/// [`read_problem`] of a text; `file` is what errors call it.
+///
+/// # Errors
+/// As [`read_problem`].
+pub fn parse_problem(file: &str, text: &str) -> Result<Given, FileError> {
+    let source = Source { file, text };
+    let file: ProblemFile = source.parse()?;
+    source.given(file.parameters, file.start)
+}
+
+impl Source<'_> {
+    fn given(&self, parameters: ParameterTable, start: StartTable) -> Result<Given, FileError> {
+        let mut given = Given::default();
+        let model = &mut given.parameters;
+        let state = &mut given.start;
+        let mut q = None;
+        let numbers = [
+            ("a", parameters.a, &mut model.a),
+            ("b", parameters.b, &mut model.b),
+            ("xi", parameters.xi, &mut model.xi),
+            ("omega", parameters.omega, &mut model.omega),
+            ("g", parameters.g, &mut model.g),
+            ("phi", parameters.phi, &mut model.phi),
+            ("tau", start.tau, &mut state.tau),
+            ("p", start.p, &mut state.p),
+            ("y", start.y, &mut state.y),
+            ("v", start.v, &mut state.v),
+            ("q", start.q, q.insert(f64::NAN)),
+        ];
+        let mut q_given = false;
+        for (name, number, target) in numbers {
+            if let Some(number) = number {
+                given.origins.set(name, format!("{}: {name} =", self.place(&number)));
+                *target = number.into_inner();
+                q_given |= name == "q";
+            }
+        }
+        state.q = q.filter(|_| q_given);
+        if let Some(cycle) = start.cycle {
+            given.origins.set("cycle", format!("{}: cycle =", self.place(&cycle)));
+            state.cycle = cycle.into_inner();
+        }
+        if let Some(phase) = start.phase {
+            given.origins.set("phase", self.place(&phase));
+            let parsed: Result<Phase, _> = phase.get_ref().parse();
+            state.phase =
+                Some(parsed.map_err(|error| self.error(&phase, &format!("phase {error}")))?);
+        }
+        Ok(given)
+    }
+}
+
+/// Reads one case; `file` is what errors call it.
+///
+/// # Errors
+/// [`FileError`] names the file's line, the field, its value and what is accepted.
+pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
+    let source = Source { file, text };
+    let wire: CaseFile = source.parse()?;
+    let given = source.given(wire.parameters, wire.start)?;
+    let problem = given.check().map_err(FileError)?;
+    let start = Instant::at(given.parameters.omega, given.start.tau, given.start.cycle);
+    let horizon =
+        source.horizon(&wire.horizon, &start, problem.model.period(), given.parameters.omega)?;
+    let name = wire.case.name;
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+    if name.get_ref().is_empty() || !name.get_ref().chars().all(plain) {
+        let what =
+            format!("name {:?} is not accepted: letters, digits, '-', '_' and '.'", name.get_ref());
+        return Err(source.error(&name, &what));
+    }
+    Ok(Case {
+        name: name.into_inner(),
+        regime: wire.case.regime,
+        why: wire.case.why,
+        parameters: given.parameters,
+        start: given.start,
+        horizon,
+        bounds: wire
+            .bounds
+            .into_iter()
+            .map(|bound| source.bound(bound))
+            .collect::<Result<_, _>>()?,
+        shortcomings: wire
+            .shortcomings
+            .into_iter()
+            .map(|it| source.shortcoming(it))
+            .collect::<Result<_, _>>()?,
+    })
+}
+
+impl Source<'_> {
+    fn horizon(
+        &self,
+        table: &Spanned<HorizonTable>,
+        start: &Instant,
+        period: f64,
+        omega: f64,
+    ) -> Result<Horizon, FileError> {
+        match (&table.get_ref().periods, &table.get_ref().until) {
+            (Some(periods), None) => {
+                let count = *periods.get_ref();
+                match u32::try_from(count) {
+                    Ok(periods) if count <= MAX_PERIODS => Ok(Horizon::Periods(periods)),
+                    _ => Err(self.error(
+                        periods,
+                        &format!("periods = {count} is not accepted: 0 to 1000000000"),
+                    )),
+                }
+            }
+            (None, Some(until)) => {
+                let tau = *until.get_ref();
+                let reachable = tau.abs() <= 1e15 && {
+                    let span = Instant::at(omega, tau, 0).since(start, omega).value();
+                    span >= 0.0 && span <= MAX_PERIODS as f64 * period
+                };
+                let what = "at or after the start, at most 1000000000 periods later";
+                if reachable {
+                    Ok(Horizon::Until(tau))
+                } else {
+                    Err(self.error(until, &format!("until = {tau:?} is not accepted: {what}")))
+                }
+            }
+            _ => Err(self.error(table, "horizon: exactly one of periods and until is accepted")),
+        }
+    }
+}

@@ -1,0 +1,93 @@
+//! The command line, a file a verb. What it promises is in the project's CONTRACT.
+
+mod engines;
+mod model;
+mod output;
+mod parse;
+mod simulate;
+mod validate;
+
+use clap::error::ErrorKind;
+use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// Done, and within bounds.
+const DONE: u8 = 0;
+/// Ran, and a bound failed or an engine erred.
+const OUT_OF_BOUNDS: u8 = 1;
+/// Bad usage, bad input, input or output that failed, or nothing selected.
+const REFUSED: u8 = 2;
+
+/// Exact solver of the visco-elastic impact oscillator with drift, and integrators held against it.
+#[derive(Parser)]
+#[command(name = "percuss", version, subcommand_required = true)]
+struct Arguments {
+    #[command(subcommand)]
+    verb: Verb,
+    /// Threads to use (default: all); results are the same for every number
+    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    threads: Option<u16>,
+}
+
+#[derive(Subcommand)]
+enum Verb {
+    Simulate(Box<simulate::Arguments>),
+    Engines(engines::Arguments),
+    Validate(validate::Arguments),
+}
+
+/// Runs the command line and says how it went.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let code = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => dispatch(&arguments),
+        Err(error) => usage(&error),
+    };
+    ExitCode::from(code)
+}
+
+fn dispatch(arguments: &Arguments) -> u8 {
+    let result = match &arguments.verb {
+        Verb::Simulate(simulate) => simulate::run(simulate).map(|()| DONE),
+        Verb::Engines(engines) => engines::run(engines).map(|()| DONE),
+        Verb::Validate(validate) => validate::run(validate, arguments.threads),
+    };
+    match result {
+        Ok(code) => code,
+        Err(error) if output::reader_left(&error) => DONE,
+        Err(error) => {
+            say(&format!("{error:#}"));
+            REFUSED
+        }
+    }
+}
+
+/// One line on stderr.
+fn say(line: &str) {
+    let line = line.split_whitespace().collect::<Vec<_>>().join(" ");
+    // Where stderr is closed there is no one to tell.
+    let _ = writeln!(io::stderr(), "percuss: {line}");
+}
+
+/// What clap objects to, in one line; help and version are no objections.
+fn usage(error: &clap::Error) -> u8 {
+    match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            let _ = error.print();
+            DONE
+        }
+        ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
+            say("no verb was given: accepted are simulate, engines, validate (see percuss --help)");
+            REFUSED
+        }
+        _ => {
+            let text = error.to_string();
+            let text = text.strip_prefix("error: ").unwrap_or(&text);
+            let end =
+                ["\n\nUsage:", "\n\nFor more"].iter().filter_map(|mark| text.find(mark)).min();
+            say(&text[..end.unwrap_or(text.len())]);
+            REFUSED
+        }
+    }
+}

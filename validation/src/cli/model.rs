@@ -1,0 +1,102 @@
+//! Model and start: the flags that all verbs of the dynamics share.
+
+use super::parse;
+use crate::case::{Given, Problem, read_problem};
+use anyhow::{Result, anyhow};
+use clap::Args;
+use percuss::Phase;
+use std::path::PathBuf;
+
+/// The model's parameters, the start, and the file that may give both.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Model and start")]
+pub(super) struct ModelFlags {
+    /// Amplitude of the harmonic force [default: 0.3]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    a: Option<f64>,
+    /// Static force [default: 0.1]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    b: Option<f64>,
+    /// Damping ratio of the slider [default: 0.01]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    xi: Option<f64>,
+    /// Frequency of the harmonic force [default: 1.4]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    omega: Option<f64>,
+    /// Gap [default: 0.02]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    g: Option<f64>,
+    /// Phase of the harmonic force, radians [default: 1.5707963267948966]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    phi: Option<f64>,
+    /// Time of the start [default: 0]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    tau: Option<f64>,
+    /// Forcing periods from --tau to the start [default: 0]
+    #[arg(long, value_parser = parse::cycle, allow_hyphen_values = true)]
+    cycle: Option<i64>,
+    /// Displacement of the mass [default: 0]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    p: Option<f64>,
+    /// Velocity of the mass [default: 0]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    y: Option<f64>,
+    /// Displacement of the slider's top [default: 0, or p - g where p >= g]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    q: Option<f64>,
+    /// Drift [default: 0]
+    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
+    v: Option<f64>,
+    /// The start's phase, for states copied from rounded tables
+    #[arg(long, value_name = "TOKEN", value_parser = parse::phase, allow_hyphen_values = true)]
+    phase: Option<Phase>,
+    /// Reads [parameters] and [start] from a file; flags win over it
+    #[arg(long, value_name = "FILE.toml")]
+    problem: Option<PathBuf>,
+}
+
+impl ModelFlags {
+    /// File and flags together, checked.
+    pub(super) fn problem(&self) -> Result<Problem> {
+        let mut given = match &self.problem {
+            Some(path) => read_problem(path).map_err(|error| anyhow!("--problem {error}"))?,
+            None => Given::default(),
+        };
+        self.override_in(&mut given);
+        given.check().map_err(|line| anyhow!(line))
+    }
+
+    fn override_in(&self, given: &mut Given) {
+        let (model, start) = (&mut given.parameters, &mut given.start);
+        let numbers = [
+            ("a", "--a", self.a, &mut model.a),
+            ("b", "--b", self.b, &mut model.b),
+            ("xi", "--xi", self.xi, &mut model.xi),
+            ("omega", "--omega", self.omega, &mut model.omega),
+            ("g", "--g", self.g, &mut model.g),
+            ("phi", "--phi", self.phi, &mut model.phi),
+            ("tau", "--tau", self.tau, &mut start.tau),
+            ("p", "--p", self.p, &mut start.p),
+            ("y", "--y", self.y, &mut start.y),
+            ("v", "--v", self.v, &mut start.v),
+        ];
+        for (name, flag, value, target) in numbers {
+            if let Some(value) = value {
+                given.origins.set(name, flag.to_owned());
+                *target = value;
+            }
+        }
+        if self.q.is_some() {
+            given.origins.set("q", "--q".to_owned());
+            start.q = self.q;
+        }
+        if let Some(cycle) = self.cycle {
+            given.origins.set("cycle", "--cycle".to_owned());
+            start.cycle = cycle;
+        }
+        if self.phase.is_some() {
+            given.origins.set("phase", "--phase".to_owned());
+            start.phase = self.phase;
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! Where results go: stdout, or a file that is there whole or not at all.
+
+use anyhow::{Context, Result, anyhow};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// stdout, or a file.
+pub(super) enum Destination {
+    Stdout,
+    File(PathBuf),
+}
+
+impl Destination {
+    /// `--output PATH`; `-` and nothing are stdout.
+    pub(super) fn new(output: Option<&Path>) -> Self {
+        match output {
+            Some(path) if path != Path::new("-") => Self::File(path.to_owned()),
+            _ => Self::Stdout,
+        }
+    }
+
+    /// Writes by `write`, whole or not at all where it is a file.
+    pub(super) fn write(&self, write: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+        match self {
+            Self::Stdout => {
+                let mut out = BufWriter::new(io::stdout().lock());
+                write(&mut out)?;
+                out.flush().context("stdout cannot be written")
+            }
+            Self::File(path) => write_whole(path, write),
+        }
+    }
+}
+
+/// Whether the error is that whoever read our output has left.
+pub(super) fn reader_left(error: &anyhow::Error) -> bool {
+    let is_pipe = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
+    error.chain().any(|cause| cause.downcast_ref::<io::Error>().is_some_and(is_pipe))
+}
+
+/// Writes a file under a temporary name beside it and renames it.
+pub(super) fn write_whole(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> Result<()>,
+) -> Result<()> {
+    let refused = |error: io::Error| {
+        anyhow!("{} cannot be written ({error}); accepted is a writable path", path.display())
+    };
+    // A link stays a link; a device or a pipe cannot be renamed over.
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    if target.exists() && !target.is_file() {
+        let mut out = BufWriter::new(File::options().write(true).open(&target).map_err(refused)?);
+        write(&mut out)?;
+        return out.flush().map_err(refused);
+    }
+    let folder =
+        target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".percuss-").suffix(".tmp");
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // As any new file: what the umask leaves, or what the file had.
+        let mode = fs::metadata(&target).map_or(0o666, |metadata| metadata.permissions().mode());
+        builder.permissions(fs::Permissions::from_mode(mode));
+    }
+    let mut out = BufWriter::new(builder.tempfile_in(folder).map_err(refused)?);
+    write(&mut out)?;
+    let file = out.into_inner().map_err(|error| refused(error.into_error()))?;
+    file.persist(&target).map_err(|error| refused(error.error))?;
+    Ok(())
+}

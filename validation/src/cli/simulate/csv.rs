@@ -1,0 +1,35 @@
+//! A run as CSV.
+
+use super::plan::Plan;
+use super::rows::{Row, Sink};
+use crate::number::shortest;
+use anyhow::Result;
+use std::io::Write;
+
+pub(super) struct Csv<'a>(pub(super) &'a mut dyn Write);
+
+const SWITCHES: &str = "index,phase,tau,p,y,q,v";
+const SAMPLES: &str = "tau,phase,p,y,q,v,x,z";
+
+impl Sink for Csv<'_> {
+    fn begin(&mut self, _: &Plan, samples: bool) -> Result<()> {
+        Ok(writeln!(self.0, "{}", if samples { SAMPLES } else { SWITCHES })?)
+    }
+
+    fn row(&mut self, plan: &Plan, row: &Row) -> Result<()> {
+        let tau = shortest(row.instant.tau(plan.omega()));
+        let [p, y, q, v] = row.state.map(shortest);
+        match row.co_ordinates {
+            None => writeln!(self.0, "{},{},{tau},{p},{y},{q},{v}", row.index, row.phase)?,
+            Some(original) => {
+                let [x, z] = original.map(shortest);
+                writeln!(self.0, "{tau},{},{p},{y},{q},{v},{x},{z}", row.phase)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn finish(&mut self) -> Result<()> {
+        Ok(())
+    }
+}

@@ -1,0 +1,112 @@
+//! A run as JSON, written row by row: a long run costs no memory.
+
+use super::plan::Plan;
+use super::rows::{Row, Sink};
+use anyhow::Result;
+use percuss::Phase;
+use serde::Serialize;
+use std::io::{self, Write};
+
+pub(super) struct Json<'a> {
+    out: &'a mut dyn Write,
+    rows: u64,
+}
+
+#[derive(Serialize)]
+struct Parameters {
+    a: f64,
+    b: f64,
+    xi: f64,
+    omega: f64,
+    g: f64,
+    phi: f64,
+}
+
+/// The start as the run takes it; the phase only where it was stated.
+#[derive(Serialize)]
+struct Start {
+    tau: f64,
+    p: f64,
+    y: f64,
+    q: f64,
+    v: f64,
+    cycle: i64,
+    phase: Option<&'static str>,
+}
+
+#[derive(Serialize)]
+struct SwitchRow {
+    index: u64,
+    phase: &'static str,
+    tau: f64,
+    p: f64,
+    y: f64,
+    q: f64,
+    v: f64,
+    cycle: i128,
+    angle: f64,
+}
+
+#[derive(Serialize)]
+struct SampleRow {
+    tau: f64,
+    phase: &'static str,
+    p: f64,
+    y: f64,
+    q: f64,
+    v: f64,
+    x: f64,
+    z: f64,
+    cycle: i128,
+    angle: f64,
+}
+
+impl<'a> Json<'a> {
+    pub(super) fn new(out: &'a mut dyn Write) -> Self {
+        Self { out, rows: 0 }
+    }
+
+    fn value(&mut self, value: &impl Serialize) -> Result<()> {
+        Ok(serde_json::to_writer(&mut *self.out, value).map_err(io::Error::from)?)
+    }
+}
+
+impl Sink for Json<'_> {
+    fn begin(&mut self, plan: &Plan, _: bool) -> Result<()> {
+        write!(
+            self.out,
+            "{{\"schema\":1,\"percuss\":\"{}\",\"parameters\":",
+            env!("CARGO_PKG_VERSION")
+        )?;
+        let percuss::Parameters { a, b, xi, omega, g, phi } = *plan.problem.model.parameters();
+        self.value(&Parameters { a, b, xi, omega, g, phi })?;
+        write!(self.out, ",\"start\":")?;
+        let given = plan.problem.start;
+        let state = plan.problem.entry.state;
+        self.value(&Start {
+            tau: given.tau,
+            p: state.p,
+            y: state.y,
+            q: state.q,
+            v: given.v,
+            cycle: given.cycle,
+            phase: given.phase.map(Phase::token),
+        })?;
+        Ok(write!(self.out, ",\"rows\":[")?)
+    }
+
+    fn row(&mut self, plan: &Plan, row: &Row) -> Result<()> {
+        writeln!(self.out, "{}", if self.rows == 0 { "" } else { "," })?;
+        self.rows += 1;
+        let Row { index, phase, instant, state: [p, y, q, v], co_ordinates } = *row;
+        let (tau, cycle, angle) = (instant.tau(plan.omega()), instant.cycle(), instant.angle());
+        match co_ordinates {
+            None => self.value(&SwitchRow { index, phase, tau, p, y, q, v, cycle, angle }),
+            Some([x, z]) => self.value(&SampleRow { tau, phase, p, y, q, v, x, z, cycle, angle }),
+        }
+    }
+
+    fn finish(&mut self) -> Result<()> {
+        Ok(writeln!(self.out, "]}}")?)
+    }
+}

@@ -1,0 +1,142 @@
+//! How long a run is, and how it ended.
+
+use super::Arguments;
+use crate::case::Problem;
+use anyhow::{Result, bail};
+use percuss::{Endless, Exit, Instant, Leg};
+
+/// The longest horizon, in forcing periods.
+pub(super) const MAX_PERIODS: u64 = 1_000_000_000;
+/// A picture of more forcing periods than this shows nothing.
+const MAX_PICTURE_PERIODS: f64 = 5000.0;
+
+/// A run to be made.
+pub(super) struct Plan {
+    pub(super) problem: Problem,
+    /// Where it ends at the latest.
+    pub(super) horizon: Instant,
+    /// It ends after so many switches, if that is sooner.
+    pub(super) events: Option<u64>,
+    max_periods: u64,
+}
+
+impl Plan {
+    pub(super) fn new(problem: Problem, arguments: &Arguments) -> Result<Self> {
+        let start = problem.entry.instant;
+        let periods = |count| start.after_periods(count, 1);
+        let horizon = match (arguments.periods, arguments.until) {
+            (Some(count), _) => periods(count),
+            (None, Some(tau)) => until(&problem, tau)?,
+            (None, None) => periods(arguments.max_periods),
+        };
+        Ok(Self { problem, horizon, events: arguments.events, max_periods: arguments.max_periods })
+    }
+
+    pub(super) fn omega(&self) -> f64 {
+        self.problem.model.parameters().omega
+    }
+
+    /// The run's phases, the last one ending with the run; none where no switch is wanted.
+    pub(super) fn legs(&self) -> impl Iterator<Item = Leg> {
+        let wanted = self.events;
+        let run = self.problem.model.trajectory(self.problem.entry).until(self.horizon);
+        let mut switches = 0;
+        let mut ended = wanted == Some(0);
+        run.take_while(move |leg| {
+            if ended {
+                return false;
+            }
+            switches += u64::from(matches!(leg.exit(), Exit::Switch(_)));
+            ended = wanted == Some(switches);
+            true
+        })
+    }
+
+    /// What to say of a run whose last phase is `last` after `switches` switches.
+    pub(super) fn ending(&self, last: Option<&Leg>, switches: u64) -> Option<String> {
+        let last = last?;
+        let found = self.endless(last).map(|endless| {
+            let since = last.entry().instant.tau(self.omega());
+            let what = match endless {
+                Endless::NeverReturns => "the mass never returns to the slider",
+                Endless::NeverStops => "the slider never stops",
+                Endless::RestsForEver => "the mass rests on the slider for ever",
+            };
+            format!("{what} after tau = {since:?}")
+        });
+        match (self.events, found) {
+            (Some(wanted), _) if switches >= wanted => None,
+            (Some(wanted), Some(found)) => {
+                Some(format!("{found}: {switches} of {wanted} switches"))
+            }
+            (Some(wanted), None) => Some(format!(
+                "stopped after {} forcing periods with {switches} of {wanted} switches",
+                self.max_periods
+            )),
+            (None, Some(found)) => Some(format!("{found}: the run ends at its horizon")),
+            (None, None) => None,
+        }
+    }
+
+    /// Whether a last phase has no end at all, beyond the horizon too.
+    fn endless(&self, last: &Leg) -> Option<Endless> {
+        match last.exit() {
+            Exit::Endless(endless) => Some(*endless),
+            Exit::Switch(_) => None,
+            Exit::Horizon => {
+                let whole = self.problem.model.trajectory(*last.entry()).next()?;
+                if let Exit::Endless(endless) = whole.exit() { Some(*endless) } else { None }
+            }
+        }
+    }
+
+    /// All phases at once, for a picture.
+    pub(super) fn legs_for_picture(&self) -> Result<(Vec<Leg>, Option<String>)> {
+        let start = self.problem.entry.instant;
+        let longest = MAX_PICTURE_PERIODS * self.problem.model.period();
+        let mut legs: Vec<Leg> = Vec::new();
+        let mut switches = 0;
+        for leg in self.legs() {
+            let begins = leg.entry().instant.since(&start, self.omega()).value();
+            let ends_late =
+                self.events.is_none() && self.horizon.since(&start, self.omega()).value() > longest;
+            if begins > longest || ends_late {
+                bail!(
+                    "--output: a picture of more than {MAX_PICTURE_PERIODS} forcing periods is not accepted"
+                );
+            }
+            switches += u64::from(matches!(leg.exit(), Exit::Switch(_)));
+            legs.push(leg);
+        }
+        let ending = self.ending(legs.last(), switches);
+        Ok((legs, ending))
+    }
+
+    /// Where the last of these phases ends.
+    pub(super) fn last_instant(&self, legs: &[Leg]) -> Instant {
+        match (self.events, legs.last().map(|leg| (leg.entry(), leg.exit()))) {
+            (_, Some((_, Exit::Switch(next)))) => next.instant,
+            // Switches were wanted and none came: the last phase is shown for a few periods.
+            (Some(_), Some((entry, _))) => entry.instant.after_periods(2, 1),
+            (Some(_), None) => self.problem.entry.instant,
+            (None, _) => self.horizon,
+        }
+    }
+}
+
+/// The horizon that `--until` states.
+fn until(problem: &Problem, tau: f64) -> Result<Instant> {
+    let omega = problem.model.parameters().omega;
+    let start = problem.entry.instant;
+    // Beyond this omega tau is no longer reduced exactly.
+    let representable = (omega * tau).abs() <= 4e21;
+    let horizon = if representable { Instant::at(omega, tau, 0) } else { start };
+    let span = horizon.since(&start, omega).value();
+    if representable && horizon >= start && span <= MAX_PERIODS as f64 * problem.model.period() {
+        return Ok(horizon);
+    }
+    let begins = start.tau(omega);
+    bail!(
+        "--until {tau:?} is not accepted: at or after the start, {begins:?}, and at most {MAX_PERIODS} forcing periods later"
+    )
+}

@@ -1,0 +1,136 @@
+//! `validate`: every engine on every case against the truth.
+
+use super::output::{Destination, reader_left, write_whole};
+use super::{DONE, OUT_OF_BOUNDS, parse};
+use crate::case::{self, Case};
+use crate::engine::{self, Engine, hush_contained_panics};
+use crate::report::{Report, exporters, table};
+use crate::suite::{self, Prepared, Scored, Suite};
+use crate::truth::Library;
+use anyhow::{Context, Result, anyhow, bail};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use regex::Regex;
+use std::path::{Path, PathBuf};
+
+/// Hold every engine against the truth on every case
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// How much to run
+    #[arg(long, value_enum, default_value_t = Suite::Quick)]
+    suite: Suite,
+    /// Only engines whose name matches; several are alternatives
+    #[arg(short, long = "engine", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
+    engine: Vec<Regex>,
+    /// Only cases whose name matches; several are alternatives
+    #[arg(short, long = "case", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
+    case: Vec<Regex>,
+    /// Writes report.json and errors.csv into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// An engine that is not installed is a failure
+    #[arg(long)]
+    require: bool,
+    /// Fails on accuracy that is worse than in this report
+    #[arg(long, value_name = "report.json")]
+    baseline: Option<PathBuf>,
+    /// Reads the cases from this folder instead of those inside the binary
+    #[arg(long, value_name = "DIR")]
+    cases: Option<PathBuf>,
+    /// Reads the reference data from this folder instead of those inside the binary
+    #[arg(long, value_name = "DIR")]
+    reference: Option<PathBuf>,
+}
+
+pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
+    if let Some(path) = &arguments.baseline {
+        bail!(
+            "--baseline {} is not accepted: this version compares no reports yet",
+            path.display()
+        );
+    }
+    let engines = chosen_engines(&arguments.engine)?;
+    let cases = prepared_cases(arguments)?;
+    if let Some(folder) = &arguments.out {
+        std::fs::create_dir_all(folder).map_err(|error| {
+            anyhow!(
+                "--out {} cannot be made ({error}); accepted is a writable folder",
+                folder.display()
+            )
+        })?;
+    }
+    let bounds = case::default_bounds()?;
+    hush_contained_panics();
+    let pool =
+        rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads.unwrap_or(0))).build();
+    let pool = pool.context("--threads: the threads cannot be started")?;
+    let bar = progress(suite::size(cases.len(), &engines, arguments.suite));
+    let rows =
+        pool.install(|| suite::run(&cases, &engines, arguments.suite, &bounds, &|| bar.inc(1)));
+    bar.finish_and_clear();
+    finish(arguments, &engines, &rows)
+}
+
+fn finish(arguments: &Arguments, engines: &[&'static dyn Engine], rows: &[Scored]) -> Result<u8> {
+    let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
+    let report = Report::new(arguments.suite, &declarations, rows);
+    if let Some(folder) = &arguments.out {
+        write_reports(&report, folder)?;
+    }
+    let shown = Destination::Stdout.write(|out| Ok(out.write_all(table(&report).as_bytes())?));
+    // A reader that leaves early does not turn a failure into a success.
+    shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
+    let summary = report.summary;
+    let lacking = arguments.require && summary.unavailable > 0;
+    Ok(if summary.fail + summary.error > 0 || lacking { OUT_OF_BOUNDS } else { DONE })
+}
+
+fn write_reports(report: &Report, folder: &Path) -> Result<()> {
+    for exporter in exporters() {
+        let path = folder.join(exporter.file_name());
+        write_whole(&path, |out| Ok(exporter.write(report, out)?)).context("--out")?;
+    }
+    Ok(())
+}
+
+fn chosen_engines(patterns: &[Regex]) -> Result<Vec<&'static dyn Engine>> {
+    let engines = engine::select(patterns)?;
+    if engines.is_empty() {
+        let names: Vec<_> = engine::all().iter().map(|engine| engine.declaration().name).collect();
+        bail!("--engine {} matches no engine: accepted are {}", shown(patterns), names.join(", "));
+    }
+    Ok(engines)
+}
+
+fn prepared_cases(arguments: &Arguments) -> Result<Vec<Prepared>> {
+    let all = match &arguments.cases {
+        Some(folder) => case::from_directory(folder).context("--cases")?,
+        None => case::embedded()?,
+    };
+    let wanted = |case: &Case| {
+        arguments.case.is_empty() || arguments.case.iter().any(|it| it.is_match(&case.name))
+    };
+    let cases: Vec<_> = all.into_iter().filter(wanted).collect();
+    if cases.is_empty() {
+        bail!("--case {} matches no case", shown(&arguments.case));
+    }
+    let library = match &arguments.reference {
+        Some(folder) => Library::from_directory(folder).context("--reference")?,
+        None => Library::embedded()?,
+    };
+    Ok(suite::prepare(cases, &library)?)
+}
+
+fn shown(patterns: &[Regex]) -> String {
+    patterns.iter().map(Regex::as_str).collect::<Vec<_>>().join(" ")
+}
+
+/// A bar on stderr; nothing where that is no terminal.
+fn progress(rows: usize) -> ProgressBar {
+    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} rows, {eta} to go");
+    let bar = ProgressBar::new(rows as u64);
+    match style {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

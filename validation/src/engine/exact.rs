@@ -1,0 +1,72 @@
+//! The exact solver, as an engine among others.
+
+use super::meter::{Failure, Limits};
+use super::{Declaration, Engine, Event, Location, Outcome, Stepping, Task, Work, pins};
+use percuss::{Exit, Leg, Sample};
+
+/// The closed forms, joined at proved first crossings.
+pub(super) struct Exact;
+
+impl Engine for Exact {
+    fn declaration(&self) -> Declaration {
+        Declaration {
+            name: "exact",
+            library: "percuss",
+            version: pins::version("percuss"),
+            method: "closed forms, certified first crossing",
+            events: Location::Proved,
+            dense_output: true,
+            stepping: Stepping::Exact,
+        }
+    }
+
+    fn run(
+        &self,
+        task: &Task,
+        _tolerance: Option<f64>,
+        limits: &Limits,
+    ) -> Result<Outcome, Failure> {
+        let start = task.problem.entry;
+        let mut outcome = Outcome::default();
+        let mut run = task.problem.model.trajectory(start).until(task.horizon);
+        for leg in run.by_ref() {
+            sample(task, &leg, &mut outcome.samples);
+            match leg.exit() {
+                Exit::Switch(next) => outcome.events.push(Event {
+                    phase: next.phase(),
+                    elapsed: next.instant.since(&start.instant, task.parameters.omega).value(),
+                    state: [next.state.p, next.state.y, next.state.q, next.v()],
+                }),
+                Exit::Horizon | Exit::Endless(_) => {
+                    outcome.end = state(&leg.at_instant(&task.horizon))
+                }
+            }
+            if outcome.events.len() > limits.events {
+                return Err(Failure::new(format!("gave up after {} switches", limits.events)));
+            }
+        }
+        let counters = run.counters();
+        outcome.work = Work {
+            rhs_evaluations: counters.evaluations,
+            jacobian_evaluations: 0,
+            steps: outcome.events.len() as u64 + 1,
+        };
+        Ok(outcome)
+    }
+}
+
+/// The grid's instants that lie in this phase.
+fn sample(task: &Task, leg: &Leg, samples: &mut Vec<[f64; 4]>) {
+    let start = task.problem.entry.instant;
+    while samples.len() < task.grid.count {
+        let instant = start.after_periods(samples.len() as u64, u64::from(task.grid.per_period));
+        if leg.ends_by(&instant) {
+            return;
+        }
+        samples.push(state(&leg.at_instant(&instant)));
+    }
+}
+
+fn state(sample: &Sample) -> [f64; 4] {
+    [sample.state.p, sample.state.y, sample.state.q, sample.v]
+}

@@ -1,0 +1,178 @@
+//! Counts and limits: a library that hangs, diverges or panics yields a row with its reason.
+//!
+//! A hung thread cannot be killed, so the limits are enforced where the library calls back, in the
+//! right-hand side and in the guards: they unwind to [`contain`].
+
+use std::cell::Cell;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::time::{Duration, Instant};
+
+/// Why a run has no result, in one line.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{0}")]
+pub struct Failure(pub String);
+
+impl Failure {
+    /// A failure for this reason.
+    pub fn new(reason: impl std::fmt::Display) -> Self {
+        Self(reason.to_string().split_whitespace().collect::<Vec<_>>().join(" "))
+    }
+}
+
+/// How much a run may cost.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Right-hand sides, Jacobian products and guards together.
+    pub calls: u64,
+    /// Switches.
+    pub events: usize,
+    /// The last resort: results must not depend on it.
+    pub wall: Duration,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { calls: 20_000_000, events: 100_000, wall: Duration::from_secs(120) }
+    }
+}
+
+/// Counts what a run calls and unwinds when a limit is passed.
+pub(super) struct Meter {
+    limits: Limits,
+    began: Instant,
+    calls: Cell<u64>,
+    rhs: Cell<u64>,
+    jacobians: Cell<u64>,
+}
+
+/// How often the clock is looked at, in calls.
+const CLOCK_EVERY: u64 = 4096;
+
+impl Meter {
+    pub(super) fn new(limits: &Limits) -> Self {
+        let zero = || Cell::new(0);
+        Self {
+            limits: *limits,
+            began: Instant::now(),
+            calls: zero(),
+            rhs: zero(),
+            jacobians: zero(),
+        }
+    }
+
+    /// Counts a right-hand side whose value is `derivatives`.
+    pub(super) fn rhs(&self, derivatives: &[f64]) {
+        self.rhs.set(self.rhs.get() + 1);
+        // Some libraries loop for ever on a NaN.
+        if derivatives.iter().any(|derivative| !derivative.is_finite()) {
+            stop("a right-hand side is not finite");
+        }
+        self.call();
+    }
+
+    /// Counts a Jacobian product.
+    pub(super) fn jacobian(&self) {
+        self.jacobians.set(self.jacobians.get() + 1);
+        self.call();
+    }
+
+    /// Counts any call.
+    pub(super) fn call(&self) {
+        let calls = self.calls.get() + 1;
+        self.calls.set(calls);
+        if calls > self.limits.calls {
+            stop(&format!("gave up after {} calls", self.limits.calls));
+        }
+        if calls.is_multiple_of(CLOCK_EVERY) && self.began.elapsed() > self.limits.wall {
+            stop(&format!("gave up after {} s", self.limits.wall.as_secs()));
+        }
+    }
+
+    /// Refuses more switches than allowed.
+    pub(super) fn events(&self, count: usize) -> Result<(), Failure> {
+        if count < self.limits.events {
+            Ok(())
+        } else {
+            Err(Failure::new(format!("gave up after {count} switches")))
+        }
+    }
+
+    pub(super) fn rhs_count(&self) -> u64 {
+        self.rhs.get()
+    }
+
+    pub(super) fn jacobian_count(&self) -> u64 {
+        self.jacobians.get()
+    }
+}
+
+/// Unwinds without the panic hook: this is no fault of the program.
+fn stop(reason: &str) -> ! {
+    resume_unwind(Box::new(Failure::new(reason)))
+}
+
+thread_local! {
+    static CONTAINED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Keeps the standard panic message quiet for panics that [`contain`] turns into rows.
+pub fn hush_contained_panics() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |info| {
+        if !CONTAINED.get() {
+            usual(info);
+        }
+    }));
+}
+
+/// Runs a library's code; its panics and the meter's stops become failures.
+///
+/// # Errors
+/// The run's own failure, the limit it passed, or the panic's message.
+pub fn contain<T>(run: impl FnOnce() -> Result<T, Failure>) -> Result<T, Failure> {
+    CONTAINED.set(true);
+    let result = catch_unwind(AssertUnwindSafe(run));
+    CONTAINED.set(false);
+    result.unwrap_or_else(|payload| {
+        Err(match payload.downcast::<Failure>() {
+            Ok(failure) => *failure,
+            Err(payload) => {
+                let text = payload.downcast_ref::<String>().map(String::as_str);
+                let text = text.or_else(|| payload.downcast_ref::<&str>().copied());
+                Failure::new(format!("panicked: {}", text.unwrap_or("without a message")))
+            }
+        })
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_unwind_to_a_failure() {
+        let limits = Limits { calls: 10, ..Limits::default() };
+        let endless = || -> Result<(), Failure> {
+            let meter = Meter::new(&limits);
+            loop {
+                meter.rhs(&[0.0]);
+            }
+        };
+        assert_eq!(contain(endless), Err(Failure::new("gave up after 10 calls")));
+    }
+
+    #[test]
+    fn a_nan_and_a_panic_are_failures() {
+        let limits = Limits::default();
+        let not_finite = contain(|| -> Result<(), Failure> {
+            Meter::new(&limits).rhs(&[f64::NAN]);
+            Ok(())
+        });
+        assert_eq!(not_finite, Err(Failure::new("a right-hand side is not finite")));
+        let empty: Vec<f64> = Vec::new();
+        let panicked = contain(|| Ok(empty[0]));
+        assert!(
+            panicked.is_err_and(|failure| failure.0.starts_with("panicked: index out of bounds"))
+        );
+    }
+}

@@ -1,0 +1,180 @@
+//! Engines: anything that can run a problem and say when its phases begin.
+//!
+//! Add one by implementing [`Engine`] in a file of its own and naming it in [`registry`]. An engine
+//! takes plain f64 slices, because the libraries disagree about their linear algebra, and is set up
+//! the way an expert user of its library would; what that took stands in its module.
+
+mod diffsol_bdf;
+mod dopri5;
+mod exact;
+mod meter;
+mod phases;
+mod pins;
+mod registry;
+
+pub use meter::{Failure, Limits, contain, hush_contained_panics};
+pub use registry::{all, select};
+
+use crate::case::{Case, Horizon, Problem};
+use percuss::two_word::TwoWord;
+use percuss::{Instant, Parameters, Phase, angle};
+
+/// How an engine finds its switches.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Location {
+    /// In closed form, proved to be the first.
+    Proved,
+    /// By the library's own event location.
+    Library,
+    /// By this harness on the library's dense output.
+    Harness,
+}
+
+/// How an engine's accuracy is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stepping {
+    /// Nothing to choose: closed forms.
+    Exact,
+    /// By a tolerance.
+    Adaptive,
+}
+
+/// What an engine says of itself.
+#[derive(Clone, Debug)]
+pub struct Declaration {
+    /// Its name, as in `-e`.
+    pub name: &'static str,
+    /// The library it is of.
+    pub library: &'static str,
+    /// That library's version, pinned.
+    pub version: String,
+    /// The method.
+    pub method: &'static str,
+    /// How it finds switches.
+    pub events: Location,
+    /// Whether it has dense output of its own.
+    pub dense_output: bool,
+    /// How its accuracy is chosen.
+    pub stepping: Stepping,
+}
+
+/// Instants at which the state is compared: `k / per_period` forcing periods after the start.
+#[derive(Clone, Copy, Debug)]
+pub struct Grid {
+    /// Instants a forcing period.
+    pub per_period: u32,
+    /// How many, the start included.
+    pub count: usize,
+}
+
+/// A run to be made.
+#[derive(Clone, Debug)]
+pub struct Task {
+    /// The model's parameters.
+    pub parameters: Parameters,
+    /// The checked model and start.
+    pub problem: Problem,
+    /// The phase the start is in.
+    pub phase: Phase,
+    /// p, y, q and v at the start.
+    pub state: [f64; 4],
+    /// omega tau + phi at the start, reduced to a few turns: integrators run in the time elapsed
+    /// since the start, so that a late start costs them no digits.
+    pub forcing_angle: f64,
+    /// Where the run ends.
+    pub horizon: Instant,
+    /// Time from start to horizon.
+    pub span: f64,
+    /// When the state is compared.
+    pub grid: Grid,
+}
+
+/// A switch as an engine found it: the phase that begins, and the state at that instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Event {
+    /// The phase that begins.
+    pub phase: Phase,
+    /// Time since the start.
+    pub elapsed: f64,
+    /// p, y, q and v.
+    pub state: [f64; 4],
+}
+
+/// What a run costs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Right-hand sides; for the exact solver closed-form evaluations.
+    pub rhs_evaluations: u64,
+    /// Jacobians, or products with one.
+    pub jacobian_evaluations: u64,
+    /// Steps; for the exact solver phases.
+    pub steps: u64,
+}
+
+/// A run that was made.
+#[derive(Clone, Debug, Default)]
+pub struct Outcome {
+    /// The switches in the order they were found.
+    pub events: Vec<Event>,
+    /// The states on the grid.
+    pub samples: Vec<[f64; 4]>,
+    /// The state at the horizon.
+    pub end: [f64; 4],
+    /// What it cost.
+    pub work: Work,
+}
+
+/// Something that can run a task.
+pub trait Engine: Sync {
+    /// What it is.
+    fn declaration(&self) -> Declaration;
+
+    /// Whether it can run here; the reason if not.
+    ///
+    /// # Errors
+    /// Why it cannot.
+    fn available(&self) -> Result<(), String> {
+        Ok(())
+    }
+
+    /// Runs a task. `tolerance` is relative and absolute; `None` where [`Stepping::Exact`].
+    ///
+    /// # Errors
+    /// [`Failure`] with the library's reason, or the limit that was passed.
+    fn run(&self, task: &Task, tolerance: Option<f64>, limits: &Limits)
+    -> Result<Outcome, Failure>;
+}
+
+impl Task {
+    /// The run that a case asks for.
+    #[must_use]
+    pub fn of(case: &Case, problem: Problem, grid: Grid) -> Self {
+        let omega = case.parameters.omega;
+        let entry = problem.entry;
+        let horizon = match case.horizon {
+            Horizon::Periods(periods) => entry.instant.after_periods(u64::from(periods), 1),
+            Horizon::Until(tau) => Instant::at(omega, tau, 0),
+        };
+        let (_, phi) = angle::reduce(TwoWord::new(case.parameters.phi));
+        Self {
+            parameters: case.parameters,
+            problem,
+            phase: entry.phase(),
+            state: [entry.state.p, entry.state.y, entry.state.q, entry.v()],
+            forcing_angle: entry.instant.angle_two_word().plus(phi).value(),
+            horizon,
+            span: horizon.since(&entry.instant, omega).value(),
+            grid,
+        }
+    }
+
+    /// The grid's instants as times since the start.
+    #[must_use]
+    pub fn sample_times(&self) -> Vec<f64> {
+        let start = self.problem.entry.instant;
+        let instant = |k: usize| start.after_periods(k as u64, u64::from(self.grid.per_period));
+        let since = |k: usize| instant(k).since(&start, self.parameters.omega).value();
+        (0..self.grid.count).map(since).map(|time| time.min(self.span)).collect()
+    }
+}

@@ -1,0 +1,140 @@
+//! The differential equations of the three phases, their guards and their switches, as an
+//! integrator's user writes them: Eqs. (11) to (13) on plain slices (p, y, q, v).
+//!
+//! Guards are negative inside a phase and rise to zero where it ends. A crossing counts only if the
+//! guard rises there: separation begins with a double zero of the gap, which rounding turns into a
+//! crossing in either direction. At a switch the state is put on the surface that the switch
+//! defines (p = q + g, and q = 0 or 1 - 2 xi y where the trial force is known), always by moving q
+//! and p, because y = (1 - q)/(2 xi) would multiply what is left of the error by 1/(2 xi).
+
+use percuss::{Parameters, Phase};
+
+/// Number of guards; a phase that has one leaves the other at [`NO_GUARD`].
+pub(super) const GUARDS: usize = 2;
+const NO_GUARD: f64 = -1.0;
+
+/// The model in the time elapsed since the start.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Oscillator {
+    a: f64,
+    b: f64,
+    omega: f64,
+    g: f64,
+    two_xi: f64,
+    angle: f64,
+}
+
+impl Oscillator {
+    pub(super) fn new(parameters: &Parameters, angle: f64) -> Self {
+        let Parameters { a, b, xi, omega, g, .. } = *parameters;
+        Self { a, b, omega, g, two_xi: 2.0 * xi, angle }
+    }
+
+    fn force(&self, t: f64) -> f64 {
+        self.a * (self.omega * t + self.angle).cos() + self.b
+    }
+
+    fn trial_force(&self, u: &[f64]) -> f64 {
+        self.two_xi * u[1] + u[2]
+    }
+
+    /// Eqs. (11), (12), (13) and the drift's velocity.
+    pub(super) fn derivatives(&self, phase: Phase, t: f64, u: &[f64], du: &mut [f64]) {
+        let (y, q) = (u[1], u[2]);
+        let force = self.force(t);
+        let rates = match phase {
+            Phase::NoContact => [y, force, -q / self.two_xi, 0.0],
+            Phase::Contact => [y, -self.two_xi * y - q + force, y, 0.0],
+            Phase::Progression => {
+                let closing = (1.0 - q) / self.two_xi;
+                [closing, force - 1.0, closing, y - closing]
+            }
+        };
+        du[..4].copy_from_slice(&rates);
+    }
+
+    /// The derivatives' derivative along `w`.
+    pub(super) fn jacobian_product(&self, phase: Phase, w: &[f64], dw: &mut [f64]) {
+        let (y, q) = (w[1], w[2]);
+        let rates = match phase {
+            Phase::NoContact => [y, 0.0, -q / self.two_xi, 0.0],
+            Phase::Contact => [y, -self.two_xi * y - q, y, 0.0],
+            Phase::Progression => {
+                let closing = -q / self.two_xi;
+                [closing, 0.0, closing, y - closing]
+            }
+        };
+        dw[..4].copy_from_slice(&rates);
+    }
+
+    /// The guards: gap; trial force at 1, at 0; trial force at 1.
+    pub(super) fn guards(&self, phase: Phase, u: &[f64]) -> [f64; GUARDS] {
+        match phase {
+            Phase::NoContact => [u[0] - u[2] - self.g, NO_GUARD],
+            Phase::Contact => [self.trial_force(u) - 1.0, -self.trial_force(u)],
+            Phase::Progression => [1.0 - self.trial_force(u), NO_GUARD],
+        }
+    }
+
+    /// Whether a guard rises.
+    pub(super) fn rises(&self, phase: Phase, guard: usize, t: f64, u: &[f64]) -> bool {
+        let mut du = [0.0; 4];
+        self.derivatives(phase, t, u, &mut du);
+        match (phase, guard) {
+            // 2 xi h' = f.
+            (Phase::NoContact, 0) => self.trial_force(u) > 0.0,
+            (Phase::Contact, 0) => self.two_xi * du[1] + du[2] > 0.0,
+            (Phase::Contact, 1) | (Phase::Progression, 0) => self.two_xi * du[1] + du[2] < 0.0,
+            _ => false,
+        }
+    }
+
+    /// The phase that begins where a guard has risen to zero, with the state put on its surface.
+    pub(super) fn switch(&self, phase: Phase, guard: usize, u: &[f64]) -> (Phase, [f64; 4]) {
+        let mut state = [u[0], u[1], u[2], u[3]];
+        let next = match (phase, guard) {
+            (Phase::NoContact, _) if self.trial_force(u) < 1.0 => Phase::Contact,
+            (Phase::NoContact, _) => Phase::Progression,
+            (Phase::Contact, 0) => {
+                state[2] = 1.0 - self.two_xi * state[1];
+                Phase::Progression
+            }
+            (Phase::Contact, _) => {
+                state[2] = -self.two_xi * state[1];
+                Phase::NoContact
+            }
+            (Phase::Progression, _) => {
+                state[2] = 1.0 - self.two_xi * state[1];
+                Phase::Contact
+            }
+        };
+        state[0] = state[2] + self.g;
+        (next, state)
+    }
+}
+
+/// Collects the grid's samples as a run passes their times.
+pub(super) struct Sampler {
+    times: Vec<f64>,
+    pub(super) taken: Vec<[f64; 4]>,
+}
+
+impl Sampler {
+    pub(super) fn new(times: Vec<f64>) -> Self {
+        Self { taken: Vec::with_capacity(times.len()), times }
+    }
+
+    /// Takes the samples at times up to `until` from `state_at`.
+    pub(super) fn take<E>(
+        &mut self,
+        until: f64,
+        mut state_at: impl FnMut(f64) -> Result<[f64; 4], E>,
+    ) -> Result<(), E> {
+        while let Some(time) =
+            self.times.get(self.taken.len()).copied().filter(|time| *time <= until)
+        {
+            self.taken.push(state_at(time)?);
+        }
+        Ok(())
+    }
+}

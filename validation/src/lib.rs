@@ -1,0 +1,14 @@
+//! The `percuss` command and what stands behind it: engines, cases, truth, scores and reports.
+//!
+//! The exact solver lives in the crate `percuss` and knows nothing of this one. Here it is one
+//! [`engine::Engine`] among others, held against tables ([`truth`]) that none of them knows.
+
+pub mod case;
+pub mod cli;
+pub mod engine;
+pub mod number;
+pub mod picture;
+pub mod report;
+pub mod score;
+pub mod suite;
+pub mod truth;

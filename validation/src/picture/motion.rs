@@ -1,0 +1,175 @@
+//! A run as time histories of x, p and v and as a phase plane, phases by colour (as in Figs. 2 and 3).
+
+use super::axes::{around, label};
+use super::font::FAMILY;
+use super::{DrawError, palette};
+use crate::case::Problem;
+use percuss::{Exit, Instant, Leg, Phase};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Points drawn for the whole run.
+const POINTS: f64 = 6000.0;
+/// Points of even the shortest phase.
+const FEWEST: usize = 12;
+
+const TEXT: u32 = 22;
+const TITLE: u32 = 24;
+
+/// One phase's curve.
+struct Piece {
+    phase: Phase,
+    /// tau, p, y and v.
+    points: Vec<[f64; 4]>,
+}
+
+/// A run ready to be drawn.
+pub struct Motion {
+    title: String,
+    pieces: Vec<Piece>,
+}
+
+/// A figure of a point.
+type Figure = fn(&[f64; 4]) -> f64;
+
+/// What one panel shows.
+struct Panel {
+    below: &'static str,
+    beside: &'static str,
+    x: Figure,
+    y: Figure,
+    /// About how many labels the vertical axis has.
+    ticks: usize,
+}
+
+const HISTORIES: [Panel; 3] = [
+    Panel { below: "", beside: "x = p + v", x: |at| at[0], y: |at| at[1] + at[3], ticks: 5 },
+    Panel { below: "", beside: "p", x: |at| at[0], y: |at| at[1], ticks: 5 },
+    Panel { below: "\u{3c4} (time)", beside: "v (drift)", x: |at| at[0], y: |at| at[3], ticks: 5 },
+];
+const PHASE_PLANE: Panel = Panel {
+    below: "p (displacement)",
+    beside: "y (velocity)",
+    x: |at| at[1],
+    y: |at| at[2],
+    ticks: 10,
+};
+
+impl Motion {
+    /// The phases of a run up to `last`.
+    #[must_use]
+    pub fn of(problem: &Problem, legs: &[Leg], last: &Instant) -> Self {
+        let parameters = problem.model.parameters();
+        let percuss::Parameters { a, b, xi, omega, g, .. } = *parameters;
+        let begins = problem.entry.instant;
+        let span = last.since(&begins, omega).value();
+        let pieces = legs.iter().map(|leg| {
+            let since = leg.entry().instant.since(&begins, omega).value();
+            let lasts = match leg.exit() {
+                Exit::Switch(_) => leg.duration(),
+                Exit::Horizon | Exit::Endless(_) => last.since(&leg.entry().instant, omega).value(),
+            };
+            Piece::of(leg, begins.tau(omega) + since, lasts, span)
+        });
+        Self {
+            title: format!("a = {a}, b = {b}, \u{3be} = {xi}, \u{3c9} = {omega}, g = {g}"),
+            pieces: pieces.collect(),
+        }
+    }
+
+    /// Draws on an area of the picture's size times `scale`.
+    pub(super) fn draw<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        scale: u32,
+    ) -> Result<(), DrawError> {
+        area.fill(&WHITE).map_err(DrawError::new)?;
+        let (head, body) = area.split_vertically(84 * scale);
+        self.heading(&head, scale)?;
+        let (left, right) = body.split_horizontally(840 * scale);
+        let rows = [240 * scale, 480 * scale];
+        for (area, panel) in left.split_by_breakpoints(&[] as &[u32], rows).iter().zip(&HISTORIES) {
+            self.panel(area, panel, scale)?;
+        }
+        self.panel(&right, &PHASE_PLANE, scale)
+    }
+
+    fn heading<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        scale: u32,
+    ) -> Result<(), DrawError> {
+        let at = |x: i32, y: i32| (x * scale.cast_signed(), y * scale.cast_signed());
+        let style = (FAMILY, TITLE * scale).into_font().color(&palette::INK);
+        area.draw_text(&self.title, &style, at(24, 12)).map_err(DrawError::new)?;
+        let text = (FAMILY, TEXT * scale)
+            .into_font()
+            .color(&palette::INK)
+            .pos(Pos::new(HPos::Left, VPos::Center));
+        let mut x = 24;
+        for phase in Phase::ALL {
+            let key = Rectangle::new([at(x, 56), at(x + 36, 61)], palette::phase(phase).filled());
+            area.draw(&key).map_err(DrawError::new)?;
+            let token = phase.token().replace('-', " ");
+            area.draw_text(&token, &text, at(x + 46, 58)).map_err(DrawError::new)?;
+            x += 90 + 13 * i32::try_from(token.len()).unwrap_or(0);
+        }
+        Ok(())
+    }
+
+    fn panel<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        panel: &Panel,
+        scale: u32,
+    ) -> Result<(), DrawError> {
+        let Panel { below, beside, x, y, ticks } = *panel;
+        let all = || self.pieces.iter().flat_map(|piece| &piece.points);
+        let (horizontal, vertical) = (around(all().map(x)), around(all().map(y)));
+        let (ticks_x, ticks_y) = (horizontal.clone(), vertical.clone());
+        let mut chart = ChartBuilder::on(area)
+            .margin(12 * scale)
+            .margin_right(24 * scale)
+            .x_label_area_size(if below.is_empty() { 34 } else { 66 } * scale)
+            .y_label_area_size(112 * scale)
+            .build_cartesian_2d(horizontal, vertical)
+            .map_err(DrawError::new)?;
+        let text = (FAMILY, TEXT * scale).into_font().color(&palette::INK);
+        chart
+            .configure_mesh()
+            .bold_line_style(palette::GRID.stroke_width(scale))
+            .light_line_style(TRANSPARENT)
+            .axis_style(palette::INK.stroke_width(scale))
+            .set_all_tick_mark_size(6 * scale)
+            .x_labels(6)
+            .y_labels(ticks)
+            .x_label_formatter(&|value| label(*value, &ticks_x))
+            .y_label_formatter(&|value| label(*value, &ticks_y))
+            .label_style(text.clone())
+            .axis_desc_style(text)
+            .x_desc(below)
+            .y_desc(beside)
+            .draw()
+            .map_err(DrawError::new)?;
+        for piece in &self.pieces {
+            let points = piece.points.iter().map(|at| (x(at), y(at)));
+            let style = palette::phase(piece.phase).stroke_width(2 * scale);
+            chart.draw_series(LineSeries::new(points, style)).map_err(DrawError::new)?;
+        }
+        Ok(())
+    }
+}
+
+impl Piece {
+    fn of(leg: &Leg, begins: f64, lasts: f64, span: f64) -> Self {
+        let share = (POINTS * lasts / span).ceil();
+        let count = if share.is_finite() { (share as usize).max(FEWEST) } else { FEWEST };
+        let point = |i: usize| {
+            let elapsed = lasts * (i as f64 / count as f64);
+            let at = leg.at(elapsed);
+            [begins + elapsed, at.state.p, at.state.y, at.v]
+        };
+        Self { phase: leg.phase(), points: (0..=count).map(point).collect() }
+    }
+}

@@ -1,0 +1,104 @@
+//! `errors.csv`: the rows of `report.json`, flat. What is `null` there is empty or `nan` here.
+
+use super::{Exporter, Report, Row};
+use crate::number::shortest;
+use crate::score::{Spread, Verdict};
+use std::io::{self, Write};
+
+pub(super) struct Csv;
+
+const COLUMNS: [&str; 26] = [
+    "case",
+    "engine",
+    "tolerance",
+    "step",
+    "status",
+    "horizon_periods",
+    "events_expected",
+    "events_matched",
+    "events_missed",
+    "events_spurious",
+    "phase_word_ok",
+    "event_time_error_median",
+    "event_time_error_q99",
+    "event_time_error_max",
+    "state_error_median",
+    "state_error_q99",
+    "state_error_max",
+    "drift_error",
+    "valid_periods",
+    "rhs_evaluations",
+    "jacobian_evaluations",
+    "steps",
+    "wall_ns",
+    "verdict",
+    "expected",
+    "why",
+];
+
+impl Exporter for Csv {
+    fn file_name(&self) -> &'static str {
+        "errors.csv"
+    }
+
+    fn write(&self, report: &Report, out: &mut dyn Write) -> io::Result<()> {
+        let mut writer = csv::Writer::from_writer(out);
+        writer.write_record(COLUMNS)?;
+        for row in &report.results {
+            writer.write_record(fields(row))?;
+        }
+        writer.flush()
+    }
+}
+
+fn optional<T: ToString>(value: Option<T>) -> String {
+    value.map_or_else(String::new, |value| value.to_string())
+}
+
+fn spread(spread: &Spread) -> [String; 3] {
+    [spread.median, spread.q99, spread.max].map(shortest)
+}
+
+fn fields(row: &Row) -> [String; 26] {
+    let [time_median, time_q99, time_max] = spread(&row.event_time_error);
+    let [state_median, state_q99, state_max] = spread(&row.state_error);
+    [
+        row.case.clone(),
+        row.engine.to_owned(),
+        optional(row.tolerance.map(shortest)),
+        optional(row.step.map(shortest)),
+        row.status.to_owned(),
+        shortest(row.horizon_periods),
+        optional(row.events_expected),
+        optional(row.events_matched),
+        optional(row.events_missed),
+        optional(row.events_spurious),
+        optional(row.phase_word_ok),
+        time_median,
+        time_q99,
+        time_max,
+        state_median,
+        state_q99,
+        state_max,
+        shortest(row.drift_error),
+        shortest(row.valid_periods),
+        optional(row.rhs_evaluations),
+        optional(row.jacobian_evaluations),
+        optional(row.steps),
+        optional(row.wall_ns),
+        word(row.verdict).to_owned(),
+        row.expected.to_string(),
+        row.why.clone(),
+    ]
+}
+
+/// The verdict as in `report.json`.
+pub(super) const fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Pass => "pass",
+        Verdict::Expected => "expected",
+        Verdict::Fail => "fail",
+        Verdict::Error => "error",
+        Verdict::Unavailable => "unavailable",
+    }
+}

@@ -1,0 +1,194 @@
+//! What a report holds: the keys of `report.json`.
+
+use crate::engine::Declaration;
+use crate::score::{Checked, Spread, Verdict};
+use crate::suite::{Scored, Status, Suite};
+use serde::Serialize;
+
+/// A whole report.
+#[derive(Clone, Debug, Serialize)]
+pub struct Report {
+    /// The format's number.
+    pub schema: u32,
+    /// The program's version.
+    pub percuss: &'static str,
+    /// The commit it was built from, where that is known.
+    pub commit: Option<&'static str>,
+    /// The compiler.
+    pub rustc: &'static str,
+    /// The processor.
+    pub cpu: String,
+    /// How much was run.
+    pub suite: Suite,
+    /// The engines that were run.
+    pub engines: Vec<EngineEntry>,
+    /// A row for each case, engine and tolerance.
+    pub results: Vec<Row>,
+    /// How many rows came to which verdict.
+    pub summary: Summary,
+}
+
+/// An engine as it declares itself.
+#[derive(Clone, Debug, Serialize)]
+pub struct EngineEntry {
+    name: &'static str,
+    library: &'static str,
+    version: String,
+    method: &'static str,
+}
+
+/// How many rows came to which verdict.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Summary {
+    /// Within bounds, or as a known shortcoming has it.
+    pub pass: usize,
+    /// Out of bounds.
+    pub fail: usize,
+    /// Without a result.
+    pub error: usize,
+    /// Not installed.
+    pub unavailable: usize,
+}
+
+/// One row. Errors are in the model's units; a figure that was not measured is NaN (`null`).
+#[derive(Clone, Debug, Serialize)]
+#[allow(
+    missing_docs,
+    reason = "the keys are those of the command line's contract, explained in the schema"
+)]
+pub struct Row {
+    pub case: String,
+    pub engine: &'static str,
+    pub tolerance: Option<f64>,
+    pub step: Option<f64>,
+    pub status: &'static str,
+    pub horizon_periods: f64,
+    pub events_expected: Option<usize>,
+    pub events_matched: Option<usize>,
+    pub events_missed: Option<usize>,
+    pub events_spurious: Option<usize>,
+    pub phase_word_ok: Option<bool>,
+    pub event_time_error: Spread,
+    pub state_error: Spread,
+    pub drift_error: f64,
+    pub valid_periods: f64,
+    /// Filled by the restart test.
+    pub restart: Option<()>,
+    /// Filled by the same-attractor test.
+    pub distance: Option<()>,
+    /// Filled by the convergence ladder.
+    pub order: Option<f64>,
+    pub rhs_evaluations: Option<u64>,
+    pub jacobian_evaluations: Option<u64>,
+    pub steps: Option<u64>,
+    pub wall_ns: Option<u64>,
+    pub bounds: Vec<Checked>,
+    pub verdict: Verdict,
+    pub expected: bool,
+    pub why: String,
+}
+
+impl Report {
+    /// The report of these rows.
+    #[must_use]
+    pub fn new(suite: Suite, engines: &[Declaration], rows: &[Scored]) -> Self {
+        let results: Vec<Row> = rows.iter().map(Row::of).collect();
+        let commit = env!("PERCUSS_COMMIT");
+        Self {
+            schema: 1,
+            percuss: env!("CARGO_PKG_VERSION"),
+            commit: (!commit.is_empty()).then_some(commit),
+            rustc: env!("PERCUSS_RUSTC"),
+            cpu: cpu(),
+            suite,
+            engines: engines.iter().map(EngineEntry::of).collect(),
+            summary: Summary::of(&results),
+            results,
+        }
+    }
+}
+
+impl EngineEntry {
+    fn of(declaration: &Declaration) -> Self {
+        let Declaration { name, library, version, method, .. } = declaration.clone();
+        Self { name, library, version, method }
+    }
+}
+
+impl Summary {
+    fn of(rows: &[Row]) -> Self {
+        let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
+        Self {
+            pass: count(Verdict::Pass),
+            fail: count(Verdict::Fail),
+            error: count(Verdict::Error),
+            unavailable: count(Verdict::Unavailable),
+        }
+    }
+}
+
+impl Row {
+    fn of(scored: &Scored) -> Self {
+        let empty = Self::empty(scored);
+        let Status::Ok(measures, outcome) = &scored.status else { return empty };
+        Self {
+            horizon_periods: measures.horizon_periods,
+            events_expected: Some(measures.expected),
+            events_matched: Some(measures.matched),
+            events_missed: Some(measures.expected - measures.matched),
+            events_spurious: Some(measures.spurious),
+            phase_word_ok: Some(measures.phase_word_ok),
+            event_time_error: measures.event_time,
+            state_error: measures.state,
+            drift_error: measures.drift,
+            valid_periods: measures.valid_periods,
+            rhs_evaluations: Some(outcome.work.rhs_evaluations),
+            jacobian_evaluations: Some(outcome.work.jacobian_evaluations),
+            steps: Some(outcome.work.steps),
+            wall_ns: u64::try_from(scored.wall.as_nanos()).ok(),
+            ..empty
+        }
+    }
+
+    fn empty(scored: &Scored) -> Self {
+        Self {
+            case: scored.case.clone(),
+            engine: scored.engine,
+            tolerance: scored.tolerance,
+            step: None,
+            status: match &scored.status {
+                Status::Ok(..) => "ok",
+                Status::Failed(_) => "failed",
+                Status::Unavailable(_) => "unavailable",
+            },
+            horizon_periods: f64::NAN,
+            events_expected: None,
+            events_matched: None,
+            events_missed: None,
+            events_spurious: None,
+            phase_word_ok: None,
+            event_time_error: Spread::NONE,
+            state_error: Spread::NONE,
+            drift_error: f64::NAN,
+            valid_periods: f64::NAN,
+            restart: None,
+            distance: None,
+            order: None,
+            rhs_evaluations: None,
+            jacobian_evaluations: None,
+            steps: None,
+            wall_ns: None,
+            bounds: scored.judgement.bounds.clone(),
+            verdict: scored.judgement.verdict,
+            expected: scored.judgement.expected,
+            why: scored.judgement.why.clone(),
+        }
+    }
+}
+
+/// The processor's name where the system tells it, else its architecture.
+fn cpu() -> String {
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    model.map_or(std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
+}

@@ -1,0 +1,188 @@
+//! The figures of one run.
+
+use super::SCORED_ERROR;
+use super::growth::Growth;
+use super::matching::{Matching, WINDOW};
+use super::statistics::Spread;
+use crate::case::{Quantity, Statistic};
+use crate::engine::{Event, Outcome, Task};
+use crate::truth::{Row, Truth};
+use percuss::two_word::TwoWord;
+
+/// What a run measured, up to the scored horizon.
+#[derive(Clone, Debug)]
+pub struct Measures {
+    /// The scored horizon, in forcing periods.
+    pub horizon_periods: f64,
+    /// The truth's switches before it.
+    pub expected: usize,
+    /// Those that the engine has.
+    pub matched: usize,
+    /// The engine's switches that the truth does not have.
+    pub spurious: usize,
+    /// Whether the phases follow each other as in the truth.
+    pub phase_word_ok: bool,
+    /// Errors of matched switches' times.
+    pub event_time: Spread,
+    /// max(|dp|, |dy|, |dq|) on the sample.
+    pub state: Spread,
+    /// |dv| at the horizon; NaN where that is not scored.
+    pub drift: f64,
+    /// Forcing periods until the state's error passes [`SCORED_ERROR`].
+    pub valid_periods: f64,
+    /// Largest error of a matched switch in units of error x (1 + |value|) x growth x switches.
+    pub event_constant: f64,
+    /// The same of the sample.
+    pub state_constant: f64,
+}
+
+impl Measures {
+    /// A figure; NaN if it was not measured.
+    #[must_use]
+    pub fn figure(&self, quantity: Quantity, statistic: Statistic) -> f64 {
+        let of = |spread: &Spread| match statistic {
+            Statistic::Median => spread.median,
+            Statistic::Q99 => spread.q99,
+            Statistic::Max | Statistic::Value => spread.max,
+        };
+        match quantity {
+            Quantity::EventsMissed => (self.expected - self.matched) as f64,
+            Quantity::EventsSpurious => self.spurious as f64,
+            Quantity::PhaseWord => f64::from(u8::from(!self.phase_word_ok)),
+            Quantity::EventTimeError => of(&self.event_time),
+            Quantity::StateError => of(&self.state),
+            Quantity::DriftError => self.drift,
+            Quantity::EventConstant => self.event_constant,
+            Quantity::StateConstant => self.state_constant,
+            Quantity::ValidPeriods => self.valid_periods,
+        }
+    }
+
+    /// Whether there is nothing to measure: no switch or no sample before the scored horizon.
+    #[must_use]
+    pub fn is_empty_of(&self, quantity: Quantity, whole_run: bool) -> bool {
+        match quantity {
+            Quantity::EventTimeError | Quantity::EventConstant => self.expected == 0,
+            Quantity::DriftError => !whole_run,
+            _ => false,
+        }
+    }
+}
+
+/// Measures a run; `unit` is the engine's unit of error: its tolerance, or eps.
+#[must_use]
+pub fn measure(
+    task: &Task,
+    truth: &Truth,
+    growth: &Growth,
+    outcome: &Outcome,
+    unit: f64,
+) -> Measures {
+    let period = task.problem.model.period();
+    let scored = growth.scored_samples(unit);
+    let whole = scored == truth.samples.len();
+    let horizon =
+        if whole { truth.span() } else { truth.samples[scored.saturating_sub(1)].elapsed.value() };
+    let window = WINDOW * period;
+    // A switch just past the horizon may be the partner of one just before it.
+    let rows = prefix(&truth.switches, |row| row.elapsed.value() <= horizon + window);
+    let found = prefix(&outcome.events, |event| event.elapsed <= horizon + window);
+    let matching = Matching::of(rows, found, window);
+    let expected = prefix(rows, |row| row.elapsed.value() <= horizon).len();
+    let counted = prefix(found, |event| event.elapsed <= horizon).len();
+    let pairs: Vec<_> = matching.pairs.iter().copied().filter(|(i, _)| *i < expected).collect();
+    let partnered = matching.pairs.iter().filter(|(_, j)| *j < counted).count();
+    let state_errors = sample_errors(truth, outcome);
+    Measures {
+        horizon_periods: horizon / period,
+        expected,
+        matched: pairs.len(),
+        spurious: counted - partnered,
+        phase_word_ok: same_word(&rows[..expected], found),
+        event_time: Spread::of(
+            pairs.iter().map(|(i, j)| time_error(&rows[*i], &found[*j])).collect(),
+        ),
+        state: Spread::of(state_errors[..scored.min(state_errors.len())].to_vec()),
+        drift: if whole { off(truth.end.state[3], outcome.end[3]) } else { f64::NAN },
+        valid_periods: valid_periods(task, truth, &state_errors, period),
+        event_constant: event_constant(rows, found, &pairs, growth, unit),
+        state_constant: state_constant(truth, outcome, growth, scored, unit),
+    }
+}
+
+fn prefix<T>(items: &[T], keep: impl Fn(&T) -> bool) -> &[T] {
+    let count = items.iter().position(|item| !keep(item)).unwrap_or(items.len());
+    &items[..count]
+}
+
+fn same_word(rows: &[Row], found: &[Event]) -> bool {
+    found.len() >= rows.len()
+        && rows.iter().zip(found).all(|(row, event)| row.phase == Some(event.phase))
+}
+
+fn off(truth: TwoWord, value: f64) -> f64 {
+    truth.minus(TwoWord::new(value)).value().abs()
+}
+
+fn time_error(row: &Row, event: &Event) -> f64 {
+    off(row.elapsed, event.elapsed)
+}
+
+/// A maximum that keeps a NaN.
+fn worst(errors: impl Iterator<Item = f64>) -> f64 {
+    errors
+        .fold(0.0, |worst: f64, error| if error > worst || error.is_nan() { error } else { worst })
+}
+
+/// A sample that the engine did not deliver is a NaN.
+fn sample_errors(truth: &Truth, outcome: &Outcome) -> Vec<f64> {
+    let error = |(k, row): (usize, &Row)| {
+        let state = outcome.samples.get(k).copied().unwrap_or([f64::NAN; 4]);
+        worst((0..3).map(|i| off(row.state[i], state[i])))
+    };
+    truth.samples.iter().enumerate().map(error).collect()
+}
+
+fn valid_periods(task: &Task, truth: &Truth, errors: &[f64], period: f64) -> f64 {
+    let lost = errors.iter().position(|error| error.is_nan() || *error > SCORED_ERROR);
+    let span = lost.map_or(task.span, |k| truth.samples[k.saturating_sub(1)].elapsed.value());
+    span / period
+}
+
+fn event_constant(
+    rows: &[Row],
+    found: &[Event],
+    pairs: &[(usize, usize)],
+    growth: &Growth,
+    unit: f64,
+) -> f64 {
+    worst(pairs.iter().map(|(i, j)| {
+        let (row, event) = (&rows[*i], &found[*j]);
+        let time =
+            time_error(row, event) / (1.0 + row.elapsed.value().abs()) / growth.switches[*i][0];
+        let state =
+            (0..4).map(|k| relative(row.state[k], event.state[k]) / growth.switches[*i][k + 1]);
+        worst(state.chain([time])) / (unit * (i + 1) as f64)
+    }))
+}
+
+fn state_constant(
+    truth: &Truth,
+    outcome: &Outcome,
+    growth: &Growth,
+    scored: usize,
+    unit: f64,
+) -> f64 {
+    let samples = truth.samples.iter().zip(&outcome.samples).zip(&growth.samples).take(scored);
+    let mut switches = 0;
+    worst(samples.map(|((row, state), growth)| {
+        let passed = |switch: &&Row| switch.elapsed.minus(row.elapsed).value() <= 0.0;
+        switches += truth.switches[switches..].iter().take_while(passed).count();
+        let largest = worst((0..4).map(|k| relative(row.state[k], state[k]) / growth[k]));
+        largest / (unit * (switches.max(1)) as f64)
+    }))
+}
+
+fn relative(truth: TwoWord, value: f64) -> f64 {
+    off(truth, value) / (1.0 + truth.value().abs())
+}

@@ -1,0 +1,48 @@
+//! Median, 99 % quantile and maximum.
+
+use serde::Serialize;
+
+/// How a set of errors is spread; all NaN where there is none.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Spread {
+    /// The middle value.
+    pub median: f64,
+    /// 99 % are at most this.
+    pub q99: f64,
+    /// The largest.
+    pub max: f64,
+}
+
+impl Spread {
+    /// Nothing was measured.
+    pub const NONE: Self = Self { median: f64::NAN, q99: f64::NAN, max: f64::NAN };
+
+    /// The spread of some errors, by nearest rank; a NaN among them is the largest.
+    #[must_use]
+    pub fn of(mut errors: Vec<f64>) -> Self {
+        errors.sort_by(f64::total_cmp);
+        let rank = |share: f64| {
+            let index = (share * errors.len() as f64).ceil() as usize;
+            errors.get(index.saturating_sub(1)).copied().unwrap_or(f64::NAN)
+        };
+        Self { median: rank(0.5), q99: rank(0.99), max: rank(1.0) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nearest_rank() {
+        let spread = Spread::of((1..=200).map(f64::from).collect());
+        assert_eq!(spread, Spread { median: 100.0, q99: 198.0, max: 200.0 });
+        assert_eq!(Spread::of(vec![3.0]), Spread { median: 3.0, q99: 3.0, max: 3.0 });
+    }
+
+    #[test]
+    fn a_nan_is_never_lost() {
+        assert!(Spread::of(vec![1.0, f64::NAN.abs(), 2.0]).max.is_nan());
+        assert!(Spread::of(Vec::new()).median.is_nan());
+    }
+}

@@ -1,0 +1,131 @@
+//! The reference data inside the binary or in a folder, with their hashes checked.
+
+use super::Truth;
+use crate::case::{Case, FileError};
+use include_dir::{Dir, include_dir};
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+// Folder by folder: the generators beside them have no business in the binary.
+static EVENTS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/reference_data/events");
+static SAMPLES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/reference_data/samples");
+static MANIFEST: &str = include_str!("../../reference_data/manifest.json");
+
+#[derive(Deserialize)]
+struct Manifest {
+    files: BTreeMap<String, Listed>,
+}
+
+#[derive(Deserialize)]
+struct Listed {
+    sha256: String,
+}
+
+/// A set of reference data.
+pub struct Library {
+    /// A folder on disk; `None`: inside the binary.
+    folder: Option<PathBuf>,
+    manifest: Manifest,
+}
+
+impl Library {
+    /// The data inside the binary.
+    ///
+    /// # Errors
+    /// [`FileError`] if the manifest cannot be understood; a test shows that it can.
+    pub fn embedded() -> Result<Self, FileError> {
+        Ok(Self { folder: None, manifest: parse("reference_data/manifest.json", MANIFEST)? })
+    }
+
+    /// The data in a folder.
+    ///
+    /// # Errors
+    /// [`FileError`] if its manifest cannot be read or understood.
+    pub fn from_directory(folder: &Path) -> Result<Self, FileError> {
+        let path = folder.join("manifest.json");
+        let text =
+            std::fs::read_to_string(&path).map_err(|error| FileError::unreadable(&path, &error))?;
+        Ok(Self {
+            manifest: parse(&path.display().to_string(), &text)?,
+            folder: Some(folder.to_owned()),
+        })
+    }
+
+    /// What is true of a case.
+    ///
+    /// # Errors
+    /// [`FileError`] names a file that is missing, altered (its hash differs), malformed, or of another case.
+    pub fn truth(&self, case: &Case) -> Result<Truth, FileError> {
+        let [events, samples] =
+            ["events", "samples"].map(|kind| format!("{kind}/{}.csv", case.name));
+        let texts = [self.text(&events)?, self.text(&samples)?];
+        let [events, samples] = [self.full_name(&events), self.full_name(&samples)];
+        Truth::read(case, (&events, &texts[0]), (&samples, &texts[1]))
+    }
+
+    fn full_name(&self, name: &str) -> String {
+        let folder = self.folder.as_deref().unwrap_or(Path::new("reference_data"));
+        folder.join(name).display().to_string()
+    }
+
+    fn text(&self, name: &str) -> Result<Cow<'static, str>, FileError> {
+        let full_name = self.full_name(name);
+        let listed = self.manifest.files.get(name);
+        let listed = listed.ok_or_else(|| FileError::of(&full_name, "is not in the manifest"))?;
+        let bytes = self.bytes(name, &full_name)?;
+        let found: String =
+            Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+        if found != listed.sha256 {
+            let what =
+                format!("SHA-256 {found} is not accepted: the manifest says {}", listed.sha256);
+            return Err(FileError::of(&full_name, what));
+        }
+        let not_text = || FileError::of(&full_name, "is not UTF-8");
+        match bytes {
+            Cow::Borrowed(bytes) => {
+                std::str::from_utf8(bytes).map(Cow::Borrowed).map_err(|_| not_text())
+            }
+            Cow::Owned(bytes) => String::from_utf8(bytes).map(Cow::Owned).map_err(|_| not_text()),
+        }
+    }
+
+    fn bytes(&self, name: &str, full_name: &str) -> Result<Cow<'static, [u8]>, FileError> {
+        if let Some(folder) = &self.folder {
+            let path = folder.join(name);
+            return std::fs::read(&path)
+                .map(Cow::Owned)
+                .map_err(|error| FileError::unreadable(&path, &error));
+        }
+        let (folder, file) = match name.split_once('/') {
+            Some(("events", file)) => (&EVENTS, file),
+            Some(("samples", file)) => (&SAMPLES, file),
+            _ => return Err(FileError::of(full_name, "is not inside the binary")),
+        };
+        let file = folder
+            .get_file(file)
+            .ok_or_else(|| FileError::of(full_name, "is not inside the binary"))?;
+        Ok(Cow::Borrowed(file.contents()))
+    }
+}
+
+fn parse(name: &str, text: &str) -> Result<Manifest, FileError> {
+    serde_json::from_str(text).map_err(|error| FileError::of(name, error))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::embedded;
+
+    #[test]
+    fn every_embedded_case_has_its_tables() {
+        let Ok(library) = Library::embedded() else { unreachable!("the manifest is read") };
+        for case in embedded().unwrap_or_default() {
+            let truth = library.truth(&case).map(|truth| truth.samples.len());
+            assert!(truth.as_ref().is_ok_and(|samples| *samples > 0), "{truth:?}");
+        }
+    }
+}

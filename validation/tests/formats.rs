@@ -1,0 +1,87 @@
+//! The JSON that the program writes, held to the schemas of the repository.
+
+#![allow(clippy::expect_used, reason = "a panic is a failed test")]
+
+mod support;
+
+use serde_json::Value;
+use std::path::Path;
+use support::stdout;
+
+fn json(text: &str) -> Value {
+    serde_json::from_str(text).expect("JSON")
+}
+
+fn assert_valid(schema: &str, value: &Value) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("schemas").join(schema);
+    let schema = json(&std::fs::read_to_string(path).expect("read"));
+    let validator = jsonschema::validator_for(&schema).expect("a schema");
+    let errors: Vec<_> = validator
+        .iter_errors(value)
+        .take(5)
+        .map(|error| format!("{error} at {}", error.instance_path))
+        .collect();
+    assert!(errors.is_empty(), "{errors:?}");
+}
+
+#[test]
+fn simulate() {
+    for more in [&["--samples", "8"][..], &["--phase", "no-contact"], &["--cycle", "100000000"]] {
+        let arguments = [&["simulate", "--periods", "20", "--format", "json"], more].concat();
+        let value = json(&stdout(&arguments));
+        assert_valid("simulate.schema.json", &value);
+        assert_eq!(value["percuss"], env!("CARGO_PKG_VERSION"));
+    }
+}
+
+#[test]
+fn the_instant_of_a_late_row_keeps_its_digits() {
+    let late =
+        json(&stdout(&["simulate", "--events", "9", "--cycle", "100000000", "--format", "json"]));
+    let early = json(&stdout(&["simulate", "--events", "9", "--format", "json"]));
+    let rows = |value: &Value| value["rows"].as_array().cloned().unwrap_or_default();
+    assert_eq!(rows(&late).len(), 10);
+    for (late, early) in rows(&late).iter().zip(rows(&early)) {
+        for key in ["p", "y", "q", "v", "angle", "phase"] {
+            assert_eq!(late[key], early[key]);
+        }
+        assert_eq!(
+            late["cycle"].as_i64(),
+            early["cycle"].as_i64().map(|cycle| cycle + 100_000_000)
+        );
+    }
+}
+
+#[test]
+fn engines() {
+    let value = json(&stdout(&["engines", "--format", "json"]));
+    assert_valid("engines.schema.json", &value);
+    let csv = stdout(&["engines"]);
+    assert!(
+        csv.starts_with("name,library,version,method,events,available\nexact,percuss,"),
+        "{csv}"
+    );
+    assert_eq!(csv.lines().count(), 1 + value["engines"].as_array().map_or(0, Vec::len));
+}
+
+#[test]
+fn report() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    stdout(&["validate", "-c", "^graze", "-c", "table1", "--out", &out]);
+    let report = json(&std::fs::read_to_string(folder.path().join("report.json")).expect("read"));
+    assert_valid("report.schema.json", &report);
+    let results = report["results"].as_array().cloned().unwrap_or_default();
+    let csv = std::fs::read_to_string(folder.path().join("errors.csv")).expect("read");
+    let mut reader = csv::Reader::from_reader(csv.as_bytes());
+    let columns: Vec<_> = reader.headers().expect("a header").iter().map(str::to_owned).collect();
+    let rows: Vec<_> = reader.records().map(|row| row.expect("a row")).collect();
+    assert_eq!(rows.len(), results.len());
+    let column = |name: &str| columns.iter().position(|column| column == name).expect("the column");
+    for (row, result) in rows.iter().zip(&results) {
+        assert_eq!(result["case"], row[column("case")]);
+        let error = result["state_error"]["max"].as_f64();
+        assert_eq!(error, row[column("state_error_max")].parse().ok());
+        assert_eq!(result["events_missed"].as_u64(), row[column("events_missed")].parse().ok());
+    }
+}

@@ -1,0 +1,90 @@
+//! `validate` through the real binary: exit codes, bounds and shortcomings as data.
+
+#![allow(clippy::expect_used, reason = "a panic is a failed test")]
+
+mod support;
+
+use std::fs;
+use std::path::Path;
+use support::{run, stdout, text};
+
+#[test]
+fn every_engine_is_within_its_bounds() {
+    let table = stdout(&["validate"]);
+    for engine in ["exact", "diffsol-bdf", "ode_solvers-dopri5"] {
+        assert!(table.contains(engine), "{table}");
+    }
+    assert!(table.contains(" 0 fail, 0 error, 0 unavailable"), "{table}");
+}
+
+#[test]
+fn results_do_not_depend_on_the_number_of_threads() {
+    let columns = |threads: &str| {
+        let folder = tempfile::tempdir().expect("a folder");
+        stdout(&[
+            "validate",
+            "-c",
+            "fig7",
+            "--threads",
+            threads,
+            "--out",
+            &folder.path().display().to_string(),
+        ]);
+        let csv = fs::read_to_string(folder.path().join("errors.csv")).expect("read");
+        let mut reader = csv::Reader::from_reader(csv.as_bytes());
+        let wall = reader.headers().expect("a header").iter().position(|name| name == "wall_ns");
+        let kept = |(i, field): (usize, &str)| (Some(i) != wall).then(|| field.to_owned());
+        let rows = reader.records().map(|row| row.expect("a row"));
+        rows.map(|row| row.iter().enumerate().filter_map(kept).collect::<Vec<_>>())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(columns("1"), columns("3"));
+}
+
+#[test]
+fn without_out_no_file_is_written() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mut command = support::percuss(&["validate", "-c", "small-b", "-e", "exact"]);
+    assert!(command.current_dir(folder.path()).output().expect("ran").status.success());
+    assert_eq!(fs::read_dir(folder.path()).map(Iterator::count).ok(), Some(0));
+}
+
+/// `small-b` with more said about it.
+fn validate_with(more: &str) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/small-b.toml");
+    let case = fs::read_to_string(case).expect("read") + more;
+    fs::write(folder.path().join("small-b.toml"), case).expect("written");
+    let output =
+        run(&["validate", "--cases", &folder.path().display().to_string(), "-e", "exact|dopri5"]);
+    (output.status.code(), text(&output.stdout))
+}
+
+#[test]
+fn a_bound_that_is_passed_is_exit_1() {
+    let bound = "[[bounds]]\nengine = \"exact\"\nquantity = \"state_error\"\nstatistic = \"max\"\nlimit = 1e-30\nwhy = \"test\"\n";
+    let (code, table) = validate_with(bound);
+    assert_eq!(code, Some(1), "{table}");
+    assert!(
+        table.contains("fail: small-b exact -: state error") && table.contains("1 fail"),
+        "{table}"
+    );
+}
+
+#[test]
+fn a_shortcoming_that_shows_is_expected_and_one_that_does_not_is_out_of_date() {
+    let shortcoming = |at_least: &str| {
+        format!(
+            "[[shortcomings]]\nengine = \"ode_solvers-dopri5\"\ntolerance = 1e-9\nquantity = \"state_error\"\n\
+             statistic = \"max\"\nat_least = {at_least}\nwhy = \"test\"\n\
+             [[bounds]]\nengine = \"ode_solvers-dopri5\"\ntolerance = 1e-9\nquantity = \"state_error\"\n\
+             statistic = \"max\"\nlimit = 1e-12\nwhy = \"test\"\n"
+        )
+    };
+    let (code, table) = validate_with(&shortcoming("1e-12"));
+    assert_eq!(code, Some(0), "{table}");
+    assert!(table.contains("1 of them as known shortcomings"), "{table}");
+    let (code, table) = validate_with(&shortcoming("1.0"));
+    assert_eq!(code, Some(1), "{table}");
+    assert!(table.contains("the data are out of date"), "{table}");
+}
