@@ -44,15 +44,24 @@ impl<T: Number> Flow<T> for Contact<T> {
 
         let force = b + harmonic.force[0];
         let excess = self.offset + f_change;
-        // y' = F - f and f' = 2 xi (F - f) + y, differentiated twice more.
-        let pull = force - (self.reference + excess);
+        // y' = F - f and f' = 2 xi (F - f) + y, differentiated twice more. F and f may both be near the
+        // threshold: it is taken off first.
+        let pull = (harmonic.force[0] + (b - self.reference)) - excess;
         let f_rate = two_xi * pull + y;
         let pull_rate = harmonic.force[1] - f_rate;
         let f_rate2 = two_xi * pull_rate + pull;
         let pull_rate2 = harmonic.force[2] - f_rate2;
         let f_rate3 = two_xi * pull_rate2 + pull_rate;
         let driven_bound = a * (response.force.re.abs() + response.force.im.abs());
-        let largest_term = self.offset.abs() + relaxing.abs() + swinging.abs() + driven_bound;
+        // The slopes count as well, times the length of a certificate: they carry the rounding of y0 and
+        // of f - b even where the oscillation passes through zero or has died out, and that of
+        // 2 xi (F - f), twice for the up to four times of decay.
+        let at_most_one = |x: T| if x < T::one() { x } else { T::one() };
+        let pulls = harmonic.force[0].abs() + (b - self.reference).abs();
+        let carried = y0.abs() * at_most_one(d)
+            + f_less_b.abs() * at_most_one(d * d)
+            + (pulls + pulls) * at_most_one(two_xi * d);
+        let largest_term = self.offset.abs() + relaxing.abs() + carried + driven_bound;
         Point {
             elapsed: d,
             state: State { p: q + g, y, q },

@@ -5,7 +5,7 @@
 //! are entire functions of 1 - xi^2 and exist everywhere. C' = -S and S' = C - 2 xi S.
 
 use crate::number::Number;
-use crate::remainders::{circular_of, decay};
+use crate::remainders::{Circular, Decay, circular_of, decay};
 
 /// How the free oscillation is computed at this damping ratio.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +42,8 @@ pub enum Damping<T> {
 pub struct Free<T> {
     /// S
     pub s: T,
+    /// S - d, without cancellation where d is short
+    pub s_minus_d: T,
     /// C - 1
     pub c_minus_1: T,
     /// S' - 1
@@ -53,17 +55,19 @@ pub struct Free<T> {
 /// The factors of exp((-xi + i nu) d), from which resonance takes its divided difference.
 #[derive(Clone, Copy, Debug)]
 pub struct Rotation<T> {
-    /// exp(-xi d) - 1
-    pub decay_minus_1: T,
-    /// cos(nu d) - 1
-    pub cos_minus_1: T,
-    /// sin(nu d)
-    pub sin: T,
+    /// exp(-xi d) and its remainders
+    pub shrink: Decay<T>,
+    /// Sine and cosine of nu d and their remainders
+    pub turn: Circular<T>,
 }
 
 impl<T: Number> Rotation<T> {
     fn none() -> Self {
-        Self { decay_minus_1: T::zero(), cos_minus_1: T::zero(), sin: T::zero() }
+        let zero = T::zero();
+        Self {
+            shrink: Decay { exp: zero, minus_1: zero, remainder: zero },
+            turn: Circular { sin: zero, cos_minus_1: zero, sin_minus_x: zero },
+        }
     }
 }
 
@@ -101,17 +105,16 @@ impl<T: Number> Damping<T> {
                 if discriminant > T::zero() {
                     under(xi, root, T::zero(), d)
                 } else {
-                    let fast = xi + root;
-                    over(fast, T::one() / fast, root + root, d)
+                    over(T::one() / (xi + root), root + root, d)
                 }
             }
-            Self::Over { fast, slow, spread } => {
+            Self::Over { slow, spread, .. } => {
                 let half = spread * T::exact(0.5);
                 let m = half * half * d * d;
                 if m < T::exact(0.5) {
                     near_critical(slow + half, -m, d)
                 } else {
-                    over(fast, slow, spread, d)
+                    over(slow, spread, d)
                 }
             }
         }
@@ -125,33 +128,41 @@ fn under<T: Number>(xi: T, nu: T, nu_low: T, d: T) -> Free<T> {
     let shrink = decay(xi * d);
     let s = shrink.exp * turn.sin / nu;
     let c_minus_1 = shrink.minus_1 + shrink.exp * turn.cos_minus_1 + xi * s;
-    let rotation =
-        Rotation { decay_minus_1: shrink.minus_1, cos_minus_1: turn.cos_minus_1, sin: turn.sin };
-    Free { s, c_minus_1, s_rate_minus_1: c_minus_1 - (xi + xi) * s, rotation }
+    let s_minus_d = (shrink.minus_1 * turn.sin + turn.sin_minus_x) / nu;
+    let s_rate_minus_1 = c_minus_1 - (xi + xi) * s;
+    Free { s, s_minus_d, c_minus_1, s_rate_minus_1, rotation: Rotation { shrink, turn } }
 }
 
 /// With m = (1 - xi^2) d^2: S = d exp(-xi d) (1 - m/3! + m^2/5! - ...), C alike.
 #[inline]
 fn near_critical<T: Number>(xi: T, m: T, d: T) -> Free<T> {
-    let (mut cosine_minus_1, mut sine_over_x) = (T::zero(), T::zero());
+    let (mut cosine, mut sine) = (T::zero(), T::zero());
     for k in (0..T::TERMS).rev() {
-        cosine_minus_1 = T::inverse_factorial(2 * k + 2) - m * cosine_minus_1;
-        sine_over_x = T::inverse_factorial(2 * k + 1) - m * sine_over_x;
+        cosine = T::inverse_factorial(2 * k + 2) - m * cosine;
+        sine = T::inverse_factorial(2 * k + 3) - m * sine;
     }
-    cosine_minus_1 = -(m * cosine_minus_1);
+    let (cosine_minus_1, sine_over_x_minus_1) = (-(m * cosine), -(m * sine));
     let shrink = decay(xi * d);
-    let s = shrink.exp * d * sine_over_x;
+    let s = shrink.exp * d * (T::one() + sine_over_x_minus_1);
+    let s_minus_d = d * (shrink.minus_1 + shrink.exp * sine_over_x_minus_1);
     let c_minus_1 = shrink.minus_1 + shrink.exp * cosine_minus_1 + xi * s;
-    Free { s, c_minus_1, s_rate_minus_1: c_minus_1 - (xi + xi) * s, rotation: Rotation::none() }
+    let s_rate_minus_1 = c_minus_1 - (xi + xi) * s;
+    Free { s, s_minus_d, c_minus_1, s_rate_minus_1, rotation: Rotation::none() }
 }
 
+/// With S = exp(-slow d) (1 - exp(-spread d))/spread nothing cancels, however small the spread;
+/// C = exp(-slow d) + slow S and S' = exp(-fast d) - slow S.
 #[inline]
-fn over<T: Number>(fast: T, slow: T, spread: T, d: T) -> Free<T> {
-    let (quick, lasting) = (decay(fast * d), decay(slow * d));
+fn over<T: Number>(slow: T, spread: T, d: T) -> Free<T> {
+    let (lasting, ratio) = (decay(slow * d), decay(spread * d));
+    let bare = -(ratio.minus_1 / spread);
+    let s = lasting.exp * bare;
+    let quick_minus_1 = lasting.minus_1 + lasting.exp * ratio.minus_1;
     Free {
-        s: (lasting.minus_1 - quick.minus_1) / spread,
-        c_minus_1: (fast * lasting.minus_1 - slow * quick.minus_1) / spread,
-        s_rate_minus_1: (fast * quick.minus_1 - slow * lasting.minus_1) / spread,
+        s,
+        s_minus_d: lasting.minus_1 * bare - ratio.remainder / spread,
+        c_minus_1: lasting.minus_1 + slow * s,
+        s_rate_minus_1: quick_minus_1 - slow * s,
         rotation: Rotation::none(),
     }
 }

@@ -48,7 +48,7 @@ impl<T: Number> Flow<T> for Progression<T> {
         let lag_rate = lag * rate;
         let orders = [
             w,
-            force - one + lag_rate,
+            (harmonic.force[0] + (b - one)) + lag_rate,
             harmonic.force[1] - lag_rate * rate,
             harmonic.force[2] + lag_rate * rate * rate,
         ];
