@@ -80,7 +80,8 @@ impl Trend {
     pub fn outlook(&self, from: f64, inside: bool, limit: f64) -> Outlook {
         let bound = self.bound(from);
         match bound {
-            Bound::OpenFrom(time) if time > from + TAU / self.omega => {
+            // A jump costs an evaluation; the guess steps over a few periods for less.
+            Bound::OpenFrom(time) if time > from + 4.0 * TAU / self.omega => {
                 return Outlook::ClearUntil(time);
             }
             Bound::Never => return Outlook::ClearFrom(from),

@@ -89,10 +89,17 @@ impl Origins {
             InputError::OutOfRange { name, value, accepted } => {
                 format!("{} {value:?} is not accepted: {accepted}", self.place(name))
             }
-            InputError::Penetrates { .. } => format!("{}: {error}", self.place("p")),
-            InputError::FarFromPhase { .. } => format!("{}: {error}", self.place("phase")),
+            InputError::Penetrates { .. } => self.in_place("p", error),
+            InputError::FarFromPhase { .. } => self.in_place("phase", error),
             _ => error.to_string(),
         }
+    }
+
+    /// The error with the place for the name it begins with.
+    fn in_place(&self, name: &str, error: &InputError) -> String {
+        let text = error.to_string();
+        let rest = text.strip_prefix(name).and_then(|text| text.strip_prefix(" = "));
+        rest.map_or(text.clone(), |rest| format!("{} {rest}", self.place(name)))
     }
 
     fn place(&self, name: &str) -> String {

@@ -137,7 +137,7 @@ impl Source<'_> {
             state.cycle = cycle.into_inner();
         }
         if let Some(phase) = start.phase {
-            given.origins.set("phase", self.place(&phase));
+            given.origins.set("phase", format!("{}: phase =", self.place(&phase)));
             let parsed: Result<Phase, _> = phase.get_ref().parse();
             state.phase =
                 Some(parsed.map_err(|error| self.error(&phase, &format!("phase {error}")))?);

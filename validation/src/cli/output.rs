@@ -1,6 +1,6 @@
 //! Where results go: stdout, or a file that is there whole or not at all.
 
-use anyhow::{Context, Result, anyhow};
+use anyhow::Result;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -25,8 +25,8 @@ impl Destination {
         match self {
             Self::Stdout => {
                 let mut out = BufWriter::new(io::stdout().lock());
-                write(&mut out)?;
-                out.flush().context("stdout cannot be written")
+                let written = write(&mut out).and_then(|()| Ok(out.flush()?));
+                written.map_err(|error| unwritable("stdout", error))
             }
             Self::File(path) => write_whole(path, write),
         }
@@ -44,15 +44,25 @@ pub(super) fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> Result<()>,
 ) -> Result<()> {
-    let refused = |error: io::Error| {
-        anyhow!("{} cannot be written ({error}); accepted is a writable path", path.display())
-    };
+    write_or_replace(path, write).map_err(|error| unwritable(&path.display().to_string(), error))
+}
+
+/// Names what could not be written, where that is the error.
+fn unwritable(name: &str, error: anyhow::Error) -> anyhow::Error {
+    if error.chain().any(|cause| cause.is::<io::Error>()) {
+        error.context(format!("{name} cannot be written, accepted is a writable path"))
+    } else {
+        error
+    }
+}
+
+fn write_or_replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
     // A link stays a link; a device or a pipe cannot be renamed over.
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     if target.exists() && !target.is_file() {
-        let mut out = BufWriter::new(File::options().write(true).open(&target).map_err(refused)?);
+        let mut out = BufWriter::new(File::options().write(true).open(&target)?);
         write(&mut out)?;
-        return out.flush().map_err(refused);
+        return Ok(out.flush()?);
     }
     let folder =
         target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -65,9 +75,9 @@ pub(super) fn write_whole(
         let mode = fs::metadata(&target).map_or(0o666, |metadata| metadata.permissions().mode());
         builder.permissions(fs::Permissions::from_mode(mode));
     }
-    let mut out = BufWriter::new(builder.tempfile_in(folder).map_err(refused)?);
+    let mut out = BufWriter::new(builder.tempfile_in(folder)?);
     write(&mut out)?;
-    let file = out.into_inner().map_err(|error| refused(error.into_error()))?;
-    file.persist(&target).map_err(|error| refused(error.error))?;
+    let file = out.into_inner().map_err(|error| error.into_error())?;
+    file.persist(&target).map_err(|error| error.error)?;
     Ok(())
 }

@@ -14,6 +14,9 @@ const POINTS: f64 = 6000.0;
 /// Points of even the shortest phase.
 const FEWEST: usize = 12;
 
+/// Cosine of a turn between neighbouring pieces of a curve that counts as sharp.
+const SHARP: f64 = 0.9;
+
 const TEXT: u32 = 22;
 const TITLE: u32 = 24;
 
@@ -152,13 +155,38 @@ impl Motion {
             .y_desc(beside)
             .draw()
             .map_err(DrawError::new)?;
+        let size = [ticks_x.end - ticks_x.start, ticks_y.end - ticks_y.start];
         for piece in &self.pieces {
-            let points = piece.points.iter().map(|at| (x(at), y(at)));
+            let points: Vec<_> = piece.points.iter().map(|at| (x(at), y(at))).collect();
             let style = palette::phase(piece.phase).stroke_width(2 * scale);
-            chart.draw_series(LineSeries::new(points, style)).map_err(DrawError::new)?;
+            for stretch in smooth(&points, size) {
+                let series = LineSeries::new(stretch.iter().copied(), style);
+                chart.draw_series(series).map_err(DrawError::new)?;
+            }
         }
         Ok(())
     }
+}
+
+/// A curve cut where it turns sharply: the drawing library leaves gaps there in a thick line.
+fn smooth(points: &[(f64, f64)], [width, height]: [f64; 2]) -> Vec<&[(f64, f64)]> {
+    let heading = |i: usize| {
+        let (dx, dy) =
+            ((points[i].0 - points[i - 1].0) / width, (points[i].1 - points[i - 1].1) / height);
+        let length = dx.hypot(dy).max(f64::MIN_POSITIVE);
+        (dx / length, dy / length)
+    };
+    let mut stretches = Vec::new();
+    let mut begin = 0;
+    for i in 1..points.len().saturating_sub(1) {
+        let (before, after) = (heading(i), heading(i + 1));
+        if before.0 * after.0 + before.1 * after.1 < SHARP {
+            stretches.push(&points[begin..=i]);
+            begin = i;
+        }
+    }
+    stretches.push(&points[begin..]);
+    stretches
 }
 
 impl Piece {

@@ -36,7 +36,7 @@ fn rows(rows: &[Row]) -> String {
         "case",
         "engine",
         "tol",
-        "periods",
+        "scored",
         "switches",
         "missed",
         "invented",

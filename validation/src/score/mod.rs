@@ -1,7 +1,7 @@
 //! Scores: what an engine's run is worth against the truth.
 //!
 //! Everything is measured up to the scored horizon, which is fixed from the truth and the engine's
-//! unit of error alone ([`growth`]): a miss before it counts, nothing after it does.
+//! unit of error alone ([`Growth`]): a miss before it counts, nothing after it does.
 
 mod growth;
 mod matching;

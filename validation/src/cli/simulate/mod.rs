@@ -19,8 +19,6 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 #[command(group(ArgGroup::new("length").required(true).args(["events", "periods", "until"])))]
 pub(super) struct Arguments {
-    #[command(flatten)]
-    model: ModelFlags,
     /// Ends after this many switches
     #[arg(long, value_name = "N")]
     events: Option<u64>,
@@ -42,6 +40,8 @@ pub(super) struct Arguments {
     /// Format where --output has no extension
     #[arg(long, value_enum)]
     format: Option<Format>,
+    #[command(flatten)]
+    model: ModelFlags,
 }
 
 /// What a run is written as.

@@ -1,0 +1,62 @@
+//! What the project says of itself is what its program says.
+
+mod support;
+
+use std::path::{Path, PathBuf};
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
+}
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(root().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+#[test]
+fn the_service_runs_what_the_project_shows() {
+    assert_eq!(read("CI.yml"), read(".github/workflows/ci.yml"));
+}
+
+#[test]
+fn ci_runs_the_readmes_commands() {
+    let readme = read("README.md");
+    assert!(
+        readme.contains("\ncargo run --release -- validate ") && readme.contains("\ncargo test\n")
+    );
+    let ci = read(".ci/run");
+    assert!(ci.contains("cargo run --release --locked -- validate --suite quick"));
+    assert!(ci.contains("\ncargo test --locked\n"));
+}
+
+/// A block between `<!-- begin: cargo run --release -- ARGS -->` and `<!-- end -->` holds, fenced,
+/// what ARGS print. `PERCUSS_SPLICE=1 cargo test --test project` writes them anew.
+///
+/// The last digits of an integrator's error are those of one platform's sine.
+#[test]
+#[cfg(all(target_arch = "x86_64", target_os = "linux"))]
+fn the_readmes_blocks_are_what_their_commands_print() {
+    const BEGIN: &str = "<!-- begin: cargo run --release -- ";
+    const END: &str = "<!-- end -->";
+    let readme = read("README.md");
+    let mut spliced = String::new();
+    let mut rest = readme.as_str();
+    let mut blocks = 0;
+    while let Some((before, block)) = rest.split_once(BEGIN) {
+        let (command, block) = block.split_once(" -->\n").expect("the command's line ends");
+        let (_, after) = block.split_once(END).expect("the block ends");
+        let arguments: Vec<&str> = command.split(' ').map(|word| word.trim_matches('\'')).collect();
+        let printed = support::run(&arguments);
+        let printed = support::text(&printed.stdout);
+        spliced +=
+            &format!("{before}{BEGIN}{command} -->\n```text\n{}\n```\n{END}", printed.trim_end());
+        rest = after;
+        blocks += 1;
+    }
+    spliced += rest;
+    assert!(blocks > 0, "README.md has no block");
+    if std::env::var_os("PERCUSS_SPLICE").is_some() {
+        std::fs::write(root().join("README.md"), &spliced).expect("README.md can be written");
+    } else {
+        assert_eq!(readme, spliced, "PERCUSS_SPLICE=1 cargo test --test project makes them equal");
+    }
+}
