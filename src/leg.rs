@@ -195,7 +195,15 @@ fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
         Motion::NoContact(_) => {
             let [_, h1, h2, h3] = point.guard.orders;
             let f = constants.two_xi * (h1 + step * (h2 + 0.5 * step * h3));
-            surface::onset(constants, shifted(constants.rate, point, *step), Some(f), point.force)
+            let shifted = shifted(constants.rate, point, *step);
+            let (state, onset) = surface::onset(constants, shifted, Some(f), point.force);
+            match onset {
+                // The gap closed, by however little: a contact, which may end at once.
+                Onset::Separation { .. } => {
+                    (state, Onset::Contact { offset: f.max(0.0), reference: 0.0 })
+                }
+                onset => (state, onset),
+            }
         }
         Motion::Contact(contact) => {
             let threshold = f64::from(u8::from(*rises));

@@ -85,7 +85,7 @@ impl Model {
                 }
                 state.q = -(two_xi * state.y);
                 state.p = state.q + g;
-                Onset::Separation { h_rate: 0.0 }
+                surface::on_threshold(self.constants(), &state, 0.0, self.force(instant))
             }
             Phase::Contact => {
                 state.p = state.q + g;
@@ -93,18 +93,22 @@ impl Model {
                 if settled != force {
                     state.y = (settled - state.q) / two_xi;
                 }
-                let reference = f64::from(u8::from(settled >= 0.5 && settled == 1.0));
-                Onset::Contact { offset: settled - reference, reference }
+                if settled == 0.0 || settled == 1.0 {
+                    surface::on_threshold(self.constants(), &state, settled, self.force(instant))
+                } else {
+                    Onset::Contact { offset: settled, reference: 0.0 }
+                }
             }
             Phase::Progression => {
                 state.p = state.q + g;
                 let rate = self.constants().rate;
                 let closing = (1.0 - state.q) * rate;
-                if force < 1.0 {
+                if force <= 1.0 {
                     state.y = closing;
+                    surface::on_threshold(self.constants(), &state, 1.0, self.force(instant))
+                } else {
+                    Onset::Progression { drift_rate: (force - 1.0) * rate, closing }
                 }
-                let drift_rate = ((force - 1.0) * rate).max(0.0);
-                Onset::Progression { drift_rate, closing }
             }
         };
         near(phase, "p", given.p, state.p)?;

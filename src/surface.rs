@@ -28,12 +28,12 @@ pub(crate) fn onset(
     if f.abs() <= FOUR_ULPS * largest {
         state.q = -damper;
         state.p = state.q + g;
-        return (state, at_zero(ladder(constants, state.y, 0.0, largest, force)));
+        return (state, at_zero(ladder(constants, state.y, 0.0, force)));
     }
     if (f - 1.0).abs() <= FOUR_ULPS * largest.max(1.0) {
         state.q = 1.0 - damper;
         state.p = state.q + g;
-        let direction = ladder(constants, state.y, 1.0, largest.max(1.0), force);
+        let direction = ladder(constants, state.y, 1.0, force);
         return (state, at_one(direction, state.y));
     }
     state.p = state.q + g;
@@ -45,6 +45,18 @@ pub(crate) fn onset(
         Onset::Progression { drift_rate: (f - 1.0) * rate, closing: (1.0 - state.q) * rate }
     };
     (state, onset)
+}
+
+/// Which phase begins where the trial force is at a threshold, 0 or 1, by statement: its derivatives
+/// decide, as they do for a computed one. A phase stated against them would have no length.
+pub(crate) fn on_threshold(
+    constants: &Constants<f64>,
+    state: &State,
+    threshold: f64,
+    force: [f64; 3],
+) -> Onset {
+    let direction = ladder(constants, state.y, threshold, force);
+    if threshold == 0.0 { at_zero(direction) } else { at_one(direction, state.y) }
 }
 
 fn at_zero(direction: f64) -> Onset {
@@ -64,7 +76,7 @@ fn at_one(direction: f64, y: f64) -> Onset {
 }
 
 /// The first derivative of the trial force, on a threshold, that is not zero within its rounding.
-fn ladder(constants: &Constants<f64>, y: f64, f: f64, scale: f64, force: [f64; 3]) -> f64 {
+fn ladder(constants: &Constants<f64>, y: f64, f: f64, force: [f64; 3]) -> f64 {
     let Constants { a, b, two_xi, omega, .. } = *constants;
     let pull = force[0] - f;
     // On the threshold with all lower derivatives zero each rung is the one before, differentiated.
@@ -74,6 +86,5 @@ fn ladder(constants: &Constants<f64>, y: f64, f: f64, scale: f64, force: [f64; 3
         (two_xi * force[2] + force[1], a * omega * (two_xi * omega + 1.0)),
         (omega * omega * (b - f), omega * omega * (b.abs() + f)),
     ];
-    let room = |size: f64| FOUR_ULPS * size.max(f64::MIN_POSITIVE) * scale.max(1.0);
-    rungs.iter().find(|(rung, size)| rung.abs() > room(*size)).map_or(0.0, |(rung, _)| *rung)
+    rungs.iter().find(|(rung, size)| rung.abs() > FOUR_ULPS * size).map_or(0.0, |(rung, _)| *rung)
 }

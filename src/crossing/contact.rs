@@ -7,6 +7,7 @@ use crate::flow::contact::Contact;
 use crate::flow::damped::Damping;
 use crate::flow::forced::Forced;
 use crate::flow::{Flow, Point};
+use crate::remainders::decay;
 
 /// Contact's trial force split into what is forced for ever and what dies out.
 #[derive(Clone, Copy, Debug)]
@@ -71,8 +72,9 @@ impl Contact<f64> {
         if let Damping::Over { fast, slow, .. } = self.constants.damping
             && fast * at.elapsed > FAST_IS_GONE + 8.0 * fast.ln()
         {
-            // Only the slow exponential is left; twice its size covers the rest.
-            return 2.0 * split.free[0].abs() * slow.powi(8) + f64::EPSILON;
+            // The slow exponential, twice its size for rounding, and what is left of the fast one.
+            let gone = fast.powi(8) * decay(fast * at.elapsed).exp;
+            return 2.0 * split.free[0].abs() * slow.powi(8) + gone * self.fast_amplitude(split);
         }
         let two_xi = self.constants.two_xi;
         let (mut x, mut rate) = (split.free[0], split.free[1]);
@@ -82,6 +84,14 @@ impl Contact<f64> {
         x.hypot(rate)
     }
 
+    /// A bound of the fast exponential's size at entry, over-damped: |x' + slow x|/spread with
+    /// 2 xi/spread < 2 and slow < 1 < spread.
+    fn fast_amplitude(&self, split: &Split) -> f64 {
+        let constants = &self.constants;
+        let force = constants.a + constants.b.abs() + self.offset.abs() + self.reference;
+        4.0 * force + self.entry.y.abs() + (1.0 + constants.omega) * split.amplitude
+    }
+
     /// A bound of |f''| from `at` on: the free part's by its energy, the forced part's amplitude.
     pub(crate) fn second_derivative_bound(&self, at: &Point<f64>) -> f64 {
         let split = self.split(at);
@@ -89,12 +99,13 @@ impl Contact<f64> {
         x2.hypot(x3) + split.amplitude * self.constants.omega * self.constants.omega
     }
 
-    /// Whether f can never leave (0, 1) again: amplitude and energy of the free part fit inside.
+    /// Whether f can never again leave [0, 1] by more than rounding: amplitude and energy norm of the
+    /// free part fit inside. At rest on a threshold, with no force, they fit exactly.
     fn rests(&self, split: &Split) -> bool {
-        const ROOM: f64 = 1e-12; // for rounding; all terms are of order 1 here
         let b = self.constants.b;
-        let reach = split.amplitude + split.free[0].hypot(split.free[1]) + ROOM * (1.0 + b.abs());
-        b + reach < 1.0 && b - reach > 0.0
+        let reach = split.amplitude + split.free[0].hypot(split.free[1]);
+        let room = 4.0 * f64::EPSILON * (b.abs() + reach);
+        b + reach <= 1.0 + room && b - reach >= -room
     }
 
     /// A time for which f certainly stays inside, by one of two slow changes.
@@ -130,8 +141,11 @@ impl Contact<f64> {
             let middle = 0.5 * (left_end + right);
             if outside(&middle) { right = middle } else { left_end = middle }
         }
-        // Where the interval is short the last step is a secant's.
-        let (near, far) = (corridor.excess(cubic(left_end)), corridor.excess(cubic(right)));
+        // Where the interval is short the last step is a secant's, to the threshold passed at its right.
+        let beyond = |value: f64| {
+            if cubic(right) >= corridor.high { value - corridor.high } else { corridor.low - value }
+        };
+        let (near, far) = (beyond(cubic(left_end)), beyond(cubic(right)));
         let weight = if far > near { (-near / (far - near)).clamp(0.0, 1.0) } else { 1.0 };
         Some(left.elapsed + left_end + weight * (right - left_end))
     }
@@ -152,10 +166,7 @@ impl Contact<f64> {
         let level = constants.b - self.reference;
         let mut last = left.guard.orders[0];
         for k in 1..=STEPS {
-            (x, rate) = (
-                x * c + (rate + constants.two_xi * x) * s,
-                rate * (c - constants.two_xi * s) - x * s,
-            );
+            (x, rate) = (x * c + rate * s, rate * (c - constants.two_xi * s) - x * s);
             (harmonic, quadrature) =
                 (harmonic * cos + quadrature * sin, quadrature * cos - harmonic * sin);
             let f = level + x + re * harmonic + im_over_omega * constants.omega * quadrature;

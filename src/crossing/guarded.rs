@@ -43,8 +43,12 @@ pub trait Guarded: Flow<f64> {
 /// Four eps times the largest term: three roundings in the guard, one in the coefficients.
 const SLACK: f64 = 4.0 * f64::EPSILON;
 
-/// Rounding room of a piece: the guard's terms and those of its coefficients.
+/// Products that underflow lose up to the smallest normal number, 2e-308, and are then multiplied by
+/// a/omega^2 <= 1e21 at most.
+const UNDERFLOW: f64 = 1e-285;
+
+/// Rounding room of a piece: the guard's terms and those of its coefficients, and what underflows.
 #[inline]
 pub fn slack(left: &Point<f64>, right: &Point<f64>) -> f64 {
-    SLACK * left.guard.largest_term.max(right.guard.largest_term)
+    SLACK * left.guard.largest_term.max(right.guard.largest_term) + UNDERFLOW
 }

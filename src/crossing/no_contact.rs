@@ -40,9 +40,9 @@ impl NoContact<f64> {
         (h3 > 0.0 && hop > 0.0 && hop * self.fastest_rate() < 0.7).then_some(hop)
     }
 
-    /// Value and derivatives of p - g.
+    /// Value and derivatives of p - g, as h + q: the guard has digits that a large p has not.
     fn height(&self, at: &Point<f64>) -> [f64; 4] {
-        [at.state.p - self.constants.g, at.state.y, at.force[0], at.force[1]]
+        [at.guard.orders[0] + at.state.q, at.state.y, at.force[0], at.force[1]]
     }
 }
 
@@ -56,6 +56,10 @@ impl Guarded for NoContact<f64> {
         if let Some(h_rate) = self.surface {
             point.guard.orders[0] = 0.0;
             point.guard.orders[1] = h_rate;
+        }
+        if self.separates() {
+            // A separation was decided from derivatives: a positive h'' can only be rounding.
+            point.guard.orders[2] = point.guard.orders[2].min(0.0);
         }
         point
     }

@@ -15,19 +15,40 @@ pub fn evaluate<G: Guarded>(phase: &G, elapsed: f64, counters: &mut Counters) ->
 }
 
 /// The step from a point to where its cubic meets the nearer threshold, and that threshold's side.
-fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> (f64, bool) {
+fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> CubicStep {
     let corridor = phase.corridor();
     let [value, slope, bend, third] = point.guard.orders;
     let (above, below) = (value - corridor.high, value - corridor.low);
     let rises = above.abs() <= below.abs();
     let over = if rises { above } else { below };
+    let residual = |step: f64| over + step * (slope + step * (0.5 * bend + step * third / 6.0));
     let mut step = -over / slope;
-    for _ in 0..3 {
-        let residual = over + step * (slope + step * (0.5 * bend + step * third / 6.0));
-        let steepness = slope + step * (bend + step * 0.5 * third);
-        step -= residual / steepness;
+    // Three steps do on a transversal crossing; next to a graze Newton only halves at first.
+    for _ in 0..40 {
+        let change = residual(step) / (slope + step * (bend + step * 0.5 * third));
+        step -= change;
+        if change.abs() <= 1e-12 * step.abs() || change.is_nan() {
+            break;
+        }
     }
-    (step, rises)
+    let room = 4.0 * f64::EPSILON * (point.guard.largest_term + over.abs());
+    CubicStep { step, rises, settled: residual(step).abs() <= room }
+}
+
+/// Where a point's cubic meets a threshold.
+struct CubicStep {
+    step: f64,
+    /// Whether that is the upper threshold.
+    rises: bool,
+    /// Whether it does meet it there. Next to a crest that misses, Newton wanders.
+    settled: bool,
+}
+
+/// Whether a Taylor step reaches the root with all its digits and ends at a point that is next to the
+/// root as seen from `left` too: in a very short phase a certificate cannot use one far beyond it.
+fn reaches(step: f64, root: f64, left: f64, reach: f64) -> bool {
+    const NEAR: f64 = 1e-3;
+    step.abs() <= reach && step.abs() <= NEAR * (root - left)
 }
 
 fn leaves(point: &Point<f64>, rises: bool) -> bool {
@@ -49,14 +70,14 @@ pub fn follow<G: Guarded>(
     let mut point = evaluate(phase, guess, counters);
     let mut last_step = f64::INFINITY;
     for _ in 0..ATTEMPTS {
-        let (step, rises) = cubic_step(phase, &point);
+        let CubicStep { step, rises, settled } = cubic_step(phase, &point);
         let next = point.elapsed + step;
         // Written so that a NaN gives up.
         if !(next > left && next <= limit && step.abs() < 0.5 * last_step) {
             return Err(point);
         }
-        if step.abs() <= reach {
-            return if leaves(&point, rises) {
+        if reaches(step, next, left, reach) {
+            return if settled && leaves(&point, rises) {
                 Ok(Root { point, step, rises })
             } else {
                 Err(point)
@@ -81,10 +102,10 @@ pub fn bracketed<G: Guarded>(
     let (mut inside, mut outside) = (left.elapsed, right.elapsed);
     let mut point = *right;
     loop {
-        let (step, side) = cubic_step(phase, &point);
+        let CubicStep { step, rises: side, settled } = cubic_step(phase, &point);
         let root = point.elapsed + step;
         let within = root >= inside && root <= outside && side == rises && leaves(&point, rises);
-        if within && step.abs() <= reach {
+        if within && settled && reaches(step, root, left.elapsed, reach) {
             return Root { point, step, rises };
         }
         let middle = 0.5 * (inside + outside);

@@ -42,13 +42,27 @@ pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counte
                 if time >= horizon {
                     return Crossing::Horizon;
                 }
-                left = evaluate(phase, time, counters);
-                ends = Ends::FREE;
-                continue;
+                let point = evaluate(phase, time, counters);
+                let target = inside_or_root(phase, &left, Target::Point(point), counters);
+                if !target.is_root() {
+                    left = point;
+                    ends = Ends::FREE;
+                    continue;
+                }
+                target
             }
             Outlook::Root(time) if time < horizon => {
                 match follow(phase, left.elapsed, time, horizon, counters) {
                     Ok(root) => Target::Root(root),
+                    Err(point) if point.elapsed - left.elapsed < stride => {
+                        // A guess that led nowhere: the next one must be as far as a stride.
+                        stride *= 2.0;
+                        Target::Point(evaluate(
+                            phase,
+                            (left.elapsed + stride).min(horizon),
+                            counters,
+                        ))
+                    }
                     Err(point) => Target::Point(point),
                 }
             }
@@ -118,10 +132,13 @@ fn divide<G: Guarded>(
         let right = target.point();
         ends.right = target.is_root();
         let verdict = phase.certify(&left, right, ends);
-        let resolvable = right.elapsed - left.elapsed > 8.0 * f64::EPSILON * right.elapsed;
+        // Below the smallest normal number halving no longer divides.
+        let finest = (8.0 * f64::EPSILON * right.elapsed).max(f64::MIN_POSITIVE);
+        let resolvable = right.elapsed - left.elapsed > finest;
         if verdict == Verdict::Open && resolvable {
             counters.divisions += 1;
-            let middle = evaluate(phase, phase.divide(&left, right), counters);
+            let place = between(left.elapsed, phase.divide(&left, right), right.elapsed);
+            let middle = evaluate(phase, place, counters);
             match inside_or_root(phase, &left, Target::Point(middle), counters) {
                 earlier @ Target::Root(_) => pending = vec![earlier],
                 inside @ Target::Point(_) => pending.push(inside),
@@ -137,6 +154,14 @@ fn divide<G: Guarded>(
         }
     }
     Target::Point(left)
+}
+
+/// A place well inside a piece: what a phase proposes, unless rounding puts it at an end.
+fn between(left: f64, proposed: f64, right: f64) -> f64 {
+    const MARGIN: f64 = 1e-7;
+    let margin = MARGIN * (right - left);
+    let inside = proposed > left + margin && proposed < right - margin;
+    if inside { proposed } else { left + 0.5 * (right - left) }
 }
 
 /// If the guard is outside at the target by more than rounding, the crossing before it.

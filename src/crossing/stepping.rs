@@ -114,8 +114,15 @@ fn safe_step(excess: f64, slope: f64, bend: f64) -> f64 {
 }
 
 fn arrival(point: &Point<f64>, corridor: &Corridor) -> Root {
-    let [value, slope, ..] = point.guard.orders;
+    let [value, slope, bend, third] = point.guard.orders;
     let rises = slope > 0.0;
-    let threshold = if rises { corridor.high } else { corridor.low };
-    Root { point: *point, step: (threshold - value) / slope, rises }
+    let over = value - if rises { corridor.high } else { corridor.low };
+    // The last step may have gone over the crossing by what rounding hides in the bound: up to
+    // sqrt(room/bend), over which the guard is no straight line.
+    let mut step = -over / slope;
+    for _ in 0..3 {
+        let residual = over + step * (slope + step * (0.5 * bend + step * third / 6.0));
+        step -= residual / (slope + step * (bend + step * 0.5 * third));
+    }
+    Root { point: *point, step, rises }
 }

@@ -45,34 +45,51 @@ pub enum Bound {
     NeverAfter(f64),
 }
 
-/// Relative room for rounding in statements about the parabola.
-const ROOM: f64 = 1e-13;
+/// Room for rounding in statements about the parabola, relative to its terms.
+const ROOM: f64 = 8.0 * f64::EPSILON;
 
 impl Trend {
     /// What the bound says from elapsed time `from` on.
     pub fn bound(&self, from: f64) -> Bound {
-        let Self { slope, curvature, .. } = *self;
-        let exponential = if self.exponential < 0.0 {
-            -self.exponential * decay(self.rate * from).exp
-        } else {
-            0.0
-        };
-        let size = self.offset.abs() + (slope * from).abs() + (curvature * from * from).abs();
-        let room = ROOM * (size + self.amplitude);
-        let value = self.parabola(from) + self.amplitude + exponential + room;
+        let Self { slope, curvature, exponential, .. } = *self;
+        let value = self.parabola(from) + self.amplitude;
         let rising = slope + curvature * from;
-        if value >= 0.0 {
-            let gone = (curvature < 0.0 || (curvature == 0.0 && rising < 0.0))
-                .then(|| last_root(value, rising, curvature))
-                .flatten();
-            return match gone {
-                Some(time) => Bound::NeverAfter(from + time * (1.0 + 1e-6)),
-                None => Bound::OpenFrom(from),
-            };
+        let lasting = exponential * decay(self.rate * from).exp;
+        // e < 0: what is left of the exponential only decreases. e > 0: it may be dropped, or, being
+        // concave in the guard, be replaced by its tangent here; whichever says more.
+        let dropped = self.opening(from, value + (-lasting).max(0.0), rising, curvature);
+        if lasting <= 0.0 {
+            return dropped;
         }
-        match first_root(value, rising, curvature) {
-            Some(time) => Bound::OpenFrom(from + time),
-            None => Bound::Never,
+        let tangent = self.opening(from, value - lasting, rising + self.rate * lasting, curvature);
+        match (dropped, tangent) {
+            (Bound::OpenFrom(first), Bound::OpenFrom(second)) => Bound::OpenFrom(first.max(second)),
+            (Bound::Never, _) | (_, Bound::Never) => Bound::Never,
+            (Bound::OpenFrom(first), Bound::NeverAfter(second)) => match first > from {
+                true => Bound::OpenFrom(first),
+                false => Bound::NeverAfter(second),
+            },
+            (never_after, _) => never_after,
+        }
+    }
+
+    /// When value + rising t + curvature t^2/2, t after `from`, becomes positive or stays negative.
+    ///
+    /// The parabola's rounding grows with its terms; it is bounded by a parabola of its own.
+    fn opening(&self, from: f64, value: f64, rising: f64, curvature: f64) -> Bound {
+        let bent = curvature.abs();
+        let size = self.offset.abs() + (self.slope * from).abs() + 2.0 * bent * from * from;
+        let value = value + ROOM * (size + self.amplitude);
+        let rising = rising + ROOM * self.slope.abs();
+        let curvature = curvature + 4.0 * ROOM * bent;
+        if value < 0.0 {
+            let opens = first_root(value, rising, curvature);
+            return opens.map_or(Bound::Never, |time| Bound::OpenFrom(from + time));
+        }
+        let closes = curvature < 0.0 || (curvature == 0.0 && rising < 0.0);
+        match closes.then(|| last_root(value, rising, curvature)).flatten() {
+            Some(time) => Bound::NeverAfter(from + time * (1.0 + 1e-6)),
+            None => Bound::OpenFrom(from),
         }
     }
 
@@ -109,12 +126,21 @@ impl Trend {
         if length <= 2.0 * period {
             return None;
         }
-        let within = |time: f64| time > from + 0.5 * period && time < to - 0.5 * period;
-        match (self.bound(from), self.bound(from + period)) {
-            (_, Bound::OpenFrom(time)) | (Bound::NeverAfter(time), _) if within(time) => Some(time),
+        let within = |time: &f64| *time > from + 0.5 * period && *time < to - 0.5 * period;
+        let (now, later) = (self.bound(from), self.bound(from + period));
+        // The bound is zero where it opens: a period before that it is negative by a margin.
+        let before_opening = |bound| match bound {
+            Bound::OpenFrom(time) => Some(time - period).filter(within),
+            _ => None,
+        };
+        let turn = before_opening(later).or_else(|| before_opening(now));
+        turn.or_else(|| match (now, later) {
+            (_, Bound::OpenFrom(time)) | (Bound::NeverAfter(time), _) if within(&time) => {
+                Some(time)
+            }
             (Bound::OpenFrom(_), _) => Some(from + period),
             _ => Some(from + 0.5 * length),
-        }
+        })
     }
 
     /// c + s d + k d^2/2

@@ -38,7 +38,9 @@ impl<T: Number> Flow<T> for Progression<T> {
         // 1 - q decays; (1 - q)/(2 xi) = y - w at all times.
         let lag = closing * decay.exp;
         let w = w0 + (y_change - closing * decay.minus_1);
-        let q = q0 - two_xi * closing * decay.minus_1;
+        // Early by its change, late by what is left of 1 - q0: else the digits of a large q0 are lost.
+        let early = decay.exp > T::exact(0.5);
+        let q = if early { q0 - two_xi * closing * decay.minus_1 } else { one - two_xi * lag };
         // Eq. (20) with - (p0 - g - 1) exp(..), its linear terms collected: y0 - (1 - q0)/(2 xi) = w0.
         // 1 - q0 as 2 xi times the closing velocity keeps the digits that q0 near 1 has lost.
         let settling = two_xi * closing * decay.remainder;

@@ -1,0 +1,80 @@
+//! Prints the case in each file named (a libFuzzer artifact) and what the check says; without names,
+//! checks a million random cases and prints one of each kind of fault.
+
+use percuss_fuzz::{Case, check};
+use std::collections::BTreeMap;
+use std::panic::catch_unwind;
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant};
+
+fn main() {
+    let names: Vec<_> = std::env::args().skip(1).collect();
+    for name in &names {
+        match std::fs::read(name) {
+            Ok(bytes) => {
+                let case = Case::decode(&bytes);
+                println!("{case:?}\n{:?}", check(&case));
+            }
+            Err(error) => eprintln!("{name}: {error}"),
+        }
+    }
+    if names.is_empty() {
+        random();
+    }
+}
+
+fn random() {
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut faults = BTreeMap::<String, (u64, String)>::new();
+    let mut slowest = (0.0, String::new());
+    std::panic::set_hook(Box::new(|_| {}));
+    let current = Arc::new(Mutex::new((Instant::now(), Case::decode(&[]))));
+    let watched = Arc::clone(&current);
+    std::thread::spawn(move || {
+        loop {
+            std::thread::sleep(Duration::from_secs(1));
+            if let Ok(current) = watched.lock()
+                && current.0.elapsed() > Duration::from_secs(5)
+            {
+                println!("hang: {:?}", current.1);
+                std::process::exit(1);
+            }
+        }
+    });
+    let runs = std::env::var("RUNS").ok().and_then(|runs| runs.parse().ok()).unwrap_or(1_000_000);
+    for _ in 0..runs {
+        let bytes: Vec<u8> = (0..160)
+            .map(|_| {
+                seed ^= seed << 13;
+                seed ^= seed >> 7;
+                seed ^= seed << 17;
+                (seed >> 32) as u8
+            })
+            .collect();
+        let case = Case::decode(&bytes);
+        let before = Instant::now();
+        if let Ok(mut current) = current.lock() {
+            *current = (before, case.clone());
+        }
+        let verdict = catch_unwind(|| check(&case)).unwrap_or_else(|_| Err("panic".to_owned()));
+        let spent = before.elapsed().as_secs_f64();
+        if spent > slowest.0 {
+            slowest = (spent, format!("{case:?}"));
+        }
+        if let Err(fault) = verdict {
+            let kind: String = fault
+                .split_inclusive(|c: char| c == ',')
+                .next()
+                .unwrap_or_default()
+                .chars()
+                .filter(|c| !c.is_ascii_digit() && *c != '.')
+                .collect();
+            let entry = faults.entry(kind).or_insert((0, format!("{fault}\n  {case:?}")));
+            entry.0 += 1;
+        }
+    }
+    for (kind, (count, first)) in faults {
+        println!("{count} x {kind}\n  {first}");
+    }
+    println!("slowest: {} s {}", slowest.0, slowest.1);
+}

@@ -1,0 +1,164 @@
+//! Inputs that the fuzz target `solver` found to hang, to cost far too much or to lose digits.
+
+#![allow(clippy::expect_used)]
+
+use percuss::{Exit, Leg, Model, Parameters, Phase, Start};
+
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+fn case(
+    [a, b, xi, omega, g, phi]: [f64; 6],
+    [tau, p, y, q]: [f64; 4],
+    phase: Option<Phase>,
+) -> (Parameters, Start) {
+    let parameters = Parameters { a, b, xi, omega, g, phi };
+    (parameters, Start { tau, p, y, q: Some(q), phase, ..Start::default() })
+}
+
+/// The phases of the first 20 legs within `horizon`, none of which may take 3000 evaluations.
+fn legs((parameters, start): (Parameters, Start), horizon: f64) -> Vec<Leg> {
+    let model = Model::new(parameters).expect("the parameters are in range");
+    let entry = model.start(&start).expect("the start is in range");
+    let periods = horizon / model.period();
+    let end = entry.instant.after_periods((periods * 1e6) as u64, 1_000_000);
+    let mut trajectory = model.trajectory(entry).until(end);
+    let legs: Vec<Leg> = trajectory.by_ref().take(20).collect();
+    assert!(trajectory.counters().evaluations < 3000, "{:?}", trajectory.counters());
+    for leg in &legs {
+        if let Exit::Switch(next) = leg.exit() {
+            assert_ne!(leg.phase(), next.phase(), "a phase follows itself");
+        }
+    }
+    legs
+}
+
+/// The trial force of a contact stays in [0, 1], from its samples.
+fn force_stays(legs: &[Leg], xi: f64, horizon: f64) {
+    for leg in legs.iter().filter(|leg| leg.phase() == Phase::Contact) {
+        for eighth in 0..=8 {
+            let state = leg.at(leg.duration().min(horizon) * f64::from(eighth) / 8.0).state;
+            let (damper, spring) = (2.0 * xi * state.y, state.q);
+            let room = ROUNDING * (1.0 + damper.abs() + spring.abs() + leg.entry().state.q.abs());
+            let force = damper + spring;
+            assert!((-room..=1.0 + room).contains(&force), "f = {force:e}, room {room:e}");
+        }
+    }
+}
+
+/// A contact stated at f = 0 although f falls there: the derivatives decide.
+#[test]
+fn a_phase_stated_against_the_derivatives() {
+    let parameters =
+        [1.905_023_314_967_989_8, 0.0, 5.245_737_834_662_222, 1e6, 0.578_591_170_389_808_6, 3.1];
+    let q = -0.063_181_667_137_700_51;
+    let start = [2.624_159_050_362_819_4, 0.515_409_503_252_108, 0.006_022_190_693_577_507, q];
+    for phase in [Phase::Contact, Phase::NoContact] {
+        legs(case(parameters, start, Some(phase)), 2.4e-7);
+    }
+}
+
+/// A flight of 2e-317: its guard underflows long before its slope does.
+#[test]
+fn a_flight_that_underflows() {
+    let b = 1.872_442_957_227_988_4e-241;
+    let parameters = [1e9, b, 1.000_000_481_959_808, 1e-6, 0.853_496_877_675_293_3, 0.0];
+    let y = -1.112_536_393_055_774e-308;
+    let start = [2.787_131_936_795_641, 0.853_496_877_675_293_3, y, -0.0];
+    legs(case(parameters, start, None), 194.778_744_522_567_2);
+}
+
+/// The only way out is far on the other side of the corridor from the threshold just left.
+#[test]
+fn a_contact_that_starts_next_to_the_other_threshold() {
+    let parameters = [
+        787_365_217.770_228,
+        -1.000_000_000_000_000_2,
+        2.904_886_314_599_258_5,
+        0.203_518_235_640_238_47,
+        0.001_193_737_162_390_641_4,
+        -1.570_796_326_794_896_6,
+    ];
+    let (p, q) = (-0.598_800_422_746_573_2, -0.599_994_159_908_963_9);
+    legs(case(parameters, [0.0, p, 0.103_273_260_085_867_33, q], None), 0.0787);
+}
+
+/// Free oscillation of 2e7 against a forced one of the same size: the guesses must not point at
+/// the place where they are made.
+#[test]
+fn guesses_in_strong_resonance() {
+    let parameters = [1.851_695_129_613_321, 1.0, 4.4e-8, 1.000_000_000_000_000_9, 0.0, -1.57];
+    let start = [3.141_592_653_589_793, 1.1e-14, 6.086e-7, 1.1e-14];
+    legs(case(parameters, start, None), 12.0);
+}
+
+/// Contact decays to rest so slowly and so near to a threshold that only relative bounds decide.
+#[test]
+fn an_overdamped_contact_near_its_threshold() {
+    let parameters = [2.5e-84, 2.2e-308, 701.837_137_566_102_8, 1.0, 1.464_010_283_691_811, 3.14];
+    let start = [2.232_737, 1.464_010_283_691_811, 2.2e-308, -0.0];
+    legs(case(parameters, start, None), 8.0);
+    let parameters = [0.0, 2.2e-308, 1.319_139_296_656_565_2, 0.0167, 0.5, 0.0];
+    let start = [1.57, -0.5, 0.379_035_027_814_782_77, -1.0];
+    legs(case(parameters, start, None), 200.0);
+}
+
+/// a = 1e9: a contact takes 1e-7 to 1e-4, in which the response to the force is d^2/2 of it.
+#[test]
+fn short_contacts_under_a_large_force_keep_their_digits() {
+    for (xi, omega, phi) in [
+        (1e-8, 1.292_598_608_755_899_2, 1.3),
+        (0.002_463_5, 0.999_999_999_999_995_3, 0.7),
+        (1e4, 1e-6, 0.5),
+        (0.0556, 1.0, -0.5),
+    ] {
+        for q in [0.003, 0.5, 0.999] {
+            let start = [0.0, q, 0.0, q];
+            let run = legs(case([1e9, 0.5, xi, omega, 0.0, phi], start, None), 1e-3);
+            force_stays(&run, xi, 1e-3);
+        }
+    }
+}
+
+/// q falls from 1e9 to 1 within a progression and stays above it: late it is 1, not 1 + eps 1e9.
+#[test]
+fn a_progression_forgets_a_large_start() {
+    let xi = 1e-8;
+    let b = -809_901.721_459_904_9;
+    let phi = 6.164_659_551_244_219;
+    let parameters = [4.884_387_047_523_054e-5, b, xi, 4.898_253_260_902_872, 0.0, phi];
+    let start = [1.570_796_326_794_896_6, 1e9, 0.667_097_934_211_394_3, 1e9];
+    let run = legs(case(parameters, start, None), 1.9);
+    let slip = &run[0];
+    assert_eq!(slip.phase(), Phase::Progression);
+    let mut last = f64::INFINITY;
+    for eighth in 0..=8 {
+        let q = slip.at(slip.duration() * f64::from(eighth) / 8.0).state.q;
+        assert!((1.0..=last).contains(&q), "q = {q:e} after {last:e}");
+        last = q;
+    }
+}
+
+/// Separation with three zeros at p = 1e9: the envelopes must not be made from p - g.
+#[test]
+fn a_slow_separation_far_out() {
+    let parameters = [1.0, -1.0, 1e-8, 0.999_999_704_107_353_1, 1e9, 0.0];
+    legs(case(parameters, [0.0, 1e9, 0.0, 0.0], Some(Phase::NoContact)), 0.0063);
+}
+
+/// at rest on a threshold the derivatives of f, from f' = 2 xi (F - f) + y and so on, are
+/// rounding noise times powers of 2 xi, and no piece longer than 1/(2 xi) is certified.
+#[test]
+fn strong_damping_at_rest_on_a_threshold() {
+    let parameters = [0.0, 1.0, 1e4, 1.000_000_000_000_002_7, 1.000_000_000_000_000_2, 0.0];
+    let start =
+        [0.0, 2.000_000_000_000_000_4, -1.110_223_024_625_156_6e-20, 1.000_000_000_000_000_2];
+    legs(case(parameters, start, None), 200.0);
+}
+
+/// F = a cos(pi) + b is zero but for the rounding of pi; what the derivatives decide is not
+/// what the guard does next.
+#[test]
+fn a_force_that_is_zero_to_rounding() {
+    let parameters = [1.0, 1.0, 0.999_999_999_999_996_9, 1.0, 0.0, -3.536_210_690_048_745_7e-12];
+    legs(case(parameters, [3.141_592_653_589_793, 0.0, 0.0, 0.0], None), 0.0063);
+}

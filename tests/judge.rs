@@ -1,0 +1,188 @@
+//! The search against plain one-sided stepping, which shares nothing with it but the closed forms.
+
+use percuss::{Counters, Entry, Exit, Leg, Model, Parameters, Phase, Start};
+
+/// Evaluations after which the judge gives a leg up.
+const PATIENCE: u64 = 20_000;
+
+/// omega and xi of the paper's cases and of the corners around them.
+const REGIMES: [(f64, f64); 16] = [
+    (1.4, 0.01),
+    (0.1, 0.01),
+    (1.4, 0.1),
+    (1.45, 0.1),
+    (1.56, 0.1),
+    (1.58, 0.1),
+    (1.6, 0.1),
+    (1.7, 0.1),
+    (0.7, 0.1),
+    (1.0, 1e-4),
+    (1.0, 0.3),
+    (0.9, 1.0),
+    (1.2, 1.5),
+    (2.5, 10.0),
+    (6.0, 0.01),
+    (0.3, 1e-3),
+];
+
+/// A small generator, so that the long test is the same everywhere (splitmix64).
+struct Chance(u64);
+
+impl Chance {
+    fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    fn log(&mut self, low: f64, high: f64) -> f64 {
+        self.between(low.ln(), high.ln()).exp()
+    }
+
+    fn model(&mut self) -> Model {
+        let (a, b) = (self.log(0.03, 10.0), self.between(-0.05, 0.9));
+        let (xi, omega) = (self.log(1e-4, 1e2), self.log(0.01, 50.0));
+        let (g, phi) = (self.between(0.0, 0.3), self.between(0.0, 6.0));
+        Model::new(Parameters { a, b, xi, omega, g, phi }).unwrap()
+    }
+
+    fn start(&mut self, model: &Model) -> Entry {
+        let q = self.unit();
+        let p = q + model.parameters().g - self.log(1e-6, 1.0);
+        let y = self.between(-1.0, 1.0);
+        model.start(&Start { p, y, q: Some(q), ..Start::default() }).unwrap()
+    }
+}
+
+#[derive(Debug, Default)]
+struct Score {
+    switches: u64,
+    given_up: u64,
+    /// Differences on legs that one of the two called undecidable.
+    undecidable: u64,
+    disagreements: Vec<String>,
+    worst: f64,
+}
+
+/// How far apart the two may put the end of a leg: both know the guard to a few eps of its terms,
+/// which is that over its slope in time.
+fn room(model: &Model, leg: &Leg, next: &Entry) -> f64 {
+    let Parameters { a, b, xi, omega, g, .. } = *model.parameters();
+    let (from, to) = (leg.entry().state, next.state);
+    let (d, rate, two_xi) = (leg.duration(), 0.5 / xi, 2.0 * xi);
+    let force = model.force(&next.instant)[0];
+    let swing = a * (0.5 * d * d).min((2.0 + omega * d) / (omega * omega));
+    let (terms, slope) = match leg.phase() {
+        Phase::NoContact => {
+            let lift = 0.5 * b.abs() * d * d + swing;
+            let start = from.p.abs() + g + from.q.abs() + (from.y * d).abs();
+            (start + lift, to.y + rate * to.q)
+        }
+        Phase::Contact => {
+            let parts = 1.0 + b.abs() + from.q.abs() + two_xi * from.y.abs() + from.y.abs();
+            let f = two_xi * to.y + to.q;
+            (parts + swing.min(a / two_xi), two_xi * (force - f) + to.y)
+        }
+        Phase::Progression => {
+            let parts = from.y.abs() + rate * (1.0 - from.q).abs();
+            let push = (b - 1.0).abs() * d + a * d.min(2.0 / omega);
+            (parts + push, force - 1.0 + rate * to.y)
+        }
+    };
+    32.0 * f64::EPSILON * (terms / slope.abs() + d)
+}
+
+fn judge(model: &Model, leg: &Leg, undecidable: bool, score: &mut Score) {
+    let (found, next) = match leg.exit() {
+        Exit::Switch(next) => (leg.duration(), next),
+        // Not a switch: the judge must not find one either, as far as it can look.
+        _ => {
+            let horizon = leg.duration().min(20.0 * model.period());
+            match leg.judged_duration(horizon * (1.0 - 1e-9), PATIENCE) {
+                None => score.given_up += 1,
+                Some(time) if time.is_infinite() => {}
+                Some(_) if undecidable => score.undecidable += 1,
+                Some(time) => score.disagreements.push(format!("{leg:?}: judged {time:e}")),
+            }
+            return;
+        }
+    };
+    score.switches += 1;
+    let Some(judged) = leg.judged_duration(f64::INFINITY, PATIENCE) else {
+        score.given_up += 1;
+        return;
+    };
+    let ratio = (judged - found).abs() / room(model, leg, next);
+    if ratio <= 1.0 {
+        score.worst = score.worst.max(ratio);
+    } else if undecidable {
+        score.undecidable += 1;
+    } else {
+        let about = format!("{:?} {:?} {:?}", model.parameters(), leg.phase(), leg.entry());
+        score
+            .disagreements
+            .push(format!("{about}: {found:e}, judged {judged:e}, {ratio:.1} rooms"));
+    }
+}
+
+fn run(model: &Model, start: Entry, switches: usize, score: &mut Score) {
+    let horizon = start.instant.after_periods(1_000_000, 1);
+    let mut trajectory = model.trajectory(start).until(horizon);
+    let mut before = Counters::default();
+    for _ in 0..switches {
+        let Some(leg) = trajectory.next() else { return };
+        let after = trajectory.counters();
+        judge(model, &leg, after.undecidable > before.undecidable, score);
+        before = after;
+    }
+}
+
+fn agree(per_regime: usize, random_models: usize, per_model: usize) -> Score {
+    let mut score = Score::default();
+    let mut chance = Chance(2004);
+    for (omega, xi) in REGIMES {
+        let model = Model::new(Parameters { omega, xi, ..Parameters::default() }).unwrap();
+        // Several starts, because some come to rest.
+        for _ in 0..10 {
+            let start = chance.start(&model);
+            run(&model, start, per_regime / 10, &mut score);
+        }
+    }
+    for _ in 0..random_models {
+        let model = chance.model();
+        let start = chance.start(&model);
+        run(&model, start, per_model, &mut score);
+    }
+    let Score { switches, given_up, undecidable, worst, disagreements } = &score;
+    println!(
+        "{switches} switches, {given_up} given up, {undecidable} undecidable, {} disagreements, worst {worst:.2} rooms",
+        disagreements.len()
+    );
+    for line in disagreements.iter().take(10) {
+        println!("{line}");
+    }
+    assert!(disagreements.is_empty(), "{} disagreements", disagreements.len());
+    // Long flights at small b + a and slow contacts cost the judge thousands of steps.
+    assert!(*given_up as f64 <= 0.01 * *switches as f64, "{given_up} given up");
+    assert!(*undecidable as f64 <= 1e-3 * *switches as f64, "{undecidable} undecidable");
+    score
+}
+
+#[test]
+fn search_and_plain_stepping_agree() {
+    let score = agree(2000, 600, 40);
+    assert!(score.switches > 30_000);
+}
+
+#[test]
+#[ignore = "a million switches: cargo test --release --test judge -- --ignored --nocapture"]
+fn search_and_plain_stepping_agree_on_a_million_switches() {
+    let score = agree(60_000, 20_000, 50);
+    assert!(score.switches > 1_000_000, "{}", score.switches);
+}
