@@ -1,5 +1,13 @@
 //! Accepted inputs of every size at random: no panic, no hang, legal phases, finite numbers.
 
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
+
 use percuss::{Exit, Leg, Model, Parameters, Phase, Start};
 use std::sync::mpsc;
 use std::time::Duration;

@@ -2,6 +2,14 @@
 //!
 //! `cargo test --release --test closed_forms -- --nocapture` prints the constant of every regime.
 
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
+
 #[path = "support/double_double.rs"]
 mod double_double;
 #[path = "support/draws.rs"]

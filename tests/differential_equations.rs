@@ -3,6 +3,14 @@
 //! The form at d + s must be what the equations make of the form at d, for any d and a short s, and
 //! at d = 0 it must be the entry state. Together that is the definition of the solution.
 
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
+
 #[path = "support/double_double.rs"]
 mod double_double;
 #[path = "support/draws.rs"]

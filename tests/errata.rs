@@ -1,6 +1,12 @@
 //! The paper's equations exactly as printed, against ours: what is right, and what is not (ERRATA.md).
-#![allow(clippy::unwrap_used)]
 
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
 #[path = "support/printed.rs"]
 mod printed;
 #[path = "support/random.rs"]

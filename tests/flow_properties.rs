@@ -1,5 +1,13 @@
 //! What any exact flow of the model must satisfy, whatever its formulas.
 
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
+
 #[path = "support/original.rs"]
 mod original;
 

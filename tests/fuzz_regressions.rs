@@ -1,6 +1,13 @@
 //! Inputs that the fuzz target `solver` found to hang, to cost far too much or to lose digits.
 
-#![allow(clippy::expect_used)]
+#![allow(
+    dead_code,
+    clippy::approx_constant,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
 
 use percuss::{Exit, Leg, Model, Parameters, Phase, Start};
 

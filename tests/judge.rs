@@ -1,5 +1,13 @@
 //! The search against plain one-sided stepping, which shares nothing with it but the closed forms.
 
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
+
 use percuss::{Counters, Entry, Exit, Leg, Model, Parameters, Phase, Start};
 
 /// Evaluations after which the judge gives a leg up.

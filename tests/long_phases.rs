@@ -1,5 +1,13 @@
 //! Phases that last very long cost little: what cannot happen is proved, not waited for.
 
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
+
 use percuss::{Endless, Exit, Instant, Leg, Model, Parameters, Start};
 
 fn first_leg(parameters: Parameters, start: Start, periods: u64) -> (Leg, u64) {

@@ -6,6 +6,14 @@
 //! (rounding of the guard's terms)/slope. A crossing before the planted one is legitimate if it is
 //! one by that measure; one after it never is.
 
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
+
 #[path = "support/draw.rs"]
 mod draw;
 #[path = "support/original.rs"]

@@ -1,5 +1,13 @@
 //! As `planted.rs`, for the phases on the contact surface: contact and progression.
 
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
+
 #[path = "support/draw.rs"]
 mod draw;
 #[path = "support/original.rs"]

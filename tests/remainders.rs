@@ -2,6 +2,14 @@
 //!
 //! `cargo test --release --test remainders -- --nocapture` prints what each reaches.
 
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "each test uses a part of its support; a panic is a failed test"
+)]
+
 #[path = "support/double_double.rs"]
 mod double_double;
 #[path = "support/random.rs"]

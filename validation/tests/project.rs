@@ -1,5 +1,7 @@
 //! What the project says of itself is what its program says.
 
+#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
+
 mod support;
 
 use std::path::{Path, PathBuf};
