@@ -86,16 +86,18 @@ pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counte
 /// The first step of its own that the search takes, against the inverse of the fastest rate.
 const STRIDE: f64 = 0.1;
 
-/// An outlook that does not stay where it is: a guess that falls on `left` is no guess, and is
-/// replaced by a stride, longer each time.
+/// An outlook that gets on: one that only goes on does so by a stride at least, and a guess that falls
+/// on `left` is no guess, and is replaced by a stride, longer each time.
 fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
     let resolution = 8.0 * f64::EPSILON * left;
+    let strides = |stride: f64| left + stride.max(2.0 * resolution);
     match outlook {
-        Outlook::Root(time) | Outlook::Onward(time) | Outlook::ClearUntil(time)
+        Outlook::Onward(time) => Outlook::Onward(time.max(strides(*stride))),
+        Outlook::Root(time) | Outlook::ClearUntil(time)
             if time.is_nan() || time <= left + resolution =>
         {
             *stride *= 2.0;
-            Outlook::Onward(left + (*stride).max(2.0 * resolution))
+            Outlook::Onward(strides(*stride))
         }
         other => other,
     }
