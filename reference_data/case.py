@@ -103,7 +103,7 @@ def surface_motion(case: Case, m, angle, state):
     scale = max(abs(2 * case.parameters["xi"] * case.start["y"]), abs(case.start["q"]))
     for level, below, above in ((0, NO_CONTACT, CONTACT), (1, CONTACT, PROGRESSION)):
         if within_ulps(force - level, scale):
-            state = state._replace(y=(level - state.q) / (2 * m.xi))
+            state = on_surface(m, state._replace(q=level - 2 * m.xi * state.y))
             acceleration = m.a * angle.cos() + m.b - level
             rate = 2 * m.xi * acceleration + state.y
             return enter(m, angle, state, above if certain(rate > 0, rate < 0) else below, level)
