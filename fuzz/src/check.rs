@@ -13,6 +13,9 @@ const LONGEST: f64 = 200.0;
 /// closed forms claim 10 eps for a phase of at most one forcing period, and a switch adds as much.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
+/// What the search itself grants to products that underflow.
+const UNDERFLOW: f64 = 1e-285;
+
 /// Evaluations a phase may take, whatever its length: a crossing bracketed by bisection from the
 /// length of the phase down to one unit in the last place takes 60 at most (1100 where the left end
 /// is zero), a near graze divided down to that size the same on both sides of each of two thresholds.
@@ -130,7 +133,7 @@ impl History {
         let place =
             from.p.abs() + p.abs() + from.q.abs() + q.abs() + g + from.y.abs() * elapsed + pushed;
         let over = p - (q + g);
-        let room = ROUNDING * place + f64::MIN_POSITIVE;
+        let room = ROUNDING * place + UNDERFLOW;
         ensure!(over <= room, "p - (q + g) = {over:e}, room {room:e}, {sample:?}");
         if leg.phase() != Phase::NoContact {
             ensure!(over.abs() <= room, "p - (q + g) = {over:e} on the surface, room {room:e}");
@@ -148,10 +151,12 @@ impl History {
             };
             ensure!(inside, "f = {force:e}, room {room:e}, {sample:?}");
         }
-        // q returns to [0, 1] by itself; its rounding is that of 2 xi y where it is imposed.
+        // q returns to [0, 1] by itself; its rounding is that of its closed form's terms, and of
+        // 2 xi y where it is imposed.
         let in_place = (0.0..=1.0).contains(&q);
         if self.settled {
-            self.q_room = self.q_room.max(ROUNDING * (1.0 + two_xi * y.abs().max(from.y.abs())));
+            let terms = 1.0 + place + two_xi * y.abs().max(from.y.abs());
+            self.q_room = self.q_room.max(ROUNDING * terms);
             let far = (-q).max(q - 1.0);
             ensure!(far <= self.q_room, "q = {q:e} left [0, 1] again, room {:e}", self.q_room);
         }
@@ -173,7 +178,7 @@ impl History {
         } else {
             0.0
         };
-        ROUNDING * (entry.v().abs() + slipped)
+        ROUNDING * (entry.v().abs() + slipped) + UNDERFLOW
     }
 }
 

@@ -86,20 +86,26 @@ pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counte
 /// The first step of its own that the search takes, against the inverse of the fastest rate.
 const STRIDE: f64 = 0.1;
 
-/// An outlook that gets on: one that only goes on does so by a stride at least, and a guess that falls
-/// on `left` is no guess, and is replaced by a stride, longer each time.
+/// An outlook that gets on. A guess that falls on `left` is no guess; that, or an advice to go on by
+/// less than a stride, is replaced by a stride, longer each time.
 fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
     let resolution = 8.0 * f64::EPSILON * left;
-    let strides = |stride: f64| left + stride.max(2.0 * resolution);
+    let nearest = match outlook {
+        Outlook::Onward(_) => left + *stride,
+        Outlook::Root(_) | Outlook::ClearUntil(_) => left + resolution,
+        Outlook::ClearFrom(_) => return outlook,
+    };
     match outlook {
-        Outlook::Onward(time) => Outlook::Onward(time.max(strides(*stride))),
-        Outlook::Root(time) | Outlook::ClearUntil(time)
-            if time.is_nan() || time <= left + resolution =>
+        Outlook::Root(time) | Outlook::ClearUntil(time) | Outlook::Onward(time)
+            if time > nearest =>
         {
-            *stride *= 2.0;
-            Outlook::Onward(strides(*stride))
+            outlook
         }
-        other => other,
+        // A NaN comes here too.
+        _ => {
+            *stride *= 2.0;
+            Outlook::Onward(left + stride.max(2.0 * resolution))
+        }
     }
 }
 
