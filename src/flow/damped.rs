@@ -108,15 +108,8 @@ impl<T: Number> Damping<T> {
                     over(T::one() / (xi + root), root + root, d)
                 }
             }
-            Self::Over { slow, spread, .. } => {
-                let half = spread * T::exact(0.5);
-                let m = half * half * d * d;
-                if m < T::exact(0.5) {
-                    near_critical(slow + half, -m, d)
-                } else {
-                    over(slow, spread, d)
-                }
-            }
+            // No series here: for strong damping it would lose xi d, where this form loses nothing.
+            Self::Over { slow, spread, .. } => over(slow, spread, d),
         }
     }
 }
