@@ -42,9 +42,6 @@ impl Steady {
     }
 }
 
-/// Free motion leaves the fast exponential behind after this many of its times.
-const FAST_IS_GONE: f64 = 40.0;
-
 impl Contact<f64> {
     fn steady(&self) -> Steady {
         let constants = &self.constants;
@@ -69,23 +66,24 @@ impl Contact<f64> {
     ///
     /// x'' + 2 xi x' + x = 0 holds for every derivative of x as well, and x^2 + x'^2 never grows.
     fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
-        if let Damping::Over { fast, slow, .. } = self.constants.damping
-            && fast * at.elapsed > FAST_IS_GONE + 8.0 * fast.ln()
-        {
-            // The slow exponential, twice its size for rounding, and what is left of the fast one.
-            let gone = fast.powi(8) * decay(fast * at.elapsed).exp;
-            return 2.0 * split.free[0].abs() * slow.powi(8) + gone * self.fast_amplitude(split);
-        }
         let two_xi = self.constants.two_xi;
         let (mut x, mut rate) = (split.free[0], split.free[1]);
         for _ in 0..8 {
             (x, rate) = (rate, -(two_xi * rate + x));
         }
-        x.hypot(rate)
+        let by_energy = x.hypot(rate);
+        if let Damping::Over { fast, slow, .. } = self.constants.damping {
+            // Eight derivatives of a stiff oscillation are rounding once its fast part has died out.
+            let quick = self.fast_amplitude(split) * decay(fast * at.elapsed).exp;
+            let lasting = split.free[0].abs() + quick;
+            return by_energy.min(quick * fast.powi(8) + lasting * slow.powi(8));
+        }
+        by_energy
     }
 
-    /// A bound of the fast exponential's size at entry, over-damped: |x' + slow x|/spread with
-    /// 2 xi/spread < 2 and slow < 1 < spread.
+    /// A bound of the fast exponential's size at entry, over-damped: |x' + slow x|/spread, where
+    /// |x| <= |f| + |b| + A and |x'| <= 2 xi (a + |b| + |f|) + |y| + omega A with A the forced
+    /// amplitude, 2 xi/spread < 2 and slow < 1 < spread (from xi^2 - 1 > 1/2).
     fn fast_amplitude(&self, split: &Split) -> f64 {
         let constants = &self.constants;
         let force = constants.a + constants.b.abs() + self.offset.abs() + self.reference;
