@@ -28,13 +28,12 @@ pub(crate) fn onset(
     if f.abs() <= FOUR_ULPS * largest {
         state.q = -damper;
         state.p = state.q + g;
-        return (state, at_zero(ladder(constants, state.y, 0.0, force)));
+        return (state, on_threshold(constants, &state, 0.0, force));
     }
     if (f - 1.0).abs() <= FOUR_ULPS * largest.max(1.0) {
         state.q = 1.0 - damper;
         state.p = state.q + g;
-        let direction = ladder(constants, state.y, 1.0, force);
-        return (state, at_one(direction, state.y));
+        return (state, on_threshold(constants, &state, 1.0, force));
     }
     state.p = state.q + g;
     let onset = if f < 0.0 {
@@ -47,8 +46,8 @@ pub(crate) fn onset(
     (state, onset)
 }
 
-/// Which phase begins where the trial force is at a threshold, 0 or 1, by statement: its derivatives
-/// decide, as they do for a computed one. A phase stated against them would have no length.
+/// Which phase begins where the trial force is at a threshold, 0 or 1, computed or stated: its
+/// derivatives decide. A phase stated against them would have no length.
 pub(crate) fn on_threshold(
     constants: &Constants<f64>,
     state: &State,

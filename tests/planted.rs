@@ -23,7 +23,7 @@ mod plant;
 
 use draw::{Setting, Tally, count, first_leg, log, margin, runner, setting, state};
 use percuss::{Exit, Parameters, Phase};
-use plant::{Finding, Guard, examine, flight, hop, wave};
+use plant::{Finding, examine, flight, hop, steep, wave};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 use std::f64::consts::TAU;
@@ -34,11 +34,6 @@ fn aim(parameters: &Parameters, q: f64, d: f64, value: f64, slope: f64) -> [f64;
     let y = slope - still.slope;
     let p = value - (flight(parameters, [0.0, y, q], d).excess);
     [p, y, q]
-}
-
-/// How steep a crossing must be to be told from a graze: its parabola's crest outside the noise.
-fn steep(at: &Guard, bend: f64) -> bool {
-    at.slope * at.slope > 8.0 * at.noise() * bend
 }
 
 #[test]

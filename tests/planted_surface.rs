@@ -18,14 +18,10 @@ mod plant;
 use draw::{Setting, Tally, count, first_leg, log, margin, runner, setting, state};
 use original::Equations;
 use percuss::{Exit, Parameters, Phase};
-use plant::{Finding, Guard, Side, contact, examine, slip};
+use plant::{Finding, Side, contact, examine, slip, steep};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 use std::f64::consts::TAU;
-
-fn steep(at: &Guard, bend: f64) -> bool {
-    at.slope * at.slope > 8.0 * at.noise() * bend
-}
 
 /// b and y0 of a progression whose -w has this value and slope after d.
 fn aim_slip(parameters: &Parameters, q: f64, d: f64, value: f64, slope: f64) -> (f64, f64) {

@@ -197,3 +197,8 @@ pub fn examine(
     }
     Ok(if found < planted { Finding::Earlier } else { Finding::Later })
 }
+
+/// How steep a crossing must be to be told from a graze: its parabola's crest outside the noise.
+pub fn steep(at: &Guard, bend: f64) -> bool {
+    at.slope * at.slope > 8.0 * at.noise() * bend
+}
