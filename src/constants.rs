@@ -2,6 +2,7 @@
 
 use crate::flow::damped::Damping;
 use crate::flow::forced::Forced;
+use crate::flow::steady::Steady;
 use crate::number::Number;
 use crate::parameters::Parameters;
 
@@ -30,6 +31,8 @@ pub struct Constants<T> {
     pub damping: Damping<T>,
     /// Forced oscillation in contact.
     pub forced: Forced<T>,
+    /// The forced part of the trial force in contact.
+    pub steady: Steady<T>,
 }
 
 impl<T: Number> Constants<T> {
@@ -53,6 +56,7 @@ impl<T: Number> Constants<T> {
             a_over_omega2: a / (omega * omega),
             damping,
             forced: Forced::new(xi, omega),
+            steady: Steady::new(a, xi, omega),
         }
     }
 }

@@ -183,6 +183,10 @@ fn largest_term_bounds_the_rounding_of_the_coefficients() {
                 let longest = 4.0 / constants.omega.max(slider).max(1.0);
                 let length = pair.elapsed.min(longest);
                 let begins = if draw.once_in(2) { pair.elapsed } else { length };
+                // Strong damping: longer pieces, once the fast exponential has died out.
+                let calm = 4.0 / constants.omega.max(1.0);
+                let long = phase == Phase::Contact && pair.elapsed > 60.0 / slider + calm;
+                let length = if long && begins == pair.elapsed { calm } else { length };
                 let (left, right) = (begins - length, begins);
                 let at = |d: f64| (pair.rounded.at(d), pair.exact.at(DoubleDouble::exact(d)));
                 let ((left, exact_left), (right, exact_right)) = (at(left), at(right));

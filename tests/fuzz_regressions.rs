@@ -169,3 +169,62 @@ fn a_force_that_is_zero_to_rounding() {
     let parameters = [1.0, 1.0, 0.999_999_999_999_996_9, 1.0, 0.0, -3.536_210_690_048_745_7e-12];
     legs(case(parameters, [3.141_592_653_589_793, 0.0, 0.0, 0.0], None), 0.0063);
 }
+
+/// Strong damping: the derivatives of f were rounding noise long after the fast part had died out, so
+/// that near a threshold no piece was certified.
+#[test]
+fn strong_damping_next_to_a_threshold() {
+    let parameters =
+        [8.686e-171, -4.431e-202, 1e4, 0.000_506_368_118_112_349_7, 0.084_564_703_784_519_01, 2.26];
+    let start =
+        [0.0, -0.915_608_454_065_904_6, 0.188_017_110_384_073_37, -1.731_578_503_742_369e-4];
+    legs(case(parameters, start, None), 200.0);
+}
+
+/// What q was at the start drowned the guard long after it had died out: g was taken off last, or the
+/// piece's other end gave the rounding room.
+#[test]
+fn a_slider_that_returns_from_far() {
+    let parameters = [0.5, 4.696_163_814_168_331e-5, 1e-8, 1e-6, 0.5, -1.570_796_326_794_896_6];
+    let run = legs(case(parameters, [0.0, 0.5, 0.0, 1.0], None), 200.0);
+    // q = b d^2/2 after 37 decay times: 1.5e-17.
+    let state = run[0].at(run[0].duration()).state;
+    assert!((7e-7..8e-7).contains(&run[0].duration()), "{:e}", run[0].duration());
+    assert!((1e-18..1e-16).contains(&state.q), "{state:?}");
+
+    let g = 0.001_547_336_113_068_120_7;
+    let start = [0.0, 0.001_547_336_578_369_140_6, -5.777_937_187_090_381_5e-6, 1e9];
+    let run = legs(case([0.0, 0.0, 1e-8, 1e6, g, 0.0], start, None), 1e-3);
+    let force = 2e-8 * start[2] + run[0].at(run[0].duration()).state.q;
+    assert!(force > 0.0, "the impact before the graze: {:?}", run[0]);
+}
+
+/// The drift velocity of a slider pushed in by 1e9 lost the digits of y.
+#[test]
+fn a_progression_that_begins_at_1e15() {
+    let xi = 1.074_929_975_991_823_3e-7;
+    let parameters = [0.0, -1.999_999_960_884_451_9, xi, 305.825_457_991_631_9, 0.0, 0.0];
+    let y = 0.464_246_323_440_281_27;
+    let run = legs(case(parameters, [0.0, 999_999_999.0, y, 1e9], None), 1.0);
+    let slip = run.iter().find(|leg| leg.phase() == Phase::Progression).expect("it slips");
+    // y' = b - 1 and 1 - q has died out: w = y.
+    let expected = y / 2.999_999_960_884_451_9;
+    assert!((slip.duration() - expected).abs() < 1e-14, "{}", slip.duration() - expected);
+}
+
+/// A root at 1e-102 in a bracket from zero: its exponent is halved, not its value.
+#[test]
+fn a_root_smaller_by_orders_of_magnitude() {
+    let parameters = [1e9, 0.888_841_689_305_575_9, 1.0, 0.999_999_942_969_940_4, 0.125, -7.89e-8];
+    let start = [1.570_796_326_794_896_6, 0.125, 0.0, -1.112e-100];
+    let (parameters, start) = case(parameters, start, None);
+    let model = Model::new(parameters).expect("in range");
+    let entry = model.start(&start).expect("in range");
+    let mut trajectory = model.trajectory(entry).until(entry.instant.after_periods(1, 100));
+    let leg = trajectory.next().expect("a first phase");
+    // h = f d/(2 xi) + F d^2/2
+    let force = 1e9 * (0.999_999_942_969_940_4 * start.tau + parameters.phi).cos() + parameters.b;
+    let expected = 1.112e-100 / force;
+    assert!((leg.duration() / expected - 1.0).abs() < 1e-6, "{:e}", leg.duration());
+    assert!(trajectory.counters().evaluations < 200, "{:?}", trajectory.counters());
+}

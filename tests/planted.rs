@@ -22,7 +22,7 @@ mod original;
 mod plant;
 
 use draw::{Setting, Tally, count, first_leg, log, margin, runner, setting, state};
-use percuss::{Exit, Parameters, Phase};
+use percuss::{Exit, Parameters, Phase, Start};
 use plant::{Finding, examine, flight, hop, steep, wave};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -182,4 +182,40 @@ fn impacts_choose_the_phase_by_their_force() {
     runner(20_000, 15).run(&strategy, test).unwrap();
     println!("recovered {} earlier {}", tally.recovered.get(), tally.earlier.get());
     assert!(tally.recovered.get() > 1500);
+}
+
+/// Strong damping, slow forcing: the trial force follows its steady part and dips below zero by a
+/// little, once a period. Its derivatives must not be made by the stiff equations of motion, which
+/// multiply the rounding of f by 2 xi each: the dip would drown in them.
+#[test]
+fn shallow_dips_under_strong_damping_are_met() {
+    let strategy = (log(2.0, 1e4), log(1e-4, 0.3), log(1e-9, 1e-2), 0.1..0.4_f64, 0.0..0.5_f64);
+    let test = |(xi, omega, depth, a, early): (f64, f64, f64, f64, f64)| {
+        // f - b = a Re(H exp(i (omega tau + phi))), q - b = a Re(R exp(..)), with R = 1/P.
+        let (stiffness, damping) = (1.0 - omega * omega, 2.0 * xi * omega);
+        let square = stiffness * stiffness + damping * damping;
+        let size = ((1.0 + damping * damping) / square).sqrt();
+        let lag = damping.atan() - damping.atan2(stiffness);
+        let b = a * size * (1.0 - depth);
+        prop_assume!(b + a * size < 0.95);
+        // The start lies up to half a turn before the trough of f.
+        let from = std::f64::consts::PI * early;
+        let phi = from - lag;
+        let (sin, cos) = phi.sin_cos();
+        let q = b + a * (cos * stiffness + sin * damping) / square;
+        let y = a * omega * (cos * damping - sin * stiffness) / square;
+        let parameters = Parameters { a, b, xi, omega, g: 0.02, phi };
+        let start =
+            Start { p: q + 0.02, y, q: Some(q), phase: Some(Phase::Contact), ..Start::default() };
+        let Some((leg, counters, _)) = first_leg(parameters, start) else {
+            return Err(TestCaseError::reject("start not accepted"));
+        };
+        let dips = ((depth - 1.0).acos() - from) / omega;
+        let width = (2.0 * depth).sqrt() / omega;
+        let room = 0.02 * width + 1e-3 / omega * depth.sqrt();
+        prop_assert!((leg.duration() - dips).abs() < room, "{} for {dips}", leg.duration());
+        prop_assert!(counters.evaluations < 100, "{counters:?}");
+        Ok(())
+    };
+    runner(20_000, 17).run(&strategy, test).unwrap();
 }

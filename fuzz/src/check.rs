@@ -138,12 +138,7 @@ impl History {
         if leg.phase() != Phase::NoContact {
             ensure!(over.abs() <= room, "p - (q + g) = {over:e} on the surface, room {room:e}");
             let force = two_xi * y + q;
-            let speed = y.abs()
-                + from.y.abs()
-                + match leg.phase() {
-                    Phase::Contact => elapsed.min(1.0) * (a + b.abs() + 1.0),
-                    _ => elapsed.min(1.0 / omega) * a + elapsed * (b.abs() + 1.0),
-                };
+            let speed = self.speed_terms(leg, elapsed, y);
             let room = ROUNDING * (1.0 + place + two_xi * speed);
             let inside = match leg.phase() {
                 Phase::Contact => force >= -room && force <= 1.0 + room,
@@ -152,11 +147,11 @@ impl History {
             ensure!(inside, "f = {force:e}, room {room:e}, {sample:?}");
         }
         // q returns to [0, 1] by itself; its rounding is that of its closed form's terms, and of
-        // 2 xi y where it is imposed.
+        // 2 xi y where it is imposed at the end of this phase or was at that of an earlier one.
         let in_place = (0.0..=1.0).contains(&q);
+        let terms = 1.0 + place + two_xi * self.speed_terms(leg, elapsed, y);
+        self.q_room = self.q_room.max(ROUNDING * terms);
         if self.settled {
-            let terms = 1.0 + place + two_xi * y.abs().max(from.y.abs());
-            self.q_room = self.q_room.max(ROUNDING * terms);
             let far = (-q).max(q - 1.0);
             ensure!(far <= self.q_room, "q = {q:e} left [0, 1] again, room {:e}", self.q_room);
         }
@@ -165,6 +160,16 @@ impl History {
         let room = self.drift_room(leg, elapsed);
         ensure!(fall <= room, "v fell by {fall:e} in {elapsed:e}, room {room:e}");
         Ok(())
+    }
+
+    /// The terms of y's closed form: in contact what is forced dies out within 1/(2 xi).
+    fn speed_terms(&self, leg: &Leg, elapsed: f64, y: f64) -> f64 {
+        let Parameters { a, b, xi, omega, .. } = self.parameters;
+        let forced = match leg.phase() {
+            Phase::Contact => elapsed.min(1.0).min(0.5 / xi) * (a + b.abs() + 1.0),
+            _ => elapsed.min(1.0 / omega) * a + elapsed * (b.abs() + 1.0),
+        };
+        y.abs() + leg.entry().state.y.abs() + forced
     }
 
     /// Rounding of v, and of the distance slipped.

@@ -5,7 +5,6 @@ use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
 use crate::flow::contact::Contact;
 use crate::flow::damped::Damping;
-use crate::flow::forced::Forced;
 use crate::flow::{Flow, Point};
 use crate::remainders::decay;
 
@@ -18,48 +17,14 @@ pub struct Split {
     amplitude: f64,
 }
 
-/// The forced part of the trial force is b + Re((F - b) H) with this complex H, and its amplitude.
-#[derive(Clone, Copy, Debug)]
-pub struct Steady {
-    re: f64,
-    im_over_omega: f64,
-    amplitude: f64,
-}
-
-impl Steady {
-    /// H = (1 + 2 i xi omega)/(1 - omega^2 + 2 i xi omega).
-    #[must_use]
-    pub fn new(a: f64, xi: f64, omega: f64) -> Self {
-        let stiffness = (1.0 - omega) * (1.0 + omega);
-        let damping = 2.0 * xi * omega;
-        let inverse = Forced::<f64>::amplitude(xi, omega);
-        let square = inverse * inverse;
-        Self {
-            re: (stiffness + damping * damping) * square,
-            im_over_omega: damping * (stiffness - 1.0) * square / omega,
-            amplitude: a * (1.0 + damping * damping).sqrt() * inverse,
-        }
-    }
-}
-
 impl Contact<f64> {
-    fn steady(&self) -> Steady {
-        let constants = &self.constants;
-        Steady::new(constants.a, constants.xi, constants.omega)
-    }
-
     fn split(&self, at: &Point<f64>) -> Split {
-        let Steady { re, im_over_omega, amplitude } = self.steady();
         let constants = &self.constants;
-        let omega2 = constants.omega * constants.omega;
-        let harmonic = at.force[0] - constants.b;
-        // a sin(omega tau + phi) = -F'/omega
-        let value = re * harmonic + im_over_omega * at.force[1];
-        let rate = re * at.force[1] + im_over_omega * at.force[2];
+        let forced = constants.steady.orders([at.force[0] - constants.b, at.force[1], at.force[2]]);
         let [f, f1, f2, f3] = at.guard.orders;
         let level = f + (self.reference - constants.b);
-        let free = [level - value, f1 - rate, f2 + omega2 * value, f3 + omega2 * rate];
-        Split { free, amplitude }
+        let free = [level - forced[0], f1 - forced[1], f2 - forced[2], f3 - forced[3]];
+        Split { free, amplitude: constants.steady.amplitude }
     }
 
     /// A bound of the eighth derivative of the free part from `at` on.
@@ -151,37 +116,44 @@ impl Contact<f64> {
     /// Steps through the free and the forced part by rotation, cheaply, until f leaves the corridor.
     fn swing(&self, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
         const STEPS: usize = 24;
-        const STEP: f64 = std::f64::consts::PI / 16.0;
-        let constants = &self.constants;
+        let Constants { b, two_xi, omega, damping, steady, .. } = self.constants;
         let corridor = self.corridor();
-        let free = constants.damping.at(STEP);
+        let step = std::f64::consts::PI / 16.0 / self.pace(left);
+        let free = damping.at(step);
         let (s, c) = (free.s, 1.0 + free.c_minus_1);
-        let (sin, cos) = self.step_angle();
+        let (sin, cos) = libm::sincos(step * omega);
         let (mut x, mut rate) = (split.free[0], split.free[1]);
-        let Steady { re, im_over_omega, .. } = self.steady();
-        let (mut harmonic, mut quadrature) =
-            (left.force[0] - constants.b, left.force[1] / constants.omega);
-        let level = constants.b - self.reference;
+        let (mut harmonic, mut quadrature) = (left.force[0] - b, left.force[1] / omega);
+        let level = b - self.reference;
         let mut last = left.guard.orders[0];
         for k in 1..=STEPS {
-            (x, rate) = (x * c + rate * s, rate * (c - constants.two_xi * s) - x * s);
+            (x, rate) = (x * c + rate * s, rate * (c - two_xi * s) - x * s);
             (harmonic, quadrature) =
                 (harmonic * cos + quadrature * sin, quadrature * cos - harmonic * sin);
-            let f = level + x + re * harmonic + im_over_omega * constants.omega * quadrature;
+            let [forced, forced_rate, ..] =
+                steady.orders([harmonic, omega * quadrature, -(omega * omega * harmonic)]);
+            let f = level + x + forced;
             if corridor.excess(f) >= 0.0 {
                 let threshold = if f >= corridor.high { corridor.high } else { corridor.low };
-                let rise = rate
-                    + constants.omega
-                        * (re * quadrature - im_over_omega * constants.omega * harmonic);
-                return Ok(left.elapsed + STEP * (k as f64 - back(last, f, rise * STEP, threshold)));
+                let rise = (rate + forced_rate) * step;
+                return Ok(left.elapsed + step * (k as f64 - back(last, f, rise, threshold)));
             }
             last = f;
         }
-        Err(left.elapsed + STEP * STEPS as f64)
+        Err(left.elapsed + step * STEPS as f64)
     }
 
-    fn step_angle(&self) -> (f64, f64) {
-        libm::sincos(std::f64::consts::PI / 16.0 * self.constants.omega)
+    /// How fast the trial force changes from `left` on: at most as the free oscillation, about which a
+    /// fast forcing only ripples; slower for strong
+    /// damping once its fast part has died out.
+    fn pace(&self, left: &Point<f64>) -> f64 {
+        const DEAD: f64 = 40.0; // exp(-40) is below the rounding of what it is added to
+        match self.constants.damping {
+            Damping::Over { fast, slow, .. } if fast * left.elapsed > DEAD => {
+                slow.max(self.constants.omega).min(1.0)
+            }
+            _ => 1.0,
+        }
     }
 }
 

@@ -101,6 +101,7 @@ pub fn bracketed<G: Guarded>(
     let mut rises = right.guard.orders[0] >= corridor.high;
     let (mut inside, mut outside) = (left.elapsed, right.elapsed);
     let mut point = *right;
+    let mut halvings = 0;
     loop {
         let CubicStep { step, rises: side, settled } = cubic_step(phase, &point);
         let root = point.elapsed + step;
@@ -108,7 +109,8 @@ pub fn bracketed<G: Guarded>(
         if within && settled && reaches(step, root, left.elapsed, reach) {
             return Root { point, step, rises };
         }
-        let middle = 0.5 * (inside + outside);
+        halvings += 1;
+        let middle = middle(inside, outside, halvings);
         if middle <= inside || middle >= outside {
             return Root { point, step: 0.0, rises };
         }
@@ -122,5 +124,17 @@ pub fn bracketed<G: Guarded>(
         } else {
             inside = next;
         }
+    }
+}
+
+/// Where to look between two times. A root that some halvings have not found may be smaller by orders
+/// of magnitude: then it is the exponent that is halved, so that 1e-300 is no further than 1e-3.
+fn middle(inside: f64, outside: f64, halvings: u32) -> f64 {
+    const PLAIN: u32 = 8;
+    let smallest = inside.max(f64::MIN_POSITIVE);
+    if halvings > PLAIN && outside > 4.0 * smallest {
+        (smallest.sqrt() * outside.sqrt()).max(inside)
+    } else {
+        0.5 * (inside + outside)
     }
 }

@@ -139,7 +139,10 @@ fn divide<G: Guarded>(
     while let Some(target) = pending.last().copied() {
         let right = target.point();
         ends.right = target.is_root();
-        let verdict = phase.certify(&left, right, ends);
+        let mut verdict = phase.certify(&left, right, ends);
+        if verdict == Verdict::Touches && uneven(&left, right) {
+            verdict = Verdict::Open;
+        }
         // Below the smallest normal number halving no longer divides.
         let finest = (8.0 * f64::EPSILON * right.elapsed).max(f64::MIN_POSITIVE);
         let resolvable = right.elapsed - left.elapsed > finest;
@@ -162,6 +165,14 @@ fn divide<G: Guarded>(
         }
     }
     Target::Point(left)
+}
+
+/// Whether most of a piece's rounding room comes from what has died out at its other end: a touch may
+/// be decided on a part of it.
+fn uneven(left: &Point<f64>, right: &Point<f64>) -> bool {
+    const MUCH: f64 = 16.0;
+    let (a, b) = (left.guard.largest_term, right.guard.largest_term);
+    a.max(b) > MUCH * a.min(b)
 }
 
 /// A place well inside a piece: what a phase proposes, unless rounding puts it at an end.

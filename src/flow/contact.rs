@@ -2,6 +2,7 @@
 
 use crate::constants::Constants;
 use crate::flow::complex::Complex;
+use crate::flow::damped::{Damping, Free};
 use crate::flow::forcing::EntryAngle;
 use crate::flow::{Flow, Jet, Point};
 use crate::number::Number;
@@ -44,14 +45,7 @@ impl<T: Number> Flow<T> for Contact<T> {
 
         let force = b + harmonic.force[0];
         let excess = self.offset + f_change;
-        // y' = F - f and f' = 2 xi (F - f) + y, differentiated twice more. F and f may both be near the
-        // threshold: it is taken off first.
-        let pull = (harmonic.force[0] + (b - self.reference)) - excess;
-        let f_rate = two_xi * pull + y;
-        let pull_rate = harmonic.force[1] - f_rate;
-        let f_rate2 = two_xi * pull_rate + pull;
-        let pull_rate2 = harmonic.force[2] - f_rate2;
-        let f_rate3 = two_xi * pull_rate2 + pull_rate;
+        let orders = self.orders(d, &harmonic.force, &free, excess, y);
         let driven_bound = a * (response.force.re.abs() + response.force.im.abs());
         // The slopes count as well, times the length of a certificate: they carry the rounding of y0 and
         // of f - b even where the oscillation passes through zero or has died out, and that of
@@ -68,7 +62,60 @@ impl<T: Number> Flow<T> for Contact<T> {
             slider_velocity: y,
             drift: T::zero(),
             force: [force, harmonic.force[1], harmonic.force[2]],
-            guard: Jet { orders: [excess, f_rate, f_rate2, f_rate3], largest_term },
+            guard: Jet { orders, largest_term },
         }
+    }
+}
+
+impl<T: Number> Contact<T> {
+    /// The guard and its derivatives from its value and y; `force` is F - b, F', F''.
+    #[inline]
+    fn orders(&self, d: T, force: &[T; 3], free: &Free<T>, excess: T, y: T) -> [T; 4] {
+        let Constants { b, two_xi, damping, .. } = self.constants;
+        if let Damping::Over { fast, slow, spread } = damping
+            && fast * d > T::one()
+        {
+            return self.slow_and_fast(force, [fast, slow, spread], free.quick, excess);
+        }
+        // y' = F - f and f' = 2 xi (F - f) + y, differentiated twice more. F and f may both be near the
+        // threshold: it is taken off first.
+        let pull = (force[0] + (b - self.reference)) - excess;
+        let rate = two_xi * pull + y;
+        let pull_rate = force[1] - rate;
+        let rate2 = two_xi * pull_rate + pull;
+        let pull_rate2 = force[2] - rate2;
+        [excess, rate, rate2, two_xi * pull_rate2 + pull_rate]
+    }
+
+    /// Above critical damping, once the fast exponential has begun to die out: the equations of motion
+    /// would multiply the rounding of f by 2 xi with each derivative, although what is left of f moves
+    /// slowly. So its parts are differentiated one by one.
+    #[inline]
+    fn slow_and_fast(
+        &self,
+        force: &[T; 3],
+        [fast, slow, spread]: [T; 3],
+        quick: T,
+        excess: T,
+    ) -> [T; 4] {
+        let Constants { a, b, two_xi, omega, steady, .. } = self.constants;
+        let EntryAngle { sin, cos } = self.angle;
+        let (a_cos, a_sin_omega) = (a * cos, a * sin * omega);
+        let [then, then_rate, ..] = steady.orders([a_cos, -a_sin_omega, -(omega * omega * a_cos)]);
+        let level = self.reference - b;
+        // x = f - b - steady obeys x'' + 2 xi x' + x = 0: x' + slow x = -spread (fast part).
+        let rate0 = two_xi * (a_cos - (self.offset + level)) + self.entry.y;
+        let fast_part0 = -((rate0 - then_rate) + slow * (self.offset + level - then)) / spread;
+        let forced = steady.orders(*force);
+        let quickly = fast_part0 * quick;
+        let slowly = (excess + level - forced[0]) - quickly;
+        let (quickly1, slowly1) = (fast * quickly, slow * slowly);
+        let (quickly2, slowly2) = (fast * quickly1, slow * slowly1);
+        [
+            excess,
+            forced[1] - (slowly1 + quickly1),
+            forced[2] + (slowly2 + quickly2),
+            forced[3] - (slow * slowly2 + fast * quickly2),
+        ]
     }
 }

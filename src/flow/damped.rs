@@ -48,6 +48,8 @@ pub struct Free<T> {
     pub c_minus_1: T,
     /// S' - 1
     pub s_rate_minus_1: T,
+    /// exp(-fast d), the part that dies out first above critical damping; zero elsewhere.
+    pub quick: T,
     /// The damped rotation (all zero near and above critical damping, where nothing reads it).
     pub rotation: Rotation<T>,
 }
@@ -120,10 +122,11 @@ fn under<T: Number>(xi: T, nu: T, nu_low: T, d: T) -> Free<T> {
     let turn = circular_of(angle, nu.product_error(d) + nu_low * d);
     let shrink = decay(xi * d);
     let s = shrink.exp * turn.sin / nu;
-    let c_minus_1 = shrink.minus_1 + shrink.exp * turn.cos_minus_1 + xi * s;
     let s_minus_d = (shrink.minus_1 * turn.sin + turn.sin_minus_x) / nu;
+    let c_minus_1 = c_minus_1(xi, d, &shrink, turn.cos_minus_1, s, s_minus_d);
     let s_rate_minus_1 = c_minus_1 - (xi + xi) * s;
-    Free { s, s_minus_d, c_minus_1, s_rate_minus_1, rotation: Rotation { shrink, turn } }
+    let rotation = Rotation { shrink, turn };
+    Free { s, s_minus_d, c_minus_1, s_rate_minus_1, quick: T::zero(), rotation }
 }
 
 /// With m = (1 - xi^2) d^2: S = d exp(-xi d) (1 - m/3! + m^2/5! - ...), C alike.
@@ -138,9 +141,28 @@ fn near_critical<T: Number>(xi: T, m: T, d: T) -> Free<T> {
     let shrink = decay(xi * d);
     let s = shrink.exp * d * (T::one() + sine_over_x_minus_1);
     let s_minus_d = d * (shrink.minus_1 + shrink.exp * sine_over_x_minus_1);
-    let c_minus_1 = shrink.minus_1 + shrink.exp * cosine_minus_1 + xi * s;
+    let c_minus_1 = c_minus_1(xi, d, &shrink, cosine_minus_1, s, s_minus_d);
     let s_rate_minus_1 = c_minus_1 - (xi + xi) * s;
-    Free { s, s_minus_d, c_minus_1, s_rate_minus_1, rotation: Rotation::none() }
+    let rotation = Rotation::none();
+    Free { s, s_minus_d, c_minus_1, s_rate_minus_1, quick: T::zero(), rotation }
+}
+
+/// C - 1 = exp(-xi d) cos - 1 + xi S, in short times without the xi d that two of its parts share.
+#[inline]
+fn c_minus_1<T: Number>(
+    xi: T,
+    d: T,
+    shrink: &Decay<T>,
+    cosine_minus_1: T,
+    s: T,
+    s_minus_d: T,
+) -> T {
+    let turned = shrink.exp * cosine_minus_1;
+    if xi * d < T::exact(0.5) {
+        shrink.remainder + turned + xi * s_minus_d
+    } else {
+        shrink.minus_1 + turned + xi * s
+    }
 }
 
 /// With S = exp(-slow d) (1 - exp(-spread d))/spread nothing cancels, however small the spread;
@@ -156,6 +178,7 @@ fn over<T: Number>(slow: T, spread: T, d: T) -> Free<T> {
         s_minus_d: lasting.minus_1 * bare - ratio.remainder / spread,
         c_minus_1: lasting.minus_1 + slow * s,
         s_rate_minus_1: quick_minus_1 - slow * s,
+        quick: lasting.exp * ratio.exp,
         rotation: Rotation::none(),
     }
 }

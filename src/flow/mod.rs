@@ -11,6 +11,7 @@ pub mod forced;
 pub mod forcing;
 pub mod no_contact;
 pub mod progression;
+pub mod steady;
 
 use crate::number::Number;
 use crate::state::State;

@@ -31,13 +31,17 @@ impl<T: Number> Flow<T> for NoContact<T> {
 
         let lift = b * d * d * T::exact(0.5);
         let y_change = b * d + harmonic.impulse;
-        let p = p0 + (y0 * d + (lift + harmonic.displacement));
+        let p_change = y0 * d + (lift + harmonic.displacement);
         let y = y0 + y_change;
         let q = q0 * decay.exp;
 
         let force = b + harmonic.force[0];
         let spring = q * rate;
-        let direct_terms = p0.abs() + (y0 * d).abs() + lift.abs() + q0.abs() + g.abs();
+        // q carries the rounding of its exponent, z times: it dies out with q.
+        let q_terms = q.abs() + (spring * d).abs();
+        // Known better than p: a start's p0 and g are given, and on the surface p0 - g is q0.
+        let height = if self.surface.is_some() { q0 } else { p0 - g };
+        let direct_terms = height.abs() + (y0 * d).abs() + lift.abs() + q_terms;
         let (h, h_rate, terms) = match self.surface {
             // The remainder is the better form where z is short, and everywhere after a separation,
             // where its linear term is the flight's own.
@@ -48,13 +52,13 @@ impl<T: Number> Flow<T> for NoContact<T> {
                 let terms = (h_rate * d).abs() + lift.abs() + sink.abs();
                 (h, h_rate + (y_change + q0 * rate * decay.minus_1), terms)
             }
-            _ => ((p - g) - q, y + spring, direct_terms),
+            _ => ((height + p_change) - q, y + spring, direct_terms),
         };
         let largest_term = terms + harmonic.displacement_terms;
         let orders = [h, h_rate, force - spring * rate, harmonic.force[1] + spring * rate * rate];
         Point {
             elapsed: d,
-            state: State { p, y, q },
+            state: State { p: p0 + p_change, y, q },
             slider_velocity: -spring,
             drift: T::zero(),
             force: [force, harmonic.force[1], harmonic.force[2]],

@@ -35,16 +35,25 @@ impl<T: Number> Flow<T> for Progression<T> {
         let push = (b - one) * d;
         let y_change = push + harmonic.impulse;
         let y = y0 + y_change;
-        // 1 - q decays; (1 - q)/(2 xi) = y - w at all times.
+        // 1 - q decays; (1 - q)/(2 xi) = y - w at all times. Early everything is taken by its change, late
+        // by what is left of 1 - q0: else the digits of a large q0 are lost.
         let lag = closing * decay.exp;
-        let w = w0 + (y_change - closing * decay.minus_1);
-        // Early by its change, late by what is left of 1 - q0: else the digits of a large q0 are lost.
+        let moved = closing * decay.minus_1;
+        let pushed = push * d * T::exact(0.5) + harmonic.displacement;
+        let push_terms = push.abs() + harmonic.impulse_terms;
         let early = decay.exp > T::exact(0.5);
-        let q = if early { q0 - two_xi * closing * decay.minus_1 } else { one - two_xi * lag };
         // Eq. (20) with - (p0 - g - 1) exp(..), its linear terms collected: y0 - (1 - q0)/(2 xi) = w0.
         // 1 - q0 as 2 xi times the closing velocity keeps the digits that q0 near 1 has lost.
-        let settling = two_xi * closing * decay.remainder;
-        let drift = w0 * d + (push * d * T::exact(0.5) + harmonic.displacement) + settling;
+        let (q, w, drift, terms) = if early {
+            let settling = two_xi * closing * decay.remainder;
+            let drift = w0 * d + pushed + settling;
+            (q0 - two_xi * moved, w0 + (y_change - moved), drift, w0.abs() + moved.abs())
+        } else {
+            let drift = y0 * d + pushed + two_xi * moved;
+            // The exponential has the rounding of its argument, z times its own.
+            let terms = y0.abs() + lag.abs() * (one + rate * d);
+            (one - two_xi * lag, y - lag, drift, terms)
+        };
 
         let force = b + harmonic.force[0];
         let lag_rate = lag * rate;
@@ -54,8 +63,7 @@ impl<T: Number> Flow<T> for Progression<T> {
             harmonic.force[1] - lag_rate * rate,
             harmonic.force[2] + lag_rate * rate * rate,
         ];
-        let largest_term =
-            w0.abs() + (push.abs() + harmonic.impulse_terms) + (closing * decay.minus_1).abs();
+        let largest_term = terms + push_terms;
         Point {
             elapsed: d,
             state: State { p: q + g, y, q },
