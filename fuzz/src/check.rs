@@ -63,6 +63,8 @@ struct History {
     settled: bool,
     /// Rounding room of q: of 2 xi y and q where the one was computed from the other.
     q_room: f64,
+    /// The largest terms of y's closed forms so far.
+    speed: f64,
 }
 
 macro_rules! ensure {
@@ -75,7 +77,7 @@ macro_rules! ensure {
 
 impl History {
     fn new(parameters: &Parameters) -> Self {
-        Self { parameters: *parameters, stuck: 0, settled: false, q_room: 0.0 }
+        Self { parameters: *parameters, stuck: 0, settled: false, q_room: 0.0, speed: 0.0 }
     }
 
     fn leg(
@@ -132,13 +134,18 @@ impl History {
         let pushed = elapsed * (b.abs() * elapsed + a * time);
         let place =
             from.p.abs() + p.abs() + from.q.abs() + q.abs() + g + from.y.abs() * elapsed + pushed;
+        // What y was rounded to in an earlier phase it keeps.
+        self.speed = self.speed.max(self.speed_terms(leg, elapsed, y));
         let over = p - (q + g);
-        let room = ROUNDING * place + UNDERFLOW;
+        // At the switch f is known to the rounding of its terms, up to 1; h' = f/(2 xi) passes it on as
+        // long as q has not died out.
+        let passed_on = (elapsed / two_xi).min(1.0);
+        let room = ROUNDING * (place + passed_on) + UNDERFLOW;
         ensure!(over <= room, "p - (q + g) = {over:e}, room {room:e}, {sample:?}");
         if leg.phase() != Phase::NoContact {
             ensure!(over.abs() <= room, "p - (q + g) = {over:e} on the surface, room {room:e}");
             let force = two_xi * y + q;
-            let speed = self.speed_terms(leg, elapsed, y);
+            let speed = self.speed;
             let room = ROUNDING * (1.0 + place + two_xi * speed);
             let inside = match leg.phase() {
                 Phase::Contact => force >= -room && force <= 1.0 + room,
@@ -149,7 +156,7 @@ impl History {
         // q returns to [0, 1] by itself; its rounding is that of its closed form's terms, and of
         // 2 xi y where it is imposed at the end of this phase or was at that of an earlier one.
         let in_place = (0.0..=1.0).contains(&q);
-        let terms = 1.0 + place + two_xi * self.speed_terms(leg, elapsed, y);
+        let terms = 1.0 + place + two_xi * self.speed;
         self.q_room = self.q_room.max(ROUNDING * terms);
         if self.settled {
             let far = (-q).max(q - 1.0);

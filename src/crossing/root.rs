@@ -101,7 +101,7 @@ pub fn bracketed<G: Guarded>(
     let mut rises = right.guard.orders[0] >= corridor.high;
     let (mut inside, mut outside) = (left.elapsed, right.elapsed);
     let mut point = *right;
-    let mut halvings = 0;
+    let mut halvings = 0_usize;
     loop {
         let CubicStep { step, rises: side, settled } = cubic_step(phase, &point);
         let root = point.elapsed + step;
@@ -129,8 +129,8 @@ pub fn bracketed<G: Guarded>(
 
 /// Where to look between two times. A root that some halvings have not found may be smaller by orders
 /// of magnitude: then it is the exponent that is halved, so that 1e-300 is no further than 1e-3.
-fn middle(inside: f64, outside: f64, halvings: u32) -> f64 {
-    const PLAIN: u32 = 8;
+pub fn middle(inside: f64, outside: f64, halvings: usize) -> f64 {
+    const PLAIN: usize = 8;
     let smallest = inside.max(f64::MIN_POSITIVE);
     if halvings > PLAIN && outside > 4.0 * smallest {
         (smallest.sqrt() * outside.sqrt()).max(inside)

@@ -2,7 +2,7 @@
 
 use crate::crossing::certificate::{Ends, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
-use crate::crossing::root::{bracketed, evaluate, follow};
+use crate::crossing::root::{bracketed, evaluate, follow, middle};
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::Point;
 
@@ -54,16 +54,13 @@ pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counte
             Outlook::Root(time) if time < horizon => {
                 match follow(phase, left.elapsed, time, horizon, counters) {
                     Ok(root) => Target::Root(root),
-                    Err(point) if point.elapsed - left.elapsed < stride => {
-                        // A guess that led nowhere: the next one must be as far as a stride.
+                    Err(point) => {
+                        // A guess that led nowhere: the next ones must lead further.
                         stride *= 2.0;
-                        Target::Point(evaluate(
-                            phase,
-                            (left.elapsed + stride).min(horizon),
-                            counters,
-                        ))
+                        let least = (left.elapsed + stride).min(horizon);
+                        let near = point.elapsed < least;
+                        Target::Point(if near { evaluate(phase, least, counters) } else { point })
                     }
-                    Err(point) => Target::Point(point),
                 }
             }
             Outlook::Root(time) | Outlook::Onward(time) | Outlook::ClearFrom(time) => {
@@ -148,7 +145,8 @@ fn divide<G: Guarded>(
         let resolvable = right.elapsed - left.elapsed > finest;
         if verdict == Verdict::Open && resolvable {
             counters.divisions += 1;
-            let place = between(left.elapsed, phase.divide(&left, right), right.elapsed);
+            let proposed = phase.divide(&left, right);
+            let place = between(left.elapsed, proposed, right.elapsed, pending.len());
             let middle = evaluate(phase, place, counters);
             match inside_or_root(phase, &left, Target::Point(middle), counters) {
                 earlier @ Target::Root(_) => pending = vec![earlier],
@@ -167,20 +165,21 @@ fn divide<G: Guarded>(
     Target::Point(left)
 }
 
-/// Whether most of a piece's rounding room comes from what has died out at its other end: a touch may
-/// be decided on a part of it.
+/// Whether most of a piece's rounding room comes from what dies out in it: then a touch may be decided
+/// on its later part.
 fn uneven(left: &Point<f64>, right: &Point<f64>) -> bool {
     const MUCH: f64 = 16.0;
-    let (a, b) = (left.guard.largest_term, right.guard.largest_term);
-    a.max(b) > MUCH * a.min(b)
+    left.guard.largest_term > MUCH * right.guard.largest_term
 }
 
-/// A place well inside a piece: what a phase proposes, unless rounding puts it at an end.
-fn between(left: f64, proposed: f64, right: f64) -> f64 {
+/// A place well inside a piece: what a phase proposes, unless rounding puts it at an end or many
+/// divisions have led nowhere.
+fn between(left: f64, proposed: f64, right: f64, divisions: usize) -> f64 {
     const MARGIN: f64 = 1e-7;
+    const PATIENCE: usize = 16;
     let margin = MARGIN * (right - left);
     let inside = proposed > left + margin && proposed < right - margin;
-    if inside { proposed } else { left + 0.5 * (right - left) }
+    if inside && divisions < PATIENCE { proposed } else { middle(left, right, divisions) }
 }
 
 /// If the guard is outside at the target by more than rounding, the crossing before it.
