@@ -11,9 +11,11 @@ mod meter;
 mod phases;
 mod pins;
 mod registry;
+mod wrong;
 
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
-pub use registry::{all, select};
+pub use registry::{all, exact, select};
+pub use wrong::{CONTROL, Wrong, wrong};
 
 use crate::case::{Case, Horizon, Problem};
 use percuss::two_word::TwoWord;
@@ -88,6 +90,8 @@ pub struct Task {
     pub span: f64,
     /// When the state is compared.
     pub grid: Grid,
+    /// Events in the engine's life before this run: a fault may strike every hundredth.
+    pub events_before: u64,
 }
 
 /// A switch as an engine found it: the phase that begins, and the state at that instant.
@@ -150,22 +154,28 @@ impl Task {
     /// The run that a case asks for.
     #[must_use]
     pub fn of(case: &Case, problem: Problem, grid: Grid) -> Self {
-        let omega = case.parameters.omega;
-        let entry = problem.entry;
         let horizon = match case.horizon {
-            Horizon::Periods(periods) => entry.instant.after_periods(u64::from(periods), 1),
-            Horizon::Until(tau) => Instant::at(omega, tau, 0),
+            Horizon::Periods(periods) => problem.entry.instant.after_periods(u64::from(periods), 1),
+            Horizon::Until(tau) => Instant::at(case.parameters.omega, tau, 0),
         };
-        let (_, phi) = angle::reduce(TwoWord::new(case.parameters.phi));
+        Self::until(case.parameters, problem, horizon, grid)
+    }
+
+    /// A run from a start to a horizon.
+    #[must_use]
+    pub fn until(parameters: Parameters, problem: Problem, horizon: Instant, grid: Grid) -> Self {
+        let entry = problem.entry;
+        let (_, phi) = angle::reduce(TwoWord::new(parameters.phi));
         Self {
-            parameters: case.parameters,
+            parameters,
             problem,
             phase: entry.phase(),
             state: [entry.state.p, entry.state.y, entry.state.q, entry.v()],
             forcing_angle: entry.instant.angle_two_word().plus(phi).value(),
             horizon,
-            span: horizon.since(&entry.instant, omega).value(),
+            span: horizon.since(&entry.instant, parameters.omega).value(),
             grid,
+            events_before: 0,
         }
     }
 

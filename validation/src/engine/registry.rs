@@ -14,6 +14,12 @@ pub fn all() -> &'static [&'static dyn Engine] {
     &ENGINES
 }
 
+/// The exact solver.
+#[must_use]
+pub fn exact() -> &'static dyn Engine {
+    &Exact
+}
+
 /// The engines whose name matches one of the patterns; all where there are none.
 ///
 /// # Errors

@@ -3,6 +3,7 @@
 //! Everything is measured up to the scored horizon, which is fixed from the truth and the engine's
 //! unit of error alone ([`Growth`]): a miss before it counts, nothing after it does.
 
+pub mod attractor;
 mod growth;
 mod matching;
 mod measure;

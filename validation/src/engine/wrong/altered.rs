@@ -1,0 +1,118 @@
+//! The exact solver on a model that is slightly different, or with a drift that is.
+
+use super::super::exact::Exact;
+use super::super::{Declaration, Engine, Failure, Limits, Outcome, Task};
+use crate::case::Problem;
+use percuss::{Exit, Leg, Model, Parameters, Phase, Start};
+
+/// What is different.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Change {
+    /// omega + 0.002
+    Frequency,
+    /// 1.01 xi
+    Damping,
+    /// Eq. (20) as printed.
+    Drift,
+    /// The start's time in one word.
+    Clock,
+}
+
+pub(super) struct Altered {
+    pub(super) name: &'static str,
+    pub(super) change: Change,
+}
+
+impl Engine for Altered {
+    fn declaration(&self) -> Declaration {
+        Declaration { name: self.name, method: "wrong on purpose", ..Exact.declaration() }
+    }
+
+    fn run(&self, task: &Task, accuracy: Option<f64>, limits: &Limits) -> Result<Outcome, Failure> {
+        if self.change == Change::Drift {
+            return drifting(task, limits);
+        }
+        let (parameters, start) = self.altered(task);
+        let refused = |error| Failure::new(format!("the altered problem: {error}"));
+        let model = Model::new(parameters).map_err(refused)?;
+        let entry = model.start(&start).map_err(refused)?;
+        let mut other = task.clone();
+        other.parameters = parameters;
+        other.problem = Problem { model, start, entry };
+        // The same number of forcing periods: the sample stays the one that is compared.
+        let (whole, part) = periods(task);
+        other.horizon = entry.instant.after_periods(whole, 1).after_periods(part, PARTS);
+        Exact.run(&other, accuracy, limits)
+    }
+}
+
+impl Altered {
+    fn altered(&self, task: &Task) -> (Parameters, Start) {
+        let (parameters, start) = (task.parameters, exact_start(task));
+        match self.change {
+            Change::Frequency => {
+                (Parameters { omega: parameters.omega + 0.002, ..parameters }, start)
+            }
+            Change::Damping => (Parameters { xi: 1.01 * parameters.xi, ..parameters }, start),
+            Change::Drift => (parameters, start),
+            Change::Clock => {
+                let tau = task.problem.entry.instant.tau(parameters.omega);
+                (parameters, Start { tau, cycle: 0, ..start })
+            }
+        }
+    }
+}
+
+/// The start with the state that the task begins with: on the surface the phase is stated, because a
+/// changed damping changes the trial force.
+fn exact_start(task: &Task) -> Start {
+    let [p, y, q, v] = task.state;
+    let phase = (task.phase != Phase::NoContact).then_some(task.phase);
+    Start { p, y, q: Some(q), v, phase, ..task.problem.start }
+}
+
+const PARTS: u64 = 1 << 32;
+
+fn periods(task: &Task) -> (u64, u64) {
+    let periods = task.span / task.problem.model.period();
+    (periods.floor() as u64, (periods.fract() * PARTS as f64).round() as u64)
+}
+
+/// The right motion with the drift of Eq. (20) as printed: at the start of each progression v jumps
+/// by 2 (q0 - 1), of which 2 (q0 - 1) exp(-d/(2 xi)) is left after d.
+fn drifting(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
+    let mut outcome = Exact.run(task, None, limits)?;
+    let start = task.problem.entry.instant;
+    let omega = task.parameters.omega;
+    let times = task.sample_times();
+    let (mut offset, mut switch, mut sample) = (0.0, 0, 0);
+    let mut begin = 0.0;
+    for leg in task.problem.model.trajectory(task.problem.entry).until(task.horizon) {
+        let end = match leg.exit() {
+            Exit::Switch(next) => next.instant.since(&start, omega).value(),
+            _ => task.span,
+        };
+        while sample < outcome.samples.len() && times[sample] < end {
+            outcome.samples[sample][3] += offset + left_over(task, &leg, times[sample] - begin);
+            sample += 1;
+        }
+        offset += left_over(task, &leg, end - begin);
+        begin = end;
+        if let Some(event) = outcome.events.get_mut(switch) {
+            event.state[3] += offset;
+            switch += 1;
+        }
+    }
+    for late in &mut outcome.samples[sample..] {
+        late[3] += offset;
+    }
+    outcome.end[3] += offset;
+    Ok(outcome)
+}
+
+fn left_over(task: &Task, leg: &Leg, elapsed: f64) -> f64 {
+    if leg.phase() != Phase::Progression {
+        return 0.0;
+    }
+    2.0 * (leg.entry().state.q - 1.0) * (-elapsed / (2.0 * task.parameters.xi)).exp()
+}

@@ -1,0 +1,113 @@
+//! What a run visits: its stroboscopic section, phase words, drift and exponent.
+
+use crate::case::{Given, Problem};
+use crate::engine::{Event, Failure, Grid, Outcome, Task};
+use percuss::variation::{Matrix, product};
+use percuss::{Entry, Exit, Model, Parameters, Phase, Start};
+use std::collections::BTreeMap;
+
+/// The section of a run after its transient.
+#[derive(Clone, Debug, Default)]
+pub struct Section {
+    /// p, y and q at successive strobes.
+    pub points: Vec<[f64; 3]>,
+    /// How often each sequence of phases begins within a forcing period, as shares.
+    pub words: BTreeMap<String, f64>,
+    /// Mean drift per forcing period.
+    pub drift: f64,
+    /// Mean growth of a small error per forcing period, in the exact map's derivative along these points.
+    pub lyapunov: f64,
+}
+
+/// The task of a long run: a state at every strobe, nothing in between.
+#[must_use]
+pub fn run_of(parameters: Parameters, start: Start, periods: u32) -> Option<Task> {
+    let problem = Given { parameters, start, ..Given::default() }.check().ok()?;
+    let Problem { entry, .. } = problem;
+    let horizon = entry.instant.after_periods(u64::from(periods), 1);
+    let grid = Grid { per_period: 1, count: periods as usize + 1 };
+    Some(Task::until(parameters, problem, horizon, grid))
+}
+
+impl Section {
+    /// Of a run of [`run_of`], without its first `transient` periods.
+    ///
+    /// # Errors
+    /// A run that lacks samples or holds a number that is not finite.
+    pub fn of(task: &Task, outcome: &Outcome, transient: u32) -> Result<Self, Failure> {
+        let states = outcome.samples.get(transient as usize..).unwrap_or_default();
+        let finite = states.iter().flatten().all(|value| value.is_finite());
+        if states.len() + transient as usize != task.grid.count || states.len() < 3 || !finite {
+            return Err(Failure::new("its section is not complete"));
+        }
+        let points: Vec<_> = states.iter().map(|[p, y, q, _]| [*p, *y, *q]).collect();
+        let periods = (points.len() - 1) as f64;
+        let drift = (states[states.len() - 1][3] - states[0][3]) / periods;
+        let period = task.problem.model.period();
+        let words = words(&outcome.events, period, transient, points.len() - 1);
+        let lyapunov = lyapunov(task, &points);
+        Ok(Self { points, words, drift, lyapunov })
+    }
+}
+
+/// Shares of the sequences of phases that begin within one period.
+fn words(events: &[Event], period: f64, transient: u32, periods: usize) -> BTreeMap<String, f64> {
+    let mut spelled = vec![String::new(); periods];
+    for event in events {
+        let number = event.elapsed / period - f64::from(transient);
+        if let Some(word) = (number >= 0.0).then(|| spelled.get_mut(number as usize)).flatten() {
+            word.push(match event.phase {
+                Phase::NoContact => 'n',
+                Phase::Contact => 'c',
+                Phase::Progression => 'p',
+            });
+        }
+    }
+    let mut shares = BTreeMap::new();
+    for word in spelled {
+        *shares.entry(word).or_insert(0.0) += 1.0 / periods as f64;
+    }
+    shares
+}
+
+/// The largest exponent per period: the exact strobe map's derivative, point by point along the section.
+fn lyapunov(task: &Task, points: &[[f64; 3]]) -> f64 {
+    let mut direction = [0.6, 0.48, 0.64];
+    let (mut sum, mut counted) = (0.0, 0_u32);
+    for point in points {
+        let Some(derivative) = strobe_derivative(task, *point) else { continue };
+        let image: [f64; 3] =
+            std::array::from_fn(|i| (0..3).map(|j| derivative[i + 1][j + 1] * direction[j]).sum());
+        let size = image.iter().map(|x| x * x).sum::<f64>().sqrt();
+        if size > 0.0 && size.is_finite() {
+            sum += size.ln();
+            counted += 1;
+            direction = image.map(|x| x / size);
+        }
+    }
+    sum / f64::from(counted)
+}
+
+/// The derivative of one forcing period from a point of the section, by angle, p, y, q and v.
+fn strobe_derivative(task: &Task, [p, y, q]: [f64; 3]) -> Option<Matrix> {
+    let model = &task.problem.model;
+    let entry = strobe_entry(task, model, [p.min(q + task.parameters.g), y, q])?;
+    let horizon = entry.instant.after_periods(1, 1);
+    let mut whole: Option<Matrix> = None;
+    for leg in model.trajectory(entry).until(horizon) {
+        let step = match leg.exit() {
+            Exit::Switch(_) => product(&leg.saltation(), &leg.variation(leg.duration())),
+            _ => {
+                let rest = horizon.since(&leg.entry().instant, task.parameters.omega);
+                leg.variation(rest.value())
+            }
+        };
+        whole = Some(whole.map_or(step, |before| product(&step, &before)));
+    }
+    whole
+}
+
+fn strobe_entry(task: &Task, model: &Model, [p, y, q]: [f64; 3]) -> Option<Entry> {
+    let start = Start { p, y, q: Some(q), v: 0.0, phase: None, ..task.problem.start };
+    model.start(&start).ok()
+}
