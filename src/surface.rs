@@ -24,7 +24,8 @@ pub(crate) fn onset(
     let Constants { two_xi, g, rate, .. } = *constants;
     let (damper, spring) = (two_xi * state.y, state.q);
     let largest = damper.abs().max(spring.abs());
-    let f = f.unwrap_or(damper + spring);
+    let known = f;
+    let f = known.unwrap_or(damper + spring);
     if f.abs() <= FOUR_ULPS * largest {
         state.q = -damper;
         state.p = state.q + g;
@@ -41,9 +42,21 @@ pub(crate) fn onset(
     } else if f < 1.0 {
         Onset::Contact { offset: f, reference: 0.0 }
     } else {
-        Onset::Progression { drift_rate: (f - 1.0) * rate, closing: (1.0 - state.q) * rate }
+        match known {
+            Some(f) => {
+                Onset::Progression { drift_rate: (f - 1.0) * rate, closing: (1.0 - state.q) * rate }
+            }
+            None => slipping(constants, &state),
+        }
     };
     (state, onset)
+}
+
+/// A progression under way. Its drift velocity is y - q' and not (f - 1)/(2 xi), which would carry
+/// 1/(2 xi) times the rounding of f: 1 - q is exact where the slider is nearly compressed.
+pub(crate) fn slipping(constants: &Constants<f64>, state: &State) -> Onset {
+    let closing = (1.0 - state.q) * constants.rate;
+    Onset::Progression { drift_rate: state.y - closing, closing }
 }
 
 /// Which phase begins where the trial force is at a threshold, 0 or 1, computed or stated: its
