@@ -4,13 +4,19 @@
 //! unit of error alone ([`Growth`]): a miss before it counts, nothing after it does.
 
 mod growth;
+mod histogram;
 mod matching;
 mod measure;
+mod restart;
+mod starts;
 mod statistics;
 mod verdict;
 
 pub use growth::{Growth, SCORED_ERROR, SCORED_FACTOR};
+pub use histogram::Histogram;
 pub use matching::{Matching, WINDOW};
 pub use measure::{Measures, measure};
+pub use restart::{MOST_PERIODS, Restart, RestartError, RestartRun, RestartTest};
+pub use starts::on_attractor;
 pub use statistics::Spread;
 pub use verdict::{Checked, Judgement, Verdict, judge};
