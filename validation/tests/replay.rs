@@ -4,11 +4,14 @@
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
 
+mod exact;
+
+use percuss::Start;
 use percuss::two_word::TwoWord;
 use percuss_validation::case::{Case, Given, embedded};
 use percuss_validation::engine::{Grid, Task};
 use percuss_validation::score::Growth;
-use percuss_validation::truth::{Library, Row, Truth, UNIT};
+use percuss_validation::truth::{Library, Row, Truth, UNIT, Undecided};
 
 /// The tables hold 25 significant digits, rounded to nearest, and at most 60 decimals.
 const HALF_A_DIGIT: f64 = 0.5e-24;
@@ -27,8 +30,7 @@ struct Worst {
 fn prepared(case: &Case) -> (Task, Truth) {
     let library = Library::embedded().expect("the manifest is read");
     let truth = library.truth(case).expect("the tables are there");
-    let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
-    let problem = given.check().expect("the case is checked");
+    let problem = exact::problem(case);
     let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
     (Task::of(case, problem, grid), truth)
 }
@@ -115,4 +117,39 @@ fn every_proved_digit_of_every_case_is_met() {
     }
     println!("{switches} switches, {samples} samples: {:.2} at {}", worst.units, worst.place);
     assert!(worst.units <= ROUNDINGS, "{:.2} roundings: {}", worst.units, worst.place);
+}
+
+/// The first flight of a graze with its start moved by `shift`, which moves the margin as far.
+fn graze(shift: f64) -> Result<usize, Undecided> {
+    let case = exact::case("graze-miss-1e-12");
+    let start = Start { p: case.start.p + shift, ..case.start };
+    let given = Given { parameters: case.parameters, start, ..Given::default() };
+    let entry = given.check().expect("the start is accepted").entry;
+    let horizon = entry.instant.after_periods(5, 1);
+    Truth::replayed(&case.parameters, &entry, horizon, (0, 1)).map(|truth| truth.switches.len())
+}
+
+/// A graze that f64 cannot tell from a miss with room to spare has no truth here, and says so; one
+/// that is ten times as far has.
+#[test]
+fn a_graze_within_the_rounding_room_is_undecided() {
+    // The case misses by 1e-12 of its own units: the touch is found where the answers change.
+    let (mut missing, mut hitting) = (0.0, 4e-12);
+    let (missed, hit) = (graze(missing), graze(hitting));
+    assert!(missed.is_ok() && hit.is_ok() && missed != hit, "{missed:?} {hit:?}");
+    let mut undecided = None;
+    while undecided.is_none() && hitting - missing > 1e-16 {
+        let middle = 0.5 * (missing + hitting);
+        match graze(middle) {
+            Err(error) => undecided = Some((middle, error)),
+            found if found == missed => missing = middle,
+            _ => hitting = middle,
+        }
+    }
+    let (touch, error) = undecided.expect("some margin is too small");
+    assert!(error.to_string().contains("margin"), "{error}");
+    println!("undecided at {touch:e}: {error}");
+    // Sixteen times four eps of terms below one, and the step of the bisection.
+    let room = 1e-13;
+    assert_eq!((graze(touch - room), graze(touch + room)), (missed, hit));
 }

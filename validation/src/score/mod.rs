@@ -5,6 +5,7 @@
 
 mod growth;
 mod histogram;
+mod horizon;
 mod matching;
 mod measure;
 mod restart;
@@ -14,6 +15,7 @@ mod verdict;
 
 pub use growth::{Growth, SCORED_ERROR, SCORED_FACTOR};
 pub use histogram::Histogram;
+pub use horizon::{HorizonTest, Horizons, ValidHorizon};
 pub use matching::{Matching, WINDOW};
 pub use measure::{Measures, measure};
 pub use restart::{MOST_PERIODS, Restart, RestartError, RestartRun, RestartTest};

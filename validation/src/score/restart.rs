@@ -45,10 +45,12 @@ pub struct RestartTest {
 pub struct RestartError {
     /// The largest error of p, y, q and v in units of error x (1 + |value|) x growth.
     pub units: f64,
+    /// That of v alone.
+    pub drift_units: f64,
+    /// The largest error of a switch time, alike; not a number where the phases follow otherwise.
+    pub time_units: f64,
     /// The largest error of p, y, q and v itself.
     pub absolute: f64,
-    /// Switches of the truth.
-    pub switches: usize,
     /// Whether the phases follow each other as in the truth.
     pub same_word: bool,
 }
@@ -68,6 +70,10 @@ pub struct Restart {
     pub wrong_words: usize,
     /// Errors at the strobe in units of error x (1 + |value|) x growth.
     pub units: Spread,
+    /// Of the drift alone.
+    pub drift_units: Spread,
+    /// Of the switch times, over the runs with the right phases.
+    pub time_units: Spread,
     /// Errors at the strobe themselves.
     pub absolute: Spread,
     /// `units` of the runs with this many switches, and how many these are.
@@ -110,6 +116,10 @@ impl RestartTest {
             failed: errors.iter().filter(|error| error.is_err()).count(),
             wrong_words: errors.iter().flatten().filter(|error| !error.same_word).count(),
             units: Spread::of(units.clone()),
+            drift_units: Spread::of(figures(|error| error.drift_units)),
+            time_units: Spread::of(
+                figures(|error| error.time_units).into_iter().filter(|it| !it.is_nan()).collect(),
+            ),
             absolute: Spread::of(figures(|error| error.absolute)),
             by_switches: by_switches
                 .into_iter()
@@ -145,26 +155,39 @@ impl RestartRun {
 
     fn error(&self, outcome: &Outcome, unit: f64) -> RestartError {
         let truth = &self.truth.end.state;
-        let mut error = RestartError {
-            units: 0.0,
-            absolute: 0.0,
-            switches: self.truth.switches.len(),
-            same_word: self.same_word(outcome),
-        };
-        for (k, (truth, found)) in truth.iter().zip(outcome.end).enumerate() {
-            let off = truth.minus(TwoWord::new(found)).value().abs();
-            let scale = unit * (1.0 + truth.value().abs()) * self.growth.end[k];
-            // A NaN stays.
-            error.absolute = if off <= error.absolute { error.absolute } else { off };
-            error.units = if off / scale <= error.units { error.units } else { off / scale };
+        let off = |k: usize| off(truth[k], outcome.end[k]);
+        let units = |k: usize| off(k) / scale(unit, truth[k], self.growth.end[k]);
+        let same_word = self.same_word(outcome);
+        let pairs = self.truth.switches.iter().zip(&outcome.events).zip(&self.growth.switches);
+        let late = pairs.map(|((truth, found), growth)| {
+            self::off(truth.elapsed, found.elapsed) / scale(unit, truth.elapsed, growth[0])
+        });
+        RestartError {
+            units: largest((0..4).map(units)),
+            drift_units: units(3),
+            time_units: if same_word { largest(late) } else { f64::NAN },
+            absolute: largest((0..4).map(off)),
+            same_word,
         }
-        error
     }
 
     fn same_word(&self, outcome: &Outcome) -> bool {
         let truth = self.truth.switches.iter().map(|switch| switch.phase);
         truth.eq(outcome.events.iter().map(|event| Some(event.phase)))
     }
+}
+
+fn off(truth: TwoWord, found: f64) -> f64 {
+    truth.minus(TwoWord::new(found)).value().abs()
+}
+
+fn scale(unit: f64, truth: TwoWord, growth: f64) -> f64 {
+    unit * (1.0 + truth.value().abs()) * growth
+}
+
+/// A maximum that keeps a NaN.
+fn largest(errors: impl Iterator<Item = f64>) -> f64 {
+    errors.fold(0.0, |largest, error| if error <= largest { largest } else { error })
 }
 
 /// Whether a run has an impact, and the separation that follows it.
