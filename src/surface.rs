@@ -100,3 +100,23 @@ fn ladder(constants: &Constants<f64>, y: f64, f: f64, force: [f64; 3]) -> f64 {
     ];
     rungs.iter().find(|(rung, size)| rung.abs() > FOUR_ULPS * size).map_or(0.0, |(rung, _)| *rung)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::Parameters;
+    use crate::two_word::TwoWord;
+
+    /// A start in mid-slip at 1/(2 xi) = 5000: (f - 1)/(2 xi) was wrong by thousands of eps.
+    #[test]
+    fn a_slip_under_way_keeps_the_digits_of_its_drift_velocity() {
+        let xi = 1e-4;
+        let constants = Constants::new(&Parameters { xi, ..Parameters::default() });
+        let (y, q) = (0.108_015_697_104_435_81, 0.999_999_999_999_754_3);
+        let (_, onset) = onset(&constants, State { p: q + 0.02, y, q }, None, [0.0; 3]);
+        let Onset::Progression { drift_rate, .. } = onset else { unreachable!("f exceeds 1") };
+        let exact = TwoWord::new(y).minus(TwoWord::new(1.0 - q).over(2.0 * xi)).value();
+        // Roundings of the rate, of its product and of the difference.
+        assert!((drift_rate - exact).abs() <= 2.0 * f64::EPSILON * y, "{drift_rate} {exact}");
+    }
+}

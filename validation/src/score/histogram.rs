@@ -30,8 +30,8 @@ fn bin(error: f64) -> usize {
     if error.is_nan() {
         return BINS - 1;
     }
-    // As an integer the logarithm of zero saturates.
-    let place = error.log2().floor() as i64 - i64::from(LOWEST);
+    // As integers the logarithms of zero and of infinity saturate.
+    let place = (error.log2().floor() as i64).saturating_sub(i64::from(LOWEST));
     usize::try_from(place).unwrap_or(0).min(BINS - 1)
 }
 
