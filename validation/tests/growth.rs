@@ -16,9 +16,12 @@ use percuss_validation::engine::{Grid, Task};
 use percuss_validation::score::Growth;
 use percuss_validation::truth::{DoubleDouble, Library, Replay, Truth};
 
-/// Both are f64 computations along rows that are themselves off by eps times the growth: 5e-9 is reached
-/// in chaos, where that is 1e6 and more, and 1e-11 elsewhere.
-const AGREEMENT: f64 = 1e-8;
+/// Of the largest growth so far: both are products of matrices in f64 (4e-12 is the most in regular
+/// motion; where a growth passes through a minimum, less of its own digits are left).
+const AGREEMENT: f64 = 1e-11;
+/// In chaos the rows they follow are off by eps times the growth, and the derivatives by some times
+/// that (8 where most): a grazing impact bends them.
+const BENT: f64 = 20.0 * f64::EPSILON;
 
 const CASES: [&str; 12] = [
     "chaos-from-rest",
@@ -50,9 +53,11 @@ fn products_of_the_solver_agree_with_matrix_exponentials() {
         let (task, truth) = run(&case);
         let growth = Growth::along(&truth, &case.parameters, task.forcing_angle);
         let mut recorder = GrowthRecorder::new();
+        let mut largest = 1.0;
         let mut compare = |ours: [f64; 5], theirs: [f64; 5], what: &str| {
+            largest = theirs.into_iter().fold(largest, f64::max);
             for (a, b) in ours.into_iter().zip(theirs) {
-                let apart = (a - b).abs() / b;
+                let apart = (a - b).abs() / largest;
                 assert!(apart <= AGREEMENT, "{name}: {what}: {ours:?} and {theirs:?}");
                 worst = worst.max(apart);
             }
