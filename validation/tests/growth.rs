@@ -58,7 +58,8 @@ fn products_of_the_solver_agree_with_matrix_exponentials() {
             largest = theirs.into_iter().fold(largest, f64::max);
             for (a, b) in ours.into_iter().zip(theirs) {
                 let apart = (a - b).abs() / largest;
-                assert!(apart <= AGREEMENT, "{name}: {what}: {ours:?} and {theirs:?}");
+                let allowed = AGREEMENT + BENT * largest;
+                assert!(apart <= allowed, "{name}: {what}: {ours:?} and {theirs:?}");
                 worst = worst.max(apart);
             }
         };

@@ -108,11 +108,6 @@ impl Replay {
         Self { forms, start: entry.instant, horizon, next: Some(first) }
     }
 
-    /// Moves the horizon of a run that has not passed it.
-    pub fn extend(&mut self, horizon: Instant) {
-        self.horizon = horizon;
-    }
-
     fn passage(&self, begin: Beginning) -> Result<Passage, &'static str> {
         let omega = self.forms.omega;
         let span = self.horizon.since(&begin.instant, omega).value();
