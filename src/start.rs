@@ -101,13 +101,11 @@ impl Model {
             }
             Phase::Progression => {
                 state.p = state.q + g;
-                let rate = self.constants().rate;
-                let closing = (1.0 - state.q) * rate;
                 if force <= 1.0 {
-                    state.y = closing;
+                    state.y = (1.0 - state.q) * self.constants().rate;
                     surface::on_threshold(self.constants(), &state, 1.0, self.force(instant))
                 } else {
-                    Onset::Progression { drift_rate: (force - 1.0) * rate, closing }
+                    surface::slipping(self.constants(), &state)
                 }
             }
         };

@@ -24,7 +24,8 @@ pub(crate) fn onset(
     let Constants { two_xi, g, rate, .. } = *constants;
     let (damper, spring) = (two_xi * state.y, state.q);
     let largest = damper.abs().max(spring.abs());
-    let f = f.unwrap_or(damper + spring);
+    let known = f;
+    let f = known.unwrap_or(damper + spring);
     if f.abs() <= FOUR_ULPS * largest {
         state.q = -damper;
         state.p = state.q + g;
@@ -41,9 +42,21 @@ pub(crate) fn onset(
     } else if f < 1.0 {
         Onset::Contact { offset: f, reference: 0.0 }
     } else {
-        Onset::Progression { drift_rate: (f - 1.0) * rate, closing: (1.0 - state.q) * rate }
+        match known {
+            Some(f) => {
+                Onset::Progression { drift_rate: (f - 1.0) * rate, closing: (1.0 - state.q) * rate }
+            }
+            None => slipping(constants, &state),
+        }
     };
     (state, onset)
+}
+
+/// A progression under way. Its drift velocity is y - q' and not (f - 1)/(2 xi), which would carry
+/// 1/(2 xi) times the rounding of f: 1 - q is exact where the slider is nearly compressed.
+pub(crate) fn slipping(constants: &Constants<f64>, state: &State) -> Onset {
+    let closing = (1.0 - state.q) * constants.rate;
+    Onset::Progression { drift_rate: state.y - closing, closing }
 }
 
 /// Which phase begins where the trial force is at a threshold, 0 or 1, computed or stated: its
@@ -86,4 +99,24 @@ fn ladder(constants: &Constants<f64>, y: f64, f: f64, force: [f64; 3]) -> f64 {
         (omega * omega * (b - f), omega * omega * (b.abs() + f)),
     ];
     rungs.iter().find(|(rung, size)| rung.abs() > FOUR_ULPS * size).map_or(0.0, |(rung, _)| *rung)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::Parameters;
+    use crate::two_word::TwoWord;
+
+    /// A start in mid-slip at 1/(2 xi) = 5000: (f - 1)/(2 xi) was wrong by thousands of eps.
+    #[test]
+    fn a_slip_under_way_keeps_the_digits_of_its_drift_velocity() {
+        let xi = 1e-4;
+        let constants = Constants::new(&Parameters { xi, ..Parameters::default() });
+        let (y, q) = (0.108_015_697_104_435_81, 0.999_999_999_999_754_3);
+        let (_, onset) = onset(&constants, State { p: q + 0.02, y, q }, None, [0.0; 3]);
+        let Onset::Progression { drift_rate, .. } = onset else { unreachable!("f exceeds 1") };
+        let exact = TwoWord::new(y).minus(TwoWord::new(1.0 - q).over(2.0 * xi)).value();
+        // Roundings of the rate, of its product and of the difference.
+        assert!((drift_rate - exact).abs() <= 2.0 * f64::EPSILON * y, "{drift_rate} {exact}");
+    }
 }

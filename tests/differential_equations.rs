@@ -11,7 +11,7 @@
     reason = "each test uses a part of its support; a panic is a failed test"
 )]
 
-#[path = "support/double_double.rs"]
+#[path = "../validation/src/truth/double_double.rs"]
 mod double_double;
 #[path = "support/draws.rs"]
 mod draws;

@@ -135,9 +135,9 @@ impl Trend {
         };
         let turn = before_opening(later).or_else(|| before_opening(now));
         turn.or_else(|| match (now, later) {
-            (_, Bound::OpenFrom(time)) | (Bound::NeverAfter(time), _) if within(&time) => {
-                Some(time)
-            }
+            // At the opening itself the proof would meet a zero and count it as a touch.
+            (_, Bound::OpenFrom(time)) if within(&time) => Some(time - 0.25 * period),
+            (Bound::NeverAfter(time), _) if within(&time) => Some(time),
             (Bound::OpenFrom(_), _) => Some(from + period),
             _ => Some(from + 0.5 * length),
         })

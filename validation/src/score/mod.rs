@@ -5,13 +5,21 @@
 
 pub mod attractor;
 mod growth;
+mod histogram;
+mod horizon;
 mod matching;
 mod measure;
+mod restart;
+mod starts;
 mod statistics;
 mod verdict;
 
 pub use growth::{Growth, SCORED_ERROR, SCORED_FACTOR};
+pub use histogram::Histogram;
+pub use horizon::{HorizonTest, Horizons, ValidHorizon};
 pub use matching::{Matching, WINDOW};
 pub use measure::{Measures, measure};
+pub use restart::{MOST_PERIODS, Restart, RestartError, RestartRun, RestartTest};
+pub use starts::on_attractor;
 pub use statistics::Spread;
 pub use verdict::{Checked, Judgement, Verdict, judge};

@@ -1,0 +1,156 @@
+//! The valid horizon in chaos: how many forcing periods pass until an engine's error is 1e-3.
+//!
+//! Errors grow so unevenly that one run says little (55 to 129 periods from eps to 1e-3 between the 1 %
+//! quantiles), and the mean exponent says less. So it is measured from many states on the attractor,
+//! each beside the period at which the truth's own growth along that very run takes the engine's unit
+//! of error to 1e-3. In 106 bits the truth lasts twice as long as f64; it counts while its own unit
+//! times growth is below a hundredth of 1e-3.
+
+use super::growth::{Growth, SCORED_ERROR};
+use super::restart::task;
+use super::starts::on_attractor;
+use super::statistics::Spread;
+use crate::case::Problem;
+use crate::engine::{Failure, Grid, Outcome, Task};
+use crate::truth::{Truth, UNIT};
+use percuss::two_word::TwoWord;
+use rayon::prelude::*;
+
+/// An engine's run is made until its unit of error times the growth passes this many times 1e-3: one
+/// that is still right then is a thousand times better than its unit.
+const BEYOND: f64 = 1e3;
+/// The truth counts while its own error is below this.
+const TRUSTED: f64 = SCORED_ERROR / 100.0;
+
+/// One run with its truth, once a forcing period.
+struct HorizonRun {
+    problem: Problem,
+    truth: Truth,
+    /// The largest growth of p, y and q so far, at each sample.
+    growth: Vec<f64>,
+}
+
+/// Runs from states on one attractor.
+pub struct HorizonTest {
+    runs: Vec<HorizonRun>,
+    /// Runs that 106 bits do not decide.
+    pub undecided: usize,
+}
+
+/// The horizons of one run, in forcing periods.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct ValidHorizon {
+    /// Until the error passes 1e-3; zero for a run that failed.
+    pub valid: u32,
+    /// Until the unit of error times the growth passes it.
+    pub predicted: u32,
+    /// Whether the run was still valid where it ended: its horizon is at least `valid`.
+    pub outlasts: bool,
+}
+
+/// The score of an engine.
+#[derive(Clone, Debug)]
+pub struct Horizons {
+    /// One run after the other.
+    pub runs: Vec<ValidHorizon>,
+    /// Runs that gave no result.
+    pub failed: usize,
+    /// The horizons that were reached.
+    pub valid: Spread,
+    /// The horizon that 99 % of the runs reach.
+    pub valid_q01: f64,
+    /// The horizons that the truth's growth predicts.
+    pub predicted: Spread,
+    /// `valid - predicted`, run by run: zero where an engine's errors are its unit, and what is left of
+    /// the growth's unevenness.
+    pub gained: Spread,
+}
+
+impl HorizonTest {
+    /// Follows the truth from `count` states on the attractor for this many periods.
+    #[must_use]
+    pub fn new(problem: &Problem, count: usize, periods: u32) -> Self {
+        let starts = on_attractor(problem, count);
+        let made: Vec<_> =
+            starts.into_par_iter().map(|start| HorizonRun::new(start, periods)).collect();
+        let runs: Vec<_> = made.into_iter().flatten().collect();
+        Self { undecided: count - runs.len(), runs }
+    }
+
+    /// How many periods the truth itself lasts in each run, at most those it was followed.
+    #[must_use]
+    pub fn trusted(&self) -> Vec<u32> {
+        self.runs.iter().map(|run| run.grows_to(TRUSTED / UNIT)).collect()
+    }
+
+    /// Scores an engine, given how it runs a task; `unit` is its unit of error: its tolerance, or eps.
+    pub fn score(
+        &self,
+        unit: f64,
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
+    ) -> Horizons {
+        let results: Vec<_> = self.runs.par_iter().map(|it| it.horizon(unit, &run)).collect();
+        let runs: Vec<_> = results.iter().map(|(horizon, _)| *horizon).collect();
+        let spread = |value: fn(&ValidHorizon) -> f64| Spread::of(runs.iter().map(value).collect());
+        let negative = spread(|run| -f64::from(run.valid));
+        Horizons {
+            failed: results.iter().filter(|(_, failed)| *failed).count(),
+            valid: spread(|run| f64::from(run.valid)),
+            valid_q01: -negative.q99,
+            predicted: spread(|run| f64::from(run.predicted)),
+            gained: spread(|run| f64::from(run.valid) - f64::from(run.predicted)),
+            runs,
+        }
+    }
+}
+
+impl HorizonRun {
+    fn new(problem: Problem, periods: u32) -> Option<Self> {
+        let entry = problem.entry;
+        let parameters = *problem.model.parameters();
+        let horizon = entry.instant.after_periods(u64::from(periods), 1);
+        let grid = (periods as usize + 1, 1);
+        let truth = Truth::replayed(&parameters, &entry, horizon, grid).ok()?;
+        let angle = task(problem, horizon).forcing_angle;
+        let samples = Growth::along(&truth, &parameters, angle).samples;
+        let mut largest = 1.0_f64;
+        let mut rising = |growth: &[f64; 4]| {
+            largest = growth[..3].iter().fold(largest, |largest, size| largest.max(*size));
+            largest
+        };
+        let growth = samples.iter().map(&mut rising).collect();
+        Some(Self { problem, truth, growth })
+    }
+
+    /// The last period before the growth passes a size.
+    fn grows_to(&self, size: f64) -> u32 {
+        let within = self.growth.iter().take_while(|growth| **growth <= size).count();
+        within.saturating_sub(1) as u32
+    }
+
+    fn horizon(
+        &self,
+        unit: f64,
+        run: &impl Fn(&Task) -> Result<Outcome, Failure>,
+    ) -> (ValidHorizon, bool) {
+        let predicted = self.grows_to(SCORED_ERROR / unit);
+        let last = self.grows_to(BEYOND * SCORED_ERROR / unit).min(self.grows_to(TRUSTED / UNIT));
+        let horizon = self.problem.entry.instant.after_periods(u64::from(last), 1);
+        let grid = Grid { per_period: 1, count: last as usize + 1 };
+        let result = run(&Task { grid, ..task(self.problem, horizon) });
+        let valid = result.as_ref().map_or(0, |outcome| self.valid(outcome, last));
+        let outlasts = result.is_ok() && valid == last;
+        (ValidHorizon { valid, predicted, outlasts }, result.is_err())
+    }
+
+    fn valid(&self, outcome: &Outcome, last: u32) -> u32 {
+        // Written so that a NaN is off.
+        let right = |(truth, found): (&crate::truth::Row, &[f64; 4])| {
+            let off = |k: usize| truth.state[k].minus(TwoWord::new(found[k])).value().abs();
+            (0..3).all(|k| off(k) <= SCORED_ERROR)
+        };
+        let pairs = self.truth.samples.iter().zip(&outcome.samples);
+        let within = pairs.take(last as usize + 1).take_while(|pair| right(*pair)).count();
+        within.saturating_sub(1) as u32
+    }
+}

@@ -1,0 +1,225 @@
+//! The restart test: from states on the attractor through the first impact and the separation after it.
+//!
+//! A long run in chaos only multiplies what happens in one passage through contact; here that passage
+//! is measured itself, from many states. Each run ends at a strobe, the start of a forcing period: the
+//! first after its separation, at most the eighth. Half of all single periods hold no switch at all, so
+//! the figures are of the runs that had an impact.
+
+use super::growth::Growth;
+use super::histogram::Histogram;
+use super::starts::on_attractor;
+use super::statistics::Spread;
+use crate::case::Problem;
+use crate::engine::{Failure, Grid, Outcome, Task};
+use crate::truth::{Row, Truth};
+use percuss::two_word::TwoWord;
+use percuss::{Instant, Phase, angle};
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// A run ends at the latest at this strobe.
+pub const MOST_PERIODS: u64 = 8;
+
+/// One run with its truth.
+pub struct RestartRun {
+    /// What an engine is asked.
+    pub task: Task,
+    /// What is true.
+    pub truth: Truth,
+    /// How errors grow along it.
+    pub growth: Growth,
+    /// Whether it has an impact.
+    pub impact: bool,
+}
+
+/// The runs of one case.
+pub struct RestartTest {
+    /// Those with a truth, in the order of their starts.
+    pub runs: Vec<RestartRun>,
+    /// Those that 106 bits do not decide.
+    pub undecided: usize,
+}
+
+/// How far one run is off at its strobe.
+#[derive(Clone, Copy, Debug)]
+pub struct RestartError {
+    /// The largest error of p, y, q and v in units of error x (1 + |value|) x growth.
+    pub units: f64,
+    /// That of v alone.
+    pub drift_units: f64,
+    /// The largest error of a switch time, alike; not a number where the phases follow otherwise.
+    pub time_units: f64,
+    /// The largest error of p, y, q and v itself.
+    pub absolute: f64,
+    /// Whether the phases follow each other as in the truth.
+    pub same_word: bool,
+}
+
+/// The score of an engine.
+#[derive(Clone, Debug)]
+pub struct Restart {
+    /// Runs made.
+    pub runs: usize,
+    /// Those with an impact, of which all figures are.
+    pub with_impact: usize,
+    /// Runs that the truth leaves undecided, which are not made.
+    pub undecided: usize,
+    /// Runs that gave no result; their error is no number, which is larger than any.
+    pub failed: usize,
+    /// Runs with a result whose phases follow each other otherwise than in the truth.
+    pub wrong_words: usize,
+    /// Errors at the strobe in units of error x (1 + |value|) x growth.
+    pub units: Spread,
+    /// Of the drift alone.
+    pub drift_units: Spread,
+    /// Of the switch times, over the runs with the right phases.
+    pub time_units: Spread,
+    /// Errors at the strobe themselves.
+    pub absolute: Spread,
+    /// `units` of the runs with this many switches, and how many these are.
+    pub by_switches: BTreeMap<usize, (usize, Spread)>,
+    /// How `units` are distributed.
+    pub histogram: Histogram,
+}
+
+impl RestartTest {
+    /// Makes `count` runs from states on the attractor that a run from `problem` reaches.
+    #[must_use]
+    pub fn new(problem: &Problem, count: usize) -> Self {
+        let starts = on_attractor(problem, count);
+        let made: Vec<_> = starts.into_par_iter().map(RestartRun::new).collect();
+        let runs: Vec<_> = made.into_iter().flatten().collect();
+        Self { undecided: count - runs.len(), runs }
+    }
+
+    /// Scores an engine, given how it runs a task; `unit` is its unit of error: its tolerance, or eps.
+    pub fn score(
+        &self,
+        unit: f64,
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
+    ) -> Restart {
+        let measured = |it: &RestartRun| run(&it.task).map(|outcome| it.error(&outcome, unit));
+        let errors: Vec<_> = self.runs.par_iter().map(measured).collect();
+        let results = || self.runs.iter().zip(&errors).filter(|(run, _)| run.impact);
+        let figures = |figure: fn(&RestartError) -> f64| -> Vec<f64> {
+            results().map(|(_, error)| error.as_ref().map_or(f64::NAN, figure)).collect()
+        };
+        let units = figures(|error| error.units);
+        let mut by_switches: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        for ((run, _), units) in results().zip(&units) {
+            by_switches.entry(run.truth.switches.len()).or_default().push(*units);
+        }
+        Restart {
+            runs: self.runs.len(),
+            with_impact: units.len(),
+            undecided: self.undecided,
+            failed: errors.iter().filter(|error| error.is_err()).count(),
+            wrong_words: errors.iter().flatten().filter(|error| !error.same_word).count(),
+            units: Spread::of(units.clone()),
+            drift_units: Spread::of(figures(|error| error.drift_units)),
+            time_units: Spread::of(
+                figures(|error| error.time_units).into_iter().filter(|it| !it.is_nan()).collect(),
+            ),
+            absolute: Spread::of(figures(|error| error.absolute)),
+            by_switches: by_switches
+                .into_iter()
+                .map(|(switches, units)| (switches, (units.len(), Spread::of(units))))
+                .collect(),
+            histogram: Histogram::of(&units),
+        }
+    }
+}
+
+impl RestartRun {
+    /// The run from a start; `None` if 106 bits do not decide it.
+    fn new(problem: Problem) -> Option<Self> {
+        let parameters = *problem.model.parameters();
+        let strobe = |periods: u64| Instant::at(parameters.omega, 0.0, 0).after_periods(periods, 1);
+        let replayed = |periods: u64| {
+            let grid = (0, Truth::SAMPLES_PER_PERIOD);
+            Truth::replayed(&parameters, &problem.entry, strobe(periods), grid).ok()
+        };
+        let after = |switch: &Row| {
+            let instant = problem.entry.instant.after(switch.elapsed, parameters.omega);
+            u64::try_from(instant.cycle() + 1).unwrap_or(1).min(MOST_PERIODS)
+        };
+        // The truth is followed to the last strobe, then cut at its own.
+        let whole = replayed(MOST_PERIODS)?;
+        let (impact, separation) = passage(&whole);
+        let periods = separation.as_ref().map_or(MOST_PERIODS, after);
+        let truth = if periods == MOST_PERIODS { whole } else { replayed(periods)? };
+        let task = task(problem, strobe(periods));
+        let growth = Growth::along(&truth, &parameters, task.forcing_angle);
+        Some(Self { task, truth, growth, impact })
+    }
+
+    fn error(&self, outcome: &Outcome, unit: f64) -> RestartError {
+        let truth = &self.truth.end.state;
+        let off = |k: usize| off(truth[k], outcome.end[k]);
+        let units = |k: usize| off(k) / scale(unit, truth[k], self.growth.end[k]);
+        let same_word = self.same_word(outcome);
+        let pairs = self.truth.switches.iter().zip(&outcome.events).zip(&self.growth.switches);
+        let late = pairs.map(|((truth, found), growth)| {
+            self::off(truth.elapsed, found.elapsed) / scale(unit, truth.elapsed, growth[0])
+        });
+        RestartError {
+            units: largest((0..4).map(units)),
+            drift_units: units(3),
+            time_units: if same_word { largest(late) } else { f64::NAN },
+            absolute: largest((0..4).map(off)),
+            same_word,
+        }
+    }
+
+    fn same_word(&self, outcome: &Outcome) -> bool {
+        let truth = self.truth.switches.iter().map(|switch| switch.phase);
+        truth.eq(outcome.events.iter().map(|event| Some(event.phase)))
+    }
+}
+
+fn off(truth: TwoWord, found: f64) -> f64 {
+    truth.minus(TwoWord::new(found)).value().abs()
+}
+
+fn scale(unit: f64, truth: TwoWord, growth: f64) -> f64 {
+    unit * (1.0 + truth.value().abs()) * growth
+}
+
+/// A maximum that keeps a NaN.
+fn largest(errors: impl Iterator<Item = f64>) -> f64 {
+    errors.fold(0.0, |largest, error| if error <= largest { largest } else { error })
+}
+
+/// Whether a run has an impact, and the separation that follows it.
+fn passage(truth: &Truth) -> (bool, Option<Row>) {
+    let mut before = truth.start.phase;
+    let mut impact = false;
+    for switch in &truth.switches {
+        if switch.phase == Some(Phase::NoContact) {
+            if impact {
+                return (true, Some(*switch));
+            }
+        } else if before == Some(Phase::NoContact) {
+            impact = true;
+        }
+        before = switch.phase;
+    }
+    (impact, None)
+}
+
+/// The run from a start to an instant, without samples on the way.
+pub(super) fn task(problem: Problem, horizon: Instant) -> Task {
+    let parameters = *problem.model.parameters();
+    let entry = problem.entry;
+    let (_, phi) = angle::reduce(TwoWord::new(parameters.phi));
+    Task {
+        parameters,
+        problem,
+        phase: entry.phase(),
+        state: [entry.state.p, entry.state.y, entry.state.q, entry.v()],
+        forcing_angle: entry.instant.angle_two_word().plus(phi).value(),
+        horizon,
+        span: horizon.since(&entry.instant, parameters.omega).value(),
+        grid: Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 },
+    }
+}

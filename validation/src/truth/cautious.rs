@@ -1,0 +1,73 @@
+//! The f64 search for a first crossing, asked for more than its own rounding room.
+//!
+//! The truth takes from f64 the order of events: that no crossing lies before the one that it then
+//! refines. In f64 that is proved for the phase as it was rounded, with room for the rounding of the
+//! guard. Here every certificate must leave a multiple of that room, so that it holds for the phase in
+//! 106 bits too; where one does not, the search counts it, and the run is undecided.
+
+use super::forms::Motion;
+use percuss::crossing::certificate::{Corridor, Ends, Verdict};
+use percuss::crossing::guarded::{Guarded, Outlook};
+use percuss::crossing::search::first_crossing;
+use percuss::crossing::{Counters, Crossing};
+use percuss::flow::{Flow, Point};
+
+/// Rounding an entry to f64 moves the guard by a unit or two of its largest term; its own rounding is
+/// within the four that the search sets aside. Sixteen times those four leaves a factor of ten.
+const CAUTION: f64 = 16.0;
+
+struct Cautious<'a, G>(&'a G);
+
+impl<G: Guarded> Cautious<'_, G> {
+    fn cautious(mut point: Point<f64>) -> Point<f64> {
+        point.guard.largest_term *= CAUTION;
+        point
+    }
+}
+
+impl<G: Guarded> Flow<f64> for Cautious<'_, G> {
+    fn at(&self, elapsed: f64) -> Point<f64> {
+        Self::cautious(self.0.at(elapsed))
+    }
+}
+
+impl<G: Guarded> Guarded for Cautious<'_, G> {
+    fn corridor(&self) -> Corridor {
+        self.0.corridor()
+    }
+
+    fn entry(&self) -> Point<f64> {
+        Self::cautious(self.0.entry())
+    }
+
+    fn imposed(&self) -> Ends {
+        self.0.imposed()
+    }
+
+    fn outlook(&self, left: &Point<f64>, limit: f64) -> Outlook {
+        self.0.outlook(left, limit)
+    }
+
+    fn certify(&self, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
+        self.0.certify(left, right, ends)
+    }
+
+    fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
+        self.0.divide(left, right)
+    }
+
+    fn fastest_rate(&self) -> f64 {
+        self.0.fastest_rate()
+    }
+}
+
+/// How the phase ends before `limit`, and whether every certificate left the room asked for.
+pub(super) fn crossing(motion: &Motion<f64>, limit: f64) -> (Crossing, bool) {
+    let mut counters = Counters::default();
+    let crossing = match motion {
+        Motion::NoContact(it) => first_crossing(&Cautious(it), limit, &mut counters),
+        Motion::Contact(it) => first_crossing(&Cautious(it), limit, &mut counters),
+        Motion::Progression(it) => first_crossing(&Cautious(it), limit, &mut counters),
+    };
+    (crossing, counters.undecidable == 0)
+}

@@ -1,0 +1,130 @@
+//! The closed forms of the three phases in 106 bits, and rounded for the search of first crossings.
+
+use super::DoubleDouble;
+use percuss::flow::contact::Contact;
+use percuss::flow::forcing::EntryAngle;
+use percuss::flow::no_contact::NoContact;
+use percuss::flow::progression::Progression;
+use percuss::flow::{Flow, Point};
+use percuss::number::Number;
+use percuss::two_word::TwoWord;
+use percuss::{Constants, Instant, Parameters, Phase, State, angle};
+
+/// How a phase begins: what is known exactly at that instant.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Onset<T> {
+    /// No contact, the mass away from the slider.
+    Apart,
+    /// No contact, on the surface with this rate of h; zero at a separation.
+    Surface { h_rate: T },
+    /// Contact with trial force `reference + offset`.
+    Contact { offset: T, reference: T },
+    /// Progression with this drift velocity and velocity of the slider's top.
+    Progression { drift_rate: T, closing: T },
+}
+
+/// The closed form of one phase.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Motion<T> {
+    NoContact(NoContact<T>),
+    Contact(Contact<T>),
+    Progression(Progression<T>),
+}
+
+/// The model's constants in both arithmetics.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Forms {
+    pub(super) constants: Constants<DoubleDouble>,
+    rounded: Constants<f64>,
+    phi: DoubleDouble,
+    pub(super) omega: f64,
+}
+
+impl Forms {
+    pub(super) fn new(parameters: &Parameters) -> Self {
+        let (_, phi) = angle::reduce(TwoWord::new(parameters.phi));
+        Self {
+            constants: Constants::new(parameters),
+            rounded: Constants::new(parameters),
+            phi: phi.into(),
+            omega: parameters.omega,
+        }
+    }
+
+    /// The phase that begins so.
+    pub(super) fn motion(
+        &self,
+        instant: &Instant,
+        entry: State<DoubleDouble>,
+        onset: Onset<DoubleDouble>,
+    ) -> Motion<DoubleDouble> {
+        let (sin, cos) = (DoubleDouble::from(instant.angle_two_word()) + self.phi).sin_cos();
+        motion(self.constants, entry, EntryAngle { sin, cos }, onset)
+    }
+
+    /// The same phase with everything rounded to f64.
+    pub(super) fn rounded(&self, exact: &Motion<DoubleDouble>) -> Motion<f64> {
+        let f = |x: DoubleDouble| x.to_f64();
+        let (state, angle) = exact.entry();
+        let entry = State { p: f(state.p), y: f(state.y), q: f(state.q) };
+        let onset = match exact {
+            Motion::NoContact(it) => {
+                it.surface.map_or(Onset::Apart, |rate| Onset::Surface { h_rate: f(rate) })
+            }
+            Motion::Contact(it) => {
+                Onset::Contact { offset: f(it.offset), reference: f(it.reference) }
+            }
+            Motion::Progression(it) => {
+                Onset::Progression { drift_rate: f(it.drift_rate), closing: f(it.closing) }
+            }
+        };
+        let angle = EntryAngle { sin: f(angle.sin), cos: f(angle.cos) };
+        motion(self.rounded, entry, angle, onset)
+    }
+}
+
+fn motion<T: Number>(
+    constants: Constants<T>,
+    entry: State<T>,
+    angle: EntryAngle<T>,
+    onset: Onset<T>,
+) -> Motion<T> {
+    match onset {
+        Onset::Apart => Motion::NoContact(NoContact { constants, entry, angle, surface: None }),
+        Onset::Surface { h_rate } => {
+            Motion::NoContact(NoContact { constants, entry, angle, surface: Some(h_rate) })
+        }
+        Onset::Contact { offset, reference } => {
+            Motion::Contact(Contact { constants, entry, angle, offset, reference })
+        }
+        Onset::Progression { drift_rate, closing } => {
+            Motion::Progression(Progression { constants, entry, angle, drift_rate, closing })
+        }
+    }
+}
+
+impl<T: Number> Motion<T> {
+    pub(super) fn phase(&self) -> Phase {
+        match self {
+            Self::NoContact(_) => Phase::NoContact,
+            Self::Contact(_) => Phase::Contact,
+            Self::Progression(_) => Phase::Progression,
+        }
+    }
+
+    pub(super) fn entry(&self) -> (State<T>, EntryAngle<T>) {
+        match self {
+            Self::NoContact(it) => (it.entry, it.angle),
+            Self::Contact(it) => (it.entry, it.angle),
+            Self::Progression(it) => (it.entry, it.angle),
+        }
+    }
+
+    pub(super) fn at(&self, elapsed: T) -> Point<T> {
+        match self {
+            Self::NoContact(it) => it.at(elapsed),
+            Self::Contact(it) => it.at(elapsed),
+            Self::Progression(it) => it.at(elapsed),
+        }
+    }
+}

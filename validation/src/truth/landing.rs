@@ -1,0 +1,96 @@
+//! What begins where a phase ends, and where a run starts, with what is known there imposed.
+
+use super::DoubleDouble;
+use super::forms::{Forms, Motion, Onset};
+use percuss::flow::Point;
+use percuss::number::Number;
+use percuss::{Entry, Phase, State};
+
+/// A decision closer than this, in units of the terms it is made from, is not taken. A million times
+/// the unit of 106 bits times the growth of a long run is below it, and that a run meets it by chance
+/// has a probability of about 1e-18 a switch.
+pub(super) const UNDECIDED: f64 = 1e-18;
+
+/// The rule of the f64 starts: within four units in the last place counts as on the surface or on a
+/// threshold, and is then imposed exactly.
+const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
+
+impl Forms {
+    /// A start of the phase of `entry`, its state taken exactly but for what that phase imposes.
+    pub(super) fn start(
+        &self,
+        entry: &Entry,
+        [p, y, q]: [DoubleDouble; 3],
+    ) -> (State<DoubleDouble>, Onset<DoubleDouble>) {
+        let (one, zero) = (DoubleDouble::one(), DoubleDouble::zero());
+        let (g, rate, damper) = (self.constants.g, self.constants.rate, self.constants.two_xi * y);
+        let size = |x: DoubleDouble| x.abs().to_f64();
+        let largest = size(p).max(size(q)).max(size(g));
+        let phase = entry.phase();
+        if phase == Phase::NoContact && size(p - q - g) > FOUR_ULPS * largest {
+            return (State { p, y, q }, Onset::Apart);
+        }
+        let f = damper + q;
+        let largest = size(damper).max(size(q));
+        let threshold = if size(f) <= FOUR_ULPS * largest {
+            Some(zero)
+        } else {
+            (size(f - one) <= FOUR_ULPS * largest.max(1.0)).then_some(one)
+        };
+        let q = threshold.map_or(q, |threshold| threshold - damper);
+        let onset = match (phase, threshold) {
+            (Phase::NoContact, Some(_)) => Onset::Surface { h_rate: zero },
+            (Phase::NoContact, None) => Onset::Surface { h_rate: f * rate },
+            (Phase::Contact, Some(reference)) => Onset::Contact { offset: zero, reference },
+            (Phase::Contact, None) => Onset::Contact { offset: f, reference: zero },
+            (Phase::Progression, Some(_)) => Onset::Progression { drift_rate: zero, closing: y },
+            (Phase::Progression, None) => {
+                Onset::Progression { drift_rate: (f - one) * rate, closing: (one - q) * rate }
+            }
+        };
+        (State { p: q + g, y, q }, onset)
+    }
+
+    /// What begins at the crossing `at` that ends `motion`; `None` if an impact's force is too near
+    /// the threshold to be told from it.
+    pub(super) fn landing(
+        &self,
+        motion: &Motion<DoubleDouble>,
+        at: &Point<DoubleDouble>,
+        rises: bool,
+    ) -> Option<(State<DoubleDouble>, Onset<DoubleDouble>)> {
+        let (one, zero) = (DoubleDouble::one(), DoubleDouble::zero());
+        let (g, rate, two_xi) = (self.constants.g, self.constants.rate, self.constants.two_xi);
+        let on_surface = |y: DoubleDouble, q: DoubleDouble| State { p: q + g, y, q };
+        Some(match motion {
+            Motion::NoContact(_) => {
+                let State { y, q, .. } = at.state;
+                let f = two_xi * at.guard.orders[1];
+                let excess = f - one;
+                if excess.to_f64().abs() <= UNDECIDED {
+                    return None;
+                }
+                let onset = if excess > zero {
+                    Onset::Progression { drift_rate: excess * rate, closing: (one - q) * rate }
+                } else {
+                    Onset::Contact { offset: f, reference: zero }
+                };
+                (on_surface(y, q), onset)
+            }
+            Motion::Contact(_) if rises => {
+                let y = at.state.y;
+                let onset = Onset::Progression { drift_rate: zero, closing: y };
+                (on_surface(y, one - two_xi * y), onset)
+            }
+            Motion::Contact(_) => {
+                let y = at.state.y;
+                (on_surface(y, -(two_xi * y)), Onset::Surface { h_rate: zero })
+            }
+            Motion::Progression(_) => {
+                let y = at.slider_velocity;
+                let onset = Onset::Contact { offset: zero, reference: one };
+                (on_surface(y, one - two_xi * y), onset)
+            }
+        })
+    }
+}

@@ -1,0 +1,27 @@
+//! The exact solver as the harness runs it, and the problems that cases pose.
+#![allow(dead_code, reason = "each test uses its own part")]
+
+use percuss_validation::case::{Case, Given, Problem, embedded};
+use percuss_validation::engine::{Engine, Failure, Limits, Outcome, Task, all};
+
+fn engine() -> &'static dyn Engine {
+    let mut engines = all().iter().copied();
+    engines.find(|engine| engine.declaration().name == "exact").expect("it is an engine")
+}
+
+/// Runs a task.
+pub fn run(task: &Task) -> Result<Outcome, Failure> {
+    engine().run(task, None, &Limits::default())
+}
+
+/// The embedded case of this name.
+pub fn case(name: &str) -> Case {
+    let cases = embedded().expect("the cases are read");
+    cases.into_iter().find(|case| case.name == name).expect("the case is there")
+}
+
+/// A case's model at its start.
+pub fn problem(case: &Case) -> Problem {
+    let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
+    given.check().expect("the case is checked")
+}

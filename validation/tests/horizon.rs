@@ -1,0 +1,94 @@
+//! The valid horizon of the exact solver in chaos, and of the truth itself.
+//!
+//! `cargo test --release --test horizon -- --nocapture` prints the figures.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
+
+mod exact;
+
+use percuss::number::Number;
+use percuss_validation::case::Problem;
+use percuss_validation::score::{HorizonTest, on_attractor};
+use percuss_validation::truth::{DoubleDouble, Replay, UNIT};
+
+/// Starts, as many as a median needs to be good to a period or two.
+const STARTS: usize = 200;
+/// No run of the exact solver reaches 120 periods before its error is 1e-3.
+const PERIODS: u32 = 150;
+
+/// A run may fall short of what its growth predicts by ln(20)/0.37 periods, if its error is twenty
+/// units of eps x growth; four periods are measured.
+const SHORT: f64 = 8.0;
+/// Errors are seldom along the direction that grows most: the median run gains two periods.
+const MEDIAN_GAIN: std::ops::RangeInclusive<f64> = 0.0..=4.0;
+
+fn chaos() -> Problem {
+    exact::problem(&exact::case("chaos-from-rest"))
+}
+
+#[test]
+fn the_exact_solver_lasts_as_long_as_the_truths_growth_lets_it() {
+    let test = HorizonTest::new(&chaos(), STARTS, PERIODS);
+    let found = test.score(f64::EPSILON, exact::run);
+    println!("valid from {} periods: {:?}", found.valid_q01, found.valid);
+    println!("predicted: {:?}, gained: {:?}", found.predicted, found.gained);
+    let gain = |run: &percuss_validation::score::ValidHorizon| {
+        f64::from(run.valid) - f64::from(run.predicted)
+    };
+    let least = found.runs.iter().map(gain).fold(f64::INFINITY, f64::min);
+    println!("least gain: {least}");
+    assert_eq!((test.undecided, found.failed, found.runs.len()), (0, 0, STARTS));
+    assert!(found.runs.iter().all(|run| !run.outlasts), "{:?}", found.runs);
+    assert!(least >= -SHORT, "{least}");
+    assert!(MEDIAN_GAIN.contains(&found.gained.median), "{:?}", found.gained);
+    // The truth is the better one by far wherever the solver is judged.
+    for (run, trusted) in found.runs.iter().zip(test.trusted()) {
+        assert!(trusted > run.valid, "{run:?}: {trusted}");
+    }
+}
+
+/// The truth's own horizon, from its growth, is where two runs in 106 bits that begin one unit apart
+/// are apart: they are less than a hundredth of 1e-3 apart up to there, but for a few units of rounding.
+#[test]
+fn the_truth_lasts_as_long_as_it_says() {
+    const ROOM: f64 = 20.0 * 1e-5;
+    let problem = chaos();
+    let trusted = HorizonTest::new(&problem, 20, 250).trusted();
+    let mut sorted = trusted.clone();
+    sorted.sort_unstable();
+    println!("the truth lasts {sorted:?} periods");
+    for (start, periods) in on_attractor(&problem, 20).iter().zip(&trusted) {
+        let apart = apart_after(start, u64::from(*periods));
+        assert!(apart <= ROOM, "{apart:e} after {periods} periods");
+    }
+    assert!(sorted[0] > 100 && sorted[10] > 150, "{sorted:?}");
+}
+
+/// The largest difference in p, y and q after so many periods, of runs whose starts differ by a unit.
+fn apart_after(start: &Problem, periods: u64) -> f64 {
+    let (parameters, entry) = (start.model.parameters(), start.entry);
+    let horizon = entry.instant.after_periods(periods, 1);
+    let [p, y, q] = [entry.state.p, entry.state.y, entry.state.q].map(DoubleDouble::exact);
+    let end = |y: DoubleDouble| {
+        let last = Replay::varied(parameters, &entry, [p, y, q], horizon).last();
+        last.expect("there is a phase").expect("it is decided").at(&horizon)
+    };
+    let (one, other) = (end(y), end(y + DoubleDouble::exact(UNIT * y.to_f64().abs().max(1.0))));
+    (0..3).map(|k| (one[k] - other[k]).to_f64().abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_coarser_solver_lasts_as_long_as_its_own_unit_lets_it() {
+    const UNIT: f64 = 1e-9;
+    let test = HorizonTest::new(&chaos(), 40, 60);
+    let coarse = test.score(UNIT, |task| {
+        let mut start = task.problem.start;
+        start.y += UNIT;
+        let entry = task.problem.model.start(&start).expect("a start is off by little");
+        let problem = Problem { entry, start, ..task.problem };
+        exact::run(&percuss_validation::engine::Task { problem, ..task.clone() })
+    });
+    println!("{:?} {:?} {:?}", coarse.valid, coarse.predicted, coarse.gained);
+    assert!(coarse.valid.median < 60.0 && coarse.gained.median.abs() <= 4.0);
+    assert!(coarse.runs.iter().all(|run| run.valid + 8 >= run.predicted));
+}

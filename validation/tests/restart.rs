@@ -1,0 +1,122 @@
+//! The restart test of the exact solver on every case.
+//!
+//! `cargo test --release --test restart -- --nocapture` prints the figures of every case; with
+//! `--ignored` from ten thousand states each.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
+
+mod exact;
+
+use percuss::Phase;
+use percuss_validation::case::{Case, Problem, embedded};
+use percuss_validation::score::{Restart, RestartTest};
+
+/// Of the runs with an impact, in eps (1 + |value|) x growth: twice the largest median measured (1.0,
+/// fast forcing; 0.35 in chaos). The last addition alone makes a quarter.
+const MEDIAN: f64 = 2.0;
+/// The promise of ten roundings; 4.9 is the largest of 430,000 runs (fast forcing), 2.7 in chaos.
+const LARGEST: f64 = 10.0;
+
+/// The mass never strikes the slider again on these attractors.
+const WITHOUT_IMPACT: [&str; 3] = ["never-returns", "never-stops", "rests-for-ever"];
+
+fn restarts(case: &Case, count: usize) -> (RestartTest, Restart) {
+    let test = RestartTest::new(&exact::problem(case), count);
+    let restart = test.score(f64::EPSILON, exact::run);
+    (test, restart)
+}
+
+fn every_case(count: usize) {
+    for case in embedded().expect("the cases are read") {
+        let (_, restart) = restarts(&case, count);
+        let Restart { with_impact, units, absolute, .. } = &restart;
+        println!(
+            "{:24} {with_impact:6} median {:.3} q99 {:.2} max {:.2} \
+             drift {:.3} {:.2} {:.2} time {:.3} {:.2} {:.2} absolute {:.1e} {:.1e} {:.1e}",
+            case.name,
+            units.median,
+            units.q99,
+            units.max,
+            restart.drift_units.median,
+            restart.drift_units.q99,
+            restart.drift_units.max,
+            restart.time_units.median,
+            restart.time_units.q99,
+            restart.time_units.max,
+            absolute.median,
+            absolute.q99,
+            absolute.max
+        );
+        let unhappy = (restart.undecided, restart.failed, restart.wrong_words);
+        assert_eq!((restart.runs, unhappy), (count, (0, 0, 0)), "{}", case.name);
+        if WITHOUT_IMPACT.contains(&case.name.as_str()) {
+            assert_eq!(*with_impact, 0, "{}", case.name);
+            continue;
+        }
+        assert!(*with_impact > 0, "{}", case.name);
+        assert!(units.median <= MEDIAN, "{}: median {}", case.name, units.median);
+        for max in [units.max, restart.drift_units.max, restart.time_units.max] {
+            assert!(max <= LARGEST, "{}: max {max}", case.name);
+        }
+    }
+}
+
+#[test]
+fn the_exact_solver_keeps_its_digits_on_every_attractor() {
+    every_case(300);
+}
+
+#[test]
+#[ignore = "half a minute in a release build"]
+fn the_exact_solver_keeps_its_digits_from_ten_thousand_states() {
+    every_case(10_000);
+}
+
+#[test]
+fn figures_do_not_depend_on_chance() {
+    let figures = || restarts(&exact::case("chaos-from-rest"), 200).1;
+    assert_eq!(format!("{:?}", figures()), format!("{:?}", figures()));
+}
+
+#[test]
+fn starts_lie_in_every_phase_and_runs_end_at_a_strobe() {
+    let (test, restart) = restarts(&exact::case("chaos-from-rest"), 1000);
+    let starts_in = |phase| test.runs.iter().filter(|run| run.task.phase == phase).count();
+    // A progression is under way for less than a hundredth of the time.
+    for phase in Phase::ALL {
+        assert!(starts_in(phase) > 0, "{phase}: {}", starts_in(phase));
+    }
+    for run in &test.runs {
+        let Problem { entry, .. } = run.task.problem;
+        assert_eq!(entry.instant.cycle(), 0);
+        let horizon = run.task.horizon;
+        assert!(horizon.angle() == 0.0 && (1..=8).contains(&horizon.cycle()), "{horizon:?}");
+        assert_eq!(run.growth.switches.len(), run.truth.switches.len());
+    }
+    let counted: usize = restart.by_switches.values().map(|(runs, _)| runs).sum();
+    assert_eq!(counted, restart.with_impact);
+    assert_eq!(restart.histogram.counts.iter().sum::<usize>(), restart.with_impact);
+}
+
+/// A fault of the last place in the angle of every run is seen: the test has the power it needs.
+#[test]
+fn an_error_of_a_few_eps_is_seen() {
+    let (test, honest) = restarts(&exact::case("chaos-from-rest"), 200);
+    let faulty = test.score(f64::EPSILON, |task| {
+        let mut outcome = exact::run(task)?;
+        for value in &mut outcome.end {
+            *value += 1e-13;
+        }
+        Ok(outcome)
+    });
+    assert!(faulty.units.median > 10.0 * honest.units.median && faulty.units.max > LARGEST);
+}
+
+/// A run that gives no result is larger than any error.
+#[test]
+fn a_failure_is_no_number() {
+    let (test, _) = restarts(&exact::case("chaos-from-rest"), 20);
+    let failing = test.score(1e-9, |_| Err(percuss_validation::engine::Failure::new("tired")));
+    assert_eq!((failing.failed, failing.with_impact), (20, 20));
+    assert!(failing.units.max.is_nan() && failing.absolute.median.is_nan());
+}
