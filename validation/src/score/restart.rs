@@ -13,7 +13,7 @@ use crate::case::Problem;
 use crate::engine::{Failure, Grid, Outcome, Task};
 use crate::truth::{Row, Truth};
 use percuss::two_word::TwoWord;
-use percuss::{Instant, Phase, angle};
+use percuss::{Instant, Phase};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -88,7 +88,12 @@ impl RestartTest {
     pub fn new(problem: &Problem, count: usize) -> Self {
         let starts = on_attractor(problem, count);
         let made: Vec<_> = starts.into_par_iter().map(RestartRun::new).collect();
-        let runs: Vec<_> = made.into_iter().flatten().collect();
+        let mut runs: Vec<RestartRun> = made.into_iter().flatten().collect();
+        let mut events = 0;
+        for run in &mut runs {
+            run.task.events_before = events;
+            events += run.truth.switches.len() as u64;
+        }
         Self { undecided: count - runs.len(), runs }
     }
 
@@ -209,17 +214,6 @@ fn passage(truth: &Truth) -> (bool, Option<Row>) {
 
 /// The run from a start to an instant, without samples on the way.
 pub(super) fn task(problem: Problem, horizon: Instant) -> Task {
-    let parameters = *problem.model.parameters();
-    let entry = problem.entry;
-    let (_, phi) = angle::reduce(TwoWord::new(parameters.phi));
-    Task {
-        parameters,
-        problem,
-        phase: entry.phase(),
-        state: [entry.state.p, entry.state.y, entry.state.q, entry.v()],
-        forcing_angle: entry.instant.angle_two_word().plus(phi).value(),
-        horizon,
-        span: horizon.since(&entry.instant, parameters.omega).value(),
-        grid: Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 },
-    }
+    let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 };
+    Task::until(*problem.model.parameters(), problem, horizon, grid)
 }

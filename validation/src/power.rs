@@ -1,0 +1,157 @@
+//! The power of the gates: which bounds notice which engine that is wrong on purpose.
+//!
+//! A bound that no fault trips guards nothing. Every wrong engine is run on every case that is at
+//! hand, held against the exact solver's bounds, and must fail at least one.
+
+use crate::case::{Bound, Quantity};
+use crate::engine::{Accuracy, Limits, Wrong};
+use crate::number::brief;
+use crate::score::{Checked, Subject, Verdict, judge};
+use crate::suite::Prepared;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// A group of bounds that say the same thing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Gate {
+    /// Switches missed, invented, or of another phase.
+    Events,
+    /// Errors at the switches.
+    EventErrors,
+    /// Errors on the fixed sample, drift included.
+    StateErrors,
+    /// Errors after one passage from states on the attractor.
+    Restart,
+    /// Distance of the sections in chaos.
+    Attractor,
+}
+
+impl Gate {
+    /// All of them, in the order of the report.
+    pub const ALL: [Self; 5] =
+        [Self::Events, Self::EventErrors, Self::StateErrors, Self::Restart, Self::Attractor];
+
+    /// Its name for people.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Events => "events",
+            Self::EventErrors => "event errors",
+            Self::StateErrors => "state errors",
+            Self::Restart => "restart",
+            Self::Attractor => "same attractor",
+        }
+    }
+
+    const fn of(quantity: Quantity) -> Self {
+        match quantity {
+            Quantity::EventsMissed | Quantity::EventsSpurious | Quantity::PhaseWord => Self::Events,
+            Quantity::EventTimeError | Quantity::EventConstant => Self::EventErrors,
+            Quantity::StateError
+            | Quantity::DriftError
+            | Quantity::StateConstant
+            | Quantity::ValidPeriods => Self::StateErrors,
+            Quantity::RestartError => Self::Restart,
+            Quantity::AttractorDistance => Self::Attractor,
+        }
+    }
+}
+
+/// What a gate did about a fault.
+#[derive(Clone, Debug, Default)]
+pub struct Trip {
+    /// Cases on which it was held against the engine.
+    pub held: usize,
+    /// Cases on which a bound of it failed.
+    pub failed: usize,
+    /// The failure on the first of them.
+    pub detail: String,
+}
+
+/// What was found about a wrong engine.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// Its name.
+    pub engine: &'static str,
+    /// What is wrong with it.
+    pub fault: &'static str,
+    /// The gates.
+    pub gates: BTreeMap<Gate, Trip>,
+    /// Cases on which it gave no result at all.
+    pub without_result: usize,
+}
+
+impl Finding {
+    /// Whether any gate noticed.
+    #[must_use]
+    pub fn caught(&self) -> bool {
+        self.without_result > 0 || self.gates.values().any(|trip| trip.failed > 0)
+    }
+}
+
+/// How wrong engines are held: the name whose bounds are taken, and the unit of error.
+#[derive(Clone, Copy, Debug)]
+pub struct Standard {
+    /// The engine whose bounds are taken.
+    pub engine: &'static str,
+    /// What that engine is asked for.
+    pub accuracy: Accuracy,
+}
+
+/// As the exact solver is held.
+pub const AS_EXACT: Standard = Standard { engine: "exact", accuracy: Accuracy::Exact };
+
+/// Runs a wrong engine on all cases.
+#[must_use]
+pub fn examine(
+    wrong: &Wrong,
+    cases: &[Prepared],
+    standard: Standard,
+    bounds: &[Bound],
+) -> Finding {
+    let outcomes: Vec<_> =
+        cases.par_iter().map(|case| held(wrong, case, standard, bounds)).collect();
+    let mut finding = Finding {
+        engine: wrong.engine.declaration().name,
+        fault: wrong.fault,
+        gates: Gate::ALL.into_iter().map(|gate| (gate, Trip::default())).collect(),
+        without_result: 0,
+    };
+    for (case, outcome) in cases.iter().zip(outcomes) {
+        let Some(checked) = outcome else {
+            finding.without_result += 1;
+            continue;
+        };
+        for (gate, trip) in &mut finding.gates {
+            let mut own = checked.iter().filter(|it| Gate::of(it.quantity) == *gate).peekable();
+            trip.held += usize::from(own.peek().is_some());
+            let Some(failed) = own.find(|it| it.verdict == Verdict::Fail) else { continue };
+            trip.failed += 1;
+            if trip.detail.is_empty() {
+                let (value, limit) = (brief(failed.value), brief(failed.limit));
+                trip.detail = format!("{}: {value}, limit {limit}", case.case.name);
+            }
+        }
+    }
+    finding
+}
+
+fn held(
+    wrong: &Wrong,
+    prepared: &Prepared,
+    standard: Standard,
+    defaults: &[Bound],
+) -> Option<Vec<Checked>> {
+    let subject = Subject {
+        case: &prepared.case.name,
+        engine: standard.engine,
+        accuracy: standard.accuracy,
+        unit: standard.accuracy.unit(),
+    };
+    let measured = prepared.measured(wrong.engine, Accuracy::Exact, subject.unit, &Limits::default(), true);
+    let (measures, _) = measured.ok()?;
+    let bounds: Vec<_> = prepared.case.bounds.iter().chain(defaults).collect();
+    let whole = prepared.is_whole(subject.unit);
+    Some(judge(&subject, Ok((&measures, whole)), &bounds, &[]).bounds)
+}

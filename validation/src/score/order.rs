@@ -1,0 +1,51 @@
+//! The order at which a method converges, from what it did.
+//!
+//! The error of a method of order k falls as the k-th power of its number of steps, whether the steps
+//! are prescribed or chosen by a tolerance. So the slope of log(error) against log(steps) over a
+//! ladder is the order in practice: a method below the order it claims is shown as such.
+
+/// One rung: steps taken, error reached.
+pub type Rung = (f64, f64);
+
+/// Errors below this are rounding, above [`LARGEST`] no convergence yet.
+const SMALLEST: f64 = 1e-12;
+const LARGEST: f64 = 1e-2;
+/// Fewer rungs say nothing, nor does a ladder over less than this factor in steps.
+const RUNGS: usize = 3;
+const SPAN: f64 = 1.5;
+
+/// The slope by least squares; `None` where the ladder is too short for one.
+#[must_use]
+pub fn order(ladder: &[Rung]) -> Option<f64> {
+    let usable = |(steps, error): &&Rung| *steps > 0.0 && (SMALLEST..LARGEST).contains(error);
+    let logarithms: Vec<_> =
+        ladder.iter().filter(usable).map(|(steps, error)| (steps.ln(), error.ln())).collect();
+    let count = logarithms.len() as f64;
+    let mean = |of: fn(&(f64, f64)) -> f64| logarithms.iter().map(of).sum::<f64>() / count;
+    let (x, y) = (mean(|it| it.0), mean(|it| it.1));
+    let square: f64 = logarithms.iter().map(|it| (it.0 - x).powi(2)).sum();
+    let product: f64 = logarithms.iter().map(|it| (it.0 - x) * (it.1 - y)).sum();
+    let widest = logarithms.iter().map(|it| (it.0 - x).abs()).fold(0.0, f64::max);
+    let enough = logarithms.len() >= RUNGS && 2.0 * widest >= SPAN.ln();
+    enough.then(|| -product / square)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_law_is_its_exponent() {
+        let ladder: Vec<Rung> =
+            [50.0, 100.0, 200.0, 400.0].map(|n: f64| (n, 3.0 * n.powi(-4))).to_vec();
+        let found = order(&ladder);
+        assert!(found.is_some_and(|order| (order - 4.0).abs() < 1e-12), "{found:?}");
+    }
+
+    #[test]
+    fn rounding_and_divergence_do_not_count() {
+        let ladder = [(10.0, 1.0), (100.0, 1e-4), (200.0, 1e-4 / 16.0), (1e5, 1e-15)];
+        assert_eq!(order(&ladder), None);
+        assert_eq!(order(&[(100.0, 1e-5), (101.0, 9e-6), (102.0, 8e-6)]), None);
+    }
+}
