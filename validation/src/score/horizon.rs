@@ -8,7 +8,7 @@
 
 use super::growth::{Growth, SCORED_ERROR};
 use super::restart::task;
-use super::starts::on_attractor;
+use super::starts::far_apart;
 use super::statistics::Spread;
 use crate::case::Problem;
 use crate::engine::{Failure, Grid, Outcome, Task};
@@ -70,7 +70,8 @@ impl HorizonTest {
     /// Follows the truth from `count` states on the attractor for this many periods.
     #[must_use]
     pub fn new(problem: &Problem, count: usize, periods: u32) -> Self {
-        let starts = on_attractor(problem, count);
+        // A run forgets where it began within its horizon, some 90 periods in f64.
+        let starts = far_apart(problem, count, u64::from(periods));
         let made: Vec<_> =
             starts.into_par_iter().map(|start| HorizonRun::new(start, periods)).collect();
         let runs: Vec<_> = made.into_iter().flatten().collect();

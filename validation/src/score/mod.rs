@@ -20,6 +20,6 @@ pub use horizon::{HorizonTest, Horizons, ValidHorizon};
 pub use matching::{Matching, WINDOW};
 pub use measure::{Measures, measure};
 pub use restart::{MOST_PERIODS, Restart, RestartError, RestartRun, RestartTest};
-pub use starts::on_attractor;
+pub use starts::{far_apart, on_attractor};
 pub use statistics::Spread;
 pub use verdict::{Checked, Judgement, Verdict, judge};

@@ -18,9 +18,17 @@ const PARTS: u64 = 1 << 32;
 /// cycle and without drift. Fewer if the run leaves the range of starts.
 #[must_use]
 pub fn on_attractor(problem: &Problem, count: usize) -> Vec<Problem> {
+    far_apart(problem, count, 0)
+}
+
+/// The same, each this many forcing periods further from the last: for long runs, which from
+/// neighbouring states would pass through the same stretch of the orbit and say the same.
+#[must_use]
+pub fn far_apart(problem: &Problem, count: usize, periods: u64) -> Vec<Problem> {
+    let step = STEP + periods * PARTS;
     let model = problem.model;
     let begin = problem.entry.instant;
-    let instant = |k: u64| begin.after_periods(TRANSIENT * PARTS + k * STEP, PARTS);
+    let instant = |k: u64| begin.after_periods(TRANSIENT * PARTS + k * step, PARTS);
     // A state that rounding puts on another phase's side of a switch is passed over: a few in 1e15.
     let last = 2 * count as u64;
     let mut legs = model.trajectory(problem.entry).until(instant(last));
