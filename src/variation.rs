@@ -114,37 +114,23 @@ impl Leg {
 
     /// The field, the guard's gradient and its rate just before the switch that ends the phase.
     fn landing(&self) -> Option<Landing> {
-        let Exit::Switch(next) = self.exit() else { return None };
-        let state = next.state;
+        let Exit::Switch(_) = self.exit() else { return None };
         let sample = self.point(self.duration());
-        let [force, ..] = sample.force;
-        Some(match &self.motion {
-            Motion::NoContact(flight) => {
-                let Constants { rate, omega, .. } = flight.constants;
-                Landing {
-                    field: [omega, state.y, force, -(state.q * rate), 0.0],
-                    guard: [0.0, 1.0, 0.0, -1.0, 0.0],
-                    guard_rate: sample.guard.orders[1],
-                }
-            }
+        let guard_rate = sample.guard.orders[1];
+        let (Constants { omega, .. }, guard, guard_rate) = match &self.motion {
+            Motion::NoContact(flight) => (flight.constants, [0.0, 1.0, 0.0, -1.0, 0.0], guard_rate),
             Motion::Contact(contact) => {
-                let Constants { two_xi, omega, .. } = contact.constants;
-                let f = two_xi * state.y + state.q;
-                Landing {
-                    field: [omega, state.y, force - f, state.y, 0.0],
-                    guard: [0.0, 0.0, two_xi, 1.0, 0.0],
-                    guard_rate: sample.guard.orders[1],
-                }
+                let two_xi = contact.constants.two_xi;
+                (contact.constants, [0.0, 0.0, two_xi, 1.0, 0.0], guard_rate)
             }
+            // The guard is w; f = 1 + 2 xi w.
             Motion::Progression(slip) => {
-                let Constants { two_xi, omega, .. } = slip.constants;
-                Landing {
-                    field: [omega, state.y, force - 1.0, state.y, 0.0],
-                    guard: [0.0, 0.0, two_xi, 1.0, 0.0],
-                    guard_rate: two_xi * sample.guard.orders[1],
-                }
+                let two_xi = slip.constants.two_xi;
+                (slip.constants, [0.0, 0.0, two_xi, 1.0, 0.0], two_xi * guard_rate)
             }
-        })
+        };
+        let [p, y, q, v] = self.field(&sample);
+        Some(Landing { field: [omega, p, y, q, v], guard, guard_rate })
     }
 }
 

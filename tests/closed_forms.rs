@@ -42,7 +42,7 @@ fn error(found: f64, exact: DoubleDouble) -> f64 {
     (DoubleDouble::exact(found) - exact).to_f64().abs() / f64::EPSILON
 }
 
-/// How much errors of the entry state and of the forcing angle grow (DESIGN's growth, for one
+/// How much errors of the entry state and of the forcing angle grow (the growth of one
 /// phase): the norm of the gradient of p, y, q and v, at least 1.
 ///
 /// The forms are linear in sine and cosine of the angle, so its share is a difference of two values.

@@ -15,8 +15,8 @@ use percuss::two_word::TwoWord;
 use percuss::{Entry, GrowthRecorder, Instant, Leg, Model, Trajectory};
 use reference::{Row, Table, tables};
 
-/// k of DESIGN's bound |error| <= k eps (1 + |value|) growth switches. Ten roundings a switch is
-/// the promise; what is reached stands in the failure message and in METHODOLOGY.
+/// k of the bound |error| <= k eps (1 + |value|) growth switches. Ten roundings a switch is the
+/// promise; what is reached is printed, and stands in the README.
 const ROUNDINGS_A_SWITCH: f64 = 10.0;
 
 fn run(table: &Table) -> (Model, Entry, Trajectory) {
