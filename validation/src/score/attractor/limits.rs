@@ -4,14 +4,13 @@
 //! s the mean and standard deviation over [`NULL_RUNS`] runs of the exact solver against the
 //! reference, a limit is |m| + z s of the difference itself for exponent and drift, which are means
 //! over many periods and so nearly normal. The other distances are positive, and fall off as fast as a
-//! normal variable: exp(m + z s) of their logarithms errs on the generous side. z belongs to
-//! [`FALSE_ALARMS`] false alarms in a whole run of the suite, spread evenly over all statistics of all
-//! rows that any suite compares.
+//! normal variable: exp(m + z s) of their logarithms errs on the generous side. z belongs to the level
+//! of the whole family of comparisons that a run of the suite makes.
 
 use super::distance::{Distances, STATISTICS, distances};
 use super::section::{Section, run_of};
 use crate::case::{Case, FileError};
-use crate::engine::{self, Engine, Failure, Limits};
+use crate::engine::{self, Accuracy, Engine, Failure, Limits};
 use percuss::{Parameters, Start};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -19,12 +18,10 @@ use std::collections::BTreeMap;
 
 /// Reference runs from which a limit is taken.
 pub const NULL_RUNS: u32 = 1000;
-/// At most this many false alarms in a whole run of the suite.
-pub const FALSE_ALARMS: f64 = 1e-3;
-/// Rows that a suite compares at most: cases times engines times tolerances, generously.
-pub const ROWS: f64 = 500.0;
-/// The normal quantile of 1 - FALSE_ALARMS/(ROWS x 17 statistics) = 1 - 1.2e-7, rounded up.
-pub const QUANTILE: f64 = 5.2;
+/// The normal quantile of 1 - 1e-3/(500 x 17) = 1 - 1.2e-7, rounded up: at most one false alarm in a
+/// thousand whole runs of the suite, of which each compares [`STATISTICS`] in at most 500 rows (three
+/// cases, fewer than thirty engines, a few tolerances).
+const QUANTILE: f64 = 5.2;
 
 const FILE: &str = include_str!("../../../attractors.toml");
 
@@ -72,45 +69,31 @@ pub fn calibrated() -> Result<Vec<Calibrated>, FileError> {
 const REFERENCE: u32 = 0;
 
 /// The section of the exact solver from a start that only `seed` and the case decide.
-///
-/// # Errors
-/// What the solver says.
-pub fn exact_section(
-    case: &Case,
-    plan: &Plan,
-    periods: u32,
-    seed: u32,
-) -> Result<Section, Failure> {
-    // A small change of the start is another stretch of the same chaos after the transient.
+fn exact_section(case: &Case, plan: &Plan, seed: u32) -> Result<Section, Failure> {
+    // A tiny change of the start is another stretch of the same chaos after the transient.
     let p = case.start.p - f64::from(seed) * 1e-9;
     let start = Start { p, ..case.start };
-    section(engine::exact(), case.parameters, start, plan.transient, periods, None)
+    section(engine::exact(), case.parameters, start, plan, Accuracy::Exact, &Limits::default())
 }
 
 /// The reference section of a case.
-///
-/// # Errors
-/// What the solver says.
-pub fn reference(case: &Case, plan: &Plan) -> Result<Section, Failure> {
-    exact_section(case, plan, plan.reference_periods, REFERENCE)
+pub(super) fn reference(case: &Case, plan: &Plan) -> Result<Section, Failure> {
+    exact_section(case, &Plan { periods: plan.reference_periods, ..*plan }, REFERENCE)
 }
 
-/// The section of one engine.
-///
-/// # Errors
-/// The engine's failure.
-pub fn section(
+/// The section of one engine's run.
+pub(super) fn section(
     engine: &dyn Engine,
     parameters: Parameters,
     start: Start,
-    transient: u32,
-    periods: u32,
-    tolerance: Option<f64>,
+    plan: &Plan,
+    accuracy: Accuracy,
+    limits: &Limits,
 ) -> Result<Section, Failure> {
-    let task = run_of(parameters, start, transient + periods)
+    let task = run_of(parameters, start, plan.transient + plan.periods)
         .ok_or_else(|| Failure::new("the start is refused"))?;
-    let outcome = engine.run(&task, tolerance, &Limits::default())?;
-    Section::of(&task, &outcome, transient)
+    let outcome = engine.run(&task, accuracy, limits)?;
+    Section::of(&task, &outcome, plan.transient)
 }
 
 /// Measures the limits of a case.
@@ -121,7 +104,7 @@ pub fn calibrate(case: &Case, plan: Plan) -> Result<Calibrated, Failure> {
     let reference = reference(case, &plan)?;
     let sections: Result<Vec<Section>, Failure> = (1..=NULL_RUNS)
         .into_par_iter()
-        .map(|seed| exact_section(case, &plan, plan.periods, seed))
+        .map(|seed| exact_section(case, &plan, seed))
         .collect();
     let sections = sections?;
     let nulls: Vec<Distances> = sections.iter().map(|it| distances(it, &reference)).collect();

@@ -6,10 +6,12 @@
 //! reference, in batches of the engine's length, because successive strobes are not independent
 //! ([`limits`]).
 
+mod comparison;
 mod distance;
 mod limits;
 mod section;
 
+pub use comparison::{AttractorTest, Comparison};
 pub use distance::{Distances, STATISTICS, distances};
 pub use limits::{Calibrated, Plan, calibrate, calibrated};
 pub use section::{Section, run_of};

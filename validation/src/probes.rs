@@ -1,0 +1,91 @@
+//! What is asked of an engine beyond the run of a case itself: restarts and the same attractor.
+
+use crate::case::{Case, FileError, Problem};
+use crate::engine::{Accuracy, Engine, Limits, contain};
+use crate::score::attractor::{AttractorTest, Comparison, calibrated};
+use crate::score::{Restart, RestartTest};
+use crate::suite::Suite;
+
+/// Cases with restarts in every suite: chaos at light and at stronger damping, and the long orbit of
+/// Table 1. In the full suite the exact solver restarts on every attractor.
+const RESTARTED: [&str; 3] = ["chaos-from-rest", "fig7a-chaos", "table1-from-rest"];
+
+/// One engine a library: those that restart and run for long in the quick suite too.
+const REPRESENTATIVES: [&str; 3] =
+    ["diffsol-bdf", "ode_solvers-dopri5", "differential-equations-rkv655e"];
+
+/// The tolerance at which they do so in the quick suite, and those of the full one.
+const TOLERANCE: f64 = 1e-9;
+const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
+
+/// The probes of one case, made ready once and shared by all engines.
+#[derive(Default)]
+pub struct Probes {
+    /// Restarts from states on the attractor.
+    pub restart: Option<RestartTest>,
+    /// A long run's section.
+    pub attractor: Option<AttractorTest>,
+}
+
+/// What the probes gave for one engine.
+#[derive(Clone, Debug, Default)]
+pub struct Probed {
+    /// The restart test.
+    pub restart: Option<Restart>,
+    /// The same-attractor test; without a comparison where the engine failed, with its reason.
+    pub attractor: Option<Result<Comparison, String>>,
+}
+
+impl Probes {
+    /// Makes the probes of a case ready for a suite.
+    ///
+    /// # Errors
+    /// A file of limits that cannot be read, or the exact solver's own failure.
+    pub fn new(case: &Case, problem: &Problem, suite: Suite) -> Result<Self, FileError> {
+        let restarted = suite == Suite::Full || RESTARTED.contains(&case.name.as_str());
+        let restart = restarted.then(|| RestartTest::new(problem, restarts(suite)));
+        let limits = calibrated()?.into_iter().find(|it| it.case == case.name);
+        let attractor = limits.map(|it| AttractorTest::new(case, it)).transpose();
+        let attractor = attractor.map_err(|failure| FileError(failure.to_string()))?;
+        Ok(Self { restart, attractor })
+    }
+
+    /// Asks an engine, if the suite asks this one; `unit` is its unit of error.
+    #[must_use]
+    pub fn ask(
+        &self,
+        case: &Case,
+        engine: &dyn Engine,
+        accuracy: Accuracy,
+        unit: f64,
+        limits: &Limits,
+    ) -> Probed {
+        let run = |task: &_| contain(|| engine.run(task, accuracy, limits));
+        let restart = self.restart.as_ref().map(|test| test.score(unit, run));
+        let compare = |test: &AttractorTest| {
+            contain(|| test.compare(case, engine, accuracy, limits)).map_err(|it| it.to_string())
+        };
+        Probed { restart, attractor: self.attractor.as_ref().map(compare) }
+    }
+}
+
+const fn restarts(suite: Suite) -> usize {
+    match suite {
+        Suite::Quick => 1_000,
+        Suite::Full => 10_000,
+    }
+}
+
+/// Whether a suite asks the probes of this engine at this accuracy on this case.
+#[must_use]
+pub fn asked(suite: Suite, case: &str, engine: &str, accuracy: Accuracy) -> bool {
+    let listed = RESTARTED.contains(&case);
+    match (suite, accuracy) {
+        (_, Accuracy::Exact) => true,
+        (_, Accuracy::Step(_)) => false,
+        (Suite::Quick, Accuracy::Tolerance(it)) => {
+            listed && it == TOLERANCE && REPRESENTATIVES.contains(&engine)
+        }
+        (Suite::Full, Accuracy::Tolerance(it)) => listed && TOLERANCES.contains(&it),
+    }
+}

@@ -1,0 +1,65 @@
+//! An engine's section held against the reference and its limits.
+
+use super::distance::{Distances, distances};
+use super::limits::{Calibrated, reference, section};
+use super::section::Section;
+use crate::case::Case;
+use crate::engine::{Accuracy, Engine, Failure, Limits};
+
+/// The same-attractor test of one case, made ready: its reference is computed once.
+pub struct AttractorTest {
+    /// Plan and limits.
+    pub calibrated: Calibrated,
+    /// What sections are compared with.
+    pub reference: Section,
+}
+
+/// How far an engine's section is from the reference.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Each distance with its limit, by name.
+    pub distances: Vec<(&'static str, f64, f64)>,
+    /// p and y at the engine's strobes.
+    pub points: Vec<[f64; 2]>,
+}
+
+impl Comparison {
+    /// The largest distance in units of its limit.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        let shares = self.distances.iter().map(|(_, value, limit)| value / limit);
+        // Keeps a NaN.
+        shares.fold(0.0, |worst, share| if share <= worst { worst } else { share })
+    }
+}
+
+impl AttractorTest {
+    /// Computes the reference of a case that has limits.
+    ///
+    /// # Errors
+    /// What the exact solver says.
+    pub fn new(case: &Case, calibrated: Calibrated) -> Result<Self, Failure> {
+        let reference = reference(case, &calibrated.plan)?;
+        Ok(Self { calibrated, reference })
+    }
+
+    /// Runs an engine and compares its section.
+    ///
+    /// # Errors
+    /// The engine's failure.
+    pub fn compare(
+        &self,
+        case: &Case,
+        engine: &dyn Engine,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<Comparison, Failure> {
+        let plan = &self.calibrated.plan;
+        let run = section(engine, case.parameters, case.start, plan, accuracy, limits)?;
+        let found: Distances = distances(&run, &self.reference);
+        let limit = |name: &str| self.calibrated.limits.get(name).copied().unwrap_or(f64::NAN);
+        let distances = found.into_iter().map(|(name, value)| (name, value, limit(name)));
+        let points = run.points.iter().map(|[p, y, _]| [*p, *y]).collect();
+        Ok(Comparison { distances: distances.collect(), points })
+    }
+}
