@@ -22,4 +22,4 @@ pub use measure::{Measures, measure};
 pub use restart::{MOST_PERIODS, Restart, RestartError, RestartRun, RestartTest};
 pub use starts::{far_apart, on_attractor};
 pub use statistics::Spread;
-pub use verdict::{Checked, Judgement, Verdict, judge};
+pub use verdict::{Checked, Judgement, Subject, Verdict, judge};
