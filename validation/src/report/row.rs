@@ -31,10 +31,14 @@ pub struct Report {
 /// An engine as it declares itself.
 #[derive(Clone, Debug, Serialize)]
 pub struct EngineEntry {
-    name: &'static str,
-    library: &'static str,
-    version: String,
-    method: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// The library it is of.
+    pub library: &'static str,
+    /// That library's version.
+    pub version: String,
+    /// The method.
+    pub method: &'static str,
 }
 
 /// How many rows came to which verdict.
