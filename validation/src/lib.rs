@@ -8,6 +8,8 @@ pub mod cli;
 pub mod engine;
 pub mod number;
 pub mod picture;
+pub mod power;
+pub mod probes;
 pub mod report;
 pub mod score;
 pub mod suite;

@@ -97,19 +97,17 @@ pub struct Standard {
     pub engine: &'static str,
     /// What that engine is asked for.
     pub accuracy: Accuracy,
+    /// Its unit of error.
+    pub unit: f64,
 }
 
 /// As the exact solver is held.
-pub const AS_EXACT: Standard = Standard { engine: "exact", accuracy: Accuracy::Exact };
+pub const AS_EXACT: Standard =
+    Standard { engine: "exact", accuracy: Accuracy::Exact, unit: f64::EPSILON };
 
 /// Runs a wrong engine on all cases.
 #[must_use]
-pub fn examine(
-    wrong: &Wrong,
-    cases: &[Prepared],
-    standard: Standard,
-    bounds: &[Bound],
-) -> Finding {
+pub fn examine(wrong: &Wrong, cases: &[Prepared], standard: Standard, bounds: &[Bound]) -> Finding {
     let outcomes: Vec<_> =
         cases.par_iter().map(|case| held(wrong, case, standard, bounds)).collect();
     let mut finding = Finding {
@@ -143,15 +141,11 @@ fn held(
     standard: Standard,
     defaults: &[Bound],
 ) -> Option<Vec<Checked>> {
-    let subject = Subject {
-        case: &prepared.case.name,
-        engine: standard.engine,
-        accuracy: standard.accuracy,
-        unit: standard.accuracy.unit(),
-    };
-    let measured = prepared.measured(wrong.engine, Accuracy::Exact, subject.unit, &Limits::default(), true);
-    let (measures, _) = measured.ok()?;
+    let Standard { engine, accuracy, unit } = standard;
+    let subject = Subject { case: &prepared.case.name, engine, accuracy, unit };
+    let limits = Limits::default();
+    let measured = prepared.measured(wrong.engine, Accuracy::Exact, unit, &limits, true);
+    let (measures, ..) = measured.ok()?;
     let bounds: Vec<_> = prepared.case.bounds.iter().chain(defaults).collect();
-    let whole = prepared.is_whole(subject.unit);
-    Some(judge(&subject, Ok((&measures, whole)), &bounds, &[]).bounds)
+    Some(judge(&subject, Ok((&measures, prepared.is_whole(unit))), &bounds, &[]).bounds)
 }

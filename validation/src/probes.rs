@@ -36,6 +36,23 @@ pub struct Probed {
     pub attractor: Option<Result<Comparison, String>>,
 }
 
+impl Probed {
+    /// Whether there are restarts to speak of.
+    #[must_use]
+    pub fn restarted(&self) -> bool {
+        self.restart.as_ref().is_some_and(|it| it.with_impact > 0)
+    }
+
+    /// The largest distance of the section in units of its limit; NaN where there is none.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        match &self.attractor {
+            Some(Ok(comparison)) => comparison.share(),
+            _ => f64::NAN,
+        }
+    }
+}
+
 impl Probes {
     /// Makes the probes of a case ready for a suite.
     ///

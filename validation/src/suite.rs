@@ -3,6 +3,8 @@
 use crate::case::{Case, Defaults, FileError};
 use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Stepping, Task, contain};
 use crate::number::brief;
+use crate::probes::{Probes, asked};
+use crate::score::attractor::AttractorTest;
 use crate::score::{Growth, Judgement, Measures, Subject, Verdict, judge, measure};
 use crate::truth::{Library, Truth};
 use rayon::prelude::*;
@@ -67,8 +69,10 @@ pub struct Prepared {
     pub case: Case,
     /// Its truth.
     pub truth: Truth,
-    growth: Growth,
+    /// How errors grow along it.
+    pub growth: Growth,
     task: Task,
+    probes: Probes,
 }
 
 /// How a run ended.
@@ -93,6 +97,8 @@ pub struct Scored {
     pub engine: &'static str,
     /// What it was asked for.
     pub accuracy: Accuracy,
+    /// Its unit of error.
+    pub unit: f64,
     /// How it ended.
     pub status: Status,
     /// Wall time.
@@ -105,11 +111,15 @@ pub struct Scored {
 ///
 /// # Errors
 /// [`FileError`] for reference data that are missing, altered or of another case.
-pub fn prepare(cases: Vec<Case>, library: &Library) -> Result<Vec<Prepared>, FileError> {
-    cases.into_iter().map(|case| prepare_one(case, library)).collect()
+pub fn prepare(
+    cases: Vec<Case>,
+    library: &Library,
+    suite: Suite,
+) -> Result<Vec<Prepared>, FileError> {
+    cases.into_par_iter().map(|case| prepare_one(case, library, suite)).collect()
 }
 
-fn prepare_one(case: Case, library: &Library) -> Result<Prepared, FileError> {
+fn prepare_one(case: Case, library: &Library, suite: Suite) -> Result<Prepared, FileError> {
     let truth = library.truth(&case)?;
     let given =
         crate::case::Given { parameters: case.parameters, start: case.start, ..Default::default() };
@@ -117,7 +127,44 @@ fn prepare_one(case: Case, library: &Library) -> Result<Prepared, FileError> {
     let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
     let task = Task::of(&case, problem, grid);
     let growth = Growth::along(&truth, &case.parameters, task.forcing_angle);
-    Ok(Prepared { case, truth, growth, task })
+    let probes = Probes::new(&case, &problem, suite)?;
+    Ok(Prepared { case, truth, growth, task, probes })
+}
+
+impl Prepared {
+    /// What an engine's run measures, with the probes if `probed`, and what the run itself gave.
+    ///
+    /// # Errors
+    /// The engine's failure in the run itself.
+    pub fn measured(
+        &self,
+        engine: &dyn Engine,
+        accuracy: Accuracy,
+        unit: f64,
+        limits: &Limits,
+        probed: bool,
+    ) -> Result<(Measures, Outcome, Duration), Failure> {
+        let began = Instant::now();
+        let outcome = contain(|| engine.run(&self.task, accuracy, limits))?;
+        let wall = began.elapsed();
+        let mut measures = measure(&self.task, &self.truth, &self.growth, &outcome, unit);
+        if probed {
+            measures.probed = self.probes.ask(&self.case, engine, accuracy, unit, limits);
+        }
+        Ok((measures, outcome, wall))
+    }
+
+    /// Whether the whole run is scored for this unit of error.
+    #[must_use]
+    pub fn is_whole(&self, unit: f64) -> bool {
+        self.growth.scored_samples(unit) == self.truth.samples.len()
+    }
+
+    /// The same-attractor test, where the case has one.
+    #[must_use]
+    pub fn attractor(&self) -> Option<&AttractorTest> {
+        self.probes.attractor.as_ref()
+    }
 }
 
 /// Runs everything; rows come case by case in the order of `cases` and `engines`.
@@ -162,12 +209,14 @@ fn one(
     suite: Suite,
     defaults: &Defaults,
 ) -> Scored {
-    let Prepared { case, truth, growth, task } = prepared;
+    let Prepared { case, task, .. } = prepared;
     let declaration = engine.declaration();
+    let unit = declaration.stepping.unit(accuracy);
     let row = |status, wall, judgement| Scored {
         case: case.name.clone(),
         engine: declaration.name,
         accuracy,
+        unit,
         status,
         wall,
         judgement,
@@ -188,24 +237,19 @@ fn one(
         );
         return row(Status::NotRun, Duration::ZERO, not_run(reason));
     }
-    let began = Instant::now();
-    let result = contain(|| engine.run(task, accuracy, &suite.limits()));
-    let wall = began.elapsed();
-    let unit = declaration.stepping.unit(accuracy);
     let subject = Subject { case: &case.name, engine: declaration.name, accuracy, unit };
     let bounds: Vec<_> = case.bounds.iter().chain(&defaults.bounds).collect();
     let shortcomings: Vec<_> = case.shortcomings.iter().chain(&defaults.shortcomings).collect();
     let judged = |measures| judge(&subject, measures, &bounds, &shortcomings);
-    match result {
-        Ok(outcome) => {
-            let measures = measure(task, truth, growth, &outcome, unit);
-            let whole = growth.scored_samples(unit) == truth.samples.len();
-            let judgement = judged(Ok((&measures, whole)));
+    let probed = asked(suite, &case.name, declaration.name, accuracy);
+    match prepared.measured(engine, accuracy, unit, &suite.limits(), probed) {
+        Ok((measures, outcome, wall)) => {
+            let judgement = judged(Ok((&measures, prepared.is_whole(unit))));
             row(Status::Ok(Box::new(measures), outcome), wall, judgement)
         }
         Err(failure) => {
             let judgement = judged(Err(&failure.0));
-            row(Status::Failed(failure), wall, judgement)
+            row(Status::Failed(failure), Duration::ZERO, judgement)
         }
     }
 }

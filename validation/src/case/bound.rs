@@ -25,6 +25,11 @@ pub enum Quantity {
     StateConstant,
     /// Forcing periods until the state's error passes 1e-3 (a lower limit).
     ValidPeriods,
+    /// Error after one passage through contact from states on the attractor, over
+    /// unit x (1 + |value|) x growth.
+    RestartError,
+    /// The largest distance of the section from the reference's, over its calibrated limit.
+    AttractorDistance,
 }
 
 /// Which figure of a distribution.

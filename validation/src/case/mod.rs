@@ -30,10 +30,15 @@ pub enum Horizon {
 pub struct Case {
     /// Name, as in `-c` and in the reference data's file names.
     pub name: String,
+    /// The file it stands in; beginning with `cases/` where that is inside the binary.
+    pub file: String,
     /// The regime it stands for.
     pub regime: String,
     /// Why it is here.
     pub why: String,
+    /// Of a near miss or light touch: how far the gap's first maximum reaches beyond the surface
+    /// (negative: stays short of it), units of displacement.
+    pub margin: Option<f64>,
     /// The model, checked.
     pub parameters: Parameters,
     /// The start, checked.

@@ -52,6 +52,7 @@ struct CaseTable {
     name: Spanned<String>,
     regime: String,
     why: String,
+    margin: Option<Spanned<f64>>,
 }
 
 #[derive(Default, Deserialize)]
@@ -165,10 +166,19 @@ pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
             format!("name {:?} is not accepted: letters, digits, '-', '_' and '.'", name.get_ref());
         return Err(source.error(&name, &what));
     }
+    let margin = match &wire.case.margin {
+        Some(margin) if !margin.get_ref().is_finite() => {
+            let what = format!("margin = {:?} is not accepted: a finite number", margin.get_ref());
+            return Err(source.error(margin, &what));
+        }
+        margin => margin.as_ref().map(|margin| *margin.get_ref()),
+    };
     Ok(Case {
         name: name.into_inner(),
+        file: source.file.to_owned(),
         regime: wire.case.regime,
         why: wire.case.why,
+        margin,
         parameters: given.parameters,
         start: given.start,
         horizon,

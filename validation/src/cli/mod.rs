@@ -4,6 +4,7 @@ mod engines;
 mod model;
 mod output;
 mod parse;
+mod reports;
 mod simulate;
 mod validate;
 

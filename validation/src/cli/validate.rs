@@ -1,17 +1,18 @@
 //! `validate`: every engine on every case against the truth.
 
-use super::output::{Destination, reader_left, write_whole};
-use super::{DONE, OUT_OF_BOUNDS, parse};
-use crate::case::{self, Case};
+use super::output::{Destination, reader_left};
+use super::{DONE, OUT_OF_BOUNDS, parse, reports};
+use crate::case::{self, Bound, Case};
 use crate::engine::{self, Engine, hush_contained_panics};
-use crate::report::{Report, exporters, table};
+use crate::power::{self, Finding};
+use crate::report::{Evidence, Report, table};
 use crate::suite::{self, Prepared, Scored, Status, Suite};
 use crate::truth::Library;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use regex::Regex;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Hold every engine against the truth on every case
 #[derive(Args)]
@@ -25,7 +26,7 @@ pub(super) struct Arguments {
     /// Only cases whose name matches; several are alternatives
     #[arg(short, long = "case", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
     case: Vec<Regex>,
-    /// Writes report.json and errors.csv into this folder
+    /// Writes report.html, report.json, errors.csv, junit.xml and pictures into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// An engine that is not installed is a failure
@@ -68,15 +69,41 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let rows =
         pool.install(|| suite::run(&cases, &engines, arguments.suite, &defaults, &|| bar.inc(1)));
     bar.finish_and_clear();
-    finish(arguments, &engines, &rows)
+    let findings = pool.install(|| findings(arguments, &cases, &defaults.bounds));
+    let evidence = Evidence::gather(&cases, &rows, &findings, arguments.cases.is_none());
+    let code = finish(arguments, &engines, &rows, &evidence)?;
+    Ok(if unnoticed(arguments, &findings) { OUT_OF_BOUNDS } else { code })
 }
 
-fn finish(arguments: &Arguments, engines: &[&'static dyn Engine], rows: &[Scored]) -> Result<u8> {
+/// The power of the gates, unless a choice of engines asks for something else.
+fn findings(arguments: &Arguments, cases: &[Prepared], bounds: &[Bound]) -> Vec<Finding> {
+    if !arguments.engine.is_empty() {
+        return Vec::new();
+    }
+    let examine = |it| power::examine(it, cases, power::AS_EXACT, bounds);
+    engine::wrong().iter().map(examine).collect()
+}
+
+/// Whether a wrong engine passes every bound of all cases together; said on stderr.
+fn unnoticed(arguments: &Arguments, findings: &[Finding]) -> bool {
+    let all_cases = arguments.case.is_empty() && arguments.cases.is_none();
+    let missed = findings.iter().filter(|it| all_cases && !it.caught());
+    let count = missed.map(|it| eprintln!("no bound notices {}: {}", it.engine, it.fault)).count();
+    count > 0
+}
+
+fn finish(
+    arguments: &Arguments,
+    engines: &[&'static dyn Engine],
+    rows: &[Scored],
+    evidence: &Evidence,
+) -> Result<u8> {
     let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
     let report = Report::new(arguments.suite, &declarations, rows);
     if let Some(folder) = &arguments.out {
-        write_reports(&report, folder)?;
+        reports::write(&report, evidence, folder)?;
     }
+    reports::annotate(&report, evidence, arguments.require);
     let shown = Destination::Stdout.write(|out| Ok(out.write_all(table(&report).as_bytes())?));
     // A reader that leaves early does not turn a failure into a success.
     shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
@@ -84,14 +111,6 @@ fn finish(arguments: &Arguments, engines: &[&'static dyn Engine], rows: &[Scored
     let absent = |row: &Scored| matches!(row.status, Status::Unavailable);
     let lacking = arguments.require && rows.iter().any(absent);
     Ok(if summary.fail + summary.error > 0 || lacking { OUT_OF_BOUNDS } else { DONE })
-}
-
-fn write_reports(report: &Report, folder: &Path) -> Result<()> {
-    for exporter in exporters() {
-        let path = folder.join(exporter.file_name());
-        write_whole(&path, |out| Ok(exporter.write(report, out)?)).context("--out")?;
-    }
-    Ok(())
 }
 
 fn chosen_engines(patterns: &[Regex]) -> Result<Vec<&'static dyn Engine>> {
@@ -119,7 +138,7 @@ fn prepared_cases(arguments: &Arguments) -> Result<Vec<Prepared>> {
         Some(folder) => Library::from_directory(folder).context("--reference")?,
         None => Library::embedded()?,
     };
-    Ok(suite::prepare(cases, &library)?)
+    Ok(suite::prepare(cases, &library, arguments.suite)?)
 }
 
 fn shown(patterns: &[Regex]) -> String {

@@ -11,18 +11,9 @@ const LIMITS: Limits = Limits { calls: 200_000, events: 1_000, wall: Duration::f
 fn task() -> Option<Task> {
     let given = Given { start: Start::default(), ..Given::default() };
     let problem = given.check().ok()?;
-    let omega = given.parameters.omega;
     let horizon = problem.entry.instant.after_periods(4, 1);
-    Some(Task {
-        parameters: given.parameters,
-        problem,
-        phase: problem.entry.phase(),
-        state: [0.0; 4],
-        forcing_angle: given.parameters.phi,
-        horizon,
-        span: horizon.since(&problem.entry.instant, omega).value(),
-        grid: Grid { per_period: 4, count: 17 },
-    })
+    let grid = Grid { per_period: 4, count: 17 };
+    Some(Task::until(given.parameters, problem, horizon, grid))
 }
 
 /// A usual choice for an engine.

@@ -1,6 +1,6 @@
 //! `errors.csv`: the rows of `report.json`, flat. What is `null` there is empty or `nan` here.
 
-use super::{Exporter, Report, Row};
+use super::{Evidence, Exporter, Report, Row};
 use crate::number::shortest;
 use crate::score::{Spread, Verdict};
 use std::io::{self, Write};
@@ -41,7 +41,7 @@ impl Exporter for Csv {
         "errors.csv"
     }
 
-    fn write(&self, report: &Report, out: &mut dyn Write) -> io::Result<()> {
+    fn write(&self, report: &Report, _: &Evidence, out: &mut dyn Write) -> io::Result<()> {
         let mut writer = csv::Writer::from_writer(out);
         writer.write_record(COLUMNS)?;
         for row in &report.results {

@@ -2,12 +2,19 @@
 //!
 //! Add a format by implementing [`Exporter`] and naming it in [`exporters`].
 
+mod annotations;
 mod csv;
+mod evidence;
+mod gather;
 mod json;
+mod junit;
 mod row;
+mod setting;
 mod table;
 
-pub use row::{Report, Row, Summary};
+pub use annotations::{annotations, under_the_service};
+pub use evidence::{CaseNote, ErrorGrowth, Evidence, Fault, Graze, RestartHistogram, SectionPair};
+pub use row::{EngineEntry, Report, Row, Summary};
 pub use table::table;
 
 use std::io::{self, Write};
@@ -17,15 +24,15 @@ pub trait Exporter: Sync {
     /// The file it is written to.
     fn file_name(&self) -> &'static str;
 
-    /// Writes the report.
+    /// Writes the report, with what is shown beside its rows.
     ///
     /// # Errors
     /// What the writer says.
-    fn write(&self, report: &Report, out: &mut dyn Write) -> io::Result<()>;
+    fn write(&self, report: &Report, evidence: &Evidence, out: &mut dyn Write) -> io::Result<()>;
 }
 
 /// All formats.
 #[must_use]
 pub fn exporters() -> &'static [&'static dyn Exporter] {
-    &[&json::Json, &csv::Csv]
+    &[&json::Json, &csv::Csv, &junit::Junit]
 }

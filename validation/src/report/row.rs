@@ -1,9 +1,11 @@
 //! What a report holds: the keys of `report.json`.
 
 use crate::engine::Declaration;
-use crate::score::{Checked, Spread, Verdict};
+use crate::score::attractor::Comparison;
+use crate::score::{Checked, Restart, Spread, Verdict, order};
 use crate::suite::{Scored, Status, Suite};
 use serde::Serialize;
+use std::collections::BTreeMap;
 
 /// A whole report.
 #[derive(Clone, Debug, Serialize)]
@@ -31,10 +33,14 @@ pub struct Report {
 /// An engine as it declares itself.
 #[derive(Clone, Debug, Serialize)]
 pub struct EngineEntry {
-    name: &'static str,
-    library: &'static str,
-    version: String,
-    method: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// The library it is of.
+    pub library: &'static str,
+    /// That library's version.
+    pub version: String,
+    /// The method.
+    pub method: &'static str,
 }
 
 /// How many rows came to which verdict.
@@ -72,11 +78,11 @@ pub struct Row {
     pub state_error: Spread,
     pub drift_error: f64,
     pub valid_periods: f64,
-    /// Filled by the restart test.
-    pub restart: Option<()>,
-    /// Filled by the same-attractor test.
-    pub distance: Option<()>,
-    /// Filled by the convergence ladder.
+    /// Errors of the restart test in units of error x (1 + |value|) x growth.
+    pub restart: Option<RestartFigures>,
+    /// Distances of the same-attractor test, by name.
+    pub distance: Option<BTreeMap<&'static str, Distance>>,
+    /// The order at which the engine converges on this case, over all its rows.
     pub order: Option<f64>,
     pub rhs_evaluations: Option<u64>,
     pub jacobian_evaluations: Option<u64>,
@@ -88,11 +94,31 @@ pub struct Row {
     pub why: String,
 }
 
+/// The figures of a restart test.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[allow(missing_docs, reason = "the keys are those of the command line's contract")]
+pub struct RestartFigures {
+    pub runs: usize,
+    pub with_impact: usize,
+    #[serde(flatten)]
+    pub error: Spread,
+}
+
+/// A distance of two sections.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Distance {
+    /// What was measured.
+    pub value: f64,
+    /// What reference runs hardly ever reach.
+    pub limit: f64,
+}
+
 impl Report {
     /// The report of these rows.
     #[must_use]
     pub fn new(suite: Suite, engines: &[Declaration], rows: &[Scored]) -> Self {
-        let results: Vec<Row> = rows.iter().map(Row::of).collect();
+        let mut results: Vec<Row> = rows.iter().map(Row::of).collect();
+        fill_orders(&mut results);
         let commit = env!("PERCUSS_COMMIT");
         Self {
             schema: 1,
@@ -105,6 +131,16 @@ impl Report {
             summary: Summary::of(&results),
             results,
         }
+    }
+}
+
+/// The rows of one engine on one case are its ladder.
+fn fill_orders(rows: &mut [Row]) {
+    for ladder in rows.chunk_by_mut(|a, b| a.case == b.case && a.engine == b.engine) {
+        let rung = |row: &Row| Some((row.steps? as f64, row.state_error.max));
+        let rungs: Vec<_> = ladder.iter().filter_map(rung).collect();
+        let found = order(&rungs);
+        ladder.iter_mut().for_each(|row| row.order = found);
     }
 }
 
@@ -127,6 +163,19 @@ impl Summary {
     }
 }
 
+impl RestartFigures {
+    fn of(restart: &Restart) -> Self {
+        Self { runs: restart.runs, with_impact: restart.with_impact, error: restart.units }
+    }
+}
+
+fn by_name(comparison: &Comparison) -> BTreeMap<&'static str, Distance> {
+    let distances = comparison.distances.iter();
+    distances
+        .map(|(name, value, limit)| (*name, Distance { value: *value, limit: *limit }))
+        .collect()
+}
+
 impl Row {
     fn of(scored: &Scored) -> Self {
         let empty = Self::empty(scored);
@@ -146,6 +195,13 @@ impl Row {
             jacobian_evaluations: Some(outcome.work.jacobian_evaluations),
             steps: Some(outcome.work.steps),
             wall_ns: u64::try_from(scored.wall.as_nanos()).ok(),
+            restart: measures.probed.restart.as_ref().map(RestartFigures::of),
+            distance: measures
+                .probed
+                .attractor
+                .as_ref()
+                .and_then(|it| it.as_ref().ok())
+                .map(by_name),
             ..empty
         }
     }

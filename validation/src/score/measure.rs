@@ -6,6 +6,7 @@ use super::matching::{Matching, WINDOW};
 use super::statistics::Spread;
 use crate::case::{Quantity, Statistic};
 use crate::engine::{Event, Outcome, Task};
+use crate::probes::Probed;
 use crate::truth::{Row, Truth};
 use percuss::two_word::TwoWord;
 
@@ -34,6 +35,8 @@ pub struct Measures {
     pub event_constant: f64,
     /// The same of the sample.
     pub state_constant: f64,
+    /// What was asked beyond the run itself.
+    pub probed: Probed,
 }
 
 impl Measures {
@@ -55,6 +58,10 @@ impl Measures {
             Quantity::EventConstant => self.event_constant,
             Quantity::StateConstant => self.state_constant,
             Quantity::ValidPeriods => self.valid_periods,
+            Quantity::RestartError => {
+                self.probed.restart.as_ref().map_or(f64::NAN, |it| of(&it.units))
+            }
+            Quantity::AttractorDistance => self.probed.share(),
         }
     }
 
@@ -64,6 +71,8 @@ impl Measures {
         match quantity {
             Quantity::EventTimeError | Quantity::EventConstant => self.expected == 0,
             Quantity::DriftError => !whole_run,
+            Quantity::RestartError => !self.probed.restarted(),
+            Quantity::AttractorDistance => self.probed.attractor.is_none(),
             _ => false,
         }
     }
@@ -107,6 +116,7 @@ pub fn measure(
         valid_periods: valid_periods(task, truth, &state_errors, period),
         event_constant: event_constant(rows, found, &pairs, growth, unit),
         state_constant: state_constant(truth, outcome, growth, scored, unit),
+        probed: Probed::default(),
     }
 }
 
@@ -135,7 +145,9 @@ fn worst(errors: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// A sample that the engine did not deliver is a NaN.
-fn sample_errors(truth: &Truth, outcome: &Outcome) -> Vec<f64> {
+/// max(|dp|, |dy|, |dq|) at each sample of the truth.
+#[must_use]
+pub fn sample_errors(truth: &Truth, outcome: &Outcome) -> Vec<f64> {
     let error = |(k, row): (usize, &Row)| {
         let state = outcome.samples.get(k).copied().unwrap_or([f64::NAN; 4]);
         worst((0..3).map(|i| off(row.state[i], state[i])))

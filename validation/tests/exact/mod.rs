@@ -2,7 +2,7 @@
 #![allow(dead_code, reason = "each test uses its own part")]
 
 use percuss_validation::case::{Case, Given, Problem, embedded};
-use percuss_validation::engine::{Engine, Failure, Limits, Outcome, Task, all};
+use percuss_validation::engine::{Accuracy, Engine, Failure, Limits, Outcome, Task, all};
 
 fn engine() -> &'static dyn Engine {
     let mut engines = all().iter().copied();
@@ -11,7 +11,7 @@ fn engine() -> &'static dyn Engine {
 
 /// Runs a task.
 pub fn run(task: &Task) -> Result<Outcome, Failure> {
-    engine().run(task, None, &Limits::default())
+    engine().run(task, Accuracy::Exact, &Limits::default())
 }
 
 /// The embedded case of this name.

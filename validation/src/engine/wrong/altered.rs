@@ -1,7 +1,7 @@
 //! The exact solver on a model that is slightly different, or with a drift that is.
 
 use super::super::exact::Exact;
-use super::super::{Declaration, Engine, Failure, Limits, Outcome, Task};
+use super::super::{Accuracy, Declaration, Engine, Failure, Limits, Outcome, Task};
 use crate::case::Problem;
 use percuss::{Exit, Leg, Model, Parameters, Phase, Start};
 
@@ -28,7 +28,7 @@ impl Engine for Altered {
         Declaration { name: self.name, method: "wrong on purpose", ..Exact.declaration() }
     }
 
-    fn run(&self, task: &Task, accuracy: Option<f64>, limits: &Limits) -> Result<Outcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if self.change == Change::Drift {
             return drifting(task, limits);
         }
@@ -81,7 +81,7 @@ fn periods(task: &Task) -> (u64, u64) {
 /// The right motion with the drift of Eq. (20) as printed: at the start of each progression v jumps
 /// by 2 (q0 - 1), of which 2 (q0 - 1) exp(-d/(2 xi)) is left after d.
 fn drifting(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
-    let mut outcome = Exact.run(task, None, limits)?;
+    let mut outcome = Exact.run(task, Accuracy::Exact, limits)?;
     let start = task.problem.entry.instant;
     let omega = task.parameters.omega;
     let times = task.sample_times();

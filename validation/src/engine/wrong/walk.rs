@@ -4,8 +4,9 @@
 //! Without a fault it looks finely enough for what the power test asks of it. It is no peer: it has
 //! no proof, and its steps miss what is shorter than they are.
 
-use super::super::phases::{GUARDS, Oscillator, Sampler};
-use super::super::{Declaration, Engine, Event, Failure, Limits, Location, Outcome};
+use super::super::field::{Equations, GUARDS, Oscillator};
+use super::super::sampler::Sampler;
+use super::super::{Accuracy, Declaration, Engine, Event, Failure, Limits, Location, Outcome};
 use super::super::{Stepping, Task, Work, pins};
 use super::closed::Closed;
 use percuss::Phase;
@@ -30,7 +31,7 @@ pub(super) struct Walk {
 }
 
 /// Steps a forcing period.
-const FINE: f64 = 2048.0;
+const FINE: f64 = 512.0;
 /// As an integrator's longest steps.
 const COARSE: f64 = 24.0;
 
@@ -47,11 +48,11 @@ impl Engine for Walk {
         }
     }
 
-    fn run(&self, task: &Task, _: Option<f64>, limits: &Limits) -> Result<Outcome, Failure> {
+    fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let mut run = Run {
             task,
             fault: self.fault,
-            oscillator: Oscillator::new(&task.parameters, task.forcing_angle),
+            oscillator: Oscillator::of(&task.parameters, task.forcing_angle),
             step: task.problem.model.period()
                 / if self.fault == Fault::SignChange { COARSE } else { FINE },
             events: task.events_before,
@@ -83,7 +84,6 @@ impl Run<'_> {
             sampler.take(until, |time| Ok::<_, Failure>(closed.at(time - t)))?;
             let there = closed.at(until - t);
             let Some((at, guard)) = found else {
-                sampler.take(f64::INFINITY, |_| Ok::<_, Failure>(there))?;
                 outcome.end = there;
                 break;
             };
@@ -94,7 +94,7 @@ impl Run<'_> {
                 return Err(Failure::new(format!("gave up after {} switches", limits.events)));
             }
         }
-        outcome.samples = sampler.taken;
+        outcome.samples = sampler.finish(outcome.end);
         let steps = outcome.events.len() as u64 + 1;
         outcome.work = Work { rhs_evaluations: self.evaluations, jacobian_evaluations: 0, steps };
         Ok(outcome)
@@ -153,7 +153,7 @@ impl Run<'_> {
         let state = closed.at(t - from);
         let positive = self.oscillator.guards(phase, &state)[guard] > 0.0;
         let blind = self.fault == Fault::SignChange;
-        positive && (blind || self.oscillator.rises(phase, guard, t, &state))
+        positive && (blind || self.oscillator.rates(phase, t, &state)[guard] > 0.0)
     }
 
     fn bisect(

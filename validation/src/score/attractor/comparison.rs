@@ -29,7 +29,9 @@ impl Comparison {
     pub fn share(&self) -> f64 {
         let shares = self.distances.iter().map(|(_, value, limit)| value / limit);
         // Keeps a NaN.
-        shares.fold(0.0, |worst, share| if share <= worst { worst } else { share })
+        shares
+            .reduce(|worst, share| if share <= worst || worst.is_nan() { worst } else { share })
+            .unwrap_or(f64::NAN)
     }
 }
 

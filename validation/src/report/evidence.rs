@@ -1,0 +1,134 @@
+//! What a report shows beside its rows: distributions, curves and clouds that a row has no room for.
+//!
+//! Any part may be empty; the report then says that it was not run.
+
+use crate::case::Case;
+use serde::Serialize;
+
+/// Everything that is shown beside the rows.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Evidence {
+    /// The cases that were run.
+    pub cases: Vec<CaseNote>,
+    /// Errors along chaotic runs.
+    pub growth: Vec<ErrorGrowth>,
+    /// Errors of the restart test.
+    pub restarts: Vec<RestartHistogram>,
+    /// Near misses and light touches; where there are none they are read off the rows of cases with a margin.
+    pub grazes: Vec<Graze>,
+    /// Poincare sections of the exact solver and of direct integration.
+    pub sections: Vec<SectionPair>,
+    /// Deliberately wrong engines, and what noticed them.
+    pub faults: Vec<Fault>,
+}
+
+/// What a case says of itself.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct CaseNote {
+    /// Its name.
+    pub name: String,
+    /// The file it stands in, as seen from the repository's root for cases inside the binary.
+    pub file: String,
+    /// The regime it stands for.
+    pub regime: String,
+    /// Why it is here.
+    pub why: String,
+    /// How far the gap's first maximum reaches beyond the surface (negative: stays short of it).
+    pub margin: Option<f64>,
+}
+
+/// The error of one run over time, beside the truth's own growth.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct ErrorGrowth {
+    /// The case.
+    pub case: String,
+    /// The engine.
+    pub engine: String,
+    /// Its tolerance, where it has one.
+    pub tolerance: Option<f64>,
+    /// Instants, in forcing periods since the start.
+    pub periods: Vec<f64>,
+    /// max(|dp|, |dy|, |dq|) at those instants.
+    pub error: Vec<f64>,
+    /// The engine's unit of error times the growth of the truth up to those instants.
+    pub truth_growth: Vec<f64>,
+    /// The largest Lyapunov exponent per forcing period, where it is known.
+    pub lambda_per_period: Option<f64>,
+}
+
+/// How the errors of one engine's restarts are distributed.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct RestartHistogram {
+    /// The case whose attractor the states lie on.
+    pub case: String,
+    /// The engine.
+    pub engine: String,
+    /// Its tolerance, where it has one.
+    pub tolerance: Option<f64>,
+    /// Edges of the bins, one more than counts: log10 of the error in `unit`.
+    pub edges: Vec<f64>,
+    /// Runs in each bin.
+    pub counts: Vec<u64>,
+    /// What the errors are counted in, in words.
+    pub unit: String,
+}
+
+/// What an engine made of a near miss or a light touch.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Graze {
+    /// The case.
+    pub case: String,
+    /// How far the gap's first maximum reaches beyond the surface (negative: stays short of it).
+    pub margin: f64,
+    /// The engine.
+    pub engine: String,
+    /// Its tolerance, where it has one.
+    pub tolerance: Option<f64>,
+    /// Switches of the truth that it does not have.
+    pub missed: usize,
+    /// Switches that the truth does not have.
+    pub spurious: usize,
+}
+
+/// One attractor twice, as points (p, y) of its Poincare section.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct SectionPair {
+    /// Forcing frequency.
+    pub omega: f64,
+    /// Damping ratio.
+    pub xi: f64,
+    /// By the exact solver.
+    pub exact: Vec<[f64; 2]>,
+    /// By direct integration.
+    pub direct: Vec<[f64; 2]>,
+    /// The engine that integrated.
+    pub direct_engine: String,
+    /// Distances between the two: name, value, limit.
+    pub distances: Vec<(String, f64, f64)>,
+}
+
+/// A deliberately wrong engine.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Fault {
+    /// The engine.
+    pub engine: String,
+    /// What is wrong with it.
+    pub fault: String,
+    /// The gates it was held against: name, whether it was caught, and the figure that tells.
+    pub gates: Vec<(String, bool, String)>,
+}
+
+impl CaseNote {
+    /// What this case says of itself; `embedded`: it stands inside the binary.
+    #[must_use]
+    pub fn of(case: &Case, embedded: bool) -> Self {
+        let folder = if embedded { "validation/" } else { "" };
+        Self {
+            name: case.name.clone(),
+            file: format!("{folder}{}", case.file),
+            regime: case.regime.clone(),
+            why: case.why.clone(),
+            margin: case.margin,
+        }
+    }
+}

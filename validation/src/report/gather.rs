@@ -1,0 +1,102 @@
+//! The evidence of a run: what the rows and the prepared cases hold that a row has no room for.
+
+use super::evidence::{CaseNote, ErrorGrowth, Evidence, Fault, RestartHistogram, SectionPair};
+use crate::power::{Finding, Gate};
+use crate::score::attractor::{AttractorTest, Comparison};
+use crate::score::{Histogram, Measures, sample_errors};
+use crate::suite::{Prepared, Scored, Status};
+
+/// Cases whose name says so are chaotic: their growth of errors is shown.
+const CHAOTIC: &str = "chaos";
+
+impl Evidence {
+    /// Collects it; `embedded`: the cases stand inside the binary.
+    #[must_use]
+    pub fn gather(
+        cases: &[Prepared],
+        rows: &[Scored],
+        findings: &[Finding],
+        embedded: bool,
+    ) -> Self {
+        let mut evidence = Self {
+            cases: cases.iter().map(|it| CaseNote::of(&it.case, embedded)).collect(),
+            faults: findings.iter().map(fault).collect(),
+            ..Self::default()
+        };
+        for row in rows {
+            let Status::Ok(measures, _) = &row.status else { continue };
+            let Some(prepared) = cases.iter().find(|it| it.case.name == row.case) else { continue };
+            if row.case.contains(CHAOTIC) {
+                evidence.growth.extend(growth(prepared, row));
+            }
+            evidence.restarts.extend(restarts(row, measures));
+            evidence.sections.extend(sections(prepared, row, measures));
+        }
+        evidence
+    }
+}
+
+fn fault(finding: &Finding) -> Fault {
+    let gate = |gate: Gate| {
+        let trip = finding.gates.get(&gate).cloned().unwrap_or_default();
+        let detail = match (trip.held, trip.failed) {
+            (0, _) => "not asked".to_owned(),
+            (held, 0) => format!("passes on {held} cases"),
+            (held, failed) => format!("fails on {failed} of {held} cases, first {}", trip.detail),
+        };
+        (gate.name().to_owned(), trip.failed > 0, detail)
+    };
+    Fault {
+        engine: finding.engine.to_owned(),
+        fault: finding.fault.to_owned(),
+        gates: Gate::ALL.into_iter().map(gate).collect(),
+    }
+}
+
+fn growth(prepared: &Prepared, row: &Scored) -> Option<ErrorGrowth> {
+    let Status::Ok(_, outcome) = &row.status else { return None };
+    let per_period = f64::from(crate::truth::Truth::SAMPLES_PER_PERIOD);
+    let largest = |growth: &[f64; 4]| growth[..3].iter().fold(1.0_f64, |a, b| a.max(*b));
+    let error = sample_errors(&prepared.truth, outcome);
+    Some(ErrorGrowth {
+        case: row.case.clone(),
+        engine: row.engine.to_owned(),
+        tolerance: row.accuracy.tolerance(),
+        periods: (0..error.len()).map(|k| k as f64 / per_period).collect(),
+        truth_growth: prepared.growth.samples.iter().map(|it| row.unit * largest(it)).collect(),
+        error,
+        lambda_per_period: prepared.attractor().map(|it| it.reference.lyapunov),
+    })
+}
+
+fn restarts(row: &Scored, measures: &Measures) -> Option<RestartHistogram> {
+    let restart = measures.probed.restart.as_ref().filter(|it| it.with_impact > 0)?;
+    let Histogram { lowest, ref counts } = restart.histogram;
+    let edge = |k: usize| f64::from(lowest + k as i32) * std::f64::consts::LOG10_2;
+    let unit = if row.accuracy.tolerance().is_some() { "tolerances" } else { "eps" };
+    Some(RestartHistogram {
+        case: row.case.clone(),
+        engine: row.engine.to_owned(),
+        tolerance: row.accuracy.tolerance(),
+        edges: (0..=counts.len()).map(edge).collect(),
+        counts: counts.iter().map(|count| *count as u64).collect(),
+        unit: format!("{unit} x (1 + |value|) x growth"),
+    })
+}
+
+/// An integrator's section beside the exact solver's.
+fn sections(prepared: &Prepared, row: &Scored, measures: &Measures) -> Option<SectionPair> {
+    let AttractorTest { reference, calibrated } = prepared.attractor()?;
+    let Comparison { points, distances } = measures.probed.attractor.as_ref()?.as_ref().ok()?;
+    row.accuracy.tolerance()?;
+    let shown = calibrated.plan.periods as usize;
+    let named = distances.iter().map(|(name, value, limit)| ((*name).to_owned(), *value, *limit));
+    Some(SectionPair {
+        omega: prepared.case.parameters.omega,
+        xi: prepared.case.parameters.xi,
+        exact: reference.points.iter().take(shown).map(|[p, y, _]| [*p, *y]).collect(),
+        direct: points.clone(),
+        direct_engine: row.engine.to_owned(),
+        distances: named.collect(),
+    })
+}

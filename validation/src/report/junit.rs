@@ -1,0 +1,52 @@
+//! `junit.xml`: a suite a case, a test a row, for services that show test results.
+
+use super::{Evidence, Exporter, Report, Row};
+use crate::score::Verdict;
+use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
+use std::io::{self, Write};
+use std::time::Duration;
+
+pub(super) struct Junit;
+
+impl Exporter for Junit {
+    fn file_name(&self) -> &'static str {
+        "junit.xml"
+    }
+
+    fn write(&self, report: &Report, _: &Evidence, out: &mut dyn Write) -> io::Result<()> {
+        let mut whole = quick_junit::Report::new("percuss validate");
+        for rows in report.results.chunk_by(|a, b| a.case == b.case) {
+            whole.add_test_suite(suite(rows));
+        }
+        whole.serialize(out).map_err(io::Error::other)
+    }
+}
+
+fn suite(rows: &[Row]) -> TestSuite {
+    let mut suite = TestSuite::new(rows.first().map_or("", |row| &row.case));
+    suite.set_time(rows.iter().map(wall).sum());
+    suite.add_test_cases(rows.iter().map(test));
+    suite
+}
+
+fn test(row: &Row) -> TestCase {
+    let mut status = match row.verdict {
+        Verdict::Pass | Verdict::Expected => TestCaseStatus::success(),
+        Verdict::Fail => TestCaseStatus::non_success(NonSuccessKind::Failure),
+        Verdict::Error => TestCaseStatus::non_success(NonSuccessKind::Error),
+        Verdict::Unavailable => TestCaseStatus::skipped(),
+    };
+    if !matches!(row.verdict, Verdict::Pass | Verdict::Expected) {
+        status.set_message(row.why.as_str()).set_type(super::csv::word(row.verdict));
+    }
+    let mut test = TestCase::new(row.who(), status);
+    test.set_classname(row.case.as_str()).set_time(wall(row));
+    if row.expected {
+        test.set_system_out(format!("known shortcoming, shows as stated: {}", row.why));
+    }
+    test
+}
+
+fn wall(row: &Row) -> Duration {
+    Duration::from_nanos(row.wall_ns.unwrap_or(0))
+}
