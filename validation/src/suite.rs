@@ -1,8 +1,9 @@
 //! The whole matrix: every engine on every case at every tolerance, in parallel and in order.
 
-use crate::case::{Bound, Case, FileError};
-use crate::engine::{Engine, Failure, Grid, Limits, Outcome, Stepping, Task, contain};
-use crate::score::{Growth, Judgement, Measures, Verdict, judge, measure};
+use crate::case::{Case, Defaults, FileError};
+use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Stepping, Task, contain};
+use crate::number::brief;
+use crate::score::{Growth, Judgement, Measures, Subject, Verdict, judge, measure};
 use crate::truth::{Library, Truth};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
@@ -11,20 +12,52 @@ use std::time::{Duration, Instant};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Suite {
-    /// Two tolerances, under a minute.
+    /// Three tolerances, a minute on two cores.
     Quick,
-    /// Three tolerances.
+    /// Every decade of tolerance down to where rounding begins to show.
     Full,
 }
 
 impl Suite {
-    /// The tolerances of adaptive engines.
+    /// What engines are asked for that choose their accuracy in this way.
     #[must_use]
-    pub fn tolerances(self) -> &'static [f64] {
-        match self {
-            Self::Quick => &[1e-6, 1e-9],
-            Self::Full => &[1e-6, 1e-9, 1e-12],
+    pub fn accuracies(self, stepping: Stepping) -> Vec<Accuracy> {
+        let decades = |exponents: &[i32]| {
+            exponents
+                .iter()
+                .map(|k| Accuracy::Tolerance(format!("1e-{k}").parse().unwrap_or(f64::NAN)))
+                .collect()
+        };
+        let halvings = |exponents: &[i32]| {
+            exponents.iter().map(|k| Accuracy::Step(0.5_f64.powi(*k))).collect()
+        };
+        match (stepping, self) {
+            (Stepping::Exact, _) => vec![Accuracy::Exact],
+            (Stepping::Adaptive | Stepping::PerStep { .. }, Self::Quick) => decades(&[6, 9, 12]),
+            (Stepping::Adaptive | Stepping::PerStep { .. }, Self::Full) => {
+                decades(&[4, 5, 6, 7, 8, 9, 10, 11, 12])
+            }
+            (Stepping::Fixed { .. }, Self::Quick) => halvings(&[2, 4, 6]),
+            (Stepping::Fixed { .. }, Self::Full) => halvings(&[1, 2, 3, 4, 5, 6, 7]),
         }
+    }
+}
+
+impl Suite {
+    /// Right-hand sides beyond which a row is not run, where that is known beforehand.
+    #[must_use]
+    pub fn budget(self) -> f64 {
+        match self {
+            Self::Quick => 3e6,
+            Self::Full => 3e7,
+        }
+    }
+
+    /// What a row's run may cost before it is given up as a failure. The slowest method takes a
+    /// microsecond a call.
+    #[must_use]
+    pub fn limits(self) -> Limits {
+        Limits { calls: 4 * self.budget() as u64 + 8_000_000, ..Limits::default() }
     }
 }
 
@@ -46,7 +79,9 @@ pub enum Status {
     /// Without one.
     Failed(Failure),
     /// The engine is not installed.
-    Unavailable(String),
+    Unavailable,
+    /// It would have cost more than the suite's budget.
+    NotRun,
 }
 
 /// One row of the report.
@@ -56,8 +91,8 @@ pub struct Scored {
     pub case: String,
     /// The engine's name.
     pub engine: &'static str,
-    /// Its tolerance, where it has one.
-    pub tolerance: Option<f64>,
+    /// What it was asked for.
+    pub accuracy: Accuracy,
     /// How it ended.
     pub status: Status,
     /// Wall time.
@@ -90,7 +125,7 @@ pub fn run(
     cases: &[Prepared],
     engines: &[&'static dyn Engine],
     suite: Suite,
-    bounds: &[Bound],
+    defaults: &Defaults,
     done: &(impl Fn() + Sync),
 ) -> Vec<Scored> {
     let jobs: Vec<_> =
@@ -98,11 +133,11 @@ pub fn run(
     let jobs: Vec<_> = jobs
         .into_iter()
         .flat_map(|(case, engine)| {
-            tolerances(engine, suite).into_iter().map(move |t| (case, engine, t))
+            accuracies(engine, suite).into_iter().map(move |it| (case, engine, it))
         })
         .collect();
-    let row = |(case, engine, tolerance): (&Prepared, &'static dyn Engine, Option<f64>)| {
-        let row = one(case, engine, tolerance, bounds);
+    let row = |(case, engine, accuracy): (&Prepared, &'static dyn Engine, Accuracy)| {
+        let row = one(case, engine, accuracy, suite, defaults);
         done();
         row
     };
@@ -113,53 +148,63 @@ pub fn run(
 /// How many rows [`run`] makes.
 #[must_use]
 pub fn size(cases: usize, engines: &[&'static dyn Engine], suite: Suite) -> usize {
-    cases * engines.iter().map(|engine| tolerances(*engine, suite).len()).sum::<usize>()
+    cases * engines.iter().map(|engine| accuracies(*engine, suite).len()).sum::<usize>()
 }
 
-fn tolerances(engine: &dyn Engine, suite: Suite) -> Vec<Option<f64>> {
-    match engine.declaration().stepping {
-        Stepping::Exact => vec![None],
-        Stepping::Adaptive => suite.tolerances().iter().copied().map(Some).collect(),
-    }
+fn accuracies(engine: &dyn Engine, suite: Suite) -> Vec<Accuracy> {
+    suite.accuracies(engine.declaration().stepping)
 }
 
 fn one(
     prepared: &Prepared,
     engine: &'static dyn Engine,
-    tolerance: Option<f64>,
-    defaults: &[Bound],
+    accuracy: Accuracy,
+    suite: Suite,
+    defaults: &Defaults,
 ) -> Scored {
     let Prepared { case, truth, growth, task } = prepared;
-    let name = engine.declaration().name;
+    let declaration = engine.declaration();
     let row = |status, wall, judgement| Scored {
         case: case.name.clone(),
-        engine: name,
-        tolerance,
+        engine: declaration.name,
+        accuracy,
         status,
         wall,
         judgement,
     };
-    if let Err(reason) = engine.available() {
+    let not_run = |reason: String| {
         let verdict = Verdict::Unavailable;
-        let judgement =
-            Judgement { bounds: Vec::new(), verdict, expected: false, why: reason.clone() };
-        return row(Status::Unavailable(reason), Duration::ZERO, judgement);
+        Judgement { bounds: Vec::new(), verdict, expected: false, why: reason }
+    };
+    if let Err(reason) = engine.available() {
+        return row(Status::Unavailable, Duration::ZERO, not_run(reason));
+    }
+    let (least, budget) = (engine.least_work(task, accuracy), suite.budget());
+    if least > budget {
+        let reason = format!(
+            "not run: {} right-hand sides at the least, the budget is {}",
+            brief(least),
+            brief(budget)
+        );
+        return row(Status::NotRun, Duration::ZERO, not_run(reason));
     }
     let began = Instant::now();
-    let result = contain(|| engine.run(task, tolerance, &Limits::default()));
+    let result = contain(|| engine.run(task, accuracy, &suite.limits()));
     let wall = began.elapsed();
-    let bounds: Vec<_> = case.bounds.iter().chain(defaults).collect();
+    let unit = declaration.stepping.unit(accuracy);
+    let subject = Subject { case: &case.name, engine: declaration.name, accuracy, unit };
+    let bounds: Vec<_> = case.bounds.iter().chain(&defaults.bounds).collect();
+    let shortcomings: Vec<_> = case.shortcomings.iter().chain(&defaults.shortcomings).collect();
+    let judged = |measures| judge(&subject, measures, &bounds, &shortcomings);
     match result {
         Ok(outcome) => {
-            let unit = tolerance.unwrap_or(f64::EPSILON);
             let measures = measure(task, truth, growth, &outcome, unit);
             let whole = growth.scored_samples(unit) == truth.samples.len();
-            let judgement =
-                judge(name, tolerance, Ok((&measures, whole)), &bounds, &case.shortcomings);
+            let judgement = judged(Ok((&measures, whole)));
             row(Status::Ok(Box::new(measures), outcome), wall, judgement)
         }
         Err(failure) => {
-            let judgement = judge(name, tolerance, Err(&failure.0), &bounds, &case.shortcomings);
+            let judgement = judged(Err(&failure.0));
             row(Status::Failed(failure), wall, judgement)
         }
     }

@@ -1,5 +1,6 @@
 //! What is expected of an engine on a case.
 
+use crate::engine::Accuracy;
 use regex::Regex;
 
 /// What a bound is about.
@@ -45,15 +46,17 @@ pub enum Statistic {
 pub struct Bound {
     /// Engines it is for.
     pub engine: Regex,
-    /// The one tolerance it is for; all where none is given.
-    pub tolerance: Option<f64>,
+    /// The tolerances or steps it is for; all where none is given.
+    pub at: Vec<Accuracy>,
+    /// It is for engines whose unit of error is at least this.
+    pub coarser_than: f64,
     /// What is bounded.
     pub quantity: Quantity,
     /// Which figure of it.
     pub statistic: Statistic,
     /// The limit, in the quantity's unit.
     pub limit: f64,
-    /// Whether the engine's tolerance multiplies the limit.
+    /// Whether the engine's unit of error, its tolerance, multiplies the limit.
     pub times_tolerance: bool,
     /// The reason.
     pub why: String,
@@ -62,10 +65,12 @@ pub struct Bound {
 /// What is known not to work, so that it is neither a failure nor forgotten.
 #[derive(Clone, Debug)]
 pub struct Shortcoming {
+    /// Cases it is for, where it does not stand in one.
+    pub case: Option<Regex>,
     /// Engines it is for.
     pub engine: Regex,
-    /// The one tolerance it is for; all where none is given.
-    pub tolerance: Option<f64>,
+    /// The tolerances or steps it is for; all where none is given.
+    pub at: Vec<Accuracy>,
     /// What shows it; `None`: the engine fails.
     pub shows: Option<(Quantity, Statistic, f64)>,
     /// The reason.
@@ -73,21 +78,22 @@ pub struct Shortcoming {
 }
 
 impl Bound {
-    /// Whether the bound is for this engine at this tolerance.
+    /// Whether the bound is for this engine when it is as accurate as this, with this unit of error.
     #[must_use]
-    pub fn is_for(&self, engine: &str, tolerance: Option<f64>) -> bool {
-        applies(&self.engine, self.tolerance, engine, tolerance)
+    pub fn is_for(&self, engine: &str, accuracy: Accuracy, unit: f64) -> bool {
+        unit >= self.coarser_than && applies(&self.engine, &self.at, engine, accuracy)
     }
 }
 
 impl Shortcoming {
-    /// Whether it is said of this engine at this tolerance.
+    /// Whether it is said of this engine on this case when it is as accurate as this.
     #[must_use]
-    pub fn is_for(&self, engine: &str, tolerance: Option<f64>) -> bool {
-        applies(&self.engine, self.tolerance, engine, tolerance)
+    pub fn is_for(&self, case: &str, engine: &str, accuracy: Accuracy) -> bool {
+        self.case.as_ref().is_none_or(|pattern| pattern.is_match(case))
+            && applies(&self.engine, &self.at, engine, accuracy)
     }
 }
 
-fn applies(pattern: &Regex, only: Option<f64>, engine: &str, tolerance: Option<f64>) -> bool {
-    pattern.is_match(engine) && (only.is_none() || only == tolerance)
+fn applies(pattern: &Regex, at: &[Accuracy], engine: &str, accuracy: Accuracy) -> bool {
+    pattern.is_match(engine) && (at.is_empty() || at.contains(&accuracy))
 }

@@ -1,15 +1,14 @@
 //! Where cases come from: inside the binary, or a folder.
 
 use super::Case;
-use super::bound::Bound;
-use super::expectations::read_bounds;
+use super::expectations::{Defaults, read_defaults};
 use super::located::FileError;
 use super::wire::parse_case;
 use include_dir::{Dir, include_dir};
 use std::path::{Path, PathBuf};
 
 static CASES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/cases");
-const DEFAULT_BOUNDS: &str = include_str!("../../bounds.toml");
+const DEFAULTS: &str = include_str!("../../bounds.toml");
 
 /// The cases inside the binary, by name.
 ///
@@ -79,12 +78,12 @@ fn ordered(mut cases: Vec<Case>) -> Result<Vec<Case>, FileError> {
     }
 }
 
-/// The bounds that come after a case's own.
+/// What is expected on every case, after what the case says itself.
 ///
 /// # Errors
 /// [`FileError`]; a test shows that there is none.
-pub fn default_bounds() -> Result<Vec<Bound>, FileError> {
-    read_bounds("bounds.toml", DEFAULT_BOUNDS)
+pub fn defaults() -> Result<Defaults, FileError> {
+    read_defaults("bounds.toml", DEFAULTS)
 }
 
 #[cfg(test)]
@@ -95,6 +94,6 @@ mod tests {
     fn embedded_cases_and_bounds_are_accepted() {
         let cases = embedded().map_err(|error| error.to_string());
         assert!(cases.as_ref().is_ok_and(|cases| cases.len() >= 16), "{cases:?}");
-        assert_eq!(default_bounds().map(|_| ()), Ok(()));
+        assert_eq!(defaults().map(|_| ()), Ok(()));
     }
 }

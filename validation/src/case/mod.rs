@@ -8,7 +8,8 @@ mod problem;
 mod wire;
 
 pub use bound::{Bound, Quantity, Shortcoming, Statistic};
-pub use library::{default_bounds, embedded, from_directory};
+pub use expectations::Defaults;
+pub use library::{defaults, embedded, from_directory};
 pub use located::{FileError, Origins};
 pub use problem::{Given, Problem};
 pub use wire::{parse_case, parse_problem, read_problem};

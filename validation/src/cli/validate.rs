@@ -5,7 +5,7 @@ use super::{DONE, OUT_OF_BOUNDS, parse};
 use crate::case::{self, Case};
 use crate::engine::{self, Engine, hush_contained_panics};
 use crate::report::{Report, exporters, table};
-use crate::suite::{self, Prepared, Scored, Suite};
+use crate::suite::{self, Prepared, Scored, Status, Suite};
 use crate::truth::Library;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
@@ -59,14 +59,14 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
             )
         })?;
     }
-    let bounds = case::default_bounds()?;
+    let defaults = case::defaults()?;
     hush_contained_panics();
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads.unwrap_or(0))).build();
     let pool = pool.context("--threads: the threads cannot be started")?;
     let bar = progress(suite::size(cases.len(), &engines, arguments.suite));
     let rows =
-        pool.install(|| suite::run(&cases, &engines, arguments.suite, &bounds, &|| bar.inc(1)));
+        pool.install(|| suite::run(&cases, &engines, arguments.suite, &defaults, &|| bar.inc(1)));
     bar.finish_and_clear();
     finish(arguments, &engines, &rows)
 }
@@ -81,7 +81,8 @@ fn finish(arguments: &Arguments, engines: &[&'static dyn Engine], rows: &[Scored
     // A reader that leaves early does not turn a failure into a success.
     shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
     let summary = report.summary;
-    let lacking = arguments.require && summary.unavailable > 0;
+    let absent = |row: &Scored| matches!(row.status, Status::Unavailable);
+    let lacking = arguments.require && rows.iter().any(absent);
     Ok(if summary.fail + summary.error > 0 || lacking { OUT_OF_BOUNDS } else { DONE })
 }
 

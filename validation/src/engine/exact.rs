@@ -1,7 +1,7 @@
 //! The exact solver, as an engine among others.
 
 use super::meter::{Failure, Limits};
-use super::{Declaration, Engine, Event, Location, Outcome, Stepping, Task, Work, pins};
+use super::{Accuracy, Declaration, Engine, Event, Location, Outcome, Stepping, Task, Work, pins};
 use percuss::{Exit, Leg, Sample};
 
 /// The closed forms, joined at proved first crossings.
@@ -20,12 +20,7 @@ impl Engine for Exact {
         }
     }
 
-    fn run(
-        &self,
-        task: &Task,
-        _tolerance: Option<f64>,
-        limits: &Limits,
-    ) -> Result<Outcome, Failure> {
+    fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let start = task.problem.entry;
         let mut outcome = Outcome::default();
         let mut run = task.problem.model.trajectory(start).until(task.horizon);

@@ -3,6 +3,7 @@
 //! A hung thread cannot be killed, so the limits are enforced where the library calls back, in the
 //! right-hand side and in the guards: they unwind to [`contain`].
 
+use super::Work;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::{Duration, Instant};
@@ -43,6 +44,7 @@ pub(super) struct Meter {
     calls: Cell<u64>,
     rhs: Cell<u64>,
     jacobians: Cell<u64>,
+    steps: Cell<u64>,
 }
 
 /// How often the clock is looked at, in calls.
@@ -57,6 +59,7 @@ impl Meter {
             calls: zero(),
             rhs: zero(),
             jacobians: zero(),
+            steps: zero(),
         }
     }
 
@@ -88,6 +91,15 @@ impl Meter {
         }
     }
 
+    /// Refuses beforehand what would pass the limit, before memory is taken for it.
+    pub(super) fn affords(&self, calls: f64) -> Result<(), Failure> {
+        if self.calls.get() as f64 + calls <= self.limits.calls as f64 {
+            Ok(())
+        } else {
+            Err(Failure::new(format!("gave up before {calls:e} calls, of {}", self.limits.calls)))
+        }
+    }
+
     /// Refuses more switches than allowed.
     pub(super) fn events(&self, count: usize) -> Result<(), Failure> {
         if count < self.limits.events {
@@ -97,12 +109,18 @@ impl Meter {
         }
     }
 
-    pub(super) fn rhs_count(&self) -> u64 {
-        self.rhs.get()
+    /// Counts steps that were accepted.
+    pub(super) fn steps(&self, count: u64) {
+        self.steps.set(self.steps.get() + count);
     }
 
-    pub(super) fn jacobian_count(&self) -> u64 {
-        self.jacobians.get()
+    /// What was counted.
+    pub(super) fn work(&self) -> Work {
+        Work {
+            rhs_evaluations: self.rhs.get(),
+            jacobian_evaluations: self.jacobians.get(),
+            steps: self.steps.get(),
+        }
     }
 }
 

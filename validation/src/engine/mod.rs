@@ -4,14 +4,24 @@
 //! takes plain f64 slices, because the libraries disagree about their linear algebra, and is set up
 //! the way an expert user of its library would; what that took stands in its module.
 
-mod diffsol_bdf;
-mod dopri5;
+mod accuracy;
+mod cubic;
+mod differential_equations;
+mod diffsol;
 mod exact;
+mod field;
+mod joining;
+mod location;
 mod meter;
-mod phases;
+#[cfg(test)]
+mod odd_input;
+mod ode_solvers;
+mod original;
 mod pins;
 mod registry;
+mod sampler;
 
+pub use accuracy::{Accuracy, Stepping, shortest_time};
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use registry::{all, select};
 
@@ -29,15 +39,6 @@ pub enum Location {
     Library,
     /// By this harness on the library's dense output.
     Harness,
-}
-
-/// How an engine's accuracy is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stepping {
-    /// Nothing to choose: closed forms.
-    Exact,
-    /// By a tolerance.
-    Adaptive,
 }
 
 /// What an engine says of itself.
@@ -138,12 +139,16 @@ pub trait Engine: Sync {
         Ok(())
     }
 
-    /// Runs a task. `tolerance` is relative and absolute; `None` where [`Stepping::Exact`].
+    /// Right-hand sides that a run takes at the least, as far as that is known beforehand.
+    fn least_work(&self, _task: &Task, _accuracy: Accuracy) -> f64 {
+        0.0
+    }
+
+    /// Runs a task as accurately as asked; what can be asked is its [`Stepping`].
     ///
     /// # Errors
     /// [`Failure`] with the library's reason, or the limit that was passed.
-    fn run(&self, task: &Task, tolerance: Option<f64>, limits: &Limits)
-    -> Result<Outcome, Failure>;
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure>;
 }
 
 impl Task {

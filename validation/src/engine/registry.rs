@@ -1,12 +1,29 @@
 //! All engines.
 
-use super::diffsol_bdf::DiffsolBdf;
-use super::dopri5::Dopri5;
 use super::exact::Exact;
-use super::{Engine, Failure};
+use super::{Engine, Failure, differential_equations, diffsol, ode_solvers};
 use regex::Regex;
 
-static ENGINES: [&dyn Engine; 3] = [&Exact, &DiffsolBdf, &Dopri5];
+static ENGINES: [&dyn Engine; 18] = [
+    &Exact,
+    &diffsol::BDF,
+    &diffsol::TR_BDF2,
+    &diffsol::ESDIRK34,
+    &diffsol::TSIT45,
+    &ode_solvers::DOPRI5,
+    &ode_solvers::DOPRI5_ORIGINAL,
+    &ode_solvers::DOP853,
+    &ode_solvers::DOP853_TIME,
+    &ode_solvers::Rk4,
+    &differential_equations::RKV655E,
+    &differential_equations::RKV655E_ORIGINAL,
+    &differential_equations::BuiltIn,
+    &differential_equations::RKV767E,
+    &differential_equations::DOP853,
+    &differential_equations::RADAU5,
+    &differential_equations::KVAERNO745,
+    &differential_equations::BDF,
+];
 
 /// Every engine, the exact solver first.
 #[must_use]

@@ -154,12 +154,12 @@ impl Row {
         Self {
             case: scored.case.clone(),
             engine: scored.engine,
-            tolerance: scored.tolerance,
-            step: None,
+            tolerance: scored.accuracy.tolerance(),
+            step: scored.accuracy.step(),
             status: match &scored.status {
                 Status::Ok(..) => "ok",
                 Status::Failed(_) => "failed",
-                Status::Unavailable(_) => "unavailable",
+                Status::Unavailable | Status::NotRun => "unavailable",
             },
             horizon_periods: f64::NAN,
             events_expected: None,

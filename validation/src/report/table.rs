@@ -87,5 +87,9 @@ fn cells(case: &str, row: &Row) -> [String; 12] {
 }
 
 fn setting(row: &Row) -> String {
-    row.tolerance.map_or("-".to_owned(), |tolerance| format!("{tolerance:e}"))
+    match (row.tolerance, row.step) {
+        (Some(tolerance), _) => format!("{tolerance:e}"),
+        (_, Some(step)) => format!("h {step}"),
+        _ => "-".to_owned(),
+    }
 }

@@ -13,4 +13,4 @@ pub use growth::{Growth, SCORED_ERROR, SCORED_FACTOR};
 pub use matching::{Matching, WINDOW};
 pub use measure::{Measures, measure};
 pub use statistics::Spread;
-pub use verdict::{Checked, Judgement, Verdict, judge};
+pub use verdict::{Checked, Judgement, Subject, Verdict, judge};

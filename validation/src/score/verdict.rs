@@ -2,6 +2,7 @@
 
 use super::measure::Measures;
 use crate::case::{Bound, Quantity, Shortcoming, Statistic};
+use crate::engine::Accuracy;
 use crate::number::brief;
 use serde::Serialize;
 
@@ -61,22 +62,36 @@ pub struct Judgement {
     pub why: String,
 }
 
+/// What is judged.
+#[derive(Clone, Copy, Debug)]
+pub struct Subject<'a> {
+    /// The case's name.
+    pub case: &'a str,
+    /// The engine's name.
+    pub engine: &'a str,
+    /// What the engine was asked for.
+    pub accuracy: Accuracy,
+    /// The unit in which its errors are counted.
+    pub unit: f64,
+}
+
 /// Judges a run: `measures`, or the reason why there are none.
 ///
 /// Bounds are taken in order, the first for a quantity and statistic counts.
 #[must_use]
 pub fn judge(
-    engine: &str,
-    tolerance: Option<f64>,
+    subject: &Subject<'_>,
     measures: Result<(&Measures, bool), &str>,
     bounds: &[&Bound],
-    shortcomings: &[Shortcoming],
+    shortcomings: &[&Shortcoming],
 ) -> Judgement {
-    let known: Vec<_> = shortcomings.iter().filter(|it| it.is_for(engine, tolerance)).collect();
+    let Subject { case, engine, accuracy, .. } = *subject;
+    let of = |it: &&&Shortcoming| it.is_for(case, engine, accuracy);
+    let known: Vec<_> = shortcomings.iter().filter(of).copied().collect();
     match measures {
         Err(reason) => failed(reason, &known),
         Ok((measures, whole_run)) => {
-            let mut checked = check(engine, tolerance, measures, whole_run, bounds);
+            let mut checked = check(subject, measures, whole_run, bounds);
             let (verdict, expected, why) = settle(&mut checked, measures, &known);
             Judgement { bounds: checked, verdict, expected, why }
         }
@@ -92,19 +107,20 @@ fn failed(reason: &str, known: &[&Shortcoming]) -> Judgement {
 }
 
 fn check(
-    engine: &str,
-    tolerance: Option<f64>,
+    subject: &Subject<'_>,
     measures: &Measures,
     whole_run: bool,
     bounds: &[&Bound],
 ) -> Vec<Checked> {
     let mut checked: Vec<Checked> = Vec::new();
-    for bound in bounds.iter().filter(|bound| bound.is_for(engine, tolerance)) {
+    for bound in
+        bounds.iter().filter(|it| it.is_for(subject.engine, subject.accuracy, subject.unit))
+    {
         let seen = |it: &Checked| it.quantity == bound.quantity && it.statistic == bound.statistic;
         if checked.iter().any(seen) || measures.is_empty_of(bound.quantity, whole_run) {
             continue;
         }
-        let scale = if bound.times_tolerance { tolerance.unwrap_or(f64::EPSILON) } else { 1.0 };
+        let scale = if bound.times_tolerance { subject.unit } else { 1.0 };
         let limit = bound.limit * scale;
         let value = measures.figure(bound.quantity, bound.statistic);
         let within = match bound.quantity {

@@ -11,9 +11,36 @@ use percuss::{Parameters, Phase};
 
 /// Number of guards; a phase that has one leaves the other at [`NO_GUARD`].
 pub(super) const GUARDS: usize = 2;
-const NO_GUARD: f64 = -1.0;
+pub(super) const NO_GUARD: f64 = -1.0;
 
-/// The model in the time elapsed since the start.
+/// The equations of motion in some co-ordinates, in the time elapsed since the start.
+pub(super) trait Equations: Copy {
+    /// The model's equations; `angle` is omega tau + phi at the start.
+    fn of(parameters: &Parameters, angle: f64) -> Self;
+
+    /// p, y, q and v in these co-ordinates.
+    fn of_bounded(&self, state: &[f64; 4]) -> [f64; 4];
+
+    /// These co-ordinates as p, y, q and v.
+    fn bounded(&self, u: &[f64; 4]) -> [f64; 4];
+
+    /// The right-hand side.
+    fn derivatives(&self, phase: Phase, t: f64, u: &[f64], du: &mut [f64]);
+
+    /// The derivatives' derivative along `w`.
+    fn jacobian_product(&self, phase: Phase, w: &[f64], dw: &mut [f64]);
+
+    /// The guards: gap; trial force at 1, at 0; trial force at 1.
+    fn guards(&self, phase: Phase, u: &[f64]) -> [f64; GUARDS];
+
+    /// The guards' rates by the equations of motion.
+    fn rates(&self, phase: Phase, t: f64, u: &[f64]) -> [f64; GUARDS];
+
+    /// The phase that begins where a guard has risen to zero, with the state put on its surface.
+    fn switch(&self, phase: Phase, guard: usize, u: &[f64]) -> (Phase, [f64; 4]);
+}
+
+/// The model in the paper's bounded co-ordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Oscillator {
     a: f64,
@@ -25,11 +52,6 @@ pub(super) struct Oscillator {
 }
 
 impl Oscillator {
-    pub(super) fn new(parameters: &Parameters, angle: f64) -> Self {
-        let Parameters { a, b, xi, omega, g, .. } = *parameters;
-        Self { a, b, omega, g, two_xi: 2.0 * xi, angle }
-    }
-
     fn force(&self, t: f64) -> f64 {
         self.a * (self.omega * t + self.angle).cos() + self.b
     }
@@ -37,9 +59,24 @@ impl Oscillator {
     fn trial_force(&self, u: &[f64]) -> f64 {
         self.two_xi * u[1] + u[2]
     }
+}
+
+impl Equations for Oscillator {
+    fn of(parameters: &Parameters, angle: f64) -> Self {
+        let Parameters { a, b, xi, omega, g, .. } = *parameters;
+        Self { a, b, omega, g, two_xi: 2.0 * xi, angle }
+    }
+
+    fn of_bounded(&self, state: &[f64; 4]) -> [f64; 4] {
+        *state
+    }
+
+    fn bounded(&self, u: &[f64; 4]) -> [f64; 4] {
+        *u
+    }
 
     /// Eqs. (11), (12), (13) and the drift's velocity.
-    pub(super) fn derivatives(&self, phase: Phase, t: f64, u: &[f64], du: &mut [f64]) {
+    fn derivatives(&self, phase: Phase, t: f64, u: &[f64], du: &mut [f64]) {
         let (y, q) = (u[1], u[2]);
         let force = self.force(t);
         let rates = match phase {
@@ -53,8 +90,7 @@ impl Oscillator {
         du[..4].copy_from_slice(&rates);
     }
 
-    /// The derivatives' derivative along `w`.
-    pub(super) fn jacobian_product(&self, phase: Phase, w: &[f64], dw: &mut [f64]) {
+    fn jacobian_product(&self, phase: Phase, w: &[f64], dw: &mut [f64]) {
         let (y, q) = (w[1], w[2]);
         let rates = match phase {
             Phase::NoContact => [y, 0.0, -q / self.two_xi, 0.0],
@@ -67,8 +103,7 @@ impl Oscillator {
         dw[..4].copy_from_slice(&rates);
     }
 
-    /// The guards: gap; trial force at 1, at 0; trial force at 1.
-    pub(super) fn guards(&self, phase: Phase, u: &[f64]) -> [f64; GUARDS] {
+    fn guards(&self, phase: Phase, u: &[f64]) -> [f64; GUARDS] {
         match phase {
             Phase::NoContact => [u[0] - u[2] - self.g, NO_GUARD],
             Phase::Contact => [self.trial_force(u) - 1.0, -self.trial_force(u)],
@@ -76,21 +111,17 @@ impl Oscillator {
         }
     }
 
-    /// Whether a guard rises.
-    pub(super) fn rises(&self, phase: Phase, guard: usize, t: f64, u: &[f64]) -> bool {
+    fn rates(&self, phase: Phase, t: f64, u: &[f64]) -> [f64; GUARDS] {
+        if phase == Phase::NoContact {
+            return [self.trial_force(u) / self.two_xi, 0.0];
+        }
         let mut du = [0.0; 4];
         self.derivatives(phase, t, u, &mut du);
-        match (phase, guard) {
-            // 2 xi h' = f.
-            (Phase::NoContact, 0) => self.trial_force(u) > 0.0,
-            (Phase::Contact, 0) => self.two_xi * du[1] + du[2] > 0.0,
-            (Phase::Contact, 1) | (Phase::Progression, 0) => self.two_xi * du[1] + du[2] < 0.0,
-            _ => false,
-        }
+        let rate = self.two_xi * du[1] + du[2];
+        if phase == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
     }
 
-    /// The phase that begins where a guard has risen to zero, with the state put on its surface.
-    pub(super) fn switch(&self, phase: Phase, guard: usize, u: &[f64]) -> (Phase, [f64; 4]) {
+    fn switch(&self, phase: Phase, guard: usize, u: &[f64]) -> (Phase, [f64; 4]) {
         let mut state = [u[0], u[1], u[2], u[3]];
         let next = match (phase, guard) {
             (Phase::NoContact, _) if self.trial_force(u) < 1.0 => Phase::Contact,
@@ -110,31 +141,5 @@ impl Oscillator {
         };
         state[0] = state[2] + self.g;
         (next, state)
-    }
-}
-
-/// Collects the grid's samples as a run passes their times.
-pub(super) struct Sampler {
-    times: Vec<f64>,
-    pub(super) taken: Vec<[f64; 4]>,
-}
-
-impl Sampler {
-    pub(super) fn new(times: Vec<f64>) -> Self {
-        Self { taken: Vec::with_capacity(times.len()), times }
-    }
-
-    /// Takes the samples at times up to `until` from `state_at`.
-    pub(super) fn take<E>(
-        &mut self,
-        until: f64,
-        mut state_at: impl FnMut(f64) -> Result<[f64; 4], E>,
-    ) -> Result<(), E> {
-        while let Some(time) =
-            self.times.get(self.taken.len()).copied().filter(|time| *time <= until)
-        {
-            self.taken.push(state_at(time)?);
-        }
-        Ok(())
     }
 }

@@ -1,0 +1,136 @@
+//! differential-equations, whose methods give an interpolant of each step to a `Solout`.
+//!
+//! - Switches are located by the harness on that interpolant ([`Watch`]); the library's built-in
+//!   event location is an engine of its own ([`builtin`]).
+//! - Each phase is begun by a fresh method, because limits of steps and of rejections count over a
+//!   method's life.
+//! - Tolerances are vectors, one for each co-ordinate.
+//! - Steps are at most an eighth of a forcing period, so that no step hides a whole phase; limits of
+//!   steps and rejections are raised, the meter's is the one that counts.
+//! - Newton iterations are held to what rounding of the displacements allows where the library's
+//!   default is a constant, and to its own rule where it has one.
+//! - The interpolants of the Verner methods are as good as their steps and are used. That of `dop853`
+//!   has the factors of its higher terms in the wrong order, that of `bdf` uses differences which have
+//!   been rescaled to the next step already, and those of `radau5` and `kvaerno745` are cubic. There a
+//!   state inside a step is had by the method again from the step's beginning, in `bdf` from Hermite's
+//!   cubic ([`method::Inside`]).
+//! - `radau5` gets a ladder of steps ([`method`]): the library reuses a factorisation that belongs to
+//!   another step, which without it spoils a step here and there by thousands of tolerances.
+//! - `bdf` chooses a first step below rounding at tight tolerances, and gives up: it is given one. Its
+//!   longest step is left open: where that shortens a step the differences are rescaled as if it had not.
+
+mod builtin;
+mod method;
+mod watch;
+
+use super::field::{Equations, Oscillator};
+use super::joining::join;
+use super::meter::{Failure, Limits, Meter};
+use super::original::OriginalOscillator;
+use super::{Accuracy, Declaration, Engine, Location, Outcome, Task, pins, shortest_time};
+use differential_equations::error::Error;
+use differential_equations::linalg::Matrix;
+use differential_equations::ode::{ODE, solve_ode};
+use method::{Bdf, Dop853, Kvaerno745, Method, Radau5, Rkv655e, Rkv767e};
+use percuss::Phase;
+use std::marker::PhantomData;
+use watch::Watch;
+
+pub(super) use builtin::BuiltIn;
+
+const LIBRARY: &str = "differential-equations";
+/// The longest step, in forcing periods.
+const LONGEST_STEP: f64 = 0.125;
+
+/// The library with one of its methods, on some equations.
+pub(super) struct Stepped<M, E> {
+    name: &'static str,
+    kind: PhantomData<fn() -> (M, E)>,
+}
+
+const fn stepped<M, E>(name: &'static str) -> Stepped<M, E> {
+    Stepped { name, kind: PhantomData }
+}
+
+pub(super) static RKV655E: Stepped<Rkv655e, Oscillator> = stepped("differential-equations-rkv655e");
+pub(super) static RKV655E_ORIGINAL: Stepped<Rkv655e, OriginalOscillator> =
+    stepped("differential-equations-rkv655e-original");
+pub(super) static RKV767E: Stepped<Rkv767e, Oscillator> = stepped("differential-equations-rkv767e");
+pub(super) static DOP853: Stepped<Dop853, Oscillator> = stepped("differential-equations-dop853");
+pub(super) static RADAU5: Stepped<Radau5, Oscillator> = stepped("differential-equations-radau5");
+pub(super) static KVAERNO745: Stepped<Kvaerno745, Oscillator> =
+    stepped("differential-equations-kvaerno745");
+pub(super) static BDF: Stepped<Bdf, Oscillator> = stepped("differential-equations-bdf");
+
+impl<M: Method, E: Equations> Engine for Stepped<M, E> {
+    fn declaration(&self) -> Declaration {
+        Declaration {
+            name: self.name,
+            library: LIBRARY,
+            version: pins::version(LIBRARY),
+            method: M::DESCRIPTION,
+            events: Location::Harness,
+            dense_output: true,
+            stepping: M::STEPPING,
+        }
+    }
+
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+        let tolerance = accuracy.wanted_tolerance()?;
+        let meter = Meter::new(limits);
+        let equations = E::of(&task.parameters, task.forcing_angle);
+        let longest = LONGEST_STEP * task.problem.model.period();
+        // The library begins its multistep method, at order 1, with steps below rounding.
+        let first =
+            if M::MULTISTEP { tolerance.sqrt() * shortest_time(&task.parameters) } else { 0.0 };
+        join(task, &equations, &meter, |from, sampler| {
+            let field = Field { equations, phase: from.phase, meter: &meter };
+            let mut watch = Watch::<M, E>::new(field, from, (tolerance, task.span), sampler);
+            let mut method = M::method(tolerance, longest, first);
+            let solved = solve_ode(&mut method, &field, from.t, task.span, &from.state, &mut watch);
+            watch.ended(solved.map(|_| ()).map_err(|error| reason(&error)))
+        })
+    }
+}
+
+/// The right-hand side of one phase.
+#[derive(Clone, Copy)]
+struct Field<'a, E> {
+    equations: E,
+    phase: Phase,
+    meter: &'a Meter,
+}
+
+impl<E: Equations> ODE<f64, [f64; 4]> for Field<'_, E> {
+    fn diff(&self, t: f64, u: &[f64; 4], du: &mut [f64; 4]) {
+        self.equations.derivatives(self.phase, t, u, du);
+        self.meter.rhs(du);
+    }
+
+    fn jacobian(&self, _: f64, _: &[f64; 4], matrix: &mut Matrix<f64>) {
+        for column in 0..4 {
+            let mut direction = [0.0; 4];
+            direction[column] = 1.0;
+            let mut product = [0.0; 4];
+            self.equations.jacobian_product(self.phase, &direction, &mut product);
+            for (row, entry) in product.into_iter().enumerate() {
+                matrix[(row, column)] = entry;
+            }
+        }
+        self.meter.jacobian();
+    }
+}
+
+/// The library's error, which it can print only for states that print themselves.
+fn reason(error: &Error<f64, [f64; 4]>) -> Failure {
+    let text = match error {
+        Error::BadInput { msg } => msg.clone(),
+        Error::MaxSteps { t, .. } => format!("passed its number of steps at {t}"),
+        Error::StepSize { t, .. } => format!("its step became too small at {t}"),
+        Error::Stiffness { t, .. } => format!("found the problem stiff at {t}"),
+        Error::OutOfBounds { t_interp, .. } => format!("its interpolant has a hole at {t_interp}"),
+        Error::LinearAlgebra { t, msg, .. } => format!("{msg} at {t}"),
+        _ => "failed".to_owned(),
+    };
+    Failure::new(text)
+}

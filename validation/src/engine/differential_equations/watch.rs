@@ -1,0 +1,142 @@
+//! The end of each step, where the library hands its interpolant over.
+
+use super::method::{Inside, Method};
+use super::{Field, reason};
+use crate::engine::cubic::{Cubic, Point};
+use crate::engine::field::Equations;
+use crate::engine::joining::{Ended, Moment};
+use crate::engine::location::{Crossing, Search};
+use crate::engine::meter::Failure;
+use crate::engine::sampler::Sampler;
+use differential_equations::control::ControlFlag;
+use differential_equations::interpolate::Interpolation;
+use differential_equations::ode::{ODE, solve_ode};
+use differential_equations::solout::Solout;
+use differential_equations::solution::Solution;
+use std::marker::PhantomData;
+
+/// Searches each step for the end of the phase, and takes samples on the way.
+pub(super) struct Watch<'a, M, E> {
+    field: Field<'a, E>,
+    search: Search<'a, E>,
+    tolerance: f64,
+    span: f64,
+    sampler: &'a mut Sampler,
+    last: [f64; 4],
+    ended: Option<Result<Ended, Failure>>,
+    method: PhantomData<M>,
+}
+
+impl<'a, M: Method, E: Equations> Watch<'a, M, E> {
+    pub(super) fn new(
+        field: Field<'a, E>,
+        from: &Moment,
+        (tolerance, span): (f64, f64),
+        sampler: &'a mut Sampler,
+    ) -> Self {
+        let search = Search::new(field.equations, from, field.meter);
+        let (last, ended, method) = (from.state, None, PhantomData);
+        Self { field, search, tolerance, span, sampler, last, ended, method }
+    }
+
+    /// How the stretch ended, once the library has come back.
+    pub(super) fn ended(self, solved: Result<(), Failure>) -> Result<Ended, Failure> {
+        match self.ended {
+            Some(ended) => ended,
+            None => solved.map(|()| Ended::Inside { t: self.span, state: self.last }),
+        }
+    }
+
+    fn step(
+        &mut self,
+        begin: f64,
+        end: f64,
+        state_at: &mut dyn FnMut(f64) -> Result<[f64; 4], Failure>,
+    ) -> Result<Option<Ended>, Failure> {
+        self.field.meter.steps(1);
+        let Some(Crossing { t, guard }) = self.search.step(begin, end, state_at)? else {
+            self.sampler.take(end, state_at)?;
+            return Ok(None);
+        };
+        self.sampler.take(t, &mut *state_at)?;
+        Ok(Some(Ended::Switch { t, guard, state: state_at(t)? }))
+    }
+}
+
+impl<M: Method, E: Equations> Solout<f64, [f64; 4]> for Watch<'_, M, E> {
+    fn solout<I>(
+        &mut self,
+        end: f64,
+        begin: f64,
+        state: &[f64; 4],
+        before: &[f64; 4],
+        interpolator: &mut I,
+        _: &mut Solution<f64, [f64; 4]>,
+    ) -> ControlFlag<f64, [f64; 4]>
+    where
+        I: Interpolation<f64, [f64; 4]> + ?Sized,
+    {
+        if end <= begin {
+            // The call before the first step.
+            return ControlFlag::Continue;
+        }
+        self.last = *state;
+        let (field, tolerance) = (self.field, self.tolerance);
+        let mut cubic: Option<Cubic> = None;
+        let mut state_at = |t: f64| match M::INSIDE {
+            _ if t <= begin => Ok(*before),
+            _ if t >= end => Ok(*state),
+            Inside::Interpolant => interpolator.interpolate(t).map_err(|error| reason(&error)),
+            Inside::Again => again::<M, E>(&field, tolerance, (begin, *before), t),
+            Inside::Cubic => Ok(cubic
+                .get_or_insert_with(|| {
+                    Cubic::between([(begin, *before), (end, *state)], |(t, state), rates| {
+                        field.diff(t, &state, rates);
+                    })
+                })
+                .at(t)),
+        };
+        match self.step(begin, end, &mut state_at).transpose() {
+            None => ControlFlag::Continue,
+            ended => {
+                self.ended = ended;
+                ControlFlag::Terminate
+            }
+        }
+    }
+}
+
+/// The state at `t` by the method again from a point before it, in one step if that will do.
+fn again<M: Method, E: Equations>(
+    field: &Field<'_, E>,
+    tolerance: f64,
+    from: Point,
+    t: f64,
+) -> Result<[f64; 4], Failure> {
+    let length = t - from.0;
+    let mut last = Last(from.1);
+    let mut method = M::method(tolerance, length, length);
+    solve_ode(&mut method, field, from.0, t, &from.1, &mut last).map_err(|error| reason(&error))?;
+    Ok(last.0)
+}
+
+/// Remembers the last state.
+struct Last([f64; 4]);
+
+impl Solout<f64, [f64; 4]> for Last {
+    fn solout<I>(
+        &mut self,
+        _: f64,
+        _: f64,
+        state: &[f64; 4],
+        _: &[f64; 4],
+        _: &mut I,
+        _: &mut Solution<f64, [f64; 4]>,
+    ) -> ControlFlag<f64, [f64; 4]>
+    where
+        I: Interpolation<f64, [f64; 4]> + ?Sized,
+    {
+        self.0 = *state;
+        ControlFlag::Continue
+    }
+}

@@ -1,0 +1,117 @@
+//! The library's methods: how a solver of each is started, all else being the same.
+
+use super::{Lu, Matrix, Vect};
+use crate::engine::Stepping;
+use diffsol::error::DiffsolError;
+use diffsol::{
+    NalgebraContext, OdeEquationsImplicit, OdeSolverMethod, OdeSolverProblem, OdeSolverState,
+    StateRefMut, Tableau,
+};
+
+/// Equations in the library's vectors over nalgebra.
+pub(in super::super) trait Problem:
+    OdeEquationsImplicit<T = f64, V = Vect, M = Matrix, C = NalgebraContext>
+{
+}
+
+impl<E> Problem for E where
+    E: OdeEquationsImplicit<T = f64, V = Vect, M = Matrix, C = NalgebraContext>
+{
+}
+
+/// One of the methods.
+pub(in super::super) trait Method: Sync {
+    const NAME: &'static str;
+    const DESCRIPTION: &'static str;
+    const STEPPING: Stepping;
+    /// The order for which the first step is chosen.
+    const ORDER: usize;
+    /// Whether the step may be shortened without loss: a multistep method would begin anew.
+    const ONE_STEP: bool;
+
+    /// A solver from a state of its own that `begin` has written.
+    fn solver<'a, E: Problem + 'a>(
+        problem: &'a OdeSolverProblem<E>,
+        begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
+    ) -> Result<impl OdeSolverMethod<'a, E>, DiffsolError>;
+}
+
+fn begun<S: OdeSolverState<Vect>>(
+    mut state: S,
+    begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
+) -> S {
+    begin(&mut state.as_mut());
+    state
+}
+
+/// Backward differentiation.
+pub(in super::super) struct Bdf;
+/// Trapezoidal rule, then second-order backward differentiation.
+pub(in super::super) struct TrBdf2;
+/// Diagonally implicit, with an explicit first stage.
+pub(in super::super) struct Esdirk34;
+/// Tsitouras's pair.
+pub(in super::super) struct Tsit45;
+
+impl Method for Bdf {
+    const NAME: &'static str = "diffsol-bdf";
+    const DESCRIPTION: &'static str = "BDF, orders 1 to 5";
+    const STEPPING: Stepping = Stepping::PerStep { order: 5 };
+    const ORDER: usize = 1;
+    const ONE_STEP: bool = false;
+
+    fn solver<'a, E: Problem + 'a>(
+        problem: &'a OdeSolverProblem<E>,
+        begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
+    ) -> Result<impl OdeSolverMethod<'a, E>, DiffsolError> {
+        problem.bdf_solver::<Lu>(begun(problem.bdf_state::<Lu>()?, begin))
+    }
+}
+
+impl Method for TrBdf2 {
+    const NAME: &'static str = "diffsol-tr_bdf2";
+    const DESCRIPTION: &'static str = "TR-BDF2, order 2";
+    const STEPPING: Stepping = Stepping::PerStep { order: 2 };
+    const ORDER: usize = 2;
+    const ONE_STEP: bool = true;
+
+    fn solver<'a, E: Problem + 'a>(
+        problem: &'a OdeSolverProblem<E>,
+        begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
+    ) -> Result<impl OdeSolverMethod<'a, E>, DiffsolError> {
+        let state = problem.rk_state(&Tableau::tr_bdf2())?;
+        problem.tr_bdf2_solver::<Lu>(begun(state, begin))
+    }
+}
+
+impl Method for Esdirk34 {
+    const NAME: &'static str = "diffsol-esdirk34";
+    const DESCRIPTION: &'static str = "ESDIRK 4(3)";
+    const STEPPING: Stepping = Stepping::PerStep { order: 3 };
+    const ORDER: usize = 4;
+    const ONE_STEP: bool = true;
+
+    fn solver<'a, E: Problem + 'a>(
+        problem: &'a OdeSolverProblem<E>,
+        begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
+    ) -> Result<impl OdeSolverMethod<'a, E>, DiffsolError> {
+        let state = problem.rk_state(&Tableau::esdirk34())?;
+        problem.esdirk34_solver::<Lu>(begun(state, begin))
+    }
+}
+
+impl Method for Tsit45 {
+    const NAME: &'static str = "diffsol-tsit45";
+    const DESCRIPTION: &'static str = "Tsitouras 5(4)";
+    const STEPPING: Stepping = Stepping::Adaptive;
+    const ORDER: usize = 5;
+    const ONE_STEP: bool = true;
+
+    fn solver<'a, E: Problem + 'a>(
+        problem: &'a OdeSolverProblem<E>,
+        begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
+    ) -> Result<impl OdeSolverMethod<'a, E>, DiffsolError> {
+        let state = problem.rk_state(&Tableau::tsit45())?;
+        problem.tsit45_solver(begun(state, begin))
+    }
+}

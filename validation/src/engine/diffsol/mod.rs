@@ -1,0 +1,101 @@
+//! diffsol with its own root finding, as an expert user sets it up.
+//!
+//! - The phase is a `Cell` that the closures read; the problem is built once, the solver anew from
+//!   the state at each switch, because its limit of 50 failed Newton iterations is cumulative.
+//! - On restart the derivative is written afresh and the step chosen anew: a stale derivative makes
+//!   the first steps collapse.
+//! - Root functions know no direction. A root at which the guard falls, such as the double zero that
+//!   begins every separation, is passed over by touching the state; the root finder otherwise keeps
+//!   its old bracket. If another guard has risen by the end of that step, the step is taken back to
+//!   just after the root.
+//! - At a root the library leaves the state at the end of the step: the switch's state is its
+//!   interpolant there.
+//! - There is no maximum step. In one-step methods each step is shortened to an eighth of a forcing
+//!   period, so that none hides a whole phase. A multistep method would begin anew; none is forced on
+//!   it. What a root finder that looks only at the ends of steps still misses is what this harness
+//!   wants to know.
+
+mod method;
+mod phase;
+
+use super::field::{Equations, GUARDS, Oscillator};
+use super::joining::join;
+use super::meter::{Failure, Limits, Meter};
+use super::{Accuracy, Declaration, Engine, Location, Outcome, Task, pins};
+use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder};
+use method::{Bdf, Esdirk34, Method, TrBdf2, Tsit45};
+use phase::Run;
+use std::cell::Cell;
+use std::marker::PhantomData;
+
+type Matrix = NalgebraMat<f64>;
+type Vect = NalgebraVec<f64>;
+type Lu = NalgebraLU<f64>;
+
+/// The library with one of its methods.
+pub(super) struct Diffsol<M>(PhantomData<M>);
+
+pub(super) static BDF: Diffsol<Bdf> = Diffsol(PhantomData);
+pub(super) static TR_BDF2: Diffsol<TrBdf2> = Diffsol(PhantomData);
+pub(super) static ESDIRK34: Diffsol<Esdirk34> = Diffsol(PhantomData);
+pub(super) static TSIT45: Diffsol<Tsit45> = Diffsol(PhantomData);
+
+/// The first step tried, in forcing periods; the library then chooses by its own rule.
+const FIRST_STEP: f64 = 1e-3;
+/// The longest step, in forcing periods.
+const LONGEST_STEP: f64 = 0.125;
+
+impl<M: Method> Engine for Diffsol<M> {
+    fn declaration(&self) -> Declaration {
+        Declaration {
+            name: M::NAME,
+            library: "diffsol",
+            version: pins::version("diffsol"),
+            method: M::DESCRIPTION,
+            events: Location::Library,
+            dense_output: true,
+            stepping: M::STEPPING,
+        }
+    }
+
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+        let tolerance = accuracy.wanted_tolerance()?;
+        let meter = Meter::new(limits);
+        let oscillator = Oscillator::of(&task.parameters, task.forcing_angle);
+        let phase = Cell::new(task.phase);
+        let problem = OdeBuilder::<Matrix>::new()
+            .rtol(tolerance)
+            .atol([tolerance])
+            .h0(task.problem.model.period() * FIRST_STEP)
+            .rhs_implicit(
+                |u, _, t, du| {
+                    oscillator.derivatives(phase.get(), t, u, du);
+                    meter.rhs(du);
+                },
+                |_, _, _, w, dw| {
+                    oscillator.jacobian_product(phase.get(), w, dw);
+                    meter.jacobian();
+                },
+            )
+            .init(|_, _, u| u.copy_from_slice(&task.state), task.state.len())
+            .root(
+                |u, _, _, guards| {
+                    guards.copy_from_slice(&oscillator.guards(phase.get(), u));
+                    meter.call();
+                },
+                GUARDS,
+            )
+            .build()
+            .map_err(Failure::new)?;
+        let run = Run {
+            span: task.span,
+            longest: LONGEST_STEP * task.problem.model.period(),
+            meter: &meter,
+            oscillator,
+        };
+        join(task, &oscillator, &meter, |from, sampler| {
+            phase.set(from.phase);
+            run.one_phase::<M, _>(&problem, from, sampler)
+        })
+    }
+}

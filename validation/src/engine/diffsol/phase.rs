@@ -1,0 +1,88 @@
+//! One phase by a fresh solver, up to the first root at which a guard rises.
+
+use super::Vect;
+use super::method::{Method, Problem};
+use crate::engine::field::{Equations, Oscillator};
+use crate::engine::joining::{Ended, Moment};
+use crate::engine::meter::{Failure, Meter};
+use crate::engine::sampler::Sampler;
+use diffsol::{OdeSolverMethod, OdeSolverProblem, OdeSolverStopReason, StateRefMut, Vector};
+use percuss::Phase;
+
+pub(super) struct Run<'a> {
+    pub(super) span: f64,
+    pub(super) longest: f64,
+    pub(super) meter: &'a Meter,
+    pub(super) oscillator: Oscillator,
+}
+
+impl Run<'_> {
+    pub(super) fn one_phase<M: Method, E: Problem>(
+        &self,
+        problem: &OdeSolverProblem<E>,
+        from: &Moment,
+        sampler: &mut Sampler,
+    ) -> Result<Ended, Failure> {
+        let mut solver = M::solver(problem, |state| self.begin::<M, E>(problem, from, state))
+            .map_err(Failure::new)?;
+        solver.set_stop_time(self.span).map_err(Failure::new)?;
+        loop {
+            let reason = solver.step().map_err(Failure::new)?;
+            self.meter.steps(1);
+            let state_at = |t: f64| solver.interpolate(t).map(|u| plain(&u)).map_err(Failure::new);
+            match reason {
+                OdeSolverStopReason::InternalTimestep => {
+                    sampler.take(solver.state().t, state_at)?;
+                    if M::ONE_STEP && solver.state().h > self.longest {
+                        *solver.state_mut().h = self.longest;
+                    }
+                }
+                OdeSolverStopReason::TstopReached => {
+                    let state = plain(solver.state().y);
+                    sampler.take(solver.state().t, state_at)?;
+                    return Ok(Ended::Inside { t: self.span, state });
+                }
+                OdeSolverStopReason::RootFound(root, guard) => {
+                    let state = state_at(root)?;
+                    if self.oscillator.rates(from.phase, root, &state)[guard] > 0.0 {
+                        sampler.take(root, state_at)?;
+                        return Ok(Ended::Switch { t: root, guard, state });
+                    }
+                    let outside = self.is_outside(from.phase, &plain(solver.state().y));
+                    if outside && root < solver.state().t {
+                        sampler.take(root, state_at)?;
+                        solver.state_mut_back(root).map_err(Failure::new)?;
+                    } else {
+                        sampler.take(solver.state().t, state_at)?;
+                        // Touched, so that the root finder takes a new bracket.
+                        let _ = solver.state_mut();
+                    }
+                }
+            }
+        }
+    }
+
+    fn is_outside(&self, phase: Phase, state: &[f64; 4]) -> bool {
+        self.oscillator.guards(phase, state).iter().any(|guard| *guard > 0.0)
+    }
+
+    /// Writes a state with derivative and step of its own.
+    fn begin<M: Method, E: Problem>(
+        &self,
+        problem: &OdeSolverProblem<E>,
+        from: &Moment,
+        state: &mut StateRefMut<'_, Vect>,
+    ) {
+        state.y.batch_as_mut_slice(0).copy_from_slice(&from.state);
+        let mut derivatives = [0.0; 4];
+        self.oscillator.derivatives(from.phase, from.t, &from.state, &mut derivatives);
+        self.meter.rhs(&derivatives);
+        state.dy.batch_as_mut_slice(0).copy_from_slice(&derivatives);
+        *state.t = from.t;
+        state.set_step_size(problem.h0, &problem.atol, problem.rtol, &problem.eqn, M::ORDER);
+    }
+}
+
+fn plain(u: &Vect) -> [f64; 4] {
+    [u.get_index(0), u.get_index(1), u.get_index(2), u.get_index(3)]
+}

@@ -1,0 +1,102 @@
+//! `Rk4`: fixed steps, and between the ends of a step the cubic of Hermite, whose error is of the
+//! method's own order.
+//!
+//! - Steps are h = step x the model's [`shortest_time`], shortened so that a whole number of them
+//!   fills a stretch: the library itself would step past the end.
+//! - Each step is one look: guards that peak inside are found by their rates.
+//!
+//! [`shortest_time`]: crate::engine::shortest_time
+
+use super::walk::walk;
+use super::{Field, LIBRARY, packed, plain};
+use crate::engine::cubic::Cubic;
+use crate::engine::field::{Equations, Oscillator};
+use crate::engine::joining::{Ended, Moment, join};
+use crate::engine::location::Search;
+use crate::engine::meter::{Failure, Limits, Meter};
+use crate::engine::sampler::Sampler;
+use crate::engine::{
+    Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins, shortest_time,
+};
+
+/// ode_solvers' `Rk4`.
+pub(in super::super) struct Rk4;
+
+const ORDER: i32 = 4;
+const STAGES: f64 = 4.0;
+/// The library keeps every step of a stretch in memory.
+const MOST_STEPS: f64 = 16384.0;
+
+impl Engine for Rk4 {
+    fn declaration(&self) -> Declaration {
+        Declaration {
+            name: "ode_solvers-rk4",
+            library: LIBRARY,
+            version: pins::version(LIBRARY),
+            method: "classical Runge-Kutta 4, fixed steps",
+            events: Location::Harness,
+            dense_output: false,
+            stepping: Stepping::Fixed { order: ORDER },
+        }
+    }
+
+    fn least_work(&self, task: &Task, accuracy: Accuracy) -> f64 {
+        let step = |step: f64| step * shortest_time(&task.parameters);
+        accuracy.step().map_or(0.0, |it| STAGES * task.span / step(it))
+    }
+
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+        let step = accuracy.wanted_step()? * shortest_time(&task.parameters);
+        let meter = Meter::new(limits);
+        let equations = Oscillator::of(&task.parameters, task.forcing_angle);
+        let run = Run { task, step, meter: &meter, equations };
+        join(task, &equations, &meter, |from, sampler| run.stretch(from, sampler))
+    }
+}
+
+struct Run<'a> {
+    task: &'a Task,
+    step: f64,
+    meter: &'a Meter,
+    equations: Oscillator,
+}
+
+impl Run<'_> {
+    fn stretch(&self, from: &Moment, sampler: &mut Sampler) -> Result<Ended, Failure> {
+        let longest = self.task.problem.model.period().min(MOST_STEPS * self.step);
+        let length = longest.min(self.task.span - from.t);
+        let count = (length / self.step).ceil().max(1.0);
+        self.meter.affords(STAGES * count)?;
+        let step = length / count;
+        let field = Field {
+            equations: self.equations,
+            phase: from.phase,
+            meter: self.meter,
+            from: from.state,
+        };
+        // The library makes it a whole number of steps, upwards: half a step short of the end is safe.
+        let until = from.t + (count - 0.5) * step;
+        let mut solver =
+            ::ode_solvers::Rk4::new(field, from.t, packed::<4>(from.t, &from.state), until, step);
+        let stats = solver.integrate().map_err(Failure::new)?;
+        self.meter.steps(stats.accepted_steps.into());
+        let search = Search::new(self.equations, from, self.meter);
+        // The library's own times are sums of steps.
+        let time = |k: usize| from.t + length * (k as f64 / count);
+        let points = solver.y_out().iter().enumerate().skip(1).map(|(k, u)| (time(k), plain(u)));
+        let mut cubic: Option<Cubic> = None;
+        walk(&search, from, points, sampler, |left, right, t| {
+            let known = cubic.take().filter(|known| known.begins_at(left.0));
+            let here = known.unwrap_or_else(|| {
+                let ends = [*left, *right];
+                Cubic::between(ends, |(t, state), rates| {
+                    self.equations.derivatives(from.phase, t, &state, rates);
+                    self.meter.rhs(rates);
+                })
+            });
+            let state = here.at(t);
+            cubic = Some(here);
+            Ok(state)
+        })
+    }
+}
