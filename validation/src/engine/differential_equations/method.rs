@@ -15,6 +15,19 @@ const ENOUGH: usize = usize::MAX;
 /// rounding of the largest displacements.
 const NEWTON: f64 = 1e-11;
 
+/// The ratio of two steps that Radau5 may take one after the other.
+const RUNG: f64 = 1.25;
+
+/// The largest step on a ladder of fixed ratios. Radau5 keeps its factorised matrices where a step
+/// could grow by less than a fifth, and then forgets to make them anew when the next one changes: with
+/// ratios larger than that it never keeps them.
+fn rungs(h: f64) -> f64 {
+    RUNG.powf((h.ln() / RUNG.ln() + ON_A_RUNG).floor())
+}
+
+/// Takes a step that is on a rung, but for rounding, to be on it.
+const ON_A_RUNG: f64 = 1e-9;
+
 /// How a state inside a step is had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum Inside {
@@ -47,7 +60,7 @@ pub(in super::super) trait Method {
 macro_rules! methods {
     ($(
         $(#[$doc:meta])*
-        $name:ident: $text:literal, $inside:ident, $new:expr $(, $setting:ident($value:expr))*;
+        $name:ident: $text:literal, $inside:ident, |$first:ident| $new:expr $(, $setting:ident($value:expr))*;
     )*) => {$(
         $(#[$doc])*
         pub(in super::super) struct $name;
@@ -59,10 +72,10 @@ macro_rules! methods {
             fn method(
                 tolerance: f64,
                 longest: f64,
-                first: f64,
+                $first: f64,
             ) -> impl OrdinaryNumericalMethod<f64, [f64; 4]> + Interpolation<f64, [f64; 4]> {
                 let method = $new.rtol([tolerance; 4]).atol([tolerance; 4]);
-                method.h0(first).h_min(0.0).h_max(longest).max_steps(ENOUGH)$(.$setting($value))*
+                method.h0($first).h_min(0.0).h_max(longest).max_steps(ENOUGH)$(.$setting($value))*
             }
         }
     )*};
@@ -71,26 +84,41 @@ macro_rules! methods {
 methods! {
     /// Verner's robust pair of order 6.
     Rkv655e: "Verner 6(5)", Interpolant,
-        ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv655e(),
+        |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv655e(),
         max_rejects(ENOUGH);
     /// Verner's efficient pair of order 7.
     Rkv767e: "Verner 7(6)", Interpolant,
-        ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv767e(),
+        |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv767e(),
         max_rejects(ENOUGH);
     /// Dormand and Prince's method of order 8.
     Dop853: "Dormand-Prince 8(5,3)", Again,
-        ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::dop853(),
+        |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::dop853(),
         max_rejects(ENOUGH);
     /// Collocation at Radau's points.
     Radau5: "Radau IIA, order 5", Again,
-        ImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::radau5(),
-        newton_tol(0.0), max_rejects(ENOUGH);
+        |first| ImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::radau5(),
+        newton_tol(0.0), max_rejects(ENOUGH),
+        filter(if first == 0.0 { rungs } else { std::convert::identity });
     /// Kvaerno's method of order 5.
     Kvaerno745: "Kvaerno ESDIRK 5(4)", Again,
-        DiagonallyImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::kvaerno745(),
+        |first| DiagonallyImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::kvaerno745(),
         newton_tol(NEWTON), max_rejects(ENOUGH);
     /// Backward differentiation.
     Bdf: "BDF, orders 1 to 5", Cubic,
-        BackwardDifferentiationFormula::<Ordinary, _, _>::adaptive(),
+        |first| BackwardDifferentiationFormula::<Ordinary, _, _>::adaptive(),
         h_max(f64::INFINITY);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_on_a_rung_stays_there() {
+        for step in [1e-9, 0.3, 0.999, 1.0, 7.0] {
+            let rung = rungs(step);
+            assert!(rung <= step * (1.0 + 1e-8) && step < rung * RUNG * (1.0 + 1e-8));
+            assert_eq!(rungs(rung), rung);
+        }
+    }
 }

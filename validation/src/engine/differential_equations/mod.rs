@@ -4,11 +4,20 @@
 //!   event location is an engine of its own ([`builtin`]).
 //! - Each phase is begun by a fresh method, because limits of steps and of rejections count over a
 //!   method's life.
-//! - Tolerances are vectors: a scalar one is loosened by Radau5.
+//! - Tolerances are vectors, one for each co-ordinate.
 //! - Steps are at most an eighth of a forcing period, so that no step hides a whole phase; limits of
 //!   steps and rejections are raised, the meter's is the one that counts.
-//! - Newton iterations are held to a hundredth of the tolerance where the library's default is a
-//!   constant, and to its own rule where it has one.
+//! - Newton iterations are held to what rounding of the displacements allows where the library's
+//!   default is a constant, and to its own rule where it has one.
+//! - The interpolants of the Verner methods are as good as their steps and are used. That of `dop853`
+//!   has the factors of its higher terms in the wrong order, that of `bdf` uses differences which have
+//!   been rescaled to the next step already, and those of `radau5` and `kvaerno745` are cubic. There a
+//!   state inside a step is had by the method again from the step's beginning, in `bdf` from Hermite's
+//!   cubic ([`method::Inside`]).
+//! - `radau5` gets a ladder of steps ([`method`]): the library reuses a factorisation that belongs to
+//!   another step, which without it spoils a step here and there by thousands of tolerances.
+//! - `bdf` chooses a first step below rounding at tight tolerances, and gives up: it is given one. Its
+//!   longest step is left open: where that shortens a step the differences are rescaled as if it had not.
 
 mod builtin;
 mod method;
