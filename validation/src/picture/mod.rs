@@ -2,9 +2,11 @@
 
 mod axes;
 mod font;
+mod look;
 mod motion;
 mod palette;
 
+pub use look::{Look, Marker, looks};
 pub use motion::Motion;
 
 use plotters::prelude::*;

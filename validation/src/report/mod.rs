@@ -5,10 +5,13 @@
 mod annotations;
 mod csv;
 mod evidence;
+mod grazing;
+mod html;
 mod json;
 mod junit;
 mod row;
 mod setting;
+mod summary;
 mod table;
 
 pub use annotations::{annotations, under_the_service};
@@ -33,5 +36,5 @@ pub trait Exporter: Sync {
 /// All formats.
 #[must_use]
 pub fn exporters() -> &'static [&'static dyn Exporter] {
-    &[&json::Json, &csv::Csv, &junit::Junit]
+    &[&json::Json, &csv::Csv, &junit::Junit, &html::Html]
 }
