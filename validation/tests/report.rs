@@ -4,7 +4,7 @@
 
 mod support;
 
-use percuss_validation::report::{Evidence, Report, exporters};
+use percuss_validation::report::{Evidence, Report, exporters, pictures};
 use serde_json::Value;
 use std::path::Path;
 use support::synthetic::{NASTY, evidence, report};
@@ -77,5 +77,49 @@ fn every_format_takes_every_number() {
         for evidence in [evidence(), Evidence::default()] {
             written(exporter.file_name(), &report(), &evidence);
         }
+    }
+}
+
+#[test]
+fn every_picture_is_one() {
+    let nothing = Report { results: Vec::new(), engines: Vec::new(), ..report() };
+    let full = pictures(&report(), &evidence()).expect("drawn");
+    let names: Vec<&str> = full.iter().map(|(name, _)| name.as_str()).collect();
+    for name in [
+        "work-precision-event-time",
+        "work-precision-state",
+        "recall",
+        "grazing",
+        "error-growth-fig7a-chaos",
+        "restart-errors-chaos-from-rest",
+        "restart-errors-chaos-from-rest-2",
+        "attractors-1",
+        "attractors-2",
+    ] {
+        let both =
+            [format!("{name}.png"), format!("{name}.svg")].map(|it| names.contains(&it.as_str()));
+        // A cloud of many points is no SVG.
+        assert_eq!(both, [true, name != "attractors-1"], "{name} of {names:?}");
+    }
+    let empty = pictures(&report(), &Evidence::default()).expect("drawn");
+    let of_nothing = pictures(&nothing, &Evidence::default()).expect("drawn");
+    assert_eq!((empty.len(), of_nothing.len()), (6, 6));
+    for (name, bytes) in full.iter().chain(&empty).chain(&of_nothing) {
+        if name.ends_with(".png") {
+            let mut reader =
+                png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect(name);
+            let mut pixels = vec![0; reader.output_buffer_size().expect(name)];
+            let size = reader.next_frame(&mut pixels).expect(name);
+            assert!(size.width >= 800 && pixels.iter().any(|it| *it != pixels[0]), "{name}");
+        } else {
+            let text = support::text(bytes);
+            assert!(!text.contains("NaN") && !text.contains("inf\""), "{name}");
+            let mut reader = quick_xml::Reader::from_str(&text);
+            while !matches!(reader.read_event().expect(name), quick_xml::events::Event::Eof) {}
+        }
+    }
+    for (name, bytes) in full {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("full-{name}"));
+        std::fs::write(path, &bytes).expect("kept to be looked at");
     }
 }

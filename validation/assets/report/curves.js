@@ -76,10 +76,12 @@ function errorGrowth() {
       series.push({ name: "exp(λt)", color: "var(--ink)", dash: "3 4", width: 2, points: [[0, floor], [last, floor * Math.exp(known.lambda_per_period * last)]] });
     }
     chart(document.getElementById("growth"), { x: { label: "forcing periods", low: 0 }, y: { label: "state error", log: true }, series, height: 420 });
-    document.getElementById("growth-legend").replaceChildren(...series.map((s) => {
+    // The grey lines are one thing in the key.
+    const key = series.filter((s, i) => s.color !== "var(--muted)" || i === series.findIndex((other) => other.color === s.color));
+    document.getElementById("growth-legend").replaceChildren(...key.map((s) => {
       const sample = drawn("svg", { width: 26, height: 10, "aria-hidden": "true" });
       sample.append(drawn("path", { d: "M1,5H25", style: `stroke:${s.color}`, "stroke-width": 2.2, "stroke-dasharray": s.dash ?? "none" }));
-      return element("span", {}, sample, s.name);
+      return element("span", {}, sample, s.color === "var(--muted)" ? "growth of the truth × unit of error" : s.name);
     }));
     document.getElementById("growth-note").textContent = known ? `λ = ${brief(known.lambda_per_period)} per forcing period.` : "";
   };

@@ -9,6 +9,7 @@ mod grazing;
 mod html;
 mod json;
 mod junit;
+mod pictures;
 mod row;
 mod setting;
 mod summary;
@@ -16,6 +17,7 @@ mod table;
 
 pub use annotations::{annotations, under_the_service};
 pub use evidence::{CaseNote, ErrorGrowth, Evidence, Fault, Graze, RestartHistogram, SectionPair};
+pub use pictures::{Picture, pictures};
 pub use row::{EngineEntry, Report, Row, Summary};
 pub use table::table;
 

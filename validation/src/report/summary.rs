@@ -89,6 +89,17 @@ fn one(report: &Report, engine: &str) -> EngineSummary {
     EngineSummary { settings: rows.chunk_by(same).map(SettingSummary::of).collect(), ..counted }
 }
 
+/// A share that reads 100 % only where it is.
+pub(super) fn percent(share: f64) -> String {
+    if share.is_nan() {
+        "\u{2013}".to_owned()
+    } else if share >= 1.0 {
+        "100 %".to_owned()
+    } else {
+        format!("{:.2} %", (share * 1e4).floor() / 1e2)
+    }
+}
+
 /// The middle value, by nearest rank; NaN of nothing.
 fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);

@@ -2,7 +2,7 @@
 
 use super::super::csv::word;
 use super::super::grazing::{Grazing, Seen};
-use super::super::summary::{EngineSummary, SettingSummary};
+use super::super::summary::{EngineSummary, SettingSummary, percent};
 use super::super::{Evidence, Report};
 use crate::number::brief;
 use crate::picture::{Look, Marker};
@@ -133,17 +133,6 @@ fn recall(summary: &SettingSummary) -> RecallCell {
         let _ = write!(note, ", {failed} runs without a result");
     }
     RecallCell { setting: summary.setting.clone(), text: percent(share), note, level }
-}
-
-/// A share that reads 100 % only where it is.
-pub(super) fn percent(share: f64) -> String {
-    if share.is_nan() {
-        "\u{2013}".to_owned()
-    } else if share >= 1.0 {
-        "100 %".to_owned()
-    } else {
-        format!("{:.2} %", (share * 1e4).floor() / 1e2)
-    }
 }
 
 fn overall(summary: &EngineSummary) -> String {
