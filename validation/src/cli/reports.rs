@@ -1,16 +1,19 @@
 //! What `validate` leaves behind besides its table: files, and annotations under the CI service.
 
 use super::output::write_whole;
-use crate::report::{Evidence, Report, annotations, exporters, under_the_service};
+use crate::report::{Evidence, Report, annotations, exporters, pictures, under_the_service};
 use anyhow::{Context, Result};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Every format of the report into a folder.
+/// Every format of the report, and the pictures, into a folder.
 pub(super) fn write(report: &Report, evidence: &Evidence, folder: &Path) -> Result<()> {
     for exporter in exporters() {
         let path = folder.join(exporter.file_name());
         write_whole(&path, |out| Ok(exporter.write(report, evidence, out)?)).context("--out")?;
+    }
+    for (name, bytes) in pictures(report, evidence)? {
+        write_whole(&folder.join(name), |out| Ok(out.write_all(&bytes)?)).context("--out")?;
     }
     Ok(())
 }

@@ -1,16 +1,28 @@
 //! Pictures, drawn by the program itself: PNG, and SVG where it stays small.
 
 mod axes;
+mod clouds;
+mod curves;
 mod font;
+mod frame;
+mod look;
 mod motion;
 mod palette;
+mod pen;
+mod strips;
+mod tiles;
 
+pub use clouds::{Cloud, Clouds};
+pub use curves::{Curve, Curves};
+pub use frame::{Axis, Scale};
+pub use look::{Look, Marker, looks};
 pub use motion::Motion;
+pub use strips::{Strip, Strips};
+pub use tiles::{Tile, Tiles, Tint};
 
+use plotters::coord::Shift;
 use plotters::prelude::*;
 
-/// Width and height, in pixels.
-const SIZE: (u32, u32) = (1500, 860);
 /// The bitmap is drawn so much larger and averaged: the drawing library does not smooth its lines.
 const OVERSAMPLING: u32 = 3;
 
@@ -25,22 +37,39 @@ impl DrawError {
     }
 }
 
-/// The motion as a PNG.
+/// Something that can be drawn.
+pub trait Drawing {
+    /// Width and height, in pixels.
+    fn size(&self) -> (u32, u32);
+
+    /// Draws on an area of that size times `scale`.
+    ///
+    /// # Errors
+    /// [`DrawError`] with the drawing library's reason.
+    fn draw<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        scale: u32,
+    ) -> Result<(), DrawError>;
+}
+
+/// A drawing as a PNG.
 ///
 /// # Errors
 /// [`DrawError`] with the drawing library's reason.
-pub fn png(motion: &Motion) -> Result<Vec<u8>, DrawError> {
+pub fn png(drawing: &impl Drawing) -> Result<Vec<u8>, DrawError> {
     font::register()?;
-    let large = (SIZE.0 * OVERSAMPLING, SIZE.1 * OVERSAMPLING);
+    let size = drawing.size();
+    let large = (size.0 * OVERSAMPLING, size.1 * OVERSAMPLING);
     let mut pixels = vec![0; (large.0 * large.1 * 3) as usize];
     {
         let area = BitMapBackend::with_buffer(&mut pixels, large).into_drawing_area();
-        motion.draw(&area, OVERSAMPLING)?;
+        drawing.draw(&area, OVERSAMPLING)?;
         area.present().map_err(DrawError::new)?;
     }
-    let pixels = averaged(&pixels);
+    let pixels = averaged(&pixels, size);
     let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, SIZE.0, SIZE.1);
+    let mut encoder = png::Encoder::new(&mut bytes, size.0, size.1);
     encoder.set_color(png::ColorType::Rgb);
     encoder.set_depth(png::BitDepth::Eight);
     let mut writer = encoder.write_header().map_err(DrawError::new)?;
@@ -49,24 +78,24 @@ pub fn png(motion: &Motion) -> Result<Vec<u8>, DrawError> {
     Ok(bytes)
 }
 
-/// The motion as an SVG.
+/// A drawing as an SVG.
 ///
 /// # Errors
 /// [`DrawError`] with the drawing library's reason.
-pub fn svg(motion: &Motion) -> Result<String, DrawError> {
+pub fn svg(drawing: &impl Drawing) -> Result<String, DrawError> {
     font::register()?;
     let mut text = String::new();
     {
-        let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
-        motion.draw(&area, 1)?;
+        let area = SVGBackend::with_string(&mut text, drawing.size()).into_drawing_area();
+        drawing.draw(&area, 1)?;
         area.present().map_err(DrawError::new)?;
     }
     Ok(text)
 }
 
 /// Each pixel as the mean of the square that stands for it.
-fn averaged(large: &[u8]) -> Vec<u8> {
-    let (width, height, times) = (SIZE.0 as usize, SIZE.1 as usize, OVERSAMPLING as usize);
+fn averaged(large: &[u8], size: (u32, u32)) -> Vec<u8> {
+    let (width, height, times) = (size.0 as usize, size.1 as usize, OVERSAMPLING as usize);
     let mut small = Vec::with_capacity(width * height * 3);
     for (row, column) in (0..height).flat_map(|row| (0..width).map(move |column| (row, column))) {
         for channel in 0..3 {

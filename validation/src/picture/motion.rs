@@ -2,13 +2,14 @@
 
 use super::axes::{around, label};
 use super::font::FAMILY;
-use super::{DrawError, palette};
+use super::{DrawError, Drawing, palette};
 use crate::case::Problem;
 use percuss::{Exit, Instant, Leg, Phase};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
+const SIZE: (u32, u32) = (1500, 860);
 /// Points drawn for the whole run.
 const POINTS: f64 = 6000.0;
 /// Points of even the shortest phase.
@@ -59,6 +60,28 @@ const PHASE_PLANE: Panel = Panel {
     ticks: 10,
 };
 
+impl Drawing for Motion {
+    fn size(&self) -> (u32, u32) {
+        SIZE
+    }
+
+    fn draw<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        scale: u32,
+    ) -> Result<(), DrawError> {
+        area.fill(&WHITE).map_err(DrawError::new)?;
+        let (head, body) = area.split_vertically(84 * scale);
+        self.heading(&head, scale)?;
+        let (left, right) = body.split_horizontally(840 * scale);
+        let rows = [240 * scale, 480 * scale];
+        for (area, panel) in left.split_by_breakpoints(&[] as &[u32], rows).iter().zip(&HISTORIES) {
+            self.panel(area, panel, scale)?;
+        }
+        self.panel(&right, &PHASE_PLANE, scale)
+    }
+}
+
 impl Motion {
     /// The phases of a run up to `last`.
     #[must_use]
@@ -79,23 +102,6 @@ impl Motion {
             title: format!("a = {a}, b = {b}, \u{3be} = {xi}, \u{3c9} = {omega}, g = {g}"),
             pieces: pieces.collect(),
         }
-    }
-
-    /// Draws on an area of the picture's size times `scale`.
-    pub(super) fn draw<B: DrawingBackend>(
-        &self,
-        area: &DrawingArea<B, Shift>,
-        scale: u32,
-    ) -> Result<(), DrawError> {
-        area.fill(&WHITE).map_err(DrawError::new)?;
-        let (head, body) = area.split_vertically(84 * scale);
-        self.heading(&head, scale)?;
-        let (left, right) = body.split_horizontally(840 * scale);
-        let rows = [240 * scale, 480 * scale];
-        for (area, panel) in left.split_by_breakpoints(&[] as &[u32], rows).iter().zip(&HISTORIES) {
-            self.panel(area, panel, scale)?;
-        }
-        self.panel(&right, &PHASE_PLANE, scale)
     }
 
     fn heading<B: DrawingBackend>(

@@ -6,14 +6,19 @@ mod annotations;
 mod csv;
 mod evidence;
 mod gather;
+mod grazing;
+mod html;
 mod json;
 mod junit;
+mod pictures;
 mod row;
 mod setting;
+mod summary;
 mod table;
 
 pub use annotations::{annotations, under_the_service};
 pub use evidence::{CaseNote, ErrorGrowth, Evidence, Fault, Graze, RestartHistogram, SectionPair};
+pub use pictures::{Picture, pictures};
 pub use row::{EngineEntry, Report, Row, Summary};
 pub use table::table;
 
@@ -34,5 +39,5 @@ pub trait Exporter: Sync {
 /// All formats.
 #[must_use]
 pub fn exporters() -> &'static [&'static dyn Exporter] {
-    &[&json::Json, &csv::Csv, &junit::Junit]
+    &[&json::Json, &csv::Csv, &junit::Junit, &html::Html]
 }

@@ -8,6 +8,8 @@
     reason = "each test uses a part; a panic is a failed test"
 )]
 
+pub mod synthetic;
+
 use assert_cmd::Command;
 use std::process::Output;
 

@@ -1,0 +1,152 @@
+// The results: filtered, sorted, and a row's bounds on demand. The address holds the filters, so that
+// a view can be passed on.
+
+const columns = data.columns;
+const count = data.cases.length ? (columns.case ?? []).length : 0;
+const verdictOf = (i) => (columns.verdict[i] === "expected" || columns.expected[i] ? "known" : columns.verdict[i]);
+const fineness = (i) => columns.tolerance?.[i] ?? columns.step?.[i] ?? 0;
+const value = (name) => (i) => columns[name]?.[i] ?? null;
+
+// Key, heading, what it means, figure of a row, text of it where that is another.
+const SHOWN = [
+  ["case", "case", "the problem that is run", value("case")],
+  ["engine", "engine", "the integrator", value("engine")],
+  ["setting", "setting", "relative and absolute tolerance, or h = fixed step", fineness, value("setting")],
+  ["verdict", "verdict", "pass: within all bounds; known: passes because a stated shortcoming shows as stated", (i) => ["error", "fail", "known", "pass", "unavailable"].indexOf(verdictOf(i)), verdictOf],
+  ["found", "found", "switches found, of those that the truth has up to the scored horizon", (i) => (columns.events_matched?.[i] ?? -1) - (columns.events_expected?.[i] ?? 0), (i) => (columns.events_expected?.[i] == null ? "–" : `${columns.events_matched[i]}/${columns.events_expected[i]}`)],
+  ["events_spurious", "invented", "switches that the truth does not have", value("events_spurious")],
+  ["event_time_error.max", "time error", "largest error of a switch's time", value("event_time_error.max")],
+  ["state_error.max", "state error", "largest of |dp|, |dy|, |dq| on the fixed sample", value("state_error.max")],
+  ["drift_error", "drift error", "|dv| at the end of the case", value("drift_error")],
+  ["valid_periods", "valid", "forcing periods until the state's error passes 1e-3", value("valid_periods")],
+  ["restart.q99", "restart q99", "99 % quantile of the restart test's errors", value("restart.q99")],
+  ["order", "order", "measured order of convergence", value("order")],
+  ["rhs_evaluations", "rhs", "right-hand sides; closed-form evaluations for the exact solver", value("rhs_evaluations")],
+  ["jacobian_evaluations", "jac", "Jacobians, or products with one", value("jacobian_evaluations")],
+  ["wall_ns", "ms", "wall time on this machine, milliseconds", (i) => (columns.wall_ns?.[i] == null ? null : columns.wall_ns[i] / 1e6)],
+].filter(([key]) => ["found", "verdict", "setting"].includes(key) || columns[key]);
+
+const PAGE = 100;
+const state = { engine: "", case: "", verdict: "", text: "", sort: "", down: false, most: PAGE };
+const field = (name) => document.getElementById(`filter-${name}`);
+const FILTERS = ["engine", "case", "verdict", "text"];
+
+function fillChoices() {
+  const regimes = new Map();
+  data.cases.forEach((it) => regimes.set(it.regime ?? "cases", [...(regimes.get(it.regime ?? "cases") ?? []), it.name]));
+  for (const [regime, names] of regimes) field("case").append(element("optgroup", { label: regime }, ...names.map((name) => element("option", { value: name }, name))));
+  data.engines.forEach((it) => field("engine").append(element("option", { value: it.name }, it.name)));
+}
+
+function wanted(i) {
+  const text = () => [columns.case[i], columns.engine[i], columns.setting[i], verdictOf(i), columns.why[i], data.cases.find((it) => it.name === columns.case[i])?.regime].join(" ").toLowerCase();
+  return (!state.engine || columns.engine[i] === state.engine) &&
+    (!state.case || columns.case[i] === state.case) &&
+    (!state.verdict || verdictOf(i) === state.verdict) &&
+    (!state.text || state.text.toLowerCase().split(/\s+/).every((word) => text().includes(word)));
+}
+
+function ordered(rows) {
+  const column = SHOWN.find(([key]) => key === state.sort);
+  if (!column) return rows;
+  const figure = column[3];
+  const compare = (a, b) => {
+    const [x, y] = [figure(a), figure(b)];
+    // What was not measured comes last, either way.
+    if (x === null || y === null) return (x === null) - (y === null);
+    const order = typeof x === "string" ? x.localeCompare(y, "en", { numeric: true }) : x - y;
+    return state.down ? -order : order;
+  };
+  return [...rows].sort(compare);
+}
+
+function details(i) {
+  const bounds = data.bounds[i].map(([what, limit, measured, verdict, why]) =>
+    element("tr", {}, element("td", {}, data.texts[what]), element("td", { class: "number" }, brief(measured)), element("td", { class: "number" }, brief(limit)), element("td", {}, element("span", { class: `pill ${data.texts[verdict] === "expected" ? "known" : data.texts[verdict]}` }, data.texts[verdict] === "expected" ? "known" : data.texts[verdict])), element("td", { class: "why" }, data.texts[why])));
+  const rest = Object.keys(columns).filter((key) => !["case", "engine", "setting", "verdict", "why", "expected", "status"].includes(key) && columns[key][i] !== null);
+  const note = data.cases.find((it) => it.name === columns.case[i]);
+  const parts = [];
+  if (columns.why[i]) parts.push(element("p", {}, columns.why[i]));
+  if (note?.why) parts.push(element("p", { class: "muted" }, `About the case (${note.regime}): ${note.why}`));
+  if (bounds.length) parts.push(element("table", { class: "inner" }, element("thead", {}, element("tr", {}, ...["bound on", "measured", "limit", "", "why that limit"].map((it) => element("th", {}, it)))), element("tbody", {}, ...bounds)));
+  parts.push(element("p", { class: "muted" }, rest.map((key) => `${key.replaceAll("_", " ").replace(".", ", ")} ${brief(columns[key][i])}`).join(" · ")));
+  return element("tr", { class: "details" }, element("td", { colspan: SHOWN.length }, ...parts));
+}
+
+function rowOf(i) {
+  const cells = SHOWN.map(([key, , , figure, text]) => {
+    if (key === "verdict") return element("td", {}, element("span", { class: `pill ${verdictOf(i)}` }, verdictOf(i)));
+    if (key === "engine") return element("td", {}, element("span", { class: "dot", style: `background:${colour(columns.engine[i])}` }), columns.engine[i]);
+    const plain = key === "case";
+    const off = (key === "found" && columns.events_missed?.[i] > 0) || (key === "events_spurious" && figure(i) > 0);
+    return element("td", { class: plain ? "name" : `number${off ? " off" : ""}` }, text ? text(i) : plain ? figure(i) : brief(figure(i)));
+  });
+  const row = element("tr", { tabindex: 0, class: "row", "aria-expanded": "false" }, ...cells);
+  const toggle = () => {
+    const open = row.getAttribute("aria-expanded") === "true";
+    row.setAttribute("aria-expanded", String(!open));
+    if (open) row.nextSibling.remove();
+    else row.after(details(i));
+  };
+  row.addEventListener("click", toggle);
+  row.addEventListener("keydown", (event) => {
+    if (event.key === "Enter" || event.key === " ") {
+      event.preventDefault();
+      toggle();
+    }
+  });
+  return row;
+}
+
+function showRows() {
+  const rows = ordered([...Array(count).keys()].filter(wanted));
+  const head = SHOWN.map(([key, heading, title]) => element("th", { title, scope: "col", "aria-sort": state.sort === key ? (state.down ? "descending" : "ascending") : "none" },
+    element("button", { type: "button", onclick: () => {
+      state.down = state.sort === key && !state.down;
+      state.sort = key;
+      showRows();
+    } }, heading)));
+  document.getElementById("rows-head").replaceChildren(...head);
+  document.getElementById("rows-body").replaceChildren(...rows.slice(0, state.most).map(rowOf));
+  document.getElementById("rows-count").textContent = `${brief(rows.length)} of ${brief(count)} rows`;
+  const more = document.getElementById("rows-more");
+  more.hidden = rows.length <= state.most;
+  more.textContent = `show all ${brief(rows.length)} rows`;
+  const address = new URLSearchParams(FILTERS.filter((name) => state[name]).map((name) => [name, state[name]]));
+  history.replaceState(null, "", address.size ? `#${address}` : location.pathname + location.search);
+}
+
+function readAddress() {
+  const given = new URLSearchParams(location.hash.slice(1));
+  for (const name of FILTERS) {
+    state[name] = given.get(name) ?? "";
+    field(name).value = state[name];
+    // A choice that there is not is no choice.
+    if (field(name).value !== state[name]) state[name] = field(name).value = "";
+  }
+}
+
+function startRows() {
+  fillChoices();
+  // A link to a section is no filter.
+  if (location.hash.includes("=")) readAddress();
+  for (const name of FILTERS) {
+    field(name).addEventListener("input", () => {
+      state[name] = field(name).value;
+      state.most = PAGE;
+      showRows();
+    });
+  }
+  document.getElementById("filter-clear").addEventListener("click", () => {
+    FILTERS.forEach((name) => (state[name] = field(name).value = ""));
+    Object.assign(state, { sort: "", down: false, most: PAGE });
+    showRows();
+  });
+  document.getElementById("rows-more").addEventListener("click", () => {
+    state.most = Infinity;
+    showRows();
+  });
+  showRows();
+}
+
+if (count) startRows();

@@ -1,0 +1,142 @@
+//! Curves with markers in one panel, their key beside it.
+
+use super::frame::{Axis, Panel, Ruler};
+use super::pen::{Pen, Side};
+use super::{DrawError, Drawing, Marker, palette};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+const SIZE: (u32, u32) = (1500, 900);
+const TEXT: f64 = 20.0;
+
+/// One curve.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// Its name; without one it is not in the key.
+    pub name: String,
+    /// Its colour.
+    pub colour: RGBColor,
+    /// The shape of its points; without one it is a line only.
+    pub marker: Option<Marker>,
+    /// The line's width in pixels.
+    pub width: f64,
+    /// Whether the line is broken.
+    pub dashed: bool,
+    /// Its points; those that are not finite are left out.
+    pub points: Vec<(f64, f64)>,
+}
+
+/// A picture of curves.
+#[derive(Clone, Debug)]
+pub struct Curves {
+    /// What it shows.
+    pub title: String,
+    /// The horizontal axis.
+    pub x: Axis,
+    /// The vertical axis.
+    pub y: Axis,
+    /// The curves, later ones above earlier ones.
+    pub curves: Vec<Curve>,
+}
+
+impl Drawing for Curves {
+    fn size(&self) -> (u32, u32) {
+        SIZE
+    }
+
+    fn draw<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        scale: u32,
+    ) -> Result<(), DrawError> {
+        let pen = Pen { area, scale };
+        pen.paper()?;
+        pen.text(&self.title, (24.0, 32.0), TEXT + 4.0, Side::Left, palette::INK)?;
+        let points = || self.curves.iter().flat_map(|curve| &curve.points).filter(|it| finite(it));
+        let x = Ruler::over(self.x.scale, points().map(|point| point.0));
+        let y = Ruler::over(self.y.scale, points().map(|point| point.1));
+        let (Some(x), Some(y)) = (x, y) else {
+            return pen.text(
+                "nothing was measured",
+                (130.0, 120.0),
+                TEXT,
+                Side::Left,
+                palette::INK,
+            );
+        };
+        let panel = Panel { from: (130.0, 64.0), to: (1110.0, 816.0), x, y };
+        panel.draw(&pen, &self.x.label, &self.y.label)?;
+        for curve in &self.curves {
+            curve.draw(&pen, &panel)?;
+        }
+        let named = self.curves.iter().filter(|curve| !curve.name.is_empty());
+        let step = (740.0 / named.clone().count().max(1) as f64).min(30.0);
+        for (i, curve) in named.enumerate() {
+            curve.key(&pen, (1136.0, 80.0 + i as f64 * step), (step - 4.0).min(TEXT - 1.0))?;
+        }
+        Ok(())
+    }
+}
+
+fn finite(point: &(f64, f64)) -> bool {
+    point.0.is_finite() && point.1.is_finite()
+}
+
+impl Curve {
+    fn draw<B: DrawingBackend>(&self, pen: &Pen<'_, B>, panel: &Panel) -> Result<(), DrawError> {
+        let places = self.points.iter().filter(|it| finite(it)).filter_map(|it| panel.at(*it));
+        let places: Vec<_> = places.collect();
+        for (i, pair) in places.windows(2).enumerate() {
+            if !self.dashed {
+                pen.line(pair[0], pair[1], self.width, self.colour)?;
+                // The drawing library leaves a notch where thick lines meet.
+                pen.marker(Marker::Circle, pair[1], self.width / 2.0, self.colour)?;
+            } else {
+                self.dashes(pen, pair[0], pair[1], i % 2 == 0)?;
+            }
+        }
+        match self.marker {
+            Some(marker) => {
+                places.iter().try_for_each(|at| pen.marker(marker, *at, 6.0, self.colour))
+            }
+            None => Ok(()),
+        }
+    }
+
+    /// A stretch broken into dashes, or every other one of short stretches.
+    fn dashes<B: DrawingBackend>(
+        &self,
+        pen: &Pen<'_, B>,
+        from: (f64, f64),
+        to: (f64, f64),
+        odd: bool,
+    ) -> Result<(), DrawError> {
+        const DASH: f64 = 8.0;
+        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+        let count = (dx.hypot(dy) / (2.0 * DASH)).floor().min(1000.0);
+        if count < 1.0 {
+            return if odd { pen.line(from, to, self.width, self.colour) } else { Ok(()) };
+        }
+        let along = |share: f64| (from.0 + share * dx, from.1 + share * dy);
+        (0..count as u32).map(f64::from).try_for_each(|k| {
+            pen.line(along(k / count), along((k + 0.5) / count), self.width, self.colour)
+        })
+    }
+
+    fn key<B: DrawingBackend>(
+        &self,
+        pen: &Pen<'_, B>,
+        (x, y): (f64, f64),
+        size: f64,
+    ) -> Result<(), DrawError> {
+        if self.dashed {
+            self.dashes(pen, (x, y), (x + 34.0, y), true)?;
+        } else {
+            pen.line((x, y), (x + 34.0, y), self.width, self.colour)?;
+        }
+        if let Some(marker) = self.marker {
+            pen.marker(marker, (x + 17.0, y), 6.0, self.colour)?;
+        }
+        pen.text(&self.name, (x + 44.0, y), size, Side::Left, palette::INK)
+    }
+}

@@ -1,0 +1,160 @@
+//! A framed panel with ticks on linear or logarithmic axes.
+
+use super::pen::{At, Pen, Side};
+use super::{DrawError, axes, palette};
+use plotters::prelude::DrawingBackend;
+
+/// How an axis runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Scale {
+    /// Evenly.
+    Linear,
+    /// By powers of ten; what is not above zero stands at its lower end.
+    Logarithmic,
+}
+
+/// An axis and its name.
+#[derive(Clone, Debug)]
+pub struct Axis {
+    /// What it shows.
+    pub label: String,
+    /// How it runs.
+    pub scale: Scale,
+}
+
+/// An axis over data: from, to, and its ticks.
+pub(super) struct Ruler {
+    scale: Scale,
+    from: f64,
+    to: f64,
+    pub ticks: Vec<(f64, String)>,
+}
+
+const TEXT: f64 = 20.0;
+/// Ticks are at most about that many.
+const MOST_TICKS: f64 = 8.0;
+
+impl Ruler {
+    /// `None` where there is nothing to show.
+    pub fn over(scale: Scale, values: impl Iterator<Item = f64>) -> Option<Self> {
+        let placed = values.filter_map(|value| match scale {
+            Scale::Linear => Some(value),
+            Scale::Logarithmic => (value > 0.0).then(|| value.log10()),
+        });
+        let finite: Vec<f64> = placed.filter(|value| value.is_finite()).collect();
+        if finite.is_empty() {
+            return None;
+        }
+        let range = axes::around(finite.iter().copied());
+        let (from, to) = match scale {
+            Scale::Linear => (range.start, range.end),
+            Scale::Logarithmic => {
+                let low = finite.iter().copied().fold(f64::INFINITY, f64::min);
+                let high = finite.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+                ((low - 0.05).floor(), (high + 0.05).ceil())
+            }
+        };
+        let stride = stride((to - from) / MOST_TICKS, scale);
+        let first = (from / stride).ceil() as i64;
+        let last = (to / stride).floor() as i64;
+        let label = |value: f64| match scale {
+            Scale::Linear => axes::label(value, &(from..to)),
+            Scale::Logarithmic => power_of_ten(value.round() as i64),
+        };
+        let tick = |k: i64| (k as f64 * stride, label(k as f64 * stride));
+        Some(Self { scale, from, to, ticks: (first..=last).map(tick).collect() })
+    }
+
+    /// Where a value stands, from 0 to 1.
+    pub fn place(&self, value: f64) -> f64 {
+        let placed = match self.scale {
+            Scale::Linear => value,
+            Scale::Logarithmic if value > 0.0 => value.log10(),
+            Scale::Logarithmic => self.from,
+        };
+        self.share(placed)
+    }
+
+    /// Where a tick stands.
+    pub fn share(&self, placed: f64) -> f64 {
+        (placed - self.from) / (self.to - self.from)
+    }
+}
+
+/// The next of 1, 2, 5 times a power of ten.
+fn stride(rough: f64, scale: Scale) -> f64 {
+    let power = 10.0_f64.powf(rough.log10().floor());
+    let nice = [1.0, 2.0, 5.0, 10.0].map(|k| k * power).into_iter().find(|k| *k >= rough);
+    let nice = nice.unwrap_or(rough);
+    if scale == Scale::Logarithmic { nice.ceil().max(1.0) } else { nice }
+}
+
+/// 10 with its exponent raised.
+pub(super) fn power_of_ten(exponent: i64) -> String {
+    const RAISED: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |c: char| match c.to_digit(10) {
+        Some(digit) => RAISED.get(digit as usize).copied().unwrap_or(c),
+        None => '⁻',
+    };
+    format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
+}
+
+/// A panel between two corners.
+pub(super) struct Panel {
+    pub from: At,
+    pub to: At,
+    pub x: Ruler,
+    pub y: Ruler,
+}
+
+impl Panel {
+    /// Where a point stands; `None` if it does not.
+    pub fn at(&self, (x, y): At) -> Option<At> {
+        let (x, y) = (self.x.place(x), self.y.place(y));
+        let inside = |share: f64| (-1e-6..=1.0 + 1e-6).contains(&share);
+        let across = self.from.0 + x * (self.to.0 - self.from.0);
+        let down = self.to.1 - y * (self.to.1 - self.from.1);
+        (inside(x) && inside(y)).then_some((across, down))
+    }
+
+    pub fn draw<B: DrawingBackend>(
+        &self,
+        pen: &Pen<'_, B>,
+        below: &str,
+        beside: &str,
+    ) -> Result<(), DrawError> {
+        let (from, to) = (self.from, self.to);
+        for (placed, label) in &self.x.ticks {
+            let x = from.0 + self.x.share(*placed) * (to.0 - from.0);
+            pen.line((x, from.1), (x, to.1), 1.0, palette::GRID)?;
+            pen.text(label, (x, to.1 + 20.0), TEXT, Side::Middle, palette::INK)?;
+        }
+        for (placed, label) in &self.y.ticks {
+            let y = to.1 - self.y.share(*placed) * (to.1 - from.1);
+            pen.line((from.0, y), (to.0, y), 1.0, palette::GRID)?;
+            pen.text(label, (from.0 - 10.0, y), TEXT, Side::Right, palette::INK)?;
+        }
+        pen.frame(from, to)?;
+        let middle = ((from.0 + to.0) / 2.0, to.1 + 52.0);
+        pen.text(below, middle, TEXT + 2.0, Side::Middle, palette::INK)?;
+        pen.upright(beside, (from.0 - 96.0, (from.1 + to.1) / 2.0), TEXT + 2.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_logarithmic_axis_takes_what_it_is_given() {
+        let values = [1e-9, 3e-4, 0.0, f64::NAN, f64::INFINITY, -1.0];
+        let ruler = Ruler::over(Scale::Logarithmic, values.into_iter());
+        assert!(ruler.is_some());
+        let Some(ruler) = ruler else { return };
+        assert_eq!((ruler.place(1e-10), ruler.place(0.0)), (0.0, 0.0));
+        assert!((ruler.place(1e-3) - 1.0).abs() < 1e-12);
+        assert_eq!(ruler.ticks.first().map(|tick| tick.1.as_str()), Some("10⁻¹⁰"));
+        assert!(Ruler::over(Scale::Logarithmic, [0.0, f64::NAN].into_iter()).is_none());
+        assert!(Ruler::over(Scale::Linear, [1e-300, 1e300].into_iter()).is_some());
+    }
+}

@@ -1,0 +1,108 @@
+//! A table of tinted cells: engines by something.
+
+use super::pen::{Pen, Side};
+use super::{DrawError, Drawing, palette};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+const ROW: u32 = 38;
+const HEAD: u32 = 110;
+const LABEL: u32 = 330;
+const MARGIN: u32 = 24;
+const TEXT: f64 = 19.0;
+
+/// What a cell's colour says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tint {
+    /// All is right.
+    Good,
+    /// Right, with a remark.
+    Fair,
+    /// Not quite.
+    Poor,
+    /// Wrong.
+    Bad,
+    /// Nothing to say.
+    None,
+}
+
+/// A cell.
+#[derive(Clone, Debug)]
+pub struct Tile {
+    /// What stands in it.
+    pub text: String,
+    /// Its tint.
+    pub tint: Tint,
+}
+
+/// A table of cells.
+#[derive(Clone, Debug)]
+pub struct Tiles {
+    /// What it shows.
+    pub title: String,
+    /// How to read it.
+    pub note: String,
+    /// Names of the columns; cells may go beyond them.
+    pub columns: Vec<String>,
+    /// Name and cells of each row.
+    pub rows: Vec<(String, Vec<Tile>)>,
+}
+
+impl Tiles {
+    fn across(&self) -> usize {
+        self.rows.iter().map(|row| row.1.len()).chain([self.columns.len(), 1]).max().unwrap_or(1)
+    }
+
+    /// Width of a cell: a table of few columns is not stretched, one of many is not cut.
+    fn cell(&self) -> f64 {
+        (1120.0 / self.across() as f64).clamp(110.0, 190.0)
+    }
+}
+
+impl Drawing for Tiles {
+    fn size(&self) -> (u32, u32) {
+        let width = 2 * MARGIN + LABEL + (self.cell() * self.across() as f64).ceil() as u32;
+        let rows = u32::try_from(self.rows.len()).unwrap_or(0).clamp(1, 400);
+        (width.clamp(900, 4000), HEAD + rows * ROW + MARGIN)
+    }
+
+    fn draw<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        scale: u32,
+    ) -> Result<(), DrawError> {
+        let pen = Pen { area, scale };
+        let [margin, head, row, label] = [MARGIN, HEAD, ROW, LABEL].map(f64::from);
+        let left = margin + label;
+        let middle = |i: usize| left + self.cell() * (i as f64 + 0.5);
+        pen.paper()?;
+        pen.text(&self.title, (margin, 28.0), TEXT + 4.0, Side::Left, palette::INK)?;
+        pen.text(&self.note, (margin, 58.0), TEXT - 2.0, Side::Left, palette::INK)?;
+        for (i, name) in self.columns.iter().enumerate() {
+            pen.text(name, (middle(i), head - 16.0), TEXT, Side::Middle, palette::INK)?;
+        }
+        for (j, (name, cells)) in self.rows.iter().enumerate() {
+            let top = head + j as f64 * row;
+            pen.text(name, (margin, top + row / 2.0), TEXT, Side::Left, palette::INK)?;
+            for (i, cell) in cells.iter().enumerate() {
+                let from = left + self.cell() * i as f64;
+                let (paper, ink) = colours(cell.tint);
+                let to = (from + self.cell() - 2.0, top + row - 2.0);
+                pen.fill((from, top), to, paper)?;
+                let at = (middle(i) - 1.0, top + row / 2.0 - 1.0);
+                pen.text(&cell.text, at, TEXT - 1.0, Side::Middle, ink)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+const fn colours(tint: Tint) -> (RGBColor, RGBColor) {
+    match tint {
+        Tint::Good => (RGBColor(220, 242, 232), RGBColor(10, 110, 79)),
+        Tint::Fair => (RGBColor(223, 237, 251), RGBColor(11, 83, 148)),
+        Tint::Poor => (RGBColor(252, 236, 200), RGBColor(122, 77, 0)),
+        Tint::Bad => (RGBColor(251, 227, 224), RGBColor(179, 38, 30)),
+        Tint::None => (RGBColor(240, 242, 244), RGBColor(91, 100, 112)),
+    }
+}

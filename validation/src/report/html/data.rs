@@ -1,0 +1,179 @@
+//! The data inside the page: the rows as columns, and the curves. Rounded; `report.json` has all digits.
+
+use super::super::summary::EngineSummary;
+use super::super::{Evidence, Report, Row};
+use crate::picture::Look;
+use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
+
+/// Points of a section that are drawn; a page stays quick with that many.
+const MOST_POINTS: usize = 6000;
+
+/// The page's data, fit to stand inside a script element.
+pub(super) fn json(
+    report: &Report,
+    evidence: &Evidence,
+    engines: &[EngineSummary],
+    looks: &[Look],
+) -> String {
+    let mut texts = Texts::default();
+    let engine = |(i, engine): (usize, &super::super::EngineEntry)| {
+        json!({
+            "name": engine.name,
+            "library": engine.library,
+            "marker": looks.get(i).map(|look| look.marker),
+            "settings": engines.get(i).map(|it| rounded(json!(it.settings))),
+        })
+    };
+    let data = json!({
+        "engines": report.engines.iter().enumerate().map(engine).collect::<Vec<_>>(),
+        "cases": cases(report, evidence),
+        "columns": columns(&report.results),
+        "bounds": report.results.iter().map(|row| bounds(row, &mut texts)).collect::<Vec<_>>(),
+        "texts": texts.all,
+        "growth": rounded(json!(evidence.growth)),
+        "restarts": rounded(json!(evidence.restarts)),
+        "sections": evidence.sections.iter().map(section).collect::<Vec<_>>(),
+    });
+    inside_a_script(&data.to_string())
+}
+
+/// Nothing in it ends the script element or begins a comment.
+fn inside_a_script(json: &str) -> String {
+    json.replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
+}
+
+fn cases(report: &Report, evidence: &Evidence) -> Vec<Value> {
+    let names = report.results.chunk_by(|a, b| a.case == b.case).filter_map(|rows| rows.first());
+    let note = |row: &Row| {
+        let note = evidence.cases.iter().find(|note| note.name == row.case);
+        json!({
+            "name": row.case,
+            "regime": note.map(|note| &note.regime),
+            "why": note.map(|note| &note.why),
+        })
+    };
+    names.map(note).collect()
+}
+
+/// Each key of a row as an array over the rows; keys of nested objects with a dot.
+fn columns(rows: &[Row]) -> Map<String, Value> {
+    let flat: Vec<BTreeMap<String, Value>> = rows.iter().map(flat).collect();
+    let names = flat.iter().flat_map(|row| row.keys().cloned());
+    let names: std::collections::BTreeSet<String> = names.collect();
+    let column = |name: &String| {
+        flat.iter().map(|row| row.get(name).cloned().unwrap_or(Value::Null)).collect::<Vec<_>>()
+    };
+    // A column that says nothing is not sent.
+    let told = |(_, column): &(String, Vec<Value>)| column.iter().any(|value| !value.is_null());
+    let all = names.iter().map(|name| (name.clone(), column(name))).filter(told);
+    all.map(|(name, column)| (name, Value::Array(column))).collect()
+}
+
+fn flat(row: &Row) -> BTreeMap<String, Value> {
+    let mut flat = BTreeMap::from([("setting".to_owned(), json!(row.setting()))]);
+    if let Value::Object(fields) = rounded(json!(row)) {
+        for (name, value) in fields {
+            flatten(&name, value, &mut flat);
+        }
+    }
+    flat.remove("bounds");
+    flat
+}
+
+fn flatten(name: &str, value: Value, into: &mut BTreeMap<String, Value>) {
+    match value {
+        Value::Object(fields) => {
+            for (key, value) in fields {
+                flatten(&format!("{name}.{key}"), value, into);
+            }
+        }
+        value => {
+            into.insert(name.to_owned(), value);
+        }
+    }
+}
+
+/// Texts that many rows share, by number.
+#[derive(Default)]
+struct Texts {
+    all: Vec<String>,
+    numbers: BTreeMap<String, usize>,
+}
+
+impl Texts {
+    fn number(&mut self, text: &str) -> usize {
+        if let Some(number) = self.numbers.get(text) {
+            return *number;
+        }
+        self.all.push(text.to_owned());
+        self.numbers.insert(text.to_owned(), self.all.len() - 1);
+        self.all.len() - 1
+    }
+}
+
+/// Quantity and statistic, limit, value, verdict, why.
+fn bounds(row: &Row, texts: &mut Texts) -> Vec<Value> {
+    let word = |value: Value| value.as_str().unwrap_or_default().replace('_', " ");
+    let mut bound = |it: &crate::score::Checked| {
+        let what = match word(json!(it.statistic)).as_str() {
+            "value" => word(json!(it.quantity)),
+            statistic => format!("{}, {statistic}", word(json!(it.quantity))),
+        };
+        let verdict = texts.number(&word(json!(it.verdict)));
+        let [limit, value] = [it.limit, it.value].map(|number| rounded(json!(number)));
+        json!([texts.number(&what), limit, value, verdict, texts.number(&it.why)])
+    };
+    row.bounds.iter().map(&mut bound).collect()
+}
+
+fn section(pair: &super::super::SectionPair) -> Value {
+    let thinned = |points: &[[f64; 2]]| {
+        let stride = points.len().div_ceil(MOST_POINTS).max(1);
+        rounded(json!(points.iter().step_by(stride).collect::<Vec<_>>()))
+    };
+    json!({
+        "omega": pair.omega,
+        "xi": pair.xi,
+        "engine": pair.direct_engine,
+        "exact": thinned(&pair.exact),
+        "direct": thinned(&pair.direct),
+        "total": [pair.exact.len(), pair.direct.len()],
+    })
+}
+
+/// Numbers to four digits after the first.
+fn rounded(value: Value) -> Value {
+    match value {
+        Value::Number(number) if number.is_f64() => {
+            let short = number.as_f64().and_then(|it| format!("{it:.4e}").parse::<f64>().ok());
+            json!(short)
+        }
+        Value::Array(values) => values.into_iter().map(rounded).collect(),
+        Value::Object(fields) => {
+            Value::Object(fields.into_iter().map(|(key, value)| (key, rounded(value))).collect())
+        }
+        value => value,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn nothing_ends_the_script() {
+        let text = inside_a_script(&json!("</script><!-- \u{2028}").to_string());
+        assert!(!text.contains('<') && !text.contains('\u{2028}'), "{text}");
+        assert_eq!(
+            serde_json::from_str::<Value>(&text).ok(),
+            Some(json!("</script><!-- \u{2028}"))
+        );
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        let value = rounded(json!([0.123_456_789, 1, {"a": f64::NAN, "b": -1.234_567e-12}]));
+        assert_eq!(value, json!([0.12346, 1, {"a": null, "b": -1.2346e-12}]));
+    }
+}

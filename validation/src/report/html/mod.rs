@@ -1,0 +1,74 @@
+//! `report.html`: one page that works offline, with its styles, scripts and data inside.
+//!
+//! What is read off at a glance (verdicts, recall, grazing, power) is made here, so that it shows
+//! without scripts and in print; the rows, which are filtered, and the curves are drawn in the page.
+//! The curves are drawn by a page of our own SVG: each engine has abscissas of its own, which
+//! charting libraries with one shared column do not take, and SVG follows the colour scheme and prints.
+
+mod data;
+mod view;
+
+use super::{Evidence, Exporter, Report, summary};
+use crate::picture::looks;
+use askama::Template;
+use std::io::{self, Write};
+
+pub(super) struct Html;
+
+const STYLE: &str = include_str!("../../../assets/report/report.css");
+const SCRIPTS: &str = concat!(
+    include_str!("../../../assets/report/format.js"),
+    include_str!("../../../assets/report/chart.js"),
+    include_str!("../../../assets/report/rows.js"),
+    include_str!("../../../assets/report/curves.js"),
+    include_str!("../../../assets/report/clouds.js"),
+);
+
+#[derive(Template)]
+#[template(path = "report.html")]
+struct Page<'a> {
+    report: &'a Report,
+    evidence: &'a Evidence,
+    engines: Vec<view::EngineLine>,
+    failures: Vec<view::Failure>,
+    more_failures: usize,
+    known: usize,
+    cases: usize,
+    recall_columns: usize,
+    grazing: view::GrazingTable,
+    power: view::PowerTable,
+    colours: String,
+    style: &'static str,
+    scripts: &'static str,
+    data: String,
+}
+
+impl Exporter for Html {
+    fn file_name(&self) -> &'static str {
+        "report.html"
+    }
+
+    fn write(&self, report: &Report, evidence: &Evidence, out: &mut dyn Write) -> io::Result<()> {
+        let summaries = summary::engines(report);
+        let names: Vec<_> = report.engines.iter().map(|it| (it.name, it.library)).collect();
+        let looks = looks(&names);
+        let (failures, more_failures) = view::failures(report);
+        let page = Page {
+            report,
+            evidence,
+            engines: view::engines(report, &summaries, &looks),
+            failures,
+            more_failures,
+            known: report.results.iter().filter(|row| row.expected).count(),
+            cases: report.results.chunk_by(|a, b| a.case == b.case).count(),
+            recall_columns: summaries.iter().map(|it| it.settings.len()).max().unwrap_or(0),
+            grazing: view::grazing(report, evidence),
+            power: view::power(evidence),
+            colours: view::colours(&looks),
+            style: STYLE,
+            scripts: SCRIPTS,
+            data: data::json(report, evidence, &summaries, &looks),
+        };
+        out.write_all(page.render().map_err(io::Error::other)?.as_bytes())
+    }
+}

@@ -1,0 +1,249 @@
+//! The parts of the page that need no script, as the template takes them.
+
+use super::super::csv::word;
+use super::super::grazing::{Grazing, Seen};
+use super::super::summary::{EngineSummary, SettingSummary, percent};
+use super::super::{Evidence, Report};
+use crate::number::brief;
+use crate::picture::{Look, Marker};
+use crate::score::Verdict;
+use std::fmt::Write;
+
+/// Failures shown at the top; all are in the table.
+const MOST_FAILURES: usize = 30;
+
+pub(super) struct EngineLine {
+    pub place: usize,
+    pub name: &'static str,
+    pub library: &'static str,
+    pub version: String,
+    pub method: &'static str,
+    pub marker: &'static str,
+    /// A class and words for it.
+    pub verdict: (&'static str, String),
+    pub counts: String,
+    pub time_error: String,
+    pub state_error: String,
+    pub rhs: String,
+    pub finest: String,
+    pub recall: Vec<RecallCell>,
+    /// The worst recall, in words.
+    pub overall: String,
+}
+
+pub(super) struct RecallCell {
+    pub setting: String,
+    pub text: String,
+    pub note: String,
+    /// From 0, nothing found, to 4, everything found and nothing invented.
+    pub level: u8,
+}
+
+pub(super) fn engines(
+    report: &Report,
+    summaries: &[EngineSummary],
+    looks: &[Look],
+) -> Vec<EngineLine> {
+    let lines = report.engines.iter().zip(summaries).enumerate();
+    let line =
+        |(place, (engine, summary)): (usize, (&super::super::EngineEntry, &EngineSummary))| {
+            let finest = summary.settings.last();
+            let figure = |figure: fn(&SettingSummary) -> f64| {
+                finest.map_or(String::new(), |it| shown(figure(it)))
+            };
+            EngineLine {
+                place,
+                name: engine.name,
+                library: engine.library,
+                version: engine.version.clone(),
+                method: engine.method,
+                marker: looks.get(place).map_or("", |look| glyph(look.marker)),
+                verdict: verdict(summary),
+                counts: counts(summary),
+                time_error: figure(|it| it.time_error),
+                state_error: figure(|it| it.state_error),
+                rhs: finest.map_or(String::new(), |it| count(it.rhs)),
+                finest: finest.map_or(String::new(), |it| it.setting.clone()),
+                recall: summary.settings.iter().map(recall).collect(),
+                overall: overall(summary),
+            }
+        };
+    lines.map(line).collect()
+}
+
+fn shown(value: f64) -> String {
+    if value.is_nan() {
+        "\u{2013}".to_owned()
+    } else if value.is_infinite() {
+        "no result".to_owned()
+    } else {
+        brief(value)
+    }
+}
+
+/// A count with thin groups of three.
+fn count(value: f64) -> String {
+    if !value.is_finite() {
+        return "\u{2013}".to_owned();
+    }
+    let digits = format!("{value:.0}");
+    let groups: Vec<_> = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy).collect();
+    groups.join("\u{202f}")
+}
+
+fn verdict(summary: &EngineSummary) -> (&'static str, String) {
+    let EngineSummary { pass, known, fail, error, unavailable, .. } = *summary;
+    if error > 0 {
+        ("error", format!("{} without a result", error))
+    } else if fail > 0 {
+        ("fail", format!("{fail} out of bounds"))
+    } else if pass == 0 && unavailable > 0 {
+        ("unavailable", "not run".to_owned())
+    } else if known > 0 {
+        ("known", format!("within bounds, {known} known"))
+    } else {
+        ("pass", "within bounds".to_owned())
+    }
+}
+
+fn counts(summary: &EngineSummary) -> String {
+    let EngineSummary { pass, fail, error, unavailable, .. } = *summary;
+    let mut text = format!("{pass} of {} rows pass", pass + fail + error + unavailable);
+    if unavailable > 0 {
+        let _ = write!(text, ", {unavailable} not run");
+    }
+    text
+}
+
+fn recall(summary: &SettingSummary) -> RecallCell {
+    let SettingSummary { matched, expected, spurious, failed, .. } = *summary;
+    let share = summary.recall();
+    let level = match share {
+        share if share.is_nan() || share < 0.9 => 0,
+        share if share < 0.99 => 1,
+        share if share < 1.0 => 2,
+        _ if spurious > 0 || failed > 0 => 3,
+        _ => 4,
+    };
+    let mut note = format!("{matched} of {expected} switches found");
+    if spurious > 0 {
+        let _ = write!(note, ", {spurious} invented");
+    }
+    if failed > 0 {
+        let _ = write!(note, ", {failed} runs without a result");
+    }
+    RecallCell { setting: summary.setting.clone(), text: percent(share), note, level }
+}
+
+fn overall(summary: &EngineSummary) -> String {
+    let worst = summary.settings.iter().map(SettingSummary::recall).fold(f64::NAN, f64::min);
+    percent(worst)
+}
+
+pub(super) struct Failure {
+    pub verdict: &'static str,
+    pub case: String,
+    pub who: String,
+    pub why: String,
+}
+
+/// What is out of bounds or without a result, and how many more there are.
+pub(super) fn failures(report: &Report) -> (Vec<Failure>, usize) {
+    let bad =
+        report.results.iter().filter(|it| matches!(it.verdict, Verdict::Fail | Verdict::Error));
+    let all: Vec<_> = bad
+        .map(|row| Failure {
+            verdict: word(row.verdict),
+            case: row.case.clone(),
+            who: row.who(),
+            why: row.why.clone(),
+        })
+        .collect();
+    let more = all.len().saturating_sub(MOST_FAILURES);
+    (all.into_iter().take(MOST_FAILURES).collect(), more)
+}
+
+/// Margins, and engines with a cell a margin: class, glyph and title of each setting.
+pub(super) struct GrazingTable {
+    pub margins: Vec<(bool, String)>,
+    pub lines: Vec<(String, Vec<Vec<SeenCell>>)>,
+}
+
+pub(super) struct SeenCell {
+    pub class: &'static str,
+    pub glyph: &'static str,
+    pub title: String,
+}
+
+pub(super) fn grazing(report: &Report, evidence: &Evidence) -> GrazingTable {
+    let grazing = Grazing::of(report, evidence);
+    let cell = |(setting, seen): (String, Seen)| {
+        let (class, glyph, words) = match seen {
+            Seen::Right => ("right", "\u{25cf}", "right"),
+            Seen::Missed => ("missed", "\u{25cb}", "missed switches"),
+            Seen::Invented => ("invented", "\u{00d7}", "invented switches"),
+            Seen::Nothing => ("nothing", "\u{2013}", "no result"),
+        };
+        let of = if setting.is_empty() { String::new() } else { format!("{setting}: ") };
+        SeenCell { class, glyph, title: format!("{of}{words}") }
+    };
+    let cells = |cells: Vec<Vec<(String, Seen)>>| {
+        cells.into_iter().map(|here| here.into_iter().map(cell).collect()).collect()
+    };
+    GrazingTable {
+        margins: grazing.margins.into_iter().map(|(margin, label)| (margin > 0.0, label)).collect(),
+        lines: grazing.lines.into_iter().map(|(engine, here)| (engine, cells(here))).collect(),
+    }
+}
+
+/// Wrong engines by gates.
+pub(super) struct PowerTable {
+    pub gates: Vec<String>,
+    /// Engine, what is wrong, and per gate whether it was caught and the figure; `None`: not held against it.
+    pub lines: Vec<(String, String, Vec<Option<(bool, String)>>, bool)>,
+}
+
+pub(super) fn power(evidence: &Evidence) -> PowerTable {
+    let mut gates: Vec<String> = Vec::new();
+    for (gate, ..) in evidence.faults.iter().flat_map(|fault| &fault.gates) {
+        if !gates.contains(gate) {
+            gates.push(gate.clone());
+        }
+    }
+    let line = |fault: &super::super::Fault| {
+        let cell = |gate: &String| {
+            let found = fault.gates.iter().find(|(name, ..)| name == gate);
+            found.map(|(_, caught, detail)| (*caught, detail.clone()))
+        };
+        let caught = fault.gates.iter().any(|(_, caught, _)| *caught);
+        let cells = gates.iter().map(cell).collect();
+        (fault.engine.clone(), fault.fault.clone(), cells, caught)
+    };
+    let lines = evidence.faults.iter().map(line).collect();
+    PowerTable { gates, lines }
+}
+
+/// A custom property an engine, on white and on black.
+pub(super) fn colours(looks: &[Look]) -> String {
+    let rule = |of: fn(&Look) -> plotters::style::RGBColor| {
+        looks.iter().enumerate().fold(String::new(), |mut rule, (i, look)| {
+            let plotters::style::RGBColor(r, g, b) = of(look);
+            let _ = write!(rule, "--e{i}:#{r:02x}{g:02x}{b:02x};");
+            rule
+        })
+    };
+    let (light, dark) = (rule(|look| look.light), rule(|look| look.dark));
+    format!(":root{{{light}}}@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}")
+}
+
+fn glyph(marker: Marker) -> &'static str {
+    match marker {
+        Marker::Circle => "\u{25cf}",
+        Marker::Square => "\u{25a0}",
+        Marker::Triangle => "\u{25b2}",
+        Marker::Diamond => "\u{25c6}",
+        Marker::Cross => "\u{2715}",
+        Marker::Plus => "\u{271a}",
+        Marker::Nabla => "\u{25bc}",
+    }
+}

@@ -1,0 +1,296 @@
+//! The pictures beside the report, each as PNG and, where it stays small, as SVG.
+
+use super::grazing::{Grazing, Seen};
+use super::setting::{setting, who};
+use super::summary::{self, EngineSummary, SettingSummary};
+use super::{ErrorGrowth, Evidence, Report, RestartHistogram, SectionPair};
+use crate::number::brief;
+use crate::picture::{
+    Axis, Cloud, Clouds, Curve, Curves, DrawError, Drawing, Look, Marker, Scale, Strip, Strips,
+    Tile, Tiles, Tint, looks, png, svg,
+};
+use plotters::style::RGBColor;
+use rayon::prelude::*;
+
+/// A cloud of more points is no SVG.
+const MOST_SVG_POINTS: usize = 3000;
+const GREY: RGBColor = RGBColor(150, 150, 150);
+const INK: RGBColor = RGBColor(20, 20, 20);
+
+/// A picture's file name and bytes.
+pub type Picture = (String, Vec<u8>);
+
+/// All pictures that there are data for.
+///
+/// # Errors
+/// [`DrawError`] with the drawing library's reason.
+pub fn pictures(report: &Report, evidence: &Evidence) -> Result<Vec<Picture>, DrawError> {
+    let palette = Palette::of(report, evidence);
+    let summaries = summary::engines(report);
+    let work = |name: &str, label: &str, figure: fn(&SettingSummary) -> f64| {
+        let curves = palette.work_precision(report, &summaries, label, figure);
+        (format!("work-precision-{name}"), curves)
+    };
+    let mut curves = vec![
+        work("event-time", "error of switches' times", |it| it.time_error),
+        work("state", "error of the state", |it| it.state_error),
+    ];
+    curves.extend(
+        by_case(&evidence.growth, |it| &it.case)
+            .map(|(case, runs)| (format!("error-growth-{case}"), palette.growth(case, &runs))),
+    );
+    let mut tiles = vec![("recall".to_owned(), recall(report, &summaries))];
+    let grazing = Grazing::of(report, evidence);
+    if !grazing.lines.is_empty() {
+        tiles.push(("grazing".to_owned(), touches(grazing)));
+    }
+    let strips: Vec<_> = by_case(&evidence.restarts, |it| &it.case)
+        .flat_map(|(case, runs)| palette.restarts(case, &runs))
+        .collect();
+    let clouds: Vec<_> = evidence.sections.iter().enumerate().map(attractors).collect();
+    let drawn = [
+        drawn(&curves, |_| true)?,
+        drawn(&tiles, |_| true)?,
+        drawn(&strips, |_| true)?,
+        drawn(&clouds, |it| it.pair.iter().all(|cloud| cloud.points.len() <= MOST_SVG_POINTS))?,
+    ];
+    Ok(drawn.into_iter().flatten().collect())
+}
+
+fn drawn<D: Drawing + Sync>(
+    drawings: &[(String, D)],
+    small: impl Fn(&D) -> bool + Sync,
+) -> Result<Vec<Picture>, DrawError> {
+    let both = |(name, drawing): &(String, D)| {
+        let mut files = vec![(format!("{name}.png"), png(drawing)?)];
+        if small(drawing) {
+            files.push((format!("{name}.svg"), svg(drawing)?.into_bytes()));
+        }
+        Ok(files)
+    };
+    let files: Result<Vec<_>, DrawError> = drawings.par_iter().map(both).collect();
+    Ok(files?.into_iter().flatten().collect())
+}
+
+/// What belongs to each case, in the order of its first appearance.
+fn by_case<T>(all: &[T], case: fn(&T) -> &String) -> impl Iterator<Item = (&str, Vec<&T>)> {
+    let mut names: Vec<&str> = Vec::new();
+    for it in all {
+        if !names.contains(&case(it).as_str()) {
+            names.push(case(it));
+        }
+    }
+    names.into_iter().map(move |name| (name, all.iter().filter(|it| case(it) == name).collect()))
+}
+
+/// Engines' looks by name.
+struct Palette {
+    looks: Vec<(String, Look)>,
+}
+
+impl Palette {
+    /// Of the engines of the report, and of those that only the evidence knows.
+    fn of(report: &Report, evidence: &Evidence) -> Self {
+        let mut names: Vec<(&str, &str)> =
+            report.engines.iter().map(|it| (it.name, it.library)).collect();
+        let growth = evidence.growth.iter().map(|it| it.engine.as_str());
+        for name in growth.chain(evidence.restarts.iter().map(|it| it.engine.as_str())) {
+            if names.iter().all(|(known, _)| *known != name) {
+                names.push((name, ""));
+            }
+        }
+        let looks = names.iter().zip(looks(&names));
+        Self { looks: looks.map(|((name, _), look)| ((*name).to_owned(), look)).collect() }
+    }
+
+    fn colour(&self, engine: &str) -> RGBColor {
+        self.look(engine).map_or(GREY, |look| look.light)
+    }
+
+    fn look(&self, engine: &str) -> Option<&Look> {
+        self.looks.iter().find(|(name, _)| name == engine).map(|(_, look)| look)
+    }
+
+    fn work_precision(
+        &self,
+        report: &Report,
+        summaries: &[EngineSummary],
+        label: &str,
+        figure: fn(&SettingSummary) -> f64,
+    ) -> Curves {
+        let cases = report.results.chunk_by(|a, b| a.case == b.case).count();
+        let of = match report.results.first() {
+            Some(row) if cases == 1 => row.case.clone(),
+            _ => format!("median of {cases} cases"),
+        };
+        let curve = |(engine, summary): (&super::EngineEntry, &EngineSummary)| Curve {
+            name: engine.name.to_owned(),
+            colour: self.colour(engine.name),
+            marker: Some(self.look(engine.name).map_or(Marker::Circle, |look| look.marker)),
+            width: 2.5,
+            dashed: false,
+            // On a logarithmic axis there is no work of nothing.
+            points: summary
+                .settings
+                .iter()
+                .map(|it| (it.rhs, figure(it)))
+                .filter(|it| it.0 > 0.0)
+                .collect(),
+        };
+        let logarithmic = |label: &str| Axis { label: label.to_owned(), scale: Scale::Logarithmic };
+        Curves {
+            title: format!("Work-precision, {label}: {of}"),
+            x: logarithmic("right-hand sides (exact: closed-form evaluations)"),
+            y: logarithmic(label),
+            curves: report.engines.iter().zip(summaries).map(curve).collect(),
+        }
+    }
+
+    fn growth(&self, case: &str, runs: &[&ErrorGrowth]) -> Curves {
+        let points = |run: &ErrorGrowth, errors: &[f64]| {
+            let points = run.periods.iter().copied().zip(errors.iter().copied());
+            points.filter(|point| point.1 > 0.0).collect::<Vec<_>>()
+        };
+        let truth = |run: &&ErrorGrowth| Curve {
+            name: String::new(),
+            colour: GREY,
+            marker: None,
+            width: 1.5,
+            dashed: false,
+            points: points(run, &run.truth_growth),
+        };
+        let error = |run: &&ErrorGrowth| Curve {
+            name: who(&run.engine, &setting(run.tolerance, None)),
+            colour: self.colour(&run.engine),
+            width: 2.0,
+            points: points(run, &run.error),
+            ..truth(run)
+        };
+        let mut curves: Vec<Curve> = runs.iter().map(truth).collect();
+        if let Some(first) = curves.first_mut() {
+            first.name = "growth of the truth".to_owned();
+        }
+        curves.extend(runs.iter().map(error));
+        curves.extend(exponential(runs));
+        Curves {
+            title: format!("Error growth in chaos: {case}"),
+            x: Axis { label: "forcing periods".to_owned(), scale: Scale::Linear },
+            y: Axis { label: "error of the state".to_owned(), scale: Scale::Logarithmic },
+            curves,
+        }
+    }
+
+    /// A picture a unit: errors in different units share no axis.
+    fn restarts(&self, case: &str, runs: &[&RestartHistogram]) -> Vec<(String, Strips)> {
+        let mut units: Vec<&str> = Vec::new();
+        for run in runs {
+            if !units.contains(&run.unit.as_str()) {
+                units.push(&run.unit);
+            }
+        }
+        let strip = |run: &&&RestartHistogram| Strip {
+            name: who(&run.engine, &setting(run.tolerance, None)),
+            colour: self.colour(&run.engine),
+            edges: run.edges.clone(),
+            counts: run.counts.clone(),
+        };
+        let picture = |(i, unit): (usize, &&str)| {
+            let suffix = if i == 0 { String::new() } else { format!("-{}", i + 1) };
+            let strips = runs.iter().filter(|run| run.unit == **unit);
+            let strips = Strips {
+                title: format!("Errors after one impact and separation: {case}"),
+                label: format!("error in units of {unit}"),
+                strips: strips.collect::<Vec<_>>().iter().map(strip).collect(),
+            };
+            (format!("restart-errors-{case}{suffix}"), strips)
+        };
+        units.iter().enumerate().map(picture).collect()
+    }
+}
+
+/// The line exp(lambda t) from the smallest error there is, as far as it says anything.
+fn exponential(runs: &[&ErrorGrowth]) -> Option<Curve> {
+    let lambda = runs.iter().find_map(|run| run.lambda_per_period)?;
+    let errors = runs.iter().flat_map(|run| &run.error).copied();
+    let floor = errors.filter(|error| *error > 0.0 && error.is_finite()).min_by(f64::total_cmp)?;
+    let end = runs.iter().flat_map(|run| &run.periods).copied().fold(0.0, f64::max);
+    let last = end.min((1.0 / floor).ln().max(0.0) / lambda.max(1e-9));
+    Some(Curve {
+        name: format!("exp(\u{3bb}t), \u{3bb} = {}", brief(lambda)),
+        colour: INK,
+        marker: None,
+        width: 2.0,
+        dashed: true,
+        points: vec![(0.0, floor), (last, floor * (lambda * last).exp())],
+    })
+}
+
+fn recall(report: &Report, summaries: &[EngineSummary]) -> Tiles {
+    let tile = |it: &SettingSummary| {
+        let tint = match it.recall() {
+            share if share.is_nan() => Tint::None,
+            share if share < 0.99 => Tint::Bad,
+            share if share < 1.0 => Tint::Poor,
+            _ if it.spurious > 0 || it.failed > 0 => Tint::Fair,
+            _ => Tint::Good,
+        };
+        let share = summary::percent(it.recall());
+        Tile { text: format!("{} {share}", it.setting).trim().to_owned(), tint }
+    };
+    let row = |(engine, summary): (&super::EngineEntry, &EngineSummary)| {
+        (engine.name.to_owned(), summary.settings.iter().map(tile).collect())
+    };
+    Tiles {
+        title: "Recall: switches found of those that there are".to_owned(),
+        note: "settings from coarse to fine; blue: some invented, or runs without a result"
+            .to_owned(),
+        columns: Vec::new(),
+        rows: report.engines.iter().zip(summaries).map(row).collect(),
+    }
+}
+
+fn touches(grazing: Grazing) -> Tiles {
+    let tile = |cell: Vec<(String, Seen)>| {
+        let sign = |(_, seen): &(String, Seen)| match seen {
+            Seen::Right => '\u{25cf}',
+            Seen::Missed => '\u{25cb}',
+            Seen::Invented => '\u{d7}',
+            Seen::Nothing => '\u{2013}',
+        };
+        let right = cell.iter().filter(|(_, seen)| *seen == Seen::Right).count();
+        let tint = match right {
+            _ if cell.is_empty() => Tint::None,
+            right if right == cell.len() => Tint::Good,
+            0 => Tint::Bad,
+            _ => Tint::Poor,
+        };
+        Tile { text: cell.iter().map(sign).collect(), tint }
+    };
+    let row =
+        |(engine, cells): (String, Vec<Vec<_>>)| (engine, cells.into_iter().map(tile).collect());
+    Tiles {
+        title: "Grazing: how far the mass stays short of the slider (\u{2212}) or reaches beyond it (+)"
+            .to_owned(),
+        note: "settings from coarse to fine; \u{25cf} right, \u{25cb} missed, \u{d7} invented, \u{2013} no result"
+            .to_owned(),
+        columns: grazing.margins.into_iter().map(|(_, label)| label).collect(),
+        rows: grazing.lines.into_iter().map(row).collect(),
+    }
+}
+
+fn attractors((i, pair): (usize, &SectionPair)) -> (String, Clouds) {
+    let told = |(name, value, limit): &(String, f64, f64)| {
+        format!("{name} {} (limit {})", brief(*value), brief(*limit))
+    };
+    let cloud = |name: &str, points: &[[f64; 2]]| Cloud {
+        name: format!("{name}, {} points", points.len()),
+        points: points.to_vec(),
+    };
+    let clouds = Clouds {
+        title: format!("Attractors at \u{3c9} = {}, \u{3be} = {}", pair.omega, pair.xi),
+        note: pair.distances.iter().map(told).collect::<Vec<_>>().join(";  "),
+        axes: ["p".to_owned(), "y".to_owned()],
+        pair: [cloud("exact", &pair.exact), cloud(&pair.direct_engine, &pair.direct)],
+    };
+    (format!("attractors-{}", i + 1), clouds)
+}

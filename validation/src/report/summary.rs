@@ -1,0 +1,119 @@
+//! An engine at a setting over all cases of the report: recall, typical errors, typical cost.
+
+use super::{Report, Row};
+use crate::score::Verdict;
+use serde::Serialize;
+
+/// One engine over all cases.
+#[derive(Clone, Debug, Default)]
+pub(super) struct EngineSummary {
+    /// Rows within bounds; of those, rows that pass as a known shortcoming; rows out of bounds,
+    /// without a result, and not run.
+    pub pass: usize,
+    pub known: usize,
+    pub fail: usize,
+    pub error: usize,
+    pub unavailable: usize,
+    /// From coarse to fine.
+    pub settings: Vec<SettingSummary>,
+}
+
+/// One engine at one setting over all cases. A typical figure is the median over the cases of the
+/// row's largest error; a run without a result counts as infinitely wrong, so that failing on hard
+/// cases does not look like accuracy.
+#[derive(Clone, Debug, Serialize)]
+pub(super) struct SettingSummary {
+    pub setting: String,
+    pub runs: usize,
+    pub failed: usize,
+    pub expected: usize,
+    pub matched: usize,
+    pub spurious: usize,
+    pub time_error: f64,
+    pub state_error: f64,
+    pub rhs: f64,
+    pub ns: f64,
+}
+
+impl SettingSummary {
+    fn of(rows: &[&Row]) -> Self {
+        let ran: Vec<&Row> =
+            rows.iter().copied().filter(|row| row.verdict != Verdict::Unavailable).collect();
+        let sum = |count: fn(&Row) -> Option<usize>| ran.iter().filter_map(|row| count(row)).sum();
+        let error = |figure: fn(&Row) -> f64| {
+            let of = |row: &&Row| if row.status == "ok" { figure(row) } else { f64::INFINITY };
+            median(ran.iter().map(of).filter(|error| !error.is_nan()).collect())
+        };
+        let work = |figure: fn(&Row) -> Option<u64>| {
+            median(ran.iter().filter_map(|row| figure(row)).map(|work| work as f64).collect())
+        };
+        Self {
+            setting: rows.first().map_or(String::new(), |row| row.setting()),
+            runs: ran.len(),
+            failed: ran.iter().filter(|row| row.status != "ok").count(),
+            expected: sum(|row| row.events_expected),
+            matched: sum(|row| row.events_matched),
+            spurious: sum(|row| row.events_spurious),
+            time_error: error(|row| row.event_time_error.max),
+            state_error: error(|row| row.state_error.max),
+            rhs: work(|row| row.rhs_evaluations),
+            ns: work(|row| row.wall_ns),
+        }
+    }
+
+    /// The share of the truth's switches that the engine has; NaN where there was none to find.
+    pub fn recall(&self) -> f64 {
+        self.matched as f64 / self.expected as f64
+    }
+}
+
+/// The engines of a report, in its order.
+pub(super) fn engines(report: &Report) -> Vec<EngineSummary> {
+    report.engines.iter().map(|engine| one(report, engine.name)).collect()
+}
+
+fn one(report: &Report, engine: &str) -> EngineSummary {
+    let mut rows: Vec<&Row> = report.results.iter().filter(|row| row.engine == engine).collect();
+    let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
+    let counted = EngineSummary {
+        pass: count(Verdict::Pass) + count(Verdict::Expected),
+        known: rows.iter().filter(|row| row.expected).count(),
+        fail: count(Verdict::Fail),
+        error: count(Verdict::Error),
+        unavailable: count(Verdict::Unavailable),
+        settings: Vec::new(),
+    };
+    let fineness = |row: &Row| row.tolerance.or(row.step).unwrap_or(0.0);
+    rows.sort_by(|a, b| fineness(b).total_cmp(&fineness(a)));
+    let same = |a: &&Row, b: &&Row| a.setting() == b.setting();
+    EngineSummary { settings: rows.chunk_by(same).map(SettingSummary::of).collect(), ..counted }
+}
+
+/// A share that reads 100 % only where it is.
+pub(super) fn percent(share: f64) -> String {
+    if share.is_nan() {
+        "\u{2013}".to_owned()
+    } else if share >= 1.0 {
+        "100 %".to_owned()
+    } else {
+        format!("{:.2} %", (share * 1e4).floor() / 1e2)
+    }
+}
+
+/// The middle value, by nearest rank; NaN of nothing.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_middle_value() {
+        assert_eq!(median(vec![3.0, 1.0, f64::INFINITY]), 3.0);
+        assert_eq!(median(vec![2.0, 1.0]), 1.0);
+        assert!(median(Vec::new()).is_nan());
+    }
+}

@@ -1,0 +1,125 @@
+//! `report.html` and the pictures beside it, full, empty, and with numbers that are not finite.
+
+#![allow(clippy::expect_used, reason = "a panic is a failed test")]
+
+mod support;
+
+use percuss_validation::report::{Evidence, Report, exporters, pictures};
+use serde_json::Value;
+use std::path::Path;
+use support::synthetic::{NASTY, evidence, report};
+
+fn written(name: &str, report: &Report, evidence: &Evidence) -> String {
+    let exporter = exporters().iter().find(|it| it.file_name() == name).expect("the format");
+    let mut bytes = Vec::new();
+    exporter.write(report, evidence, &mut bytes).expect("written");
+    let kind = if evidence.cases.is_empty() { "empty" } else { "full" };
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{kind}-{name}"));
+    std::fs::write(path, &bytes).expect("kept to be looked at");
+    support::text(&bytes)
+}
+
+fn data(html: &str) -> Value {
+    let (_, rest) =
+        html.split_once("<script type=\"application/json\" id=\"data\">").expect("data");
+    let (json, _) = rest.split_once("</script>").expect("an end");
+    serde_json::from_str(json).expect("JSON")
+}
+
+#[test]
+fn the_page_holds_every_row() {
+    let report = report();
+    let html = written("report.html", &report, &evidence());
+    let data = data(&html);
+    let column = |name: &str| data["columns"][name].as_array().cloned().unwrap_or_default();
+    assert_eq!(data["bounds"].as_array().map(Vec::len), Some(report.results.len()));
+    for (i, row) in report.results.iter().enumerate() {
+        assert_eq!(column("case")[i], row.case);
+        assert_eq!(column("engine")[i], row.engine);
+        assert_eq!(column("tolerance")[i].as_f64(), row.tolerance);
+        assert_eq!(column("setting")[i], row.setting());
+        assert_eq!(column("why")[i], row.why);
+    }
+    let summary = report.summary;
+    assert!(html.contains(&format!("{} rows are out of bounds", summary.fail + summary.error)));
+    assert!(html.len() < 2_000_000, "{}", html.len());
+}
+
+#[test]
+fn nothing_is_loaded_and_nothing_gets_out_of_its_place() {
+    let html = written("report.html", &report(), &evidence());
+    for part in ["src=", "url(", "@import", "<link", "fetch(", "XMLHttpRequest", "import("] {
+        assert!(!html.contains(part), "{part}");
+    }
+    for (at, _) in html.match_indices("href=\"") {
+        let to = html[at + 6..].split('"').next().unwrap_or_default();
+        assert!(to.starts_with('#') || ["report.json", "errors.csv"].contains(&to), "{to}");
+    }
+    assert!(html.contains("default-src 'none'"));
+    // One script element for the data and one for the scripts, whatever the rows say.
+    assert_eq!((html.matches("<script").count(), html.matches("</script>").count()), (2, 2));
+    assert!(!html.contains(NASTY) && !html.contains("<!--"));
+}
+
+#[test]
+fn sections_without_data_say_so() {
+    let (full, empty) = (evidence(), Evidence::default());
+    let said = |html: &str| html.matches("class=\"empty\">Not run").count();
+    assert_eq!(said(&written("report.html", &report(), &full)), 0);
+    assert_eq!(said(&written("report.html", &report(), &empty)), 5);
+    let nothing = Report { results: Vec::new(), engines: Vec::new(), ..report() };
+    assert!(written("report.html", &nothing, &empty).contains("No engine was run"));
+}
+
+#[test]
+fn every_format_takes_every_number() {
+    for exporter in exporters() {
+        for evidence in [evidence(), Evidence::default()] {
+            written(exporter.file_name(), &report(), &evidence);
+        }
+    }
+}
+
+#[test]
+fn every_picture_is_one() {
+    let nothing = Report { results: Vec::new(), engines: Vec::new(), ..report() };
+    let full = pictures(&report(), &evidence()).expect("drawn");
+    let names: Vec<&str> = full.iter().map(|(name, _)| name.as_str()).collect();
+    for name in [
+        "work-precision-event-time",
+        "work-precision-state",
+        "recall",
+        "grazing",
+        "error-growth-fig7a-chaos",
+        "restart-errors-chaos-from-rest",
+        "restart-errors-chaos-from-rest-2",
+        "attractors-1",
+        "attractors-2",
+    ] {
+        let both =
+            [format!("{name}.png"), format!("{name}.svg")].map(|it| names.contains(&it.as_str()));
+        // A cloud of many points is no SVG.
+        assert_eq!(both, [true, name != "attractors-1"], "{name} of {names:?}");
+    }
+    let empty = pictures(&report(), &Evidence::default()).expect("drawn");
+    let of_nothing = pictures(&nothing, &Evidence::default()).expect("drawn");
+    assert_eq!((empty.len(), of_nothing.len()), (6, 6));
+    for (name, bytes) in full.iter().chain(&empty).chain(&of_nothing) {
+        if name.ends_with(".png") {
+            let mut reader =
+                png::Decoder::new(std::io::Cursor::new(bytes)).read_info().expect(name);
+            let mut pixels = vec![0; reader.output_buffer_size().expect(name)];
+            let size = reader.next_frame(&mut pixels).expect(name);
+            assert!(size.width >= 800 && pixels.iter().any(|it| *it != pixels[0]), "{name}");
+        } else {
+            let text = support::text(bytes);
+            assert!(!text.contains("NaN") && !text.contains("inf\""), "{name}");
+            let mut reader = quick_xml::Reader::from_str(&text);
+            while !matches!(reader.read_event().expect(name), quick_xml::events::Event::Eof) {}
+        }
+    }
+    for (name, bytes) in full {
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("full-{name}"));
+        std::fs::write(path, &bytes).expect("kept to be looked at");
+    }
+}
