@@ -35,12 +35,10 @@ impl Suite {
         };
         match (stepping, self) {
             (Stepping::Exact, _) => vec![Accuracy::Exact],
-            (Stepping::Adaptive | Stepping::PerStep { .. }, Self::Quick) => decades(&[6, 9, 12]),
-            (Stepping::Adaptive | Stepping::PerStep { .. }, Self::Full) => {
-                decades(&[4, 5, 6, 7, 8, 9, 10, 11, 12])
-            }
             (Stepping::Fixed { .. }, Self::Quick) => halvings(&[2, 4, 6]),
             (Stepping::Fixed { .. }, Self::Full) => halvings(&[1, 2, 3, 4, 5, 6, 7]),
+            (_, Self::Quick) => decades(&[6, 9, 12]),
+            (_, Self::Full) => decades(&[4, 5, 6, 7, 8, 9, 10, 11, 12]),
         }
     }
 }

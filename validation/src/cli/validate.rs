@@ -104,7 +104,8 @@ fn finish(
         reports::write(&report, evidence, folder)?;
     }
     reports::annotate(&report, evidence, arguments.require);
-    let shown = Destination::Stdout.write(|out| Ok(out.write_all(table(&report).as_bytes())?));
+    let shown =
+        Destination::Stdout.write(|out| Ok(out.write_all(table(&report, evidence).as_bytes())?));
     // A reader that leaves early does not turn a failure into a success.
     shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
     let summary = report.summary;

@@ -16,6 +16,7 @@ mod meter;
 #[cfg(test)]
 mod odd_input;
 mod ode_solvers;
+mod order;
 mod original;
 mod pins;
 mod registry;
@@ -24,6 +25,7 @@ mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
+pub use order::claimed_order;
 pub use registry::{all, exact, select};
 pub use wrong::{CONTROL, Wrong, wrong};
 

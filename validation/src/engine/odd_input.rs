@@ -20,8 +20,8 @@ fn task() -> Option<Task> {
 fn usual(engine: &dyn Engine) -> Accuracy {
     match engine.declaration().stepping {
         Stepping::Exact => Accuracy::Exact,
-        Stepping::Adaptive | Stepping::PerStep { .. } => Accuracy::Tolerance(1e-6),
         Stepping::Fixed { .. } => Accuracy::Step(0.25),
+        _ => Accuracy::Tolerance(1e-6),
     }
 }
 

@@ -1,13 +1,15 @@
 //! `errors.csv`: the rows of `report.json`, flat. What is `null` there is empty or `nan` here.
 
+use super::row::Distance;
 use super::{Evidence, Exporter, Report, Row};
 use crate::number::shortest;
 use crate::score::{Spread, Verdict};
+use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 pub(super) struct Csv;
 
-const COLUMNS: [&str; 26] = [
+const COLUMNS: [&str; 33] = [
     "case",
     "engine",
     "tolerance",
@@ -27,6 +29,13 @@ const COLUMNS: [&str; 26] = [
     "state_error_max",
     "drift_error",
     "valid_periods",
+    "restart_runs",
+    "restart_with_impact",
+    "restart_median",
+    "restart_q99",
+    "restart_max",
+    "distance",
+    "order",
     "rhs_evaluations",
     "jacobian_evaluations",
     "steps",
@@ -55,13 +64,21 @@ fn optional<T: ToString>(value: Option<T>) -> String {
     value.map_or_else(String::new, |value| value.to_string())
 }
 
+/// The largest distance in units of its limit.
+fn share(distances: &BTreeMap<&'static str, Distance>) -> String {
+    let shares = distances.values().map(|it| it.value / it.limit);
+    shortest(shares.fold(0.0, f64::max))
+}
+
 fn spread(spread: &Spread) -> [String; 3] {
     [spread.median, spread.q99, spread.max].map(shortest)
 }
 
-fn fields(row: &Row) -> [String; 26] {
+fn fields(row: &Row) -> [String; 33] {
     let [time_median, time_q99, time_max] = spread(&row.event_time_error);
     let [state_median, state_q99, state_max] = spread(&row.state_error);
+    let restart = row.restart.map(|it| spread(&it.error)).unwrap_or_default();
+    let [restart_median, restart_q99, restart_max] = restart;
     [
         row.case.clone(),
         row.engine.to_owned(),
@@ -82,6 +99,13 @@ fn fields(row: &Row) -> [String; 26] {
         state_max,
         shortest(row.drift_error),
         shortest(row.valid_periods),
+        optional(row.restart.map(|it| it.runs)),
+        optional(row.restart.map(|it| it.with_impact)),
+        restart_median,
+        restart_q99,
+        restart_max,
+        optional(row.distance.as_ref().map(share)),
+        optional(row.order.map(shortest)),
         optional(row.rhs_evaluations),
         optional(row.jacobian_evaluations),
         optional(row.steps),

@@ -10,6 +10,7 @@ mod grazing;
 mod html;
 mod json;
 mod junit;
+mod orders;
 mod pictures;
 mod row;
 mod setting;
@@ -18,6 +19,7 @@ mod table;
 
 pub use annotations::{annotations, under_the_service};
 pub use evidence::{CaseNote, ErrorGrowth, Evidence, Fault, Graze, RestartHistogram, SectionPair};
+pub use orders::{Order, orders};
 pub use pictures::{Picture, pictures};
 pub use row::{EngineEntry, Report, Row, Summary};
 pub use table::table;

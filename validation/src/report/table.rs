@@ -1,16 +1,18 @@
 //! The table for people.
 
 use super::csv::word;
-use super::{Report, Row};
+use super::{Evidence, Order, Report, Row, orders};
 use crate::number::brief;
 use crate::score::Verdict;
 use comfy_table::{CellAlignment, Table, presets};
+use std::collections::BTreeMap;
 
-/// The rows as a table, the failing ones with their reasons below, and the summary.
+/// The rows as a table, the failing ones with their reasons below, what the rows say together, and the
+/// summary.
 #[must_use]
-pub fn table(report: &Report) -> String {
+pub fn table(report: &Report, evidence: &Evidence) -> String {
     let mut text = rows(&report.results);
-    for row in report.results.iter().filter(|row| !matches!(row.verdict, Verdict::Pass)) {
+    for row in report.results.iter().filter(|row| is_to_be_explained(row)) {
         text.push_str(&format!(
             "{}: {} {} {}: {}\n",
             word(row.verdict),
@@ -20,6 +22,18 @@ pub fn table(report: &Report) -> String {
             row.why
         ));
     }
+    text.push_str(&not_run(&report.results));
+    for order in orders(&report.results).iter().filter(|order| order.falls_short()) {
+        let Order { engine, claimed, found, cases } = order;
+        text.push_str(&format!(
+            "order: {engine} converges at {found:.1}, claims {claimed} (median over {cases} cases)\n"
+        ));
+    }
+    if !evidence.faults.is_empty() {
+        let caught = evidence.faults.iter().filter(|it| it.gates.iter().any(|gate| gate.1));
+        let (caught, all) = (caught.count(), evidence.faults.len());
+        text.push_str(&format!("power: {caught} of {all} wrong engines are caught\n"));
+    }
     let summary = &report.summary;
     let expected = report.results.iter().filter(|row| row.expected).count();
     text.push_str(&format!(
@@ -27,6 +41,28 @@ pub fn table(report: &Report) -> String {
         summary.pass, summary.fail, summary.error, summary.unavailable
     ));
     text
+}
+
+/// Rows that the budget left out are told together.
+fn is_to_be_explained(row: &Row) -> bool {
+    !matches!(row.verdict, Verdict::Pass) && !is_not_run(row)
+}
+
+fn is_not_run(row: &Row) -> bool {
+    row.verdict == Verdict::Unavailable && row.why.starts_with("not run")
+}
+
+fn not_run(rows: &[Row]) -> String {
+    let mut counts: BTreeMap<(&str, String), usize> = BTreeMap::new();
+    for row in rows.iter().filter(|row| is_not_run(row)) {
+        *counts.entry((row.engine, setting(row))).or_default() += 1;
+    }
+    let line = |((engine, setting), count): ((&str, String), usize)| {
+        format!(
+            "not run: {engine} {setting} on {count} cases, beyond the budget of right-hand sides\n"
+        )
+    };
+    counts.into_iter().map(line).collect()
 }
 
 fn rows(rows: &[Row]) -> String {

@@ -1,0 +1,65 @@
+//! Every engine that is wrong on purpose fails a bound, and every gate has a fault that trips it.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
+
+use percuss_validation::case::{defaults, embedded};
+use percuss_validation::engine::{Accuracy, CONTROL, Wrong, wrong};
+use percuss_validation::power::{AS_EXACT, Finding, Gate, Standard, examine};
+use percuss_validation::suite::{Prepared, Suite, prepare};
+use percuss_validation::truth::Library;
+
+/// A few cases serve: chaos with all probes, the grazes, late cycles and impacts into progression.
+const CASES: [&str; 6] = [
+    "chaos-from-rest",
+    "fig7a-chaos",
+    "graze-overlap-1e-6",
+    "impact-into-progression",
+    "cycle-1e8",
+    "stiff-xi-0-03",
+];
+
+fn prepared() -> Vec<Prepared> {
+    let library = Library::embedded().expect("the tables are read");
+    let cases = embedded().expect("the cases are read").into_iter();
+    let chosen = cases.filter(|case| CASES.contains(&case.name.as_str())).collect();
+    prepare(chosen, &library, Suite::Quick).expect("the cases are made ready")
+}
+
+fn findings(wrong: &[Wrong], cases: &[Prepared], standard: Standard) -> Vec<Finding> {
+    let bounds = defaults().expect("the bounds are read").bounds;
+    wrong.iter().map(|it| examine(it, cases, standard, &bounds)).collect()
+}
+
+#[test]
+fn every_fault_is_caught_and_every_gate_catches_one() {
+    let cases = prepared();
+    assert_eq!(cases.len(), CASES.len());
+    let found = findings(wrong(), &cases, AS_EXACT);
+    for finding in &found {
+        println!("{} ({}): {:?}", finding.engine, finding.fault, finding.gates);
+        assert!(finding.gates.values().any(|trip| trip.failed > 0), "{} passes", finding.engine);
+    }
+    for gate in Gate::ALL {
+        let trips = found.iter().any(|finding| finding.gates[&gate].failed > 0);
+        assert!(trips, "no fault trips {}", gate.name());
+    }
+}
+
+/// It is the faults that are caught, not the plain solver that they are built into: without a fault it
+/// stays within the bounds of a tolerance of 1e-9, and with one it does not.
+#[test]
+fn the_control_passes_where_the_faults_do_not() {
+    let standard =
+        Standard { engine: "ode_solvers-dopri5", accuracy: Accuracy::Tolerance(1e-9), unit: 1e-9 };
+    let cases = prepared();
+    let control = Wrong { engine: CONTROL, fault: "none" };
+    for finding in findings(&[control], &cases, standard) {
+        assert!(!finding.caught(), "the control fails: {:?}", finding.gates);
+    }
+    let walking = wrong().iter().filter(|it| it.engine.declaration().method.contains("steps"));
+    let walking: Vec<_> = walking.copied().collect();
+    assert!(walking.len() >= 5);
+    for finding in findings(&walking, &cases, standard) {
+        assert!(finding.caught(), "{} passes", finding.engine);
+    }
+}
