@@ -98,3 +98,16 @@ fn a_table_of_another_problem() {
     let cases = changed(folder.path(), |text| text.replacen("a = 0.3", "a = 0.31", 1));
     refused(&["validate", "--cases", &cases], &["events/small-b.csv", "a = 0.3", "0.31"]);
 }
+
+#[test]
+fn a_margin_is_a_number() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let with = |margin: &str| {
+        let stated = format!("[case]\nmargin = {margin}");
+        changed(folder.path(), |text| text.replacen("[case]", &stated, 1))
+    };
+    refused(&["validate", "--cases", &with("nan")], &["small-b.toml:2:", "margin = NaN"]);
+    refused(&["validate", "--cases", &with("\"wide\"")], &["small-b.toml:2:"]);
+    let cases = with("-1e-3");
+    assert_eq!(run(&["validate", "--cases", &cases, "-e", "^exact$"]).status.code(), Some(0));
+}

@@ -4,7 +4,7 @@ use super::Failure;
 use percuss::Parameters;
 
 /// How an engine's accuracy is chosen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stepping {
     /// Nothing to choose: closed forms.
     Exact,

@@ -9,6 +9,7 @@ use plotters::prelude::*;
 const WIDTH: u32 = 1500;
 const HEIGHT: u32 = 780;
 const TEXT: f64 = 20.0;
+const FEW: usize = 5000;
 
 /// One set of points.
 #[derive(Clone, Debug)]
@@ -60,8 +61,10 @@ impl Drawing for Clouds {
             pen.text(&cloud.name, (left, 72.0), TEXT, Side::Left, palette::INK)?;
             let colour =
                 if i == 0 { palette::INK } else { palette::phase(percuss::Phase::NoContact) };
+            // Few points are drawn larger, or they do not show.
+            let half = if cloud.points.len() < FEW { 1.1 } else { 0.5 };
             for at in cloud.points.iter().filter_map(|[p, y]| panel.at((*p, *y))) {
-                pen.fill((at.0 - 0.5, at.1 - 0.5), (at.0 + 0.5, at.1 + 0.5), colour)?;
+                pen.fill((at.0 - half, at.1 - half), (at.0 + half, at.1 + half), colour)?;
             }
         }
         Ok(())

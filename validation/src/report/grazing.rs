@@ -17,13 +17,16 @@ pub(super) enum Seen {
     Nothing,
 }
 
+/// What was seen at each setting.
+pub(super) type Touches = Vec<(String, Seen)>;
+
 /// Engines by margins; in each cell what was seen from the coarse to the fine settings.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grazing {
     /// From the widest miss to the deepest touch, as (margin, label).
     pub margins: Vec<(f64, String)>,
     /// Engine and cells.
-    pub lines: Vec<(String, Vec<Vec<(String, Seen)>>)>,
+    pub lines: Vec<(String, Vec<Touches>)>,
 }
 
 struct Entry {

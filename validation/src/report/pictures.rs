@@ -216,7 +216,7 @@ fn exponential(runs: &[&ErrorGrowth]) -> Option<Curve> {
     let end = runs.iter().flat_map(|run| &run.periods).copied().fold(0.0, f64::max);
     let last = end.min((1.0 / floor).ln().max(0.0) / lambda.max(1e-9));
     Some(Curve {
-        name: format!("exp(\u{3bb}t), \u{3bb} = {}", brief(lambda)),
+        name: format!("exp(\u{3bb}t), \u{3bb} = {lambda:.3}"),
         colour: INK,
         marker: None,
         width: 2.0,
@@ -235,7 +235,8 @@ fn recall(report: &Report, summaries: &[EngineSummary]) -> Tiles {
             _ => Tint::Good,
         };
         let share = summary::percent(it.recall());
-        Tile { text: format!("{} {share}", it.setting).trim().to_owned(), tint }
+        let of = if it.setting.is_empty() { String::new() } else { format!("{}: ", it.setting) };
+        Tile { text: of + &share, tint }
     };
     let row = |(engine, summary): (&super::EngineEntry, &EngineSummary)| {
         (engine.name.to_owned(), summary.settings.iter().map(tile).collect())

@@ -1,7 +1,7 @@
 //! The parts of the page that need no script, as the template takes them.
 
 use super::super::csv::word;
-use super::super::grazing::{Grazing, Seen};
+use super::super::grazing::{Grazing, Seen, Touches};
 use super::super::summary::{EngineSummary, SettingSummary, percent};
 use super::super::{Evidence, Report};
 use crate::number::brief;
@@ -187,7 +187,7 @@ pub(super) fn grazing(report: &Report, evidence: &Evidence) -> GrazingTable {
         let of = if setting.is_empty() { String::new() } else { format!("{setting}: ") };
         SeenCell { class, glyph, title: format!("{of}{words}") }
     };
-    let cells = |cells: Vec<Vec<(String, Seen)>>| {
+    let cells = |cells: Vec<Touches>| {
         cells.into_iter().map(|here| here.into_iter().map(cell).collect()).collect()
     };
     GrazingTable {
@@ -199,8 +199,15 @@ pub(super) fn grazing(report: &Report, evidence: &Evidence) -> GrazingTable {
 /// Wrong engines by gates.
 pub(super) struct PowerTable {
     pub gates: Vec<String>,
-    /// Engine, what is wrong, and per gate whether it was caught and the figure; `None`: not held against it.
-    pub lines: Vec<(String, String, Vec<Option<(bool, String)>>, bool)>,
+    pub lines: Vec<FaultLine>,
+}
+
+pub(super) struct FaultLine {
+    pub engine: String,
+    pub fault: String,
+    /// Per gate, whether it was caught and the figure; `None`: not held against it.
+    pub cells: Vec<Option<(bool, String)>>,
+    pub caught: bool,
 }
 
 pub(super) fn power(evidence: &Evidence) -> PowerTable {
@@ -216,8 +223,12 @@ pub(super) fn power(evidence: &Evidence) -> PowerTable {
             found.map(|(_, caught, detail)| (*caught, detail.clone()))
         };
         let caught = fault.gates.iter().any(|(_, caught, _)| *caught);
-        let cells = gates.iter().map(cell).collect();
-        (fault.engine.clone(), fault.fault.clone(), cells, caught)
+        FaultLine {
+            engine: fault.engine.clone(),
+            fault: fault.fault.clone(),
+            cells: gates.iter().map(cell).collect(),
+            caught,
+        }
     };
     let lines = evidence.faults.iter().map(line).collect();
     PowerTable { gates, lines }
