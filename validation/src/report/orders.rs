@@ -22,12 +22,14 @@ impl Order {
     /// blurs it.
     #[must_use]
     pub fn falls_short(&self) -> bool {
-        self.found < f64::from(self.claimed) - BLUR
+        self.cases >= ENOUGH && self.found < f64::from(self.claimed) - BLUR
     }
 }
 
 /// Starting steps, and steps that end at switches, cost about this much of a fitted order.
 const BLUR: f64 = 1.5;
+/// Ladders on fewer cases than this say nothing of a method.
+const ENOUGH: usize = 5;
 
 /// The orders of all engines that claim one and have ladders.
 #[must_use]

@@ -134,10 +134,15 @@ impl Report {
     }
 }
 
-/// The rows of one engine on one case are its ladder.
+/// The rows of one engine on one case are its ladder, as far as they are scored to the same horizon:
+/// over a longer one in chaos errors grow by more.
 fn fill_orders(rows: &mut [Row]) {
     for ladder in rows.chunk_by_mut(|a, b| a.case == b.case && a.engine == b.engine) {
-        let rung = |row: &Row| Some((row.steps? as f64, row.state_error.max));
+        let longest = ladder.iter().map(|row| row.horizon_periods).fold(0.0, f64::max);
+        let rung = |row: &Row| {
+            let comparable = row.horizon_periods == longest;
+            Some((row.steps.filter(|_| comparable)? as f64, row.state_error.max))
+        };
         let rungs: Vec<_> = ladder.iter().filter_map(rung).collect();
         let found = order(&rungs);
         ladder.iter_mut().for_each(|row| row.order = found);
