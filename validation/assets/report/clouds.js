@@ -5,8 +5,6 @@ function paint(canvas, points, axes, color) {
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   [canvas.width, canvas.height] = [width * scale, height * scale];
   const pen = canvas.getContext("2d");
-  const style = getComputedStyle(document.documentElement);
-  const ink = (name) => style.getPropertyValue(name).trim();
   pen.scale(scale, scale);
   const [left, right, top, bottom] = [52, 10, 8, 40];
   const [w, h] = [width - left - right, height - top - bottom];
@@ -42,13 +40,12 @@ function paint(canvas, points, axes, color) {
 
 function clouds() {
   const hosts = [...document.querySelectorAll("canvas.cloud")];
-  const style = () => getComputedStyle(document.documentElement);
   const all = () => hosts.forEach((canvas) => {
     const pair = data.sections[Number(canvas.dataset.pair)];
     const both = [...pair.exact, ...pair.direct];
     const axes = [0, 1].map((k) => axisOver(both.map((it) => it[k]), {}));
     if (!axes[0] || !axes[1]) return;
-    paint(canvas, pair[canvas.dataset.side], axes, style().getPropertyValue(canvas.dataset.side === "exact" ? "--ink" : "--accent").trim());
+    paint(canvas, pair[canvas.dataset.side], axes, ink(canvas.dataset.side === "exact" ? "--ink" : "--accent"));
   });
   if (!hosts.length) return;
   const box = element("div", { class: "chart", hidden: "" });

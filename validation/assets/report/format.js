@@ -40,3 +40,10 @@ const colour = (engine) => {
   return i < 0 ? "var(--muted)" : `var(--e${i})`;
 };
 const marker = (engine) => data.engines.find((it) => it.name === engine)?.marker ?? "circle";
+
+// Colours for what is painted. Paper is white, whatever the screen is, and styles say so too late.
+let printing = false;
+window.addEventListener("beforeprint", () => (printing = true));
+window.addEventListener("afterprint", () => (printing = false));
+const PAPER = { "--line": "#dfe3e8", "--muted": "#5b6470", "--ink": "#1b1f24", "--accent": "#0b62b8" };
+const ink = (name) => (printing ? PAPER[name] : getComputedStyle(document.documentElement).getPropertyValue(name).trim());
