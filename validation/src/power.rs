@@ -6,6 +6,7 @@
 use crate::case::{Bound, Quantity};
 use crate::engine::{Accuracy, Limits, Wrong};
 use crate::number::brief;
+use crate::probes::Extent;
 use crate::score::{Checked, Subject, Verdict, judge};
 use crate::suite::Prepared;
 use rayon::prelude::*;
@@ -144,7 +145,8 @@ fn held(
     let Standard { engine, accuracy, unit } = standard;
     let subject = Subject { case: &prepared.case.name, engine, accuracy, unit };
     let limits = Limits::default();
-    let measured = prepared.measured(wrong.engine, Accuracy::Exact, unit, &limits, true);
+    let extent = |_| Extent::of_wrong(&prepared.case.name);
+    let measured = prepared.measured(wrong.engine, Accuracy::Exact, unit, &limits, extent);
     let (measures, ..) = measured.ok()?;
     let bounds: Vec<_> = prepared.case.bounds.iter().chain(defaults).collect();
     Some(judge(&subject, Ok((&measures, prepared.is_whole(unit))), &bounds, &[]).bounds)

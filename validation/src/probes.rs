@@ -67,7 +67,7 @@ impl Probes {
         Ok(Self { restart, attractor })
     }
 
-    /// Asks an engine, if the suite asks this one; `unit` is its unit of error.
+    /// Asks an engine as much as `extent` says; `unit` is its unit of error.
     #[must_use]
     pub fn ask(
         &self,
@@ -76,33 +76,82 @@ impl Probes {
         accuracy: Accuracy,
         unit: f64,
         limits: &Limits,
+        extent: Extent,
     ) -> Probed {
         let run = |task: &_| contain(|| engine.run(task, accuracy, limits));
-        let restart = self.restart.as_ref().map(|test| test.score(unit, run));
+        let restarts = self.restart.as_ref().filter(|_| extent.restarts > 0);
+        let restart = restarts.map(|test| test.score_first(extent.restarts, unit, run));
         let compare = |test: &AttractorTest| {
             contain(|| test.compare(case, engine, accuracy, limits)).map_err(|it| it.to_string())
         };
-        Probed { restart, attractor: self.attractor.as_ref().map(compare) }
+        let attractor = self.attractor.as_ref().filter(|_| extent.attractor);
+        Probed { restart, attractor: attractor.map(compare) }
+    }
+
+    /// Forcing periods of the long run, where there is one.
+    fn long_run(&self) -> f64 {
+        let plan = self.attractor.as_ref().map(|it| it.calibrated.plan);
+        plan.map_or(0.0, |plan| f64::from(plan.transient + plan.periods))
+    }
+
+    /// How much a suite asks of an engine on this case. What the case's own run cost a forcing period
+    /// tells what the probes would: they too stay within the budget of right-hand sides.
+    #[must_use]
+    pub fn extent(
+        &self,
+        suite: Suite,
+        case: &str,
+        engine: &str,
+        accuracy: Accuracy,
+        work_a_period: f64,
+    ) -> Extent {
+        let budget = suite.budget() / work_a_period.max(1.0);
+        let affordable = Extent {
+            restarts: restarts(suite).min((budget / PERIODS_A_RESTART) as usize).max(FEWEST),
+            attractor: self.long_run() <= budget,
+        };
+        let listed = RESTARTED.contains(&case);
+        match (suite, accuracy) {
+            (_, Accuracy::Exact) => Extent { restarts: restarts(suite), attractor: true },
+            (Suite::Quick, Accuracy::Tolerance(it))
+                if listed && it == TOLERANCE && REPRESENTATIVES.contains(&engine) =>
+            {
+                affordable
+            }
+            (Suite::Full, Accuracy::Tolerance(it)) if listed && TOLERANCES.contains(&it) => {
+                affordable
+            }
+            _ => Extent::default(),
+        }
     }
 }
+
+/// How much is asked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Extent {
+    /// Restarts, at most.
+    pub restarts: usize,
+    /// Whether the long run is made.
+    pub attractor: bool,
+}
+
+impl Extent {
+    /// What is asked of an engine that is wrong on purpose.
+    #[must_use]
+    pub fn of_wrong(case: &str) -> Self {
+        let listed = RESTARTED.contains(&case);
+        Self { restarts: if listed { restarts(Suite::Quick) } else { 0 }, attractor: listed }
+    }
+}
+
+/// A restart takes about this many forcing periods.
+const PERIODS_A_RESTART: f64 = 4.0;
+/// Restarts that are made whatever they cost.
+const FEWEST: usize = 100;
 
 const fn restarts(suite: Suite) -> usize {
     match suite {
         Suite::Quick => 1_000,
         Suite::Full => 10_000,
-    }
-}
-
-/// Whether a suite asks the probes of this engine at this accuracy on this case.
-#[must_use]
-pub fn asked(suite: Suite, case: &str, engine: &str, accuracy: Accuracy) -> bool {
-    let listed = RESTARTED.contains(&case);
-    match (suite, accuracy) {
-        (_, Accuracy::Exact) => true,
-        (_, Accuracy::Step(_)) => false,
-        (Suite::Quick, Accuracy::Tolerance(it)) => {
-            listed && it == TOLERANCE && REPRESENTATIVES.contains(&engine)
-        }
-        (Suite::Full, Accuracy::Tolerance(it)) => listed && TOLERANCES.contains(&it),
     }
 }

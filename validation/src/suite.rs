@@ -3,7 +3,7 @@
 use crate::case::{Case, Defaults, FileError};
 use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Stepping, Task, contain};
 use crate::number::brief;
-use crate::probes::{Probes, asked};
+use crate::probes::{Extent, Probes};
 use crate::score::attractor::AttractorTest;
 use crate::score::{Growth, Judgement, Measures, Subject, Verdict, judge, measure};
 use crate::truth::{Library, Truth};
@@ -130,7 +130,8 @@ fn prepare_one(case: Case, library: &Library, suite: Suite) -> Result<Prepared, 
 }
 
 impl Prepared {
-    /// What an engine's run measures, with the probes if `probed`, and what the run itself gave.
+    /// What an engine's run measures, with probes as far as `extent` says of what the run cost a
+    /// forcing period, and what the run itself gave.
     ///
     /// # Errors
     /// The engine's failure in the run itself.
@@ -140,15 +141,15 @@ impl Prepared {
         accuracy: Accuracy,
         unit: f64,
         limits: &Limits,
-        probed: bool,
+        extent: impl FnOnce(f64) -> Extent,
     ) -> Result<(Measures, Outcome, Duration), Failure> {
         let began = Instant::now();
         let outcome = contain(|| engine.run(&self.task, accuracy, limits))?;
         let wall = began.elapsed();
         let mut measures = measure(&self.task, &self.truth, &self.growth, &outcome, unit);
-        if probed {
-            measures.probed = self.probes.ask(&self.case, engine, accuracy, unit, limits);
-        }
+        let periods = self.task.span / self.task.problem.model.period();
+        let extent = extent(outcome.work.rhs_evaluations as f64 / periods.max(1.0));
+        measures.probed = self.probes.ask(&self.case, engine, accuracy, unit, limits, extent);
         Ok((measures, outcome, wall))
     }
 
@@ -239,8 +240,8 @@ fn one(
     let bounds: Vec<_> = case.bounds.iter().chain(&defaults.bounds).collect();
     let shortcomings: Vec<_> = case.shortcomings.iter().chain(&defaults.shortcomings).collect();
     let judged = |measures| judge(&subject, measures, &bounds, &shortcomings);
-    let probed = asked(suite, &case.name, declaration.name, accuracy);
-    match prepared.measured(engine, accuracy, unit, &suite.limits(), probed) {
+    let extent = |work| prepared.probes.extent(suite, &case.name, declaration.name, accuracy, work);
+    match prepared.measured(engine, accuracy, unit, &suite.limits(), extent) {
         Ok((measures, outcome, wall)) => {
             let judgement = judged(Ok((&measures, prepared.is_whole(unit))));
             row(Status::Ok(Box::new(measures), outcome), wall, judgement)

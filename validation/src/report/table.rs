@@ -18,7 +18,7 @@ pub fn table(report: &Report, evidence: &Evidence) -> String {
             word(row.verdict),
             row.case,
             row.engine,
-            setting(row),
+            row.setting(),
             row.why
         ));
     }
@@ -55,7 +55,7 @@ fn is_not_run(row: &Row) -> bool {
 fn not_run(rows: &[Row]) -> String {
     let mut counts: BTreeMap<(&str, String), usize> = BTreeMap::new();
     for row in rows.iter().filter(|row| is_not_run(row)) {
-        *counts.entry((row.engine, setting(row))).or_default() += 1;
+        *counts.entry((row.engine, row.setting())).or_default() += 1;
     }
     let line = |((engine, setting), count): ((&str, String), usize)| {
         format!(
@@ -105,7 +105,7 @@ fn cells(case: &str, row: &Row) -> [String; 12] {
     [
         case.to_owned(),
         row.engine.to_owned(),
-        setting(row),
+        row.setting(),
         if row.horizon_periods.is_nan() {
             "-".to_owned()
         } else {
@@ -120,12 +120,4 @@ fn cells(case: &str, row: &Row) -> [String; 12] {
         row.rhs_evaluations.map_or("-".to_owned(), |count| count.to_string()),
         verdict.to_owned(),
     ]
-}
-
-fn setting(row: &Row) -> String {
-    match (row.tolerance, row.step) {
-        (Some(tolerance), _) => format!("{tolerance:e}"),
-        (_, Some(step)) => format!("h {step}"),
-        _ => "-".to_owned(),
-    }
 }

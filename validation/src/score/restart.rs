@@ -103,9 +103,20 @@ impl RestartTest {
         unit: f64,
         run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
     ) -> Restart {
+        self.score_first(usize::MAX, unit, run)
+    }
+
+    /// Scores an engine on the first runs, at most this many.
+    pub fn score_first(
+        &self,
+        most: usize,
+        unit: f64,
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
+    ) -> Restart {
+        let runs = &self.runs[..most.min(self.runs.len())];
         let measured = |it: &RestartRun| run(&it.task).map(|outcome| it.error(&outcome, unit));
-        let errors: Vec<_> = self.runs.par_iter().map(measured).collect();
-        let results = || self.runs.iter().zip(&errors).filter(|(run, _)| run.impact);
+        let errors: Vec<_> = runs.par_iter().map(measured).collect();
+        let results = || runs.iter().zip(&errors).filter(|(run, _)| run.impact);
         let figures = |figure: fn(&RestartError) -> f64| -> Vec<f64> {
             results().map(|(_, error)| error.as_ref().map_or(f64::NAN, figure)).collect()
         };
@@ -115,7 +126,7 @@ impl RestartTest {
             by_switches.entry(run.truth.switches.len()).or_default().push(*units);
         }
         Restart {
-            runs: self.runs.len(),
+            runs: runs.len(),
             with_impact: units.len(),
             undecided: self.undecided,
             failed: errors.iter().filter(|error| error.is_err()).count(),
