@@ -8,9 +8,11 @@ use std::fs;
 use std::path::Path;
 use support::{run, stdout, text};
 
+/// A few regimes serve here, unoptimised: CI runs the whole suite in a release build.
 #[test]
 fn every_engine_is_within_its_bounds() {
-    let table = stdout(&["validate"]);
+    let cases = "^(chaos-from-rest|table1-first-row|graze-overlap-1e-6|stiff-xi-0-03|cycle-1e8)$";
+    let table = stdout(&["validate", "-c", cases]);
     for library in ["exact", "diffsol-", "ode_solvers-", "differential-equations-"] {
         assert!(table.contains(library), "{table}");
     }
@@ -97,4 +99,33 @@ fn a_shortcoming_that_shows_is_expected_and_one_that_does_not_is_out_of_date() {
     let (code, table) = validate_with(&shortcoming("1.0"));
     assert_eq!(code, Some(1), "{table}");
     assert!(table.contains("the data are out of date"), "{table}");
+}
+
+#[test]
+fn a_report_is_no_worse_than_itself_and_worse_than_a_better_one() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let chosen = ["validate", "-c", "^small-b$", "-e", "exact|dopri5$"];
+    let first = run(&[&chosen[..], &["--out", &out]].concat());
+    assert_eq!(first.status.code(), Some(0), "{}", text(&first.stderr));
+    let report = folder.path().join("report.json");
+    let against = |path: &Path| {
+        let output = run(&[&chosen[..], &["--baseline", &path.display().to_string()]].concat());
+        (output.status.code(), text(&output.stderr))
+    };
+    assert_eq!(against(&report), (Some(0), String::new()));
+
+    let mut better: serde_json::Value =
+        serde_json::from_str(&fs::read_to_string(&report).expect("read")).expect("JSON");
+    for row in better["results"].as_array_mut().expect("rows") {
+        if row["engine"] != "exact" {
+            row["state_error"]["max"] = 1e-13.into();
+        }
+    }
+    let path = folder.path().join("better.json");
+    fs::write(&path, better.to_string()).expect("written");
+    let (code, said) = against(&path);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("worse than the baseline: small-b ode_solvers-dopri5"), "{said}");
+    assert!(!said.contains("small-b exact"), "{said}");
 }

@@ -5,14 +5,14 @@ use super::{DONE, OUT_OF_BOUNDS, parse, reports};
 use crate::case::{self, Bound, Case};
 use crate::engine::{self, Engine, hush_contained_panics};
 use crate::power::{self, Finding};
-use crate::report::{Evidence, Report, table};
+use crate::report::{Baseline, Evidence, Report, table};
 use crate::suite::{self, Prepared, Scored, Status, Suite};
 use crate::truth::Library;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
 use indicatif::{ProgressBar, ProgressStyle};
 use regex::Regex;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Hold every engine against the truth on every case
 #[derive(Args)]
@@ -44,12 +44,7 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
-    if let Some(path) = &arguments.baseline {
-        bail!(
-            "--baseline {} is not accepted: this version compares no reports yet",
-            path.display()
-        );
-    }
+    let baseline = arguments.baseline.as_deref().map(read_baseline).transpose()?;
     let engines = chosen_engines(&arguments.engine)?;
     let cases = prepared_cases(arguments)?;
     if let Some(folder) = &arguments.out {
@@ -71,7 +66,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     bar.finish_and_clear();
     let findings = pool.install(|| findings(arguments, &cases, &defaults.bounds));
     let evidence = Evidence::gather(&cases, &rows, &findings, arguments.cases.is_none());
-    let code = finish(arguments, &engines, &rows, &evidence)?;
+    let code = finish(arguments, &engines, &rows, &evidence, baseline.as_ref())?;
     Ok(if unnoticed(arguments, &findings) { OUT_OF_BOUNDS } else { code })
 }
 
@@ -97,6 +92,7 @@ fn finish(
     engines: &[&'static dyn Engine],
     rows: &[Scored],
     evidence: &Evidence,
+    baseline: Option<&Baseline>,
 ) -> Result<u8> {
     let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
     let report = Report::new(arguments.suite, &declarations, rows);
@@ -110,8 +106,19 @@ fn finish(
     shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
     let summary = report.summary;
     let absent = |row: &Scored| matches!(row.status, Status::Unavailable);
+    let worse = baseline.map(|it| it.worse(&report)).unwrap_or_default();
+    worse.iter().for_each(|line| eprintln!("worse than the baseline: {line}"));
     let lacking = arguments.require && rows.iter().any(absent);
-    Ok(if summary.fail + summary.error > 0 || lacking { OUT_OF_BOUNDS } else { DONE })
+    let out_of_bounds = summary.fail + summary.error > 0 || lacking || !worse.is_empty();
+    Ok(if out_of_bounds { OUT_OF_BOUNDS } else { DONE })
+}
+
+fn read_baseline(path: &Path) -> Result<Baseline> {
+    let accepted = "accepted is a report.json of this program";
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| anyhow!("--baseline {}: {error}; {accepted}", path.display()))?;
+    Baseline::read(&text)
+        .map_err(|error| anyhow!("--baseline {}: {error}; {accepted}", path.display()))
 }
 
 fn chosen_engines(patterns: &[Regex]) -> Result<Vec<&'static dyn Engine>> {

@@ -3,6 +3,7 @@
 //! Add a format by implementing [`Exporter`] and naming it in [`exporters`].
 
 mod annotations;
+mod baseline;
 mod csv;
 mod evidence;
 mod gather;
@@ -18,6 +19,7 @@ mod summary;
 mod table;
 
 pub use annotations::{annotations, under_the_service};
+pub use baseline::Baseline;
 pub use evidence::{CaseNote, ErrorGrowth, Evidence, Fault, Graze, RestartHistogram, SectionPair};
 pub use orders::{Order, orders};
 pub use pictures::{Picture, pictures};

@@ -18,7 +18,7 @@ pub fn table(report: &Report, evidence: &Evidence) -> String {
             word(row.verdict),
             row.case,
             row.engine,
-            row.setting(),
+            setting(row),
             row.why
         ));
     }
@@ -55,7 +55,7 @@ fn is_not_run(row: &Row) -> bool {
 fn not_run(rows: &[Row]) -> String {
     let mut counts: BTreeMap<(&str, String), usize> = BTreeMap::new();
     for row in rows.iter().filter(|row| is_not_run(row)) {
-        *counts.entry((row.engine, row.setting())).or_default() += 1;
+        *counts.entry((row.engine, setting(row))).or_default() += 1;
     }
     let line = |((engine, setting), count): ((&str, String), usize)| {
         format!(
@@ -105,7 +105,7 @@ fn cells(case: &str, row: &Row) -> [String; 12] {
     [
         case.to_owned(),
         row.engine.to_owned(),
-        row.setting(),
+        setting(row),
         if row.horizon_periods.is_nan() {
             "-".to_owned()
         } else {
@@ -120,4 +120,10 @@ fn cells(case: &str, row: &Row) -> [String; 12] {
         row.rhs_evaluations.map_or("-".to_owned(), |count| count.to_string()),
         verdict.to_owned(),
     ]
+}
+
+/// The tolerance or step, a dash where there is none.
+fn setting(row: &Row) -> String {
+    let setting = row.setting();
+    if setting.is_empty() { "-".to_owned() } else { setting }
 }
