@@ -14,6 +14,12 @@ const RESTARTED: [&str; 3] = ["chaos-from-rest", "fig7a-chaos", "table1-from-res
 const REPRESENTATIVES: [&str; 3] =
     ["diffsol-bdf", "ode_solvers-dopri5", "differential-equations-rkv655e"];
 
+/// Whether an engine stands for its library where all of them would be too many.
+#[must_use]
+pub fn is_representative(engine: &str) -> bool {
+    engine == "exact" || REPRESENTATIVES.contains(&engine)
+}
+
 /// The tolerance at which they do so in the quick suite, and those of the full one.
 const TOLERANCE: f64 = 1e-9;
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];

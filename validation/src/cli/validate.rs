@@ -2,8 +2,8 @@
 
 use super::output::{Destination, reader_left};
 use super::{DONE, OUT_OF_BOUNDS, parse, reports};
-use crate::case::{self, Bound, Case};
-use crate::engine::{self, Engine, hush_contained_panics};
+use crate::case::{self, Case};
+use crate::engine::{self, Engine, Wrong, hush_contained_panics};
 use crate::power::{self, Finding};
 use crate::report::{Baseline, Evidence, Report, table};
 use crate::suite::{self, Prepared, Scored, Status, Suite};
@@ -60,31 +60,34 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads.unwrap_or(0))).build();
     let pool = pool.context("--threads: the threads cannot be started")?;
-    let bar = progress(suite::size(cases.len(), &engines, arguments.suite));
+    let wrong = wrong_engines(arguments);
+    let bar = progress(suite::size(cases.len(), &engines, arguments.suite) + wrong.len());
     let rows =
         pool.install(|| suite::run(&cases, &engines, arguments.suite, &defaults, &|| bar.inc(1)));
+    let examine = |it: &Wrong| {
+        let finding = power::examine(it, &cases, power::AS_EXACT, &defaults.bounds);
+        bar.inc(1);
+        finding
+    };
+    let findings: Vec<_> = pool.install(|| wrong.iter().map(examine).collect());
     bar.finish_and_clear();
-    let findings = pool.install(|| findings(arguments, &cases, &defaults.bounds));
     let evidence = Evidence::gather(&cases, &rows, &findings, arguments.cases.is_none());
     let code = finish(arguments, &engines, &rows, &evidence, baseline.as_ref())?;
-    Ok(if unnoticed(arguments, &findings) { OUT_OF_BOUNDS } else { code })
+    Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code })
 }
 
-/// The power of the gates, unless a choice of engines asks for something else.
-fn findings(arguments: &Arguments, cases: &[Prepared], bounds: &[Bound]) -> Vec<Finding> {
-    if !arguments.engine.is_empty() {
-        return Vec::new();
-    }
-    let examine = |it| power::examine(it, cases, power::AS_EXACT, bounds);
-    engine::wrong().iter().map(examine).collect()
+/// Engines that are wrong on purpose, for the power of the gates; none where something else is asked.
+fn wrong_engines(arguments: &Arguments) -> &'static [Wrong] {
+    let everything =
+        arguments.engine.is_empty() && arguments.case.is_empty() && arguments.cases.is_none();
+    if everything { engine::wrong() } else { &[] }
 }
 
 /// Whether a wrong engine passes every bound of all cases together; said on stderr.
-fn unnoticed(arguments: &Arguments, findings: &[Finding]) -> bool {
-    let all_cases = arguments.case.is_empty() && arguments.cases.is_none();
-    let missed = findings.iter().filter(|it| all_cases && !it.caught());
-    let count = missed.map(|it| eprintln!("no bound notices {}: {}", it.engine, it.fault)).count();
-    count > 0
+fn unnoticed(findings: &[Finding]) -> bool {
+    let missed: Vec<_> = findings.iter().filter(|it| !it.caught()).collect();
+    missed.iter().for_each(|it| eprintln!("no bound notices {}: {}", it.engine, it.fault));
+    !missed.is_empty()
 }
 
 fn finish(

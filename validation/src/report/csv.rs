@@ -9,7 +9,7 @@ use std::io::{self, Write};
 
 pub(super) struct Csv;
 
-const COLUMNS: [&str; 33] = [
+const COLUMNS: [&str; 34] = [
     "case",
     "engine",
     "tolerance",
@@ -28,6 +28,7 @@ const COLUMNS: [&str; 33] = [
     "state_error_q99",
     "state_error_max",
     "drift_error",
+    "drift_error_by_event_times",
     "valid_periods",
     "restart_runs",
     "restart_with_impact",
@@ -74,7 +75,7 @@ fn spread(spread: &Spread) -> [String; 3] {
     [spread.median, spread.q99, spread.max].map(shortest)
 }
 
-fn fields(row: &Row) -> [String; 33] {
+fn fields(row: &Row) -> [String; 34] {
     let [time_median, time_q99, time_max] = spread(&row.event_time_error);
     let [state_median, state_q99, state_max] = spread(&row.state_error);
     let restart = row.restart.map(|it| spread(&it.error)).unwrap_or_default();
@@ -98,6 +99,7 @@ fn fields(row: &Row) -> [String; 33] {
         state_q99,
         state_max,
         shortest(row.drift_error),
+        shortest(row.drift_error_by_event_times),
         shortest(row.valid_periods),
         optional(row.restart.map(|it| it.runs)),
         optional(row.restart.map(|it| it.with_impact)),

@@ -2,6 +2,7 @@
 
 use super::evidence::{CaseNote, ErrorGrowth, Evidence, Fault, RestartHistogram, SectionPair};
 use crate::power::{Finding, Gate};
+use crate::probes::is_representative;
 use crate::score::attractor::{AttractorTest, Comparison};
 use crate::score::{Histogram, Measures, sample_errors};
 use crate::suite::{Prepared, Scored, Status};
@@ -26,7 +27,8 @@ impl Evidence {
         for row in rows {
             let Status::Ok(measures, _) = &row.status else { continue };
             let Some(prepared) = cases.iter().find(|it| it.case.name == row.case) else { continue };
-            if row.case.contains(CHAOTIC) {
+            // One engine a library: fifty curves in one picture say nothing.
+            if row.case.contains(CHAOTIC) && is_representative(row.engine) {
                 evidence.growth.extend(growth(prepared, row));
             }
             evidence.restarts.extend(restarts(row, measures));

@@ -77,6 +77,8 @@ pub struct Row {
     pub event_time_error: Spread,
     pub state_error: Spread,
     pub drift_error: f64,
+    /// How much of it the errors of the switches' times explain to first order.
+    pub drift_error_by_event_times: f64,
     pub valid_periods: f64,
     /// Errors of the restart test in units of error x (1 + |value|) x growth.
     pub restart: Option<RestartFigures>,
@@ -195,6 +197,7 @@ impl Row {
             event_time_error: measures.event_time,
             state_error: measures.state,
             drift_error: measures.drift,
+            drift_error_by_event_times: measures.drift_by_times,
             valid_periods: measures.valid_periods,
             rhs_evaluations: Some(outcome.work.rhs_evaluations),
             jacobian_evaluations: Some(outcome.work.jacobian_evaluations),
@@ -231,6 +234,7 @@ impl Row {
             event_time_error: Spread::NONE,
             state_error: Spread::NONE,
             drift_error: f64::NAN,
+            drift_error_by_event_times: f64::NAN,
             valid_periods: f64::NAN,
             restart: None,
             distance: None,

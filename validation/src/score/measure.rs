@@ -8,6 +8,7 @@ use crate::case::{Quantity, Statistic};
 use crate::engine::{Event, Outcome, Task};
 use crate::probes::Probed;
 use crate::truth::{Row, Truth};
+use percuss::Phase;
 use percuss::two_word::TwoWord;
 
 /// What a run measured, up to the scored horizon.
@@ -29,6 +30,8 @@ pub struct Measures {
     pub state: Spread,
     /// |dv| at the horizon; NaN where that is not scored.
     pub drift: f64,
+    /// How much of it the errors of the switches' times explain to first order; NaN alike.
+    pub drift_by_times: f64,
     /// Forcing periods until the state's error passes [`SCORED_ERROR`].
     pub valid_periods: f64,
     /// Largest error of a matched switch in units of error x (1 + |value|) x growth x switches.
@@ -70,6 +73,7 @@ impl Measures {
     pub fn is_empty_of(&self, quantity: Quantity, whole_run: bool) -> bool {
         match quantity {
             Quantity::EventTimeError | Quantity::EventConstant => self.expected == 0,
+            Quantity::StateError => self.horizon_periods == 0.0,
             Quantity::DriftError => !whole_run,
             Quantity::RestartError => !self.probed.restarted(),
             Quantity::AttractorDistance => self.probed.attractor.is_none(),
@@ -111,8 +115,10 @@ pub fn measure(
         event_time: Spread::of(
             pairs.iter().map(|(i, j)| time_error(&rows[*i], &found[*j])).collect(),
         ),
-        state: Spread::of(state_errors[..scored.min(state_errors.len())].to_vec()),
+        // The start is given: its error is none.
+        state: Spread::of(state_errors.get(1..scored).unwrap_or_default().to_vec()),
         drift: if whole { off(truth.end.state[3], outcome.end[3]) } else { f64::NAN },
+        drift_by_times: if whole { drift_by_times(task, rows, found, &pairs) } else { f64::NAN },
         valid_periods: valid_periods(task, truth, &state_errors, period),
         event_constant: event_constant(rows, found, &pairs, growth, unit),
         state_constant: state_constant(truth, outcome, growth, scored, unit),
@@ -153,6 +159,18 @@ pub fn sample_errors(truth: &Truth, outcome: &Outcome) -> Vec<f64> {
         worst((0..3).map(|i| off(row.state[i], state[i])))
     };
     truth.samples.iter().enumerate().map(error).collect()
+}
+
+/// A progression that begins too late by dt lacks v' dt. v' vanishes where contact turns into
+/// progression and back, so that only impacts straight into progression hand their errors on.
+fn drift_by_times(task: &Task, rows: &[Row], found: &[Event], pairs: &[(usize, usize)]) -> f64 {
+    let lost = |(i, j): &(usize, usize)| {
+        let [_, y, q, _] = rows[*i].rounded();
+        let rate = y - (1.0 - q) / (2.0 * task.parameters.xi);
+        rate * TwoWord::new(found[*j].elapsed).minus(rows[*i].elapsed).value()
+    };
+    let slips = pairs.iter().filter(|(i, _)| rows[*i].phase == Some(Phase::Progression));
+    slips.map(lost).sum::<f64>().abs()
 }
 
 fn valid_periods(task: &Task, truth: &Truth, errors: &[f64], period: f64) -> f64 {

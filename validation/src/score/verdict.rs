@@ -92,11 +92,18 @@ pub fn judge(
         Err(reason) => failed(reason, &known),
         Ok((measures, whole_run)) => {
             let mut checked = check(subject, measures, whole_run, bounds);
-            let (verdict, expected, why) = settle(&mut checked, measures, &known);
+            let (verdict, expected, mut why) = settle(&mut checked, measures, &known);
+            if why.is_empty() && measures.horizon_periods == 0.0 {
+                why = NOTHING_SCORED.to_owned();
+            }
             Judgement { bounds: checked, verdict, expected, why }
         }
     }
 }
+
+/// What is said of a run that no bound can say anything about.
+const NOTHING_SCORED: &str =
+    "nothing is scored: one unit of this setting's error is beyond 1e-3 from the start";
 
 fn failed(reason: &str, known: &[&Shortcoming]) -> Judgement {
     let (verdict, expected, why) = match known.iter().find(|it| it.shows.is_none()) {

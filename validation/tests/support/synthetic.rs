@@ -59,6 +59,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
         event_time_error: Spread { median: error / 8.0, q99: error / 2.0, max: error },
         state_error: Spread { median: error / 9.0, q99: error / 3.0, max: error / 2.0 },
         drift_error: error,
+        drift_error_by_event_times: error,
         valid_periods: 12.0,
         restart: None,
         distance: None,
