@@ -228,3 +228,14 @@ fn a_root_smaller_by_orders_of_magnitude() {
     assert!((leg.duration() / expected - 1.0).abs() < 1e-6, "{:e}", leg.duration());
     assert!(trajectory.counters().evaluations < 200, "{:?}", trajectory.counters());
 }
+
+/// The envelope of a slow, large forcing stays open by its rounding for a while: it advised to go on by
+/// less and less.
+#[test]
+fn an_envelope_that_rounding_keeps_open() {
+    let omega = 1.000_108_697_328_897_7e-6;
+    let parameters = [0.343_672_121_955_005_46, -1.0, 1e-8, omega, 0.0, std::f64::consts::PI];
+    let start = [0.0, 0.0, -5.002_662_570_924_352_5e-11, 0.0];
+    let run = legs(case(parameters, start, None), 200.0);
+    assert!(matches!(run[0].exit(), Exit::Endless(_)), "{:?}", run[0]);
+}

@@ -83,12 +83,16 @@ pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counte
 /// The first step of its own that the search takes, against the inverse of the fastest rate.
 const STRIDE: f64 = 0.1;
 
+/// Advice to go on by less than this share of the time so far comes from bounds that rounding keeps from
+/// settling: it is followed in strides.
+const CREEPING: f64 = 1e-3;
+
 /// An outlook that gets on. A guess that falls on `left` is no guess; that, or an advice to go on by
 /// less than a stride, is replaced by a stride, longer each time.
 fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
     let resolution = 8.0 * f64::EPSILON * left;
     let nearest = match outlook {
-        Outlook::Onward(_) => left + *stride,
+        Outlook::Onward(_) => left + stride.max(CREEPING * left),
         Outlook::Root(_) | Outlook::ClearUntil(_) => left + resolution,
         Outlook::ClearFrom(_) => return outlook,
     };
