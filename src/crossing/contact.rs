@@ -144,8 +144,7 @@ impl Contact<f64> {
     }
 
     /// How fast the trial force changes from `left` on: at most as the free oscillation, about which a
-    /// fast forcing only ripples; slower for strong
-    /// damping once its fast part has died out.
+    /// fast forcing only ripples; slower for strong damping once its fast part has died out.
     fn pace(&self, left: &Point<f64>) -> f64 {
         const DEAD: f64 = 40.0; // exp(-40) is below the rounding of what it is added to
         match self.constants.damping {

@@ -2,7 +2,7 @@
 
 use crate::case::{Case, FileError, Problem};
 use crate::engine::{Accuracy, Engine, Limits, contain};
-use crate::score::attractor::{AttractorTest, Comparison, calibrated};
+use crate::score::attractor::{AttractorTest, Calibrated, Comparison};
 use crate::score::{Restart, RestartTest};
 use crate::suite::Suite;
 
@@ -60,15 +60,20 @@ impl Probed {
 }
 
 impl Probes {
-    /// Makes the probes of a case ready for a suite.
+    /// Makes the probes of a case ready for a suite; `limits` are those of all cases.
     ///
     /// # Errors
-    /// A file of limits that cannot be read, or the exact solver's own failure.
-    pub fn new(case: &Case, problem: &Problem, suite: Suite) -> Result<Self, FileError> {
+    /// The exact solver's own failure.
+    pub fn new(
+        case: &Case,
+        problem: &Problem,
+        suite: Suite,
+        limits: &[Calibrated],
+    ) -> Result<Self, FileError> {
         let restarted = suite == Suite::Full || RESTARTED.contains(&case.name.as_str());
         let restart = restarted.then(|| RestartTest::new(problem, restarts(suite)));
-        let limits = calibrated()?.into_iter().find(|it| it.case == case.name);
-        let attractor = limits.map(|it| AttractorTest::new(case, it)).transpose();
+        let own = limits.iter().find(|it| it.case == case.name).cloned();
+        let attractor = own.map(|it| AttractorTest::new(case, it)).transpose();
         let attractor = attractor.map_err(|failure| FileError(failure.to_string()))?;
         Ok(Self { restart, attractor })
     }

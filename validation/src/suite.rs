@@ -4,7 +4,7 @@ use crate::case::{Case, Defaults, FileError};
 use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Stepping, Task, contain};
 use crate::number::brief;
 use crate::probes::{Extent, Probes};
-use crate::score::attractor::AttractorTest;
+use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
 use crate::score::{Growth, Judgement, Measures, Subject, Verdict, judge, measure};
 use crate::truth::{Library, Truth};
 use rayon::prelude::*;
@@ -114,10 +114,16 @@ pub fn prepare(
     library: &Library,
     suite: Suite,
 ) -> Result<Vec<Prepared>, FileError> {
-    cases.into_par_iter().map(|case| prepare_one(case, library, suite)).collect()
+    let limits = calibrated()?;
+    cases.into_par_iter().map(|case| prepare_one(case, library, suite, &limits)).collect()
 }
 
-fn prepare_one(case: Case, library: &Library, suite: Suite) -> Result<Prepared, FileError> {
+fn prepare_one(
+    case: Case,
+    library: &Library,
+    suite: Suite,
+    limits: &[Calibrated],
+) -> Result<Prepared, FileError> {
     let truth = library.truth(&case)?;
     let given =
         crate::case::Given { parameters: case.parameters, start: case.start, ..Default::default() };
@@ -125,7 +131,7 @@ fn prepare_one(case: Case, library: &Library, suite: Suite) -> Result<Prepared, 
     let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
     let task = Task::of(&case, problem, grid);
     let growth = Growth::along(&truth, &case.parameters, task.forcing_angle);
-    let probes = Probes::new(&case, &problem, suite)?;
+    let probes = Probes::new(&case, &problem, suite, limits)?;
     Ok(Prepared { case, truth, growth, task, probes })
 }
 

@@ -40,6 +40,17 @@ pub(super) trait Equations: Copy {
     fn switch(&self, phase: Phase, guard: usize, u: &[f64]) -> (Phase, [f64; 4]);
 }
 
+/// The phase that follows where a guard has risen to zero, and the trial force that is known there.
+pub(super) fn successor(phase: Phase, guard: usize, trial_force: f64) -> (Phase, Option<f64>) {
+    match (phase, guard) {
+        (Phase::NoContact, _) if trial_force < 1.0 => (Phase::Contact, None),
+        (Phase::NoContact, _) => (Phase::Progression, None),
+        (Phase::Contact, 0) => (Phase::Progression, Some(1.0)),
+        (Phase::Contact, _) => (Phase::NoContact, Some(0.0)),
+        (Phase::Progression, _) => (Phase::Contact, Some(1.0)),
+    }
+}
+
 /// The model in the paper's bounded co-ordinates.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Oscillator {
@@ -123,22 +134,10 @@ impl Equations for Oscillator {
 
     fn switch(&self, phase: Phase, guard: usize, u: &[f64]) -> (Phase, [f64; 4]) {
         let mut state = [u[0], u[1], u[2], u[3]];
-        let next = match (phase, guard) {
-            (Phase::NoContact, _) if self.trial_force(u) < 1.0 => Phase::Contact,
-            (Phase::NoContact, _) => Phase::Progression,
-            (Phase::Contact, 0) => {
-                state[2] = 1.0 - self.two_xi * state[1];
-                Phase::Progression
-            }
-            (Phase::Contact, _) => {
-                state[2] = -self.two_xi * state[1];
-                Phase::NoContact
-            }
-            (Phase::Progression, _) => {
-                state[2] = 1.0 - self.two_xi * state[1];
-                Phase::Contact
-            }
-        };
+        let (next, imposed) = successor(phase, guard, self.trial_force(u));
+        if let Some(force) = imposed {
+            state[2] = force - self.two_xi * state[1];
+        }
         state[0] = state[2] + self.g;
         (next, state)
     }

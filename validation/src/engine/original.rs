@@ -5,7 +5,7 @@
 //! and the same drift come out is the paper's decoupling, tested. At a switch x and z move onto the
 //! surface and v stays, as in the bounded co-ordinates.
 
-use super::field::{Equations, GUARDS, NO_GUARD};
+use super::field::{Equations, GUARDS, NO_GUARD, successor};
 use percuss::{Parameters, Phase};
 
 /// The model in the original co-ordinates.
@@ -87,22 +87,10 @@ impl Equations for OriginalOscillator {
 
     fn switch(&self, phase: Phase, guard: usize, u: &[f64]) -> (Phase, [f64; 4]) {
         let [_, y, mut z, v] = [u[0], u[1], u[2], u[3]];
-        let next = match (phase, guard) {
-            (Phase::NoContact, _) if self.contact_force(u) < 1.0 => Phase::Contact,
-            (Phase::NoContact, _) => Phase::Progression,
-            (Phase::Contact, 0) => {
-                z = v + (1.0 - self.two_xi * y);
-                Phase::Progression
-            }
-            (Phase::Contact, _) => {
-                z = v - self.two_xi * y;
-                Phase::NoContact
-            }
-            (Phase::Progression, _) => {
-                z = v + (1.0 - self.two_xi * y);
-                Phase::Contact
-            }
-        };
+        let (next, imposed) = successor(phase, guard, self.contact_force(u));
+        if let Some(force) = imposed {
+            z = v + (force - self.two_xi * y);
+        }
         (next, [z + self.g, y, z, v])
     }
 }
