@@ -41,6 +41,13 @@ impl Entry {
         }
     }
 
+    /// The bounded co-ordinates in the order (p, y, q).
+    #[must_use]
+    pub const fn point(&self) -> [f64; 3] {
+        let State { p, y, q } = self.state;
+        [p, y, q]
+    }
+
     /// Drift v, rounded to one word.
     #[must_use]
     pub fn v(&self) -> f64 {

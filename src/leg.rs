@@ -4,12 +4,14 @@ use crate::crossing::search::first_crossing;
 use crate::crossing::stepping;
 use crate::crossing::{Counters, Crossing, Root};
 use crate::entry::{Entry, Onset};
+use crate::flow::contact::Contact;
+use crate::flow::progression::Progression;
 use crate::flow::{Flow, Point};
 use crate::instant::Instant;
 use crate::model::{Model, Motion};
 use crate::phase::Phase;
 use crate::state::State;
-use crate::surface;
+use crate::surface::{self, FOUR_ULPS};
 use crate::two_word::TwoWord;
 
 /// The motion at some instant.
@@ -115,13 +117,19 @@ impl Leg {
 
     /// As [`Self::at`]; late in a long phase the second word of the time matters.
     fn at_two_word(&self, elapsed: TwoWord) -> Sample {
+        let (_, state, drift) = self.shifted_to(elapsed);
+        Sample { state, v: drift.value() }
+    }
+
+    /// The nearest evaluation, and state and drift shifted by the second word of the time.
+    fn shifted_to(&self, elapsed: TwoWord) -> (Point<f64>, State, TwoWord) {
         let point = self.point(elapsed.high);
         let rest = elapsed.low;
         let [p_rate, y_rate, q_rate, v_rate] = self.field(&point);
         let State { p, y, q } = point.state;
         let state = State { p: p + rest * p_rate, y: y + rest * y_rate, q: q + rest * q_rate };
-        let drift = TwoWord::sum(point.drift, rest * v_rate);
-        Sample { state, v: self.entry.drift.plus(drift).value() }
+        let drift = self.entry.drift.plus(TwoWord::sum(point.drift, rest * v_rate));
+        (point, state, drift)
     }
 
     /// The right-hand sides of Eqs. (11) to (13): rates of p, y, q and v.
@@ -148,6 +156,51 @@ impl Leg {
     #[must_use]
     pub fn at_instant(&self, instant: &Instant) -> Sample {
         self.at_two_word(instant.since(&self.entry.instant, self.omega))
+    }
+
+    /// Time from the phase's beginning to an instant.
+    #[must_use]
+    pub fn elapsed_at(&self, instant: &Instant) -> f64 {
+        instant.since(&self.entry.instant, self.omega).value()
+    }
+
+    /// The phase taken up again at an instant inside it: a motion that begins there and goes on as
+    /// this one does, to within rounding.
+    #[must_use]
+    pub fn entry_at(&self, instant: &Instant) -> Entry {
+        let elapsed = instant.since(&self.entry.instant, self.omega);
+        if elapsed.value() <= 0.0 {
+            return self.entry;
+        }
+        let (point, state, drift) = self.shifted_to(elapsed);
+        let guard = point.guard.orders[0] + elapsed.low * point.guard.orders[1];
+        let (state, onset) = match &self.motion {
+            Motion::NoContact(flight) => {
+                let constants = &flight.constants;
+                if state.p < state.q + constants.g {
+                    (state, Onset::Apart)
+                } else {
+                    surface::onset(constants, state, None, point.force)
+                }
+            }
+            Motion::Contact(Contact { constants, reference, .. }) => {
+                let f = reference + guard;
+                if f.min(1.0 - f) > FOUR_ULPS {
+                    (state, Onset::Contact { offset: guard, reference: *reference })
+                } else {
+                    surface::onset(constants, state, Some(f), point.force)
+                }
+            }
+            Motion::Progression(Progression { constants, .. }) => {
+                if guard > FOUR_ULPS * point.guard.largest_term {
+                    let closing = point.slider_velocity;
+                    (state, Onset::Progression { drift_rate: guard, closing })
+                } else {
+                    surface::onset(constants, state, None, point.force)
+                }
+            }
+        };
+        Entry { instant: *instant, state, drift, onset }
     }
 
     /// How long the phase lasts by plain one-sided stepping (the judge): infinite if it does not end

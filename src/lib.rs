@@ -19,6 +19,7 @@
 pub mod angle;
 mod constants;
 pub mod crossing;
+pub mod dynamics;
 mod entry;
 mod error;
 pub mod flow;
@@ -45,7 +46,7 @@ pub use growth::{Growth, GrowthRecorder};
 pub use instant::Instant;
 pub use leg::{Endless, Exit, Leg, Sample};
 pub use model::Model;
-pub use parameters::Parameters;
+pub use parameters::{Parameter, Parameters};
 pub use phase::{Phase, UnknownPhase};
 pub use start::Start;
 pub use state::State;

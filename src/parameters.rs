@@ -43,6 +43,74 @@ impl Parameters {
     }
 }
 
+/// One of the parameters, by the paper's symbol.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Parameter {
+    /// Amplitude of the harmonic force.
+    A,
+    /// Static force.
+    B,
+    /// Damping ratio.
+    Xi,
+    /// Forcing frequency.
+    Omega,
+    /// Gap.
+    G,
+    /// Phase of the harmonic force.
+    Phi,
+}
+
+impl Parameter {
+    /// All parameters.
+    pub const ALL: [Self; 6] = [Self::A, Self::B, Self::Xi, Self::Omega, Self::G, Self::Phi];
+
+    /// The name used in files and on the command line.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::A => "a",
+            Self::B => "b",
+            Self::Xi => "xi",
+            Self::Omega => "omega",
+            Self::G => "g",
+            Self::Phi => "phi",
+        }
+    }
+
+    /// The parameter of that name.
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|parameter| parameter.name() == name)
+    }
+
+    /// Its value.
+    #[must_use]
+    pub const fn of(self, parameters: &Parameters) -> f64 {
+        match self {
+            Self::A => parameters.a,
+            Self::B => parameters.b,
+            Self::Xi => parameters.xi,
+            Self::Omega => parameters.omega,
+            Self::G => parameters.g,
+            Self::Phi => parameters.phi,
+        }
+    }
+
+    /// The parameters with this one set to `value`, unchecked.
+    #[must_use]
+    pub const fn set(self, mut parameters: Parameters, value: f64) -> Parameters {
+        match self {
+            Self::A => parameters.a = value,
+            Self::B => parameters.b = value,
+            Self::Xi => parameters.xi = value,
+            Self::Omega => parameters.omega = value,
+            Self::G => parameters.g = value,
+            Self::Phi => parameters.phi = value,
+        }
+        parameters
+    }
+}
+
 /// `low <= value <= high`; a NaN is outside.
 pub(crate) fn within(
     name: &'static str,

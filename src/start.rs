@@ -52,6 +52,17 @@ impl Model {
         Ok(Entry { instant, state, drift: TwoWord::new(start.v), onset })
     }
 
+    /// The motion that begins in `state` at `instant` with no drift; its phase is decided as for a
+    /// [`Start`] that states none.
+    ///
+    /// # Errors
+    /// [`InputError`] names what is out of range, or a mass beyond the slider's top.
+    pub fn entry(&self, instant: Instant, state: State) -> Result<Entry, InputError> {
+        check_size(&state)?;
+        let (state, onset) = self.decided(state, &instant)?;
+        Ok(Entry { instant, state, drift: TwoWord::ZERO, onset })
+    }
+
     fn decided(&self, state: State, instant: &Instant) -> Result<(State, Onset), InputError> {
         let g = self.parameters().g;
         let scale = state.p.abs().max(state.q.abs()).max(g);
@@ -140,8 +151,9 @@ fn near(phase: Phase, name: &'static str, from: f64, to: f64) -> Result<(), Inpu
     }
 }
 
+const SIZE: &str = "-1e9 to 1e9";
+
 fn check(start: &Start) -> Result<(), InputError> {
-    const SIZE: &str = "-1e9 to 1e9";
     within("tau", start.tau, -1e15, 1e15, "-1e15 <= tau <= 1e15")?;
     let limit = 1_i64 << 53;
     if !(-limit..=limit).contains(&start.cycle) {
@@ -152,8 +164,13 @@ fn check(start: &Start) -> Result<(), InputError> {
             accepted: "-2^53 <= cycle <= 2^53",
         });
     }
-    within("p", start.p, -1e9, 1e9, SIZE)?;
-    within("y", start.y, -1e9, 1e9, SIZE)?;
-    within("q", start.q.unwrap_or(0.0), -1e9, 1e9, SIZE)?;
+    let q = start.q.unwrap_or(0.0);
+    check_size(&State { p: start.p, y: start.y, q })?;
     within("v", start.v, -1e9, 1e9, SIZE)
+}
+
+fn check_size(state: &State) -> Result<(), InputError> {
+    within("p", state.p, -1e9, 1e9, SIZE)?;
+    within("y", state.y, -1e9, 1e9, SIZE)?;
+    within("q", state.q, -1e9, 1e9, SIZE)
 }

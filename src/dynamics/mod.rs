@@ -1,0 +1,3 @@
+//! The nonlinear dynamics of Section 5, built on the exact strobe map.
+
+pub mod strobe;
