@@ -1,3 +1,5 @@
 //! The nonlinear dynamics of Section 5, built on the exact strobe map.
 
+pub mod linear;
+pub mod orbit;
 pub mod strobe;

@@ -1,0 +1,34 @@
+//! The least period: after how many forcing periods an orbit closes for the first time.
+
+use super::chain::Chain;
+use super::newton;
+use crate::dynamics::strobe::{Point, StrobeMap};
+
+/// Orbits further apart than this are never taken for one: at a flip the residual of the doubled
+/// orbit is cubic in its width, and rounding hides (1e-15)^(1/3).
+const NEAR: f64 = 1e-4;
+
+/// The same orbit with its least number of strobes.
+pub(super) fn closed(map: &StrobeMap, chain: Chain) -> Chain {
+    let period = chain.points.len();
+    let divisors = (1..=period / 2).filter(|divisor| period.is_multiple_of(*divisor));
+    let mut shorter = divisors.filter_map(|divisor| halved(map, &chain, divisor));
+    shorter.next().unwrap_or(chain)
+}
+
+/// The orbit of `divisor` strobes that cannot be told from this one.
+fn halved(map: &StrobeMap, chain: &Chain, divisor: usize) -> Option<Chain> {
+    let first = Chain::of(map, &chain.points[..divisor])?;
+    if chain.distance(&first) > NEAR {
+        return None;
+    }
+    let orbit = newton::solved(map, first).ok()?;
+    if chain.distance(&orbit) > NEAR {
+        return None;
+    }
+    // Two that differ have something between them that does not close.
+    let pairs = chain.points.iter().zip(orbit.points.iter().cycle());
+    let between: Vec<Point> =
+        pairs.map(|(a, b)| std::array::from_fn(|i| 0.5 * (a[i] + b[i]))).collect();
+    Chain::of(map, &between)?.is_closed().then_some(orbit)
+}

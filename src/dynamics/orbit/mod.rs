@@ -1,0 +1,126 @@
+//! Periodic orbits of the strobe map, stable or not, by Newton's method.
+//!
+//! The unknowns are all strobes of the orbit, not the first one alone (multiple shooting): of an unstable orbit
+//! each strobe is then found to the last digits, where one that is shot through the whole
+//! period carries its rounding times the largest multiplier.
+
+mod chain;
+mod least;
+mod multipliers;
+mod newton;
+
+use super::strobe::{Point, StrobeMap};
+use crate::error::InputError;
+use crate::phase::Phase;
+pub(crate) use chain::Chain;
+use std::fmt;
+
+/// The largest period that is looked for, in forcing periods.
+pub const LARGEST_PERIOD: u32 = 10_000;
+
+/// A periodic orbit of the strobe map.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Orbit {
+    /// Its strobes (p, y, q), one a forcing period, as many as the least period.
+    pub points: Vec<Point>,
+    /// The phases met in one whole period of the orbit, in order, from that of the first strobe.
+    pub phases: Vec<Phase>,
+    /// Its multipliers (real and imaginary part), largest modulus first. With any contact the last is
+    /// zero: the surface swallows a direction.
+    pub multipliers: [[f64; 2]; 3],
+    /// How well it closes: the largest |image - next strobe| over (1 + |strobe|), per forcing period.
+    pub residual: f64,
+    /// Drift a forcing period.
+    pub drift_per_period: f64,
+}
+
+impl Orbit {
+    /// The orbit that Newton's method reaches from the motion that begins at `guess`, of `period`
+    /// forcing periods (1 to [`LARGEST_PERIOD`]) or, if it closes sooner, of a divisor of it.
+    ///
+    /// # Errors
+    /// [`NoOrbit`] says why none was reached and how close it came.
+    pub fn find(map: &StrobeMap, guess: Point, period: u32) -> Result<Self, NoOrbit> {
+        let chain = Chain::shot(map, guess, period)?;
+        Ok(Self::of(&least::closed(map, newton::solved(map, chain)?)))
+    }
+
+    /// What a converged chain is.
+    pub(crate) fn of(chain: &Chain) -> Self {
+        Self {
+            points: chain.points.clone(),
+            phases: chain.phases(),
+            multipliers: multipliers::of(chain),
+            residual: chain.residual,
+            drift_per_period: chain.drift() / chain.points.len() as f64,
+        }
+    }
+
+    /// How many forcing periods it takes: the least number after which it closes.
+    #[must_use]
+    pub fn period(&self) -> u32 {
+        self.points.len() as u32
+    }
+
+    /// Whether all multipliers are inside the unit circle.
+    #[must_use]
+    pub fn is_stable(&self) -> bool {
+        self.multipliers.iter().all(|it| super::linear::modulus(*it) < 1.0)
+    }
+}
+
+/// Why no orbit was reached.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NoOrbit {
+    /// The least residual that was met; infinite where none was.
+    pub residual: f64,
+    /// What kept it from falling further.
+    pub reason: Reason,
+}
+
+/// What keeps Newton's method from an orbit.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Reason {
+    /// The guess is not accepted.
+    Guess(InputError),
+    /// The period is zero or beyond [`LARGEST_PERIOD`].
+    Period(u32),
+    /// Neither a shorter step nor a step beyond a corner of the map comes closer.
+    Stalled,
+    /// It went on coming closer, but too slowly.
+    Slow,
+    /// The motion escapes, or its growth over the period exceeds what an f64 holds.
+    Escaped,
+}
+
+impl fmt::Display for Reason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Guess(error) => error.fmt(f),
+            Self::Period(period) => {
+                write!(f, "period = {period} is not accepted: 1 to {LARGEST_PERIOD}")
+            }
+            Self::Stalled => f.write_str("no step comes closer"),
+            Self::Slow => f.write_str("the steps come closer too slowly"),
+            Self::Escaped => f.write_str("the motion escapes"),
+        }
+    }
+}
+
+impl fmt::Display for NoOrbit {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.reason {
+            Reason::Guess(_) | Reason::Period(_) => self.reason.fmt(f),
+            _ => write!(f, "no orbit: {}, residual {:.3e}", self.reason, self.residual),
+        }
+    }
+}
+
+impl std::error::Error for NoOrbit {}
+
+impl From<Reason> for NoOrbit {
+    fn from(reason: Reason) -> Self {
+        Self { residual: f64::INFINITY, reason }
+    }
+}

@@ -1,0 +1,44 @@
+//! The multipliers of a closed chain.
+
+use super::super::linear::{Complex, IDENTITY, adjugate, eigenvalues, product, roots, trace};
+use super::super::strobe::Jacobian;
+use super::chain::Chain;
+use crate::phase::Phase;
+
+/// Sum, and sum of the products of two, of an orbit's multipliers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Invariants {
+    pub(crate) sum: f64,
+    pub(crate) pairs: f64,
+}
+
+impl Invariants {
+    pub(crate) fn of(chain: &Chain) -> Self {
+        let around = around(chain);
+        let reversed = chain
+            .jacobians
+            .iter()
+            .fold(IDENTITY, |before, jacobian| product(&before, &adjugate(jacobian)));
+        Self { sum: trace(&around), pairs: trace(&reversed) }
+    }
+}
+
+/// With any contact one multiplier is zero and the others follow from two invariants; without, all
+/// three are computed.
+pub(super) fn of(chain: &Chain) -> [Complex; 3] {
+    if touches(chain) {
+        let Invariants { sum, pairs } = Invariants::of(chain);
+        let [first, second] = roots(sum, pairs);
+        [first, second, [0.0; 2]]
+    } else {
+        eigenvalues(&around(chain))
+    }
+}
+
+fn around(chain: &Chain) -> Jacobian {
+    chain.jacobians.iter().fold(IDENTITY, |before, jacobian| product(jacobian, &before))
+}
+
+fn touches(chain: &Chain) -> bool {
+    chain.passages.iter().flat_map(|it| &it.phases).any(|phase| *phase != Phase::NoContact)
+}

@@ -1,0 +1,73 @@
+//! Newton's method on a chain of strobes, damped, and over the corners of the map.
+
+use super::chain::Chain;
+use super::{NoOrbit, Reason};
+use crate::dynamics::strobe::StrobeMap;
+
+/// Steps before it is given up: near a fold they halve the distance at worst, 52 times.
+const STEPS: usize = 80;
+/// The shortest share of a step that is tried.
+const SHORTEST: f64 = 1.0 / 1024.0;
+/// Steps in a row that may lead away: beyond a corner of the map another derivative holds, and the way
+/// down may begin by a way up.
+const WILD: usize = 6;
+/// Steps without a better residual that end the polishing.
+const IDLE: usize = 3;
+
+/// The closed chain that is reached from this one.
+pub(super) fn solved(map: &StrobeMap, start: Chain) -> Result<Chain, NoOrbit> {
+    let mut best = start.clone();
+    let mut chain = start;
+    let mut wild = 0;
+    for _ in 0..STEPS {
+        if chain.residual < best.residual {
+            best = chain.clone();
+        }
+        if best.is_closed() {
+            return Ok(polished(map, best));
+        }
+        let step = chain.newton_step();
+        if let Some(next) = damped(map, &chain, &step) {
+            chain = next;
+            continue;
+        }
+        wild += 1;
+        let blind = chain.moved(map, &step, 1.0).filter(|_| wild <= WILD);
+        let Some(next) = blind else {
+            return Err(NoOrbit { residual: best.residual, reason: Reason::Stalled });
+        };
+        chain = next;
+    }
+    Err(NoOrbit { residual: best.residual, reason: Reason::Slow })
+}
+
+/// The longest share of the step that comes closer.
+fn damped(map: &StrobeMap, chain: &Chain, step: &[[f64; 3]]) -> Option<Chain> {
+    let mut share = 1.0;
+    while share >= SHORTEST {
+        let next = chain.moved(map, step, share);
+        let closer = |next: &Chain| next.residual <= (1.0 - 0.1 * share) * chain.residual;
+        if let Some(next) = next.filter(closer) {
+            return Some(next);
+        }
+        share *= 0.5;
+    }
+    None
+}
+
+/// Newton's steps as long as they gain anything.
+pub(super) fn polished(map: &StrobeMap, start: Chain) -> Chain {
+    let mut best = start.clone();
+    let mut chain = start;
+    let mut idle = 0;
+    while idle < IDLE && best.residual > 0.0 {
+        let Some(next) = chain.moved(map, &chain.newton_step(), 1.0) else { break };
+        idle += 1;
+        if next.residual < best.residual {
+            best = next.clone();
+            idle = 0;
+        }
+        chain = next;
+    }
+    best
+}
