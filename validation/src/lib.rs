@@ -11,6 +11,7 @@ pub mod picture;
 pub mod power;
 pub mod probes;
 pub mod report;
+pub mod reproduce;
 pub mod score;
 pub mod suite;
 pub mod truth;

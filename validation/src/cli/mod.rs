@@ -5,6 +5,7 @@ mod model;
 mod output;
 mod parse;
 mod reports;
+mod reproduce;
 mod simulate;
 mod validate;
 
@@ -37,6 +38,7 @@ enum Verb {
     Simulate(Box<simulate::Arguments>),
     Engines(engines::Arguments),
     Validate(validate::Arguments),
+    Reproduce(reproduce::Arguments),
 }
 
 /// Runs the command line and says how it went.
@@ -53,6 +55,7 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Simulate(simulate) => simulate::run(simulate).map(|()| DONE),
         Verb::Engines(engines) => engines::run(engines).map(|()| DONE),
         Verb::Validate(validate) => validate::run(validate, arguments.threads),
+        Verb::Reproduce(reproduce) => reproduce::run(reproduce, arguments.threads),
     };
     match result {
         Ok(code) => code,
@@ -79,7 +82,9 @@ fn usage(error: &clap::Error) -> u8 {
             DONE
         }
         ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            say("no verb was given: accepted are simulate, engines, validate (see percuss --help)");
+            say(
+                "no verb was given: accepted are simulate, engines, validate, reproduce (see percuss --help)",
+            );
             REFUSED
         }
         _ => {

@@ -54,6 +54,15 @@ impl Ruler {
                 ((low - 0.05).floor(), (high + 0.05).ceil())
             }
         };
+        Some(Self::with_ticks(scale, from, to))
+    }
+
+    /// An even axis between two ends; `None` where they are none.
+    pub fn between(from: f64, to: f64) -> Option<Self> {
+        (from < to && (to - from).is_finite()).then(|| Self::with_ticks(Scale::Linear, from, to))
+    }
+
+    fn with_ticks(scale: Scale, from: f64, to: f64) -> Self {
         let stride = stride((to - from) / MOST_TICKS, scale);
         let first = (from / stride).ceil() as i64;
         let last = (to / stride).floor() as i64;
@@ -62,7 +71,7 @@ impl Ruler {
             Scale::Logarithmic => power_of_ten(value.round() as i64),
         };
         let tick = |k: i64| (k as f64 * stride, label(k as f64 * stride));
-        Some(Self { scale, from, to, ticks: (first..=last).map(tick).collect() })
+        Self { scale, from, to, ticks: (first..=last).map(tick).collect() }
     }
 
     /// Where a value stands, from 0 to 1.
@@ -110,14 +119,39 @@ pub(super) struct Panel {
 impl Panel {
     /// Where a point stands; `None` if it does not.
     pub fn at(&self, (x, y): At) -> Option<At> {
-        let (x, y) = (self.x.place(x), self.y.place(y));
         let inside = |share: f64| (-1e-6..=1.0 + 1e-6).contains(&share);
-        let across = self.from.0 + x * (self.to.0 - self.from.0);
-        let down = self.to.1 - y * (self.to.1 - self.from.1);
-        (inside(x) && inside(y)).then_some((across, down))
+        let is_inside = inside(self.x.place(x)) && inside(self.y.place(y));
+        is_inside.then(|| self.place((x, y)))
     }
 
+    /// Where a point stands, inside the panel or not.
+    pub fn place(&self, (x, y): At) -> At {
+        let across = self.from.0 + self.x.place(x) * (self.to.0 - self.from.0);
+        let down = self.to.1 - self.y.place(y) * (self.to.1 - self.from.1);
+        (across, down)
+    }
+
+    /// Grid, frame and axes.
     pub fn draw<B: DrawingBackend>(
+        &self,
+        pen: &Pen<'_, B>,
+        below: &str,
+        beside: &str,
+    ) -> Result<(), DrawError> {
+        let (from, to) = (self.from, self.to);
+        for (placed, _) in &self.x.ticks {
+            let x = from.0 + self.x.share(*placed) * (to.0 - from.0);
+            pen.line((x, from.1), (x, to.1), 1.0, palette::GRID)?;
+        }
+        for (placed, _) in &self.y.ticks {
+            let y = to.1 - self.y.share(*placed) * (to.1 - from.1);
+            pen.line((from.0, y), (to.0, y), 1.0, palette::GRID)?;
+        }
+        self.draw_open(pen, below, beside)
+    }
+
+    /// Frame and axes without a grid.
+    pub fn draw_open<B: DrawingBackend>(
         &self,
         pen: &Pen<'_, B>,
         below: &str,
@@ -126,12 +160,12 @@ impl Panel {
         let (from, to) = (self.from, self.to);
         for (placed, label) in &self.x.ticks {
             let x = from.0 + self.x.share(*placed) * (to.0 - from.0);
-            pen.line((x, from.1), (x, to.1), 1.0, palette::GRID)?;
+            pen.line((x, to.1), (x, to.1 + 6.0), 1.0, palette::INK)?;
             pen.text(label, (x, to.1 + 20.0), TEXT, Side::Middle, palette::INK)?;
         }
         for (placed, label) in &self.y.ticks {
             let y = to.1 - self.y.share(*placed) * (to.1 - from.1);
-            pen.line((from.0, y), (to.0, y), 1.0, palette::GRID)?;
+            pen.line((from.0 - 6.0, y), (from.0, y), 1.0, palette::INK)?;
             pen.text(label, (from.0 - 10.0, y), TEXT, Side::Right, palette::INK)?;
         }
         pen.frame(from, to)?;

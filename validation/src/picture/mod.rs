@@ -9,6 +9,7 @@ mod look;
 mod motion;
 mod palette;
 mod pen;
+mod sheet;
 mod strips;
 mod tiles;
 
@@ -17,11 +18,21 @@ pub use curves::{Curve, Curves};
 pub use frame::{Axis, Scale};
 pub use look::{Look, Marker, looks};
 pub use motion::Motion;
+pub use sheet::{Layer, Plot, Raster, Sheet, Stroke, Window};
 pub use strips::{Strip, Strips};
 pub use tiles::{Tile, Tiles, Tint};
 
 use plotters::coord::Shift;
 use plotters::prelude::*;
+
+/// The colour of a phase.
+#[must_use]
+pub const fn phase_colour(phase: percuss::Phase) -> RGBColor {
+    palette::phase(phase)
+}
+
+/// The colour of text.
+pub const INK: RGBColor = palette::INK;
 
 /// The bitmap is drawn so much larger and averaged: the drawing library does not smooth its lines.
 const OVERSAMPLING: u32 = 3;

@@ -43,6 +43,16 @@ impl<B: DrawingBackend> Pen<'_, B> {
         self.area.draw(&element).map_err(DrawError::new)
     }
 
+    /// A line through many points.
+    pub fn path(&self, line: &[At], width: f64, colour: RGBColor) -> Result<(), DrawError> {
+        for stretch in smooth(line) {
+            let pixels: Vec<_> = stretch.iter().map(|at| self.pixel(*at)).collect();
+            let element = PathElement::new(pixels, colour.stroke_width(self.wide(width)));
+            self.area.draw(&element).map_err(DrawError::new)?;
+        }
+        Ok(())
+    }
+
     pub fn fill(&self, from: At, to: At, colour: RGBColor) -> Result<(), DrawError> {
         let corners = [self.pixel(from), self.pixel(to)];
         self.area.draw(&Rectangle::new(corners, colour.filled())).map_err(DrawError::new)
@@ -113,4 +123,27 @@ impl<B: DrawingBackend> Pen<'_, B> {
             }
         }
     }
+}
+
+/// Cosine of a turn between neighbouring pieces of a line that counts as sharp.
+const SHARP: f64 = 0.9;
+
+/// A line cut where it turns sharply: the drawing library leaves gaps there in a thick line.
+fn smooth(line: &[At]) -> Vec<&[At]> {
+    let heading = |i: usize| {
+        let (dx, dy) = (line[i].0 - line[i - 1].0, line[i].1 - line[i - 1].1);
+        let length = dx.hypot(dy).max(f64::MIN_POSITIVE);
+        (dx / length, dy / length)
+    };
+    let mut stretches = Vec::new();
+    let mut begin = 0;
+    for i in 1..line.len().saturating_sub(1) {
+        let (before, after) = (heading(i), heading(i + 1));
+        if before.0 * after.0 + before.1 * after.1 < SHARP {
+            stretches.push(&line[begin..=i]);
+            begin = i;
+        }
+    }
+    stretches.push(&line[begin..]);
+    stretches
 }

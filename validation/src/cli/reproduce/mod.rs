@@ -1,0 +1,123 @@
+//! `reproduce`: the paper's tables and figures computed, its claims settled.
+
+mod claims;
+mod store;
+
+use super::output::{Destination, reader_left, write_whole};
+use super::{DONE, OUT_OF_BOUNDS, say};
+use crate::engine::{Failure, hush_contained_panics};
+use crate::reproduce::paper::Paper;
+use crate::reproduce::{Claim, Findings, Item, Size, Work, items};
+use anyhow::{Context, Result, anyhow, bail};
+use clap::Args;
+use indicatif::{ProgressBar, ProgressStyle};
+use rayon::prelude::*;
+use std::path::{Path, PathBuf};
+use store::Store;
+
+/// Compute every table and figure of the paper and settle its claims
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// Only these claims or items; several are alternatives
+    #[arg(long, value_name = "ID")]
+    only: Vec<String>,
+    /// How large the grids are: minutes, or basins of 1000 x 1000 starts
+    #[arg(long, value_enum, default_value_t = Size::Default)]
+    size: Size,
+    /// Pictures, their data and claims.json go into this folder; interrupted work is taken up again there
+    #[arg(long, value_name = "DIR", required = true)]
+    out: PathBuf,
+}
+
+pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
+    let chosen = chosen(&arguments.only)?;
+    std::fs::create_dir_all(&arguments.out).map_err(|error| {
+        let folder = arguments.out.display();
+        anyhow!("--out {folder} cannot be made ({error}); accepted is a writable folder")
+    })?;
+    let store = Store::open(&arguments.out, arguments.size)?;
+    let pool =
+        rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads.unwrap_or(0))).build();
+    let pool = pool.context("--threads: the threads cannot be started")?;
+    hush_contained_panics();
+    let bar = progress(chosen.iter().map(|item| u64::from(item.parts)).sum());
+    let work = Work { paper: Paper::read()?, size: arguments.size, step: &|| bar.inc(1) };
+    let done: Vec<Result<Vec<Claim>, Failure>> =
+        pool.install(|| chosen.par_iter().map(|item| settle(item, &work, &store)).collect());
+    bar.finish_and_clear();
+    finish(arguments, &chosen, done, &store)
+}
+
+/// One item: from an earlier run that was interrupted, or computed and kept.
+fn settle(item: &Item, work: &Work, store: &Store) -> Result<Vec<Claim>, Failure> {
+    if let Some(claims) = store.claims(item) {
+        (0..item.parts).for_each(|_| (work.step)());
+        return Ok(claims);
+    }
+    let Findings { claims, files } = item.run(work)?;
+    store.keep(item, &claims, &files).map_err(|error| Failure::new(format!("{error:#}")))?;
+    Ok(claims)
+}
+
+fn finish(
+    arguments: &Arguments,
+    chosen: &[&'static Item],
+    done: Vec<Result<Vec<Claim>, Failure>>,
+    store: &Store,
+) -> Result<u8> {
+    let mut settled = Vec::new();
+    let mut failed = false;
+    for (item, outcome) in chosen.iter().zip(done) {
+        match outcome {
+            Ok(claims) => {
+                settled
+                    .extend(claims.into_iter().filter(|it| wanted(&arguments.only, item, &it.id)));
+            }
+            Err(failure) => {
+                failed = true;
+                say(&format!("{}: {failure}", item.id));
+            }
+        }
+    }
+    let path = arguments.out.join("claims.json");
+    write_whole(&path, |out| claims::write(&settled, out)).context("--out")?;
+    if !failed {
+        store.close(chosen);
+    }
+    let table = claims::table(&settled);
+    let shown = Destination::Stdout.write(|out| Ok(out.write_all(table.as_bytes())?));
+    shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
+    Ok(if failed { OUT_OF_BOUNDS } else { DONE })
+}
+
+/// Whether a claim of an item was asked for, by its own name or the item's.
+fn wanted(only: &[String], item: &Item, claim: &str) -> bool {
+    only.is_empty() || only.iter().any(|id| id == item.id || id == claim)
+}
+
+/// Items that settle what was asked for; all where nothing was.
+fn chosen(only: &[String]) -> Result<Vec<&'static Item>> {
+    for id in only {
+        if !items().iter().any(|item| item.answers_to(id)) {
+            let names = items().iter().flat_map(|it| std::iter::once(&it.id).chain(it.claims));
+            let names: Vec<_> = names.copied().collect();
+            bail!("--only {id} names no claim and no item: accepted are {}", names.join(", "));
+        }
+    }
+    let chosen = |item: &&Item| only.is_empty() || only.iter().any(|id| item.answers_to(id));
+    Ok(items().iter().filter(chosen).collect())
+}
+
+/// A file of the reproduction, whole or not at all.
+fn write_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<()> {
+    write_whole(&folder.join(name), |out| Ok(out.write_all(bytes)?)).context("--out")
+}
+
+/// A bar on stderr; nothing where that is no terminal.
+fn progress(parts: u64) -> ProgressBar {
+    let bar = ProgressBar::new(parts);
+    match ProgressStyle::with_template("{bar:40} {percent} %, {eta} to go") {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}

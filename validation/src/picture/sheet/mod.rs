@@ -1,0 +1,101 @@
+//! A sheet: panels of layers under a title, with a caption; what the paper's figures are drawn as.
+
+mod layer;
+mod plot;
+
+pub use layer::{Layer, Raster, Stroke};
+pub use plot::{Plot, Window};
+
+use super::pen::{Pen, Side};
+use super::{DrawError, Drawing, palette};
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+/// Room of a panel, with its axes' names.
+const WIDTH: u32 = 760;
+const TITLE: f64 = 24.0;
+const TEXT: f64 = 18.0;
+/// Height of a line of the caption.
+const LINE: u32 = 26;
+const HEAD: u32 = 56;
+/// Characters that fit a panel's width in the caption.
+const CHARACTERS: usize = 82;
+
+/// A sheet of panels, row by row.
+#[derive(Clone, Debug)]
+pub struct Sheet {
+    /// What it shows.
+    pub title: String,
+    /// Parameters, axes, what is assumed: wrapped under the panels.
+    pub caption: String,
+    /// Panels beside each other.
+    pub columns: usize,
+    /// Height of a panel, pixels.
+    pub panel_height: u32,
+    /// The panels.
+    pub plots: Vec<Plot>,
+}
+
+impl Sheet {
+    fn lines(&self) -> Vec<String> {
+        let width = CHARACTERS * self.columns.max(1);
+        let mut lines = vec![String::new()];
+        for word in self.caption.split_whitespace() {
+            let full = lines
+                .last()
+                .is_some_and(|line| line.chars().count() + word.chars().count() >= width);
+            if full {
+                lines.push(String::new());
+            }
+            if let Some(line) = lines.last_mut() {
+                if !line.is_empty() {
+                    line.push(' ');
+                }
+                line.push_str(word);
+            }
+        }
+        lines
+    }
+
+    fn rows(&self) -> usize {
+        self.plots.len().div_ceil(self.columns.max(1))
+    }
+
+    /// Whether an SVG of it stays small.
+    #[must_use]
+    pub fn is_small(&self) -> bool {
+        const POINTS: usize = 20_000;
+        self.plots.iter().flat_map(|plot| &plot.layers).map(Layer::points).sum::<usize>() <= POINTS
+    }
+}
+
+impl Drawing for Sheet {
+    fn size(&self) -> (u32, u32) {
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let width = WIDTH.saturating_mul(count(self.columns.max(1)));
+        let panels = self.panel_height.saturating_mul(count(self.rows()));
+        (width, HEAD + panels + 20 + LINE * count(self.lines().len()))
+    }
+
+    fn draw<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        scale: u32,
+    ) -> Result<(), DrawError> {
+        let pen = Pen { area, scale };
+        pen.paper()?;
+        pen.text(&self.title, (24.0, 30.0), TITLE, Side::Left, palette::INK)?;
+        let (width, height) = (f64::from(WIDTH), f64::from(self.panel_height));
+        for (i, plot) in self.plots.iter().enumerate() {
+            let (row, column) = (i / self.columns.max(1), i % self.columns.max(1));
+            let corner = (width * column as f64, f64::from(HEAD) + height * row as f64);
+            plot.draw(&pen, corner, (width, height))?;
+        }
+        let below = f64::from(HEAD) + height * self.rows() as f64 + 14.0;
+        for (i, line) in self.lines().iter().enumerate() {
+            let at = (24.0, below + f64::from(LINE) * i as f64);
+            pen.text(line, at, TEXT, Side::Left, palette::INK)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,63 @@
+//! One panel of a sheet.
+
+use super::super::frame::{Panel, Ruler, Scale};
+use super::super::pen::{At, Pen, Side};
+use super::super::{DrawError, palette};
+use super::layer::Layer;
+use plotters::prelude::DrawingBackend;
+
+/// What a panel shows of the plane; where an end is not finite the data decide.
+pub type Window = [(f64, f64); 2];
+
+/// A panel.
+#[derive(Clone, Debug)]
+pub struct Plot {
+    /// Stands above it.
+    pub title: String,
+    /// Names of the axes.
+    pub axes: [String; 2],
+    /// Ranges of both axes; `None` shows all data.
+    pub window: Option<Window>,
+    /// What is drawn, later layers above earlier ones.
+    pub layers: Vec<Layer>,
+}
+
+const TEXT: f64 = 20.0;
+const LEFT: f64 = 126.0;
+const RIGHT: f64 = 24.0;
+const TOP: f64 = 40.0;
+const BOTTOM: f64 = 84.0;
+
+impl Plot {
+    pub(super) fn draw<B: DrawingBackend>(
+        &self,
+        pen: &Pen<'_, B>,
+        corner: At,
+        (width, height): At,
+    ) -> Result<(), DrawError> {
+        let from = (corner.0 + LEFT, corner.1 + TOP);
+        let to = (corner.0 + width - RIGHT, corner.1 + height - BOTTOM);
+        pen.text(&self.title, (from.0, from.1 - 18.0), TEXT, Side::Left, palette::INK)?;
+        let ruler = |axis: usize| match self.window {
+            Some(window) => Ruler::between(window[axis].0, window[axis].1),
+            None => {
+                let all = self.layers.iter().flat_map(|layer| layer.extent(axis));
+                Ruler::over(Scale::Linear, all)
+            }
+        };
+        let (Some(x), Some(y)) = (ruler(0), ruler(1)) else {
+            return pen.text("nothing to show", from, TEXT, Side::Left, palette::INK);
+        };
+        let panel = Panel { from, to, x, y };
+        let (below, above): (Vec<&Layer>, Vec<&Layer>) =
+            self.layers.iter().partition(|layer| matches!(layer, Layer::Raster(_)));
+        // A raster fills the panel: it would hide the grid.
+        below.iter().try_for_each(|layer| layer.draw(pen, &panel))?;
+        if below.is_empty() {
+            panel.draw(pen, &self.axes[0], &self.axes[1])?;
+        } else {
+            panel.draw_open(pen, &self.axes[0], &self.axes[1])?;
+        }
+        above.iter().try_for_each(|layer| layer.draw(pen, &panel))
+    }
+}

@@ -1,0 +1,78 @@
+//! A run as lines in the paper's notation: no contact dash-dotted, contact solid, progression dotted.
+
+use crate::picture::{Layer, Stroke, phase_colour};
+use percuss::{Exit, Instant, Leg, Phase};
+
+/// One phase's motion, sampled.
+pub(super) struct Piece {
+    pub phase: Phase,
+    /// tau, p, y, q, v.
+    pub points: Vec<[f64; 5]>,
+}
+
+/// Points of even the shortest phase.
+const FEWEST: usize = 12;
+
+/// The phases of a run up to `last`, some `per_period` points a forcing period.
+pub(super) fn pieces(legs: &[Leg], last: &Instant, omega: f64, per_period: f64) -> Vec<Piece> {
+    let spacing = std::f64::consts::TAU / omega / per_period;
+    let piece = |leg: &Leg| {
+        let lasts = match leg.exit() {
+            Exit::Switch(next) if next.instant <= *last => leg.duration(),
+            _ => leg.elapsed_at(last),
+        };
+        let begins = leg.entry().instant.tau(omega);
+        let count = ((lasts / spacing).ceil() as usize).max(FEWEST);
+        let point = |i: usize| {
+            let elapsed = lasts * (i as f64 / count as f64);
+            let at = leg.at(elapsed);
+            [begins + elapsed, at.state.p, at.state.y, at.state.q, at.v]
+        };
+        Piece { phase: leg.phase(), points: (0..=count).map(point).collect() }
+    };
+    legs.iter().map(piece).collect()
+}
+
+/// The paper's line for a phase.
+pub(super) const fn stroke(phase: Phase) -> Stroke {
+    match phase {
+        Phase::NoContact => Stroke::DashDotted,
+        Phase::Contact => Stroke::Solid,
+        Phase::Progression => Stroke::Dotted,
+    }
+}
+
+/// Lines of the figures that `of` makes of a point.
+pub(super) fn lines(pieces: &[Piece], of: impl Fn(&[f64; 5]) -> [f64; 2]) -> Vec<Layer> {
+    let line = |piece: &Piece| Layer::Line {
+        points: piece.points.iter().map(&of).collect(),
+        colour: phase_colour(piece.phase),
+        width: if piece.phase == Phase::Progression { 3.0 } else { 2.0 },
+        stroke: stroke(piece.phase),
+    };
+    pieces.iter().map(line).collect()
+}
+
+/// The phases' key.
+pub(super) fn key() -> Vec<Layer> {
+    let entry = |(place, phase): (u8, Phase)| Layer::Key {
+        name: phase.token().replace('-', " "),
+        colour: phase_colour(phase),
+        stroke: Some(stroke(phase)),
+        place,
+    };
+    (0..).zip(Phase::ALL).map(entry).collect()
+}
+
+/// Rows of a data file: phase, tau, p, y, q, v.
+pub(super) fn rows(pieces: &[Piece]) -> impl Iterator<Item = Vec<String>> {
+    pieces.iter().flat_map(|piece| {
+        piece.points.iter().map(|point| {
+            let numbers = point.iter().map(f64::to_string);
+            std::iter::once(piece.phase.token().to_owned()).chain(numbers).collect()
+        })
+    })
+}
+
+/// Their header.
+pub(super) const HEADER: [&str; 6] = ["phase", "tau", "p", "y", "q", "v"];

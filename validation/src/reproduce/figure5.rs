@@ -1,0 +1,76 @@
+//! Fig. 5: the chaotic phase portrait.
+
+use super::claim::{Claim, Verdict};
+use super::curve::{self, HEADER, Piece};
+use super::paper::chaotic_model;
+use super::work::{Findings, Work, from_rest, named};
+use crate::engine::Failure;
+use crate::picture::{Layer, Plot, Sheet};
+use percuss::{Parameters, Phase};
+
+const TRANSIENT: u64 = 100;
+const PERIODS: u64 = 40;
+const POINTS: f64 = 200.0;
+/// Rounding of p on the surface, and what the slider still has to close after an impact.
+const SURFACE: f64 = 1e-12;
+
+pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+    let parameters = chaotic_model();
+    let (model, rest) = from_rest(parameters)?;
+    let begin = rest.instant.after_periods(TRANSIENT, 1);
+    let end = begin.after_periods(PERIODS, 1);
+    let legs: Vec<_> =
+        model.trajectory(rest).until(end).filter(|leg| !leg.ends_by(&begin)).collect();
+    let pieces = curve::pieces(&legs, &end, parameters.omega, POINTS);
+    let mut findings = Findings::default();
+    findings.claims.push(settle(work, &pieces, &parameters)?);
+    findings.picture("figure-5", &sheet(&pieces, &parameters))?;
+    findings.csv("figure-5", &HEADER, curve::rows(&pieces))?;
+    Ok(findings)
+}
+
+fn settle(work: &Work<'_>, pieces: &[Piece], parameters: &Parameters) -> Result<Claim, Failure> {
+    let g = parameters.g;
+    let of = |phase: Phase| {
+        pieces.iter().filter(move |piece| piece.phase == phase).flat_map(|piece| &piece.points)
+    };
+    let count = of(Phase::NoContact).count();
+    let right = of(Phase::NoContact).filter(|at| at[1] > g + SURFACE).count();
+    let farthest = of(Phase::NoContact).map(|at| at[1] - g).fold(0.0, f64::max);
+    let between =
+        of(Phase::Contact).filter(|at| !(g - SURFACE..=g + 1.0 + SURFACE).contains(&at[1])).count();
+    let settled = of(Phase::Progression).map(|at| at[1]).fold(0.0, f64::max);
+    let share = right as f64 / count.max(1) as f64;
+    let reached = (g + 1.0 - settled).abs() < 1e-3;
+    // The slider's top still returns just after separation: p = g + q there, q > 0.
+    let holds = share < 0.1 && between == 0 && reached;
+    let computed = format!(
+        "no contact lies left of p = g but for {:.1} % of its points, just after separation, which reach p = g + {farthest:.4} \
+         while the slider's top returns; contact between p = g and g + 1; progression reaches p = {settled:.6}",
+        100.0 * share
+    );
+    Ok(Claim::settle(&work.paper, "fig5", Verdict::of(holds), computed)?
+        .note(format!("from rest, after {TRANSIENT} periods"))
+        .evidence("exact solver, every phase sampled", "each phase's range of p"))
+}
+
+fn sheet(pieces: &[Piece], parameters: &Parameters) -> Sheet {
+    let mut layers = curve::lines(pieces, |at| [at[1], at[2]]);
+    layers.extend([Layer::Guide(parameters.g), Layer::Guide(parameters.g + 1.0)]);
+    layers.extend(curve::key());
+    Sheet {
+        title: "Fig. 5: chaotic motion on the phase plane".to_owned(),
+        caption: format!(
+            "{}; {PERIODS} forcing periods after {TRANSIENT}, from rest. Dashed: p = g and p = g + 1.",
+            named(parameters)
+        ),
+        columns: 1,
+        panel_height: 620,
+        plots: vec![Plot {
+            title: String::new(),
+            axes: ["p".to_owned(), "y".to_owned()],
+            window: None,
+            layers,
+        }],
+    }
+}

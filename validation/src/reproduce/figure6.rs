@@ -1,0 +1,138 @@
+//! Fig. 6: the strange attractor's section, exact beside integrated, and how far they lie apart.
+
+use super::claim::{Claim, Verdict};
+use super::paper::chaotic_model;
+use super::work::{Findings, Work, named};
+use crate::case;
+use crate::engine::{self, Accuracy, Engine, Failure, Limits};
+use crate::number::brief;
+use crate::picture::{INK, Layer, Plot, Sheet, phase_colour};
+use crate::score::attractor::{AttractorTest, Comparison, Section, calibrated, run_of};
+use percuss::{Phase, Start};
+
+/// The harness's case that starts from rest at these parameters; its limits are calibrated.
+const CASE: &str = "chaos-from-rest";
+/// Integrators of three libraries, and their tolerance.
+const ENGINES: &str = "^(ode_solvers-dopri5|differential-equations-rkv655e|diffsol-bdf)$";
+const TOLERANCE: f64 = 1e-9;
+const TRANSIENT: u32 = 200;
+/// Points of the pictures.
+const POINTS: u32 = 20_000;
+
+pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+    let engines = engine::select(&[regex::Regex::new(ENGINES).map_err(Failure::new)?])
+        .map_err(Failure::new)?;
+    let integrated = engines
+        .iter()
+        .find(|engine| engine.declaration().library == "ode_solvers")
+        .ok_or_else(|| Failure::new("no integrator was chosen"))?;
+    let exact = section(engine::exact(), Accuracy::Exact)?;
+    let other = section(*integrated, Accuracy::Tolerance(TOLERANCE))?;
+    let comparisons = compared(&engines)?;
+    let mut findings = Findings::default();
+    findings.claims.extend(settle(work, &exact, &other, &comparisons)?);
+    let farthest = comparisons.iter().map(|(_, it)| it.share()).fold(0.0, f64::max);
+    findings
+        .picture("figure-6", &sheet(&exact, &other, integrated.declaration().name, farthest))?;
+    for (name, section) in [("figure-6a", &exact), ("figure-6b", &other)] {
+        let row = |point: &[f64; 3]| point.iter().map(f64::to_string).collect();
+        findings.csv(name, &["p", "y", "q"], section.points.iter().map(row))?;
+    }
+    Ok(findings)
+}
+
+fn section(engine: &dyn Engine, accuracy: Accuracy) -> Result<Section, Failure> {
+    let refused = || Failure::new("the start is refused");
+    let task = run_of(chaotic_model(), Start::default(), TRANSIENT + POINTS).ok_or_else(refused)?;
+    let limits = Limits { calls: 1_000_000_000, events: 1_000_000, ..Limits::default() };
+    Section::of(&task, &engine.run(&task, accuracy, &limits)?, TRANSIENT)
+}
+
+/// Each integrator's section against the reference, in units of the calibrated limits.
+fn compared(engines: &[&'static dyn Engine]) -> Result<Vec<(&'static str, Comparison)>, Failure> {
+    let cases = case::embedded().map_err(Failure::new)?;
+    let case = cases.iter().find(|case| case.name == CASE);
+    let limits = calibrated().map_err(Failure::new)?.into_iter().find(|it| it.case == CASE);
+    let (Some(case), Some(limits)) = (case, limits) else {
+        return Err(Failure::new(format!("the case {CASE} has no calibrated limits")));
+    };
+    let test = AttractorTest::new(case, limits)?;
+    let compare = |engine: &&'static dyn Engine| {
+        let accuracy = Accuracy::Tolerance(TOLERANCE);
+        let comparison = test.compare(case, *engine, accuracy, &Limits::default())?;
+        Ok((engine.declaration().name, comparison))
+    };
+    engines.iter().map(compare).collect()
+}
+
+fn settle(
+    work: &Work<'_>,
+    exact: &Section,
+    other: &Section,
+    comparisons: &[(&'static str, Comparison)],
+) -> Result<[Claim; 2], Failure> {
+    let strange = exact.lyapunov > 0.0;
+    let computed = format!(
+        "{} points; the exponent is {:.3} per period: chaotic",
+        exact.points.len(),
+        exact.lyapunov
+    );
+    let first = Claim::settle(&work.paper, "fig6a", Verdict::of(strange), computed)?
+        .note(format!("from rest, after {TRANSIENT} periods"))
+        .evidence(
+            "exact solver, a point a forcing period",
+            format!("drift {:.4} per period", exact.drift),
+        );
+    let agree = comparisons.iter().all(|(_, it)| it.share() <= 1.0);
+    let computed = format!(
+        "{} points by integration, exponent {:.3}; distances of {} integrators from the exact section reach at most {:.2} of \
+         what two exact runs differ by",
+        other.points.len(),
+        other.lyapunov,
+        comparisons.len(),
+        comparisons.iter().map(|(_, it)| it.share()).fold(0.0, f64::max)
+    );
+    let mut second = Claim::settle(&work.paper, "fig6b", Verdict::of(agree), computed)?.note(
+        "one-dimensional distances of p, y, q and their delay pairs, phase words, exponent, drift; limits from exact runs \
+         against each other, at most one false alarm in a thousand suites",
+    );
+    for (name, comparison) in comparisons {
+        let mut nearest: Vec<_> = comparison.distances.iter().collect();
+        nearest.sort_by(|a, b| (b.1 / b.2).total_cmp(&(a.1 / a.2)));
+        let said: Vec<_> = nearest
+            .iter()
+            .take(3)
+            .map(|(what, value, limit)| format!("{what} {} of {}", brief(*value), brief(*limit)))
+            .collect();
+        second = second.evidence(format!("{name}, tolerance {TOLERANCE:e}"), said.join(", "));
+    }
+    Ok([first, second])
+}
+
+fn sheet(exact: &Section, other: &Section, engine: &str, farthest: f64) -> Sheet {
+    let plot = |title: String, section: &Section, colour| Plot {
+        title,
+        axes: ["p".to_owned(), "y".to_owned()],
+        window: None,
+        layers: vec![Layer::Dots {
+            points: section.points.iter().map(|[p, y, _]| [*p, *y]).collect(),
+            colour,
+            size: 0.6,
+        }],
+    };
+    Sheet {
+        title: "Fig. 6: Poincar\u{e9} section of the strange attractor".to_owned(),
+        caption: format!(
+            "{}; strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}), {POINTS} points after {TRANSIENT} periods from rest. (a) exact solver; \
+             (b) {engine} at a tolerance of {TOLERANCE:e}. Largest distance between the two kinds of section, over integrators of three \
+             libraries: {farthest:.2} of the calibrated limit.",
+            named(&chaotic_model())
+        ),
+        columns: 2,
+        panel_height: 560,
+        plots: vec![
+            plot("(a) semi-analytically".to_owned(), exact, INK),
+            plot("(b) by numerical integration".to_owned(), other, phase_colour(Phase::NoContact)),
+        ],
+    }
+}

@@ -1,0 +1,81 @@
+//! Fig. 3: the phase plane of the motion of Table 1, and the zoom of its stick-slip part.
+
+use super::super::claim::{Claim, Verdict};
+use super::super::curve::{self, Piece};
+use super::super::work::{Work, named};
+use super::Told;
+use crate::engine::Failure;
+use crate::picture::{INK, Layer, Plot, Sheet, Window};
+use percuss::Phase;
+
+/// The zoom: where the slider is met, compressed and left.
+const ZOOM: Window = [(-0.1, 1.15), (-2.0, 6.2)];
+
+pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<Claim, Failure> {
+    let g = told.parameters().g;
+    let of = |phase: Phase| pieces.iter().filter(move |piece| piece.phase == phase);
+    let points = |phase: Phase| of(phase).flat_map(|piece| &piece.points);
+    // Just after separation the slider's top is still on its way back.
+    let right = points(Phase::NoContact).filter(|at| at[1] > g).count();
+    let share = right as f64 / points(Phase::NoContact).count().max(1) as f64;
+    let forward = points(Phase::Progression).all(|at| at[2] >= 0.0);
+    let settled = of(Phase::Progression).flat_map(|piece| piece.points.last());
+    let apart = settled.map(|at| (at[1] - (g + 1.0)).abs()).fold(0.0, f64::max);
+    let phases = pieces.len();
+    let holds = phases == 8 && share < 0.01 && forward && apart < 1e-5;
+    let computed = format!(
+        "{phases} phases a period; y >= 0 throughout progression, which ends within {apart:.1e} of p = 1.02; {:.2} % of the points \
+         without contact lie right of p = {g}, just after separation",
+        100.0 * share
+    );
+    Ok(Claim::settle(&work.paper, "fig3", Verdict::of(holds), computed)?
+        .note("drawn over rows 1 to 9 of Table 1, as the paper does")
+        .evidence("exact solver, every phase sampled", "figures-3-4.csv"))
+}
+
+/// A point of Table 1 with its number; points in one place share a label, one below another has its own below.
+fn labelled(points: &[[f64; 2]], i: usize) -> Vec<Layer> {
+    let [p, y] = points[i];
+    let here = |point: &[f64; 2]| (point[0] - p).hypot(point[1] - y) < 0.05;
+    let above =
+        |point: &[f64; 2]| (point[0] - p).abs() < 0.05 && (0.05..0.5).contains(&(point[1] - y));
+    let shared: Vec<_> = (0..points.len()).filter(|j| here(&points[*j])).collect();
+    let mut layers = vec![Layer::Dots { points: vec![[p, y]], colour: INK, size: 3.5 }];
+    if shared.first() == Some(&i) {
+        let numbers: Vec<_> = shared.iter().map(|j| (j + 1).to_string()).collect();
+        let lower = if points.iter().any(above) { 0.55 } else { 0.0 };
+        layers.push(Layer::Text { at: [p, y - lower], text: numbers.join(", "), colour: INK });
+    }
+    layers
+}
+
+pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Sheet {
+    let plane = |at: &[f64; 5]| [at[1], at[2]];
+    let mut whole = curve::lines(pieces, plane);
+    whole.extend(curve::key());
+    let mut zoom = curve::lines(pieces, plane);
+    let at: Vec<[f64; 2]> = told.legs[..told.legs.len() - 1]
+        .iter()
+        .map(|leg| [leg.entry().state.p, leg.entry().state.y])
+        .collect();
+    let numbered = (0..at.len()).flat_map(|i| labelled(&at, i));
+    zoom.extend(numbered);
+    let plot = |title: &str, window: Option<Window>, layers: Vec<Layer>| Plot {
+        title: title.to_owned(),
+        axes: ["p".to_owned(), "y".to_owned()],
+        window,
+        layers,
+    };
+    Sheet {
+        title: "Fig. 3: phase plane of the period-two motion".to_owned(),
+        caption: format!(
+            "{}; from row 1 to row 9 of Table 1, {:.5} <= \u{3c4} <= {:.5}. Right: the stick-slip part, points 1 to 8 of Table 1.",
+            named(told.parameters()),
+            told.tau(0),
+            told.tau(told.legs.len() - 1)
+        ),
+        columns: 2,
+        panel_height: 600,
+        plots: vec![plot("", None, whole), plot("zoom", Some(ZOOM), zoom)],
+    }
+}

@@ -1,0 +1,173 @@
+//! Table 1 with the motion it belongs to: Figs. 3 and 4.
+
+mod figure3;
+mod figure4;
+
+use super::claim::{Claim, Verdict};
+use super::curve::{self, HEADER, Piece};
+use super::paper::{PrintedRow, TABLE_1_UNIT, table_1_model};
+use super::work::{Findings, Work, from_rest};
+use crate::engine::Failure;
+use percuss::dynamics::orbit::Orbit;
+use percuss::dynamics::strobe::StrobeMap;
+use percuss::{Entry, Instant, Leg, Model, Parameters};
+
+/// Time up to which the paper follows the motion.
+const UNTIL: f64 = 1300.0;
+/// Points a forcing period.
+const POINTS: f64 = 4000.0;
+/// Forcing periods until the motion has settled, and a multiple of the period claimed.
+const SETTLED: u64 = 2000;
+
+/// The run from rest, with the part that Table 1 tells.
+struct Told {
+    model: Model,
+    rest: Entry,
+    /// The phases whose beginnings are the table's rows.
+    legs: Vec<Leg>,
+    /// Where the last row begins.
+    end: Instant,
+}
+
+impl Told {
+    fn new(rows: &[PrintedRow]) -> Result<Self, Failure> {
+        let parameters = table_1_model();
+        let (model, rest) = from_rest(parameters)?;
+        let horizon = Instant::at(parameters.omega, UNTIL, 0);
+        let all: Vec<_> = model.trajectory(rest).until(horizon).collect();
+        let near = |leg: &Leg| (leg.entry().instant.tau(parameters.omega) - rows[0].tau).abs();
+        let first = (0..all.len()).min_by(|i, j| near(&all[*i]).total_cmp(&near(&all[*j])));
+        let first = first.ok_or_else(|| Failure::new("the run has no phases"))?;
+        let last = first + rows.len() - 1;
+        let end = all.get(last).ok_or_else(|| Failure::new("the run ends before the table"))?;
+        let end = end.entry().instant;
+        Ok(Self { model, rest, legs: all[first..=last].to_vec(), end })
+    }
+
+    fn parameters(&self) -> &Parameters {
+        self.model.parameters()
+    }
+
+    fn tau(&self, row: usize) -> f64 {
+        self.legs[row].entry().instant.tau(self.parameters().omega)
+    }
+
+    /// The phases between the first row and the last.
+    fn pieces(&self) -> Vec<Piece> {
+        let legs = &self.legs[..self.legs.len() - 1];
+        curve::pieces(legs, &self.end, self.parameters().omega, POINTS)
+    }
+}
+
+pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+    let told = Told::new(&work.paper.table1)?;
+    let pieces = told.pieces();
+    let orbit = settled_orbit(&told)?;
+    let mut findings = Findings::default();
+    findings.claims.push(rows(work, &told)?);
+    findings.claims.push(period(work, &told, &orbit)?);
+    findings.claims.push(closed(work, &told, &orbit)?);
+    findings.claims.push(figure3::settle(work, &told, &pieces)?);
+    findings.claims.push(figure4::settle(work, &told, &pieces)?);
+    findings.picture("figure-3", &figure3::sheet(&told, &pieces))?;
+    findings.picture("figure-4", &figure4::sheet(&told, &pieces))?;
+    findings.csv("figures-3-4", &HEADER, curve::rows(&pieces))?;
+    findings.csv("table-1", &["point", "phase", "tau", "p", "y", "q"], table(&told))?;
+    Ok(findings)
+}
+
+fn table(told: &Told) -> impl Iterator<Item = Vec<String>> {
+    told.legs.iter().enumerate().map(|(row, leg)| {
+        let [p, y, q] = leg.entry().point();
+        let numbers = [told.tau(row), p, y, q].map(|number| number.to_string());
+        [(row + 1).to_string(), leg.phase().to_string()].into_iter().chain(numbers).collect()
+    })
+}
+
+fn rows(work: &Work<'_>, told: &Told) -> Result<Claim, Failure> {
+    let printed = &work.paper.table1;
+    let phases = told.legs.iter().zip(printed).all(|(leg, row)| leg.phase().token() == row.phase);
+    let mut differences = Vec::new();
+    for (i, (leg, row)) in told.legs.iter().zip(printed).enumerate() {
+        let [p, y, q] = leg.entry().point();
+        let pairs =
+            [("tau", told.tau(i), row.tau), ("p", p, row.p), ("y", y, row.y), ("q", q, row.q)];
+        differences.extend(pairs.map(|(name, ours, theirs)| (i + 1, name, (ours - theirs).abs())));
+    }
+    let (row, name, largest) = differences
+        .iter()
+        .copied()
+        .max_by(|a, b| a.2.total_cmp(&b.2))
+        .ok_or_else(|| Failure::new("the paper's table is empty"))?;
+    let rounded = differences.iter().filter(|it| it.2 <= 0.5 * TABLE_1_UNIT).count();
+    // A number that was cut instead of rounded is off by up to a whole unit.
+    let holds = phases && largest <= TABLE_1_UNIT;
+    let computed = format!(
+        "all {} phases; {rounded} of {} numbers round to the printed ones, the farthest, {name} of row {row}, is {largest:.1e} off",
+        told.legs.len(),
+        differences.len()
+    );
+    Ok(Claim::settle(&work.paper, "table1", Verdict::of(holds), computed)?
+        .note("found by following the motion from rest at tau = 0 through 18 forcing periods; within one unit of the last printed digit")
+        .evidence("exact solver from rest", "table-1.csv"))
+}
+
+/// The orbit that the motion settles on.
+fn settled_orbit(told: &Told) -> Result<Orbit, Failure> {
+    let map = StrobeMap::new(told.model, told.rest.instant);
+    let settled = map.strobes(told.rest, SETTLED).last();
+    let settled = settled.ok_or_else(|| Failure::new("the run has no strobes"))?;
+    // Looked for at a multiple of what is claimed: the least period is what comes out.
+    Orbit::find(&map, settled.point(), 12).map_err(Failure::new)
+}
+
+/// How many phases there are in one whole period: the strobe may cut one in two.
+fn phases(orbit: &Orbit) -> usize {
+    let cut = orbit.phases.len() > 1 && orbit.phases.first() == orbit.phases.last();
+    orbit.phases.len() - usize::from(cut)
+}
+
+fn period(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure> {
+    let printed = work.paper.claim("table1-period")?;
+    let holds = printed.periods == [orbit.period()] && orbit.is_stable();
+    let computed = format!(
+        "from rest the motion settles on a {} orbit of period {} with {} phases, drift {:.6} per forcing period",
+        if orbit.is_stable() { "stable" } else { "unstable" },
+        orbit.period(),
+        phases(orbit),
+        orbit.drift_per_period
+    );
+    let multipliers: Vec<_> =
+        orbit.multipliers.iter().map(|[re, im]| format!("{re:.6e}{im:+.1e}i")).collect();
+    let point = orbit.points[0];
+    Ok(Claim::settle(&work.paper, "table1-period", Verdict::of(holds), computed)?
+        .note("looked for as an orbit of twelve forcing periods: its least period is what is told")
+        .evidence(
+            format!("{SETTLED} forcing periods from rest, then Newton on the exact strobe map"),
+            format!("(p, y, q) = {point:?} at the strobe, residual {:.1e}", orbit.residual),
+        )
+        .evidence("multipliers of the whole orbit", multipliers.join(", "))
+        .evidence("parameters", super::work::named(told.parameters())))
+}
+
+fn closed(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure> {
+    let printed = &work.paper.table1;
+    let whole = f64::from(orbit.period()) * told.model.period();
+    let last = told.legs.len() - 1;
+    let ours = told.tau(last) - told.tau(0);
+    let theirs = printed[last].tau - printed[0].tau;
+    let apart = [ours, theirs].map(|length| length - whole);
+    let holds = apart.iter().all(|it| it.abs() <= TABLE_1_UNIT);
+    let computed = format!(
+        "T = {whole:.5}; rows 1 and 9 are {ours:.5} apart, {:.5} more, and y differs by {:.5}: the motion has not settled yet",
+        apart[0],
+        told.legs[0].entry().state.y - told.legs[last].entry().state.y
+    );
+    Ok(Claim::settle(&work.paper, "table1-closed", Verdict::of(holds), computed)?
+        .note("the printed rows say so themselves; the orbit that the motion settles on later does close after T")
+        .evidence("the printed rows", format!("{theirs:.5} apart, {:.5} more than T", apart[1]))
+        .evidence(
+            "the settled orbit, by Newton",
+            format!("period {} of the forcing, residual {:.1e}", orbit.period(), orbit.residual),
+        ))
+}

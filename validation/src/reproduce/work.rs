@@ -1,0 +1,88 @@
+//! What an item works with, and what it leaves.
+
+use super::claim::Claim;
+use super::paper::Paper;
+use crate::engine::Failure;
+use crate::picture::{Sheet, png, svg};
+use percuss::{Entry, Model, Parameters, Start};
+
+/// How large the pictures and grids are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub enum Size {
+    /// Minutes.
+    Default,
+    /// Basins of 1000 x 1000 starts.
+    Full,
+}
+
+/// What every item is given.
+pub struct Work<'a> {
+    /// The paper's side.
+    pub paper: Paper,
+    /// How large.
+    pub size: Size,
+    /// To be called as often as the item has parts, whenever one is done.
+    pub step: &'a (dyn Fn() + Sync),
+}
+
+/// What an item has found.
+#[derive(Clone, Debug, Default)]
+pub struct Findings {
+    /// Claims settled.
+    pub claims: Vec<Claim>,
+    /// Files by name: pictures and their data.
+    pub files: Vec<(String, Vec<u8>)>,
+}
+
+impl Findings {
+    /// Draws a picture: PNG, and SVG where it stays small.
+    ///
+    /// # Errors
+    /// The drawing library's reason.
+    pub fn picture(&mut self, name: &str, sheet: &Sheet) -> Result<(), Failure> {
+        self.files.push((format!("{name}.png"), png(sheet).map_err(Failure::new)?));
+        if sheet.is_small() {
+            self.files
+                .push((format!("{name}.svg"), svg(sheet).map_err(Failure::new)?.into_bytes()));
+        }
+        Ok(())
+    }
+
+    /// Writes a picture's data.
+    ///
+    /// # Errors
+    /// A row that is not as long as the header.
+    pub fn csv(
+        &mut self,
+        name: &str,
+        header: &[&str],
+        rows: impl IntoIterator<Item = Vec<String>>,
+    ) -> Result<(), Failure> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(header).map_err(Failure::new)?;
+        for row in rows {
+            writer.write_record(row).map_err(Failure::new)?;
+        }
+        let bytes = writer.into_inner().map_err(Failure::new)?;
+        self.files.push((format!("{name}.csv"), bytes));
+        Ok(())
+    }
+}
+
+/// A model of the paper.
+pub(super) fn model(parameters: Parameters) -> Result<Model, Failure> {
+    Model::new(parameters).map_err(Failure::new)
+}
+
+/// A model of the paper at rest at tau = 0.
+pub(super) fn from_rest(parameters: Parameters) -> Result<(Model, Entry), Failure> {
+    let model = model(parameters)?;
+    let entry = model.start(&Start::default()).map_err(Failure::new)?;
+    Ok((model, entry))
+}
+
+/// Parameters as captions name them.
+pub(super) fn named(parameters: &Parameters) -> String {
+    let Parameters { a, b, xi, omega, g, .. } = parameters;
+    format!("a = {a}, b = {b}, \u{3be} = {xi}, \u{3c9} = {omega}, g = {g}, \u{3c6} = \u{3c0}/2")
+}
