@@ -4,8 +4,10 @@ use std::process::Command;
 
 fn main() {
     println!("cargo:rerun-if-changed=build.rs");
-    for head in ["../.git/HEAD", "../.git/logs/HEAD"] {
-        if std::path::Path::new(head).exists() {
+    // Asked of git, because in a worktree they stand elsewhere.
+    for name in ["HEAD", "logs/HEAD"] {
+        let head = said("git", &["rev-parse", "--git-path", name]);
+        if std::path::Path::new(&head).exists() {
             println!("cargo:rerun-if-changed={head}");
         }
     }

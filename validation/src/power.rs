@@ -22,6 +22,8 @@ pub enum Gate {
     EventErrors,
     /// Errors on the fixed sample, drift included.
     StateErrors,
+    /// How long runs in chaos stay right.
+    ValidHorizon,
     /// Errors after one passage from states on the attractor.
     Restart,
     /// Distance of the sections in chaos.
@@ -30,8 +32,14 @@ pub enum Gate {
 
 impl Gate {
     /// All of them, in the order of the report.
-    pub const ALL: [Self; 5] =
-        [Self::Events, Self::EventErrors, Self::StateErrors, Self::Restart, Self::Attractor];
+    pub const ALL: [Self; 6] = [
+        Self::Events,
+        Self::EventErrors,
+        Self::StateErrors,
+        Self::ValidHorizon,
+        Self::Restart,
+        Self::Attractor,
+    ];
 
     /// Its name for people.
     #[must_use]
@@ -40,6 +48,7 @@ impl Gate {
             Self::Events => "events",
             Self::EventErrors => "event errors",
             Self::StateErrors => "state errors",
+            Self::ValidHorizon => "valid horizon",
             Self::Restart => "restart",
             Self::Attractor => "same attractor",
         }
@@ -53,6 +62,7 @@ impl Gate {
             | Quantity::DriftError
             | Quantity::StateConstant
             | Quantity::ValidPeriods => Self::StateErrors,
+            Quantity::ValidGain => Self::ValidHorizon,
             Quantity::RestartError => Self::Restart,
             Quantity::AttractorDistance => Self::Attractor,
         }
@@ -145,7 +155,7 @@ fn held(
     let Standard { engine, accuracy, unit } = standard;
     let subject = Subject { case: &prepared.case.name, engine, accuracy, unit };
     let limits = Limits::default();
-    let extent = |_| Extent::of_wrong(&prepared.case.name);
+    let extent = |_| Extent::of_wrong(&prepared.case);
     let measured = prepared.measured(wrong.engine, Accuracy::Exact, unit, &limits, extent);
     let (measures, ..) = measured.ok()?;
     let bounds: Vec<_> = prepared.case.bounds.iter().chain(defaults).collect();

@@ -1,14 +1,11 @@
-//! What is asked of an engine beyond the run of a case itself: restarts and the same attractor.
+//! What is asked of an engine beyond the run of a case itself: restarts, valid horizons and the same
+//! attractor. Which cases ask what of integrators is said in their files (`[probes]`).
 
 use crate::case::{Case, FileError, Problem};
 use crate::engine::{Accuracy, Engine, Limits, contain};
 use crate::score::attractor::{AttractorTest, Calibrated, Comparison};
-use crate::score::{Restart, RestartTest};
+use crate::score::{HorizonTest, Horizons, Restart, RestartTest};
 use crate::suite::Suite;
-
-/// Cases with restarts in every suite: chaos at light and at stronger damping, and the long orbit of
-/// Table 1. In the full suite the exact solver restarts on every attractor.
-const RESTARTED: [&str; 3] = ["chaos-from-rest", "fig7a-chaos", "table1-from-rest"];
 
 /// One engine a library: those that restart and run for long in the quick suite too.
 const REPRESENTATIVES: [&str; 3] =
@@ -24,11 +21,21 @@ pub fn is_representative(engine: &str) -> bool {
 const TOLERANCE: f64 = 1e-9;
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
 
+/// Whether a row is shown where all would be too many: one engine a library, as accurate as one that
+/// is asked for everything.
+#[must_use]
+pub fn is_shown(engine: &str, accuracy: Accuracy) -> bool {
+    let among = |it: f64| TOLERANCES.contains(&it);
+    is_representative(engine) && accuracy.tolerance().is_none_or(among)
+}
+
 /// The probes of one case, made ready once and shared by all engines.
 #[derive(Default)]
 pub struct Probes {
     /// Restarts from states on the attractor.
     pub restart: Option<RestartTest>,
+    /// Runs until they are no longer right.
+    pub horizons: Option<HorizonTest>,
     /// A long run's section.
     pub attractor: Option<AttractorTest>,
 }
@@ -38,6 +45,8 @@ pub struct Probes {
 pub struct Probed {
     /// The restart test.
     pub restart: Option<Restart>,
+    /// Valid horizons.
+    pub horizons: Option<Horizons>,
     /// The same-attractor test; without a comparison where the engine failed, with its reason.
     pub attractor: Option<Result<Comparison, String>>,
 }
@@ -63,19 +72,20 @@ impl Probes {
     /// Makes the probes of a case ready for a suite; `limits` are those of all cases.
     ///
     /// # Errors
-    /// The exact solver's own failure.
+    /// The exact solver's own failure, or a case that says too short a time for its valid horizons.
     pub fn new(
         case: &Case,
         problem: &Problem,
         suite: Suite,
         limits: &[Calibrated],
     ) -> Result<Self, FileError> {
-        let restarted = suite == Suite::Full || RESTARTED.contains(&case.name.as_str());
+        // In the full suite the exact solver restarts on every attractor.
+        let restarted = suite == Suite::Full || case.probed.integrators;
         let restart = restarted.then(|| RestartTest::new(problem, restarts(suite)));
         let own = limits.iter().find(|it| it.case == case.name).cloned();
         let attractor = own.map(|it| AttractorTest::new(case, it)).transpose();
         let attractor = attractor.map_err(|failure| FileError(failure.to_string()))?;
-        Ok(Self { restart, attractor })
+        Ok(Self { restart, horizons: horizons(case, problem)?, attractor })
     }
 
     /// Asks an engine as much as `extent` says; `unit` is its unit of error.
@@ -92,11 +102,13 @@ impl Probes {
         let run = |task: &_| contain(|| engine.run(task, accuracy, limits));
         let restarts = self.restart.as_ref().filter(|_| extent.restarts > 0);
         let restart = restarts.map(|test| test.score_first(extent.restarts, unit, run));
+        let asked = self.horizons.as_ref().filter(|_| extent.horizons > 0);
+        let horizons = asked.map(|test| test.score_first(extent.horizons, unit, run));
         let compare = |test: &AttractorTest| {
             contain(|| test.compare(case, engine, accuracy, limits)).map_err(|it| it.to_string())
         };
         let attractor = self.attractor.as_ref().filter(|_| extent.attractor);
-        Probed { restart, attractor: attractor.map(compare) }
+        Probed { restart, horizons, attractor: attractor.map(compare) }
     }
 
     /// Forcing periods of the long run, where there is one.
@@ -111,26 +123,32 @@ impl Probes {
     pub fn extent(
         &self,
         suite: Suite,
-        case: &str,
+        case: &Case,
         engine: &str,
-        accuracy: Accuracy,
+        (accuracy, unit): (Accuracy, f64),
         work_a_period: f64,
     ) -> Extent {
         let budget = suite.budget() / work_a_period.max(1.0);
         let affordable = Extent {
             restarts: restarts(suite).min((budget / PERIODS_A_RESTART) as usize).max(FEWEST),
+            horizons: 0,
             attractor: self.long_run() <= budget,
         };
-        let listed = RESTARTED.contains(&case);
+        let lasting = self.horizons.as_ref().is_some_and(|it| it.length(unit) as f64 <= budget);
+        let horizons = if lasting && is_representative(engine) { HORIZONS } else { 0 };
+        let listed = case.probed.integrators;
         match (suite, accuracy) {
-            (_, Accuracy::Exact) => Extent { restarts: restarts(suite), attractor: true },
+            (_, Accuracy::Exact) => {
+                Extent { restarts: restarts(suite), horizons: HORIZONS, attractor: true }
+            }
             (Suite::Quick, Accuracy::Tolerance(it))
                 if listed && it == TOLERANCE && REPRESENTATIVES.contains(&engine) =>
             {
                 affordable
             }
-            (Suite::Full, Accuracy::Tolerance(it)) if listed && TOLERANCES.contains(&it) => {
-                affordable
+            (Suite::Full, Accuracy::Tolerance(it)) if TOLERANCES.contains(&it) => {
+                let probed = if listed { affordable } else { Extent::default() };
+                Extent { horizons, ..probed }
             }
             _ => Extent::default(),
         }
@@ -142,6 +160,8 @@ impl Probes {
 pub struct Extent {
     /// Restarts, at most.
     pub restarts: usize,
+    /// Valid horizons, at most.
+    pub horizons: usize,
     /// Whether the long run is made.
     pub attractor: bool,
 }
@@ -149,10 +169,30 @@ pub struct Extent {
 impl Extent {
     /// What is asked of an engine that is wrong on purpose.
     #[must_use]
-    pub fn of_wrong(case: &str) -> Self {
-        let listed = RESTARTED.contains(&case);
-        Self { restarts: if listed { restarts(Suite::Quick) } else { 0 }, attractor: listed }
+    pub fn of_wrong(case: &Case) -> Self {
+        let listed = case.probed.integrators;
+        let restarts = if listed { restarts(Suite::Quick) } else { 0 };
+        Self { restarts, horizons: HORIZONS_OF_WRONG, attractor: listed }
     }
+}
+
+/// Runs from which a valid horizon is taken: as many as a median needs to be good to a period or two.
+pub const HORIZONS: usize = 200;
+/// Those of a wrong engine, which is off by far more than that.
+const HORIZONS_OF_WRONG: usize = 40;
+
+/// The test of valid horizons, where a case asks for it.
+fn horizons(case: &Case, problem: &Problem) -> Result<Option<HorizonTest>, FileError> {
+    let Some(periods) = case.probed.valid_within else { return Ok(None) };
+    let test = HorizonTest::new(problem, HORIZONS, periods);
+    if test.decides(f64::EPSILON) {
+        return Ok(Some(test));
+    }
+    Err(FileError(format!(
+        "{}: valid_within = {periods} is not accepted: forcing periods within which errors grow from eps \
+         to 1e-3 in each of {HORIZONS} runs on the case's attractor",
+        case.file
+    )))
 }
 
 /// A restart takes about this many forcing periods.

@@ -246,7 +246,8 @@ fn one(
     let bounds: Vec<_> = case.bounds.iter().chain(&defaults.bounds).collect();
     let shortcomings: Vec<_> = case.shortcomings.iter().chain(&defaults.shortcomings).collect();
     let judged = |measures| judge(&subject, measures, &bounds, &shortcomings);
-    let extent = |work| prepared.probes.extent(suite, &case.name, declaration.name, accuracy, work);
+    let asked = (accuracy, unit);
+    let extent = |work| prepared.probes.extent(suite, case, declaration.name, asked, work);
     match prepared.measured(engine, accuracy, unit, &suite.limits(), extent) {
         Ok((measures, outcome, wall)) => {
             let judgement = judged(Ok((&measures, prepared.is_whole(unit))));

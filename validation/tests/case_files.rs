@@ -111,3 +111,22 @@ fn a_margin_is_a_number() {
     let cases = with("-1e-3");
     assert_eq!(run(&["validate", "--cases", &cases, "-e", "^exact$"]).status.code(), Some(0));
 }
+
+#[test]
+fn probes_are_what_is_known() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let with =
+        |probes: &str| changed(folder.path(), |text| format!("{text}\n[probes]\n{probes}\n"));
+    for (probes, wanted) in [
+        ("valid_within = 0", &["small-b.toml:", "valid_within = 0", "1 to 1000"][..]),
+        ("valid_within = 1001", &["valid_within = 1001"]),
+        ("integrators = 3", &["small-b.toml:", "boolean"]),
+        ("restarts = true", &["small-b.toml:", "restarts"]),
+        // Errors do not grow on a periodic orbit.
+        ("valid_within = 20", &["small-b.toml", "valid_within = 20", "grow from eps to 1e-3"]),
+    ] {
+        refused(&["validate", "--cases", &with(probes)], wanted);
+    }
+    let cases = with("integrators = true");
+    assert_eq!(run(&["validate", "--cases", &cases, "-e", "^exact$"]).status.code(), Some(0));
+}

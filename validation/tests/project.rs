@@ -4,6 +4,9 @@
 
 mod support;
 
+use percuss_validation::case::embedded;
+use percuss_validation::engine::{all, wrong};
+use percuss_validation::suite::{Suite, size};
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
@@ -61,4 +64,26 @@ fn the_readmes_blocks_are_what_their_commands_print() {
     } else {
         assert_eq!(readme, spliced, "PERCUSS_SPLICE=1 cargo test --test project makes them equal");
     }
+}
+
+/// The block of the full suite is written by the command that CONTRIBUTING.md names, which takes minutes and
+/// is not run here. It must be of a run that was clean, and of the rows that the suite has today.
+#[test]
+fn the_readmes_full_run_is_of_todays_suite() {
+    let readme = read("README.md");
+    let (_, block) = readme.split_once("<!-- begin: full suite -->\n```text\n").expect("a block");
+    let (block, _) = block.split_once("```\n<!-- end: full suite -->").expect("it ends");
+    let lines: Vec<_> = block.lines().collect();
+    let starting =
+        |word: &str| lines.iter().copied().filter(|it| it.starts_with(word)).collect::<Vec<_>>();
+    assert!(lines[0].starts_with("percuss ") && lines[0].contains(" at "), "{}", lines[0]);
+    let (cases, engines) = (embedded().expect("the cases are read").len(), all());
+    let rows = size(cases, engines, Suite::Full);
+    assert_eq!(lines[1], format!("{rows} rows: {} engines on {cases} cases", engines.len()));
+    assert_eq!(starting("exact: ").len(), 2);
+    let caught = format!("power: {0} of {0} wrong engines are caught", wrong().len());
+    assert_eq!(starting("power: "), [caught]);
+    assert!(
+        lines.last().is_some_and(|it| it.contains(" pass ") && it.contains(" 0 fail, 0 error, "))
+    );
 }

@@ -91,26 +91,28 @@ function errorGrowth() {
 
 // A strip of bars for each engine and tolerance on one axis of log10(error).
 function strips(rows, width) {
-  const [label, right, tall, pad] = [Math.min(220, width * 0.38), 12, 30, 26];
+  // Names stand beside the strips, or above them where there is no room.
+  const narrow = width < 640;
+  const [label, right, tall, pad] = [narrow ? 12 : 280, 12, narrow ? 46 : 30, 26];
   const w = width - label - right;
   const filled = rows.flatMap((it) => it.counts.flatMap((n, i) => (n > 0 ? [it.edges[i], it.edges[i + 1]] : []))).filter(Number.isFinite);
-  const axis = axisOver(filled, {});
+  const axis = axisOver(filled.map((edge) => 10 ** edge), { log: true });
   const height = rows.length * tall + pad + 24;
   const svg = drawn("svg", { width, height, viewBox: `0 0 ${width} ${height}`, role: "img", "aria-label": "distribution of restart errors" });
   if (!axis) return element("p", { class: "empty" }, "No run had an error to count.");
   for (const [share, text] of axis.ticks) {
     const x = label + w * share;
     svg.append(drawn("line", { class: "grid", x1: x, x2: x, y1: 0, y2: rows.length * tall }));
-    svg.append(drawn("text", { x, y: rows.length * tall + 18, "text-anchor": "middle" }, Number.isInteger(+text) ? powerOfTen(+text) : text));
+    svg.append(drawn("text", { x, y: rows.length * tall + 18, "text-anchor": "middle" }, text));
   }
   rows.forEach((it, k) => {
     const [base, most, total] = [(k + 1) * tall, Math.max(...it.counts, 1), it.counts.reduce((a, b) => a + b, 0)];
     svg.append(drawn("line", { class: "grid", x1: label, x2: label + w, y1: base, y2: base }));
-    svg.append(drawn("text", { x: label - 8, y: base - 8, "text-anchor": "end" }, withSetting(it)));
+    svg.append(drawn("text", narrow ? { x: 0, y: base - 30 } : { x: label - 8, y: base - 8, "text-anchor": "end" }, withSetting(it)));
     it.counts.forEach((n, i) => {
-      const [from, to] = [axis.place(it.edges[i]), axis.place(it.edges[i + 1])];
+      const [from, to] = [axis.place(10 ** it.edges[i]), axis.place(10 ** it.edges[i + 1])];
       if (!(n > 0) || !Number.isFinite(from) || !Number.isFinite(to)) return;
-      const tallness = Math.max(1, (tall - 6) * (n / most));
+      const tallness = Math.max(1, 24 * (n / most));
       const bar = drawn("rect", { x: label + w * from, y: base - tallness, width: Math.max(1, w * (to - from) - 0.5), height: tallness, style: `fill:${colour(it.engine)}` });
       bar.append(drawn("title", {}, `${withSetting(it)}: ${n} of ${total} runs between 1e${it.edges[i]} and 1e${it.edges[i + 1]}`));
       svg.append(bar);

@@ -23,6 +23,7 @@ const SHOWN = [
   ["order", "order", "measured order of convergence", value("order")],
   ["rhs_evaluations", "rhs", "right-hand sides; closed-form evaluations for the exact solver", value("rhs_evaluations")],
   ["jacobian_evaluations", "jac", "Jacobians, or products with one", value("jacobian_evaluations")],
+  ["linear_solves", "solves", "linear systems solved", value("linear_solves")],
   ["wall_ns", "ms", "wall time on this machine, milliseconds", (i) => (columns.wall_ns?.[i] == null ? null : columns.wall_ns[i] / 1e6)],
 ].filter(([key]) => ["found", "verdict", "setting"].includes(key) || columns[key]);
 

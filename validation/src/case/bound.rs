@@ -25,11 +25,22 @@ pub enum Quantity {
     StateConstant,
     /// Forcing periods until the state's error passes 1e-3 (a lower limit).
     ValidPeriods,
+    /// Forcing periods by which valid horizons in chaos are longer than the truth's growth predicts (a
+    /// lower limit).
+    ValidGain,
     /// Error after one passage through contact from states on the attractor, over
     /// unit x (1 + |value|) x growth.
     RestartError,
     /// The largest distance of the section from the reference's, over its calibrated limit.
     AttractorDistance,
+}
+
+impl Quantity {
+    /// Whether a bound on it is a lower limit.
+    #[must_use]
+    pub const fn is_to_be_large(self) -> bool {
+        matches!(self, Self::ValidPeriods | Self::ValidGain)
+    }
 }
 
 /// Which figure of a distribution.

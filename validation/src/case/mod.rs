@@ -4,6 +4,7 @@ mod bound;
 mod expectations;
 mod library;
 mod located;
+mod probed;
 mod problem;
 mod wire;
 
@@ -11,6 +12,7 @@ pub use bound::{Bound, Quantity, Shortcoming, Statistic};
 pub use expectations::Defaults;
 pub use library::{defaults, embedded, from_directory};
 pub use located::{FileError, Origins};
+pub use probed::Probed;
 pub use problem::{Given, Problem};
 pub use wire::{parse_case, parse_problem, read_problem};
 
@@ -45,6 +47,8 @@ pub struct Case {
     pub start: Start,
     /// The horizon, after the start.
     pub horizon: Horizon,
+    /// What is asked of engines beyond the run itself.
+    pub probed: Probed,
     /// Bounds of this case; they come before the default ones.
     pub bounds: Vec<Bound>,
     /// Known shortcomings of engines, with their reasons.

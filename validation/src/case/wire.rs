@@ -2,6 +2,7 @@
 
 use super::expectations::{BoundTable, ShortcomingTable};
 use super::located::{FileError, Source};
+use super::probed::ProbesTable;
 use super::problem::Given;
 use super::{Case, Horizon};
 use percuss::{Instant, Phase};
@@ -23,6 +24,8 @@ struct CaseFile {
     start: StartTable,
     horizon: Spanned<HorizonTable>,
     #[serde(default)]
+    probes: ProbesTable,
+    #[serde(default)]
     bounds: Vec<Spanned<BoundTable>>,
     #[serde(default)]
     shortcomings: Vec<Spanned<ShortcomingTable>>,
@@ -40,6 +43,8 @@ struct ProblemFile {
     _case: Option<IgnoredAny>,
     #[serde(rename = "horizon")]
     _horizon: Option<IgnoredAny>,
+    #[serde(rename = "probes")]
+    _probes: Option<IgnoredAny>,
     #[serde(rename = "bounds")]
     _bounds: Option<IgnoredAny>,
     #[serde(rename = "shortcomings")]
@@ -182,6 +187,7 @@ pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
         parameters: given.parameters,
         start: given.start,
         horizon,
+        probed: source.probed(&wire.probes)?,
         bounds: wire
             .bounds
             .into_iter()

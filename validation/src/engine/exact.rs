@@ -43,8 +43,8 @@ impl Engine for Exact {
         let counters = run.counters();
         outcome.work = Work {
             rhs_evaluations: counters.evaluations,
-            jacobian_evaluations: 0,
             steps: outcome.events.len() as u64 + 1,
+            ..Work::default()
         };
         Ok(outcome)
     }

@@ -9,12 +9,12 @@
 
 use percuss::{Parameters, Phase};
 
-/// Number of guards; a phase that has one leaves the other at [`NO_GUARD`].
-pub(super) const GUARDS: usize = 2;
+/// Number of guards; a phase that has one leaves the other at -1.
+pub const GUARDS: usize = 2;
 pub(super) const NO_GUARD: f64 = -1.0;
 
 /// The equations of motion in some co-ordinates, in the time elapsed since the start.
-pub(super) trait Equations: Copy {
+pub trait Equations: Copy {
     /// The model's equations; `angle` is omega tau + phi at the start.
     fn of(parameters: &Parameters, angle: f64) -> Self;
 
@@ -53,7 +53,7 @@ pub(super) fn successor(phase: Phase, guard: usize, trial_force: f64) -> (Phase,
 
 /// The model in the paper's bounded co-ordinates.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Oscillator {
+pub struct Oscillator {
     a: f64,
     b: f64,
     omega: f64,

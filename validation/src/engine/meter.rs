@@ -44,6 +44,7 @@ pub(super) struct Meter {
     calls: Cell<u64>,
     rhs: Cell<u64>,
     jacobians: Cell<u64>,
+    solves: Cell<u64>,
     steps: Cell<u64>,
 }
 
@@ -59,6 +60,7 @@ impl Meter {
             calls: zero(),
             rhs: zero(),
             jacobians: zero(),
+            solves: zero(),
             steps: zero(),
         }
     }
@@ -109,6 +111,11 @@ impl Meter {
         }
     }
 
+    /// Counts linear systems that were solved, as the library's statistics tell.
+    pub(super) fn solves(&self, count: usize) {
+        self.solves.set(self.solves.get() + count as u64);
+    }
+
     /// Counts steps that were accepted.
     pub(super) fn steps(&self, count: u64) {
         self.steps.set(self.steps.get() + count);
@@ -119,6 +126,7 @@ impl Meter {
         Work {
             rhs_evaluations: self.rhs.get(),
             jacobian_evaluations: self.jacobians.get(),
+            linear_solves: self.solves.get(),
             steps: self.steps.get(),
         }
     }

@@ -24,6 +24,7 @@ mod sampler;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
+pub use field::{Equations, GUARDS, Oscillator};
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use order::claimed_order;
 pub use registry::{all, exact, select};
@@ -115,6 +116,8 @@ pub struct Work {
     pub rhs_evaluations: u64,
     /// Jacobians, or products with one.
     pub jacobian_evaluations: u64,
+    /// Linear systems solved, each a forward and a back substitution; none in explicit methods.
+    pub linear_solves: u64,
     /// Steps; for the exact solver phases.
     pub steps: u64,
 }

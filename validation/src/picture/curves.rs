@@ -86,14 +86,12 @@ impl Curve {
     fn draw<B: DrawingBackend>(&self, pen: &Pen<'_, B>, panel: &Panel) -> Result<(), DrawError> {
         let places = self.points.iter().filter(|it| finite(it)).filter_map(|it| panel.at(*it));
         let places: Vec<_> = places.collect();
-        for (i, pair) in places.windows(2).enumerate() {
-            if !self.dashed {
-                pen.line(pair[0], pair[1], self.width, self.colour)?;
-                // The drawing library leaves a notch where thick lines meet.
-                pen.marker(Marker::Circle, pair[1], self.width / 2.0, self.colour)?;
-            } else {
+        if self.dashed {
+            for (i, pair) in places.windows(2).enumerate() {
                 self.dashes(pen, pair[0], pair[1], i % 2 == 0)?;
             }
+        } else {
+            pen.trace(&places, self.width, self.colour)?;
         }
         match self.marker {
             Some(marker) => {

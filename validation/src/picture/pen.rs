@@ -43,14 +43,18 @@ impl<B: DrawingBackend> Pen<'_, B> {
         self.area.draw(&element).map_err(DrawError::new)
     }
 
-    /// A line through many points.
-    pub fn path(&self, line: &[At], width: f64, colour: RGBColor) -> Result<(), DrawError> {
-        for stretch in smooth(line) {
-            let pixels: Vec<_> = stretch.iter().map(|at| self.pixel(*at)).collect();
-            let element = PathElement::new(pixels, colour.stroke_width(self.wide(width)));
-            self.area.draw(&element).map_err(DrawError::new)?;
+    /// A line through several places. In an SVG it is one path; the scale is that of a picture of pixels
+    /// otherwise, where the drawing library leaves a notch at each joint of a thick path.
+    pub fn trace(&self, places: &[At], width: f64, colour: RGBColor) -> Result<(), DrawError> {
+        if self.scale == 1 {
+            let path: Vec<_> = places.iter().map(|at| self.pixel(*at)).collect();
+            let element = PathElement::new(path, colour.stroke_width(self.wide(width)));
+            return self.area.draw(&element).map_err(DrawError::new);
         }
-        Ok(())
+        places.windows(2).try_for_each(|pair| {
+            self.line(pair[0], pair[1], width, colour)?;
+            self.marker(Marker::Circle, pair[1], width / 2.0, colour)
+        })
     }
 
     pub fn fill(&self, from: At, to: At, colour: RGBColor) -> Result<(), DrawError> {
@@ -123,27 +127,4 @@ impl<B: DrawingBackend> Pen<'_, B> {
             }
         }
     }
-}
-
-/// Cosine of a turn between neighbouring pieces of a line that counts as sharp.
-const SHARP: f64 = 0.9;
-
-/// A line cut where it turns sharply: the drawing library leaves gaps there in a thick line.
-fn smooth(line: &[At]) -> Vec<&[At]> {
-    let heading = |i: usize| {
-        let (dx, dy) = (line[i].0 - line[i - 1].0, line[i].1 - line[i - 1].1);
-        let length = dx.hypot(dy).max(f64::MIN_POSITIVE);
-        (dx / length, dy / length)
-    };
-    let mut stretches = Vec::new();
-    let mut begin = 0;
-    for i in 1..line.len().saturating_sub(1) {
-        let (before, after) = (heading(i), heading(i + 1));
-        if before.0 * after.0 + before.1 * after.1 < SHARP {
-            stretches.push(&line[begin..=i]);
-            begin = i;
-        }
-    }
-    stretches.push(&line[begin..]);
-    stretches
 }

@@ -1,6 +1,6 @@
 //! `errors.csv`: the rows of `report.json`, flat. What is `null` there is empty or `nan` here.
 
-use super::row::Distance;
+use super::row::{Distance, ValidHorizons};
 use super::{Evidence, Exporter, Report, Row};
 use crate::number::shortest;
 use crate::score::{Spread, Verdict};
@@ -9,7 +9,7 @@ use std::io::{self, Write};
 
 pub(super) struct Csv;
 
-const COLUMNS: [&str; 34] = [
+const COLUMNS: [&str; 39] = [
     "case",
     "engine",
     "tolerance",
@@ -30,6 +30,10 @@ const COLUMNS: [&str; 34] = [
     "drift_error",
     "drift_error_by_event_times",
     "valid_periods",
+    "valid_horizon_runs",
+    "valid_horizon_median",
+    "valid_horizon_q01",
+    "valid_horizon_predicted_median",
     "restart_runs",
     "restart_with_impact",
     "restart_median",
@@ -39,6 +43,7 @@ const COLUMNS: [&str; 34] = [
     "order",
     "rhs_evaluations",
     "jacobian_evaluations",
+    "linear_solves",
     "steps",
     "wall_ns",
     "verdict",
@@ -75,11 +80,14 @@ fn spread(spread: &Spread) -> [String; 3] {
     [spread.median, spread.q99, spread.max].map(shortest)
 }
 
-fn fields(row: &Row) -> [String; 34] {
+fn fields(row: &Row) -> [String; 39] {
     let [time_median, time_q99, time_max] = spread(&row.event_time_error);
     let [state_median, state_q99, state_max] = spread(&row.state_error);
     let restart = row.restart.map(|it| spread(&it.error)).unwrap_or_default();
     let [restart_median, restart_q99, restart_max] = restart;
+    let horizon = |figure: fn(&ValidHorizons) -> f64| {
+        optional(row.valid_horizon.as_ref().map(figure).map(shortest))
+    };
     [
         row.case.clone(),
         row.engine.to_owned(),
@@ -101,6 +109,10 @@ fn fields(row: &Row) -> [String; 34] {
         shortest(row.drift_error),
         shortest(row.drift_error_by_event_times),
         shortest(row.valid_periods),
+        optional(row.valid_horizon.map(|it| it.runs)),
+        horizon(|it| it.median),
+        horizon(|it| it.q01),
+        horizon(|it| it.predicted_median),
         optional(row.restart.map(|it| it.runs)),
         optional(row.restart.map(|it| it.with_impact)),
         restart_median,
@@ -110,6 +122,7 @@ fn fields(row: &Row) -> [String; 34] {
         optional(row.order.map(shortest)),
         optional(row.rhs_evaluations),
         optional(row.jacobian_evaluations),
+        optional(row.linear_solves),
         optional(row.steps),
         optional(row.wall_ns),
         word(row.verdict).to_owned(),

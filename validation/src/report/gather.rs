@@ -2,7 +2,7 @@
 
 use super::evidence::{CaseNote, ErrorGrowth, Evidence, Fault, RestartHistogram, SectionPair};
 use crate::power::{Finding, Gate};
-use crate::probes::is_representative;
+use crate::probes::is_shown;
 use crate::score::attractor::{AttractorTest, Comparison};
 use crate::score::{Histogram, Measures, sample_errors};
 use crate::suite::{Prepared, Scored, Status};
@@ -27,12 +27,16 @@ impl Evidence {
         for row in rows {
             let Status::Ok(measures, _) = &row.status else { continue };
             let Some(prepared) = cases.iter().find(|it| it.case.name == row.case) else { continue };
-            // One engine a library: fifty curves in one picture say nothing.
-            if row.case.contains(CHAOTIC) && is_representative(row.engine) {
+            // Fifty curves in one picture say nothing.
+            let shown = is_shown(row.engine, row.accuracy);
+            if row.case.contains(CHAOTIC) && shown {
                 evidence.growth.extend(growth(prepared, row));
             }
             evidence.restarts.extend(restarts(row, measures));
-            evidence.sections.extend(sections(prepared, row, measures));
+            // A section beyond its limits is shown whosever it is.
+            if shown || measures.probed.share() > 1.0 {
+                evidence.sections.extend(sections(prepared, row, measures));
+            }
         }
         evidence
     }

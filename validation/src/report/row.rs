@@ -2,7 +2,7 @@
 
 use crate::engine::Declaration;
 use crate::score::attractor::Comparison;
-use crate::score::{Checked, Restart, Spread, Verdict, order};
+use crate::score::{Checked, Horizons, Restart, Spread, Verdict, order};
 use crate::suite::{Scored, Status, Suite};
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -80,6 +80,8 @@ pub struct Row {
     /// How much of it the errors of the switches' times explain to first order.
     pub drift_error_by_event_times: f64,
     pub valid_periods: f64,
+    /// How long runs from many states in chaos stay right.
+    pub valid_horizon: Option<ValidHorizons>,
     /// Errors of the restart test in units of error x (1 + |value|) x growth.
     pub restart: Option<RestartFigures>,
     /// Distances of the same-attractor test, by name.
@@ -88,6 +90,8 @@ pub struct Row {
     pub order: Option<f64>,
     pub rhs_evaluations: Option<u64>,
     pub jacobian_evaluations: Option<u64>,
+    /// Linear systems solved.
+    pub linear_solves: Option<u64>,
     pub steps: Option<u64>,
     pub wall_ns: Option<u64>,
     pub bounds: Vec<Checked>,
@@ -104,6 +108,19 @@ pub struct RestartFigures {
     pub with_impact: usize,
     #[serde(flatten)]
     pub error: Spread,
+}
+
+/// Valid horizons in chaos, forcing periods.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct ValidHorizons {
+    /// Runs made.
+    pub runs: usize,
+    /// Half of them last as long as this.
+    pub median: f64,
+    /// 99 % of them do.
+    pub q01: f64,
+    /// What the truth's growth along each run makes of the engine's unit of error: the median.
+    pub predicted_median: f64,
 }
 
 /// A distance of two sections.
@@ -176,6 +193,17 @@ impl RestartFigures {
     }
 }
 
+impl ValidHorizons {
+    fn of(horizons: &Horizons) -> Self {
+        Self {
+            runs: horizons.runs.len(),
+            median: horizons.valid.median,
+            q01: horizons.valid_q01,
+            predicted_median: horizons.predicted.median,
+        }
+    }
+}
+
 fn by_name(comparison: &Comparison) -> BTreeMap<&'static str, Distance> {
     let distances = comparison.distances.iter();
     distances
@@ -201,8 +229,10 @@ impl Row {
             valid_periods: measures.valid_periods,
             rhs_evaluations: Some(outcome.work.rhs_evaluations),
             jacobian_evaluations: Some(outcome.work.jacobian_evaluations),
+            linear_solves: Some(outcome.work.linear_solves),
             steps: Some(outcome.work.steps),
             wall_ns: u64::try_from(scored.wall.as_nanos()).ok(),
+            valid_horizon: measures.probed.horizons.as_ref().map(ValidHorizons::of),
             restart: measures.probed.restart.as_ref().map(RestartFigures::of),
             distance: measures
                 .probed
@@ -236,11 +266,13 @@ impl Row {
             drift_error: f64::NAN,
             drift_error_by_event_times: f64::NAN,
             valid_periods: f64::NAN,
+            valid_horizon: None,
             restart: None,
             distance: None,
             order: None,
             rhs_evaluations: None,
             jacobian_evaluations: None,
+            linear_solves: None,
             steps: None,
             wall_ns: None,
             bounds: scored.judgement.bounds.clone(),

@@ -28,6 +28,8 @@ struct HorizonRun {
     truth: Truth,
     /// The largest growth of p, y and q so far, at each sample.
     growth: Vec<f64>,
+    /// Switches of the runs before it: a fault may strike every hundredth.
+    events_before: u64,
 }
 
 /// Runs from states on one attractor.
@@ -35,6 +37,7 @@ pub struct HorizonTest {
     runs: Vec<HorizonRun>,
     /// Runs that 106 bits do not decide.
     pub undecided: usize,
+    periods: u32,
 }
 
 /// The horizons of one run, in forcing periods.
@@ -74,8 +77,13 @@ impl HorizonTest {
         let starts = far_apart(problem, count, u64::from(periods));
         let made: Vec<_> =
             starts.into_par_iter().map(|start| HorizonRun::new(start, periods)).collect();
-        let runs: Vec<_> = made.into_iter().flatten().collect();
-        Self { undecided: count - runs.len(), runs }
+        let mut runs: Vec<HorizonRun> = made.into_iter().flatten().collect();
+        let mut events = 0;
+        for run in &mut runs {
+            run.events_before = events;
+            events += run.truth.switches.len() as u64;
+        }
+        Self { undecided: count - runs.len(), runs, periods }
     }
 
     /// How many periods the truth itself lasts in each run, at most those it was followed.
@@ -84,13 +92,37 @@ impl HorizonTest {
         self.runs.iter().map(|run| run.grows_to(TRUSTED / UNIT)).collect()
     }
 
+    /// Whether in every run an error of this unit grows to 1e-3 while the truth lasts.
+    #[must_use]
+    pub fn decides(&self, unit: f64) -> bool {
+        let mut predicted = self.runs.iter().map(|run| run.grows_to(SCORED_ERROR / unit));
+        predicted.all(|it| it < self.periods) && self.undecided == 0 && !self.runs.is_empty()
+    }
+
+    /// Forcing periods that an engine with this unit of error has to run, all runs together.
+    #[must_use]
+    pub fn length(&self, unit: f64) -> u64 {
+        self.runs.iter().map(|run| u64::from(run.last(unit))).sum()
+    }
+
     /// Scores an engine, given how it runs a task; `unit` is its unit of error: its tolerance, or eps.
     pub fn score(
         &self,
         unit: f64,
         run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
     ) -> Horizons {
-        let results: Vec<_> = self.runs.par_iter().map(|it| it.horizon(unit, &run)).collect();
+        self.score_first(usize::MAX, unit, run)
+    }
+
+    /// Scores an engine on the first runs, at most this many.
+    pub fn score_first(
+        &self,
+        most: usize,
+        unit: f64,
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
+    ) -> Horizons {
+        let asked = &self.runs[..most.min(self.runs.len())];
+        let results: Vec<_> = asked.par_iter().map(|it| it.horizon(unit, &run)).collect();
         let runs: Vec<_> = results.iter().map(|(horizon, _)| *horizon).collect();
         let spread = |value: fn(&ValidHorizon) -> f64| Spread::of(runs.iter().map(value).collect());
         let negative = spread(|run| -f64::from(run.valid));
@@ -120,7 +152,7 @@ impl HorizonRun {
             largest
         };
         let growth = samples.iter().map(&mut rising).collect();
-        Some(Self { problem, truth, growth })
+        Some(Self { problem, truth, growth, events_before: 0 })
     }
 
     /// The last period before the growth passes a size.
@@ -129,16 +161,22 @@ impl HorizonRun {
         within.saturating_sub(1) as u32
     }
 
+    /// The period at which an engine's run ends.
+    fn last(&self, unit: f64) -> u32 {
+        self.grows_to(BEYOND * SCORED_ERROR / unit).min(self.grows_to(TRUSTED / UNIT))
+    }
+
     fn horizon(
         &self,
         unit: f64,
         run: &impl Fn(&Task) -> Result<Outcome, Failure>,
     ) -> (ValidHorizon, bool) {
         let predicted = self.grows_to(SCORED_ERROR / unit);
-        let last = self.grows_to(BEYOND * SCORED_ERROR / unit).min(self.grows_to(TRUSTED / UNIT));
+        let last = self.last(unit);
         let horizon = self.problem.entry.instant.after_periods(u64::from(last), 1);
         let grid = Grid { per_period: 1, count: last as usize + 1 };
-        let result = run(&Task { grid, ..task(self.problem, horizon) });
+        let events_before = self.events_before;
+        let result = run(&Task { grid, events_before, ..task(self.problem, horizon) });
         let valid = result.as_ref().map_or(0, |outcome| self.valid(outcome, last));
         let outlasts = result.is_ok() && valid == last;
         (ValidHorizon { valid, predicted, outlasts }, result.is_err())

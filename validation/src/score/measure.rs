@@ -61,6 +61,9 @@ impl Measures {
             Quantity::EventConstant => self.event_constant,
             Quantity::StateConstant => self.state_constant,
             Quantity::ValidPeriods => self.valid_periods,
+            Quantity::ValidGain => {
+                self.probed.horizons.as_ref().map_or(f64::NAN, |it| of(&it.gained))
+            }
             Quantity::RestartError => {
                 self.probed.restart.as_ref().map_or(f64::NAN, |it| of(&it.units))
             }
@@ -75,6 +78,7 @@ impl Measures {
             Quantity::EventTimeError | Quantity::EventConstant => self.expected == 0,
             Quantity::StateError => self.horizon_periods == 0.0,
             Quantity::DriftError => !whole_run,
+            Quantity::ValidGain => self.probed.horizons.is_none(),
             Quantity::RestartError => !self.probed.restarted(),
             Quantity::AttractorDistance => self.probed.attractor.is_none(),
             _ => false,

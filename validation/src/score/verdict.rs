@@ -44,7 +44,7 @@ impl Checked {
     fn reason(&self) -> String {
         let quantity = serde_json::to_string(&self.quantity).unwrap_or_default();
         let quantity = quantity.trim_matches('"').replace('_', " ");
-        let against = if self.quantity == Quantity::ValidPeriods { "at least" } else { "at most" };
+        let against = if self.quantity.is_to_be_large() { "at least" } else { "at most" };
         format!("{quantity} {} ({against} {}: {})", brief(self.value), brief(self.limit), self.why)
     }
 }
@@ -130,10 +130,8 @@ fn check(
         let scale = if bound.times_tolerance { subject.unit } else { 1.0 };
         let limit = bound.limit * scale;
         let value = measures.figure(bound.quantity, bound.statistic);
-        let within = match bound.quantity {
-            Quantity::ValidPeriods => value >= limit,
-            _ => value <= limit,
-        };
+        // Written so that a NaN is out of bounds.
+        let within = if bound.quantity.is_to_be_large() { value >= limit } else { value <= limit };
         let verdict = if within { Verdict::Pass } else { Verdict::Fail };
         let Bound { quantity, statistic, why, .. } = (*bound).clone();
         checked.push(Checked { quantity, statistic, limit, value, verdict, why });

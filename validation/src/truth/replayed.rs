@@ -2,12 +2,36 @@
 
 use super::replay::{Beginning, Replay, Undecided};
 use super::{DoubleDouble, Row, Truth};
+use crate::case::{Case, FileError, Given};
+use crate::engine::{Grid, Task};
 use percuss::{Entry, Instant, Parameters};
 
+/// The longest case without tables, in forcing periods: what is longer is not to be had in seconds.
+const PERIODS: f64 = 1000.0;
 /// The most switches that a replayed run may have.
 const SWITCHES: usize = 1_000_000;
 
 impl Truth {
+    /// The truth of a case of which there are no tables. It shares its closed forms with the exact
+    /// solver, which the tables do not.
+    pub(super) fn without_tables(case: &Case) -> Result<Self, FileError> {
+        let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
+        let problem = given.check().map_err(FileError)?;
+        let period = problem.model.period();
+        let task = Task::of(case, problem, Grid { per_period: Self::SAMPLES_PER_PERIOD, count: 0 });
+        if task.span > PERIODS * period {
+            let what = "a horizon of more than 1000 forcing periods needs tables (reference_data/)";
+            return Err(FileError(format!("{}: {what}", case.file)));
+        }
+        let begin = problem.entry.instant;
+        let per_period = u64::from(Self::SAMPLES_PER_PERIOD);
+        let within = |k: &u64| begin.after_periods(*k, per_period) <= task.horizon;
+        let samples = (0..).take_while(within).count();
+        let grid = (samples, Self::SAMPLES_PER_PERIOD);
+        Self::replayed(&case.parameters, &problem.entry, task.horizon, grid)
+            .map_err(|undecided| FileError(format!("{}: {undecided}; it needs tables", case.file)))
+    }
+
     /// The run from `entry` to `horizon`, and its state at `samples` instants, `k / per_period`
     /// forcing periods after the start.
     ///

@@ -3,7 +3,7 @@
 
 use percuss_validation::report::{
     CaseNote, EngineEntry, ErrorGrowth, Evidence, Fault, Graze, Report, RestartHistogram, Row,
-    SectionPair, Summary,
+    SectionPair, Summary, ValidHorizons,
 };
 use percuss_validation::score::{Spread, Verdict};
 use percuss_validation::suite::Suite;
@@ -43,6 +43,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
     let unit = tolerance.unwrap_or(1e-15);
     let order = 3.0 + (seed % 5) as f64;
     let error = unit * 10.0_f64.powf(4.0 * chance(seed));
+    let chaotic = case.ends_with("-00");
     let rhs = if tolerance.is_none() { 90.0 } else { 400.0 * unit.powf(-1.0 / (2.0 * order)) };
     Row {
         case: case.to_owned(),
@@ -61,11 +62,18 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
         drift_error: error,
         drift_error_by_event_times: error,
         valid_periods: 12.0,
+        valid_horizon: chaotic.then_some(ValidHorizons {
+            runs: 200,
+            median: 81.0,
+            q01: 54.0,
+            predicted_median: 79.0,
+        }),
         restart: None,
         distance: None,
         order: None,
         rhs_evaluations: Some(rhs as u64),
         jacobian_evaluations: Some(0),
+        linear_solves: Some(0),
         steps: Some(rhs as u64 / 7),
         wall_ns: Some(rhs as u64 * 900),
         bounds: Vec::new(),

@@ -7,6 +7,7 @@ use differential_equations::methods::{
     ImplicitRungeKutta, Ordinary,
 };
 use differential_equations::ode::OrdinaryNumericalMethod;
+use differential_equations::stats::Evals;
 
 /// More steps, or rejections of one, than the meter lets pass.
 const ENOUGH: usize = usize::MAX;
@@ -54,6 +55,11 @@ pub(in super::super) trait Method {
         longest: f64,
         first: f64,
     ) -> impl OrdinaryNumericalMethod<f64, [f64; 4]> + Interpolation<f64, [f64; 4]>;
+
+    /// Linear systems solved in a run with a first step of ours.
+    fn solves(evals: &Evals) -> usize {
+        if Self::MULTISTEP { evals.function.saturating_sub(1) } else { evals.solves }
+    }
 }
 
 /// Methods with all that their builders have in common, and then with settings of their own.

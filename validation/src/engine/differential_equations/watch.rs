@@ -116,7 +116,9 @@ fn again<M: Method, E: Equations>(
     let length = t - from.0;
     let mut last = Last(from.1);
     let mut method = M::method(tolerance, length, length);
-    solve_ode(&mut method, field, from.0, t, &from.1, &mut last).map_err(|error| reason(&error))?;
+    let solved = solve_ode(&mut method, field, from.0, t, &from.1, &mut last)
+        .map_err(|error| reason(&error))?;
+    field.meter.solves(M::solves(&solved.evals));
     Ok(last.0)
 }
 

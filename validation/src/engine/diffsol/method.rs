@@ -28,6 +28,8 @@ pub(in super::super) trait Method: Sync {
     const ORDER: usize;
     /// Whether the step may be shortened without loss: a multistep method would begin anew.
     const ONE_STEP: bool;
+    /// Linear systems solved for each estimate of a step's error, beside those of Newton's iterations.
+    const SOLVES_AN_ESTIMATE: usize = 0;
 
     /// A solver from a state of its own that `begin` has written.
     fn solver<'a, E: Problem + 'a>(
@@ -74,6 +76,7 @@ impl Method for TrBdf2 {
     const STEPPING: Stepping = Stepping::PerStep { order: 2 };
     const ORDER: usize = 2;
     const ONE_STEP: bool = true;
+    const SOLVES_AN_ESTIMATE: usize = 1;
 
     fn solver<'a, E: Problem + 'a>(
         problem: &'a OdeSolverProblem<E>,
@@ -90,6 +93,7 @@ impl Method for Esdirk34 {
     const STEPPING: Stepping = Stepping::PerStep { order: 3 };
     const ORDER: usize = 4;
     const ONE_STEP: bool = true;
+    const SOLVES_AN_ESTIMATE: usize = 1;
 
     fn solver<'a, E: Problem + 'a>(
         problem: &'a OdeSolverProblem<E>,

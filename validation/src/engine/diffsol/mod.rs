@@ -10,6 +10,8 @@
 //!   just after the root.
 //! - At a root the library leaves the state at the end of the step: the switch's state is its
 //!   interpolant there.
+//! - Linear solves are from the library's statistics: Newton's iterations, and in the diagonally
+//!   implicit methods one more for each estimate of a step's error.
 //! - There is no maximum step. In one-step methods each step is shortened to an eighth of a forcing
 //!   period, so that none hides a whole phase. A multistep method would begin anew; none is forced on
 //!   it. What a root finder that looks only at the ends of steps still misses is what this harness

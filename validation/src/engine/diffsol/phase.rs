@@ -6,6 +6,7 @@ use crate::engine::field::{Equations, Oscillator};
 use crate::engine::joining::{Ended, Moment};
 use crate::engine::meter::{Failure, Meter};
 use crate::engine::sampler::Sampler;
+use diffsol::ode_solver::OdeSolverStatistics;
 use diffsol::{OdeSolverMethod, OdeSolverProblem, OdeSolverStopReason, StateRefMut, Vector};
 use percuss::Phase;
 
@@ -26,6 +27,17 @@ impl Run<'_> {
         let mut solver = M::solver(problem, |state| self.begin::<M, E>(problem, from, state))
             .map_err(Failure::new)?;
         solver.set_stop_time(self.span).map_err(Failure::new)?;
+        let ended = self.follow::<M, E>(&mut solver, from, sampler)?;
+        self.meter.solves(solves::<M>(solver.get_statistics()));
+        Ok(ended)
+    }
+
+    fn follow<'a, M: Method, E: Problem + 'a>(
+        &self,
+        solver: &mut impl OdeSolverMethod<'a, E>,
+        from: &Moment,
+        sampler: &mut Sampler,
+    ) -> Result<Ended, Failure> {
         loop {
             let reason = solver.step().map_err(Failure::new)?;
             self.meter.steps(1);
@@ -81,6 +93,13 @@ impl Run<'_> {
         *state.t = from.t;
         state.set_step_size(problem.h0, &problem.atol, problem.rtol, &problem.eqn, M::ORDER);
     }
+}
+
+/// Each of Newton's iterations solves one system. In diagonally implicit methods so does each
+/// estimate of a step's error, of which the library counts those that pass and those that fail.
+fn solves<M: Method>(statistics: &OdeSolverStatistics) -> usize {
+    let estimates = statistics.number_of_steps + statistics.number_of_error_test_failures;
+    statistics.number_of_nonlinear_solver_iterations + M::SOLVES_AN_ESTIMATE * estimates
 }
 
 fn plain(u: &Vect) -> [f64; 4] {

@@ -96,7 +96,7 @@ impl Run<'_> {
         }
         outcome.samples = sampler.finish(outcome.end);
         let steps = outcome.events.len() as u64 + 1;
-        outcome.work = Work { rhs_evaluations: self.evaluations, jacobian_evaluations: 0, steps };
+        outcome.work = Work { rhs_evaluations: self.evaluations, steps, ..Work::default() };
         Ok(outcome)
     }
 

@@ -121,10 +121,10 @@ impl Layer {
         match self {
             Self::Line { points, colour, width, stroke } => {
                 stretches(points, panel).iter().try_for_each(|stretch| match stroke.pattern() {
-                    [] => pen.path(stretch, *width, *colour),
+                    [] => pen.trace(stretch, *width, *colour),
                     pattern => broken(stretch, pattern)
                         .iter()
-                        .try_for_each(|dash| pen.path(dash, *width, *colour)),
+                        .try_for_each(|dash| pen.trace(dash, *width, *colour)),
                 })
             }
             Self::Dots { points, colour, size } => {
@@ -140,7 +140,7 @@ impl Layer {
                 }
                 let line = [(x, panel.from.1), (x, panel.to.1)];
                 let dashes = broken(&line, Stroke::Dashed.pattern());
-                dashes.iter().try_for_each(|dash| pen.path(dash, 1.2, palette::INK))
+                dashes.iter().try_for_each(|dash| pen.trace(dash, 1.2, palette::INK))
             }
             Self::Text { at, text, colour } => match panel.at((at[0], at[1])) {
                 Some(at) => pen.text(text, (at.0 + 8.0, at.1 - 12.0), TEXT, Side::Left, *colour),
@@ -155,10 +155,10 @@ impl Layer {
                         let middle = at.0 + 28.0;
                         pen.fill((middle - 4.0, at.1 - 4.0), (middle + 4.0, at.1 + 4.0), *colour)?;
                     }
-                    Some([]) => pen.path(&line, 2.0, *colour)?,
+                    Some([]) => pen.trace(&line, 2.0, *colour)?,
                     Some(pattern) => broken(&line, pattern)
                         .iter()
-                        .try_for_each(|dash| pen.path(dash, 2.0, *colour))?,
+                        .try_for_each(|dash| pen.trace(dash, 2.0, *colour))?,
                 }
                 pen.text(name, (at.0 + 48.0, at.1), TEXT, Side::Left, palette::INK)
             }

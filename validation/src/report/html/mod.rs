@@ -6,6 +6,7 @@
 //! with one shared column do not take, and SVG follows the colour scheme and prints.
 
 mod data;
+mod horizons;
 mod view;
 
 use super::{Evidence, Exporter, Report, summary};
@@ -36,6 +37,7 @@ struct Page<'a> {
     cases: usize,
     recall_columns: usize,
     grazing: view::GrazingTable,
+    horizons: Vec<horizons::HorizonLine>,
     power: view::PowerTable,
     colours: String,
     style: &'static str,
@@ -63,6 +65,7 @@ impl Exporter for Html {
             cases: report.results.chunk_by(|a, b| a.case == b.case).count(),
             recall_columns: summaries.iter().map(|it| it.settings.len()).max().unwrap_or(0),
             grazing: view::grazing(report, evidence),
+            horizons: horizons::horizons(report),
             power: view::power(evidence),
             colours: view::colours(&looks),
             style: STYLE,

@@ -1,0 +1,41 @@
+//! What a case asks of engines beyond its own run.
+
+use super::located::{FileError, Source};
+use serde::Deserialize;
+use toml::Spanned;
+
+/// The longest run from which a valid horizon is read, in forcing periods.
+const LONGEST: i64 = 1000;
+
+/// What is asked on a case beyond its own run, which is asked of the exact solver in any case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Probed {
+    /// Whether integrators and wrong engines too restart from states on its attractor and, where its
+    /// section has calibrated limits, run for long.
+    pub integrators: bool,
+    /// Of a chaotic case: forcing periods within which every error of eps grows to 1e-3. Valid
+    /// horizons are measured in runs as long as that.
+    pub valid_within: Option<u32>,
+}
+
+#[derive(Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(super) struct ProbesTable {
+    #[serde(default)]
+    integrators: bool,
+    valid_within: Option<Spanned<i64>>,
+}
+
+impl Source<'_> {
+    pub(super) fn probed(&self, table: &ProbesTable) -> Result<Probed, FileError> {
+        let accepted = |it: &Spanned<i64>| {
+            let periods = u32::try_from(*it.get_ref()).ok();
+            periods.filter(|_| (1..=LONGEST).contains(it.get_ref())).ok_or_else(|| {
+                let value = it.get_ref();
+                self.error(it, &format!("valid_within = {value} is not accepted: 1 to {LONGEST}"))
+            })
+        };
+        let valid_within = table.valid_within.as_ref().map(accepted).transpose()?;
+        Ok(Probed { integrators: table.integrators, valid_within })
+    }
+}
