@@ -7,7 +7,6 @@
     reason = "a panic is a failed test"
 )]
 #[path = "support/random.rs"]
-#[allow(dead_code, reason = "a part is used")]
 mod random;
 
 use percuss::dynamics::strobe::StrobeMap;

@@ -87,3 +87,39 @@ fn report() {
         assert_eq!(result["events_missed"].as_u64(), row[column("events_missed")].parse().ok());
     }
 }
+
+/// stdout as JSON of a run that ends with `code`; what it says on stderr is not looked at.
+fn json_of(arguments: &[&str], code: i32) -> Value {
+    let output = support::run(arguments);
+    assert_eq!(output.status.code(), Some(code), "{}", support::text(&output.stderr));
+    json(&support::text(&output.stdout))
+}
+
+#[test]
+fn orbit() {
+    let found = json_of(&["orbit", "--period", "4", "--xi", "0.1"], 0);
+    assert_valid("orbit.schema.json", &found);
+    assert_eq!(found["points"].as_array().map(Vec::len), Some(4));
+    assert_eq!(found["multipliers"].as_array().map(Vec::len), Some(3));
+    let none = json_of(&["orbit", "--period", "2", "--b=-0.1"], 1);
+    assert_valid("orbit.schema.json", &none);
+    assert_eq!(none["converged"], false);
+}
+
+#[test]
+fn follow() {
+    let interval = ["continue", "--parameter", "omega", "--xi", "0.1", "--from", "1.6"];
+    let six = [&interval[..], &["--to", "1.56", "--period", "6", "--doubled"]].concat();
+    let branch = json_of(&six, 0);
+    assert_valid("continue.schema.json", &branch);
+    assert_eq!(branch["complete"], true);
+    assert_eq!(branch["doubled"]["criticality"], "supercritical");
+    let five = [&interval[..], &["--to", "1.7", "--period", "5"]].concat();
+    let turned = json_of(&five, 1);
+    assert_valid("continue.schema.json", &turned);
+    assert_eq!(turned["complete"], false);
+    let none = ["continue", "--parameter", "b", "--from=-0.2", "--to=-0.1", "--period", "1"];
+    let none = json_of(&none, 1);
+    assert_valid("continue.schema.json", &none);
+    assert_eq!(none["branch"].as_array().map(Vec::len), Some(0));
+}

@@ -9,8 +9,7 @@ use crate::phase::Phase;
 /// derivative of a contact means nothing.
 const TOGETHER: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
 
-/// Roundings of the strobe's state and of each phase's closed form, in units of eps; the largest met over
-/// all orbits of the tests is 3.
+/// Roundings of a phase's closed form and of the state it hands on, in units of eps.
 const ROUNDINGS: f64 = 8.0;
 
 /// Strobes that are to be an orbit.
@@ -150,6 +149,20 @@ impl Chain {
     /// Drift over the whole orbit.
     pub(crate) fn drift(&self) -> f64 {
         self.passages.iter().map(|passage| passage.image.v()).sum()
+    }
+
+    /// Whether both meet the same phases strobe by strobe: then they lie on one smooth piece of the map.
+    pub(crate) fn is_on_piece_of(&self, other: &Self) -> bool {
+        let pairs = self.passages.iter().zip(&other.passages);
+        self.passages.len() == other.passages.len()
+            && pairs.into_iter().all(|(a, b)| a.phases == b.phases)
+    }
+
+    /// The largest distance of its two halves; of an odd number of strobes infinite.
+    pub(crate) fn width(&self) -> f64 {
+        let mut turned = self.clone();
+        turned.points.rotate_left(self.points.len() / 2);
+        if self.points.len().is_multiple_of(2) { self.distance(&turned) } else { f64::INFINITY }
     }
 
     /// The largest distance to another chain's strobes, over 1 + |strobe|; the other one may close sooner.

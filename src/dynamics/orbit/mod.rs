@@ -8,11 +8,14 @@ mod chain;
 mod least;
 mod multipliers;
 mod newton;
+mod scan;
 
 use super::strobe::{Point, StrobeMap};
 use crate::error::InputError;
 use crate::phase::Phase;
-pub(crate) use chain::Chain;
+pub(crate) use chain::{Around, Chain, size};
+pub(crate) use newton::{polished, solved};
+pub use scan::scan;
 use std::fmt;
 
 /// The largest period that is looked for, in forcing periods.
@@ -42,7 +45,7 @@ impl Orbit {
     /// [`NoOrbit`] says why none was reached and how close it came.
     pub fn find(map: &StrobeMap, guess: Point, period: u32) -> Result<Self, NoOrbit> {
         let chain = Chain::shot(map, guess, period)?;
-        Ok(Self::of(&least::closed(map, newton::solved(map, chain)?)))
+        Ok(Self::of(&least::closed(map, solved(map, chain)?)))
     }
 
     /// What a converged chain is.

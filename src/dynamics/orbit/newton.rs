@@ -5,9 +5,9 @@ use super::{NoOrbit, Reason};
 use crate::dynamics::strobe::StrobeMap;
 
 /// Steps before it is given up: near a fold they halve the distance at worst, 52 times.
-const STEPS: usize = 80;
+const STEPS: usize = 60;
 /// The shortest share of a step that is tried.
-const SHORTEST: f64 = 1.0 / 1024.0;
+const SHORTEST: f64 = 1.0 / 64.0;
 /// Steps in a row that may lead away: beyond a corner of the map another derivative holds, and the way
 /// down may begin by a way up.
 const WILD: usize = 6;
@@ -15,7 +15,7 @@ const WILD: usize = 6;
 const IDLE: usize = 3;
 
 /// The closed chain that is reached from this one.
-pub(super) fn solved(map: &StrobeMap, start: Chain) -> Result<Chain, NoOrbit> {
+pub(crate) fn solved(map: &StrobeMap, start: Chain) -> Result<Chain, NoOrbit> {
     let mut best = start.clone();
     let mut chain = start;
     let mut wild = 0;
@@ -56,7 +56,7 @@ fn damped(map: &StrobeMap, chain: &Chain, step: &[[f64; 3]]) -> Option<Chain> {
 }
 
 /// Newton's steps as long as they gain anything.
-pub(super) fn polished(map: &StrobeMap, start: Chain) -> Chain {
+pub(crate) fn polished(map: &StrobeMap, start: Chain) -> Chain {
     let mut best = start.clone();
     let mut chain = start;
     let mut idle = 0;

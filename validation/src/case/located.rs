@@ -78,6 +78,12 @@ impl Origins {
         self.0.insert(name, place);
     }
 
+    /// Whether `name` was given at all.
+    #[must_use]
+    pub fn is_set(&self, name: &str) -> bool {
+        self.0.contains_key(name)
+    }
+
     fn of(&self, name: &str) -> &str {
         self.0.get(name).map_or("its default", String::as_str)
     }

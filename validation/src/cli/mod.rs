@@ -2,6 +2,7 @@
 
 mod engines;
 mod model;
+mod orbits;
 mod output;
 mod parse;
 mod reports;
@@ -39,6 +40,8 @@ enum Verb {
     Engines(engines::Arguments),
     Validate(validate::Arguments),
     Reproduce(reproduce::Arguments),
+    Orbit(Box<orbits::find::Arguments>),
+    Continue(Box<orbits::follow::Arguments>),
 }
 
 /// Runs the command line and says how it went.
@@ -56,6 +59,8 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Engines(engines) => engines::run(engines).map(|()| DONE),
         Verb::Validate(validate) => validate::run(validate, arguments.threads),
         Verb::Reproduce(reproduce) => reproduce::run(reproduce, arguments.threads),
+        Verb::Orbit(orbit) => orbits::find::run(orbit),
+        Verb::Continue(branch) => orbits::follow::run(branch),
     };
     match result {
         Ok(code) => code,
@@ -83,7 +88,7 @@ fn usage(error: &clap::Error) -> u8 {
         }
         ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             say(
-                "no verb was given: accepted are simulate, engines, validate, reproduce (see percuss --help)",
+                "no verb was given: accepted are simulate, engines, validate, reproduce, orbit, continue (see percuss --help)",
             );
             REFUSED
         }

@@ -4,7 +4,7 @@ use super::parse;
 use crate::case::{Given, Problem, read_problem};
 use anyhow::{Result, anyhow};
 use clap::Args;
-use percuss::Phase;
+use percuss::{Parameter, Phase};
 use std::path::PathBuf;
 
 /// The model's parameters, the start, and the file that may give both.
@@ -58,12 +58,31 @@ pub(super) struct ModelFlags {
 impl ModelFlags {
     /// File and flags together, checked.
     pub(super) fn problem(&self) -> Result<Problem> {
+        self.given()?.check().map_err(|line| anyhow!(line))
+    }
+
+    fn given(&self) -> Result<Given> {
         let mut given = match &self.problem {
             Some(path) => read_problem(path).map_err(|error| anyhow!("--problem {error}"))?,
             None => Given::default(),
         };
         self.override_in(&mut given);
-        given.check().map_err(|line| anyhow!(line))
+        Ok(given)
+    }
+
+    /// The problem whose start is a guess, and whether one was given; a parameter that a flag of the verb
+    /// states is set to that.
+    pub(super) fn guess(
+        &self,
+        stated: Option<(Parameter, &'static str, f64)>,
+    ) -> Result<(Problem, bool)> {
+        let mut given = self.given()?;
+        if let Some((parameter, flag, value)) = stated {
+            given.origins.set(parameter.name(), flag.to_owned());
+            given.parameters = parameter.set(given.parameters, value);
+        }
+        let is_given = ["p", "y", "q", "phase"].iter().any(|name| given.origins.is_set(name));
+        Ok((given.check().map_err(|line| anyhow!(line))?, is_given))
     }
 
     fn override_in(&self, given: &mut Given) {

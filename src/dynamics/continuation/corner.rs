@@ -1,0 +1,122 @@
+//! From one smooth piece of the map to the next.
+
+use super::knot::{Curve, Knot, shifted};
+use crate::dynamics::orbit::Chain;
+use crate::dynamics::strobe::Point;
+
+/// Where the curve leaves a piece, and where it goes on.
+pub(super) struct Corner {
+    /// The last orbit of the piece that is left.
+    pub(super) before: Knot,
+    /// The first one beyond.
+    pub(super) beyond: Knot,
+    /// How far the parameter's value at the corner may be off.
+    pub(super) error: f64,
+}
+
+/// Halvings of the distance to the corner.
+const HALVINGS: usize = 300;
+/// Distance at which a corner counts as reached: a few roundings of the strobes.
+const REACHED: f64 = 1e-15;
+/// How far beyond the corner its other side is looked at and entered, nearest first.
+const BEYOND: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
+/// Relative error of a corner with which no nearer place beyond is looked for: a piece of the curve between
+/// two corners may be shorter than the step.
+const SHARP: f64 = 1e-12;
+
+impl Curve {
+    /// The corner between a knot and a distance along its tangent at which the piece is another one or no
+    /// orbit is found.
+    ///
+    /// Its error is what the halving leaves, rounding, and how far off the same corner is found from the other
+    /// side: a contact that is too short to be told from a touch counts as none.
+    pub(super) fn corner(&self, base: &Knot, distance: f64) -> Option<Corner> {
+        let (before, rest) = self.approached(base, distance);
+        let mut best: Option<Corner> = None;
+        for step in BEYOND {
+            let Some(beyond) = self.beyond(&before, step) else { continue };
+            let error = rest * before.tangent.rate.abs() + self.seen_from(&beyond, step, &before);
+            if best.as_ref().is_none_or(|it| error < it.error) {
+                best = Some(Corner { before: before.clone(), beyond, error });
+            }
+            if error <= SHARP * before.value.abs() {
+                break;
+            }
+        }
+        best
+    }
+
+    /// How far off the corner is found from beyond, and rounding.
+    fn seen_from(&self, beyond: &Knot, step: f64, before: &Knot) -> f64 {
+        let back = Knot { tangent: beyond.tangent.turned(), ..beyond.clone() };
+        let (after, rest) = self.approached(&back, 2.0 * step);
+        let apart = (after.value - before.value).abs() + rest * after.tangent.rate.abs();
+        apart + self.uncertainty(before)
+    }
+
+    /// The last orbit of a knot's piece along the curve, and how much further the corner may be.
+    fn approached(&self, base: &Knot, distance: f64) -> (Knot, f64) {
+        let mut before = base.clone();
+        let mut rest = distance;
+        let mut strides = 0;
+        for _ in 0..HALVINGS {
+            if rest <= REACHED {
+                break;
+            }
+            match self.corrected(&before, 0.5 * rest).filter(|it| it.is_on_piece_of(&before)) {
+                // The length left is measured anew from each knot: it may be more than was thought.
+                Some(next) => {
+                    before = next;
+                    strides += 1;
+                    rest *= if strides > 2 { 1.5 } else { 0.5 };
+                }
+                None => {
+                    strides = 0;
+                    rest *= 0.5;
+                }
+            }
+        }
+        (before, rest)
+    }
+
+    /// The curve a step beyond the corner at `before`. Its direction there is that of the other piece's
+    /// derivative; of the two ways along it one leads to an orbit of that piece.
+    fn beyond(&self, before: &Knot, step: f64) -> Option<Knot> {
+        let value = before.value + step * before.tangent.rate;
+        let tangents = self.probes(before, step).into_iter().flat_map(|probe| {
+            let forward = self.tangent(&probe, value, &before.tangent);
+            [forward.turned(), forward]
+        });
+        // The way forward first, of each probe.
+        let mut tangents: Vec<_> = tangents.collect();
+        tangents.reverse();
+        tangents.into_iter().find_map(|tangent| {
+            let base = Knot { tangent, ..before.clone() };
+            let mut knot = self.corrected(&base, step)?;
+            if knot.is_on_piece_of(before) {
+                return None;
+            }
+            // Away from the corner, whichever way the bordering row has turned it.
+            if self.product(&knot.tangent, &base.tangent, &before.chain) < 0.0 {
+                knot.tangent = knot.tangent.turned();
+            }
+            Some(knot)
+        })
+    }
+
+    /// Chains a step along the old direction that lie on another piece: as it is, and with each strobe replaced
+    /// by the image of the one before. A strobe that is still on the slider where the orbit no longer is
+    /// is so put right.
+    fn probes(&self, from: &Knot, step: f64) -> Vec<Chain> {
+        let along = &from.tangent;
+        let probed = self.family.map(from.value + step * along.rate).ok().and_then(|map| {
+            let points = shifted(&from.chain.points, &along.points, step);
+            let chain = Chain::of(&map, &points)?;
+            let mut images: Vec<Point> = chain.passages.iter().map(|it| it.point()).collect();
+            images.rotate_right(1);
+            Some([Some(chain), Chain::of(&map, &images)])
+        });
+        let other = |probe: &Chain| !probe.is_on_piece_of(&from.chain);
+        probed.into_iter().flatten().flatten().filter(other).collect()
+    }
+}

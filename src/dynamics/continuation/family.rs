@@ -1,0 +1,89 @@
+//! The strobe maps of one parameter's values, and how they change with it.
+
+use crate::dynamics::orbit::Chain;
+use crate::dynamics::strobe::{Point, StrobeMap};
+use crate::error::InputError;
+use crate::instant::Instant;
+use crate::model::Model;
+use crate::parameters::{Parameter, Parameters};
+
+/// The strobe maps at one forcing angle, one for each value of a parameter.
+#[derive(Clone, Copy, Debug)]
+pub struct Family {
+    parameters: Parameters,
+    parameter: Parameter,
+    instant: Instant,
+}
+
+/// Relative steps of the differences, longest first: the first balances truncation and rounding, the
+/// others are for neighbourhoods of a corner.
+const STEPS: [f64; 4] = [6e-6, 6e-8, 6e-9, 6e-11];
+
+impl Family {
+    /// The family of `parameter`, the others being fixed, on the section through `instant` (of which the
+    /// forcing angle alone matters).
+    #[must_use]
+    pub const fn new(parameters: Parameters, parameter: Parameter, instant: Instant) -> Self {
+        Self { parameters, parameter, instant }
+    }
+
+    /// Which parameter varies.
+    #[must_use]
+    pub const fn parameter(&self) -> Parameter {
+        self.parameter
+    }
+
+    /// The strobe map at a value.
+    ///
+    /// # Errors
+    /// [`InputError::OutOfRange`] for a value that the model does not accept.
+    pub fn map(&self, value: f64) -> Result<StrobeMap, InputError> {
+        let model = Model::new(self.parameter.set(self.parameters, value))?;
+        Ok(StrobeMap::new(model, self.instant))
+    }
+
+    /// Derivatives of the images of a chain's strobes with respect to the parameter, per strobe.
+    ///
+    /// By differences: they steer the corrector and give the tangent, nothing else. A point that is accepted
+    /// satisfies the map itself, and its multipliers are those of the exact derivative. Where a corner is near, the
+    /// difference is taken on the chain's own side of it.
+    pub(super) fn slopes(&self, value: f64, chain: &Chain, scale: f64) -> Vec<Point> {
+        (0..chain.points.len()).map(|k| self.slope(value, chain, k, scale)).collect()
+    }
+
+    fn slope(&self, value: f64, chain: &Chain, k: usize, scale: f64) -> Point {
+        let here = &chain.passages[k];
+        let beside = |step: f64| {
+            let map = self.map(value + step).ok()?;
+            let passage = map.passage(&map.entry(chain.points[k]).ok()?, 1);
+            Some((passage.point(), passage.phases == here.phases))
+        };
+        let mut fallback = [0.0; 3];
+        for step in STEPS.map(|relative| relative * value.abs().max(scale)) {
+            // What is representable.
+            let (up, down) = ((value + step) - value, value - (value - step));
+            let quotient = |a: Point, b: Point, span: f64| -> Point {
+                std::array::from_fn(|i| (a[i] - b[i]) / span)
+            };
+            match (beside(up), beside(-down)) {
+                (Some((plus, true)), Some((minus, true))) => {
+                    return quotient(plus, minus, up + down);
+                }
+                (Some((plus, true)), _) if step <= one_sided(value, scale) => {
+                    return quotient(plus, here.point(), up);
+                }
+                (_, Some((minus, true))) if step <= one_sided(value, scale) => {
+                    return quotient(here.point(), minus, down);
+                }
+                (Some((plus, _)), Some((minus, _))) => fallback = quotient(plus, minus, up + down),
+                _ => {}
+            }
+        }
+        fallback
+    }
+}
+
+/// A one-sided difference is of first order, and next to a graze of order one half.
+fn one_sided(value: f64, scale: f64) -> f64 {
+    1.01 * STEPS[2] * value.abs().max(scale)
+}

@@ -1,0 +1,202 @@
+//! Step control: how a branch is followed, and what is met on the way.
+
+use super::corner::Corner;
+use super::knot::{Curve, Knot};
+use super::locate::Located;
+use super::{Bifurcation, Branch, BranchPoint, Ending, Kind};
+use crate::dynamics::orbit::{Chain, polished};
+
+const FIRST: f64 = 1e-3;
+const LONGEST: f64 = 0.03;
+/// A step this short that fails is held to be at a corner.
+const SHORTEST: f64 = 1e-6;
+/// Steps of a branch before it is given up.
+const STEPS: usize = 20_000;
+/// Cosine of the largest turn of the tangent in a step.
+const TURN: f64 = 0.95;
+/// The largest relative change of the multipliers' sum and products in a step.
+const CHANGE: f64 = 0.3;
+
+/// A branch being followed.
+pub(super) struct Walk<'a> {
+    curve: Curve,
+    /// Where the parameter begins and where it is to go.
+    from: f64,
+    to: f64,
+    told: &'a mut dyn FnMut(f64),
+    points: Vec<BranchPoint>,
+    bifurcations: Vec<Bifurcation>,
+}
+
+impl<'a> Walk<'a> {
+    pub(super) fn new(curve: Curve, from: f64, to: f64, told: &'a mut dyn FnMut(f64)) -> Self {
+        Self { curve, from, to, told, points: Vec::new(), bifurcations: Vec::new() }
+    }
+
+    /// Follows the curve from a knot until it leaves the interval or is lost.
+    pub(super) fn branch(mut self, first: Knot) -> Branch {
+        let ending = self.follow(first);
+        Branch { points: self.points, bifurcations: self.bifurcations, ending }
+    }
+
+    fn follow(&mut self, first: Knot) -> Ending {
+        let start = first.clone();
+        let mut knot = first;
+        self.keep(&knot);
+        if self.from == self.to {
+            return Ending::Reached;
+        }
+        let mut step = FIRST;
+        for count in 0..STEPS {
+            let (next, reached) = match self.step(&knot, &mut step) {
+                Ok(next) => next,
+                Err(ending) => return ending,
+            };
+            (self.told)(((next.value - self.from) / (self.to - self.from)).clamp(0.0, 1.0));
+            self.keep(&next);
+            if let Some(ending) = reached {
+                return ending;
+            }
+            if count > 2 && self.is_back(&knot, &next, &start) {
+                return Ending::Closed;
+            }
+            knot = next;
+        }
+        Ending::Long { value: knot.value }
+    }
+
+    /// The next knot, what lies between being noted, and whether the branch ends there.
+    fn step(&mut self, knot: &Knot, step: &mut f64) -> Result<(Knot, Option<Ending>), Ending> {
+        loop {
+            let distance = *step;
+            let attempt = self.curve.corrected(knot, distance);
+            let other_piece = attempt.as_ref().is_some_and(|it| !it.is_on_piece_of(knot));
+            let smooth = attempt.filter(|it| self.is_smooth(knot, it, distance));
+            if let Some(next) = smooth {
+                let (next, distance, ending) = self.cut(knot, next, distance);
+                if next.is_on_piece_of(knot) {
+                    if let Some(flip) = self.curve.halving(knot, &next) {
+                        let ending = Ending::Halved { value: flip.value };
+                        self.bifurcations.push(flip);
+                        return Err(ending);
+                    }
+                    self.note_between(knot, &next, distance);
+                    *step = (1.5 * distance).min(LONGEST);
+                    return Ok((next, ending));
+                }
+            }
+            if other_piece || distance <= SHORTEST {
+                let corner = self.curve.corner(knot, distance);
+                if let Some(corner) = corner {
+                    return self.turn(knot, corner, step);
+                }
+                if distance <= SHORTEST {
+                    return Err(Ending::Lost { value: knot.value });
+                }
+            }
+            *step = 0.5 * distance;
+        }
+    }
+
+    /// Passes a corner.
+    fn turn(
+        &mut self,
+        knot: &Knot,
+        corner: Corner,
+        step: &mut f64,
+    ) -> Result<(Knot, Option<Ending>), Ending> {
+        let Corner { before, beyond, error } = corner;
+        if !self.is_inside(before.value) {
+            let (end, _, ending) = self.cut(knot, before, 0.0);
+            return Ok((end, ending));
+        }
+        if before.word() != beyond.word() {
+            self.bifurcations.push(Bifurcation {
+                kind: Kind::Grazing,
+                value: before.value,
+                error,
+                turns: before.tangent.rate * beyond.tangent.rate < 0.0,
+                orbit: before.orbit.clone(),
+                beyond: Some(beyond.orbit.clone()),
+            });
+        }
+        self.keep(&before);
+        *step = SHORTEST * 2.0;
+        let ending = (!self.is_inside(beyond.value)).then_some(self.left(beyond.value));
+        Ok((beyond, ending))
+    }
+
+    fn is_smooth(&self, knot: &Knot, next: &Knot, distance: f64) -> bool {
+        next.is_on_piece_of(knot)
+            && self.curve.product(&knot.tangent, &next.tangent, &knot.chain) >= TURN
+            && (next.change_of_multipliers(knot) <= CHANGE || distance <= SHORTEST)
+    }
+
+    /// A step that leaves the interval is cut at its end.
+    fn cut(&self, knot: &Knot, next: Knot, distance: f64) -> (Knot, f64, Option<Ending>) {
+        if self.is_inside(next.value) {
+            return (next, distance, None);
+        }
+        let ending = self.left(next.value);
+        let bound = if ending == Ending::Reached { self.to } else { self.from };
+        let share = (bound - knot.value) / (next.value - knot.value);
+        let cut = self.at(knot, &next, bound, share);
+        (cut.unwrap_or(next), distance * share, Some(ending))
+    }
+
+    /// The orbit at a value of the parameter, between two knots.
+    fn at(&self, knot: &Knot, next: &Knot, value: f64, share: f64) -> Option<Knot> {
+        let pairs = knot.chain.points.iter().zip(&next.chain.points);
+        let between: Vec<_> =
+            pairs.map(|(a, b)| std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))).collect();
+        let map = self.curve.family.map(value).ok()?;
+        let chain = polished(&map, Chain::of(&map, &between)?);
+        chain.is_closed().then(|| self.curve.knot(value, chain, &next.tangent))
+    }
+
+    fn is_inside(&self, value: f64) -> bool {
+        let share = (value - self.from) / (self.to - self.from);
+        (0.0..=1.0).contains(&share)
+    }
+
+    fn left(&self, value: f64) -> Ending {
+        let share = (value - self.from) / (self.to - self.from);
+        if share > 0.5 { Ending::Reached } else { Ending::Left }
+    }
+
+    /// Whether the step passes where the branch began, in the same direction.
+    fn is_back(&self, knot: &Knot, next: &Knot, start: &Knot) -> bool {
+        let span = (next.value - knot.value).abs().max(1e-12 * self.curve.unit);
+        let near = |it: &Knot| it.chain.distance(&start.chain);
+        let length = knot.chain.distance(&next.chain);
+        (knot.value - start.value).abs() <= 2.0 * span
+            && near(knot).min(near(next)) <= length
+            && self.curve.product(&next.tangent, &start.tangent, &start.chain) > 0.0
+    }
+
+    fn keep(&mut self, knot: &Knot) {
+        self.points.push(BranchPoint { value: knot.value, orbit: knot.orbit.clone() });
+    }
+
+    /// Bifurcations between two knots of one piece.
+    fn note_between(&mut self, knot: &Knot, next: &Knot, distance: f64) {
+        let mut found: Vec<(Kind, Located)> = Vec::new();
+        let mut seek = |kind: Kind, test: &dyn Fn(&Knot) -> f64| {
+            if test(knot) * test(next) < 0.0 {
+                found.extend(self.curve.located(knot, distance, test).map(|it| (kind, it)));
+            }
+        };
+        seek(Kind::Fold, &|it| it.tangent.rate);
+        seek(Kind::Flip, &Knot::flip);
+        if knot.torus().is_some() && next.torus().is_some() {
+            seek(Kind::NeimarkSacker, &|it| it.torus().unwrap_or(f64::NAN));
+        }
+        found.sort_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
+        for (kind, located) in found {
+            let error = self.curve.error(&located);
+            let Located { knot: Knot { value, orbit, .. }, .. } = located;
+            let turns = kind == Kind::Fold;
+            self.bifurcations.push(Bifurcation { kind, value, error, turns, orbit, beyond: None });
+        }
+    }
+}

@@ -1,0 +1,204 @@
+//! Points of the curve of orbits in (first strobe, parameter), its tangent, and the corrector.
+
+use super::family::Family;
+use crate::dynamics::linear::{IDENTITY, dot, modulus, solve};
+use crate::dynamics::orbit::{Around, Chain, Orbit, size};
+use crate::dynamics::strobe::Point;
+use crate::phase::Phase;
+
+/// An orbit on the curve, and the curve's direction there.
+#[derive(Clone, Debug)]
+pub(super) struct Knot {
+    pub(super) value: f64,
+    pub(super) chain: Chain,
+    pub(super) tangent: Tangent,
+    pub(super) orbit: Orbit,
+}
+
+/// Rates of all strobes and of the parameter with the arc length.
+#[derive(Clone, Debug)]
+pub(super) struct Tangent {
+    pub(super) points: Vec<Point>,
+    pub(super) rate: f64,
+}
+
+/// The family, and the parameter's unit of arc length.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Curve {
+    pub(super) family: Family,
+    pub(super) unit: f64,
+}
+
+/// Newton's iterations of a corrector: more, and the step was too long.
+const ITERATIONS: usize = 10;
+
+/// The bordered system: orbits next to a chain, and a direction.
+struct Bordered {
+    matrix: [[f64; 4]; 4],
+    offset: Point,
+    slopes: Vec<Point>,
+}
+
+impl Curve {
+    /// The curve of a family whose parameter is followed between two values.
+    pub(super) fn new(family: &Family, from: f64, to: f64) -> Self {
+        Self { family: *family, unit: if from == to { 1.0 } else { (to - from).abs() } }
+    }
+
+    /// The orbit at a distance along the tangent of `base`.
+    pub(super) fn corrected(&self, base: &Knot, distance: f64) -> Option<Knot> {
+        let Tangent { points, rate } = &base.tangent;
+        let mut value = base.value + distance * rate;
+        let mut strobes = shifted(&base.chain.points, points, distance);
+        let mut best: Option<(f64, Chain)> = None;
+        for _ in 0..ITERATIONS {
+            let chain = Chain::of(&self.family.map(value).ok()?, &strobes)?;
+            let left = self.along(base, &chain, value) - distance;
+            let in_place = left.abs() <= 0.01 * distance.abs() + f64::EPSILON;
+            let closed = in_place && chain.is_closed();
+            match &best {
+                Some((_, before)) if !closed || chain.residual >= before.residual => break,
+                None if !closed => {}
+                _ => best = Some((value, chain.clone())),
+            }
+            let bordered = self.bordered(&chain, value, &base.tangent, &base.chain);
+            let [p, y, q] = bordered.offset.map(|x| -x);
+            let [dp, dy, dq, step] = solve(bordered.matrix, [p, y, q, -left]);
+            let step = step * self.unit;
+            let offsets = offsets(&chain.defects, &bordered.slopes, step);
+            strobes = shifted(&chain.points, &chain.spread([dp, dy, dq], &offsets), 1.0);
+            value += step;
+        }
+        let (value, chain) = best?;
+        Some(self.knot(value, chain, &base.tangent))
+    }
+
+    /// A closed chain with the curve's direction, which is that of `along` as far as there is a choice.
+    pub(super) fn knot(&self, value: f64, chain: Chain, along: &Tangent) -> Knot {
+        let tangent = self.tangent(&chain, value, along);
+        let orbit = Orbit::of(&chain);
+        Knot { value, chain, tangent, orbit }
+    }
+
+    /// The curve's direction at a chain.
+    pub(super) fn tangent(&self, chain: &Chain, value: f64, along: &Tangent) -> Tangent {
+        let bordered = self.bordered(chain, value, along, chain);
+        let [p, y, q, rate] = solve(bordered.matrix, [0.0, 0.0, 0.0, 1.0]);
+        let rate = rate * self.unit;
+        let none = vec![[0.0; 3]; chain.points.len()];
+        let points = chain.spread([p, y, q], &offsets(&none, &bordered.slopes, rate));
+        let mut tangent = Tangent { points, rate };
+        let length = self.product(&tangent, &tangent, chain).sqrt();
+        if length > 0.0 && length.is_finite() {
+            tangent.rate /= length;
+            tangent.points.iter_mut().flatten().for_each(|x| *x /= length);
+        }
+        tangent
+    }
+
+    /// How far along the tangent of `base` a chain lies.
+    fn along(&self, base: &Knot, chain: &Chain, value: f64) -> f64 {
+        let moved: Point = std::array::from_fn(|i| chain.points[0][i] - base.chain.points[0][i]);
+        let weight = weight(&base.chain);
+        let Tangent { points, rate } = &base.tangent;
+        weight * dot(&points[0], &moved) + rate / self.unit * ((value - base.value) / self.unit)
+    }
+
+    /// The arc's inner product of two directions.
+    pub(super) fn product(&self, a: &Tangent, b: &Tangent, at: &Chain) -> f64 {
+        weight(at) * dot(&a.points[0], &b.points[0]) + a.rate / self.unit * (b.rate / self.unit)
+    }
+
+    fn bordered(&self, chain: &Chain, value: f64, along: &Tangent, weighed: &Chain) -> Bordered {
+        let slopes = self.family.slopes(value, chain, self.unit.min(1.0));
+        let Around { matrix: around, offset } = chain.around(&chain.defects);
+        let Around { offset: by_value, .. } = chain.around(&slopes);
+        let mut matrix = [[0.0; 4]; 4];
+        for i in 0..3 {
+            for j in 0..3 {
+                matrix[i][j] = around[i][j] - IDENTITY[i][j];
+            }
+            matrix[i][3] = by_value[i] * self.unit;
+            matrix[3][i] = weight(weighed) * along.points[0][i];
+        }
+        matrix[3][3] = along.rate / self.unit;
+        Bordered { matrix, offset, slopes }
+    }
+
+    /// What rounding of the map leaves uncertain of the parameter's value at a place of the curve.
+    pub(super) fn uncertainty(&self, knot: &Knot) -> f64 {
+        let Bordered { matrix, .. } =
+            self.bordered(&knot.chain, knot.value, &knot.tangent, &knot.chain);
+        let by_row = (0..3).map(|row| {
+            let mut right = [0.0; 4];
+            right[row] = 1.0;
+            solve(matrix, right)[3].abs()
+        });
+        let largest = knot.chain.points.iter().fold(1.0, |largest, it| size(it).max(largest));
+        let rounding = f64::EPSILON * largest * knot.chain.passages.len() as f64;
+        by_row.sum::<f64>() * self.unit * rounding + f64::EPSILON * knot.value.abs()
+    }
+}
+
+/// Points and parameter weigh alike when they change by their own size.
+fn weight(chain: &Chain) -> f64 {
+    (1.0 + size(&chain.points[0])).powi(-2)
+}
+
+pub(super) fn shifted(points: &[Point], changes: &[Point], share: f64) -> Vec<Point> {
+    let pairs = points.iter().zip(changes);
+    pairs.map(|(point, change)| std::array::from_fn(|i| point[i] + share * change[i])).collect()
+}
+
+fn offsets(defects: &[Point], slopes: &[Point], step: f64) -> Vec<Point> {
+    shifted(defects, slopes, step)
+}
+
+impl Tangent {
+    /// The other way.
+    pub(super) fn turned(&self) -> Self {
+        let points = self.points.iter().map(|it| it.map(|x| -x)).collect();
+        Self { points, rate: -self.rate }
+    }
+}
+
+impl Knot {
+    /// The phases strobe by strobe: where they are the same, the map is smooth in between.
+    pub(super) fn is_on_piece_of(&self, other: &Self) -> bool {
+        self.chain.is_on_piece_of(&other.chain)
+    }
+
+    /// The phases of the whole orbit from wherever they are least: a switch that passes a strobe does not
+    /// change them.
+    pub(super) fn word(&self) -> Vec<Phase> {
+        let phases = &self.orbit.phases;
+        let turned = (0..phases.len()).map(|k| [&phases[k..], &phases[..k]].concat());
+        turned.min().unwrap_or_default()
+    }
+
+    /// (1 + mu1) (1 + mu2) (1 + mu3): zero at a flip.
+    pub(super) fn flip(&self) -> f64 {
+        // The imaginary part of a pair's product vanishes.
+        let [re, _] = self.orbit.multipliers.iter().fold([1.0, 0.0], |[re, im], [a, b]| {
+            [re * (1.0 + a) - im * b, re * b + im * (1.0 + a)]
+        });
+        re
+    }
+
+    /// The modulus of a complex pair less one: zero at a Neimark-Sacker point.
+    pub(super) fn torus(&self) -> Option<f64> {
+        let pair = self.orbit.multipliers.iter().find(|it| it[1] != 0.0);
+        pair.map(|it| modulus(*it) - 1.0)
+    }
+
+    /// How much sum and pairwise products of the multipliers differ, relative to their size.
+    pub(super) fn change_of_multipliers(&self, other: &Self) -> f64 {
+        let invariants = |knot: &Self| {
+            let [a, b, c] = knot.orbit.multipliers;
+            let pair = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] - a[1] * b[1];
+            [a[0] + b[0] + c[0], pair(a, b) + pair(b, c) + pair(c, a)]
+        };
+        let changes = invariants(self).into_iter().zip(invariants(other));
+        changes.map(|(a, b)| (a - b).abs() / (1.0 + a.abs().min(b.abs()))).fold(0.0, f64::max)
+    }
+}

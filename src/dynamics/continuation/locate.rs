@@ -1,0 +1,91 @@
+//! A sign change of a test along a smooth piece of the curve, found and held against rounding.
+
+use super::knot::{Curve, Knot};
+
+/// Where a test vanishes.
+pub(super) struct Located {
+    pub(super) knot: Knot,
+    /// Distance from the knot that was searched from.
+    pub(super) distance: f64,
+    /// How far along the curve it may be off.
+    pub(super) bracket: f64,
+}
+
+/// Iterations of regula falsi (Illinois), of which about eight are used.
+const ITERATIONS: usize = 60;
+/// A sixteenth of f64's digits of the distance: beyond it rounding decides.
+const RESOLUTION: f64 = 1e-15;
+/// Distances at which the test is sampled about its zero, in units of the bracket searched: at these its
+/// curvature is below rounding.
+const SPREAD: f64 = 1e-6;
+
+impl Curve {
+    /// How far the parameter's value there may be off.
+    pub(super) fn error(&self, located: &Located) -> f64 {
+        located.bracket * located.knot.tangent.rate.abs() + self.uncertainty(&located.knot)
+    }
+
+    /// The zero of `test` on the curve between `base` and a distance along its tangent.
+    pub(super) fn located(
+        &self,
+        base: &Knot,
+        distance: f64,
+        test: impl Fn(&Knot) -> f64,
+    ) -> Option<Located> {
+        let end = self.corrected(base, distance)?;
+        let (mut low, mut f_low) = (0.0, test(base));
+        let (mut high, mut f_high) = (distance, test(&end));
+        let mut best =
+            if f_low.abs() < f_high.abs() { (0.0, base.clone()) } else { (distance, end) };
+        if f_low * f_high > 0.0 {
+            return None;
+        }
+        let mut sided = 0;
+        for _ in 0..ITERATIONS {
+            let at = (low * f_high - high * f_low) / (f_high - f_low);
+            if !at.is_finite() || (high - low).abs() <= RESOLUTION * (1.0 + distance.abs()) {
+                break;
+            }
+            let knot = self.corrected(base, at)?;
+            let f = test(&knot);
+            let ended = at == low || at == high || f == 0.0;
+            best = (at, knot);
+            if ended {
+                break;
+            }
+            if f * f_low > 0.0 {
+                (low, f_low) = (at, f);
+                f_high *= if sided == -1 { 0.5 } else { 1.0 };
+                sided = -1;
+            } else {
+                (high, f_high) = (at, f);
+                f_low *= if sided == 1 { 0.5 } else { 1.0 };
+                sided = 1;
+            }
+        }
+        let (at, knot) = best;
+        let (slope, scatter) = self.scatter(base, at, SPREAD * distance, &test)?;
+        let bracket = if slope == 0.0 { distance.abs() } else { 3.0 * scatter / slope.abs() };
+        Some(Located { knot, distance: at, bracket })
+    }
+
+    /// Slope of the test about a distance, and how far it scatters about that line: what its rounding and
+    /// the corrector's leave of it, measured.
+    fn scatter(
+        &self,
+        base: &Knot,
+        at: f64,
+        spread: f64,
+        test: &impl Fn(&Knot) -> f64,
+    ) -> Option<(f64, f64)> {
+        let mut samples = [0.0; 5];
+        for (k, sample) in samples.iter_mut().enumerate() {
+            *sample = test(&self.corrected(base, at + spread * (k as f64 - 2.0))?);
+        }
+        let mean = samples.iter().sum::<f64>() / 5.0;
+        let places = || samples.iter().zip([-2.0, -1.0, 0.0, 1.0, 2.0]);
+        let slope = places().map(|(f, x)| f * x).sum::<f64>() / 10.0;
+        let off = places().map(|(f, x)| (f - mean - slope * x).abs()).fold(mean.abs(), f64::max);
+        Some((slope / spread, off))
+    }
+}

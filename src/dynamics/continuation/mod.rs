@@ -1,0 +1,186 @@
+//! Branches of periodic orbits followed in a parameter, through folds and corners, stable or not.
+//!
+//! Pseudo-arclength continuation: the curve of orbits in (strobes, parameter) is followed along its
+//! tangent, each orbit solved to its last digits. Between corners of the strobe map the curve is smooth
+//! and three tests are watched: the parameter turns (fold), (1 + mu1)(1 + mu2)(1 + mu3) changes sign (flip), the
+//! modulus of a complex pair passes one (Neimark-Sacker).
+//!
+//! # Corners
+//!
+//! The map is smooth as long as the phases stay the same, strobe by strobe. Where they change, the
+//! curve has a kink: at a graze of an impact (the derivative of the map jumps there), and where an impact passes the
+//! strobe itself (the map is what it was; its strobes turn off). Corners are found by halving, and the
+//! curve is taken up again with the derivative of the other side: of the two directions of the new
+//! tangent the one that leaves the old piece. So a branch goes through a corner, with multipliers
+//! that jump, or turns back there, a non-smooth fold, in the same way. A corner at which the phases of the whole orbit
+//! change is a `grazing`; a switch that only passes the strobe turns the word round, and is none.
+
+//!
+//! # What is not to be expected
+//!
+//! A Neimark-Sacker point needs a pair of multipliers with product one. Where the slider comes to rest between contacts
+//! that product is what a period leaves of an area of neighbouring (p, y): flights keep it, contact contracts
+//! it by exp(-2 xi d), progression by exp(-d/(2 xi)), an impact keeps it or, straight into progression, divides it by
+//! f > 1. So it is less than one. A slider that is still moving when it is hit adds 2 xi dp dq, which
+//! settles nothing; the test is there for that, and none was met.
+//!
+//! # Flips
+//!
+//! [`Doubling`] takes the doubled branch from next to a flip and says on which side it lies. A branch that runs
+//! into the flip of an orbit of half its period ends there: beyond, it would be the same orbits again.
+
+mod corner;
+mod doubling;
+mod family;
+mod follow;
+mod halving;
+mod knot;
+mod locate;
+
+use super::orbit::{Chain, NoOrbit, Orbit};
+use super::strobe::Point;
+pub use doubling::{Criticality, Doubling};
+pub use family::Family;
+use follow::Walk;
+use knot::{Curve, Tangent};
+use std::fmt;
+
+/// A branch of orbits.
+#[derive(Clone, Debug)]
+pub struct Branch {
+    /// Its orbits in order.
+    pub points: Vec<BranchPoint>,
+    /// What was met on the way, in order.
+    pub bifurcations: Vec<Bifurcation>,
+    /// Where it ends.
+    pub ending: Ending,
+}
+
+/// An orbit of a branch.
+#[derive(Clone, Debug)]
+pub struct BranchPoint {
+    /// The parameter's value.
+    pub value: f64,
+    /// The orbit.
+    pub orbit: Orbit,
+}
+
+/// What can happen to an orbit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A multiplier passes one: the branch turns in the parameter.
+    Fold,
+    /// A multiplier passes minus one: an orbit of twice the period branches off.
+    Flip,
+    /// A complex pair passes the unit circle.
+    NeimarkSacker,
+    /// A phase appears or vanishes.
+    Grazing,
+}
+
+impl Kind {
+    /// The name used in files.
+    #[must_use]
+    pub const fn token(self) -> &'static str {
+        match self {
+            Self::Fold => "fold",
+            Self::Flip => "flip",
+            Self::NeimarkSacker => "neimark-sacker",
+            Self::Grazing => "grazing",
+        }
+    }
+}
+
+/// A special point of a branch.
+#[derive(Clone, Debug)]
+pub struct Bifurcation {
+    /// What happens.
+    pub kind: Kind,
+    /// The parameter's value.
+    pub value: f64,
+    /// How far that may be off: what the search left, and rounding.
+    pub error: f64,
+    /// Whether the branch turns back in the parameter: at every fold, and at a corner that is one.
+    pub turns: bool,
+    /// The orbit there; at a corner as the branch comes to it.
+    pub orbit: Orbit,
+    /// At a corner, the first orbit beyond it.
+    pub beyond: Option<Orbit>,
+}
+
+/// How a branch ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ending {
+    /// At the value that was asked for.
+    Reached,
+    /// Back at the value where it began.
+    Left,
+    /// It is closed: back at the orbit where it began.
+    Closed,
+    /// In a flip of an orbit of half its period, which is the last of the branch's bifurcations.
+    Halved {
+        /// Where.
+        value: f64,
+    },
+    /// No orbit was found beyond.
+    Lost {
+        /// Where.
+        value: f64,
+    },
+    /// More orbits than are kept.
+    Long {
+        /// Where.
+        value: f64,
+    },
+}
+
+impl fmt::Display for Ending {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Reached => f.write_str("the branch reaches the end of its interval"),
+            Self::Left => f.write_str("the branch turns and leaves the interval where it began"),
+            Self::Closed => f.write_str("the branch is closed within the interval"),
+            Self::Halved { value } => {
+                write!(f, "the branch ends at {value:?} in a flip of an orbit of half its period")
+            }
+            Self::Lost { value } => write!(f, "the branch was lost at {value:?}"),
+            Self::Long { value } => {
+                write!(f, "the branch has too many turns; given up at {value:?}")
+            }
+        }
+    }
+}
+
+impl Branch {
+    /// Follows the orbit that is found from `guess` at the value `from`, of `period` forcing periods or a
+    /// divisor of it, until the parameter is `to`. `told` hears how far it has come, 0 to 1.
+    ///
+    /// # Errors
+    /// [`NoOrbit`] where there is none to begin with.
+    pub fn follow(
+        family: &Family,
+        guess: Point,
+        period: u32,
+        from: f64,
+        to: f64,
+        told: &mut dyn FnMut(f64),
+    ) -> Result<Self, NoOrbit> {
+        let map = family.map(from).map_err(|it| NoOrbit::from(super::orbit::Reason::Guess(it)))?;
+        let orbit = Orbit::find(&map, guess, period)?;
+        let chain =
+            Chain::of(&map, &orbit.points).ok_or(NoOrbit::from(super::orbit::Reason::Escaped))?;
+        let curve = Curve::new(family, from, to);
+        let towards = Tangent {
+            points: vec![[0.0; 3]; chain.points.len()],
+            rate: curve.unit * (to - from).signum(),
+        };
+        let first = curve.knot(from, chain, &towards);
+        Ok(Walk::new(curve, from, to, told).branch(first))
+    }
+
+    /// Whether it was followed to where it should go.
+    #[must_use]
+    pub fn is_complete(&self) -> bool {
+        self.ending == Ending::Reached
+    }
+}

@@ -1,0 +1,111 @@
+//! Orbits found without a guess: Newton's method from many starts.
+
+use super::{Chain, Orbit};
+use crate::dynamics::strobe::{Point, StrobeMap};
+use std::cmp::Ordering;
+
+/// Starts along each side of the window, at most and at least.
+const SIDE: [u32; 2] = [12, 3];
+/// Starts times period: beyond it there are fewer starts.
+const EFFORT: u32 = 10_000;
+/// Forcing periods after which a motion counts as settled.
+const SETTLING: u64 = 300;
+/// Forcing periods of settled motion that are searched for the closest return.
+const WATCHED: u64 = 60;
+/// Two orbits whose strobes are this close are one: they were found to their last digits.
+const SAME: f64 = 1e-9;
+
+/// The orbits of `period` forcing periods, or of a divisor of it, that Newton's method reaches from a grid of
+/// starts, from where the motions from there settle, and from their closest returns. Those of the whole period
+/// come first; among these, stable ones; then the least leading multiplier, then the least p. `told` hears how
+/// much is done, 0 to 1.
+///
+/// What it finds is there; what it does not find may be there too.
+#[must_use]
+pub fn scan(map: &StrobeMap, period: u32, told: &mut dyn FnMut(f64)) -> Vec<Orbit> {
+    let mut found: Vec<Orbit> = Vec::new();
+    let starts = starts(map, side(period));
+    for (done, start) in starts.iter().enumerate() {
+        told(done as f64 / starts.len() as f64);
+        for guess in guesses(map, *start, period) {
+            let Ok(orbit) = Orbit::find(map, guess, period) else { continue };
+            if !found.iter().any(|it| is_same(it, &orbit)) {
+                found.push(orbit);
+            }
+        }
+    }
+    let mut found: Vec<_> = found.into_iter().map(|it| from_least(map, it)).collect();
+    found.sort_by(|a, b| preferred(a, b, period));
+    found
+}
+
+/// The order of preference.
+fn preferred(a: &Orbit, b: &Orbit, period: u32) -> Ordering {
+    let whole = |it: &Orbit| it.period() != period;
+    let leading = |it: &Orbit| super::super::linear::modulus(it.multipliers[0]);
+    whole(a)
+        .cmp(&whole(b))
+        .then(b.period().cmp(&a.period()))
+        .then(b.is_stable().cmp(&a.is_stable()))
+        .then(leading(a).total_cmp(&leading(b)))
+        .then(a.points[0][0].total_cmp(&b.points[0][0]))
+}
+
+fn side(period: u32) -> u32 {
+    let [most, least] = SIDE;
+    (EFFORT / period.max(1)).isqrt().clamp(least, most)
+}
+
+/// Cell centres of a window that holds the settled motion from rest with as much again around it, at least
+/// one on each side of rest.
+fn starts(map: &StrobeMap, side: u32) -> Vec<Point> {
+    let mut window = [[-1.0_f64, 1.0_f64]; 2];
+    if let Ok(rest) = map.entry([0.0; 3]) {
+        for strobe in map.strobes(rest, SETTLING).skip(SETTLING as usize / 2) {
+            for (range, x) in window.iter_mut().zip(strobe.point()) {
+                *range = [range[0].min(2.0 * x), range[1].max(2.0 * x)];
+            }
+        }
+    }
+    let cell = |[low, high]: [f64; 2], k: u32| {
+        // Written so that nothing overflows.
+        let share = (f64::from(k) + 0.5) / f64::from(side);
+        low * (1.0 - share) + high * share
+    };
+    let [p, y] = window;
+    let cells = (0..side).flat_map(|row| (0..side).map(move |column| (row, column)));
+    cells.map(|(row, column)| [cell(p, column), cell(y, row), 0.0]).collect()
+}
+
+/// The start, its settled motion, and where that comes closest to itself.
+fn guesses(map: &StrobeMap, start: Point, period: u32) -> Vec<Point> {
+    let Ok(entry) = map.entry(start) else { return Vec::new() };
+    let watched = WATCHED + u64::from(period);
+    let settled = map.strobes(entry, SETTLING + watched).skip(SETTLING as usize);
+    let strobes: Vec<_> = settled.map(|strobe| strobe.point()).collect();
+    let returns = strobes.iter().zip(strobes.iter().skip(period as usize));
+    let closest = returns.min_by(|(a, b), (c, d)| apart(a, b).total_cmp(&apart(c, d)));
+    let settled = strobes.first().copied();
+    [Some(start), settled, closest.map(|(from, _)| *from)].into_iter().flatten().collect()
+}
+
+fn apart(a: &Point, b: &Point) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// Whether two orbits are one, wherever they begin.
+fn is_same(a: &Orbit, b: &Orbit) -> bool {
+    let near = |(a, b): (&Point, &Point)| apart(a, b) <= SAME * (1.0 + apart(a, &[0.0; 3]));
+    let count = b.points.len();
+    a.points.len() == count
+        && (0..count).any(|turn| a.points.iter().zip(b.points.iter().cycle().skip(turn)).all(near))
+}
+
+/// The orbit from its strobe of least p on: what is found does not depend on which start found it.
+fn from_least(map: &StrobeMap, orbit: Orbit) -> Orbit {
+    let mut points = orbit.points.clone();
+    let least = |(_, a): &(usize, &Point), (_, b): &(usize, &Point)| a[0].total_cmp(&b[0]);
+    let first = points.iter().enumerate().min_by(least).map_or(0, |(first, _)| first);
+    points.rotate_left(first);
+    Chain::of(map, &points).map_or(orbit, |chain| Orbit::of(&chain))
+}

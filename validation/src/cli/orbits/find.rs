@@ -1,0 +1,66 @@
+//! `orbit`: one periodic orbit, by Newton's method.
+
+use super::json::Found;
+use super::{Format, check_extension, period, place, progress, write};
+use crate::cli::model::ModelFlags;
+use crate::cli::{DONE, OUT_OF_BOUNDS, say};
+use anyhow::Result;
+use clap::Args;
+use percuss::dynamics::orbit::{Orbit, scan};
+use percuss::dynamics::strobe::StrobeMap;
+use std::path::PathBuf;
+
+/// Find a periodic orbit, stable or not, from a guess (--p, --y, --q) or from a scan of starts
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// Forcing periods of the orbit; one that closes after a divisor is reported with that
+    #[arg(long, value_name = "K", value_parser = period, allow_hyphen_values = true)]
+    period: u32,
+    /// Where the JSON goes; - is stdout
+    #[arg(long, value_name = "PATH")]
+    output: Option<PathBuf>,
+    /// Format where --output has no extension
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    #[command(flatten)]
+    model: ModelFlags,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
+    let output = arguments.output.as_deref();
+    check_extension(output, arguments.format)?;
+    let (problem, guessed) = arguments.model.guess(None)?;
+    let map = StrobeMap::new(problem.model, problem.entry.instant);
+    let found = if guessed {
+        Orbit::find(&map, problem.entry.point(), arguments.period)
+            .map_err(|none| (none.residual, none.to_string()))
+    } else {
+        scanned(&map, arguments.period)
+    };
+    let shown = found.as_ref().map_err(|(residual, _)| *residual);
+    write(output, &Found::new(&problem.model, shown))?;
+    Ok(match found {
+        Ok(_) => DONE,
+        Err((_, why)) => {
+            say(&why);
+            OUT_OF_BOUNDS
+        }
+    })
+}
+
+/// The preferred orbit of a scan; how many others there are is said.
+pub(super) fn scanned(map: &StrobeMap, period: u32) -> Result<Orbit, (f64, String)> {
+    let bar = progress();
+    let found = scan(map, period, &mut |share| place(&bar, share));
+    bar.finish_and_clear();
+    let whole = found.iter().filter(|it| it.period() == period);
+    let (count, stable) = (whole.clone().count(), whole.filter(|it| it.is_stable()).count());
+    if count > 1 {
+        say(&format!(
+            "a scan found {count} orbits of period {period}, {stable} of them stable; this is one: --p, --y and --q near another select that"
+        ));
+    }
+    found.into_iter().next().ok_or_else(|| {
+        (f64::INFINITY, format!("no orbit of period {period} was found by a scan of starts"))
+    })
+}

@@ -1,0 +1,124 @@
+//! `continue`: a branch of periodic orbits.
+
+use super::find::scanned;
+use super::json::{Course, Doubled, Followed, Values};
+use super::{Format, check_extension, period, place, progress, write};
+use crate::case::Problem;
+use crate::cli::model::ModelFlags;
+use crate::cli::{DONE, OUT_OF_BOUNDS, parse, say};
+use anyhow::{Result, anyhow};
+use clap::Args;
+use percuss::Parameter;
+use percuss::dynamics::continuation::{Branch, Criticality, Doubling, Ending, Family, Kind};
+use percuss::dynamics::strobe::StrobeMap;
+use std::path::PathBuf;
+
+/// Follow a periodic orbit, stable or not, in a parameter, and locate its bifurcations
+#[derive(Args)]
+pub(crate) struct Arguments {
+    /// The parameter that varies: a, b, xi, omega, g or phi
+    #[arg(long, value_name = "NAME", value_parser = parameter)]
+    parameter: Parameter,
+    /// Its first value
+    #[arg(long, value_name = "X", value_parser = parse::number, allow_hyphen_values = true)]
+    from: f64,
+    /// Its last value
+    #[arg(long, value_name = "X", value_parser = parse::number, allow_hyphen_values = true)]
+    to: f64,
+    /// Forcing periods of the orbit
+    #[arg(long, value_name = "K", value_parser = period, allow_hyphen_values = true)]
+    period: u32,
+    /// Follows the branch of twice the period from the first flip too
+    #[arg(long)]
+    doubled: bool,
+    /// Where the JSON goes; - is stdout
+    #[arg(long, value_name = "PATH")]
+    output: Option<PathBuf>,
+    /// Format where --output has no extension
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    #[command(flatten)]
+    model: ModelFlags,
+}
+
+fn parameter(text: &str) -> Result<Parameter, String> {
+    Parameter::named(text).ok_or_else(|| "accepted are a, b, xi, omega, g, phi".to_owned())
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
+    let Arguments { parameter, from, to, .. } = *arguments;
+    let output = arguments.output.as_deref();
+    check_extension(output, arguments.format)?;
+    let (problem, guessed) = arguments.model.guess(Some((parameter, "--from", from)))?;
+    let family = Family::new(*problem.model.parameters(), parameter, problem.entry.instant);
+    family.map(to).map_err(|error| anyhow!("--to: {error}"))?;
+    let branch = branch(arguments, &problem, guessed, &family);
+    let doubled = match &branch {
+        Ok(branch) if arguments.doubled => Some(doubled(branch, &family, from, to)),
+        _ => None,
+    };
+    let complete = branch.as_ref().is_ok_and(Branch::is_complete);
+    let followed = Followed {
+        schema: 1,
+        percuss: env!("CARGO_PKG_VERSION"),
+        parameters: Values::of(&problem.model).without(parameter),
+        period: branch.as_ref().ok().and_then(|it| it.points.first()).map(|it| it.orbit.period()),
+        course: branch.as_ref().map(|it| Course::of(it, parameter, complete)).unwrap_or_default(),
+        doubled,
+    };
+    write(output, &followed)?;
+    match branch {
+        Ok(branch) if !complete => {
+            say(&format!("--parameter {}: {}", parameter.name(), branch.ending))
+        }
+        Err(why) => say(&why),
+        _ => {}
+    }
+    Ok(if complete { DONE } else { OUT_OF_BOUNDS })
+}
+
+fn branch(
+    arguments: &Arguments,
+    problem: &Problem,
+    guessed: bool,
+    family: &Family,
+) -> Result<Branch, String> {
+    let guess = if guessed {
+        problem.entry.point()
+    } else {
+        let map = StrobeMap::new(problem.model, problem.entry.instant);
+        let orbit = scanned(&map, arguments.period).map_err(|(_, why)| why)?;
+        orbit.points[0]
+    };
+    let bar = progress();
+    let told = &mut |share| place(&bar, share);
+    let Arguments { period, from, to, .. } = *arguments;
+    let branch = Branch::follow(family, guess, period, from, to, told);
+    bar.finish_and_clear();
+    branch.map_err(|none| none.to_string())
+}
+
+/// The branch of twice the period at the first flip of the branch's own orbit, if there is one.
+fn doubled(branch: &Branch, family: &Family, from: f64, to: f64) -> Option<Doubled> {
+    let period = branch.points.first()?.orbit.period();
+    let own = |it: &&_| is_flip_of(it, period);
+    let flip = branch.bifurcations.iter().find(own)?;
+    let bar = progress();
+    let doubling = Doubling::of(family, flip, from, to, &mut |share| place(&bar, share));
+    bar.finish_and_clear();
+    let Doubling { criticality, branch } = doubling?;
+    let complete = matches!(branch.ending, Ending::Reached | Ending::Left);
+    Some(Doubled {
+        at: flip.value,
+        criticality: match criticality {
+            Criticality::Supercritical => "supercritical",
+            Criticality::Subcritical => "subcritical",
+        },
+        period: 2 * period,
+        course: Course::of(&branch, family.parameter(), complete),
+    })
+}
+
+fn is_flip_of(found: &percuss::dynamics::continuation::Bifurcation, period: u32) -> bool {
+    found.kind == Kind::Flip && found.orbit.period() == period
+}

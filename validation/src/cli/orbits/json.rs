@@ -1,0 +1,172 @@
+//! Orbits and branches as JSON.
+
+use percuss::dynamics::continuation::{Bifurcation, Branch, BranchPoint};
+use percuss::dynamics::orbit::Orbit;
+use percuss::dynamics::strobe::Point;
+use percuss::{Model, Parameter, Parameters, Phase};
+use serde::Serialize;
+
+/// The model's parameters; null for one that varies.
+#[derive(Serialize)]
+pub(super) struct Values {
+    a: Option<f64>,
+    b: Option<f64>,
+    xi: Option<f64>,
+    omega: Option<f64>,
+    g: Option<f64>,
+    phi: Option<f64>,
+}
+
+impl Values {
+    pub(super) fn of(model: &Model) -> Self {
+        let Parameters { a, b, xi, omega, g, phi } = *model.parameters();
+        let [a, b, xi, omega, g, phi] = [a, b, xi, omega, g, phi].map(Some);
+        Self { a, b, xi, omega, g, phi }
+    }
+
+    /// Leaves out the one that varies.
+    pub(super) fn without(mut self, parameter: Parameter) -> Self {
+        let value = match parameter {
+            Parameter::A => &mut self.a,
+            Parameter::B => &mut self.b,
+            Parameter::Xi => &mut self.xi,
+            Parameter::Omega => &mut self.omega,
+            Parameter::G => &mut self.g,
+            Parameter::Phi => &mut self.phi,
+        };
+        *value = None;
+        self
+    }
+}
+
+/// What `orbit` writes; where none was found the lists are empty and the numbers null.
+#[derive(Serialize)]
+pub(super) struct Found {
+    pub(super) schema: u32,
+    pub(super) percuss: &'static str,
+    pub(super) parameters: Values,
+    pub(super) converged: bool,
+    pub(super) period: Option<u32>,
+    pub(super) points: Vec<Point>,
+    pub(super) phases: Vec<&'static str>,
+    pub(super) multipliers: Vec<[f64; 2]>,
+    pub(super) stable: Option<bool>,
+    /// As small as it got; null where it is not finite.
+    pub(super) residual: f64,
+    pub(super) drift_per_period: Option<f64>,
+}
+
+impl Found {
+    pub(super) fn new(model: &Model, orbit: Result<&Orbit, f64>) -> Self {
+        let found = orbit.ok();
+        Self {
+            schema: 1,
+            percuss: env!("CARGO_PKG_VERSION"),
+            parameters: Values::of(model),
+            converged: found.is_some(),
+            period: found.map(Orbit::period),
+            points: found.map(|it| it.points.clone()).unwrap_or_default(),
+            phases: found.map(tokens).unwrap_or_default(),
+            multipliers: found.map(|it| it.multipliers.to_vec()).unwrap_or_default(),
+            stable: found.map(Orbit::is_stable),
+            residual: orbit.map_or_else(|least| least, |it| it.residual),
+            drift_per_period: found.map(|it| it.drift_per_period),
+        }
+    }
+}
+
+fn tokens(orbit: &Orbit) -> Vec<&'static str> {
+    orbit.phases.iter().copied().map(Phase::token).collect()
+}
+
+/// What `continue` writes.
+#[derive(Serialize)]
+pub(super) struct Followed {
+    pub(super) schema: u32,
+    pub(super) percuss: &'static str,
+    pub(super) parameters: Values,
+    pub(super) period: Option<u32>,
+    #[serde(flatten)]
+    pub(super) course: Course,
+    /// Only with `--doubled`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) doubled: Option<Option<Doubled>>,
+}
+
+/// A branch.
+#[derive(Default, Serialize)]
+pub(super) struct Course {
+    complete: bool,
+    branch: Vec<Place>,
+    bifurcations: Vec<Special>,
+}
+
+/// The branch of twice the period at the first flip.
+#[derive(Serialize)]
+pub(super) struct Doubled {
+    pub(super) at: f64,
+    pub(super) criticality: &'static str,
+    pub(super) period: u32,
+    #[serde(flatten)]
+    pub(super) course: Course,
+}
+
+#[derive(Serialize)]
+struct Place {
+    parameter: f64,
+    point: Point,
+    multipliers: [[f64; 2]; 3],
+    stable: bool,
+    drift_per_period: f64,
+}
+
+#[derive(Serialize)]
+struct Special {
+    r#type: &'static str,
+    parameter: &'static str,
+    value: f64,
+    error: f64,
+    period: u32,
+    point: Point,
+    multipliers: [[f64; 2]; 3],
+    multipliers_beyond: Option<[[f64; 2]; 3]>,
+    turns: bool,
+}
+
+impl Course {
+    pub(super) fn of(branch: &Branch, parameter: Parameter, complete: bool) -> Self {
+        Self {
+            complete,
+            branch: branch.points.iter().map(Place::of).collect(),
+            bifurcations: branch.bifurcations.iter().map(|it| Special::of(it, parameter)).collect(),
+        }
+    }
+}
+
+impl Place {
+    fn of(BranchPoint { value, orbit }: &BranchPoint) -> Self {
+        Self {
+            parameter: *value,
+            point: orbit.points[0],
+            multipliers: orbit.multipliers,
+            stable: orbit.is_stable(),
+            drift_per_period: orbit.drift_per_period,
+        }
+    }
+}
+
+impl Special {
+    fn of(found: &Bifurcation, parameter: Parameter) -> Self {
+        Self {
+            r#type: found.kind.token(),
+            parameter: parameter.name(),
+            value: found.value,
+            error: found.error,
+            period: found.orbit.period(),
+            point: found.orbit.points[0],
+            multipliers: found.orbit.multipliers,
+            multipliers_beyond: found.beyond.as_ref().map(|it| it.multipliers),
+            turns: found.turns,
+        }
+    }
+}
