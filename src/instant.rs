@@ -70,6 +70,15 @@ impl Instant {
         Self { cycle, angle }
     }
 
+    /// The first instant not before this one at which `omega tau mod 2 pi` is `angle` (radians, any
+    /// turn of it, up to 1e15 in size).
+    #[must_use]
+    pub fn first_at_angle(&self, angle: f64) -> Self {
+        let (_, angle) = angle::reduce(TwoWord::new(angle));
+        let here = Self { cycle: self.cycle, angle };
+        if here >= *self { here } else { Self { cycle: self.cycle + 1, angle } }
+    }
+
     /// The forcing angle with its phase, `omega tau + phi`, as sine and cosine.
     #[must_use]
     pub(crate) fn forcing(&self, phi: TwoWord) -> (f64, f64) {
@@ -109,6 +118,19 @@ mod tests {
             let start = Instant::at(omega, tau, 100_000_000);
             let end = start.after(TwoWord::new(step), omega);
             prop_assert_eq!(end.since(&start, omega).value(), step);
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn an_angle_comes_within_a_period(tau in -1e3..1e3_f64, angle in -20.0..20.0_f64) {
+            let start = Instant::at(1.4, tau, 7);
+            let first = start.first_at_angle(angle);
+            prop_assert!(first >= start && first < start.after_periods(1, 1));
+            let turns = (first.angle() - angle) / std::f64::consts::TAU;
+            // The angle's rounding, a few units of 20.
+            prop_assert!((turns - turns.round()).abs() <= 1e-14);
+            prop_assert_eq!(first.first_at_angle(angle), first);
         }
     }
 

@@ -1,6 +1,12 @@
 //! The nonlinear dynamics of Section 5, built on the exact strobe map.
 
+pub mod attractor;
 pub mod continuation;
+pub mod diagram;
 pub mod linear;
+pub mod lyapunov;
 pub mod orbit;
+mod parallel;
+pub mod section;
 pub mod strobe;
+mod tangent;

@@ -65,6 +65,37 @@ fn engines() {
 }
 
 #[test]
+fn lyapunov() {
+    for more in [&["--omega", "1.4"][..], &["--b", "-0.1"], &["--b", "1.5"], &["--periods", "1"]] {
+        let usual = ["lyapunov", "--transient", "20", "--periods", "40"];
+        let arguments = if more[0] == "--periods" {
+            [&usual[..3], more].concat()
+        } else {
+            [&usual[..], more].concat()
+        };
+        let output = support::run(&arguments);
+        assert!(output.status.success(), "{arguments:?}");
+        let value = json(&support::text(&output.stdout));
+        assert_valid("lyapunov.schema.json", &value);
+    }
+}
+
+#[test]
+fn attractors() {
+    let usual = ["attractors", "--grid", "6x5", "--window", "-1,1,-1,1", "--transient", "40"];
+    let regimes =
+        [&["--xi", "0.1", "--omega", "1.6"][..], &["--omega", "0.1"], &["--b=-0.1"], &["--b=1.5"]];
+    for more in regimes {
+        let value = json(&stdout(&[&usual[..], more].concat()));
+        assert_valid("attractors.schema.json", &value);
+        let shares = value["attractors"].as_array().expect("a list").iter();
+        let shares: f64 = shares.map(|it| it["fraction"].as_f64().expect("a share")).sum();
+        let all = shares + value["unresolved"].as_f64().expect("a share");
+        assert!((all - 1.0).abs() < 1e-12, "{all}");
+    }
+}
+
+#[test]
 fn report() {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().display().to_string();

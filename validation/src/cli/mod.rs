@@ -1,14 +1,21 @@
 //! The command line, a file a verb. What it promises is in the project's CONTRACT.
 
+mod basins;
+mod bifurcation;
+mod endless;
 mod engines;
+mod format;
+mod lyapunov;
 mod model;
 mod orbits;
 mod output;
 mod parse;
+mod poincare;
 mod reports;
 mod reproduce;
 mod simulate;
 mod validate;
+mod work;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -37,6 +44,11 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Verb {
     Simulate(Box<simulate::Arguments>),
+    Poincare(Box<poincare::Arguments>),
+    Lyapunov(Box<lyapunov::Arguments>),
+    Bifurcation(Box<bifurcation::Arguments>),
+    Attractors(Box<basins::AttractorArguments>),
+    Basins(Box<basins::BasinArguments>),
     Engines(engines::Arguments),
     Validate(validate::Arguments),
     Reproduce(reproduce::Arguments),
@@ -56,6 +68,11 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 fn dispatch(arguments: &Arguments) -> u8 {
     let result = match &arguments.verb {
         Verb::Simulate(simulate) => simulate::run(simulate).map(|()| DONE),
+        Verb::Poincare(poincare) => poincare::run(poincare).map(|()| DONE),
+        Verb::Lyapunov(lyapunov) => lyapunov::run(lyapunov).map(|()| DONE),
+        Verb::Bifurcation(it) => bifurcation::run(it, arguments.threads).map(|()| DONE),
+        Verb::Attractors(it) => basins::attractors(it, arguments.threads).map(|()| DONE),
+        Verb::Basins(it) => basins::basins(it, arguments.threads).map(|()| DONE),
         Verb::Engines(engines) => engines::run(engines).map(|()| DONE),
         Verb::Validate(validate) => validate::run(validate, arguments.threads),
         Verb::Reproduce(reproduce) => reproduce::run(reproduce, arguments.threads),
@@ -70,6 +87,13 @@ fn dispatch(arguments: &Arguments) -> u8 {
             REFUSED
         }
     }
+}
+
+/// The verbs' names.
+fn verbs() -> String {
+    let command = <Arguments as clap::CommandFactory>::command();
+    let names: Vec<_> = command.get_subcommands().map(|it| it.get_name().to_owned()).collect();
+    names.join(", ")
 }
 
 /// One line on stderr.
@@ -87,9 +111,7 @@ fn usage(error: &clap::Error) -> u8 {
             DONE
         }
         ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            say(
-                "no verb was given: accepted are simulate, engines, validate, reproduce, orbit, continue (see percuss --help)",
-            );
+            say(&format!("no verb was given: accepted are {} (see percuss --help)", verbs()));
             REFUSED
         }
         _ => {

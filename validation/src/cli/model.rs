@@ -4,7 +4,8 @@ use super::parse;
 use crate::case::{Given, Problem, read_problem};
 use anyhow::{Result, anyhow};
 use clap::Args;
-use percuss::{Parameter, Phase};
+use percuss::{Parameter, Parameters, Phase};
+use serde::Serialize;
 use std::path::PathBuf;
 
 /// The model's parameters, the start, and the file that may give both.
@@ -117,5 +118,23 @@ impl ModelFlags {
             given.origins.set("phase", "--phase".to_owned());
             start.phase = self.phase;
         }
+    }
+}
+
+/// The model's parameters as JSON.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct ParametersJson {
+    a: f64,
+    b: f64,
+    xi: f64,
+    omega: f64,
+    g: f64,
+    phi: f64,
+}
+
+impl From<&Parameters> for ParametersJson {
+    fn from(parameters: &Parameters) -> Self {
+        let Parameters { a, b, xi, omega, g, phi } = *parameters;
+        Self { a, b, xi, omega, g, phi }
     }
 }

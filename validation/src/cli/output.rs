@@ -1,6 +1,7 @@
 //! Where results go: stdout, or a file that is there whole or not at all.
 
 use anyhow::Result;
+use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -30,6 +31,14 @@ impl Destination {
             }
             Self::File(path) => write_whole(path, write),
         }
+    }
+
+    /// Writes a value as JSON, on lines of its own.
+    pub(super) fn json(&self, value: &impl Serialize) -> Result<()> {
+        self.write(|out| {
+            serde_json::to_writer_pretty(&mut *out, value).map_err(io::Error::from)?;
+            Ok(writeln!(out)?)
+        })
     }
 }
 

@@ -1,11 +1,24 @@
 //! Values of flags, with errors that say what is accepted.
 
-use percuss::Phase;
+use percuss::dynamics::attractor::Window;
+use percuss::{Parameter, Phase};
 use regex::Regex;
+
+/// The longest horizon, in forcing periods.
+pub(super) const MAX_PERIODS: u64 = 1_000_000_000;
+
+/// Most cells of a grid of starts.
+const MAX_CELLS: u64 = 1 << 24;
 
 /// A number; its range is checked where its meaning is known.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     text.parse().map_err(|_| "accepted is a number".to_owned())
+}
+
+/// An angle, in radians.
+pub(super) fn angle(text: &str) -> Result<f64, String> {
+    let angle = text.parse().ok().filter(|angle: &f64| angle.abs() <= 1e15);
+    angle.ok_or_else(|| "accepted is a number, -1e15 to 1e15".to_owned())
 }
 
 /// A cycle's number.
@@ -21,4 +34,36 @@ pub(super) fn phase(text: &str) -> Result<Phase, String> {
 /// A regular expression on names.
 pub(super) fn pattern(text: &str) -> Result<Regex, String> {
     Regex::new(text).map_err(|_| "accepted is a regular expression".to_owned())
+}
+
+/// A parameter's name.
+pub(super) fn parameter(text: &str) -> Result<Parameter, String> {
+    Parameter::named(text).ok_or_else(|| "accepted are a, b, xi, omega, g, phi".to_owned())
+}
+
+/// NXxNY, cells along p and along y.
+pub(super) fn grid(text: &str) -> Result<[u32; 2], String> {
+    let sides = text.split_once('x').map(|(columns, rows)| [columns.parse(), rows.parse()]);
+    match sides {
+        Some([Ok(columns), Ok(rows)])
+            if columns > 0 && rows > 0 && u64::from(columns) * u64::from(rows) <= MAX_CELLS =>
+        {
+            Ok([columns, rows])
+        }
+        _ => Err(format!("accepted is NXxNY with at most {MAX_CELLS} cells, as 200x200")),
+    }
+}
+
+/// pmin,pmax,ymin,ymax.
+pub(super) fn window(text: &str) -> Result<Window, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();
+    let window = match numbers.as_deref() {
+        Ok([p_low, p_high, y_low, y_high]) => {
+            Some(Window { p: [*p_low, *p_high], y: [*y_low, *y_high] })
+        }
+        _ => None,
+    };
+    window.filter(|window| window.check().is_ok()).ok_or_else(|| {
+        "accepted is pmin,pmax,ymin,ymax with each pair rising, within 1e9".to_owned()
+    })
 }

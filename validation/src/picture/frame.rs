@@ -54,15 +54,15 @@ impl Ruler {
                 ((low - 0.05).floor(), (high + 0.05).ceil())
             }
         };
-        Some(Self::with_ticks(scale, from, to))
+        Some(Self::placed(scale, from, to))
     }
 
-    /// An even axis between two ends; `None` where they are none.
-    pub fn between(from: f64, to: f64) -> Option<Self> {
-        (from < to && (to - from).is_finite()).then(|| Self::with_ticks(Scale::Linear, from, to))
+    /// A linear axis from one value to another.
+    pub fn between(from: f64, to: f64) -> Self {
+        Self::placed(Scale::Linear, from, to)
     }
 
-    fn with_ticks(scale: Scale, from: f64, to: f64) -> Self {
+    fn placed(scale: Scale, from: f64, to: f64) -> Self {
         let stride = stride((to - from) / MOST_TICKS, scale);
         let first = (from / stride).ceil() as i64;
         let last = (to / stride).floor() as i64;
@@ -71,7 +71,9 @@ impl Ruler {
             Scale::Logarithmic => power_of_ten(value.round() as i64),
         };
         let tick = |k: i64| (k as f64 * stride, label(k as f64 * stride));
-        Self { scale, from, to, ticks: (first..=last).map(tick).collect() }
+        // Where an axis is too narrow for its size its ticks cannot be told apart.
+        let ticks = (first..=last).take(4 * MOST_TICKS as usize).map(tick);
+        Self { scale, from, to, ticks: ticks.collect() }
     }
 
     /// Where a value stands, from 0 to 1.
@@ -131,7 +133,6 @@ impl Panel {
         (across, down)
     }
 
-    /// Grid, frame and axes.
     pub fn draw<B: DrawingBackend>(
         &self,
         pen: &Pen<'_, B>,
@@ -147,11 +148,11 @@ impl Panel {
             let y = to.1 - self.y.share(*placed) * (to.1 - from.1);
             pen.line((from.0, y), (to.0, y), 1.0, palette::GRID)?;
         }
-        self.draw_open(pen, below, beside)
+        self.draw_over(pen, below, beside)
     }
 
-    /// Frame and axes without a grid.
-    pub fn draw_open<B: DrawingBackend>(
+    /// Frame, labels and names without lines across: what is drawn already stays.
+    pub fn draw_over<B: DrawingBackend>(
         &self,
         pen: &Pen<'_, B>,
         below: &str,

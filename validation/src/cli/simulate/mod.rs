@@ -7,13 +7,13 @@ mod rows;
 
 use super::model::ModelFlags;
 use super::output::Destination;
-use super::{parse, say};
+use super::{format, parse, say};
 use crate::picture;
-use anyhow::{Result, bail};
+use anyhow::Result;
 use clap::{ArgGroup, Args, ValueEnum};
 use plan::Plan;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Run the exact solver from one start
 #[derive(Args)]
@@ -23,7 +23,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "N")]
     events: Option<u64>,
     /// Ends after this many forcing periods, at most 1000000000
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=plan::MAX_PERIODS))]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=parse::MAX_PERIODS))]
     periods: Option<u64>,
     /// Ends at this time, at or after the start
     #[arg(long, value_name = "TAU", value_parser = parse::number, allow_hyphen_values = true)]
@@ -32,7 +32,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
     samples: Option<u32>,
     /// With --events: stops early after this many forcing periods
-    #[arg(long, value_name = "M", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..=plan::MAX_PERIODS))]
+    #[arg(long, value_name = "M", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..=parse::MAX_PERIODS))]
     max_periods: u64,
     /// Where the result goes, - is stdout; its extension (csv, json, png, svg) is its format
     #[arg(long, value_name = "PATH")]
@@ -54,7 +54,7 @@ enum Format {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let format = format(arguments.output.as_deref(), arguments.format)?;
+    let format = format::chosen(arguments.output.as_deref(), arguments.format, Format::Csv)?;
     let problem = arguments.model.problem()?;
     let plan = Plan::new(problem, arguments)?;
     let destination = Destination::new(arguments.output.as_deref());
@@ -71,29 +71,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         say(&line);
     }
     Ok(())
-}
-
-/// The extension of --output, or --format where there is none.
-fn format(output: Option<&Path>, stated: Option<Format>) -> Result<Format> {
-    let extension = output.and_then(Path::extension).and_then(|extension| extension.to_str());
-    let known = extension.and_then(|extension| Format::from_str(extension, true).ok());
-    match (known, stated, extension) {
-        (Some(known), Some(stated), Some(extension)) if known != stated => {
-            let stated = format!("{stated:?}").to_lowercase();
-            bail!(
-                "--format {stated} contradicts the extension of --output, {extension}: accepted is one of them"
-            )
-        }
-        (Some(format), ..) | (None, Some(format), _) => Ok(format),
-        (None, None, Some(extension))
-            if !output.is_some_and(|path| path.exists() && !path.is_file()) =>
-        {
-            bail!(
-                "--output: extension {extension} is not accepted: csv, json, png, svg, or --format"
-            )
-        }
-        (None, None, _) => Ok(Format::Csv),
-    }
 }
 
 /// Writes the run's rows; what has to be said about its end.

@@ -2,11 +2,11 @@
 
 use super::Arguments;
 use crate::case::Problem;
+use crate::cli::endless::words;
+use crate::cli::parse::MAX_PERIODS;
 use anyhow::{Result, bail};
 use percuss::{Endless, Exit, Instant, Leg};
 
-/// The longest horizon, in forcing periods.
-pub(super) const MAX_PERIODS: u64 = 1_000_000_000;
 /// A picture of more forcing periods than this shows nothing.
 const MAX_PICTURE_PERIODS: f64 = 5000.0;
 
@@ -57,12 +57,7 @@ impl Plan {
         let last = last?;
         let found = self.endless(last).map(|endless| {
             let since = last.entry().instant.tau(self.omega());
-            let what = match endless {
-                Endless::NeverReturns => "the mass never returns to the slider",
-                Endless::NeverStops => "the slider never stops",
-                Endless::RestsForEver => "the mass rests on the slider for ever",
-            };
-            format!("{what} after tau = {since:?}")
+            format!("{} after tau = {since:?}", words(endless))
         });
         match (self.events, found) {
             (Some(wanted), _) if switches >= wanted => None,

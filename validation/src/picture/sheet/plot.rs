@@ -39,7 +39,10 @@ impl Plot {
         let to = (corner.0 + width - RIGHT, corner.1 + height - BOTTOM);
         pen.text(&self.title, (from.0, from.1 - 18.0), TEXT, Side::Left, palette::INK)?;
         let ruler = |axis: usize| match self.window {
-            Some(window) => Ruler::between(window[axis].0, window[axis].1),
+            Some(window) => {
+                let (from, to) = window[axis];
+                (from < to).then(|| Ruler::between(from, to))
+            }
             None => {
                 let all = self.layers.iter().flat_map(|layer| layer.extent(axis));
                 Ruler::over(Scale::Linear, all)
@@ -56,7 +59,7 @@ impl Plot {
         if below.is_empty() {
             panel.draw(pen, &self.axes[0], &self.axes[1])?;
         } else {
-            panel.draw_open(pen, &self.axes[0], &self.axes[1])?;
+            panel.draw_over(pen, &self.axes[0], &self.axes[1])?;
         }
         above.iter().try_for_each(|layer| layer.draw(pen, &panel))
     }

@@ -1,0 +1,57 @@
+//! What an attractor that is no orbit occupies: small cells of (p, y, q) that a long run has visited.
+
+use crate::dynamics::strobe::Point;
+use std::collections::HashSet;
+
+/// Cells along the largest extent. An attractor of dimension 1.3 then fills about
+/// [`PER_EXTENT`]^1.3 = 1400 of them, each visited many times by a run of [`REFERENCE`] strobes.
+const PER_EXTENT: f64 = 256.0;
+/// Strobes of the run that fills them.
+pub(super) const REFERENCE: u64 = 1 << 17;
+/// A motion is on the attractor when so many strobes in a row lie in its cells.
+pub(super) const RECURRENCES: u32 = 48;
+
+/// A set of cells.
+#[derive(Clone, Debug)]
+pub(super) struct Cells {
+    width: f64,
+    visited: HashSet<[i64; 3]>,
+}
+
+impl Cells {
+    /// The cells that some points lie in.
+    pub fn of(points: &[Point]) -> Self {
+        let extent = |i: usize| {
+            let (low, high) =
+                points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), it| {
+                    (a.min(it[i]), b.max(it[i]))
+                });
+            high - low
+        };
+        let largest = (0..3).map(extent).fold(f64::MIN_POSITIVE, f64::max);
+        let mut cells = Self { width: largest / PER_EXTENT, visited: HashSet::new() };
+        cells.add(points);
+        cells
+    }
+
+    /// Adds the cells of more points.
+    pub fn add(&mut self, points: &[Point]) {
+        for point in points {
+            self.visited.insert(self.cell(point));
+        }
+    }
+
+    /// Whether a point lies in one of them.
+    pub fn hold(&self, point: &Point) -> bool {
+        self.visited.contains(&self.cell(point))
+    }
+
+    /// Which share of some points lies in them.
+    pub fn share(&self, points: &[Point]) -> f64 {
+        points.iter().filter(|point| self.hold(point)).count() as f64 / points.len() as f64
+    }
+
+    fn cell(&self, point: &Point) -> [i64; 3] {
+        point.map(|x| (x / self.width).floor() as i64)
+    }
+}

@@ -1,0 +1,150 @@
+//! A grid of starts, and which attractor each of them reaches.
+
+use super::atlas::{Atlas, Label};
+use super::{Attractor, Kind};
+use crate::dynamics::strobe::{Point, StrobeMap};
+use crate::error::InputError;
+use crate::parameters::within;
+
+/// A rectangle of starts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Window {
+    /// From and to, of the displacement of the mass.
+    pub p: [f64; 2],
+    /// From and to, of its velocity.
+    pub y: [f64; 2],
+}
+
+/// Starts at the centres of cells.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    /// What the cells fill.
+    pub window: Window,
+    /// Cells along p.
+    pub columns: u32,
+    /// Cells along y.
+    pub rows: u32,
+    /// Displacement of the slider's top, lifted to p - g where p > q + g.
+    pub q: f64,
+}
+
+/// Which attractor each start of a grid reaches.
+#[derive(Clone, Debug)]
+pub struct Basins {
+    /// The grid.
+    pub grid: Grid,
+    /// What it reaches: orbits first, by period, then by smallest p; then chaotic and quasi-periodic
+    /// attractors by smallest p.
+    pub attractors: Vec<Attractor>,
+    /// A label a start, rows of equal y from the lowest y on: an index into the attractors.
+    pub labels: Vec<Label>,
+}
+
+/// Attractors are first looked for from a grid of so many by so many starts, whatever grid is asked
+/// for: so they do not depend on it.
+const LATTICE: u32 = 16;
+
+impl Window {
+    /// Checks that both sides are finite, at most 1e9 in size, and from low to high.
+    ///
+    /// # Errors
+    /// [`InputError::OutOfRange`] names the first that is not.
+    pub fn check(&self) -> Result<(), InputError> {
+        for (name, [from, to]) in [("p", self.p), ("y", self.y)] {
+            within(name, from, -1e9, 1e9, "-1e9 to 1e9")?;
+            // What rounding leaves of a narrower one is no window.
+            within(name, to, from.next_up(), 1e9, "above its low end, to 1e9")?;
+        }
+        Ok(())
+    }
+}
+
+impl Grid {
+    /// The displacements of the columns' centres.
+    #[must_use]
+    pub fn p(&self) -> Vec<f64> {
+        centres(self.window.p, self.columns)
+    }
+
+    /// The velocities of the rows' centres.
+    #[must_use]
+    pub fn y(&self) -> Vec<f64> {
+        centres(self.window.y, self.rows)
+    }
+
+    /// All starts, row by row from the lowest y on.
+    #[must_use]
+    pub fn starts(&self) -> Vec<Point> {
+        let p = self.p();
+        self.y().iter().flat_map(|y| p.iter().map(|p| [*p, *y, self.q])).collect()
+    }
+
+    /// How many starts there are.
+    #[must_use]
+    pub const fn len(&self) -> usize {
+        self.columns as usize * self.rows as usize
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub const fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+fn centres([from, to]: [f64; 2], count: u32) -> Vec<f64> {
+    let width = (to - from) / f64::from(count);
+    (0..count).map(|k| from + (f64::from(k) + 0.5) * width).collect()
+}
+
+impl Basins {
+    /// Labels every start of a grid.
+    ///
+    /// `transient` is how many forcing periods a start is followed at first (see [`Atlas::new`]); `seen`
+    /// is told of how many starts more the label is known.
+    #[must_use]
+    pub fn of(map: &StrobeMap, grid: &Grid, transient: u64, seen: &(dyn Fn(u64) + Sync)) -> Self {
+        let mut atlas = Atlas::new(*map, transient);
+        let lattice = Grid { columns: LATTICE, rows: LATTICE, ..*grid };
+        atlas.label_all(&lattice.starts(), &|_| {});
+        let labels = atlas.label_all(&grid.starts(), seen);
+        Self::sorted(*grid, &atlas, labels)
+    }
+
+    /// Drops attractors that no start reaches and puts the others in order.
+    fn sorted(grid: Grid, atlas: &Atlas, labels: Vec<Label>) -> Self {
+        let known: Vec<&Attractor> = atlas.attractors().collect();
+        let mut reached = vec![false; known.len()];
+        for label in &labels {
+            if let Label::Attractor(id) = label {
+                reached[*id] = true;
+            }
+        }
+        let listed = |id: &usize| reached[*id] && known[*id].kind != Kind::Unidentified;
+        let mut order: Vec<usize> = (0..known.len()).filter(listed).collect();
+        order.sort_by(|a, b| known[*a].order(known[*b]));
+        let place = |label: Label| match label {
+            Label::Attractor(id) => {
+                order.iter().position(|it| *it == id).map_or(Label::Unresolved, Label::Attractor)
+            }
+            other => other,
+        };
+        let labels = labels.into_iter().map(place).collect();
+        let attractors = order.iter().map(|id| known[*id].clone()).collect();
+        Self { grid, attractors, labels }
+    }
+
+    /// The share of all starts that have a label.
+    #[must_use]
+    pub fn fraction(&self, label: Label) -> f64 {
+        let count = self.labels.iter().filter(|it| **it == label).count();
+        count as f64 / self.labels.len() as f64
+    }
+
+    /// The standard error of a share, as of independent starts.
+    #[must_use]
+    pub fn fraction_error(&self, label: Label) -> f64 {
+        let share = self.fraction(label);
+        (share * (1.0 - share) / self.labels.len() as f64).sqrt()
+    }
+}

@@ -1,0 +1,128 @@
+//! Attractors of the strobe map, and the recognition of a motion that approaches one.
+//!
+//! - **Periodic**: strobes repeat, Newton's method confirms the orbit ([`Orbit::find`]), its multipliers
+//!   are inside the unit circle, and a neighbourhood has been found that nothing leaves (`trap.rs`).
+//! - **Chaotic**: the largest exponent is above zero by more than [`ERRORS`] standard errors over a run
+//!   of 2^17 strobes that met no orbit. Another motion is on the same attractor when 48
+//!   strobes in a row lie in the cells of that run (`cells.rs`); so its bands are one attractor.
+//! - **Quasi-periodic**: neither, with a largest exponent and a contraction below 1e-3.
+//! - **Escaping**: a phase that provably never ends: the mass never returns or the slider never stops.
+//! - Whatever is none of these after the last extension of its transient stays **unresolved**: above
+//!   all an orbit next to a bifurcation, which attracts too slowly for a trap to be found.
+//!
+//! A chaotic set of which a motion leaves after some 10^5 periods on average cannot be told from an
+//! attractor by any run of that length.
+
+mod atlas;
+mod cells;
+mod fractal;
+mod grid;
+mod settle;
+mod trap;
+
+pub use atlas::{Atlas, Label};
+pub use fractal::{Entropy, Scale, Uncertainty, entropy, uncertainty, uncertainty_of};
+
+pub use grid::{Basins, Grid, Window};
+
+use super::lyapunov::Spectrum;
+use super::orbit::Orbit;
+use super::strobe::{Point, StrobeMap};
+use std::cmp::Ordering;
+
+/// Standard errors by which a positive exponent must differ from zero.
+pub const ERRORS: f64 = 4.0;
+
+/// What an attractor is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Kind {
+    /// A stable orbit.
+    Periodic,
+    /// A positive exponent.
+    Chaotic,
+    /// No orbit, a largest exponent of zero, and no contraction. Every contact contracts areas, which
+    /// an invariant curve does not bear: this is what a run cannot tell from one at very light damping.
+    QuasiPeriodic,
+    /// A set to which motions return without it being known as what: its starts are unresolved.
+    Unidentified,
+}
+
+impl Kind {
+    /// The name used in files.
+    #[must_use]
+    pub const fn token(self) -> &'static str {
+        match self {
+            Self::Periodic => "periodic",
+            Self::Chaotic => "chaotic",
+            Self::QuasiPeriodic => "quasi-periodic",
+            Self::Unidentified => "unidentified",
+        }
+    }
+}
+
+/// An attractor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Attractor {
+    /// What it is.
+    pub kind: Kind,
+    /// The orbit, where it is one; its strobes begin at the smallest p.
+    pub orbit: Option<Orbit>,
+    /// Successive strobes: all of an orbit, the last [`POINTS`] of the reference run otherwise.
+    pub points: Vec<Point>,
+    /// Mean drift per forcing period.
+    pub drift_per_period: f64,
+    /// The largest exponent per forcing period; of an orbit from its multipliers.
+    pub lyapunov_per_period: f64,
+    /// Its standard error; zero of an orbit.
+    pub lyapunov_error: f64,
+}
+
+/// Strobes that are kept of an attractor that is no orbit.
+pub const POINTS: usize = 4096;
+
+impl Attractor {
+    /// Of a stable orbit, told from its smallest p on.
+    fn periodic(map: &StrobeMap, orbit: Orbit) -> Self {
+        let first = orbit.points.iter().copied().min_by(|a, b| a[0].total_cmp(&b[0]));
+        let told = first.and_then(|first| Orbit::find(map, first, orbit.period()).ok());
+        let orbit = told.filter(|told| told.period() == orbit.period()).unwrap_or(orbit);
+        let [re, im] = orbit.multipliers[0];
+        Self {
+            kind: Kind::Periodic,
+            points: orbit.points.clone(),
+            drift_per_period: orbit.drift_per_period,
+            lyapunov_per_period: libm::hypot(re, im).ln() / f64::from(orbit.period()),
+            lyapunov_error: 0.0,
+            orbit: Some(orbit),
+        }
+    }
+
+    fn of_run(kind: Kind, run: &[Point], spectrum: &Spectrum) -> Self {
+        Self {
+            kind,
+            orbit: None,
+            points: run[run.len().saturating_sub(POINTS)..].to_vec(),
+            drift_per_period: spectrum.drift_per_period,
+            lyapunov_per_period: spectrum.exponents_per_period[0],
+            lyapunov_error: spectrum.standard_error[0],
+        }
+    }
+
+    /// Its period in forcing periods, where it has one.
+    #[must_use]
+    pub fn period(&self) -> Option<u32> {
+        self.orbit.as_ref().map(Orbit::period)
+    }
+
+    /// Orbits first, by period, then by smallest p; then the others by kind and smallest p.
+    fn order(&self, other: &Self) -> Ordering {
+        let (mine, its) = ((self.kind, self.period()), (other.kind, other.period()));
+        mine.cmp(&its).then_with(|| self.smallest_p().total_cmp(&other.smallest_p()))
+    }
+
+    /// Its smallest p.
+    #[must_use]
+    pub fn smallest_p(&self) -> f64 {
+        self.points.iter().map(|point| point[0]).fold(f64::INFINITY, f64::min)
+    }
+}

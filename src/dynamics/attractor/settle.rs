@@ -1,0 +1,146 @@
+//! What a motion settles on that approaches no attractor known so far.
+
+use super::atlas::{Atlas, Evidence, Known, Label, Watch, escapes};
+use super::cells::{Cells, REFERENCE};
+use super::trap::Trap;
+use super::{Attractor, ERRORS, Kind};
+use crate::dynamics::lyapunov::Spectrum;
+use crate::dynamics::orbit::Orbit;
+use crate::dynamics::section::Section;
+use crate::dynamics::strobe::Point;
+use crate::entry::Entry;
+
+/// How often a transient is doubled before a start is given up.
+pub(super) const EXTENSIONS: u32 = 3;
+/// The longest period that is looked for.
+const LONGEST: usize = 128;
+/// Strobes that repeat this closely (relative to their size) are handed to Newton's method.
+const CLOSE: f64 = 1e-3;
+/// At least so many pairs of strobes must repeat.
+const PAIRS: usize = 8;
+/// Turns within which a motion must enter a trap of the orbit that it seems to follow: one that
+/// loses 1 % of its distance a turn loses 1e-8 of it in so many.
+const TURNS: u64 = 2000;
+/// Forcing periods of the first look at the exponents, and of the one that decides.
+const GLANCE: u64 = 512;
+const DECISION: u64 = 1 << 14;
+/// A largest exponent, and a contraction, that are no larger are taken for zero.
+const NEUTRAL: f64 = 1e-3;
+
+/// With so many attractors known only orbits are added: nearly without damping every start has its own
+/// invariant curve.
+const MOST: usize = 64;
+
+/// What became of a motion.
+pub(super) enum Settled {
+    /// Where it leads was known, or it is not known.
+    Label(Label),
+    /// To an attractor not met before.
+    New(Box<Known>),
+}
+
+impl Atlas {
+    /// What the motion settles on.
+    pub(super) fn settled(&self, from: Entry) -> Settled {
+        let mut from = from;
+        for extension in 0..=EXTENSIONS {
+            match self.recognised(from, self.transient << extension) {
+                Ok(label) => return Settled::Label(label),
+                Err(last) => from = last,
+            }
+            if let Some(settled) = self.identified(from) {
+                return settled;
+            }
+        }
+        Settled::Label(Label::Unresolved)
+    }
+
+    fn identified(&self, from: Entry) -> Option<Settled> {
+        let strobes: Vec<Entry> = self.section(from).take(2 * LONGEST).collect();
+        if let Some(orbit) = self.orbit(&strobes) {
+            return Some(orbit);
+        }
+        let glance = Spectrum::of(self.map.model(), from, 0, GLANCE);
+        // What clearly contracts is an orbit on the way, or a long one.
+        let full = self.known.len() >= MOST;
+        let contracts =
+            glance.exponents_per_period[0] < -ERRORS * glance.standard_error[0].max(NEUTRAL);
+        if contracts || full { None } else { self.reference(from) }
+    }
+
+    fn section(&self, from: Entry) -> Section {
+        Section::along(self.map.model().trajectory(from), from.instant)
+    }
+
+    /// The stable orbit that some strobes repeat, if the motion is seen to enter its trap.
+    fn orbit(&self, strobes: &[Entry]) -> Option<Settled> {
+        let points: Vec<Point> = strobes.iter().map(Entry::point).collect();
+        let last = strobes.last()?;
+        let orbit = Orbit::find(&self.map, last.point(), repeats(&points)?).ok()?;
+        if !orbit.is_stable() {
+            return None;
+        }
+        let traps = Trap::all(&self.map, &orbit);
+        let period = u64::from(orbit.period());
+        let attractor = Attractor::periodic(&self.map, orbit);
+        let new = Known { attractor, evidence: Evidence::Traps(traps) };
+        let known = std::slice::from_ref(&new);
+        let mut watch = Watch::new(known);
+        let mut ahead = self.section(*last);
+        let arrives = (0..TURNS * period)
+            .any(|n| ahead.next().is_some_and(|it| watch.see(n, &it.point()).is_some()));
+        arrives.then(|| Settled::New(Box::new(new)))
+    }
+
+    /// A long run that may turn out to be on an attractor without period.
+    fn reference(&self, from: Entry) -> Option<Settled> {
+        let mut section = self.section(from);
+        let mut watch = Watch::new(&self.known);
+        let mut run = Vec::with_capacity(REFERENCE as usize);
+        for n in 0..REFERENCE {
+            let strobe = section.next()?;
+            if escapes(&section) {
+                return Some(Settled::Label(Label::Escaping));
+            }
+            if let Some(known) = watch.see(n, &strobe.point()) {
+                return Some(Settled::Label(Label::Attractor(known)));
+            }
+            run.push(strobe);
+        }
+        if let Some(orbit) = self.orbit(&run[run.len() - 2 * LONGEST..]) {
+            return Some(orbit);
+        }
+        let spectrum = Spectrum::of(self.map.model(), *run.last()?, 0, DECISION);
+        let points: Vec<Point> = run.iter().map(Entry::point).collect();
+        let kind = kind_of(&spectrum, repeats(&points).is_some());
+        let attractor = Attractor::of_run(kind, &points, &spectrum);
+        let evidence = Evidence::Cells(Cells::of(&points));
+        Some(Settled::New(Box::new(Known { attractor, evidence })))
+    }
+}
+
+/// What a motion that is on no orbit known as stable is, by its exponents.
+fn kind_of(spectrum: &Spectrum, repeats: bool) -> Kind {
+    let [largest, ..] = spectrum.exponents_per_period;
+    if spectrum.is_chaotic(ERRORS) && largest > NEUTRAL {
+        Kind::Chaotic
+    } else if largest.abs().max(spectrum.contraction_per_period.abs()) <= NEUTRAL && !repeats {
+        Kind::QuasiPeriodic
+    } else {
+        Kind::Unidentified
+    }
+}
+
+/// The least period with which the last strobes repeat.
+fn repeats(points: &[Point]) -> Option<u32> {
+    let repeats = |period: usize| {
+        let pairs = period.max(PAIRS);
+        let end = points.len();
+        end >= period + pairs && (end - pairs..end).all(|i| near(&points[i], &points[i - period]))
+    };
+    (1..=LONGEST).find(|period| repeats(*period)).and_then(|period| u32::try_from(period).ok())
+}
+
+fn near(a: &Point, b: &Point) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() <= CLOSE * (1.0 + b.abs()))
+}

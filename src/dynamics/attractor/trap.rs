@@ -1,0 +1,163 @@
+//! Neighbourhoods of a stable orbit that nothing leaves.
+//!
+//! With J the derivative of one turn of the orbit and all |multipliers| < 1, the sum
+//! S = 1 + J'J + J'^2 J^2 + ... exists and x'Sx falls at every turn, by the factor 1 - 1/|S| at least,
+//! in linear theory. How far linear theory reaches is measured: the largest ellipsoid is taken of
+//! which a net of points comes back by half of that contraction or more. The net is finite, so this is
+//! evidence and no proof; a start is believed after further turns each of which brought it closer.
+//!
+//! About a strobe on the slider only motions that are on it too are taken: there p and q are one.
+
+use crate::dynamics::linear::{apply, dot, product};
+use crate::dynamics::orbit::Orbit;
+use crate::dynamics::section::Section;
+use crate::dynamics::strobe::{Jacobian, Point, StrobeMap};
+use crate::phase::Phase;
+
+/// An ellipsoid about one strobe of an orbit.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Trap {
+    centre: Point,
+    metric: Jacobian,
+    radius: f64,
+    /// The gap, where the strobe is on the slider.
+    slider: Option<f64>,
+}
+
+/// On the slider q moves with p.
+const TOGETHER: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
+/// p = q + g to within this share of its terms: some roundings.
+const ON_SLIDER: f64 = 1e-12;
+
+/// Radii that are tried, largest first: how far a trap may reach in any direction. In a larger one the
+/// net would be too coarse for a tongue of another basin.
+const LARGEST: f64 = 0.25;
+const HALVINGS: i32 = 28;
+/// Points of the net on each of its shells.
+const DIRECTIONS: u32 = 48;
+/// The shells, as shares of the radius: a corner of the map inside must not stay unseen.
+const SHELLS: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
+/// At most about so many strobes of an orbit get a trap.
+const TRAPS: usize = 12;
+/// The sum S is doubled in length so often: multipliers up to 1 - 1e-8 are summed up.
+const DOUBLINGS: usize = 32;
+
+impl Trap {
+    /// Traps about some strobes of a stable orbit; none where no net comes back.
+    pub fn all(map: &StrobeMap, orbit: &Orbit) -> Vec<Self> {
+        let stride = orbit.points.len().div_ceil(TRAPS);
+        orbit
+            .points
+            .iter()
+            .step_by(stride)
+            .filter_map(|centre| Self::around(map, *centre, u64::from(orbit.period())))
+            .collect()
+    }
+
+    fn around(map: &StrobeMap, centre: Point, period: u64) -> Option<Self> {
+        let entry = map.entry(centre).ok()?;
+        let turn = map.passage(&entry, period).jacobian();
+        let on_slider = entry.phase() != Phase::NoContact;
+        let slider = on_slider.then_some(map.model().parameters().g);
+        let metric = metric(&if on_slider { product(&turn, &TOGETHER) } else { turn })?;
+        let largest = metric[0][0] + metric[1][1] + metric[2][2];
+        let shrinks = 1.0 - 0.5 / largest;
+        let upper = upper_factor(&metric)?;
+        let attempt = |halving: i32| {
+            let radius = LARGEST * 0.5_f64.powi(halving);
+            let trap = Self { centre: entry.point(), metric, radius, slider };
+            let returns = |shell: &f64| trap.shell_returns(map, period, &upper, *shell, shrinks);
+            SHELLS.iter().all(returns).then_some(trap)
+        };
+        (0..=HALVINGS).find_map(attempt)
+    }
+
+    fn shell_returns(
+        &self,
+        map: &StrobeMap,
+        period: u64,
+        upper: &Jacobian,
+        shell: f64,
+        shrinks: f64,
+    ) -> bool {
+        (0..DIRECTIONS).all(|k| {
+            let step = on_ellipsoid(upper, direction(k)).map(|x| x * self.radius * shell);
+            let mut start: Point = std::array::from_fn(|i| self.centre[i] + step[i]);
+            if let Some(g) = self.slider {
+                start[2] = start[0] - g;
+            }
+            let Ok(entry) = map.entry(start) else { return false };
+            let after = entry.instant.after_periods(period, 1);
+            let image = Section::along(map.model().trajectory(entry), after).next();
+            let before = self.distance(&start);
+            image.is_some_and(|image| self.distance(&image.point()) <= shrinks * before)
+        })
+    }
+
+    /// The square of the distance in units of the radius: at most 1 inside.
+    pub fn size(&self, point: &Point) -> f64 {
+        // The metric is not below the identity.
+        let outside = (0..2).any(|i| (point[i] - self.centre[i]).abs() > self.radius);
+        if outside { f64::INFINITY } else { self.distance(point) }
+    }
+
+    fn distance(&self, point: &Point) -> f64 {
+        if let Some(g) = self.slider {
+            let [p, _, q] = *point;
+            if (p - q - g).abs() > ON_SLIDER * p.abs().max(q.abs()).max(g) {
+                return f64::INFINITY;
+            }
+        }
+        let step: Point = std::array::from_fn(|i| (point[i] - self.centre[i]) / self.radius);
+        dot(&step, &apply(&self.metric, &step))
+    }
+}
+
+/// S; none where the multipliers are not inside the unit circle.
+fn metric(turn: &Jacobian) -> Option<Jacobian> {
+    let mut sum = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut power = *turn;
+    for _ in 0..DOUBLINGS {
+        let more = product(&transposed(&power), &product(&sum, &power));
+        for (row, add) in sum.iter_mut().zip(more) {
+            row.iter_mut().zip(add).for_each(|(x, more)| *x += more);
+        }
+        power = product(&power, &power);
+    }
+    let dead = power.iter().flatten().all(|x| x.abs() < 1e-3);
+    (dead && sum.iter().flatten().all(|x| x.is_finite())).then_some(sum)
+}
+
+fn transposed(m: &Jacobian) -> Jacobian {
+    std::array::from_fn(|i| std::array::from_fn(|j| m[j][i]))
+}
+
+/// U, upper triangular, with U'U = metric.
+fn upper_factor(metric: &Jacobian) -> Option<Jacobian> {
+    let mut u = [[0.0; 3]; 3];
+    for i in 0..3 {
+        for j in i..3 {
+            let rest = metric[i][j] - (0..i).map(|k| u[k][i] * u[k][j]).sum::<f64>();
+            u[i][j] = if i == j { rest.sqrt() } else { rest / u[i][i] };
+        }
+    }
+    u.iter().flatten().all(|x| x.is_finite()).then_some(u)
+}
+
+/// x with x' metric x = 1 and U x = direction.
+fn on_ellipsoid(u: &Jacobian, direction: Point) -> Point {
+    let mut x = [0.0; 3];
+    for i in (0..3).rev() {
+        let rest = direction[i] - ((i + 1)..3).map(|k| u[i][k] * x[k]).sum::<f64>();
+        x[i] = rest / u[i][i];
+    }
+    x
+}
+
+/// Points spread evenly over the unit sphere: a spiral by the golden angle.
+fn direction(k: u32) -> Point {
+    let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(DIRECTIONS);
+    let (sin, cos) = libm::sincos(f64::from(k) * std::f64::consts::PI * (3.0 - 5.0_f64.sqrt()));
+    let across = (1.0 - z * z).sqrt();
+    [across * cos, across * sin, z]
+}

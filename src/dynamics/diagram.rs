@@ -1,0 +1,136 @@
+//! Brute-force bifurcation diagrams, as in Fig. 10: strobes after a transient, value by value.
+//!
+//! Fig. 10a follows an attractor by starting each value from where the last one ended
+//! ([`Follow::Carry`]); Fig. 10b starts every value from the same state ([`Follow::Reset`]) and jumps
+//! wherever that state changes basins.
+
+use super::parallel;
+use super::section::Section;
+use super::strobe::{Point, StrobeMap};
+use crate::entry::Entry;
+use crate::error::InputError;
+use crate::instant::Instant;
+use crate::leg::Endless;
+use crate::model::Model;
+use crate::parameters::{Parameter, Parameters};
+use crate::start::Start;
+
+/// How each value is started.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Follow {
+    /// From the last strobe of the value before.
+    Carry,
+    /// From the start given.
+    Reset,
+}
+
+/// A diagram to be made.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Diagram {
+    /// The parameters other than the one that varies.
+    pub parameters: Parameters,
+    /// Where the first value starts, and every one with [`Follow::Reset`].
+    pub start: Start,
+    /// What varies.
+    pub parameter: Parameter,
+    /// Its first value.
+    pub from: f64,
+    /// Its last value, which may be the smaller one.
+    pub to: f64,
+    /// How many values, both ends included; one is `from`.
+    pub steps: u32,
+    /// Forcing periods that are left out.
+    pub transient: u64,
+    /// Strobes that are kept, one a forcing period.
+    pub periods: u32,
+    /// How each value is started.
+    pub follow: Follow,
+}
+
+/// What the diagram shows at one value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Step {
+    /// The parameter's value.
+    pub value: f64,
+    /// Strobes at the start's `tau` modulo the forcing period.
+    pub points: Vec<Point>,
+    /// Mean drift per forcing period over these strobes.
+    pub drift_per_period: f64,
+    /// Why the motion ends in a phase that never ends, where it does.
+    pub endless: Option<Endless>,
+}
+
+impl Diagram {
+    /// The parameter's value at a step.
+    #[must_use]
+    pub fn value(&self, step: u32) -> f64 {
+        if step + 1 >= self.steps && step > 0 {
+            return self.to;
+        }
+        let share = f64::from(step) / f64::from(self.steps.max(2) - 1);
+        self.from + share * (self.to - self.from)
+    }
+
+    /// Makes the diagram; `seen` is called as values are done, in any order.
+    ///
+    /// # Errors
+    /// [`InputError`] names what is out of range; with [`Follow::Reset`] also a start that some value
+    /// does not admit.
+    pub fn steps(&self, seen: impl Fn() + Sync + Send) -> Result<Vec<Step>, InputError> {
+        let steps: Vec<u32> = (0..self.steps).collect();
+        match self.follow {
+            Follow::Reset => {
+                let step = |step: &u32| {
+                    let model = self.model(*step)?;
+                    let done = self.step(&model, *step, model.start(&self.start)?);
+                    seen();
+                    Ok(done)
+                };
+                parallel::map(&steps, step).into_iter().collect()
+            }
+            Follow::Carry => {
+                let mut last: Option<Point> = None;
+                let mut done = Vec::with_capacity(steps.len());
+                for step in steps {
+                    let model = self.model(step)?;
+                    let entry = match last {
+                        None => model.start(&self.start)?,
+                        // A motion that has left for good leaves the range of starts too.
+                        Some(point) => StrobeMap::new(model, self.instant(&model))
+                            .entry(point)
+                            .or_else(|_| model.start(&self.start))?,
+                    };
+                    let next = self.step(&model, step, entry);
+                    last = next.points.last().copied();
+                    done.push(next);
+                    seen();
+                }
+                Ok(done)
+            }
+        }
+    }
+
+    fn model(&self, step: u32) -> Result<Model, InputError> {
+        Model::new(self.parameter.set(self.parameters, self.value(step)))
+    }
+
+    fn instant(&self, model: &Model) -> Instant {
+        Instant::at(model.parameters().omega, self.start.tau, self.start.cycle)
+    }
+
+    fn step(&self, model: &Model, step: u32, entry: Entry) -> Step {
+        let first = entry.instant.after_periods(self.transient, 1);
+        let last = first.after_periods(u64::from(self.periods), 1);
+        let strobes = Section::along(model.trajectory(entry).until(last), first);
+        // One strobe more than is kept closes the last period.
+        let kept = self.periods as usize;
+        let strobes: Vec<Entry> = strobes.take(kept + 1).collect();
+        let drift_per_period = match (strobes.first(), strobes.last()) {
+            (Some(first), Some(last)) if kept > 0 => (last.v() - first.v()) / kept as f64,
+            _ => f64::NAN,
+        };
+        let points = strobes.iter().take(kept).map(Entry::point).collect();
+        let endless = strobes.last().and_then(|last| Section::endless_at(model, last));
+        Step { value: self.value(step), points, drift_per_period, endless }
+    }
+}

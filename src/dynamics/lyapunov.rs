@@ -1,0 +1,280 @@
+//! Lyapunov exponents with saltation, and the contraction that their sum must equal.
+//!
+//! # The third exponent
+//!
+//! An impact swallows the direction A = dp - dq, and on the slider p and q move as one: with either
+//! the last exponent is minus infinity. Only a motion in flight throughout has three finite ones.
+//!
+//! # The exact mean contraction
+//!
+//! The other two exponents are those of a pair of errors with dp = dq on the slider. Their sum is the
+//! mean growth of the area w = dp ^ dy that the pair spans, and that is known from the durations alone.
+//!
+//! - Contact (Eq. 12): q' = y, y' = -2 xi y - q + F; the divergence is -2 xi, w shrinks by
+//!   exp(-2 xi d).
+//! - Progression (Eq. 13): q' = (1 - q)/(2 xi), y' = F - 1; the divergence is -1/(2 xi).
+//! - At f = 0 and f = 1 the field is continuous: nothing changes.
+//! - Separation raises the dimension from 2 to 3: the pair has dp = dq, so dp ^ dq = 0 and
+//!   dy ^ dq = -w.
+//! - Flight (Eq. 11): p'' = F, q' = -q/(2 xi). dp ^ dy is conserved. With e = exp(-d/(2 xi)) after
+//!   a time d, dy ^ dq = -e w and, as dp has grown by d dy, dp ^ dq = -e d w.
+//! - Impact lowers it to 2 again, A = dp - dq. Into contact dq+ = dp, dy+ = dy - 2 xi A, so
+//!   w+ = dp ^ dy + 2 xi dp ^ dq = w (1 - 2 xi e d). Straight into progression
+//!   dq+ = dp + (1 - f) A/f, dy+ = dy - 2 xi A/f, so
+//!   w+ = dp ^ dy + (2 xi/f) dp ^ dq + ((1 - f)/f)(dp ^ dy + dy ^ dq), that is
+//!   w (e + (1 - e)/f - 2 xi e d/f), which is the former at f = 1.
+//!
+//! The mean contraction per forcing period is the sum of the logarithms over the periods. With an
+//! impact, f > 1 enters as the one thing that is not a duration: dp ^ dy shrinks to about 1/f.
+//!
+//! # How the exponents are found
+//!
+//! The area's factor is det of the pair's derivative, and the second diagonal entry of its QR
+//! decomposition is det over the first. So the first exponent is the mean logarithm of one error's
+//! growth, renormalised in every phase, and the second is that of the area less the first. As a
+//! difference of vectors it would be lost in rounding wherever a phase on the slider contracts by
+//! more than 1e16, which one progression does where xi is small.
+
+use super::section::Section;
+use super::tangent::{Tangent, contact_rates};
+use crate::entry::Entry;
+use crate::instant::Instant;
+use crate::leg::{Endless, Exit, Leg};
+use crate::model::{Model, Motion};
+use crate::phase::Phase;
+
+/// Batches for the standard error.
+pub const BATCHES: u64 = 32;
+
+/// Lyapunov exponents of a motion.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spectrum {
+    /// Per forcing period, largest first; minus infinity where a direction is swallowed.
+    pub exponents_per_period: [f64; 3],
+    /// Their standard errors, from the scatter of the means over [`BATCHES`] batches of equal length:
+    /// honest as soon as a batch is longer than the motion remembers. NaN of what is not finite, and
+    /// where there is one period only.
+    pub standard_error: [f64; 3],
+    /// Mean growth of the area per forcing period, from durations and impacts alone: the sum of the
+    /// first two exponents.
+    pub contraction_per_period: f64,
+    /// Mean drift per forcing period.
+    pub drift_per_period: f64,
+    /// Why the motion ends in a phase that never ends, where it does.
+    pub endless: Option<Endless>,
+}
+
+impl Spectrum {
+    /// The exponents over `periods` forcing periods (at least one) that follow `transient` ones.
+    ///
+    /// Where a phase that never ends is reached they are those of that phase, which are known.
+    #[must_use]
+    pub fn of(model: &Model, from: Entry, transient: u64, periods: u64) -> Self {
+        let periods = periods.max(1);
+        let mut run = Run::new(model, from, transient, periods);
+        let begin = from.instant.after_periods(transient, 1);
+        let end = begin.after_periods(periods, 1);
+        for leg in model.trajectory(from).until(end) {
+            run.pass(&leg);
+        }
+        run.spectrum(model)
+    }
+
+    /// Whether the largest exponent is above zero by more than `errors` standard errors.
+    #[must_use]
+    pub fn is_chaotic(&self, errors: f64) -> bool {
+        self.exponents_per_period[0] > errors * self.standard_error[0]
+    }
+}
+
+/// What has been seen so far at the end of a batch.
+#[derive(Clone, Copy, Debug)]
+struct Mark {
+    length: f64,
+    size: f64,
+    drift: f64,
+}
+
+/// One run, leg by leg.
+struct Run {
+    tangent: Tangent,
+    two_xi: f64,
+    transient: u64,
+    periods: u64,
+    batches: u64,
+    start: Instant,
+    next: Instant,
+    marks: Vec<Mark>,
+    contraction: f64,
+    touched: bool,
+    last: Option<Leg>,
+}
+
+impl Run {
+    fn new(model: &Model, from: Entry, transient: u64, periods: u64) -> Self {
+        Self {
+            tangent: Tangent::new(model),
+            two_xi: model.constants().two_xi,
+            transient,
+            periods,
+            batches: periods.min(BATCHES),
+            start: from.instant,
+            next: from.instant.after_periods(transient, 1),
+            marks: Vec::new(),
+            contraction: 0.0,
+            touched: false,
+            last: None,
+        }
+    }
+
+    fn observing(&self) -> bool {
+        !self.marks.is_empty()
+    }
+
+    fn pass(&mut self, leg: &Leg) {
+        let mut done = 0.0;
+        while self.marks.len() as u64 <= self.batches && !leg.ends_by(&self.next) {
+            let here = leg.elapsed_at(&self.next).max(done);
+            self.go(leg, done, here);
+            self.mark(leg, here);
+            done = here;
+        }
+        if let Exit::Switch(next) = leg.exit() {
+            self.go(leg, done, leg.duration());
+            self.tangent.switch(leg);
+            if self.observing() && leg.phase() == Phase::NoContact {
+                self.contraction += impact_factor(leg, next.phase(), self.two_xi).abs().ln();
+                self.touched = true;
+            }
+        }
+        self.last = Some(*leg);
+    }
+
+    /// Carries errors from one time in a phase to another.
+    fn go(&mut self, leg: &Leg, from: f64, to: f64) {
+        let elapsed = (to - from).max(0.0);
+        self.tangent.flow(leg, elapsed);
+        if self.observing() {
+            self.touched |= leg.phase() != Phase::NoContact;
+            self.contraction -= match leg.phase() {
+                Phase::NoContact => 0.0,
+                Phase::Contact => self.two_xi * elapsed,
+                Phase::Progression => elapsed / self.two_xi,
+            };
+        }
+    }
+
+    fn mark(&mut self, leg: &Leg, here: f64) {
+        let Tangent { length, size, .. } = self.tangent;
+        self.marks.push(Mark { length, size, drift: leg.at(here).v });
+        let passed = batch_end(self.marks.len() as u64, self.periods, self.batches);
+        self.next = self.start.after_periods(self.transient + passed, 1);
+    }
+
+    fn spectrum(&self, model: &Model) -> Spectrum {
+        let periods = self.periods as f64;
+        let (Some(first), Some(end)) = (self.marks.first(), self.marks.last()) else {
+            return Spectrum::UNKNOWN;
+        };
+        let drift_per_period = (end.drift - first.drift) / periods;
+        let third =
+            if self.touched { f64::NEG_INFINITY } else { -model.period() * model.constants().rate };
+        if let Some(endless) = self.endless(model) {
+            return endless_spectrum(model, endless, third, drift_per_period);
+        }
+        let growth = |a: &Mark, b: &Mark| {
+            let length = b.length - a.length;
+            [length, b.size - a.size - length]
+        };
+        let per_batch: Vec<[f64; 2]> = self
+            .marks
+            .windows(2)
+            .zip(1..)
+            .map(|(pair, k)| {
+                let length = self.batch(k) - self.batch(k - 1);
+                growth(&pair[0], &pair[1]).map(|sum| sum / length as f64)
+            })
+            .collect();
+        let mut finite: Vec<(f64, f64)> = growth(first, end)
+            .into_iter()
+            .enumerate()
+            .map(|(i, sum)| (sum / periods, standard_error(per_batch.iter().map(|it| it[i]))))
+            .collect();
+        let error = if third.is_finite() { 0.0 } else { f64::NAN };
+        finite.push((third, error));
+        finite.sort_by(|a, b| b.0.total_cmp(&a.0));
+        Spectrum {
+            exponents_per_period: [finite[0].0, finite[1].0, finite[2].0],
+            standard_error: [finite[0].1, finite[1].1, finite[2].1],
+            contraction_per_period: self.contraction / periods,
+            drift_per_period,
+            endless: None,
+        }
+    }
+
+    fn batch(&self, k: u64) -> u64 {
+        batch_end(k, self.periods, self.batches)
+    }
+
+    /// Why the last phase has no end, if it has none.
+    fn endless(&self, model: &Model) -> Option<Endless> {
+        Section::endless_at(model, self.last?.entry())
+    }
+}
+
+/// The period, counted from the transient's end, at which a batch ends.
+fn batch_end(k: u64, periods: u64, batches: u64) -> u64 {
+    (u128::from(k) * u128::from(periods) / u128::from(batches)) as u64
+}
+
+/// By how much the impact that ends a flight changes an area that was dp ^ dy at separation.
+fn impact_factor(leg: &Leg, next: Phase, two_xi: f64) -> f64 {
+    let d = leg.duration();
+    let e = (-d / two_xi).exp();
+    let lost = two_xi * e * d;
+    match (next, &leg.motion) {
+        (Phase::Progression, Motion::NoContact(_)) => {
+            let f = two_xi * leg.point(d).guard.orders[1];
+            e + (1.0 - e - lost) / f
+        }
+        _ => 1.0 - lost,
+    }
+}
+
+/// Of the mean of batch means; NaN of a single one.
+fn standard_error(batches: impl Iterator<Item = f64> + Clone) -> f64 {
+    let count = batches.clone().count() as f64;
+    let mean = batches.clone().sum::<f64>() / count;
+    let scatter: f64 = batches.map(|it| (it - mean).powi(2)).sum();
+    (scatter / (count * (count - 1.0))).sqrt()
+}
+
+/// The exponents of a phase that never ends.
+fn endless_spectrum(model: &Model, endless: Endless, third: f64, drift: f64) -> Spectrum {
+    let period = model.period();
+    let slider_returns = -period * model.constants().rate;
+    let [fast, slow] = contact_rates(model.parameters().xi).map(|rate| -period * rate);
+    let (exponents, contraction) = match endless {
+        Endless::NeverReturns => ([0.0, 0.0, third], 0.0),
+        Endless::NeverStops => ([0.0, slider_returns, f64::NEG_INFINITY], slider_returns),
+        Endless::RestsForEver => ([slow, fast, f64::NEG_INFINITY], slow + fast),
+    };
+    Spectrum {
+        exponents_per_period: exponents,
+        standard_error: exponents.map(|it| if it.is_finite() { 0.0 } else { f64::NAN }),
+        contraction_per_period: contraction,
+        drift_per_period: drift,
+        endless: Some(endless),
+    }
+}
+
+impl Spectrum {
+    /// Nothing was observed.
+    const UNKNOWN: Self = Self {
+        exponents_per_period: [f64::NAN; 3],
+        standard_error: [f64::NAN; 3],
+        contraction_per_period: f64::NAN,
+        drift_per_period: f64::NAN,
+        endless: None,
+    };
+}

@@ -1,0 +1,71 @@
+//! Stroboscopic sections: the motion at successive instants with one forcing angle.
+
+use crate::entry::Entry;
+use crate::instant::Instant;
+use crate::leg::{Endless, Exit, Leg};
+use crate::model::Model;
+use crate::trajectory::Trajectory;
+
+/// The strobes of one motion from some instant on: one pass over its phases, in constant memory.
+///
+/// It has no end of its own, and a motion whose phase never ends is followed all the same.
+#[derive(Clone, Debug)]
+pub struct Section {
+    trajectory: Trajectory,
+    leg: Option<Leg>,
+    next: Instant,
+}
+
+impl Section {
+    /// The strobes of a run from `first` on, which is not before its start.
+    ///
+    /// Phases that a horizon cuts are continued beyond it.
+    #[must_use]
+    pub fn along(mut trajectory: Trajectory, first: Instant) -> Self {
+        let leg = trajectory.next();
+        Self { trajectory, leg, next: first }
+    }
+
+    /// Why the phase that begins, or goes on, at `entry` has no end, where that is proved.
+    #[must_use]
+    pub fn endless_at(model: &Model, entry: &Entry) -> Option<Endless> {
+        Self::along(model.trajectory(*entry), entry.instant).endless()
+    }
+
+    /// Why the phase that the motion is in has no end, where that is proved.
+    #[must_use]
+    pub fn endless(&self) -> Option<Endless> {
+        match self.leg.as_ref()?.exit() {
+            Exit::Endless(endless) => Some(*endless),
+            Exit::Switch(_) | Exit::Horizon => None,
+        }
+    }
+}
+
+impl Iterator for Section {
+    type Item = Entry;
+
+    fn next(&mut self) -> Option<Entry> {
+        while self.leg.as_ref()?.ends_by(&self.next) {
+            self.leg = self.trajectory.next();
+        }
+        let strobe = self.leg.as_ref()?.entry_at(&self.next);
+        self.next = self.next.after_periods(1, 1);
+        Some(strobe)
+    }
+}
+
+/// The stroboscopic section at the forcing angle `angle` (omega tau mod 2 pi, radians, phi not
+/// included): `count` strobes, the first at least `transient` forcing periods after `from`.
+pub fn section(
+    model: &Model,
+    from: Entry,
+    angle: f64,
+    transient: u64,
+    count: u64,
+) -> impl Iterator<Item = Entry> {
+    let first = from.instant.after_periods(transient, 1).first_at_angle(angle);
+    let last = first.after_periods(count, 1);
+    let strobes = Section::along(model.trajectory(from).until(last), first);
+    (0..count).zip(strobes).map(|(_, strobe)| strobe)
+}

@@ -1,0 +1,181 @@
+//! Exponents against QR of the strobe map's derivative, their sum against the exact contraction.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a panic is a failed test"
+)]
+
+use percuss::dynamics::lyapunov::Spectrum;
+use percuss::dynamics::strobe::StrobeMap;
+use percuss::variation::{P, Q, Y, product};
+use percuss::{Entry, Exit, Model, Parameters, Phase, Start};
+
+fn model(parameters: Parameters) -> Model {
+    Model::new(parameters).unwrap()
+}
+
+fn from_rest(model: &Model) -> Entry {
+    model.start(&Start::default()).unwrap()
+}
+
+fn regimes() -> Vec<Parameters> {
+    let paper = Parameters::default();
+    vec![
+        paper,
+        Parameters { omega: 0.1, ..paper },
+        Parameters { xi: 0.1, omega: 1.4, ..paper },
+        Parameters { xi: 0.1, omega: 1.6, ..paper },
+        Parameters { xi: 0.5, a: 2.0, b: 0.6, omega: 0.9, ..paper },
+        Parameters { xi: 1.0, a: 3.0, b: 0.5, omega: 2.0, ..paper },
+        Parameters { xi: 1.5, a: 4.0, b: 0.5, omega: 3.0, ..paper },
+    ]
+}
+
+/// The textbook: Gram-Schmidt of three vectors after every period, by the 3 x 3 derivative.
+fn by_qr(model: &Model, from: Entry, transient: u64, periods: u64) -> [f64; 3] {
+    let map = StrobeMap::new(*model, from.instant);
+    let mut entry = from;
+    let mut frame = [[0.36, 0.48, 0.8], [0.8, -0.6, 0.0], [0.48, 0.64, -0.6]];
+    let mut sums = [0.0; 3];
+    for n in 0..transient + periods {
+        let passage = map.passage(&entry, 1);
+        let jacobian = passage.jacobian();
+        for vector in &mut frame {
+            *vector = jacobian.map(|row| (0..3).map(|k| row[k] * vector[k]).sum());
+        }
+        for (i, sum) in sums.iter_mut().enumerate() {
+            let (done, rest) = frame.split_at_mut(i);
+            let vector = &mut rest[0];
+            for other in done {
+                let along: f64 = vector.iter().zip(&*other).map(|(a, b)| a * b).sum();
+                vector.iter_mut().zip(&*other).for_each(|(x, unit)| *x -= along * unit);
+            }
+            let length = vector.iter().map(|x| x * x).sum::<f64>().sqrt();
+            if n >= transient {
+                *sum += length.ln();
+            }
+            *vector = vector.map(|x| x / length);
+        }
+        entry = passage.image;
+    }
+    sums.map(|sum| sum / periods as f64)
+}
+
+/// On orbits both are means of the same numbers; in chaos they follow different runs, since rounding
+/// errors separate them, and agree within their standard errors.
+#[test]
+fn exponents_are_those_of_the_strobe_maps_derivative() {
+    let (transient, periods) = (400, 4000);
+    for parameters in regimes() {
+        let model = model(parameters);
+        let from = from_rest(&model);
+        let found = Spectrum::of(&model, from, transient, periods);
+        let expected = by_qr(&model, from, transient, periods);
+        for i in 0..2 {
+            // Gram-Schmidt loses what one period contracts by more than 1/eps.
+            if !expected[i].is_finite() || found.exponents_per_period[i] < -36.0 {
+                continue;
+            }
+            let apart = (found.exponents_per_period[i] - expected[i]).abs();
+            // Five standard errors of a difference of two runs; each first direction is good to about
+            // one logarithm of order 1 over the whole run.
+            let allowed = 5.0 * 2.0_f64.sqrt() * found.standard_error[i] + 2.0 / periods as f64;
+            assert!(apart <= allowed, "{parameters:?} {i}: {found:?} {expected:?}");
+        }
+        assert!(found.exponents_per_period[2] == f64::NEG_INFINITY);
+    }
+}
+
+/// The sum of the finite exponents follows from durations alone. 3000 periods of about five phases
+/// are 15000 terms, each rounded a few times: 1e5 eps at the most, and ten times that where the
+/// logarithms near an impact have either sign.
+#[test]
+fn the_sum_is_the_exact_contraction() {
+    let stiff = [1e-8, 1e-4, 1e4].map(|xi| Parameters { xi, ..Parameters::default() });
+    let mut chaotic = 0;
+    for parameters in regimes().into_iter().chain(stiff) {
+        let model = model(parameters);
+        let found = Spectrum::of(&model, from_rest(&model), 300, 3000);
+        let [first, second, _] = found.exponents_per_period;
+        let apart = (first + second - found.contraction_per_period).abs();
+        let allowed = 1e6 * f64::EPSILON * found.contraction_per_period.abs();
+        assert!(apart <= allowed, "{parameters:?}: {apart:e} {found:?}");
+        assert!(found.contraction_per_period < 0.0);
+        chaotic += usize::from(found.is_chaotic(3.0));
+    }
+    assert!(chaotic >= 4, "{chaotic}");
+}
+
+/// As much is swallowed at an impact as the derivation says: the area of two errors with dp = dq,
+/// followed by the motion itself from just after a separation to just after the impact.
+#[test]
+fn an_impact_changes_areas_as_derived() {
+    let mut straight = 0;
+    let hard = Parameters { a: 2.0, b: 0.6, omega: 0.9, xi: 0.5, ..Parameters::default() };
+    for parameters in regimes().into_iter().chain([hard]) {
+        let model = model(parameters);
+        let two_xi = 2.0 * parameters.xi;
+        let mut separated = false;
+        for leg in model.trajectory(from_rest(&model)).take(300) {
+            let Exit::Switch(next) = leg.exit() else { break };
+            if leg.phase() == Phase::NoContact && separated {
+                let map = product(&leg.saltation(), &leg.variation(leg.duration()));
+                let image = |dq: f64, dy: f64| {
+                    [Q, Y].map(|row| map[row][P] * dq + map[row][Q] * dq + map[row][Y] * dy)
+                };
+                let (a, b) = (image(1.0, 0.0), image(0.0, 1.0));
+                let area = a[0] * b[1] - a[1] * b[0];
+                let d = leg.duration();
+                let e = (-d / two_xi).exp();
+                let end = leg.at(d).state;
+                let derived = if next.phase() == Phase::Progression {
+                    straight += 1;
+                    let f = two_xi * end.y + end.q;
+                    e + (1.0 - e) / f - two_xi * e * d / f
+                } else {
+                    1.0 - two_xi * e * d
+                };
+                let size = 1.0 + a.iter().chain(&b).fold(0.0_f64, |m, x| m.max(x.abs())).powi(2);
+                assert!((area - derived).abs() <= 64.0 * f64::EPSILON * size, "{area} {derived}");
+            }
+            separated = true;
+        }
+    }
+    assert!(straight > 20, "{straight}");
+}
+
+#[test]
+fn phases_without_end_have_known_exponents() {
+    let paper = Parameters::default();
+    let period = std::f64::consts::TAU;
+    let flies = Parameters { b: -0.1, xi: 1e-8, ..paper };
+    let found = Spectrum::of(&model(flies), from_rest(&model(flies)), 0, 7);
+    let returns = -period / 1.4 / 2e-8;
+    assert_eq!(found.exponents_per_period[..2], [0.0, 0.0]);
+    assert!((found.exponents_per_period[2] / returns - 1.0).abs() <= 4.0 * f64::EPSILON);
+    let slips = model(Parameters { b: 1.5, ..paper });
+    let found = Spectrum::of(&slips, from_rest(&slips), 50, 9);
+    assert_eq!(found.exponents_per_period[0], 0.0);
+    assert_eq!(found.exponents_per_period[2], f64::NEG_INFINITY);
+    for xi in [0.1, 1.0, 3.0] {
+        let rests = model(Parameters { a: 0.05, b: 0.5, xi, omega: 0.7, ..paper });
+        let found = Spectrum::of(&rests, from_rest(&rests), 200, 9);
+        let sum = found.exponents_per_period[0] + found.exponents_per_period[1];
+        let expected = -2.0 * xi * period / 0.7;
+        assert!((sum / expected - 1.0).abs() <= 4.0 * f64::EPSILON, "{xi}: {found:?}");
+    }
+}
+
+#[test]
+fn the_shortest_runs_are_answered() {
+    for parameters in regimes() {
+        let model = model(parameters);
+        for (transient, periods) in [(0, 0), (0, 1), (1, 1), (3, 2)] {
+            let found = Spectrum::of(&model, from_rest(&model), transient, periods);
+            assert!(!found.exponents_per_period[0].is_nan(), "{parameters:?} {found:?}");
+            assert_eq!(found.standard_error[0].is_nan(), periods < 2);
+        }
+    }
+}

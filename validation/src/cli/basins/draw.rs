@@ -1,0 +1,63 @@
+//! The basins as a picture.
+
+use super::Survey;
+use crate::picture::{self, BASIN_COLOURS, BasinMap, Cell, Shown};
+use anyhow::Result;
+use percuss::dynamics::attractor::{Attractor, Basins, Kind, Label};
+
+pub(super) fn bytes(survey: &Survey) -> Result<Vec<u8>> {
+    let Survey { problem, transient, basins } = survey;
+    let grid = &basins.grid;
+    let colours = colours(&basins.attractors);
+    let shown = basins.attractors.iter().enumerate().zip(colours);
+    let map = BasinMap {
+        title: picture::caption(problem.model.parameters()),
+        note: format!(
+            "{} x {} starts at the centres of cells, q = {} or on the slider where p > q + g;\n\
+             strobes at \u{3c4} = {} and whole forcing periods later; at first {transient} periods a start",
+            grid.columns, grid.rows, grid.q, problem.start.tau
+        ),
+        window: [grid.window.p, grid.window.y],
+        columns: grid.columns as usize,
+        cells: basins.labels.iter().map(|label| cell(*label)).collect(),
+        attractors: shown.map(|((id, it), colour)| shown_as(basins, id, it, colour)).collect(),
+    };
+    Ok(picture::png(&map)?)
+}
+
+const fn cell(label: Label) -> Cell {
+    match label {
+        Label::Attractor(id) => Cell::Attractor(id),
+        Label::Escaping => Cell::Escaping,
+        Label::Unresolved => Cell::Unresolved,
+    }
+}
+
+/// The first chaotic attractor is orange on yellow, as in the paper; all others take the colours
+/// that follow.
+fn colours(attractors: &[Attractor]) -> Vec<usize> {
+    let first = attractors.iter().position(|it| it.kind == Kind::Chaotic);
+    let mut next = 0;
+    let colour = |id: usize| {
+        if Some(id) == first {
+            return 0;
+        }
+        next += 1;
+        1 + (next - 1) % (BASIN_COLOURS - 1)
+    };
+    (0..attractors.len()).map(colour).collect()
+}
+
+fn shown_as(basins: &Basins, id: usize, attractor: &Attractor, colour: usize) -> Shown {
+    let what = match attractor.period() {
+        Some(period) => format!("{id}: period {period}"),
+        None => format!("{id}: {}", attractor.kind.token()),
+    };
+    let share = 100.0 * basins.fraction(Label::Attractor(id));
+    Shown {
+        name: format!("{what}\n{share:.2} % of starts"),
+        colour,
+        points: attractor.points.iter().map(|[p, y, _]| [*p, *y]).collect(),
+        is_orbit: attractor.orbit.is_some(),
+    }
+}

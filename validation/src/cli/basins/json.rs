@@ -1,0 +1,163 @@
+//! The attractors as JSON.
+
+use super::Survey;
+use crate::cli::model::ParametersJson;
+use percuss::dynamics::attractor::{
+    Attractor, Basins, Entropy, Label, Uncertainty, entropy, uncertainty,
+};
+use percuss::dynamics::strobe::Point;
+use serde::Serialize;
+
+#[derive(Serialize)]
+pub(super) struct Json {
+    schema: u32,
+    percuss: &'static str,
+    parameters: ParametersJson,
+    grid: [u32; 2],
+    window: [f64; 4],
+    q: f64,
+    tau: f64,
+    cycle: i64,
+    transient: u64,
+    attractors: Vec<AttractorJson>,
+    unresolved: f64,
+    uncertainty: UncertaintyJson,
+    basin_entropy: EntropyJson,
+}
+
+#[derive(Serialize)]
+struct AttractorJson {
+    id: i32,
+    kind: &'static str,
+    period: Option<u32>,
+    fraction: f64,
+    fraction_error: f64,
+    points: Vec<Point>,
+    drift_per_period: f64,
+    multipliers: Vec<[f64; 2]>,
+    lyapunov_per_period: f64,
+    lyapunov_error: f64,
+}
+
+#[derive(Serialize)]
+struct UncertaintyJson {
+    epsilon: Vec<f64>,
+    uncertain: Vec<f64>,
+    exponent: f64,
+    error: f64,
+    dimension: f64,
+}
+
+#[derive(Serialize)]
+struct EntropyJson {
+    side: u32,
+    all: f64,
+    boundary: f64,
+    boundary_error: f64,
+    boundary_boxes: u64,
+}
+
+/// Strobes that are written of an attractor that is no orbit.
+const POINTS: usize = 1000;
+/// Cells along the side of a box of the basin entropy, as in its authors' paper.
+const BOX: u32 = 5;
+/// The id of what escapes.
+pub(super) const ESCAPING: i32 = -2;
+/// The label of what is not known.
+pub(super) const UNRESOLVED: i32 = -1;
+
+/// A label as it is written.
+pub(super) fn id(label: Label) -> i32 {
+    match label {
+        Label::Attractor(id) => i32::try_from(id).unwrap_or(i32::MAX),
+        Label::Escaping => ESCAPING,
+        Label::Unresolved => UNRESOLVED,
+    }
+}
+
+impl Json {
+    pub(super) fn of(survey: &Survey) -> Self {
+        let Survey { problem, transient, basins } = survey;
+        let Basins { grid, attractors, .. } = basins;
+        let parameters = problem.model.parameters();
+        let listed = attractors.iter().enumerate();
+        let mut entries: Vec<_> =
+            listed.map(|(id, it)| AttractorJson::of(basins, Label::Attractor(id), it)).collect();
+        if basins.fraction(Label::Escaping) > 0.0 {
+            entries.push(AttractorJson::escaping(basins, parameters.b));
+        }
+        let [[p_low, p_high], [y_low, y_high]] = [grid.window.p, grid.window.y];
+        Self {
+            schema: 1,
+            percuss: env!("CARGO_PKG_VERSION"),
+            parameters: parameters.into(),
+            grid: [grid.columns, grid.rows],
+            window: [p_low, p_high, y_low, y_high],
+            q: grid.q,
+            tau: problem.start.tau,
+            cycle: problem.start.cycle,
+            transient: *transient,
+            attractors: entries,
+            unresolved: basins.fraction(Label::Unresolved),
+            uncertainty: UncertaintyJson::of(&uncertainty(basins)),
+            basin_entropy: EntropyJson::of(&entropy(basins, BOX)),
+        }
+    }
+}
+
+impl AttractorJson {
+    fn of(basins: &Basins, label: Label, attractor: &Attractor) -> Self {
+        let points = &attractor.points;
+        let from = if attractor.orbit.is_some() { 0 } else { points.len().saturating_sub(POINTS) };
+        Self {
+            id: id(label),
+            kind: attractor.kind.token(),
+            period: attractor.period(),
+            fraction: basins.fraction(label),
+            fraction_error: basins.fraction_error(label),
+            points: points[from..].to_vec(),
+            drift_per_period: attractor.drift_per_period,
+            multipliers: attractor.orbit.iter().flat_map(|orbit| orbit.multipliers).collect(),
+            lyapunov_per_period: attractor.lyapunov_per_period,
+            lyapunov_error: attractor.lyapunov_error,
+        }
+    }
+
+    /// Below b = 1 the slider always stops, so it is the mass that leaves, and the drift is zero; a
+    /// slider that never stops gathers speed.
+    fn escaping(basins: &Basins, b: f64) -> Self {
+        Self {
+            id: ESCAPING,
+            kind: "escaping",
+            period: None,
+            fraction: basins.fraction(Label::Escaping),
+            fraction_error: basins.fraction_error(Label::Escaping),
+            points: Vec::new(),
+            drift_per_period: if b < 1.0 { 0.0 } else { f64::INFINITY },
+            multipliers: Vec::new(),
+            // Errors of y stay, and shear p or v: they grow as time, not exponentially.
+            lyapunov_per_period: 0.0,
+            lyapunov_error: 0.0,
+        }
+    }
+}
+
+impl UncertaintyJson {
+    fn of(uncertainty: &Uncertainty) -> Self {
+        let scales = &uncertainty.scales;
+        Self {
+            epsilon: scales.iter().map(|scale| scale.epsilon).collect(),
+            uncertain: scales.iter().map(|it| it.uncertain as f64 / it.starts as f64).collect(),
+            exponent: uncertainty.exponent,
+            error: uncertainty.error,
+            dimension: uncertainty.dimension(),
+        }
+    }
+}
+
+impl EntropyJson {
+    fn of(entropy: &Entropy) -> Self {
+        let Entropy { side, all, boundary, boundary_error, boundary_boxes } = *entropy;
+        Self { side, all, boundary, boundary_error, boundary_boxes }
+    }
+}

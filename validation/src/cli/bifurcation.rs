@@ -1,0 +1,167 @@
+//! `bifurcation`: a brute-force diagram, as a table or a picture.
+
+use super::endless::words;
+use super::model::ModelFlags;
+use super::output::Destination;
+use super::{format, parse, say, work};
+use crate::number::shortest;
+use crate::picture::{self, Dots, Panel};
+use anyhow::{Result, anyhow, bail};
+use clap::{Args, ValueEnum};
+use percuss::dynamics::diagram::{Diagram, Follow, Step};
+use percuss::{InputError, Parameter};
+use std::io::Write;
+use std::path::PathBuf;
+
+/// Brute-force bifurcation diagram, with drift per period
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// What varies: a, b, xi, omega, g or phi
+    #[arg(long, value_name = "NAME", value_parser = parse::parameter)]
+    parameter: Parameter,
+    /// Its first value
+    #[arg(long, value_name = "X", value_parser = parse::number, allow_hyphen_values = true)]
+    from: f64,
+    /// Its last value
+    #[arg(long, value_name = "X", value_parser = parse::number, allow_hyphen_values = true)]
+    to: f64,
+    /// Number of values, both ends included
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    steps: u32,
+    /// Forcing periods that are left out at each value
+    #[arg(long, value_name = "M")]
+    transient: u64,
+    /// Points at each value, one a forcing period, at least 1
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    periods: u32,
+    /// Starts each value from the last state of the one before (the default)
+    #[arg(long, conflicts_with = "reset")]
+    carry: bool,
+    /// Starts each value from the start given
+    #[arg(long)]
+    reset: bool,
+    /// Where the result goes, - is stdout; its extension (csv, png, svg) is its format
+    #[arg(long, value_name = "PATH")]
+    output: Option<PathBuf>,
+    /// Format where --output has no extension
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    #[command(flatten)]
+    model: ModelFlags,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Csv,
+    Png,
+    Svg,
+}
+
+/// Rows that are held in memory.
+const MAX_ROWS: u64 = 10_000_000;
+/// An SVG of more points is not small.
+const MAX_SVG: u64 = 20_000;
+
+pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<()> {
+    let format = format::chosen(arguments.output.as_deref(), arguments.format, Format::Csv)?;
+    let diagram = diagram(arguments)?;
+    check_size(arguments, format)?;
+    let bar = work::bar(u64::from(arguments.steps), "values");
+    let steps = work::pool(threads)?.install(|| diagram.steps(|| bar.inc(1)));
+    bar.finish_and_clear();
+    let steps =
+        steps.map_err(|error| anyhow!("--parameter {}: {error}", diagram.parameter.name()))?;
+    Destination::new(arguments.output.as_deref()).write(|out| match format {
+        Format::Csv => write_csv(&steps, out),
+        Format::Png => Ok(out.write_all(&picture::png(&drawing(&diagram, &steps))?)?),
+        Format::Svg => Ok(out.write_all(picture::svg(&drawing(&diagram, &steps))?.as_bytes())?),
+    })?;
+    tell_endless(&steps);
+    Ok(())
+}
+
+fn diagram(arguments: &Arguments) -> Result<Diagram> {
+    let problem = arguments.model.problem()?;
+    let parameters = *problem.model.parameters();
+    let parameter = arguments.parameter;
+    for (flag, value) in [("--from", arguments.from), ("--to", arguments.to)] {
+        if let Err(InputError::OutOfRange { accepted, .. }) =
+            parameter.set(parameters, value).check()
+        {
+            bail!("{flag} {value} is not accepted: {accepted}");
+        }
+    }
+    let follow = if arguments.reset { Follow::Reset } else { Follow::Carry };
+    Ok(Diagram {
+        parameters,
+        start: problem.start,
+        parameter,
+        from: arguments.from,
+        to: arguments.to,
+        steps: arguments.steps,
+        transient: arguments.transient,
+        periods: arguments.periods,
+        follow,
+    })
+}
+
+fn check_size(arguments: &Arguments, format: Format) -> Result<()> {
+    work::check_horizon(arguments.transient, u64::from(arguments.periods))?;
+    let rows = u64::from(arguments.steps) * u64::from(arguments.periods);
+    let most = if format == Format::Svg { MAX_SVG } else { MAX_ROWS };
+    if rows > most {
+        bail!("--steps times --periods is {rows}: accepted are at most {most}");
+    }
+    Ok(())
+}
+
+fn write_csv(steps: &[Step], out: &mut dyn Write) -> Result<()> {
+    writeln!(out, "parameter,n,p,y,q,drift_per_period")?;
+    for step in steps {
+        let [value, drift] = [step.value, step.drift_per_period].map(shortest);
+        for (n, point) in step.points.iter().enumerate() {
+            let [p, y, q] = point.map(shortest);
+            writeln!(out, "{value},{n},{p},{y},{q},{drift}")?;
+        }
+    }
+    Ok(())
+}
+
+fn drawing(diagram: &Diagram, steps: &[Step]) -> Dots {
+    let section =
+        |step: &Step| step.points.iter().map(|it| [step.value, it[0]]).collect::<Vec<_>>();
+    let how = match diagram.follow {
+        Follow::Carry => "each value starts where the last one ended",
+        Follow::Reset => "each value starts from the start given",
+    };
+    let symbol = picture::symbol(diagram.parameter);
+    Dots {
+        title: picture::caption_without(&diagram.parameters, Some(diagram.parameter)),
+        note: format!(
+            "{} values of {symbol}, {} strobes each after {} forcing periods; {how}",
+            diagram.steps, diagram.periods, diagram.transient
+        ),
+        below: symbol.to_owned(),
+        panels: vec![
+            Panel {
+                beside: "p (displacement)".to_owned(),
+                points: steps.iter().flat_map(section).collect(),
+                share: 0.68,
+            },
+            Panel {
+                beside: "drift per period".to_owned(),
+                points: steps.iter().map(|step| [step.value, step.drift_per_period]).collect(),
+                share: 0.32,
+            },
+        ],
+    }
+}
+
+/// One line where motions end in a phase without end.
+fn tell_endless(steps: &[Step]) {
+    let ended: Vec<_> = steps.iter().filter_map(|step| step.endless).collect();
+    if let Some(first) = ended.first() {
+        let values = format!("{} of {} values", ended.len(), steps.len());
+        say(&format!("at {values} the run ends in a phase without end (first: {})", words(*first)));
+    }
+}

@@ -1,0 +1,38 @@
+//! Which format is written: the extension of --output, or --format where there is none.
+
+use anyhow::{Result, bail};
+use clap::ValueEnum;
+use std::path::Path;
+
+/// The format that --output and --format agree on, or else `usual`.
+pub(super) fn chosen<F: ValueEnum + PartialEq>(
+    output: Option<&Path>,
+    stated: Option<F>,
+    usual: F,
+) -> Result<F> {
+    let extension = output.and_then(Path::extension).and_then(|extension| extension.to_str());
+    let known = extension.and_then(|extension| F::from_str(extension, true).ok());
+    match (known, stated, extension) {
+        (Some(known), Some(stated), Some(extension)) if known != stated => {
+            bail!(
+                "--format {} contradicts the extension of --output, {extension}: accepted is one of them",
+                name(&stated)
+            )
+        }
+        (Some(format), ..) | (None, Some(format), _) => Ok(format),
+        (None, None, Some(extension))
+            if !output.is_some_and(|path| path.exists() && !path.is_file()) =>
+        {
+            let accepted: Vec<_> = F::value_variants().iter().map(name).collect();
+            bail!(
+                "--output: extension {extension} is not accepted: {}, or --format",
+                accepted.join(", ")
+            )
+        }
+        (None, None, _) => Ok(usual),
+    }
+}
+
+fn name<F: ValueEnum>(format: &F) -> String {
+    format.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
+}
