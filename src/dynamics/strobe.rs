@@ -15,14 +15,14 @@
 //! branch of orbits may turn or lose its stability without a multiplier having passed through 1 or -1.
 //! Where contact grazes f = 1 or f = 0 the field is continuous and nothing jumps.
 
+use super::section::Section;
 use crate::entry::Entry;
 use crate::error::InputError;
 use crate::instant::Instant;
-use crate::leg::{Exit, Leg};
+use crate::leg::Exit;
 use crate::model::Model;
 use crate::phase::Phase;
 use crate::state::State;
-use crate::trajectory::Trajectory;
 use crate::variation::{IDENTITY, Matrix, P, Q, V, Y, product};
 
 /// A point of the section: p, y, q.
@@ -101,12 +101,10 @@ impl StrobeMap {
 
     /// The strobes of the motion that begins at `from`: that instant, and `periods` more one forcing
     /// period apart.
-    #[must_use]
-    pub fn strobes(&self, from: Entry, periods: u64) -> Strobes {
+    pub fn strobes(&self, from: Entry, periods: u64) -> impl Iterator<Item = Entry> + use<> {
         let end = from.instant.after_periods(periods, 1);
-        let mut trajectory = self.model.trajectory(from).until(end);
-        let leg = trajectory.next();
-        Strobes { trajectory, leg, next: from.instant, end }
+        let strobes = Section::along(self.model.trajectory(from).until(end), from.instant);
+        strobes.take_while(move |strobe| strobe.instant <= end)
     }
 }
 
@@ -127,30 +125,5 @@ impl Passage {
     #[must_use]
     pub fn point(&self) -> Point {
         self.image.point()
-    }
-}
-
-/// The strobes of one motion: one pass over its phases, in constant memory.
-#[derive(Clone, Debug)]
-pub struct Strobes {
-    trajectory: Trajectory,
-    leg: Option<Leg>,
-    next: Instant,
-    end: Instant,
-}
-
-impl Iterator for Strobes {
-    type Item = Entry;
-
-    fn next(&mut self) -> Option<Entry> {
-        if self.next > self.end {
-            return None;
-        }
-        while self.leg.as_ref()?.ends_by(&self.next) {
-            self.leg = self.trajectory.next();
-        }
-        let strobe = self.leg.as_ref()?.entry_at(&self.next);
-        self.next = self.next.after_periods(1, 1);
-        Some(strobe)
     }
 }

@@ -3,6 +3,7 @@
 //! The exact solver lives in the crate `percuss` and knows nothing of this one. Here it is one
 //! [`engine::Engine`] among others, held against tables ([`truth`]) that none of them knows.
 
+pub mod arrays;
 pub mod case;
 pub mod cli;
 pub mod engine;

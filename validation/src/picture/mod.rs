@@ -24,7 +24,7 @@ pub use dots::{Dots, Panel};
 pub use frame::{Axis, Scale};
 pub use look::{Look, Marker, looks};
 pub use motion::Motion;
-pub use sheet::{Layer, Plot, Raster, Sheet, Stroke, Window};
+pub use sheet::{KeyEntry, Layer, Plot, Raster, Sheet, Stroke, Window};
 pub use strips::{Strip, Strips};
 pub use tiles::{Tile, Tiles, Tint};
 

@@ -1,6 +1,6 @@
 //! A run as lines in the paper's notation: no contact dash-dotted, contact solid, progression dotted.
 
-use crate::picture::{Layer, Stroke, phase_colour};
+use crate::picture::{KeyEntry, Layer, Stroke, phase_colour};
 use percuss::{Exit, Instant, Leg, Phase};
 
 /// One phase's motion, sampled.
@@ -54,14 +54,13 @@ pub(super) fn lines(pieces: &[Piece], of: impl Fn(&[f64; 5]) -> [f64; 2]) -> Vec
 }
 
 /// The phases' key.
-pub(super) fn key() -> Vec<Layer> {
-    let entry = |(place, phase): (u8, Phase)| Layer::Key {
+pub(super) fn key() -> Layer {
+    let entry = |phase: Phase| KeyEntry {
         name: phase.token().replace('-', " "),
         colour: phase_colour(phase),
         stroke: Some(stroke(phase)),
-        place,
     };
-    (0..).zip(Phase::ALL).map(entry).collect()
+    Layer::Key(Phase::ALL.map(entry).to_vec())
 }
 
 /// Rows of a data file: phase, tau, p, y, q, v.

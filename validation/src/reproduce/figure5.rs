@@ -57,7 +57,7 @@ fn settle(work: &Work<'_>, pieces: &[Piece], parameters: &Parameters) -> Result<
 fn sheet(pieces: &[Piece], parameters: &Parameters) -> Sheet {
     let mut layers = curve::lines(pieces, |at| [at[1], at[2]]);
     layers.extend([Layer::Guide(parameters.g), Layer::Guide(parameters.g + 1.0)]);
-    layers.extend(curve::key());
+    layers.push(curve::key());
     Sheet {
         title: "Fig. 5: chaotic motion on the phase plane".to_owned(),
         caption: format!(

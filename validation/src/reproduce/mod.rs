@@ -3,17 +3,26 @@
 //! An [`Item`] is one piece of work: it settles some claims and leaves pictures with their data. What
 //! the paper says stands in `paper.toml` and is only ever compared with; nothing is tuned to agree.
 
+mod attractors;
+mod bifurcations;
+mod branches;
+mod brute;
 mod claim;
 mod curve;
+mod figure10;
 mod figure2;
 mod figure5;
 mod figure6;
+mod figure7;
+mod figures8_9;
+mod fractal;
 pub mod paper;
+mod progression;
 mod table1;
 mod work;
 
 pub use claim::{Claim, Evidence, Verdict};
-pub use work::{Findings, Size, Work};
+pub use work::{Findings, Parts, Size, Work};
 
 use crate::engine::Failure;
 
@@ -25,6 +34,8 @@ pub struct Item {
     pub claims: &'static [&'static str],
     /// In how many steps of about a second it tells of its progress.
     pub parts: u32,
+    /// Names of what it keeps of its work before it is finished.
+    pub kept: &'static [&'static str],
     run: fn(&Work<'_>) -> Result<Findings, Failure>,
 }
 
@@ -48,14 +59,46 @@ impl Item {
 #[must_use]
 pub const fn items() -> &'static [Item] {
     &[
-        Item { id: "figure-2", claims: &["fig2"], parts: 1, run: figure2::run },
+        Item { id: "figure-2", claims: &["fig2"], parts: 1, kept: &[], run: figure2::run },
         Item {
             id: "table-1",
             claims: &["table1", "table1-period", "table1-closed", "fig3", "fig4"],
             parts: 1,
+            kept: &[],
             run: table1::run,
         },
-        Item { id: "figure-5", claims: &["fig5"], parts: 1, run: figure5::run },
-        Item { id: "figure-6", claims: &["fig6a", "fig6b"], parts: 3, run: figure6::run },
+        Item { id: "figure-5", claims: &["fig5"], parts: 1, kept: &[], run: figure5::run },
+        Item {
+            id: "figure-6",
+            claims: &["fig6a", "fig6b"],
+            parts: 3,
+            kept: &[],
+            run: figure6::run,
+        },
+        figure7::ITEM,
+        Item {
+            id: "figures-8-9",
+            claims: &["fig8", "fig9"],
+            parts: 2,
+            kept: &[],
+            run: figures8_9::run,
+        },
+        Item {
+            id: "figure-10",
+            claims: &["fig10a", "fig10b", "false-12"],
+            parts: 3,
+            kept: &[],
+            run: figure10::run,
+        },
+        Item {
+            id: "bifurcations",
+            claims: bifurcations::CLAIMS,
+            parts: 7,
+            kept: &[],
+            run: bifurcations::run,
+        },
+        Item { id: "branches", claims: &[], parts: 6, kept: &[], run: branches::run },
+        Item { id: "progression", claims: &[], parts: 2, kept: &[], run: progression::run },
+        Item { id: "boundaries", claims: &["fractal"], parts: 6, kept: &[], run: fractal::run },
     ]
 }

@@ -5,6 +5,8 @@ use super::paper::Paper;
 use crate::engine::Failure;
 use crate::picture::{Sheet, png, svg};
 use percuss::{Entry, Model, Parameters, Start};
+use serde::Serialize;
+use serde::de::DeserializeOwned;
 
 /// How large the pictures and grids are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
@@ -23,6 +25,33 @@ pub struct Work<'a> {
     pub size: Size,
     /// To be called as often as the item has parts, whenever one is done.
     pub step: &'a (dyn Fn() + Sync),
+    /// Parts of items that are kept when work is interrupted.
+    pub parts: &'a dyn Parts,
+}
+
+/// Where finished parts of an item are kept.
+pub trait Parts: Sync {
+    /// A part of an earlier run of the same program.
+    fn recall(&self, name: &str) -> Option<Vec<u8>>;
+
+    /// Keeps a part.
+    ///
+    /// # Errors
+    /// What keeps it from being written.
+    fn keep(&self, name: &str, bytes: &[u8]) -> Result<(), Failure>;
+}
+
+impl Work<'_> {
+    /// A part that an earlier run has finished.
+    pub(super) fn recall<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
+        serde_json::from_slice(&self.parts.recall(name)?).ok()
+    }
+
+    /// Keeps a finished part.
+    pub(super) fn keep<T: Serialize>(&self, name: &str, part: &T) -> Result<(), Failure> {
+        let bytes = serde_json::to_vec(part).map_err(Failure::new)?;
+        self.parts.keep(name, &bytes)
+    }
 }
 
 /// What an item has found.

@@ -41,7 +41,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let pool = pool.context("--threads: the threads cannot be started")?;
     hush_contained_panics();
     let bar = progress(chosen.iter().map(|item| u64::from(item.parts)).sum());
-    let work = Work { paper: Paper::read()?, size: arguments.size, step: &|| bar.inc(1) };
+    let work =
+        Work { paper: Paper::read()?, size: arguments.size, step: &|| bar.inc(1), parts: &store };
     let done: Vec<Result<Vec<Claim>, Failure>> =
         pool.install(|| chosen.par_iter().map(|item| settle(item, &work, &store)).collect());
     bar.finish_and_clear();

@@ -1,7 +1,8 @@
 //! Finished items beside the pictures, so that interrupted work is taken up again.
 
 use super::write_file;
-use crate::reproduce::{Claim, Item, Size};
+use crate::engine::Failure;
+use crate::reproduce::{Claim, Item, Parts, Size};
 use anyhow::{Result, anyhow};
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -14,6 +15,25 @@ pub(super) struct Store {
     out: PathBuf,
     folder: PathBuf,
     key: String,
+}
+
+/// A part of an item that is not finished: the key on its first line, then the part.
+impl Parts for Store {
+    fn recall(&self, name: &str) -> Option<Vec<u8>> {
+        let bytes = fs::read(self.part(name)).ok()?;
+        let rest = bytes.strip_prefix(self.key.as_bytes())?.strip_prefix(b"\n")?;
+        Some(rest.to_vec())
+    }
+
+    fn keep(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+        let kept = [self.key.as_bytes(), b"\n", bytes].concat();
+        write_file(&self.folder, &part(name), &kept)
+            .map_err(|error| Failure::new(format!("{error:#}")))
+    }
+}
+
+fn part(name: &str) -> String {
+    format!("{name}.part")
 }
 
 /// A finished item.
@@ -38,6 +58,10 @@ impl Store {
 
     fn path(&self, item: &Item) -> PathBuf {
         self.folder.join(format!("{}.json", item.id))
+    }
+
+    fn part(&self, name: &str) -> PathBuf {
+        self.folder.join(part(name))
     }
 
     /// The claims of an item that an earlier run of the same program has finished.
@@ -68,7 +92,48 @@ impl Store {
         // What cannot be removed is only ignored by the next program.
         for item in done {
             let _ = fs::remove_file(self.path(item));
+            item.kept.iter().for_each(|name| {
+                let _ = fs::remove_file(self.part(name));
+            });
         }
         let _ = fs::remove_dir(&self.folder);
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a panic is a failed test")]
+mod tests {
+    use super::*;
+    use crate::reproduce::items;
+
+    fn files() -> Vec<(String, Vec<u8>)> {
+        vec![("a.csv".to_owned(), b"1".to_vec())]
+    }
+
+    #[test]
+    fn what_is_finished_is_taken_up() {
+        let folder = tempfile::tempdir().unwrap();
+        let item = &items()[0];
+        let store = Store::open(folder.path(), Size::Default).unwrap();
+        assert!(store.claims(item).is_none());
+        store.keep(item, &[], &files()).unwrap();
+        assert_eq!(store.claims(item), Some(Vec::new()));
+        assert_eq!(fs::read(folder.path().join("a.csv")).unwrap(), b"1");
+        let larger = Store::open(folder.path(), Size::Full).unwrap();
+        assert!(larger.claims(item).is_none(), "of another size");
+        fs::remove_file(folder.path().join("a.csv")).unwrap();
+        assert!(store.claims(item).is_none(), "a file of it is gone");
+        store.close(&[item]);
+        assert!(!folder.path().join(FOLDER).exists());
+    }
+
+    #[test]
+    fn parts_are_taken_up_by_the_same_program_only() {
+        let folder = tempfile::tempdir().unwrap();
+        let store = Store::open(folder.path(), Size::Default).unwrap();
+        Parts::keep(&store, "frame", b"part\nof it").unwrap();
+        assert_eq!(store.recall("frame"), Some(b"part\nof it".to_vec()));
+        let larger = Store::open(folder.path(), Size::Full).unwrap();
+        assert_eq!(larger.recall("frame"), None);
     }
 }

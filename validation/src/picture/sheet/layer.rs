@@ -76,20 +76,24 @@ pub enum Layer {
         /// Their colour.
         colour: RGBColor,
     },
-    /// A name in the panel's key.
-    Key {
-        /// The name.
-        name: String,
-        /// Its line's or its points' colour.
-        colour: RGBColor,
-        /// How its line is broken; none for points.
-        stroke: Option<Stroke>,
-        /// Its place in the key.
-        place: u8,
-    },
+    /// The panel's key, above it where it hides nothing: names in a row.
+    Key(Vec<KeyEntry>),
+}
+
+/// A name in a key, with its line or, without a stroke, its points.
+#[derive(Clone, Debug)]
+pub struct KeyEntry {
+    /// The name.
+    pub name: String,
+    /// The colour of what it names.
+    pub colour: RGBColor,
+    /// How its line is broken.
+    pub stroke: Option<Stroke>,
 }
 
 const TEXT: f64 = 18.0;
+/// Room that a letter takes on average.
+const LETTER: f64 = 10.0;
 
 impl Layer {
     /// How many marks it takes to draw.
@@ -146,23 +150,33 @@ impl Layer {
                 Some(at) => pen.text(text, (at.0 + 8.0, at.1 - 12.0), TEXT, Side::Left, *colour),
                 None => Ok(()),
             },
-            Self::Key { name, colour, stroke, place } => {
-                // Above the panel, where it hides nothing.
-                let at = (panel.from.0 + 190.0 * f64::from(*place), panel.from.1 - 18.0);
-                let line = [at, (at.0 + 40.0, at.1)];
-                match stroke.map(Stroke::pattern) {
-                    None => {
-                        let middle = at.0 + 28.0;
-                        pen.fill((middle - 4.0, at.1 - 4.0), (middle + 4.0, at.1 + 4.0), *colour)?;
-                    }
-                    Some([]) => pen.trace(&line, 2.0, *colour)?,
-                    Some(pattern) => broken(&line, pattern)
-                        .iter()
-                        .try_for_each(|dash| pen.trace(dash, 2.0, *colour))?,
-                }
-                pen.text(name, (at.0 + 48.0, at.1), TEXT, Side::Left, palette::INK)
+            Self::Key(entries) => {
+                let mut x = panel.from.0;
+                entries.iter().try_for_each(|entry| {
+                    entry.draw(pen, (x, panel.from.1 - 18.0))?;
+                    x += 74.0 + LETTER * entry.name.chars().count() as f64;
+                    Ok(())
+                })
             }
         }
+    }
+}
+
+impl KeyEntry {
+    fn draw<B: DrawingBackend>(&self, pen: &Pen<'_, B>, at: At) -> Result<(), DrawError> {
+        let line = [at, (at.0 + 40.0, at.1)];
+        match self.stroke.map(Stroke::pattern) {
+            None => {
+                let middle = at.0 + 28.0;
+                let corners = ((middle - 4.0, at.1 - 4.0), (middle + 4.0, at.1 + 4.0));
+                pen.fill(corners.0, corners.1, self.colour)?;
+            }
+            Some([]) => pen.trace(&line, 2.0, self.colour)?,
+            Some(pattern) => broken(&line, pattern)
+                .iter()
+                .try_for_each(|dash| pen.trace(dash, 2.0, self.colour))?,
+        }
+        pen.text(&self.name, (at.0 + 48.0, at.1), TEXT, Side::Left, palette::INK)
     }
 }
 

@@ -3,7 +3,7 @@
 mod layer;
 mod plot;
 
-pub use layer::{Layer, Raster, Stroke};
+pub use layer::{KeyEntry, Layer, Raster, Stroke};
 pub use plot::{Plot, Window};
 
 use super::pen::{Pen, Side};

@@ -52,7 +52,7 @@ fn labelled(points: &[[f64; 2]], i: usize) -> Vec<Layer> {
 pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Sheet {
     let plane = |at: &[f64; 5]| [at[1], at[2]];
     let mut whole = curve::lines(pieces, plane);
-    whole.extend(curve::key());
+    whole.push(curve::key());
     let mut zoom = curve::lines(pieces, plane);
     let at: Vec<[f64; 2]> = told.legs[..told.legs.len() - 1]
         .iter()

@@ -58,7 +58,7 @@ pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<C
 pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Sheet {
     let start = told.legs[0].entry().v();
     let mut layers = curve::lines(pieces, |at| [at[0], at[4] - start]);
-    layers.extend(curve::key());
+    layers.push(curve::key());
     Sheet {
         title: "Fig. 4: reconstructed progression".to_owned(),
         caption: format!(

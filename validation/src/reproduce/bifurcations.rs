@@ -1,0 +1,318 @@
+//! Where the attractors of Fig. 7 come from and go to: the bifurcations that Section 5 names.
+
+use super::attractors::{found, map, of_period};
+use super::brute::{bracket, settled};
+use super::claim::{Claim, Verdict};
+use super::paper::{Printed, attractors_model};
+use super::work::{Findings, Work};
+use crate::engine::{self, Accuracy, Failure, Limits};
+use crate::score::attractor::run_of;
+use percuss::dynamics::attractor::{Attractor, Kind as Attracts};
+use percuss::dynamics::continuation::{Bifurcation, Branch, Criticality, Doubling, Family, Kind};
+use percuss::dynamics::strobe::Point;
+use percuss::{Instant, Parameter, Start};
+
+/// Claims of this item, in its order.
+pub(super) const CLAIMS: &[&str] = &[
+    "omega-1.571",
+    "subcritical-1.571",
+    "omega-1.5757",
+    "omega-1.6395",
+    "subcritical-1.6395",
+    "red-emerges",
+    "five-emerges",
+];
+
+/// A bifurcation by continuation, with the orbit where it was begun.
+struct Met {
+    kind: Kind,
+    value: f64,
+    error: f64,
+    /// The orbit at the bifurcation.
+    point: Point,
+    period: u32,
+    family: Family,
+    met: Bifurcation,
+}
+
+/// The first fold or flip of an orbit on the way from one frequency to another.
+fn met(orbit: &Attractor, from: f64, to: f64, kind: Kind) -> Result<Met, Failure> {
+    let period = orbit.period().ok_or_else(|| Failure::new("it is no orbit"))?;
+    let family = Family::new(attractors_model(from), Parameter::Omega, Instant::at(from, 0.0, 0));
+    let branch = Branch::follow(&family, orbit.points[0], period, from, to, &mut |_| {})
+        .map_err(Failure::new)?;
+    let first = branch.bifurcations.iter().find(|it| it.kind == kind);
+    let missing =
+        || Failure::new(format!("period {period} meets no {} from {from} to {to}", kind.token()));
+    let first = first.ok_or_else(missing)?;
+    let point = first.orbit.points[0];
+    let (value, error, met) = (first.value, first.error, first.clone());
+    Ok(Met { kind, value, error, point, period, family, met })
+}
+
+impl Met {
+    fn said(&self) -> String {
+        format!(
+            "{} of period {} at omega = {:.10} +- {:.0e}",
+            self.kind.token(),
+            self.period,
+            self.value,
+            self.error
+        )
+    }
+}
+
+/// Forcing periods after which motions next to a bifurcation are taken to be at rest: at 1e-5 from a
+/// flip the multiplier is some 2e-4 from -1.
+const REST: u64 = 300_000;
+/// Strobes that repeat to this are at rest; a doubling at 1e-5 from its flip is some 3e-3 wide.
+const REPEATS: f64 = 1e-4;
+/// Width of the intervals found by brute force.
+const WIDTH: f64 = 2e-5;
+
+pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+    let mut findings = Findings::default();
+    let six = found(1.58)?;
+    let six = of_period(&six, 6)?.clone();
+    let three = found(1.70)?;
+    let three = of_period(&three, 3)?.clone();
+    let four = found(1.56)?;
+    let four = of_period(&four, 4)?.clone();
+    let cascade = met(&six, 1.58, 1.55, Kind::Flip)?;
+    findings.claims.push(flips(work, "omega-1.571", &cascade, -1.0)?);
+    (work.step)();
+    findings.claims.push(criticality(work, "subcritical-1.571", &cascade, -1.0)?);
+    (work.step)();
+    findings.claims.push(disappears(work, &four)?);
+    (work.step)();
+    let tripling = met(&three, 1.70, 1.60, Kind::Flip)?;
+    findings.claims.push(flips(work, "omega-1.6395", &tripling, -1.0)?);
+    (work.step)();
+    findings.claims.push(criticality(work, "subcritical-1.6395", &tripling, -1.0)?);
+    (work.step)();
+    findings.claims.push(red(work, &cascade)?);
+    (work.step)();
+    findings.claims.push(five(work)?);
+    (work.step)();
+    Ok(findings)
+}
+
+/// Whether a value is the printed one to its last digit.
+fn agrees(printed: &Printed, value: f64) -> bool {
+    match (printed.value, printed.within) {
+        (Some(paper), Some(within)) => (value - paper).abs() <= within,
+        _ => false,
+    }
+}
+
+/// Between our value and the nearest one that the paper's digits allow.
+fn between(printed: &Printed, value: f64) -> Option<f64> {
+    let (paper, within) = (printed.value?, printed.within?);
+    let edge = if value < paper { paper - within } else { paper + within };
+    Some(0.5 * (edge + value))
+}
+
+/// A flip: by continuation, by brute force from both sides, and by an integrator where we differ.
+fn flips(work: &Work<'_>, id: &str, flip: &Met, beyond: f64) -> Result<Claim, Failure> {
+    let printed = work.paper.claim(id)?;
+    let period = flip.period as usize;
+    let start = flip.point;
+    let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(period));
+    let (holds, fails) =
+        bracket(flip.value - beyond * 0.003, flip.value + beyond * 0.003, WIDTH, keeps)?;
+    let mut claim = Claim::settle(
+        &work.paper,
+        id,
+        Verdict::of(agrees(printed, flip.value)),
+        format!(
+            "the flip between periods {} and {} is at omega = {:.7}",
+            period,
+            2 * period,
+            flip.value
+        ),
+    )?
+    .evidence("continuation with multipliers", flip.said())
+    .evidence(
+        format!("brute force: strobes after {REST} forcing periods"),
+        format!("period {period} at omega = {holds:.6}, no longer at {fails:.6}"),
+    );
+    if let (Verdict::Differs, Some(omega)) = (claim.verdict, between(printed, flip.value)) {
+        let (seen, _) = settled(omega, start, REST, REPEATS)?;
+        let seen = seen.map_or("none up to 64".to_owned(), |period| period.to_string());
+        claim = claim
+            .evidence(format!("exact solver at omega = {omega:.5}, between the two values"), format!("period {seen}"))
+            .evidence(
+                format!("ode_solvers-dopri5, tolerance 1e-10, at omega = {omega:.5}"),
+                integrated(omega, start, &[period, 2 * period])?,
+            )
+            .note("the paper's value is approximate (it writes \u{2248}); every method here gives ours");
+    }
+    Ok(claim)
+}
+
+/// Which of some periods an integrator's strobes repeat with, at rest.
+fn integrated(omega: f64, [p, y, q]: Point, periods: &[usize]) -> Result<String, Failure> {
+    const RUN: u32 = 4000;
+    let pattern = regex::Regex::new("^ode_solvers-dopri5$").map_err(Failure::new)?;
+    let engines = engine::select(&[pattern]).map_err(Failure::new)?;
+    let engine = engines.first().ok_or_else(|| Failure::new("no such engine"))?;
+    let start = Start { p, y, q: Some(q), ..Start::default() };
+    let refused = || Failure::new("the start is refused");
+    let task = run_of(attractors_model(omega), start, RUN).ok_or_else(refused)?;
+    let limits = Limits { calls: 1_000_000_000, ..Limits::default() };
+    let outcome = engine.run(&task, Accuracy::Tolerance(1e-10), &limits)?;
+    let last = outcome.samples.len() - 1;
+    let apart = |period: &usize| {
+        let (now, then) = (outcome.samples[last], outcome.samples[last - period]);
+        format!("to {:.0e} after {period}", (now[0] - then[0]).abs().max((now[1] - then[1]).abs()))
+    };
+    let apart: Vec<_> = periods.iter().map(apart).collect();
+    Ok(format!("after {RUN} periods its strobes repeat {}", apart.join(", ")))
+}
+
+/// Whether a flip is super- or subcritical: what is there beyond it, and how wide.
+fn criticality(work: &Work<'_>, id: &str, flip: &Met, beyond: f64) -> Result<Claim, Failure> {
+    let doubled = 2 * flip.period as usize;
+    let width = |distance: f64| -> Result<Option<f64>, Failure> {
+        let omega = flip.value + beyond * distance;
+        let (period, point) = settled(omega, flip.point, REST, 1e-7)?;
+        if period != Some(doubled) {
+            return Ok(None);
+        }
+        let map = map(omega)?;
+        let entry = map.entry(point).map_err(Failure::new)?;
+        let half = map.strobes(entry, u64::from(flip.period)).last();
+        let half = half.ok_or_else(|| Failure::new("no strobes"))?.point();
+        Ok(Some((half[0] - point[0]).hypot(half[1] - point[1])))
+    };
+    let (near, far) = (width(1e-4)?, width(4e-4)?);
+    // The width of a doubling that is born small grows as the square root of the distance.
+    let grows =
+        matches!((near, far), (Some(near), Some(far)) if (1.6..2.5).contains(&(far / near)));
+    let within = (flip.value - 0.01, flip.value + 0.01);
+    let doubling = Doubling::of(&flip.family, &flip.met, within.0, within.1, &mut |_| {});
+    let followed = doubling.map(|it| it.criticality);
+    let verdict = match (followed, grows) {
+        (Some(Criticality::Subcritical), false) => Verdict::Reproduced,
+        (Some(Criticality::Supercritical), true) => Verdict::Differs,
+        _ => Verdict::NotDetermined,
+    };
+    let computed = match verdict {
+        Verdict::Differs => format!(
+            "supercritical: below omega = {:.7} a stable orbit of period {doubled} takes over, its width growing as the square root",
+            flip.value
+        ),
+        Verdict::Reproduced => format!(
+            "subcritical: no stable orbit of period {doubled} is next to omega = {:.7}",
+            flip.value
+        ),
+        Verdict::NotDetermined => "continuation and brute force do not agree".to_owned(),
+    };
+    let said = |it: Option<f64>| it.map_or("no such orbit".to_owned(), |it| format!("{it:.6}"));
+    let side = match followed {
+        Some(Criticality::Supercritical) => {
+            "it exists where the single one is unstable: supercritical"
+        }
+        Some(Criticality::Subcritical) => "it exists where the single one is stable: subcritical",
+        None => "none was found",
+    };
+    Ok(Claim::settle(&work.paper, id, verdict, computed)?
+        .note("followed upwards in omega the cascade runs backwards, periods are halved; that may be what the paper calls subcritical")
+        .evidence("continuation of the doubled orbit from the flip", side)
+        .evidence(
+            format!("strobes after {REST} forcing periods at 1e-4 and 4e-4 beyond the flip"),
+            format!("stable period {doubled}, {} and {} wide: a ratio of 2 is the square root's", said(near), said(far)),
+        ))
+}
+
+/// Period four ends in a fold.
+fn disappears(work: &Work<'_>, four: &Attractor) -> Result<Claim, Failure> {
+    const ID: &str = "omega-1.5757";
+    let printed = work.paper.claim(ID)?;
+    let fold = met(four, 1.56, 1.62, Kind::Fold)?;
+    let start = fold.point;
+    let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(4));
+    let (holds, fails) = bracket(fold.value - 0.001, fold.value + 0.001, WIDTH / 10.0, keeps)?;
+    let mut claim = Claim::settle(
+        &work.paper,
+        ID,
+        Verdict::of(agrees(printed, fold.value)),
+        format!("period four ends in a fold at omega = {:.7}", fold.value),
+    )?
+    .evidence("continuation with multipliers", fold.said())
+    .evidence(
+        format!("brute force: strobes after {REST} forcing periods"),
+        format!("period 4 at omega = {holds:.6}, no longer at {fails:.6}"),
+    );
+    if let (Verdict::Differs, Some(omega)) = (claim.verdict, between(printed, fold.value)) {
+        claim = claim
+            .evidence(
+                format!("ode_solvers-dopri5, tolerance 1e-10, at omega = {omega:.6}, between the two values"),
+                integrated(omega, start, &[4])?,
+            )
+            .note(format!(
+                "{:.1e} beyond the paper's approximate value: there the orbit is still stable, with a small basin",
+                fold.value - printed.value.unwrap_or(f64::NAN)
+            ));
+    }
+    Ok(claim)
+}
+
+/// How many attractors there are besides period four and the strangest one.
+fn others(omega: f64) -> Result<Vec<Attractor>, Failure> {
+    let mut all = found(omega)?;
+    let strange = all
+        .iter()
+        .enumerate()
+        .filter(|(_, it)| it.kind == Attracts::Chaotic)
+        .max_by(|a, b| a.1.lyapunov_per_period.total_cmp(&b.1.lyapunov_per_period))
+        .map(|(id, _)| id);
+    if let Some(id) = strange {
+        all.remove(id);
+    }
+    all.retain(|it| it.period() != Some(4));
+    Ok(all)
+}
+
+/// Period twelve goes, and the attractor of the period-six cascade appears.
+fn red(work: &Work<'_>, cascade: &Met) -> Result<Claim, Failure> {
+    let twelve = found(1.45)?;
+    let twelve = of_period(&twelve, 12)?;
+    let fold = met(twelve, 1.45, 1.56, Kind::Fold)?;
+    let (there, gone) = bracket(1.56, 1.53, 1e-4, |omega| Ok(!others(omega)?.is_empty()))?;
+    let seen = others(there)?;
+    let seen: Vec<_> = seen.iter().map(super::attractors::described).collect();
+    let holds = fold.value > 1.45 && fold.value < 1.56 && gone > 1.45 && there < 1.56;
+    let computed = format!(
+        "period twelve ends in a fold at omega = {:.7}; the cascade's attractor is there from {there:.4} on",
+        fold.value
+    );
+    Ok(Claim::settle(&work.paper, "red-emerges", Verdict::of(holds), computed)?
+        .note(format!(
+            "it is born chaotic at its crisis and passes backwards through the cascade that ends at {:.7}; at 1.56 it is periodic",
+            cascade.value
+        ))
+        .evidence("continuation of period twelve", fold.said())
+        .evidence("attractors reached from a grid of starts, by halving", format!("at {there:.5}: {}; none at {gone:.5}", seen.join("; "))))
+}
+
+/// Period five appears between 1.58 and 1.60.
+fn five(work: &Work<'_>) -> Result<Claim, Failure> {
+    let attractors = found(1.6)?;
+    let five = of_period(&attractors, 5)?;
+    let flip = met(five, 1.6, 1.58, Kind::Flip)?;
+    let fold = met(five, 1.6, 1.62, Kind::Fold)?;
+    let start = five.points[0];
+    let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(5));
+    let (holds_at, fails_at) = bracket(1.6, 1.59, WIDTH, keeps)?;
+    let holds = flip.value > 1.58 && flip.value < 1.6;
+    let computed =
+        format!("period five is stable from omega = {:.7} to {:.7}", flip.value, fold.value);
+    Ok(Claim::settle(&work.paper, "five-emerges", Verdict::of(holds), computed)?
+        .note("below it doubles; above it ends in a fold")
+        .evidence("continuation with multipliers", format!("{}; {}", flip.said(), fold.said()))
+        .evidence(
+            format!("brute force: strobes after {REST} forcing periods"),
+            format!("period 5 at omega = {holds_at:.5}, no longer at {fails_at:.5}"),
+        ))
+}

@@ -1,0 +1,231 @@
+//! Fig. 10: the period-four attractor followed in omega, with and without correction of the start.
+
+use super::attractors::{described, found, map, of_period};
+use super::claim::{Claim, Verdict};
+use super::paper::attractors_model;
+use super::work::{Findings, Work};
+use crate::engine::Failure;
+use crate::picture::{INK, Layer, Plot, Sheet};
+use percuss::dynamics::continuation::{Branch, Family, Kind};
+use percuss::dynamics::diagram::{Diagram, Follow, Step};
+use percuss::dynamics::strobe::Point;
+use percuss::{Instant, Parameter, Start};
+
+/// Where the period-four attractor is taken up, and how far it is followed to both sides.
+const BEGIN: f64 = 1.4;
+const RANGE: (f64, f64) = (1.35, 1.62);
+/// Values over the range, forcing periods left out and shown at each.
+const VALUES: u32 = 541;
+const TRANSIENT: u64 = 600;
+const PERIODS: u32 = 96;
+/// Strobes nearer than this are one point of the diagram.
+const SAME: f64 = 1e-4;
+
+pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+    let attractors = found(BEGIN)?;
+    let four = of_period(&attractors, 4)?.points[0];
+    let corrected = corrected(four)?;
+    (work.step)();
+    let uncorrected = diagram(four, RANGE.0, RANGE.1, VALUES, Follow::Reset)?;
+    (work.step)();
+    let branch = branch(four)?;
+    let mut findings = Findings::default();
+    findings.claims.push(settle_a(work, &corrected, &branch)?);
+    findings.claims.push(settle_b(work, &uncorrected, &branch)?);
+    findings.claims.push(settle_12(work, &uncorrected, &branch)?);
+    findings.picture("figure-10", &sheet(&corrected, &uncorrected))?;
+    for (name, steps) in [("figure-10a", &corrected), ("figure-10b", &uncorrected)] {
+        findings.csv(name, &["omega", "p", "y", "q", "drift_per_period"], rows(steps))?;
+    }
+    Ok(findings)
+}
+
+fn rows(steps: &[Step]) -> impl Iterator<Item = Vec<String>> {
+    steps.iter().flat_map(|step| {
+        step.points.iter().map(|[p, y, q]| {
+            [step.value, *p, *y, *q, step.drift_per_period].map(|it| it.to_string()).to_vec()
+        })
+    })
+}
+
+fn diagram(
+    [p, y, q]: Point,
+    from: f64,
+    to: f64,
+    steps: u32,
+    follow: Follow,
+) -> Result<Vec<Step>, Failure> {
+    let diagram = Diagram {
+        parameters: attractors_model(from),
+        start: Start { p, y, q: Some(q), ..Start::default() },
+        parameter: Parameter::Omega,
+        from,
+        to,
+        steps,
+        transient: TRANSIENT,
+        periods: PERIODS,
+        follow,
+    };
+    diagram.steps(|| {}).map_err(Failure::new)
+}
+
+/// Carried from where the attractor is known, to both sides.
+fn corrected(four: Point) -> Result<Vec<Step>, Failure> {
+    let share = (BEGIN - RANGE.0) / (RANGE.1 - RANGE.0);
+    let below = (f64::from(VALUES) * share) as u32;
+    let mut steps = diagram(four, BEGIN, RANGE.0, below, Follow::Carry)?;
+    steps.reverse();
+    steps.pop();
+    steps.extend(diagram(four, BEGIN, RANGE.1, VALUES - below, Follow::Carry)?);
+    Ok(steps)
+}
+
+/// The orbit itself, up to its fold and down to the end of the range.
+struct Stable {
+    /// Where the orbit ends upwards and what it is there, with its error.
+    fold: (f64, f64),
+    /// Where it loses its stability downwards.
+    flip: (f64, f64),
+}
+
+fn branch(four: Point) -> Result<Stable, Failure> {
+    let family = Family::new(attractors_model(BEGIN), Parameter::Omega, Instant::at(BEGIN, 0.0, 0));
+    let first = |to: f64, kind: Kind| {
+        let branch =
+            Branch::follow(&family, four, 4, BEGIN, to, &mut |_| {}).map_err(Failure::new)?;
+        let first = branch.bifurcations.iter().find(|it| it.kind == kind);
+        let missing = || Failure::new(format!("period four has no {} up to {to}", kind.token()));
+        first.map(|it| (it.value, it.error)).ok_or_else(missing)
+    };
+    Ok(Stable { fold: first(RANGE.1, Kind::Fold)?, flip: first(RANGE.0, Kind::Flip)? })
+}
+
+/// How many different points a step shows, up to some.
+fn count(step: &Step) -> usize {
+    let mut kept: Vec<&Point> = Vec::new();
+    for point in &step.points {
+        let apart = |it: &&Point| (it[0] - point[0]).abs().max((it[1] - point[1]).abs());
+        if kept.iter().all(|it| apart(it) > SAME) {
+            kept.push(point);
+        }
+    }
+    kept.len()
+}
+
+/// Steps inside the orbit's stable interval; next to its ends motions settle too slowly to be counted.
+fn inside<'a>(steps: &'a [Step], stable: &'a Stable) -> impl Iterator<Item = &'a Step> {
+    const ROOM: f64 = 0.002;
+    let within =
+        move |step: &&Step| step.value > stable.flip.0 + ROOM && step.value < stable.fold.0 - ROOM;
+    steps.iter().filter(within)
+}
+
+fn settle_a(work: &Work<'_>, steps: &[Step], stable: &Stable) -> Result<Claim, Failure> {
+    let all = inside(steps, stable).count();
+    let four = inside(steps, stable).filter(|step| count(step) == 4).count();
+    let computed = format!(
+        "carried along, the motion stays on period four at all {four} of {all} values between omega = {:.4} and {:.4}",
+        stable.flip.0, stable.fold.0
+    );
+    Ok(Claim::settle(&work.paper, "fig10a", Verdict::of(four == all && all > 0), computed)?
+        .note(format!(
+            "range of omega assumed: {} to {}; each value starts from where the last ended",
+            RANGE.0, RANGE.1
+        ))
+        .evidence(
+            "strobes after a transient, value by value",
+            format!("{TRANSIENT} periods left out, {PERIODS} kept"),
+        )
+        .evidence(
+            "continuation of the orbit",
+            format!(
+                "stable from a flip at {:.10} +- {:.0e} to a fold at {:.10} +- {:.0e}",
+                stable.flip.0, stable.flip.1, stable.fold.0, stable.fold.1
+            ),
+        ))
+}
+
+fn settle_b(work: &Work<'_>, steps: &[Step], stable: &Stable) -> Result<Claim, Failure> {
+    let all = inside(steps, stable).count();
+    let off: Vec<_> = inside(steps, stable).filter(|step| count(step) != 4).collect();
+    let computed = format!(
+        "always from the same start, {} of {all} values show something else than the period four that is stable there",
+        off.len()
+    );
+    let first: Vec<_> = off
+        .iter()
+        .take(5)
+        .map(|step| format!("{:.4} ({} points)", step.value, count(step)))
+        .collect();
+    Ok(Claim::settle(&work.paper, "fig10b", Verdict::of(!off.is_empty()), computed)?
+        .note("every value starts from the orbit's strobe at omega = 1.4; the paper does not print its start")
+        .evidence("strobes after a transient, value by value", format!("first at {}", first.join(", "))))
+}
+
+fn settle_12(work: &Work<'_>, uncorrected: &[Step], stable: &Stable) -> Result<Claim, Failure> {
+    const OMEGA: f64 = 1.45;
+    let attractors = found(OMEGA)?;
+    let (four, twelve) = (of_period(&attractors, 4)?, of_period(&attractors, 12)?);
+    let twelves: Vec<_> = uncorrected
+        .iter()
+        .filter(|step| count(step) == 12)
+        .map(|step| format!("{:.4}", step.value))
+        .collect();
+    let interval = born(twelve.points[0], OMEGA)?;
+    let untouched = stable.flip.0 < interval.0 && stable.fold.0 > interval.1;
+    let computed = format!(
+        "period four has no bifurcation between {:.4} and {:.4}; period twelve is stable beside it from {:.6} to {:.6}",
+        stable.flip.0, stable.fold.0, interval.0, interval.1
+    );
+    Ok(Claim::settle(&work.paper, "false-12", Verdict::of(untouched), computed)?
+        .evidence("orbits at omega = 1.45 by Newton", format!("{}; {}", described(four), described(twelve)))
+        .evidence("continuation of both orbits", "period twelve ends in a fold above and loses stability in a flip below, period four in neither")
+        .evidence(
+            "diagram without correction",
+            if twelves.is_empty() {
+                "shows no period twelve from this start".to_owned()
+            } else {
+                format!("shows period twelve at omega = {}", twelves.join(", "))
+            },
+        ))
+}
+
+/// Between which values an orbit is stable around one: its flip below, its fold above.
+fn born(point: Point, omega: f64) -> Result<(f64, f64), Failure> {
+    map(omega)?;
+    let family = Family::new(attractors_model(omega), Parameter::Omega, Instant::at(omega, 0.0, 0));
+    let first = |to: f64| {
+        let branch =
+            Branch::follow(&family, point, 12, omega, to, &mut |_| {}).map_err(Failure::new)?;
+        let end = branch.bifurcations.iter().find(|it| it.kind != Kind::Grazing);
+        end.map(|it| it.value).ok_or_else(|| Failure::new("period twelve does not end"))
+    };
+    Ok((first(RANGE.0)?, first(RANGE.1)?))
+}
+
+fn sheet(corrected: &[Step], uncorrected: &[Step]) -> Sheet {
+    let plot = |title: &str, steps: &[Step]| Plot {
+        title: title.to_owned(),
+        axes: ["\u{3c9}".to_owned(), "p".to_owned()],
+        window: Some([RANGE, (-3.4, 1.2)]),
+        layers: vec![Layer::Dots {
+            points: steps
+                .iter()
+                .flat_map(|step| step.points.iter().map(|point| [step.value, point[0]]))
+                .collect(),
+            colour: INK,
+            size: 0.6,
+        }],
+    };
+    Sheet {
+        title: "Fig. 10: bifurcation diagrams of the period-four attractor".to_owned(),
+        caption: format!(
+            "a = 0.3, b = 0.1, \u{3be} = 0.1, g = 0.02, \u{3c6} = \u{3c0}/2; strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}), {TRANSIENT} periods \
+             left out, {PERIODS} shown, {VALUES} values. (a) each value starts from where the last ended, from \u{3c9} = {BEGIN} to both sides; \
+             (b) every value starts from the orbit's strobe at \u{3c9} = {BEGIN}."
+        ),
+        columns: 2,
+        panel_height: 560,
+        plots: vec![plot("(a) with correction", corrected), plot("(b) without", uncorrected)],
+    }
+}

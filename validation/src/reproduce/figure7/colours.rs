@@ -1,0 +1,111 @@
+//! One pair of colours an attractor, kept from frame to frame.
+//!
+//! An attractor is followed by carrying its motion along: the frequency is raised in small steps, each
+//! starting where the last ended. The attractor that the motion is on in the next frame inherits the
+//! colours; where two lead to the same, those of its own kind and period, else those that come first.
+
+use super::frame::Frame;
+use crate::engine::Failure;
+use crate::reproduce::attractors::map;
+use crate::reproduce::paper::attractors_model;
+use percuss::dynamics::diagram::{Diagram, Follow};
+use percuss::{Parameter, Start};
+use plotters::style::RGBColor;
+
+/// Colours of an attractor and of its basin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Pair {
+    pub attractor: RGBColor,
+    pub basin: RGBColor,
+}
+
+const fn pair(attractor: (u8, u8, u8), basin: (u8, u8, u8)) -> Pair {
+    Pair {
+        attractor: RGBColor(attractor.0, attractor.1, attractor.2),
+        basin: RGBColor(basin.0, basin.1, basin.2),
+    }
+}
+
+/// The paper's: orange on yellow for the strange attractor; then black on purple, red on blue,
+/// green on pink; lightness tells them apart as well.
+const STRANGE: Pair = pair((215, 95, 0), (250, 235, 130));
+const OTHERS: [Pair; 6] = [
+    pair((0, 0, 0), (150, 105, 190)),
+    pair((200, 0, 30), (95, 165, 225)),
+    pair((0, 90, 45), (220, 110, 170)),
+    pair((90, 40, 0), (205, 185, 150)),
+    pair((0, 60, 120), (150, 215, 190)),
+    pair((60, 60, 60), (225, 225, 225)),
+];
+
+/// Steps of the frequency from frame to frame, and forcing periods in each.
+const STEPS: u32 = 200;
+const PERIODS: u64 = 400;
+/// A motion is on an attractor when its strobes come so near to it on average.
+const NEAR: f64 = 0.02;
+
+/// Colours of every frame's attractors, in their order.
+pub(super) fn through(frames: &[Frame]) -> Result<Vec<Vec<Pair>>, Failure> {
+    let mut all: Vec<Vec<Pair>> = Vec::new();
+    let mut used = 0;
+    for (k, frame) in frames.iter().enumerate() {
+        let inherited = match (k.checked_sub(1).map(|last| &frames[last]), all.last()) {
+            (Some(last), Some(colours)) => inherited(last, colours, frame)?,
+            _ => vec![None; frame.attractors.len()],
+        };
+        let colours = inherited.into_iter().zip(&frame.attractors).map(|(pair, attractor)| {
+            pair.unwrap_or_else(|| match attractor.period {
+                None if k == 0 => STRANGE,
+                _ => {
+                    used += 1;
+                    OTHERS[(used - 1) % OTHERS.len()]
+                }
+            })
+        });
+        all.push(colours.collect());
+    }
+    Ok(all)
+}
+
+/// The colours that attractors of a frame have from the one before.
+fn inherited(last: &Frame, colours: &[Pair], frame: &Frame) -> Result<Vec<Option<Pair>>, Failure> {
+    let mut heirs: Vec<Option<(bool, Pair)>> = vec![None; frame.attractors.len()];
+    for (attractor, pair) in last.attractors.iter().zip(colours) {
+        let Some(first) = attractor.points.first() else { continue };
+        let Some(heir) = carried(last.omega, *first, frame)? else { continue };
+        let kin = frame.attractors[heir].kind == attractor.kind
+            && frame.attractors[heir].period == attractor.period;
+        let stronger = heirs[heir].is_none_or(|(known, _)| kin && !known);
+        if stronger {
+            heirs[heir] = Some((kin, *pair));
+        }
+    }
+    Ok(heirs.into_iter().map(|heir| heir.map(|(_, pair)| pair)).collect())
+}
+
+/// The attractor of a frame that a motion carried there is on.
+fn carried(from: f64, [p, y, q]: [f64; 3], frame: &Frame) -> Result<Option<usize>, Failure> {
+    map(from)?;
+    let diagram = Diagram {
+        parameters: attractors_model(from),
+        start: Start { p, y, q: Some(q), ..Start::default() },
+        parameter: Parameter::Omega,
+        from,
+        to: frame.omega,
+        steps: STEPS,
+        transient: PERIODS,
+        periods: 48,
+        follow: Follow::Carry,
+    };
+    let steps = diagram.steps(|| {}).map_err(Failure::new)?;
+    let Some(last) = steps.last() else { return Ok(None) };
+    let distance = |points: &[[f64; 3]]| {
+        let nearest = |it: &[f64; 3]| {
+            let apart = points.iter().map(|at| (at[0] - it[0]).hypot(at[1] - it[1]));
+            apart.fold(f64::INFINITY, f64::min)
+        };
+        last.points.iter().map(nearest).sum::<f64>() / last.points.len() as f64
+    };
+    let near = frame.attractors.iter().enumerate().map(|(id, it)| (id, distance(&it.points)));
+    Ok(near.filter(|it| it.1 < NEAR).min_by(|a, b| a.1.total_cmp(&b.1)).map(|it| it.0))
+}

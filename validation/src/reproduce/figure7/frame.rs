@@ -1,0 +1,175 @@
+//! One frame: its attractors and the label of every start.
+
+use super::colours::Pair;
+use crate::arrays::Npz;
+use crate::engine::{self, Accuracy, Failure, Limits};
+use crate::picture::{Layer, Plot, Raster};
+use crate::reproduce::attractors::{TRANSIENT, WINDOW, described, grid, map};
+use crate::reproduce::paper::attractors_model;
+use crate::reproduce::work::Work;
+use crate::score::attractor::run_of;
+use percuss::Start;
+use percuss::dynamics::attractor::{Attractor, Basins, Label};
+use plotters::style::RGBColor;
+use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Attractors and labels, as they are kept when work is interrupted.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Frame {
+    pub omega: f64,
+    cells: u32,
+    pub attractors: Vec<Kept>,
+    /// A label a start, rows from the lowest y on: -1 unresolved, -2 escaping.
+    labels: Vec<i32>,
+}
+
+/// What is kept of an attractor.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct Kept {
+    pub kind: String,
+    pub period: Option<u32>,
+    pub said: String,
+    pub points: Vec<[f64; 3]>,
+}
+
+/// The steps of progress that a frame tells.
+const STEPS: u64 = 10;
+/// Basins are drawn with so many cells a side at most.
+const UNRESOLVED: RGBColor = RGBColor(150, 150, 150);
+
+impl Frame {
+    /// From an interrupted run, or computed and kept.
+    pub(super) fn kept(
+        work: &Work<'_>,
+        letter: &str,
+        omega: f64,
+        cells: u32,
+    ) -> Result<Self, Failure> {
+        let name = format!("figure-7{letter}");
+        if let Some(frame) = work.recall(&name).filter(|it: &Self| it.cells == cells) {
+            (0..STEPS).for_each(|_| (work.step)());
+            return Ok(frame);
+        }
+        let frame = Self::computed(work, omega, cells)?;
+        work.keep(&name, &frame)?;
+        Ok(frame)
+    }
+
+    fn computed(work: &Work<'_>, omega: f64, cells: u32) -> Result<Self, Failure> {
+        let (done, all) = (AtomicU64::new(0), u64::from(cells) * u64::from(cells));
+        let seen = |more: u64| {
+            let before = done.fetch_add(more, Ordering::Relaxed);
+            let steps = |count: u64| count * STEPS / all;
+            (steps(before)..steps(before + more)).for_each(|_| (work.step)());
+        };
+        let basins = Basins::of(&map(omega)?, &grid(cells), TRANSIENT, &seen);
+        let number = |label: &Label| match label {
+            Label::Attractor(id) => i32::try_from(*id).unwrap_or(i32::MAX),
+            Label::Unresolved => -1,
+            Label::Escaping => -2,
+        };
+        let kept = |it: &Attractor| Kept {
+            kind: it.kind.token().to_owned(),
+            period: it.period(),
+            said: described(it),
+            points: it.points.clone(),
+        };
+        Ok(Self {
+            omega,
+            cells,
+            attractors: basins.attractors.iter().map(kept).collect(),
+            labels: basins.labels.iter().map(number).collect(),
+        })
+    }
+
+    /// The share of all starts that have a label.
+    pub(super) fn share(&self, label: Label) -> f64 {
+        let number = match label {
+            Label::Attractor(id) => i32::try_from(id).unwrap_or(i32::MAX),
+            Label::Unresolved => -1,
+            Label::Escaping => -2,
+        };
+        let count = self.labels.iter().filter(|it| **it == number).count();
+        count as f64 / self.labels.len().max(1) as f64
+    }
+
+    /// Its standard error, as of independent starts.
+    pub(super) fn share_error(&self, label: Label) -> f64 {
+        let share = self.share(label);
+        (share * (1.0 - share) / self.labels.len().max(1) as f64).sqrt()
+    }
+
+    /// Each orbit integrated over its period: a second method that knows no closed form.
+    pub(super) fn integrated(
+        &self,
+        attractors: &[Attractor],
+    ) -> Result<Vec<(String, String)>, Failure> {
+        const TOLERANCE: f64 = 1e-11;
+        let engines =
+            engine::select(&[regex::Regex::new("^ode_solvers-dopri5$").map_err(Failure::new)?])
+                .map_err(Failure::new)?;
+        let Some(engine) = engines.first() else { return Ok(Vec::new()) };
+        let mut found = Vec::new();
+        for orbit in attractors.iter().filter_map(|it| it.orbit.as_ref()) {
+            let [p, y, q] = orbit.points[0];
+            let start = Start { p, y, q: Some(q), ..Start::default() };
+            let refused = || Failure::new("the orbit's point is refused");
+            let task = run_of(attractors_model(self.omega), start, orbit.period());
+            let task = task.ok_or_else(refused)?;
+            let accuracy = Accuracy::Tolerance(TOLERANCE);
+            let outcome = engine.run(&task, accuracy, &Limits::default())?;
+            let last = outcome.samples.last().copied().ok_or_else(refused)?;
+            let apart = [last[0] - p, last[1] - y].map(f64::abs);
+            found.push((
+                format!(
+                    "{}, tolerance {TOLERANCE:e}, from the orbit of period {}",
+                    engine.declaration().name,
+                    orbit.period()
+                ),
+                format!("after one period it is back within {:.1e}", apart[0].max(apart[1])),
+            ));
+        }
+        Ok(found)
+    }
+
+    /// Labels and grid for NumPy.
+    pub(super) fn npz(&self) -> Result<Vec<u8>, Failure> {
+        let (grid, cells) = (grid(self.cells), self.cells as usize);
+        let mut archive = Npz::default();
+        let written = archive
+            .add("labels", &[cells, cells], self.labels.iter().copied())
+            .and_then(|()| archive.add("p", &[cells], grid.p()))
+            .and_then(|()| archive.add("y", &[cells], grid.y()));
+        written.and_then(|()| archive.bytes()).map_err(Failure::new)
+    }
+
+    /// The basins with their attractors.
+    pub(super) fn plot(&self, title: &str, colours: &[Pair]) -> Plot {
+        let colour = |label: &i32| {
+            usize::try_from(*label)
+                .ok()
+                .and_then(|id| colours.get(id))
+                .map_or(UNRESOLVED, |it| it.basin)
+        };
+        let rows = self.labels.chunks(self.cells as usize);
+        let raster = Raster {
+            window: [(WINDOW.p[0], WINDOW.p[1]), (WINDOW.y[0], WINDOW.y[1])],
+            rows: rows.map(|row| row.iter().map(colour).collect()).collect(),
+        };
+        let mut layers = vec![Layer::Raster(raster)];
+        for (attractor, pair) in self.attractors.iter().zip(colours) {
+            layers.push(Layer::Dots {
+                points: attractor.points.iter().map(|[p, y, _]| [*p, *y]).collect(),
+                colour: pair.attractor,
+                size: if attractor.period.is_some() { 4.0 } else { 0.9 },
+            });
+        }
+        Plot {
+            title: title.to_owned(),
+            axes: ["p".to_owned(), "y".to_owned()],
+            window: Some([(WINDOW.p[0], WINDOW.p[1]), (WINDOW.y[0], WINDOW.y[1])]),
+            layers,
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Fig. 7: basins of attraction at six forcing frequencies, and which attractors there are.
+
+mod colours;
+mod frame;
+
+use super::Item;
+use super::attractors::{described, found};
+use super::claim::{Claim, Verdict};
+use super::paper::{Printed, attractors_model};
+use super::work::{Findings, Size, Work, named};
+use crate::engine::Failure;
+use crate::picture::Sheet;
+use frame::Frame;
+use percuss::dynamics::attractor::{Kind, Label};
+
+/// Cells along a side.
+const CELLS: u32 = 300;
+const CELLS_FULL: u32 = 1000;
+
+/// A frame's letter, its frequency, and the claim about what coexists there.
+const FRAMES: [(&str, f64, &str); 6] = [
+    ("a", 1.4, "census-1.4"),
+    ("b", 1.45, "census-1.45"),
+    ("c", 1.56, "census-1.56"),
+    ("d", 1.58, "census-1.58"),
+    ("e", 1.60, "census-1.60"),
+    ("f", 1.70, "census-1.70"),
+];
+
+pub(super) const ITEM: Item = Item {
+    id: "figure-7",
+    claims: &[
+        "fig7a-f",
+        "fig7a",
+        "fig7b",
+        "fig7c",
+        "fig7d",
+        "fig7e",
+        "fig7f",
+        "census-1.4",
+        "census-1.45",
+        "census-1.56",
+        "census-1.58",
+        "census-1.60",
+        "census-1.70",
+    ],
+    // Ten a frame.
+    parts: 60,
+    kept: &["figure-7a", "figure-7b", "figure-7c", "figure-7d", "figure-7e", "figure-7f"],
+    run,
+};
+
+fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+    let cells = match work.size {
+        Size::Default => CELLS,
+        Size::Full => CELLS_FULL,
+    };
+    let frames = FRAMES.map(|(letter, omega, _)| Frame::kept(work, letter, omega, cells));
+    let frames: Vec<Frame> = frames.into_iter().collect::<Result<_, _>>()?;
+    let colours = colours::through(&frames)?;
+    let mut findings = Findings::default();
+    let mut all_agree = true;
+    for ((frame, colours), (letter, _, census)) in frames.iter().zip(&colours).zip(FRAMES) {
+        let claims = settle(work, frame, &format!("fig7{letter}"), census)?;
+        all_agree &= claims[0].verdict == Verdict::Reproduced;
+        findings.claims.extend(claims);
+        let sheet = sheet(letter, frame.omega, vec![frame.plot("", colours)], cells, 1);
+        findings.picture(&format!("figure-7{letter}"), &sheet)?;
+        findings.files.push((format!("figure-7{letter}.npz"), frame.npz()?));
+    }
+    let plots = frames.iter().zip(&colours).zip(FRAMES).map(|((frame, colours), (letter, ..))| {
+        frame.plot(&format!("({letter}) \u{3c9} = {}", frame.omega), colours)
+    });
+    findings.picture("figure-7", &sheet("", f64::NAN, plots.collect(), cells, 3))?;
+    let said: Vec<_> = frames
+        .iter()
+        .map(|frame| format!("omega = {}: {}", frame.omega, frame.attractors.len()))
+        .collect();
+    findings.claims.push(
+        Claim::settle(
+            &work.paper,
+            "fig7a-f",
+            Verdict::of(all_agree),
+            format!("number of attractors at {}", said.join(", ")),
+        )?
+        .note(format!(
+            "{cells} x {cells} starts a frame, p from -3 to 1.2, y from -1.5 to 1.5 at omega tau = 0, q = 0 where p < g and on the \
+             contact surface elsewhere: the paper prints neither window nor q"
+        ))
+        .evidence("claims fig7a to fig7f and the censuses", "each with its own evidence"),
+    );
+    Ok(findings)
+}
+
+/// How many attractors a frame has, and which.
+fn settle(
+    work: &Work<'_>,
+    frame: &Frame,
+    figure: &str,
+    census: &str,
+) -> Result<[Claim; 2], Failure> {
+    let shares: Vec<_> = (0..frame.attractors.len())
+        .map(|id| {
+            let label = Label::Attractor(id);
+            let (share, error) = (frame.share(label), frame.share_error(label));
+            format!("{}: {:.2} +- {:.2} %", frame.attractors[id].said, 100.0 * share, 100.0 * error)
+        })
+        .collect();
+    let unresolved = frame.share(Label::Unresolved);
+    let printed = work.paper.claim(figure)?;
+    let count = frame.attractors.len();
+    let computed = format!("{count} attractors; unresolved {:.2} %", 100.0 * unresolved);
+    let first = Claim::settle(
+        &work.paper,
+        figure,
+        Verdict::of(printed.attractors == Some(count)),
+        computed,
+    )?
+    .evidence("shares of the starts", shares.join("; "));
+    let printed = work.paper.claim(census)?;
+    let again = found(frame.omega)?;
+    let coarse: Vec<_> = again.iter().map(described).collect();
+    let mut second = Claim::settle(
+        &work.paper,
+        census,
+        Verdict::of(agrees(frame, printed)),
+        frame.attractors.iter().map(|it| it.said.clone()).collect::<Vec<_>>().join("; "),
+    )?
+    .evidence("every start of the frame followed; orbits by Newton with multipliers, chaos by a positive exponent", shares.join("; "))
+    .evidence("a coarser grid of starts", coarse.join("; "));
+    for (method, finding) in frame.integrated(&again)? {
+        second = second.evidence(method, finding);
+    }
+    Ok([first, second])
+}
+
+/// Whether periods and number of chaotic attractors are those that the paper names.
+fn agrees(frame: &Frame, printed: &Printed) -> bool {
+    let mut periods: Vec<_> = frame.attractors.iter().filter_map(|it| it.period).collect();
+    periods.sort_unstable();
+    let chaotic = frame.attractors.iter().filter(|it| it.kind == Kind::Chaotic.token()).count();
+    periods == printed.periods && printed.chaotic == Some(chaotic)
+}
+
+fn sheet(
+    letter: &str,
+    omega: f64,
+    plots: Vec<crate::picture::Plot>,
+    cells: u32,
+    columns: usize,
+) -> Sheet {
+    let parameters = if omega.is_nan() {
+        "a = 0.3, b = 0.1, \u{3be} = 0.1, g = 0.02, \u{3c6} = \u{3c0}/2".to_owned()
+    } else {
+        named(&attractors_model(omega))
+    };
+    Sheet {
+        title: format!("Fig. 7{letter}: basins of attraction"),
+        caption: format!(
+            "{parameters}; {cells} x {cells} starts at \u{3c9}\u{3c4} = 0, q = 0 where p < g and on the contact surface elsewhere \
+             (assumed, as is the window). Attractors as dots on their basins, one pair of colours an attractor kept through the frames; \
+             grey: unresolved."
+        ),
+        columns,
+        panel_height: 560,
+        plots,
+    }
+}

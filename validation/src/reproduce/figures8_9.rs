@@ -1,0 +1,123 @@
+//! Figs. 8 and 9: the coexisting attractors at omega = 1.4 and omega = 1.6, one by one.
+
+use super::attractors::{described, found, map, of_period, strange};
+use super::claim::{Claim, Verdict};
+use super::curve;
+use super::paper::attractors_model;
+use super::work::{Findings, Work, named};
+use crate::engine::Failure;
+use crate::picture::{INK, Layer, Plot, Sheet};
+use percuss::dynamics::attractor::Attractor;
+use percuss::dynamics::section::section;
+use percuss::dynamics::strobe::StrobeMap;
+
+/// Points of the strange attractors' sections.
+const POINTS: u64 = 20_000;
+const TRANSIENT: u64 = 200;
+/// Points a forcing period of the phase planes.
+const PER_PERIOD: f64 = 200.0;
+
+/// One of the two figures.
+struct Figure {
+    id: &'static str,
+    name: &'static str,
+    omega: f64,
+    periods: &'static [u32],
+}
+
+const FIGURES: [Figure; 2] = [
+    Figure { id: "fig8", name: "figure-8", omega: 1.4, periods: &[4] },
+    Figure { id: "fig9", name: "figure-9", omega: 1.6, periods: &[5, 6] },
+];
+
+pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+    let mut findings = Findings::default();
+    for figure in &FIGURES {
+        let map = map(figure.omega)?;
+        let attractors = found(figure.omega)?;
+        let strange = strange(&attractors)?;
+        let cloud = strange_section(&map, strange)?;
+        let orbits: Result<Vec<_>, _> =
+            figure.periods.iter().map(|period| of_period(&attractors, *period)).collect();
+        let mut plots = Vec::new();
+        for orbit in orbits? {
+            plots.push(phase_plane(&map, orbit)?);
+        }
+        plots.push(section_plot(&cloud));
+        findings.claims.push(settle(work, figure, &attractors)?);
+        findings.picture(figure.name, &sheet(figure, plots))?;
+        let row = |point: &[f64; 3]| point.iter().map(f64::to_string).collect();
+        findings.csv(
+            &format!("{}-strange", figure.name),
+            &["p", "y", "q"],
+            cloud.iter().map(row),
+        )?;
+        (work.step)();
+    }
+    Ok(findings)
+}
+
+fn settle(work: &Work<'_>, figure: &Figure, attractors: &[Attractor]) -> Result<Claim, Failure> {
+    let strange = strange(attractors)?;
+    let said: Vec<_> = attractors.iter().map(described).collect();
+    let mut periods: Vec<_> = attractors.iter().filter_map(Attractor::period).collect();
+    periods.sort_unstable();
+    let chaotic = strange.lyapunov_per_period > 4.0 * strange.lyapunov_error;
+    let holds = periods == figure.periods && chaotic && attractors.len() == periods.len() + 1;
+    Ok(Claim::settle(&work.paper, figure.id, Verdict::of(holds), said.join("; "))?
+        .note("strobes at omega tau = 0; the attractors that a grid of starts reaches")
+        .evidence("Newton on the exact strobe map, multipliers", said.join("; "))
+        .evidence("picture", format!("{}.png", figure.name)))
+}
+
+/// The phase plane of an orbit, over its whole period.
+fn phase_plane(map: &StrobeMap, attractor: &Attractor) -> Result<Plot, Failure> {
+    let period = attractor.period().unwrap_or(1);
+    let entry = map.entry(attractor.points[0]).map_err(Failure::new)?;
+    let end = entry.instant.after_periods(u64::from(period), 1);
+    let legs: Vec<_> = map.model().trajectory(entry).until(end).collect();
+    let omega = map.model().parameters().omega;
+    let pieces = curve::pieces(&legs, &end, omega, PER_PERIOD);
+    let mut layers = curve::lines(&pieces, |at| [at[1], at[2]]);
+    let points = attractor.points.iter().map(|[p, y, _]| [*p, *y]).collect();
+    layers.push(Layer::Dots { points, colour: INK, size: 3.5 });
+    Ok(Plot {
+        title: format!("period {period}"),
+        axes: ["p".to_owned(), "y".to_owned()],
+        window: None,
+        layers,
+    })
+}
+
+fn strange_section(map: &StrobeMap, strange: &Attractor) -> Result<Vec<[f64; 3]>, Failure> {
+    let first = strange.points.first().ok_or_else(|| Failure::new("it has no points"))?;
+    let entry = map.entry(*first).map_err(Failure::new)?;
+    Ok(section(map.model(), entry, 0.0, TRANSIENT, POINTS).map(|it| it.point()).collect())
+}
+
+fn section_plot(points: &[[f64; 3]]) -> Plot {
+    Plot {
+        title: "strange attractor, Poincar\u{e9} section".to_owned(),
+        axes: ["p".to_owned(), "y".to_owned()],
+        window: None,
+        layers: vec![Layer::Dots {
+            points: points.iter().map(|[p, y, _]| [*p, *y]).collect(),
+            colour: INK,
+            size: 0.6,
+        }],
+    }
+}
+
+fn sheet(figure: &Figure, plots: Vec<Plot>) -> Sheet {
+    Sheet {
+        title: format!("Fig. {}: coexisting attractors", figure.id.trim_start_matches("fig")),
+        caption: format!(
+            "{}. Phase planes over one whole period, with the strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}) as squares: \
+             blue dash-dotted without contact, orange in contact, purple in progression; section of {POINTS} points.",
+            named(&attractors_model(figure.omega))
+        ),
+        columns: plots.len(),
+        panel_height: 520,
+        plots,
+    }
+}

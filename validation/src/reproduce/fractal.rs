@@ -1,0 +1,117 @@
+//! Whether the basins' boundaries are fractal, and whether erosion grows with the frequency.
+
+use super::attractors::{TRANSIENT, WINDOW, grid, map};
+use super::claim::{Claim, Verdict};
+use super::work::{Findings, Work};
+use crate::engine::Failure;
+use percuss::dynamics::attractor::{Atlas, Basins, Entropy, Uncertainty, entropy, uncertainty_of};
+
+/// The frequencies of Fig. 7.
+const OMEGAS: [f64; 6] = [1.4, 1.45, 1.56, 1.58, 1.60, 1.70];
+/// Distances 2^-4 to 2^-16 of the window's width, so many starts at each.
+const SCALES: std::ops::RangeInclusive<u32> = 4..=16;
+const STARTS: u32 = 1200;
+/// Cells a side for the entropy, and of its boxes.
+const CELLS: u32 = 150;
+const BOX: u32 = 5;
+/// Standard errors by which an exponent must be below one.
+const ERRORS: f64 = 4.0;
+
+/// What is measured at one frequency.
+struct Measured {
+    omega: f64,
+    uncertainty: Uncertainty,
+    entropy: Entropy,
+}
+
+pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+    let mut measured = Vec::new();
+    for omega in OMEGAS {
+        measured.push(measure(omega)?);
+        (work.step)();
+    }
+    let mut findings = Findings::default();
+    let header = [
+        "omega",
+        "uncertainty_exponent",
+        "error",
+        "basin_entropy",
+        "boundary_entropy",
+        "boundary_boxes",
+    ];
+    findings.csv("fractal", &header, measured.iter().map(Measured::row))?;
+    findings.claims.push(settle(work, &measured)?);
+    Ok(findings)
+}
+
+fn measure(omega: f64) -> Result<Measured, Failure> {
+    let map = map(omega)?;
+    let mut atlas = Atlas::new(map, TRANSIENT);
+    atlas.label_all(&grid(32).starts(), &|_| {});
+    let uncertainty = uncertainty_of(|start| atlas.label(start), &WINDOW, 0.0, SCALES, STARTS);
+    let basins = Basins::of(&map, &grid(CELLS), TRANSIENT, &|_| {});
+    Ok(Measured { omega, uncertainty, entropy: entropy(&basins, BOX) })
+}
+
+impl Measured {
+    fn row(&self) -> Vec<String> {
+        let numbers = [
+            self.omega,
+            self.uncertainty.exponent,
+            self.uncertainty.error,
+            self.entropy.all,
+            self.entropy.boundary,
+            self.entropy.boundary_boxes as f64,
+        ];
+        numbers.map(|it| it.to_string()).to_vec()
+    }
+}
+
+fn settle(work: &Work<'_>, measured: &[Measured]) -> Result<Claim, Failure> {
+    let fractal = measured.iter().all(|it| it.uncertainty.is_fractal(ERRORS));
+    let grows = |of: fn(&Measured) -> f64| {
+        measured.windows(2).filter(|pair| of(&pair[1]) > of(&pair[0])).count()
+    };
+    let all = measured.len() - 1;
+    let steps = [
+        ("the boundary's dimension", grows(|it| it.uncertainty.dimension())),
+        ("the basin entropy", grows(|it| it.entropy.all)),
+        ("the share of boxes that hold a boundary", grows(|it| it.entropy.boundary_boxes as f64)),
+    ];
+    // The paper measures nothing: its words are settled only where all measures say the same.
+    let verdict = match steps.iter().filter(|(_, count)| *count == all).count() {
+        _ if !fractal => Verdict::Differs,
+        3 => Verdict::Reproduced,
+        0 => Verdict::Differs,
+        _ => Verdict::NotDetermined,
+    };
+    let grown: Vec<_> = steps.iter().map(|(what, count)| format!("{what} in {count}")).collect();
+    let said: Vec<_> = measured
+        .iter()
+        .map(|it| {
+            format!(
+                "{}: {:.3} +- {:.3}",
+                it.omega,
+                it.uncertainty.dimension(),
+                it.uncertainty.error
+            )
+        })
+        .collect();
+    let entropies: Vec<_> =
+        measured.iter().map(|it| format!("{}: {:.3}", it.omega, it.entropy.all)).collect();
+    let computed = format!(
+        "boundaries are {} at all six frequencies; of {all} steps of omega grow {}",
+        if fractal { "fractal" } else { "not shown to be fractal" },
+        grown.join(", ")
+    );
+    Ok(Claim::settle(&work.paper, "fractal", verdict, computed)?
+        .note("the paper does not say how erosion is measured, and three measures do not tell the same of it")
+        .evidence(
+            format!("uncertainty exponent, {STARTS} starts at each of 13 distances down to 2^-16 of the window"),
+            format!("dimension at omega = {}", said.join(", ")),
+        )
+        .evidence(
+            format!("basin entropy, boxes of {BOX} x {BOX} cells of {CELLS} x {CELLS}"),
+            format!("at omega = {}", entropies.join(", ")),
+        ))
+}
