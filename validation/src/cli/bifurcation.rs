@@ -1,17 +1,16 @@
 //! `bifurcation`: a brute-force diagram, as a table or a picture.
 
 use super::endless::words;
+use super::format::OutputFlags;
 use super::model::ModelFlags;
-use super::output::Destination;
-use super::{format, parse, say, work};
+use super::{parse, say, work};
 use crate::number::shortest;
-use crate::picture::{self, Dots, Panel};
+use crate::picture::{self, Layer, Plot, Sheet};
 use anyhow::{Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 use percuss::dynamics::diagram::{Diagram, Follow, Step};
 use percuss::{InputError, Parameter};
 use std::io::Write;
-use std::path::PathBuf;
 
 /// Brute-force bifurcation diagram, with drift per period
 #[derive(Args)]
@@ -40,12 +39,8 @@ pub(super) struct Arguments {
     /// Starts each value from the start given
     #[arg(long)]
     reset: bool,
-    /// Where the result goes, - is stdout; its extension (csv, png, svg) is its format
-    #[arg(long, value_name = "PATH")]
-    output: Option<PathBuf>,
-    /// Format where --output has no extension
-    #[arg(long, value_enum)]
-    format: Option<Format>,
+    #[command(flatten)]
+    output: OutputFlags<Format>,
     #[command(flatten)]
     model: ModelFlags,
 }
@@ -63,7 +58,7 @@ const MAX_ROWS: u64 = 10_000_000;
 const MAX_SVG: u64 = 20_000;
 
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<()> {
-    let format = format::chosen(arguments.output.as_deref(), arguments.format, Format::Csv)?;
+    let format = arguments.output.format(Format::Csv)?;
     let diagram = diagram(arguments)?;
     check_size(arguments, format)?;
     let bar = work::bar(u64::from(arguments.steps), "values");
@@ -71,7 +66,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<()> {
     bar.finish_and_clear();
     let steps =
         steps.map_err(|error| anyhow!("--parameter {}: {error}", diagram.parameter.name()))?;
-    Destination::new(arguments.output.as_deref()).write(|out| match format {
+    arguments.output.destination().write(|out| match format {
         Format::Csv => write_csv(&steps, out),
         Format::Png => Ok(out.write_all(&picture::png(&drawing(&diagram, &steps))?)?),
         Format::Svg => Ok(out.write_all(picture::svg(&drawing(&diagram, &steps))?.as_bytes())?),
@@ -127,7 +122,7 @@ fn write_csv(steps: &[Step], out: &mut dyn Write) -> Result<()> {
     Ok(())
 }
 
-fn drawing(diagram: &Diagram, steps: &[Step]) -> Dots {
+fn drawing(diagram: &Diagram, steps: &[Step]) -> Sheet {
     let section =
         |step: &Step| step.points.iter().map(|it| [step.value, it[0]]).collect::<Vec<_>>();
     let how = match diagram.follow {
@@ -135,24 +130,24 @@ fn drawing(diagram: &Diagram, steps: &[Step]) -> Dots {
         Follow::Reset => "each value starts from the start given",
     };
     let symbol = picture::symbol(diagram.parameter);
-    Dots {
+    let plot = |name: &str, points: Vec<[f64; 2]>| Plot {
+        title: String::new(),
+        axes: [symbol.to_owned(), name.to_owned()],
+        window: None,
+        layers: vec![Layer::cloud(points, picture::INK)],
+    };
+    let drift = steps.iter().map(|step| [step.value, step.drift_per_period]);
+    Sheet {
         title: picture::caption_without(&diagram.parameters, Some(diagram.parameter)),
-        note: format!(
+        caption: format!(
             "{} values of {symbol}, {} strobes each after {} forcing periods; {how}",
             diagram.steps, diagram.periods, diagram.transient
         ),
-        below: symbol.to_owned(),
-        panels: vec![
-            Panel {
-                beside: "p (displacement)".to_owned(),
-                points: steps.iter().flat_map(section).collect(),
-                share: 0.68,
-            },
-            Panel {
-                beside: "drift per period".to_owned(),
-                points: steps.iter().map(|step| [step.value, step.drift_per_period]).collect(),
-                share: 0.32,
-            },
+        columns: 1,
+        panel: (1200, 460),
+        plots: vec![
+            plot("p (displacement)", steps.iter().flat_map(section).collect()),
+            plot("drift per period", drift.collect()),
         ],
     }
 }

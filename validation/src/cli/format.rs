@@ -1,10 +1,33 @@
 //! Which format is written: the extension of --output, or --format where there is none.
 
+use super::output::Destination;
 use anyhow::{Result, bail};
-use clap::ValueEnum;
-use std::path::Path;
+use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
 
-/// The format that --output and --format agree on, or else `usual`.
+/// Where one thing goes, and as what.
+#[derive(Args, Clone, Debug)]
+pub(super) struct OutputFlags<F: ValueEnum + Send + Sync + 'static> {
+    /// Where the result goes, - is stdout; its extension is its format
+    #[arg(long, value_name = "PATH")]
+    output: Option<PathBuf>,
+    /// Format where --output has no extension
+    #[arg(long, value_enum)]
+    format: Option<F>,
+}
+
+impl<F: ValueEnum + PartialEq + Send + Sync + 'static> OutputFlags<F> {
+    /// The format that --output and --format agree on, or else `usual`.
+    pub(super) fn format(&self, usual: F) -> Result<F> {
+        chosen(self.output.as_deref(), self.format.clone(), usual)
+    }
+
+    pub(super) fn destination(&self) -> Destination {
+        Destination::new(self.output.as_deref())
+    }
+}
+
+/// As [`OutputFlags::format`], for verbs whose flags are told otherwise.
 pub(super) fn chosen<F: ValueEnum + PartialEq>(
     output: Option<&Path>,
     stated: Option<F>,

@@ -1,19 +1,18 @@
 //! `poincare`: a stroboscopic section, as a table, an array or a picture.
 
 use super::endless::notice;
+use super::format::OutputFlags;
 use super::model::ModelFlags;
-use super::output::Destination;
-use super::{format, parse, say, work};
+use super::{parse, say, work};
 use crate::case::Problem;
 use crate::number::shortest;
-use crate::picture::{self, Dots, Panel};
+use crate::picture::{self, Layer, Plot, Sheet};
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use npyz::WriterBuilder;
 use percuss::Entry;
 use percuss::dynamics::section::{Section, section};
 use std::io::Write;
-use std::path::PathBuf;
 
 /// Stroboscopic section of one motion
 #[derive(Args)]
@@ -27,12 +26,8 @@ pub(super) struct Arguments {
     /// Forcing angle omega tau mod 2 pi of the section, radians, --phi not included
     #[arg(long, value_name = "ANGLE", default_value_t = 0.0, value_parser = parse::angle, allow_hyphen_values = true)]
     section: f64,
-    /// Where the result goes, - is stdout; its extension (csv, npy, png) is its format
-    #[arg(long, value_name = "PATH")]
-    output: Option<PathBuf>,
-    /// Format where --output has no extension
-    #[arg(long, value_enum)]
-    format: Option<Format>,
+    #[command(flatten)]
+    output: OutputFlags<Format>,
     #[command(flatten)]
     model: ModelFlags,
 }
@@ -48,7 +43,7 @@ enum Format {
 const MAX_PICTURE: u64 = 5_000_000;
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let format = format::chosen(arguments.output.as_deref(), arguments.format, Format::Csv)?;
+    let format = arguments.output.format(Format::Csv)?;
     let problem = arguments.model.problem()?;
     work::check_horizon(arguments.transient, arguments.periods)?;
     if format == Format::Png && arguments.periods > MAX_PICTURE {
@@ -70,7 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         last = *strobe;
         bar.inc(1);
     });
-    Destination::new(arguments.output.as_deref()).write(|out| match format {
+    arguments.output.destination().write(|out| match format {
         Format::Csv => write_csv(strobes, out),
         Format::Npy => write_npy(strobes, arguments.periods, out),
         Format::Png => draw(strobes, &problem, arguments, out),
@@ -112,14 +107,20 @@ fn draw(
     out: &mut dyn Write,
 ) -> Result<()> {
     let points = strobes.map(|strobe| [strobe.state.p, strobe.state.y]).collect();
-    let dots = Dots {
+    let sheet = Sheet {
         title: picture::caption(problem.model.parameters()),
-        note: format!(
+        caption: format!(
             "{} points at \u{3c9}\u{3c4} mod 2\u{3c0} = {}, after {} forcing periods",
             arguments.periods, arguments.section, arguments.transient
         ),
-        below: "p (displacement)".to_owned(),
-        panels: vec![Panel { beside: "y (velocity)".to_owned(), points, share: 1.0 }],
+        columns: 1,
+        panel: (1200, 800),
+        plots: vec![Plot {
+            title: String::new(),
+            axes: ["p (displacement)".to_owned(), "y (velocity)".to_owned()],
+            window: None,
+            layers: vec![Layer::cloud(points, picture::INK)],
+        }],
     };
-    Ok(out.write_all(&picture::png(&dots)?)?)
+    Ok(out.write_all(&picture::png(&sheet)?)?)
 }

@@ -1,7 +1,7 @@
 //! `validate`: every engine on every case against the truth.
 
 use super::output::{Destination, reader_left};
-use super::{DONE, OUT_OF_BOUNDS, parse, reports};
+use super::{DONE, OUT_OF_BOUNDS, parse, reports, work};
 use crate::case::{self, Case};
 use crate::engine::{self, Engine, Wrong, hush_contained_panics};
 use crate::power::{self, Finding};
@@ -10,7 +10,6 @@ use crate::suite::{self, Prepared, Scored, Status, Suite};
 use crate::truth::Library;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use regex::Regex;
 use std::path::{Path, PathBuf};
 
@@ -57,11 +56,12 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     }
     let defaults = case::defaults()?;
     hush_contained_panics();
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads.unwrap_or(0))).build();
-    let pool = pool.context("--threads: the threads cannot be started")?;
+    let pool = work::pool(threads)?;
     let wrong = wrong_engines(arguments);
-    let bar = progress(suite::size(cases.len(), &engines, arguments.suite) + wrong.len());
+    let bar = work::bar(
+        (suite::size(cases.len(), &engines, arguments.suite) + wrong.len()) as u64,
+        "rows",
+    );
     let rows =
         pool.install(|| suite::run(&cases, &engines, arguments.suite, &defaults, &|| bar.inc(1)));
     let examine = |it: &Wrong| {
@@ -162,14 +162,4 @@ fn prepared_cases(arguments: &Arguments) -> Result<Vec<Prepared>> {
 
 fn shown(patterns: &[Regex]) -> String {
     patterns.iter().map(Regex::as_str).collect::<Vec<_>>().join(" ")
-}
-
-/// A bar on stderr; nothing where that is no terminal.
-fn progress(rows: usize) -> ProgressBar {
-    let style = ProgressStyle::with_template("{bar:40} {pos}/{len} rows, {eta} to go");
-    let bar = ProgressBar::new(rows as u64);
-    match style {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }

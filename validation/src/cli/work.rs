@@ -29,6 +29,16 @@ pub(super) fn bar(length: u64, unit: &str) -> ProgressBar {
     styled(ProgressBar::new(length), &style)
 }
 
+/// A bar for a share of 0 to 1.
+pub(super) fn share_bar() -> ProgressBar {
+    styled(ProgressBar::new(1000), "{bar:40} {percent} %, {eta} to go")
+}
+
+/// Where that bar stands.
+pub(super) fn show_share(bar: &ProgressBar, share: f64) {
+    bar.set_position((share * 1000.0) as u64);
+}
+
 /// A sign of life for work that does not tell how far it is.
 pub(super) fn sign_of_life(what: &str) -> ProgressBar {
     styled(ProgressBar::new_spinner(), &format!("{{spinner}} {what}, {{elapsed}}"))

@@ -51,6 +51,12 @@ pub struct Shown {
 /// Colours after which they begin again.
 pub const BASIN_COLOURS: usize = palette::BASINS.len();
 
+/// A basin's light colour and its attractor's dark one, by their place.
+#[must_use]
+pub const fn basin_colours(place: usize) -> (RGBColor, RGBColor) {
+    palette::BASINS[place % BASIN_COLOURS]
+}
+
 const SIZE: (u32, u32) = (1200, 980);
 const FROM: At = (140.0, 64.0);
 const TO: At = (900.0, 824.0);
@@ -141,7 +147,7 @@ impl BasinMap {
 
 impl Shown {
     fn colours(&self) -> (RGBColor, RGBColor) {
-        palette::BASINS[self.colour % BASIN_COLOURS]
+        basin_colours(self.colour)
     }
 
     fn draw<B: DrawingBackend>(&self, pen: &Pen<'_, B>, panel: &Panel) -> Result<(), DrawError> {

@@ -3,9 +3,7 @@
 mod axes;
 mod basin_map;
 mod caption;
-mod clouds;
 mod curves;
-mod dots;
 mod font;
 mod frame;
 mod look;
@@ -16,11 +14,9 @@ mod sheet;
 mod strips;
 mod tiles;
 
-pub use basin_map::{BASIN_COLOURS, BasinMap, Cell, Shown};
+pub use basin_map::{BASIN_COLOURS, BasinMap, Cell, Shown, basin_colours};
 pub use caption::{caption, caption_without, symbol};
-pub use clouds::{Cloud, Clouds};
 pub use curves::{Curve, Curves};
-pub use dots::{Dots, Panel};
 pub use frame::{Axis, Scale};
 pub use look::{Look, Marker, looks};
 pub use motion::Motion;

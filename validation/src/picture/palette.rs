@@ -24,9 +24,9 @@ pub(super) const UNRESOLVED: RGBColor = RGBColor(176, 176, 176);
 /// lightness, so that eyes of every kind tell them apart.
 pub(super) const BASINS: [(RGBColor, RGBColor); 8] = [
     (RGBColor(250, 236, 150), RGBColor(196, 84, 0)),
-    (RGBColor(176, 148, 206), RGBColor(20, 10, 40)),
-    (RGBColor(120, 184, 236), RGBColor(178, 24, 24)),
-    (RGBColor(248, 196, 214), RGBColor(0, 100, 66)),
+    (RGBColor(150, 105, 190), RGBColor(20, 10, 40)),
+    (RGBColor(95, 165, 225), RGBColor(178, 24, 24)),
+    (RGBColor(220, 110, 170), RGBColor(0, 90, 45)),
     (RGBColor(98, 178, 150), RGBColor(0, 52, 44)),
     (RGBColor(222, 158, 96), RGBColor(92, 40, 0)),
     (RGBColor(70, 110, 180), RGBColor(8, 24, 84)),

@@ -6,14 +6,15 @@ use super::summary::{self, EngineSummary, SettingSummary};
 use super::{ErrorGrowth, Evidence, Report, RestartHistogram, SectionPair};
 use crate::number::brief;
 use crate::picture::{
-    Axis, Cloud, Clouds, Curve, Curves, DrawError, Drawing, Look, Marker, Scale, Strip, Strips,
-    Tile, Tiles, Tint, looks, png, svg,
+    self, Axis, Curve, Curves, DrawError, Drawing, Layer, Look, Marker, Plot, Scale, Sheet, Strip,
+    Strips, Tile, Tiles, Tint, looks, png, svg,
 };
+use percuss::Phase;
 use plotters::style::RGBColor;
 use rayon::prelude::*;
 
-/// A cloud of more points is no SVG.
-const MOST_SVG_POINTS: usize = 3000;
+/// Two clouds of more points together are no SVG.
+const MOST_SVG_POINTS: usize = 6000;
 const GREY: RGBColor = RGBColor(150, 150, 150);
 const INK: RGBColor = RGBColor(20, 20, 20);
 
@@ -52,7 +53,7 @@ pub fn pictures(report: &Report, evidence: &Evidence) -> Result<Vec<Picture>, Dr
         drawn(&curves, |_| true)?,
         drawn(&tiles, |_| true)?,
         drawn(&strips, |_| true)?,
-        drawn(&clouds, |it| it.pair.iter().all(|cloud| cloud.points.len() <= MOST_SVG_POINTS))?,
+        drawn(&clouds, |it| it.points() <= MOST_SVG_POINTS)?,
     ];
     Ok(drawn.into_iter().flatten().collect())
 }
@@ -279,19 +280,25 @@ fn touches(grazing: Grazing) -> Tiles {
     }
 }
 
-fn attractors((i, pair): (usize, &SectionPair)) -> (String, Clouds) {
+fn attractors((i, pair): (usize, &SectionPair)) -> (String, Sheet) {
     let told = |(name, value, limit): &(String, f64, f64)| {
         format!("{name} {} (limit {})", brief(*value), brief(*limit))
     };
-    let cloud = |name: &str, points: &[[f64; 2]]| Cloud {
-        name: format!("{name}, {} points", points.len()),
-        points: points.to_vec(),
-    };
-    let clouds = Clouds {
-        title: format!("Attractors at \u{3c9} = {}, \u{3be} = {}", pair.omega, pair.xi),
-        note: pair.distances.iter().map(told).collect::<Vec<_>>().join(";  "),
+    let plot = |name: &str, points: &[[f64; 2]], colour| Plot {
+        title: format!("{name}, {} points", points.len()),
         axes: ["p".to_owned(), "y".to_owned()],
-        pair: [cloud("exact", &pair.exact), cloud(&pair.direct_engine, &pair.direct)],
+        window: None,
+        layers: vec![Layer::cloud(points.to_vec(), colour)],
     };
-    (format!("attractors-{}", i + 1), clouds)
+    let sheet = Sheet {
+        title: format!("Attractors at \u{3c9} = {}, \u{3be} = {}", pair.omega, pair.xi),
+        caption: pair.distances.iter().map(told).collect::<Vec<_>>().join("; "),
+        columns: 2,
+        panel: (750, 640),
+        plots: vec![
+            plot("exact", &pair.exact, picture::INK),
+            plot(&pair.direct_engine, &pair.direct, picture::phase_colour(Phase::NoContact)),
+        ],
+    };
+    (format!("attractors-{}", i + 1), sheet.on_the_same_axes())
 }

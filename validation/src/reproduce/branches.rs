@@ -6,7 +6,8 @@ use super::paper::attractors_model;
 use super::work::{Findings, Work};
 use crate::engine::Failure;
 use crate::picture::{INK, KeyEntry, Layer, Plot, Sheet, Stroke};
-use percuss::dynamics::continuation::{Branch, BranchPoint, Family, Kind};
+use percuss::dynamics::continuation::{Bifurcation, Branch, BranchPoint, Family, Kind};
+use percuss::dynamics::orbit::Orbit;
 use percuss::dynamics::strobe::Point;
 use percuss::{Instant, Parameter};
 use plotters::style::RGBColor;
@@ -67,17 +68,26 @@ fn rows(period: u32, point: &BranchPoint) -> impl Iterator<Item = Vec<String>> +
     })
 }
 
-/// One line a strobe and stretch of equal stability.
+/// One line a strobe and stretch of equal stability, up to where that changes.
 fn lines(branch: &Branch, colour: RGBColor) -> Vec<Layer> {
-    let mut layers = Vec::new();
-    let stretches = branch.points.chunk_by(|a, b| {
+    let alike = |a: &BranchPoint, b: &BranchPoint| {
         a.orbit.is_stable() == b.orbit.is_stable() && a.orbit.points.len() == b.orbit.points.len()
-    });
-    for stretch in stretches {
+    };
+    let stretches: Vec<&[BranchPoint]> = branch.points.chunk_by(alike).collect();
+    let mut layers = Vec::new();
+    for (k, stretch) in stretches.iter().enumerate() {
+        let before =
+            k.checked_sub(1).and_then(|k| change(branch, stretches[k].last(), stretch.first()));
+        let after =
+            stretches.get(k + 1).and_then(|next| change(branch, stretch.last(), next.first()));
         let stable = stretch[0].orbit.is_stable();
         for strobe in 0..stretch[0].orbit.points.len() {
+            let at =
+                |(value, orbit): (f64, &Orbit)| orbit.points.get(strobe).map(|it| [value, it[0]]);
+            let inner = stretch.iter().map(|it| (it.value, &it.orbit));
+            let whole = before.into_iter().chain(inner).chain(after);
             layers.push(Layer::Line {
-                points: stretch.iter().map(|it| [it.value, it.orbit.points[strobe][0]]).collect(),
+                points: whole.filter_map(at).collect(),
                 colour,
                 width: if stable { 2.2 } else { 1.1 },
                 stroke: if stable { Stroke::Solid } else { Stroke::Dashed },
@@ -85,6 +95,19 @@ fn lines(branch: &Branch, colour: RGBColor) -> Vec<Layer> {
         }
     }
     layers
+}
+
+/// The orbit at which stability changes between two neighbours on a branch.
+fn change<'a>(
+    branch: &'a Branch,
+    last: Option<&BranchPoint>,
+    next: Option<&BranchPoint>,
+) -> Option<(f64, &'a Orbit)> {
+    let (last, next) = (last?, next?);
+    let far = |it: &Bifurcation| (it.value - last.value).abs() + (it.value - next.value).abs();
+    let smooth = branch.bifurcations.iter().filter(|it| it.kind != Kind::Grazing);
+    let nearest = smooth.min_by(|a, b| far(a).total_cmp(&far(b)))?;
+    Some((nearest.value, &nearest.orbit))
 }
 
 /// Squares where a branch turns, doubles or grazes.
@@ -95,7 +118,7 @@ fn marks(branch: &Branch) -> Vec<Layer> {
         Kind::Grazing => RGBColor(130, 130, 130),
         Kind::NeimarkSacker => RGBColor(0, 158, 115),
     };
-    let mark = |it: &percuss::dynamics::continuation::Bifurcation| Layer::Dots {
+    let mark = |it: &Bifurcation| Layer::Dots {
         points: it.orbit.points.iter().map(|point| [it.value, point[0]]).collect(),
         colour: colour(it.kind),
         size: 3.2,
@@ -125,7 +148,7 @@ fn sheet(branches: &[(u32, RGBColor, Branch)]) -> Sheet {
                   diagram made by brute force ends in folds, and its doublings are others."
             .to_owned(),
         columns: 1,
-        panel_height: 900,
+        panel: (760, 900),
         plots: vec![Plot {
             title: String::new(),
             axes: ["\u{3c9}".to_owned(), "p".to_owned()],

@@ -225,7 +225,7 @@ fn sheet(corrected: &[Step], uncorrected: &[Step]) -> Sheet {
              (b) every value starts from the orbit's strobe at \u{3c9} = {BEGIN}."
         ),
         columns: 2,
-        panel_height: 560,
+        panel: (760, 560),
         plots: vec![plot("(a) with correction", corrected), plot("(b) without", uncorrected)],
     }
 }

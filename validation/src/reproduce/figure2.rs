@@ -3,9 +3,9 @@
 use super::claim::{Claim, Verdict};
 use super::curve::{self, HEADER, Piece};
 use super::paper::table_1_model;
-use super::work::{Findings, Work, from_rest, named};
+use super::work::{Findings, Work, from_rest};
 use crate::engine::Failure;
-use crate::picture::{Layer, Plot, Sheet, Stroke};
+use crate::picture::{Layer, Plot, Sheet, Stroke, caption};
 use percuss::Phase;
 
 const PERIODS: u64 = 12;
@@ -23,7 +23,7 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     let pieces = curve::pieces(&legs, &end, parameters.omega, POINTS);
     let mut findings = Findings::default();
     findings.claims.push(settle(work, &pieces)?);
-    findings.picture("figure-2", &sheet(&pieces, &named(&parameters)))?;
+    findings.picture("figure-2", &sheet(&pieces, &caption(&parameters)))?;
     findings.csv("figure-2", &HEADER, curve::rows(&pieces))?;
     Ok(findings)
 }
@@ -88,7 +88,7 @@ fn sheet(pieces: &[Piece], parameters: &str) -> Sheet {
              The paper prints no parameters for this figure: assumed are those of Fig. 3."
         ),
         columns: 1,
-        panel_height: 330,
+        panel: (760, 330),
         plots: vec![
             plot("(a)", "x, v", drifting),
             plot("(b)", "p", curve::lines(pieces, |at| [at[0], at[1]])),

@@ -3,9 +3,9 @@
 use super::claim::{Claim, Verdict};
 use super::curve::{self, HEADER, Piece};
 use super::paper::chaotic_model;
-use super::work::{Findings, Work, from_rest, named};
+use super::work::{Findings, Work, from_rest};
 use crate::engine::Failure;
-use crate::picture::{Layer, Plot, Sheet};
+use crate::picture::{Layer, Plot, Sheet, caption};
 use percuss::{Parameters, Phase};
 
 const TRANSIENT: u64 = 100;
@@ -62,10 +62,10 @@ fn sheet(pieces: &[Piece], parameters: &Parameters) -> Sheet {
         title: "Fig. 5: chaotic motion on the phase plane".to_owned(),
         caption: format!(
             "{}; {PERIODS} forcing periods after {TRANSIENT}, from rest. Dashed: p = g and p = g + 1.",
-            named(parameters)
+            caption(parameters)
         ),
         columns: 1,
-        panel_height: 620,
+        panel: (760, 620),
         plots: vec![Plot {
             title: String::new(),
             axes: ["p".to_owned(), "y".to_owned()],

@@ -2,11 +2,11 @@
 
 use super::claim::{Claim, Verdict};
 use super::paper::chaotic_model;
-use super::work::{Findings, Work, named};
+use super::work::{Findings, Work};
 use crate::case;
 use crate::engine::{self, Accuracy, Engine, Failure, Limits};
 use crate::number::brief;
-use crate::picture::{INK, Layer, Plot, Sheet, phase_colour};
+use crate::picture::{INK, Layer, Plot, Sheet, caption, phase_colour};
 use crate::score::attractor::{AttractorTest, Comparison, Section, calibrated, run_of};
 use percuss::{Phase, Start};
 
@@ -126,10 +126,10 @@ fn sheet(exact: &Section, other: &Section, engine: &str, farthest: f64) -> Sheet
             "{}; strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}), {POINTS} points after {TRANSIENT} periods from rest. (a) exact solver; \
              (b) {engine} at a tolerance of {TOLERANCE:e}. Largest distance between the two kinds of section, over integrators of three \
              libraries: {farthest:.2} of the calibrated limit.",
-            named(&chaotic_model())
+            caption(&chaotic_model())
         ),
         columns: 2,
-        panel_height: 560,
+        panel: (760, 560),
         plots: vec![
             plot("(a) semi-analytically".to_owned(), exact, INK),
             plot("(b) by numerical integration".to_owned(), other, phase_colour(Phase::NoContact)),

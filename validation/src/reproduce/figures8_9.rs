@@ -4,9 +4,9 @@ use super::attractors::{described, found, map, of_period, strange};
 use super::claim::{Claim, Verdict};
 use super::curve;
 use super::paper::attractors_model;
-use super::work::{Findings, Work, named};
+use super::work::{Findings, Work};
 use crate::engine::Failure;
-use crate::picture::{INK, Layer, Plot, Sheet};
+use crate::picture::{INK, Layer, Plot, Sheet, caption};
 use percuss::dynamics::attractor::Attractor;
 use percuss::dynamics::section::section;
 use percuss::dynamics::strobe::StrobeMap;
@@ -114,10 +114,10 @@ fn sheet(figure: &Figure, plots: Vec<Plot>) -> Sheet {
         caption: format!(
             "{}. Phase planes over one whole period, with the strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}) as squares: \
              blue dash-dotted without contact, orange in contact, purple in progression; section of {POINTS} points.",
-            named(&attractors_model(figure.omega))
+            caption(&attractors_model(figure.omega))
         ),
         columns: plots.len(),
-        panel_height: 520,
+        panel: (760, 520),
         plots,
     }
 }

@@ -2,9 +2,9 @@
 //! the forcing frequency and against the static force.
 
 use super::paper::chaotic_model;
-use super::work::{Findings, Work, named};
+use super::work::{Findings, Work};
 use crate::engine::Failure;
-use crate::picture::{KeyEntry, Layer, Plot, Sheet};
+use crate::picture::{KeyEntry, Layer, Plot, Sheet, caption_without};
 use percuss::dynamics::diagram::{Diagram, Follow, Step};
 use percuss::{Parameter, Parameters, Start};
 use plotters::style::RGBColor;
@@ -111,13 +111,6 @@ impl Rate {
         step.drift_per_period * omega / std::f64::consts::TAU
     }
 
-    /// The parameters that stay, as captions name them.
-    fn others(&self) -> String {
-        let all = named(&chaotic_model());
-        let varied = format!("{} =", self.label);
-        all.split(", ").filter(|it| !it.starts_with(&varied)).collect::<Vec<_>>().join(", ")
-    }
-
     fn sheet(&self, steps: &[Step]) -> Sheet {
         let axis = |label: &str| [self.label.to_owned(), label.to_owned()];
         let dots = |of: &dyn Fn(&Step) -> Vec<[f64; 2]>, size: f64| -> Vec<Layer> {
@@ -149,11 +142,11 @@ impl Rate {
             caption: format!(
                 "{}; {} varied, from rest, {TRANSIENT} forcing periods left out, mean over {PERIODS}. Left: drift per unit of time; \
                  right: strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}). Colours: period of the motion in forcing periods.",
-                self.others(),
+                caption_without(&chaotic_model(), Some(self.parameter)),
                 self.label
             ),
             columns: 2,
-            panel_height: 520,
+            panel: (760, 520),
             plots: vec![plot(axis("drift per unit of time"), rate), plot(axis("p"), section)],
         }
     }

@@ -54,6 +54,9 @@ impl Work<'_> {
     }
 }
 
+/// A picture of more marks is no SVG.
+const MOST_SVG_POINTS: usize = 20_000;
+
 /// What an item has found.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
@@ -70,7 +73,7 @@ impl Findings {
     /// The drawing library's reason.
     pub fn picture(&mut self, name: &str, sheet: &Sheet) -> Result<(), Failure> {
         self.files.push((format!("{name}.png"), png(sheet).map_err(Failure::new)?));
-        if sheet.is_small() {
+        if sheet.points() <= MOST_SVG_POINTS {
             self.files
                 .push((format!("{name}.svg"), svg(sheet).map_err(Failure::new)?.into_bytes()));
         }
@@ -108,10 +111,4 @@ pub(super) fn from_rest(parameters: Parameters) -> Result<(Model, Entry), Failur
     let model = model(parameters)?;
     let entry = model.start(&Start::default()).map_err(Failure::new)?;
     Ok((model, entry))
-}
-
-/// Parameters as captions name them.
-pub(super) fn named(parameters: &Parameters) -> String {
-    let Parameters { a, b, xi, omega, g, .. } = parameters;
-    format!("a = {a}, b = {b}, \u{3be} = {xi}, \u{3c9} = {omega}, g = {g}, \u{3c6} = \u{3c0}/2")
 }

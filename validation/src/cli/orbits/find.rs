@@ -1,14 +1,14 @@
 //! `orbit`: one periodic orbit, by Newton's method.
 
 use super::json::Found;
-use super::{Format, check_extension, period, place, progress, write};
+use super::{Format, period};
+use crate::cli::format::OutputFlags;
 use crate::cli::model::ModelFlags;
-use crate::cli::{DONE, OUT_OF_BOUNDS, say};
+use crate::cli::{DONE, OUT_OF_BOUNDS, say, work};
 use anyhow::Result;
 use clap::Args;
 use percuss::dynamics::orbit::{Orbit, scan};
 use percuss::dynamics::strobe::StrobeMap;
-use std::path::PathBuf;
 
 /// Find a periodic orbit, stable or not, from a guess (--p, --y, --q) or from a scan of starts
 #[derive(Args)]
@@ -16,19 +16,14 @@ pub(crate) struct Arguments {
     /// Forcing periods of the orbit; one that closes after a divisor is reported with that
     #[arg(long, value_name = "K", value_parser = period, allow_hyphen_values = true)]
     period: u32,
-    /// Where the JSON goes; - is stdout
-    #[arg(long, value_name = "PATH")]
-    output: Option<PathBuf>,
-    /// Format where --output has no extension
-    #[arg(long, value_enum)]
-    format: Option<Format>,
+    #[command(flatten)]
+    output: OutputFlags<Format>,
     #[command(flatten)]
     model: ModelFlags,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
-    let output = arguments.output.as_deref();
-    check_extension(output, arguments.format)?;
+    arguments.output.format(Format::Json)?;
     let (problem, guessed) = arguments.model.guess(None)?;
     let map = StrobeMap::new(problem.model, problem.entry.instant);
     let found = if guessed {
@@ -38,7 +33,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
         scanned(&map, arguments.period)
     };
     let shown = found.as_ref().map_err(|(residual, _)| *residual);
-    write(output, &Found::new(&problem.model, shown))?;
+    arguments.output.destination().json(&Found::new(&problem.model, shown))?;
     Ok(match found {
         Ok(_) => DONE,
         Err((_, why)) => {
@@ -50,8 +45,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
 
 /// The preferred orbit of a scan; how many others there are is said.
 pub(super) fn scanned(map: &StrobeMap, period: u32) -> Result<Orbit, (f64, String)> {
-    let bar = progress();
-    let found = scan(map, period, &mut |share| place(&bar, share));
+    let bar = work::share_bar();
+    let found = scan(map, period, &mut |share| work::show_share(&bar, share));
     bar.finish_and_clear();
     let whole = found.iter().filter(|it| it.period() == period);
     let (count, stable) = (whole.clone().count(), whole.filter(|it| it.is_stable()).count());

@@ -2,16 +2,16 @@
 
 use super::find::scanned;
 use super::json::{Course, Doubled, Followed, Values};
-use super::{Format, check_extension, period, place, progress, write};
+use super::{Format, period};
 use crate::case::Problem;
+use crate::cli::format::OutputFlags;
 use crate::cli::model::ModelFlags;
-use crate::cli::{DONE, OUT_OF_BOUNDS, parse, say};
+use crate::cli::{DONE, OUT_OF_BOUNDS, parse, say, work};
 use anyhow::{Result, anyhow};
 use clap::Args;
 use percuss::Parameter;
 use percuss::dynamics::continuation::{Branch, Criticality, Doubling, Ending, Family, Kind};
 use percuss::dynamics::strobe::StrobeMap;
-use std::path::PathBuf;
 
 /// Follow a periodic orbit, stable or not, in a parameter, and locate its bifurcations
 #[derive(Args)]
@@ -31,12 +31,8 @@ pub(crate) struct Arguments {
     /// Follows the branch of twice the period from the first flip too
     #[arg(long)]
     doubled: bool,
-    /// Where the JSON goes; - is stdout
-    #[arg(long, value_name = "PATH")]
-    output: Option<PathBuf>,
-    /// Format where --output has no extension
-    #[arg(long, value_enum)]
-    format: Option<Format>,
+    #[command(flatten)]
+    output: OutputFlags<Format>,
     #[command(flatten)]
     model: ModelFlags,
 }
@@ -47,8 +43,7 @@ fn parameter(text: &str) -> Result<Parameter, String> {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     let Arguments { parameter, from, to, .. } = *arguments;
-    let output = arguments.output.as_deref();
-    check_extension(output, arguments.format)?;
+    arguments.output.format(Format::Json)?;
     let (problem, guessed) = arguments.model.guess(Some((parameter, "--from", from)))?;
     let family = Family::new(*problem.model.parameters(), parameter, problem.entry.instant);
     family.map(to).map_err(|error| anyhow!("--to: {error}"))?;
@@ -66,7 +61,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
         course: branch.as_ref().map(|it| Course::of(it, parameter, complete)).unwrap_or_default(),
         doubled,
     };
-    write(output, &followed)?;
+    arguments.output.destination().json(&followed)?;
     match branch {
         Ok(branch) if !complete => {
             say(&format!("--parameter {}: {}", parameter.name(), branch.ending))
@@ -90,8 +85,8 @@ fn branch(
         let orbit = scanned(&map, arguments.period).map_err(|(_, why)| why)?;
         orbit.points[0]
     };
-    let bar = progress();
-    let told = &mut |share| place(&bar, share);
+    let bar = work::share_bar();
+    let told = &mut |share| work::show_share(&bar, share);
     let Arguments { period, from, to, .. } = *arguments;
     let branch = Branch::follow(family, guess, period, from, to, told);
     bar.finish_and_clear();
@@ -103,8 +98,8 @@ fn doubled(branch: &Branch, family: &Family, from: f64, to: f64) -> Option<Doubl
     let period = branch.points.first()?.orbit.period();
     let own = |it: &&_| is_flip_of(it, period);
     let flip = branch.bifurcations.iter().find(own)?;
-    let bar = progress();
-    let doubling = Doubling::of(family, flip, from, to, &mut |share| place(&bar, share));
+    let bar = work::share_bar();
+    let doubling = Doubling::of(family, flip, from, to, &mut |share| work::show_share(&bar, share));
     bar.finish_and_clear();
     let Doubling { criticality, branch } = doubling?;
     let complete = matches!(branch.ending, Ending::Reached | Ending::Left);

@@ -4,13 +4,12 @@ mod claims;
 mod store;
 
 use super::output::{Destination, reader_left, write_whole};
-use super::{DONE, OUT_OF_BOUNDS, say};
+use super::{DONE, OUT_OF_BOUNDS, say, work};
 use crate::engine::{Failure, hush_contained_panics};
 use crate::reproduce::paper::Paper;
 use crate::reproduce::{Claim, Findings, Item, Size, Work, items};
 use anyhow::{Context, Result, anyhow, bail};
 use clap::Args;
-use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use store::Store;
@@ -36,15 +35,13 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         anyhow!("--out {folder} cannot be made ({error}); accepted is a writable folder")
     })?;
     let store = Store::open(&arguments.out, arguments.size)?;
-    let pool =
-        rayon::ThreadPoolBuilder::new().num_threads(usize::from(threads.unwrap_or(0))).build();
-    let pool = pool.context("--threads: the threads cannot be started")?;
+    let pool = work::pool(threads)?;
     hush_contained_panics();
-    let bar = progress(chosen.iter().map(|item| u64::from(item.parts)).sum());
-    let work =
+    let bar = work::bar(chosen.iter().map(|item| u64::from(item.parts)).sum(), "parts");
+    let task =
         Work { paper: Paper::read()?, size: arguments.size, step: &|| bar.inc(1), parts: &store };
     let done: Vec<Result<Vec<Claim>, Failure>> =
-        pool.install(|| chosen.par_iter().map(|item| settle(item, &work, &store)).collect());
+        pool.install(|| chosen.par_iter().map(|item| settle(item, &task, &store)).collect());
     bar.finish_and_clear();
     finish(arguments, &chosen, done, &store)
 }
@@ -112,13 +109,4 @@ fn chosen(only: &[String]) -> Result<Vec<&'static Item>> {
 /// A file of the reproduction, whole or not at all.
 fn write_file(folder: &Path, name: &str, bytes: &[u8]) -> Result<()> {
     write_whole(&folder.join(name), |out| Ok(out.write_all(bytes)?)).context("--out")
-}
-
-/// A bar on stderr; nothing where that is no terminal.
-fn progress(parts: u64) -> ProgressBar {
-    let bar = ProgressBar::new(parts);
-    match ProgressStyle::with_template("{bar:40} {percent} %, {eta} to go") {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }

@@ -5,15 +5,14 @@ mod json;
 mod plan;
 mod rows;
 
+use super::format::OutputFlags;
 use super::model::ModelFlags;
-use super::output::Destination;
-use super::{format, parse, say};
+use super::{parse, say};
 use crate::picture;
 use anyhow::Result;
 use clap::{ArgGroup, Args, ValueEnum};
 use plan::Plan;
 use std::io::Write;
-use std::path::PathBuf;
 
 /// Run the exact solver from one start
 #[derive(Args)]
@@ -34,12 +33,8 @@ pub(super) struct Arguments {
     /// With --events: stops early after this many forcing periods
     #[arg(long, value_name = "M", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..=parse::MAX_PERIODS))]
     max_periods: u64,
-    /// Where the result goes, - is stdout; its extension (csv, json, png, svg) is its format
-    #[arg(long, value_name = "PATH")]
-    output: Option<PathBuf>,
-    /// Format where --output has no extension
-    #[arg(long, value_enum)]
-    format: Option<Format>,
+    #[command(flatten)]
+    output: OutputFlags<Format>,
     #[command(flatten)]
     model: ModelFlags,
 }
@@ -54,10 +49,10 @@ enum Format {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let format = format::chosen(arguments.output.as_deref(), arguments.format, Format::Csv)?;
+    let format = arguments.output.format(Format::Csv)?;
     let problem = arguments.model.problem()?;
     let plan = Plan::new(problem, arguments)?;
-    let destination = Destination::new(arguments.output.as_deref());
+    let destination = arguments.output.destination();
     let mut ending = None;
     destination.write(|out| {
         ending = match format {

@@ -96,6 +96,18 @@ const TEXT: f64 = 18.0;
 const LETTER: f64 = 10.0;
 
 impl Layer {
+    /// Points as small as their number asks for: few are drawn so that they show.
+    #[must_use]
+    pub fn cloud(points: Vec<[f64; 2]>, colour: RGBColor) -> Self {
+        let size = match points.len() {
+            0..2_000 => 1.6,
+            2_000..30_000 => 0.8,
+            30_000..300_000 => 0.5,
+            _ => 0.34,
+        };
+        Self::Dots { points, colour, size }
+    }
+
     /// How many marks it takes to draw.
     pub(super) fn points(&self) -> usize {
         match self {

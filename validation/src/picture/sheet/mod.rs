@@ -6,20 +6,19 @@ mod plot;
 pub use layer::{KeyEntry, Layer, Raster, Stroke};
 pub use plot::{Plot, Window};
 
+use super::axes::around;
 use super::pen::{Pen, Side};
 use super::{DrawError, Drawing, palette};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
-/// Room of a panel, with its axes' names.
-const WIDTH: u32 = 760;
 const TITLE: f64 = 24.0;
 const TEXT: f64 = 18.0;
 /// Height of a line of the caption.
 const LINE: u32 = 26;
 const HEAD: u32 = 56;
-/// Characters that fit a panel's width in the caption.
-const CHARACTERS: usize = 82;
+/// Mean width of a letter of the caption, on the generous side.
+const LETTER: usize = 9;
 
 /// A sheet of panels, row by row.
 #[derive(Clone, Debug)]
@@ -30,15 +29,15 @@ pub struct Sheet {
     pub caption: String,
     /// Panels beside each other.
     pub columns: usize,
-    /// Height of a panel, pixels.
-    pub panel_height: u32,
+    /// Width and height of a panel with its axes' names, pixels.
+    pub panel: (u32, u32),
     /// The panels.
     pub plots: Vec<Plot>,
 }
 
 impl Sheet {
     fn lines(&self) -> Vec<String> {
-        let width = CHARACTERS * self.columns.max(1);
+        let width = (self.panel.0 as usize * self.columns.max(1)).saturating_sub(48) / LETTER;
         let mut lines = vec![String::new()];
         for word in self.caption.split_whitespace() {
             let full = lines
@@ -61,19 +60,31 @@ impl Sheet {
         self.plots.len().div_ceil(self.columns.max(1))
     }
 
-    /// Whether an SVG of it stays small.
+    /// How many marks it takes to draw: what decides whether an SVG of it stays small.
     #[must_use]
-    pub fn is_small(&self) -> bool {
-        const POINTS: usize = 20_000;
-        self.plots.iter().flat_map(|plot| &plot.layers).map(Layer::points).sum::<usize>() <= POINTS
+    pub fn points(&self) -> usize {
+        self.plots.iter().flat_map(|plot| &plot.layers).map(Layer::points).sum()
+    }
+
+    /// With all panels over the same ranges.
+    #[must_use]
+    pub fn on_the_same_axes(mut self) -> Self {
+        let extent = |axis: usize| {
+            let layers = self.plots.iter().flat_map(|plot| &plot.layers);
+            let range = around(layers.flat_map(|layer| layer.extent(axis)));
+            (range.start, range.end)
+        };
+        let window = [extent(0), extent(1)];
+        self.plots.iter_mut().for_each(|plot| plot.window = Some(window));
+        self
     }
 }
 
 impl Drawing for Sheet {
     fn size(&self) -> (u32, u32) {
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-        let width = WIDTH.saturating_mul(count(self.columns.max(1)));
-        let panels = self.panel_height.saturating_mul(count(self.rows()));
+        let width = self.panel.0.saturating_mul(count(self.columns.max(1)));
+        let panels = self.panel.1.saturating_mul(count(self.rows()));
         (width, HEAD + panels + 20 + LINE * count(self.lines().len()))
     }
 
@@ -85,7 +96,7 @@ impl Drawing for Sheet {
         let pen = Pen { area, scale };
         pen.paper()?;
         pen.text(&self.title, (24.0, 30.0), TITLE, Side::Left, palette::INK)?;
-        let (width, height) = (f64::from(WIDTH), f64::from(self.panel_height));
+        let (width, height) = (f64::from(self.panel.0), f64::from(self.panel.1));
         for (i, plot) in self.plots.iter().enumerate() {
             let (row, column) = (i / self.columns.max(1), i % self.columns.max(1));
             let corner = (width * column as f64, f64::from(HEAD) + height * row as f64);

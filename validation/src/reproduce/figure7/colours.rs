@@ -10,33 +10,12 @@ use crate::reproduce::attractors::map;
 use crate::reproduce::paper::attractors_model;
 use percuss::dynamics::diagram::{Diagram, Follow};
 use percuss::{Parameter, Start};
-use plotters::style::RGBColor;
 
-/// Colours of an attractor and of its basin.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Pair {
-    pub attractor: RGBColor,
-    pub basin: RGBColor,
-}
+/// The place of an attractor's colours among those of basin pictures.
+pub(super) type Place = usize;
 
-const fn pair(attractor: (u8, u8, u8), basin: (u8, u8, u8)) -> Pair {
-    Pair {
-        attractor: RGBColor(attractor.0, attractor.1, attractor.2),
-        basin: RGBColor(basin.0, basin.1, basin.2),
-    }
-}
-
-/// The paper's: orange on yellow for the strange attractor; then black on purple, red on blue,
-/// green on pink; lightness tells them apart as well.
-const STRANGE: Pair = pair((215, 95, 0), (250, 235, 130));
-const OTHERS: [Pair; 6] = [
-    pair((0, 0, 0), (150, 105, 190)),
-    pair((200, 0, 30), (95, 165, 225)),
-    pair((0, 90, 45), (220, 110, 170)),
-    pair((90, 40, 0), (205, 185, 150)),
-    pair((0, 60, 120), (150, 215, 190)),
-    pair((60, 60, 60), (225, 225, 225)),
-];
+/// The paper's orange on yellow, for the strange attractor; the others follow.
+const STRANGE: Place = 0;
 
 /// Steps of the frequency from frame to frame, and forcing periods in each.
 const STEPS: u32 = 200;
@@ -45,8 +24,8 @@ const PERIODS: u64 = 400;
 const NEAR: f64 = 0.02;
 
 /// Colours of every frame's attractors, in their order.
-pub(super) fn through(frames: &[Frame]) -> Result<Vec<Vec<Pair>>, Failure> {
-    let mut all: Vec<Vec<Pair>> = Vec::new();
+pub(super) fn through(frames: &[Frame]) -> Result<Vec<Vec<Place>>, Failure> {
+    let mut all: Vec<Vec<Place>> = Vec::new();
     let mut used = 0;
     for (k, frame) in frames.iter().enumerate() {
         let inherited = match (k.checked_sub(1).map(|last| &frames[last]), all.last()) {
@@ -58,7 +37,7 @@ pub(super) fn through(frames: &[Frame]) -> Result<Vec<Vec<Pair>>, Failure> {
                 None if k == 0 => STRANGE,
                 _ => {
                     used += 1;
-                    OTHERS[(used - 1) % OTHERS.len()]
+                    STRANGE + used
                 }
             })
         });
@@ -68,8 +47,12 @@ pub(super) fn through(frames: &[Frame]) -> Result<Vec<Vec<Pair>>, Failure> {
 }
 
 /// The colours that attractors of a frame have from the one before.
-fn inherited(last: &Frame, colours: &[Pair], frame: &Frame) -> Result<Vec<Option<Pair>>, Failure> {
-    let mut heirs: Vec<Option<(bool, Pair)>> = vec![None; frame.attractors.len()];
+fn inherited(
+    last: &Frame,
+    colours: &[Place],
+    frame: &Frame,
+) -> Result<Vec<Option<Place>>, Failure> {
+    let mut heirs: Vec<Option<(bool, Place)>> = vec![None; frame.attractors.len()];
     for (attractor, pair) in last.attractors.iter().zip(colours) {
         let Some(first) = attractor.points.first() else { continue };
         let Some(heir) = carried(last.omega, *first, frame)? else { continue };

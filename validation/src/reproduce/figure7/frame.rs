@@ -1,9 +1,9 @@
 //! One frame: its attractors and the label of every start.
 
-use super::colours::Pair;
+use super::colours::Place;
 use crate::arrays::Npz;
 use crate::engine::{self, Accuracy, Failure, Limits};
-use crate::picture::{Layer, Plot, Raster};
+use crate::picture::{Layer, Plot, Raster, basin_colours};
 use crate::reproduce::attractors::{TRANSIENT, WINDOW, described, grid, map};
 use crate::reproduce::paper::attractors_model;
 use crate::reproduce::work::Work;
@@ -145,12 +145,12 @@ impl Frame {
     }
 
     /// The basins with their attractors.
-    pub(super) fn plot(&self, title: &str, colours: &[Pair]) -> Plot {
+    pub(super) fn plot(&self, title: &str, colours: &[Place]) -> Plot {
         let colour = |label: &i32| {
             usize::try_from(*label)
                 .ok()
                 .and_then(|id| colours.get(id))
-                .map_or(UNRESOLVED, |it| it.basin)
+                .map_or(UNRESOLVED, |it| basin_colours(*it).0)
         };
         let rows = self.labels.chunks(self.cells as usize);
         let raster = Raster {
@@ -158,10 +158,10 @@ impl Frame {
             rows: rows.map(|row| row.iter().map(colour).collect()).collect(),
         };
         let mut layers = vec![Layer::Raster(raster)];
-        for (attractor, pair) in self.attractors.iter().zip(colours) {
+        for (attractor, place) in self.attractors.iter().zip(colours) {
             layers.push(Layer::Dots {
                 points: attractor.points.iter().map(|[p, y, _]| [*p, *y]).collect(),
-                colour: pair.attractor,
+                colour: basin_colours(*place).1,
                 size: if attractor.period.is_some() { 4.0 } else { 0.9 },
             });
         }

@@ -7,10 +7,11 @@ use super::Item;
 use super::attractors::{described, found};
 use super::claim::{Claim, Verdict};
 use super::paper::{Printed, attractors_model};
-use super::work::{Findings, Size, Work, named};
+use super::work::{Findings, Size, Work};
 use crate::engine::Failure;
-use crate::picture::Sheet;
+use crate::picture::{Sheet, caption, caption_without};
 use frame::Frame;
+use percuss::Parameter;
 use percuss::dynamics::attractor::{Kind, Label};
 
 /// Cells along a side.
@@ -64,14 +65,14 @@ fn run(work: &Work<'_>) -> Result<Findings, Failure> {
         let claims = settle(work, frame, &format!("fig7{letter}"), census)?;
         all_agree &= claims[0].verdict == Verdict::Reproduced;
         findings.claims.extend(claims);
-        let sheet = sheet(letter, frame.omega, vec![frame.plot("", colours)], cells, 1);
+        let sheet = sheet(letter, Some(frame.omega), vec![frame.plot("", colours)], cells, 1);
         findings.picture(&format!("figure-7{letter}"), &sheet)?;
         findings.files.push((format!("figure-7{letter}.npz"), frame.npz()?));
     }
     let plots = frames.iter().zip(&colours).zip(FRAMES).map(|((frame, colours), (letter, ..))| {
         frame.plot(&format!("({letter}) \u{3c9} = {}", frame.omega), colours)
     });
-    findings.picture("figure-7", &sheet("", f64::NAN, plots.collect(), cells, 3))?;
+    findings.picture("figure-7", &sheet("", None, plots.collect(), cells, 3))?;
     let said: Vec<_> = frames
         .iter()
         .map(|frame| format!("omega = {}: {}", frame.omega, frame.attractors.len()))
@@ -144,15 +145,14 @@ fn agrees(frame: &Frame, printed: &Printed) -> bool {
 
 fn sheet(
     letter: &str,
-    omega: f64,
+    omega: Option<f64>,
     plots: Vec<crate::picture::Plot>,
     cells: u32,
     columns: usize,
 ) -> Sheet {
-    let parameters = if omega.is_nan() {
-        "a = 0.3, b = 0.1, \u{3be} = 0.1, g = 0.02, \u{3c6} = \u{3c0}/2".to_owned()
-    } else {
-        named(&attractors_model(omega))
+    let parameters = match omega {
+        Some(omega) => caption(&attractors_model(omega)),
+        None => caption_without(&attractors_model(1.0), Some(Parameter::Omega)),
     };
     Sheet {
         title: format!("Fig. 7{letter}: basins of attraction"),
@@ -162,7 +162,7 @@ fn sheet(
              grey: unresolved."
         ),
         columns,
-        panel_height: 560,
+        panel: (760, 560),
         plots,
     }
 }

@@ -2,10 +2,10 @@
 
 use super::super::claim::{Claim, Verdict};
 use super::super::curve::{self, Piece};
-use super::super::work::{Work, named};
+use super::super::work::Work;
 use super::Told;
 use crate::engine::Failure;
-use crate::picture::{INK, Layer, Plot, Sheet, Window};
+use crate::picture::{INK, Layer, Plot, Sheet, Window, caption};
 use percuss::Phase;
 
 /// The zoom: where the slider is met, compressed and left.
@@ -70,12 +70,12 @@ pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Sheet {
         title: "Fig. 3: phase plane of the period-two motion".to_owned(),
         caption: format!(
             "{}; from row 1 to row 9 of Table 1, {:.5} <= \u{3c4} <= {:.5}. Right: the stick-slip part, points 1 to 8 of Table 1.",
-            named(told.parameters()),
+            caption(told.parameters()),
             told.tau(0),
             told.tau(told.legs.len() - 1)
         ),
         columns: 2,
-        panel_height: 600,
+        panel: (760, 600),
         plots: vec![plot("", None, whole), plot("zoom", Some(ZOOM), zoom)],
     }
 }

@@ -2,10 +2,10 @@
 
 use super::super::claim::{Claim, Verdict};
 use super::super::curve::{self, Piece};
-use super::super::work::{Work, named};
+use super::super::work::Work;
 use super::Told;
 use crate::engine::Failure;
-use crate::picture::{Plot, Sheet};
+use crate::picture::{Plot, Sheet, caption};
 use percuss::{Parameters, Phase};
 
 /// Eq. (20) from a row of the table, `d` later; `sign` is that of its exponential term.
@@ -63,10 +63,10 @@ pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Sheet {
         title: "Fig. 4: reconstructed progression".to_owned(),
         caption: format!(
             "{}; over Table 1, counted from its row 1. Eq. (20) with the sign of its exponential term mended.",
-            named(told.parameters())
+            caption(told.parameters())
         ),
         columns: 1,
-        panel_height: 560,
+        panel: (760, 560),
         plots: vec![Plot {
             title: String::new(),
             axes: ["\u{3c4}".to_owned(), "v".to_owned()],

@@ -147,7 +147,7 @@ fn period(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure>
             format!("(p, y, q) = {point:?} at the strobe, residual {:.1e}", orbit.residual),
         )
         .evidence("multipliers of the whole orbit", multipliers.join(", "))
-        .evidence("parameters", super::work::named(told.parameters())))
+        .evidence("parameters", crate::picture::caption(told.parameters())))
 }
 
 fn closed(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure> {
