@@ -1,4 +1,7 @@
-//! What a switch costs: guessed and certified, and by plain one-sided stepping (the judge).
+//! What a switch costs: guessed and certified, and by plain one-sided stepping (the judge), beside the
+//! floor: the sine, cosine and exponential of one closed-form evaluation, each waiting for the last as in
+//! one trajectory, and independent. The evaluations a switch are printed with each regime, so that one
+//! run tells the quotients.
 //!
 //! `cargo bench -p percuss-validation --bench first_crossing`. For exploration: numbers of a noisy
 //! machine; regressions are judged by counts.
@@ -16,8 +19,9 @@ use std::hint::black_box;
 const SWITCHES: usize = 2_000;
 
 /// omega, xi: chaos with progression, period two with phases from 0.16 to 71 long, the lightly damped
-/// attractors of Fig. 7, over-damped contact.
-const REGIMES: [(f64, f64); 4] = [(1.4, 0.01), (0.1, 0.01), (1.6, 0.1), (1.4, 5.0)];
+/// attractors of Fig. 7, over-damped and critical contact.
+const REGIMES: [(f64, f64); 6] =
+    [(1.4, 0.01), (0.1, 0.01), (1.6, 0.1), (1.4, 0.1), (1.4, 5.0), (1.4, 1.0)];
 
 fn model(omega: f64, xi: f64) -> Model {
     Model::new(Parameters { omega, xi, ..Parameters::default() }).expect("in range")
@@ -27,12 +31,35 @@ fn legs(model: &Model) -> impl Iterator<Item = Leg> {
     model.trajectory(model.start(&Start::default()).expect("rest is a start"))
 }
 
+/// One sine-cosine pair and one exponential of the library that the solver uses.
+fn transcendental(angle: f64) -> f64 {
+    let (sin, cos) = libm::sincos(angle);
+    1.0 + 0.5 * sin * libm::exp(-cos.abs())
+}
+
+fn floor(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("floor");
+    group.throughput(Throughput::Elements(SWITCHES as u64));
+    group.bench_function("chained", |bencher| {
+        bencher.iter(|| (0..SWITCHES).fold(black_box(0.3), |angle, _| transcendental(angle)));
+    });
+    let angles: Vec<f64> = (0..SWITCHES).map(|k| 1.0 + 1e-3 * k as f64).collect();
+    group.bench_function("independent", |bencher| {
+        bencher.iter(|| black_box(&angles).iter().map(|angle| transcendental(*angle)).sum::<f64>());
+    });
+    group.finish();
+}
+
 fn switches(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("switch");
     group.throughput(Throughput::Elements(SWITCHES as u64));
     for (omega, xi) in REGIMES {
         let name = format!("omega {omega}, xi {xi}");
         let model = model(omega, xi);
+        let mut run = model.trajectory(model.start(&Start::default()).expect("rest is a start"));
+        let count = run.by_ref().take(SWITCHES).count();
+        let evaluations = run.counters().evaluations as f64 / count as f64;
+        println!("{name}: {evaluations:.3} evaluations a switch");
         group.bench_function(BenchmarkId::new("certified", &name), |bencher| {
             bencher.iter(|| black_box(legs(&model).take(SWITCHES).last()));
         });
@@ -62,5 +89,5 @@ fn evaluations(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, switches, evaluations);
+criterion_group!(benches, floor, switches, evaluations);
 criterion_main!(benches);

@@ -27,10 +27,20 @@ pub struct Constants<T> {
     pub a_over_omega: T,
     /// a/omega^2
     pub a_over_omega2: T,
+    /// omega^2
+    pub omega2: T,
+    /// The eighth power of 1/(2 xi).
+    pub rate8: T,
+    /// 1/omega^2
+    pub per_omega2: T,
+    /// omega^6
+    pub omega6: T,
     /// Free oscillation in contact.
     pub damping: Damping<T>,
     /// Forced oscillation in contact.
     pub forced: Forced<T>,
+    /// A bound of the eighth derivative of the forced part of the trial force.
+    pub forced_eighth: T,
     /// The forced part of the trial force in contact.
     pub steady: Steady<T>,
 }
@@ -44,6 +54,11 @@ impl<T: Number> Constants<T> {
                 .map(T::exact);
         let two_xi = xi + xi;
         let damping = Damping::new(xi);
+        let rate = T::one() / two_xi;
+        let rate4 = rate * rate * (rate * rate);
+        let omega2 = omega * omega;
+        let omega4 = omega2 * omega2;
+        let steady = Steady::new(a, xi, omega);
         Self {
             a,
             b,
@@ -51,12 +66,17 @@ impl<T: Number> Constants<T> {
             omega,
             g,
             two_xi,
-            rate: T::one() / two_xi,
+            rate,
             a_over_omega: a / omega,
-            a_over_omega2: a / (omega * omega),
+            a_over_omega2: a / omega2,
+            omega2,
+            rate8: rate4 * rate4,
+            per_omega2: T::one() / omega2,
+            omega6: omega2 * omega4,
             damping,
             forced: Forced::new(xi, omega),
-            steady: Steady::new(a, xi, omega),
+            forced_eighth: steady.amplitude * (omega4 * omega4),
+            steady,
         }
     }
 }

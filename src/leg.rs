@@ -65,11 +65,14 @@ impl Leg {
     ) -> Self {
         let omega = model.parameters().omega;
         let motion = model.motion(&entry);
+        let strides = model.strides();
         let limit = horizon.map_or(f64::INFINITY, |h| h.since(&entry.instant, omega).value());
         let crossing = match &motion {
-            Motion::NoContact(flight) => first_crossing(flight, limit, counters),
-            Motion::Contact(contact) => first_crossing(contact, limit, counters),
-            Motion::Progression(progression) => first_crossing(progression, limit, counters),
+            Motion::NoContact(flight) => first_crossing(flight, strides, limit, counters),
+            Motion::Contact(contact) => first_crossing(contact, strides, limit, counters),
+            Motion::Progression(progression) => {
+                first_crossing(progression, strides, limit, counters)
+            }
         };
         let (exit, duration) = match crossing {
             Crossing::At(root) => {
@@ -242,14 +245,12 @@ fn endless(phase: Phase) -> Endless {
 
 /// The next phase's beginning (its instant still that of `entry`), with what is known imposed.
 fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
-    let Root { point, step, rises } = root;
+    let Root { point, rises, .. } = root;
     let constants = model.constants();
     let (state, onset) = match motion {
         Motion::NoContact(_) => {
-            let [_, h1, h2, h3] = point.guard.orders;
-            let f = constants.two_xi * (h1 + step * (h2 + 0.5 * step * h3));
-            let shifted = shifted(constants.rate, point, *step);
-            let (state, onset) = surface::onset(constants, shifted, Some(f), point.force);
+            let f = constants.two_xi * point.guard.orders[1];
+            let (state, onset) = surface::onset(constants, point.state, Some(f), point.force);
             match onset {
                 // The gap closed, by however little: a contact, which may end at once.
                 Onset::Separation { .. } => {
@@ -258,11 +259,9 @@ fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
                 onset => (state, onset),
             }
         }
-        Motion::Contact(contact) => {
+        Motion::Contact(_) => {
             let threshold = f64::from(u8::from(*rises));
-            let pull = point.force[0] - (contact.reference + point.guard.orders[0]);
-            let pull_rate = point.force[1] - point.guard.orders[1];
-            let y = point.state.y + step * (pull + 0.5 * step * pull_rate);
+            let y = point.state.y;
             let q = threshold - constants.two_xi * y;
             let onset = if *rises {
                 Onset::Progression { drift_rate: 0.0, closing: y }
@@ -272,25 +271,11 @@ fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
             (State { p: q + constants.g, y, q }, onset)
         }
         Motion::Progression(_) => {
-            let decayed = constants.rate * step;
-            let y = point.slider_velocity * (1.0 - decayed * (1.0 - 0.5 * decayed));
+            let y = point.slider_velocity;
             let q = 1.0 - constants.two_xi * y;
             (State { p: q + constants.g, y, q }, Onset::Contact { offset: 0.0, reference: 1.0 })
         }
     };
-    let [w, w_rate, ..] = point.guard.orders;
-    let last_slip = match motion {
-        Motion::Progression(_) => step * (w + 0.5 * step * w_rate),
-        _ => 0.0,
-    };
-    let drift = entry.drift.plus(TwoWord::sum(point.drift, last_slip));
+    let drift = entry.drift.plus(TwoWord::new(point.drift));
     Entry { instant: entry.instant, state, drift, onset }
-}
-
-/// A flight's state a Taylor step later, on the contact surface.
-fn shifted(rate: f64, point: &Point<f64>, step: f64) -> State {
-    let decayed = rate * step;
-    let y = point.state.y + step * (point.force[0] + 0.5 * step * point.force[1]);
-    let q = point.state.q * (1.0 - decayed * (1.0 - 0.5 * decayed));
-    State { p: point.state.p, y, q }
 }

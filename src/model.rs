@@ -8,6 +8,7 @@ use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
+use crate::flow::stride::Strides;
 use crate::instant::Instant;
 use crate::parameters::Parameters;
 use crate::two_word::TwoWord;
@@ -17,6 +18,7 @@ use crate::two_word::TwoWord;
 pub struct Model {
     parameters: Parameters,
     constants: Constants<f64>,
+    strides: Strides,
     phi: TwoWord,
 }
 
@@ -36,7 +38,8 @@ impl Model {
     pub fn new(parameters: Parameters) -> Result<Self, InputError> {
         parameters.check()?;
         let (_, phi) = angle::reduce(TwoWord::new(parameters.phi));
-        Ok(Self { parameters, constants: Constants::new(&parameters), phi })
+        let (constants, strides) = (Constants::new(&parameters), Strides::new(&parameters));
+        Ok(Self { parameters, constants, strides, phi })
     }
 
     /// The parameters as given.
@@ -53,6 +56,10 @@ impl Model {
 
     pub(crate) fn constants(&self) -> &Constants<f64> {
         &self.constants
+    }
+
+    pub(crate) fn strides(&self) -> &Strides {
+        &self.strides
     }
 
     /// Sine and cosine of omega tau + phi.

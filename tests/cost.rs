@@ -17,16 +17,35 @@ fn first(parameters: Parameters, start: &Start) -> (Leg, Counters) {
     (leg, trajectory.counters())
 }
 
-/// At most 4 evaluations a switch in the chaotic case (issue 3).
+/// omega, xi and the evaluations a switch allowed: one next to the guess, from which a series leads to
+/// the root. The rest is measured (1.06 at most) with room for another stretch of a chaotic run: guesses
+/// that lead past an earlier crossing or too far from theirs for the series, and near misses, which a
+/// certificate decides by a division at the crest. Where the run is periodic there are none.
+const REGIMES: [(f64, f64, f64); 8] = [
+    (1.4, 0.01, 1.1),
+    (0.1, 0.01, 1.01),
+    (1.6, 0.1, 1.1),
+    (1.4, 0.1, 1.1),
+    (1.4, 5.0, 1.01),
+    (1.4, 1.0, 1.01),
+    (1.56, 0.1, 1.1),
+    (1.7, 0.1, 1.1),
+];
+
 #[test]
-fn chaos_takes_few_evaluations_a_switch() {
-    let model = Model::new(Parameters::default()).unwrap();
-    let mut trajectory = model.trajectory(model.start(&Start::default()).unwrap());
-    assert_eq!(trajectory.by_ref().take(100_000).count(), 100_000);
-    let Counters { switches, evaluations, divisions, undecidable } = trajectory.counters();
-    let cost = evaluations as f64 / switches as f64;
-    println!("{cost:.3} evaluations a switch, {divisions} divisions, {undecidable} undecidable");
-    assert!(cost <= 4.0, "{cost}");
+fn a_switch_takes_one_evaluation_and_a_little() {
+    for (omega, xi, most) in REGIMES {
+        let model = Model::new(Parameters { omega, xi, ..Parameters::default() }).unwrap();
+        let mut trajectory = model.trajectory(model.start(&Start::default()).unwrap());
+        assert_eq!(trajectory.by_ref().take(100_000).count(), 100_000);
+        let Counters { switches, evaluations, divisions, undecidable } = trajectory.counters();
+        let cost = evaluations as f64 / switches as f64;
+        println!(
+            "omega {omega}, xi {xi}: {cost:.3} evaluations a switch, {divisions} divisions, \
+             {undecidable} undecidable"
+        );
+        assert!(cost <= most, "omega {omega}, xi {xi}: {cost}");
+    }
 }
 
 #[test]

@@ -25,7 +25,7 @@ impl Corridor {
     /// How far `value` is outside: negative inside, zero on a threshold.
     #[inline]
     pub fn excess(&self, value: f64) -> f64 {
-        (value - self.high).max(self.low - value)
+        larger(value - self.high, self.low - value)
     }
 
     /// Narrower by `margin` on both sides.
@@ -44,7 +44,8 @@ pub struct Piece {
     pub right: [f64; 4],
     /// Length of the piece.
     pub length: f64,
-    /// A lower and an upper bound of the eighth derivative inside.
+    /// A lower and an upper bound of the eighth derivative inside; zero on a side where the corridor
+    /// is open.
     pub eighth: (f64, f64),
 }
 
@@ -73,12 +74,6 @@ pub struct Ends {
 impl Ends {
     /// No end is known to lie on a threshold: for pieces that bound the guard from outside.
     pub const FREE: Self = Self { left: false, left_double: false, right: false };
-
-    /// For pieces that bound the guard from outside at their left end and share its value at the right.
-    #[inline]
-    pub fn loose_left(self) -> Self {
-        Self { left: false, left_double: false, ..self }
-    }
 }
 
 impl Piece {
@@ -86,28 +81,37 @@ impl Piece {
     #[inline]
     pub fn verdict(&self, corridor: &Corridor, ends: Ends, slack: f64) -> Verdict {
         let coefficients = self.coefficients();
-        let scale = self.length.powi(8) / MIDDLE;
-        let lift = [self.eighth.0.min(0.0) * scale, self.eighth.1.max(0.0) * scale];
-        let first = if ends.left_double { 2 } else { usize::from(ends.left) };
-        let last = if ends.right { 8 } else { 9 };
-        let mut worst = f64::NEG_INFINITY;
-        let mut size = 0.0_f64;
-        for (index, &coefficient) in coefficients.iter().enumerate().take(last).skip(first) {
-            let [down, up] = if index == 4 { lift } else { [0.0; 2] };
-            let excess = (coefficient + up - corridor.high).max(corridor.low - coefficient - down);
+        let mut excesses = if corridor.low == f64::NEG_INFINITY {
+            coefficients.map(|coefficient| coefficient - corridor.high)
+        } else {
+            coefficients.map(|coefficient| corridor.excess(coefficient))
+        };
+        let square = self.length * self.length;
+        let scale = square * square * (square * square) * (1.0 / MIDDLE);
+        let middle = coefficients[4];
+        let up = middle + larger(self.eighth.1, 0.0) * scale - corridor.high;
+        let down = corridor.low - middle - smaller(self.eighth.0, 0.0) * scale;
+        excesses[4] = larger(up, down);
+        if ends.left {
+            excesses[0] = f64::NEG_INFINITY;
+        }
+        if ends.left_double {
+            excesses[1] = f64::NEG_INFINITY;
+        }
+        if ends.right {
+            excesses[8] = f64::NEG_INFINITY;
             // Next to a root the sign alone is asked for: the slope there is known to be outward.
-            if index == 7 && ends.right && excess < 0.0 {
-                continue;
-            }
-            size = size.max(coefficient.abs());
-            if excess > worst || excess.is_nan() {
-                worst = excess;
+            if excesses[7] < 0.0 {
+                excesses[7] = f64::NEG_INFINITY;
             }
         }
+        let worst = excesses.into_iter().fold(f64::NEG_INFINITY, larger);
+        let size = coefficients.into_iter().map(f64::abs).fold(0.0, larger);
         let slack = slack + f64::EPSILON * size;
-        if worst < -slack {
+        // The middle coefficient holds all orders of both ends: any NaN is one there.
+        if worst < -slack && !middle.is_nan() {
             Verdict::Inside
-        } else if worst <= slack {
+        } else if worst <= slack && !middle.is_nan() {
             Verdict::Touches
         } else {
             Verdict::Open
@@ -169,11 +173,23 @@ impl Piece {
 /// The four Bernstein coefficients of degree seven next to an end.
 #[inline]
 fn from_end(orders: &[f64; 4], length: f64) -> [f64; 4] {
-    let first = orders[1] * length / 7.0;
-    let second = orders[2] * length * length / 42.0;
-    let third = orders[3] * length * length * length / 210.0;
+    let seventh = length * (1.0 / 7.0);
+    let first = orders[1] * seventh;
+    let second = orders[2] * (seventh * length * (1.0 / 6.0));
+    let third = orders[3] * (seventh * length * length * (1.0 / 30.0));
     let value = orders[0];
     [value, value + first, value + (2.0 * first + second), value + (3.0 * (first + second) + third)]
+}
+
+/// The larger of two numbers, in one instruction; of a NaN nothing is promised.
+#[inline]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
+#[inline]
+fn smaller(a: f64, b: f64) -> f64 {
+    if a < b { a } else { b }
 }
 
 fn de_casteljau(mut points: [f64; 9], s: f64) -> f64 {

@@ -3,22 +3,30 @@
 use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
+use crate::crossing::series::{Push, Series};
+use crate::crossing::swing::{Parts, Shape};
+use crate::crossing::trend::quick_decay;
 use crate::flow::contact::Contact;
 use crate::flow::damped::Damping;
-use crate::flow::{Flow, Point};
-use crate::remainders::decay;
+use crate::flow::forcing::EntryAngle;
+use crate::flow::stride::Strides;
+use crate::flow::{Jet, Point};
+use crate::state::State;
+
+/// Up to this angle of the faster of forcing and free oscillation one piece must do.
+const SHORT: f64 = 2.0;
 
 /// Contact's trial force split into what is forced for ever and what dies out.
 #[derive(Clone, Copy, Debug)]
 pub struct Split {
     /// Free part and its first three derivatives.
-    free: [f64; 4],
+    pub(super) free: [f64; 4],
     /// Amplitude of the forced part.
-    amplitude: f64,
+    pub(super) amplitude: f64,
 }
 
 impl Contact<f64> {
-    fn split(&self, at: &Point<f64>) -> Split {
+    pub(super) fn split(&self, at: &Point<f64>) -> Split {
         let constants = &self.constants;
         let forced = constants.steady.orders([at.force[0] - constants.b, at.force[1], at.force[2]]);
         let [f, f1, f2, f3] = at.guard.orders;
@@ -36,10 +44,10 @@ impl Contact<f64> {
         for _ in 0..8 {
             (x, rate) = (rate, -(two_xi * rate + x));
         }
-        let by_energy = x.hypot(rate);
+        let by_energy = (x * x + rate * rate).sqrt();
         if let Damping::Over { fast, slow, .. } = self.constants.damping {
             // Eight derivatives of a stiff oscillation are rounding once its fast part has died out.
-            let quick = self.fast_amplitude(split) * decay(fast * at.elapsed).exp;
+            let quick = self.fast_amplitude(split) * quick_decay(fast * at.elapsed);
             let lasting = split.free[0].abs() + quick;
             return by_energy.min(quick * fast.powi(8) + lasting * slow.powi(8));
         }
@@ -62,110 +70,25 @@ impl Contact<f64> {
         x2.hypot(x3) + split.amplitude * self.constants.omega * self.constants.omega
     }
 
-    /// Whether f can never again leave [0, 1] by more than rounding: amplitude and energy norm of the
-    /// free part fit inside. At rest on a threshold, with no force, they fit exactly.
-    fn rests(&self, split: &Split) -> bool {
-        let b = self.constants.b;
-        let reach = split.amplitude + split.free[0].hypot(split.free[1]);
-        let room = 4.0 * f64::EPSILON * (b.abs() + reach);
-        b + reach <= 1.0 + room && b - reach >= -room
-    }
-
-    /// A time for which f certainly stays inside, by one of two slow changes.
-    ///
-    /// With x = f - b the equation x'' + 2 xi x' + x = a cos(..) - 2 xi a omega sin(..) lets the
-    /// energy norm of (x, x') grow no faster than the amplitude of its right-hand side: that
-    /// carries over many oscillations where the forcing is weak, resonant or not. And the steady
-    /// part moves no faster than its amplitude times omega, around which the free part keeps
-    /// within its own energy norm: that carries where the forcing is slow.
-    fn calm(&self, left: &Point<f64>, split: &Split) -> f64 {
-        const ROOM: f64 = 1e-12;
-        let Constants { a, b, two_xi, omega, .. } = self.constants;
-        let f = left.guard.orders[0] + self.reference;
-        let push = a * 1.0_f64.hypot(two_xi * omega);
-        let weak = (b.min(1.0 - b) - (f - b).hypot(left.guard.orders[1]) - ROOM) / push;
-        let free = split.free[0].hypot(split.free[1]);
-        let steady = f - split.free[0];
-        let slow = (steady.min(1.0 - steady) - free - ROOM) / (split.amplitude * omega);
-        weak.max(slow)
-    }
-
-    /// The first place where a cubic from `left` leaves the corridor, if that is soon.
-    fn soon(&self, left: &Point<f64>) -> Option<f64> {
-        const SOON: f64 = 0.4;
-        let [f, f1, f2, f3] = left.guard.orders;
-        let horizon = SOON / self.fastest_rate();
-        let cubic = |d: f64| f + d * (f1 + d * (0.5 * f2 + d * f3 / 6.0));
-        let corridor = self.corridor();
-        let outside = |d: &f64| corridor.excess(cubic(*d)) >= 0.0;
-        let mut right = (1..=4).map(|k| horizon * f64::from(k) / 4.0).find(outside)?;
-        let mut left_end = (right - 0.25 * horizon).max(0.0);
-        for _ in 0..8 {
-            let middle = 0.5 * (left_end + right);
-            if outside(&middle) { right = middle } else { left_end = middle }
-        }
-        // Where the interval is short the last step is a secant's, to the threshold passed at its right.
-        let beyond = |value: f64| {
-            if cubic(right) >= corridor.high { value - corridor.high } else { corridor.low - value }
-        };
-        let (near, far) = (beyond(cubic(left_end)), beyond(cubic(right)));
-        let weight = if far > near { (-near / (far - near)).clamp(0.0, 1.0) } else { 1.0 };
-        Some(left.elapsed + left_end + weight * (right - left_end))
-    }
-
-    /// Steps through the free and the forced part by rotation, cheaply, until f leaves the corridor.
-    fn swing(&self, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
-        const STEPS: usize = 24;
-        let Constants { b, two_xi, omega, damping, steady, .. } = self.constants;
-        let corridor = self.corridor();
-        let step = std::f64::consts::PI / 16.0 / self.pace(left);
-        let free = damping.at(step);
-        let (s, c) = (free.s, 1.0 + free.c_minus_1);
-        let (sin, cos) = libm::sincos(step * omega);
-        let (mut x, mut rate) = (split.free[0], split.free[1]);
-        let (mut harmonic, mut quadrature) = (left.force[0] - b, left.force[1] / omega);
-        let level = b - self.reference;
-        let mut last = left.guard.orders[0];
-        for k in 1..=STEPS {
-            (x, rate) = (x * c + rate * s, rate * (c - two_xi * s) - x * s);
-            (harmonic, quadrature) =
-                (harmonic * cos + quadrature * sin, quadrature * cos - harmonic * sin);
-            let [forced, forced_rate, ..] =
-                steady.orders([harmonic, omega * quadrature, -(omega * omega * harmonic)]);
-            let f = level + x + forced;
-            if corridor.excess(f) >= 0.0 {
-                let threshold = if f >= corridor.high { corridor.high } else { corridor.low };
-                let rise = (rate + forced_rate) * step;
-                return Ok(left.elapsed + step * (k as f64 - back(last, f, rise, threshold)));
-            }
-            last = f;
-        }
-        Err(left.elapsed + step * STEPS as f64)
-    }
-
-    /// How fast the trial force changes from `left` on: at most as the free oscillation, about which a
-    /// fast forcing only ripples; slower for strong damping once its fast part has died out.
-    fn pace(&self, left: &Point<f64>) -> f64 {
-        const DEAD: f64 = 40.0; // exp(-40) is below the rounding of what it is added to
-        match self.constants.damping {
-            Damping::Over { fast, slow, .. } if fast * left.elapsed > DEAD => {
-                slow.max(self.constants.omega).min(1.0)
-            }
-            _ => 1.0,
+    /// The parts of the trial force, from their split.
+    pub(super) fn parts(&self, at: &Point<f64>, split: &Split) -> Parts {
+        let [free, free_rate, ..] = split.free;
+        let [f, f1, ..] = at.guard.orders;
+        let level = self.constants.b - self.reference;
+        Parts {
+            elapsed: at.elapsed,
+            free,
+            free_rate,
+            forced: (f - level) - free,
+            quarter: (f1 - free_rate) / self.constants.omega,
         }
     }
-}
 
-/// How far before its right end, in steps, a parabola through both values with the right slope
-/// meets the threshold.
-fn back(left: f64, right: f64, slope: f64, threshold: f64) -> f64 {
-    let over = right - threshold;
-    let bend = left - right + slope;
-    let mut t = over / (right - left);
-    for _ in 0..3 {
-        t -= (over - slope * t + bend * t * t) / (2.0 * bend * t - slope);
+    /// What the parts have in common.
+    pub(super) fn shape(&self, eighth: f64, slack: f64) -> Shape {
+        let Constants { b, two_xi, omega, .. } = self.constants;
+        Shape { level: b - self.reference, two_xi, omega, corridor: self.corridor(), eighth, slack }
     }
-    if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.5 }
 }
 
 impl Guarded for Contact<f64> {
@@ -174,38 +97,46 @@ impl Guarded for Contact<f64> {
     }
 
     fn entry(&self) -> Point<f64> {
-        self.at(0.0)
+        let Constants { a, b, two_xi, omega, omega2, .. } = self.constants;
+        let EntryAngle { sin, cos } = self.angle;
+        let [u, v, w] = [a * cos, -(a * omega * sin), -(a * omega2 * cos)];
+        let y = self.entry.y;
+        let pull = (u + (b - self.reference)) - self.offset;
+        let rate = two_xi * pull + y;
+        let pull_rate = v - rate;
+        let rate2 = two_xi * pull_rate + pull;
+        let orders = [self.offset, rate, rate2, two_xi * (w - rate2) + pull_rate];
+        Point {
+            elapsed: 0.0,
+            state: self.entry,
+            slider_velocity: y,
+            drift: 0.0,
+            force: [b + u, v, w],
+            guard: Jet { orders, largest_term: self.offset.abs() },
+        }
     }
 
     fn imposed(&self) -> Ends {
         Ends { left: self.offset == 0.0, left_double: false, right: false }
     }
 
-    fn outlook(&self, left: &Point<f64>, limit: f64) -> Outlook {
-        if let Some(time) = self.soon(left) {
-            return Outlook::Root(time);
-        }
-        let split = self.split(left);
-        if self.rests(&split) {
-            return Outlook::ClearFrom(left.elapsed);
-        }
-        let calm = self.calm(left, &split);
-        if calm > 8.0 {
-            return Outlook::ClearUntil(left.elapsed + calm);
-        }
-        match self.swing(left, &split) {
-            Ok(time) => Outlook::Root(time),
-            Err(time) => Outlook::Onward(time.min(limit)),
-        }
+    fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
+        self.ahead(strides, left, limit)
     }
 
-    fn certify(&self, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
+    fn certify(
+        &self,
+        strides: &Strides,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: Ends,
+    ) -> Verdict {
         let corridor = self.corridor();
         let slack = slack(left, right);
         let length = right.elapsed - left.elapsed;
         let split = self.split(left);
         let free = self.free_eighth(left, &split);
-        let eighth = free + split.amplitude * self.constants.omega.powi(8);
+        let eighth = free + self.constants.forced_eighth;
         let whole = Piece {
             left: left.guard.orders,
             right: right.guard.orders,
@@ -213,22 +144,10 @@ impl Guarded for Contact<f64> {
             eighth: (-eighth, eighth),
         };
         let verdict = whole.verdict(&corridor, ends, slack);
-        if verdict != Verdict::Open || length * self.constants.omega < 2.0 {
+        if verdict != Verdict::Open || length * self.constants.omega.max(1.0) < SHORT {
             return verdict;
         }
-        // Fast forcing: the free part alone, in a corridor narrowed by the forced amplitude.
-        let b = self.constants.b - self.reference;
-        let slow = |split: &Split| {
-            let [x, x1, x2, x3] = split.free;
-            [x + b, x1, x2, x3]
-        };
-        let slow = Piece {
-            left: slow(&split),
-            right: slow(&self.split(right)),
-            length,
-            eighth: (-free, free),
-        };
-        slow.verdict(&corridor.narrowed(split.amplitude), Ends::FREE, slack)
+        self.certify_long(strides, (left, &split, free), right, ends)
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
@@ -244,7 +163,88 @@ impl Guarded for Contact<f64> {
         piece.worst_place(left.elapsed, &self.corridor())
     }
 
+    fn series(&self, at: &Point<f64>) -> Series {
+        let Constants { b, two_xi, omega, .. } = self.constants;
+        // f'' + 2 xi f' + f = F + 2 xi F'
+        let (u, v) = (at.force[0] - b, at.force[1]);
+        let omega2 = omega * omega;
+        let (mut drive, mut next) = (v - two_xi * omega2 * u, -omega2 * (u + two_xi * v));
+        let [.., mut before, mut last] = at.guard.orders;
+        Series::new(&at.guard.orders, || {
+            (before, last) = (last, next - two_xi * last - before);
+            (drive, next) = (next, -omega2 * drive);
+            last
+        })
+    }
+
+    fn continued(
+        &self,
+        at: &Point<f64>,
+        step: f64,
+        series: &Series,
+        (value, slope): (f64, f64),
+    ) -> Point<f64> {
+        let Constants { g, two_xi, .. } = self.constants;
+        let Push { force, impulse } = Push::new(&self.constants, &at.force, step);
+        let y = at.state.y + (impulse - (self.reference * step + series.integral(step)));
+        let (bend, third) = series.bend_and_third(step);
+        let orders = [value, slope, bend, third];
+        let q = (self.reference + value) - two_xi * y;
+        Point {
+            elapsed: at.elapsed + step,
+            state: State { p: q + g, y, q },
+            slider_velocity: y,
+            drift: 0.0,
+            force,
+            guard: Jet { orders, ..at.guard },
+        }
+    }
+
     fn fastest_rate(&self) -> f64 {
         1.0_f64.max(self.constants.omega).max(self.constants.two_xi)
+    }
+}
+
+impl Contact<f64> {
+    /// In pieces; or, where the forcing is fast, by the free part alone, in a corridor narrowed by the
+    /// forced amplitude.
+    fn certify_long(
+        &self,
+        strides: &Strides,
+        (left, split, free): (&Point<f64>, &Split, f64),
+        right: &Point<f64>,
+        ends: Ends,
+    ) -> Verdict {
+        /// Each stride rounds a few times its parts.
+        const ROUNDINGS: f64 = 16.0;
+        /// Under stronger damping the free part's derivatives would multiply its rounding.
+        const MILD: f64 = 4.0;
+        let Constants { b, two_xi, omega, .. } = self.constants;
+        let slack = slack(left, right);
+        let [x, x1, x2, x3] = split.free;
+        let length = right.elapsed - left.elapsed;
+        if two_xi < MILD {
+            let size = split.amplitude + x.abs() + x1.abs();
+            let room = slack + ROUNDINGS * f64::EPSILON * (size + b.abs());
+            let shape = self.shape(free + self.constants.forced_eighth, room);
+            let right = (right.elapsed, &right.guard.orders);
+            let swing = &strides.contact_piece;
+            let parts = self.parts(left, split);
+            if parts.stays_inside(&left.guard.orders, right, ends, &shape, swing) {
+                return Verdict::Inside;
+            }
+        }
+        if length * omega < 2.0 {
+            return Verdict::Open;
+        }
+        let level = b - self.reference;
+        let [z, z1, z2, z3] = self.split(right).free;
+        let slow = Piece {
+            left: [x + level, x1, x2, x3],
+            right: [z + level, z1, z2, z3],
+            length,
+            eighth: (-free, free),
+        };
+        slow.verdict(&self.corridor().narrowed(split.amplitude), Ends::FREE, slack)
     }
 }

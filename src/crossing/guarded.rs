@@ -1,6 +1,8 @@
 //! What the search asks of a phase.
 
 use crate::crossing::certificate::{Corridor, Ends, Verdict};
+use crate::crossing::series::Series;
+use crate::flow::stride::Strides;
 use crate::flow::{Flow, Point};
 
 /// Where the search should look next.
@@ -28,20 +30,38 @@ pub trait Guarded: Flow<f64> {
     fn imposed(&self) -> Ends;
 
     /// A guess, or a proof, about what comes after `left`; nothing after `limit` matters.
-    fn outlook(&self, left: &Point<f64>, limit: f64) -> Outlook;
+    fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook;
 
     /// Tries to prove that the guard stays inside between two evaluations.
-    fn certify(&self, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict;
+    fn certify(
+        &self,
+        strides: &Strides,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: Ends,
+    ) -> Verdict;
 
     /// Where to divide a piece that could not be certified.
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64;
+
+    /// The guard's Taylor series at an evaluation.
+    fn series(&self, at: &Point<f64>) -> Series;
+
+    /// The motion a short `step` after an evaluation, where the guard has this value and slope.
+    fn continued(
+        &self,
+        at: &Point<f64>,
+        step: f64,
+        series: &Series,
+        guard: (f64, f64),
+    ) -> Point<f64>;
 
     /// The fastest rate at which the motion changes: Taylor steps must be short against its inverse.
     fn fastest_rate(&self) -> f64;
 }
 
 /// Four eps times the largest term: three roundings in the guard, one in the coefficients.
-const SLACK: f64 = 4.0 * f64::EPSILON;
+pub const SLACK: f64 = 4.0 * f64::EPSILON;
 
 /// Products that underflow lose up to the smallest normal number, 2e-308, and are then multiplied by
 /// a/omega^2 <= 1e21 at most.

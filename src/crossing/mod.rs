@@ -1,11 +1,15 @@
 //! The first crossing of a guard: guessed, evaluated, certified.
 //!
+//! A switch takes one evaluation mostly: next to the guess, from which the guard's own [`series`] leads
+//! to the root and the state there.
+//!
 //! # Why no crossing is ever passed
 //!
 //! [`search`] walks from the start of the phase in pieces. A piece counts as done only if a
 //! [`certificate`] proves that the guard stays inside its corridor there, and a root is accepted only
 //! as the right end of a certified piece. Guesses propose where pieces end; a bad guess costs
-//! evaluations, never a crossing. Where a certificate fails the piece is divided; if the guard is
+//! evaluations, never a crossing. A long piece is certified in fixed strides from its ends ([`walk`],
+//! [`swing`]), which need no evaluation; where a certificate fails the piece is divided; if the guard is
 //! outside at the division, an earlier crossing is bracketed and takes the place of the right end.
 //! What the guards can prove about whole futures (the mass never returns, never stops, rests for
 //! ever) comes from bounds on the slow part of the motion ([`trend`], and the energy of the free
@@ -20,13 +24,17 @@
 
 pub mod certificate;
 pub mod contact;
+mod contact_ahead;
 pub mod guarded;
 pub mod no_contact;
 pub mod progression;
 pub mod root;
 pub mod search;
+pub mod series;
 pub mod stepping;
+pub mod swing;
 pub mod trend;
+pub mod walk;
 
 use crate::flow::Point;
 use crate::two_word::TwoWord;
@@ -45,10 +53,10 @@ pub enum Crossing {
 /// A certified first crossing.
 #[derive(Clone, Copy, Debug)]
 pub struct Root {
-    /// The last evaluation, next to the crossing.
+    /// The motion at the crossing.
     pub point: Point<f64>,
-    /// What is left from there to the crossing, small enough for a Taylor step.
-    pub step: f64,
+    /// What rounding took from the point's elapsed time.
+    pub low: f64,
     /// Whether the guard rises through the upper threshold (else it falls through the lower one).
     pub rises: bool,
 }
@@ -57,7 +65,7 @@ impl Root {
     /// Time from the start of the phase to the crossing.
     #[must_use]
     pub fn elapsed(&self) -> TwoWord {
-        TwoWord::sum(self.point.elapsed, self.step)
+        TwoWord { high: self.point.elapsed, low: self.low }
     }
 }
 
@@ -66,7 +74,11 @@ impl Root {
 pub struct Counters {
     /// Switches found.
     pub switches: u64,
-    /// Closed-form evaluations (sine, cosine, exponential) spent on finding them.
+    /// Closed-form evaluations spent on finding them: each takes a sine-cosine pair and an exponential
+    /// of the library (in contact one more of either), or their series where the arguments are small.
+    /// Not counted are the sine and cosine of the forcing angle at which a phase begins, one pair a
+    /// phase, and the exponential of a [`trend`] that is asked about whole futures because nothing is
+    /// guessed. Guesses, series and certificates call none.
     pub evaluations: u64,
     /// Touches and near misses whose margin is below the rounding error.
     pub undecidable: u64,

@@ -1,14 +1,19 @@
 //! The guard of a flight: h rises to zero at the impact.
 
+use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
+use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::trend::Trend;
+use crate::crossing::walk::{End, Parts, Shape, Walk};
+use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
-use crate::flow::{Flow, Point};
+use crate::flow::stride::{PULLING, Strides};
+use crate::flow::{Jet, Point};
+use crate::state::State;
 
-/// Up to this many decay times the exponential stays in the interpolant: for q >= 0 its eighth
-/// derivative helps, and at twelve its third derivative begins to lift the coefficients.
-const DECAY_TIMES: f64 = 10.0;
+/// Up to this forcing angle one piece may do.
+const SHORT: f64 = 4.0;
 
 impl NoContact<f64> {
     fn separates(&self) -> bool {
@@ -39,11 +44,6 @@ impl NoContact<f64> {
         let hop = -24.0 * h2 / (4.0 * h3 + discriminant.sqrt());
         (h3 > 0.0 && hop > 0.0 && hop * self.fastest_rate() < 0.7).then_some(hop)
     }
-
-    /// Value and derivatives of p - g, as h + q: the guard has digits that a large p has not.
-    fn height(&self, at: &Point<f64>) -> [f64; 4] {
-        [at.guard.orders[0] + at.state.q, at.state.y, at.force[0], at.force[1]]
-    }
 }
 
 impl Guarded for NoContact<f64> {
@@ -52,23 +52,35 @@ impl Guarded for NoContact<f64> {
     }
 
     fn entry(&self) -> Point<f64> {
-        let mut point = self.at(0.0);
-        if let Some(h_rate) = self.surface {
-            point.guard.orders[0] = 0.0;
-            point.guard.orders[1] = h_rate;
-        }
+        let Constants { a, b, g, omega, omega2, rate, .. } = self.constants;
+        let EntryAngle { sin, cos } = self.angle;
+        let [u, v, w] = [a * cos, -(a * omega * sin), -(a * omega2 * cos)];
+        let State { p, y, q } = self.entry;
+        let spring = q * rate;
+        let (h, h_rate, largest_term) = match self.surface {
+            Some(h_rate) => (0.0, h_rate, 0.0),
+            None => ((p - g) - q, y + spring, (p - g).abs() + q.abs()),
+        };
+        let mut orders = [h, h_rate, (b + u) - spring * rate, v + spring * rate * rate];
         if self.separates() {
             // A separation was decided from derivatives: a positive h'' can only be rounding.
-            point.guard.orders[2] = point.guard.orders[2].min(0.0);
+            orders[2] = orders[2].min(0.0);
         }
-        point
+        Point {
+            elapsed: 0.0,
+            state: self.entry,
+            slider_velocity: -spring,
+            drift: 0.0,
+            force: [b + u, v, w],
+            guard: Jet { orders, largest_term },
+        }
     }
 
     fn imposed(&self) -> Ends {
         Ends { left: self.surface.is_some(), left_double: self.separates(), right: false }
     }
 
-    fn outlook(&self, left: &Point<f64>, limit: f64) -> Outlook {
+    fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
         let first = left.elapsed == 0.0;
         if first
             && self.separates()
@@ -76,37 +88,39 @@ impl Guarded for NoContact<f64> {
         {
             return Outlook::Root(hop);
         }
-        self.trend().outlook(left.elapsed, !first || self.surface.is_some(), limit)
+        self.trend().outlook(strides, left.elapsed, !first || self.surface.is_some(), limit)
     }
 
-    fn certify(&self, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
-        let corridor = self.corridor();
+    fn certify(
+        &self,
+        strides: &Strides,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: Ends,
+    ) -> Verdict {
         let slack = slack(left, right);
         let length = right.elapsed - left.elapsed;
-        let constants = &self.constants;
-        let swing = constants.a * constants.omega.powi(6);
-        let decay_times = length * constants.rate;
-        let whole = if decay_times <= DECAY_TIMES {
-            let lift = (-left.state.q).max(0.0) * constants.rate.powi(8);
+        let Constants { omega, rate, rate8, a, omega6, .. } = self.constants;
+        if length * rate <= PULLING && length * omega <= SHORT {
+            let lift = (-left.state.q).max(0.0) * rate8;
             let piece = Piece {
                 left: left.guard.orders,
                 right: right.guard.orders,
                 length,
-                eighth: (f64::NEG_INFINITY, swing + lift),
+                eighth: (0.0, a * omega6 + lift),
             };
-            piece.verdict(&corridor, ends, slack)
-        } else {
-            self.flattened(left, right, swing).verdict(&corridor, ends.loose_left(), slack)
-        };
-        if whole != Verdict::Open || length * constants.omega < 4.0 {
-            return whole;
+            let verdict = piece.verdict(&self.corridor(), ends, slack);
+            if verdict != Verdict::Open || length * omega < 0.5 * SHORT {
+                return verdict;
+            }
         }
-        self.slow(left, right).verdict(&corridor, Ends::FREE, slack)
+        let end = |at: &Point<f64>| End { orders: at.guard.orders, parts: self.parts(at) };
+        Walk::new(&self.shape(), strides).verdict(end(left), end(right), ends)
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         let (from, to) = (left.elapsed, right.elapsed);
-        self.trend().division(from, to, DECAY_TIMES).unwrap_or_else(|| {
+        self.trend().division(from, to, PULLING).unwrap_or_else(|| {
             let piece = Piece {
                 left: left.guard.orders,
                 right: right.guard.orders,
@@ -117,42 +131,62 @@ impl Guarded for NoContact<f64> {
         })
     }
 
+    fn series(&self, at: &Point<f64>) -> Series {
+        let Constants { rate, omega, b, .. } = self.constants;
+        let mut spring = at.state.q * (rate * rate * rate);
+        let (mut force, mut next) = (at.force[0] - b, at.force[1]);
+        Series::new(&at.guard.orders, || {
+            spring *= -rate;
+            (force, next) = (next, -(omega * omega * force));
+            next + spring
+        })
+    }
+
+    fn continued(
+        &self,
+        at: &Point<f64>,
+        step: f64,
+        _: &Series,
+        (value, slope): (f64, f64),
+    ) -> Point<f64> {
+        let Constants { g, rate, .. } = self.constants;
+        let Push { force, impulse } = Push::new(&self.constants, &at.force, step);
+        let y = at.state.y + impulse;
+        let q = at.state.q + at.state.q * short_decay(rate * step);
+        let spring = q * rate;
+        let orders = [value, slope, force[0] - spring * rate, force[1] + spring * rate * rate];
+        Point {
+            elapsed: at.elapsed + step,
+            state: State { p: (q + g) + value, y, q },
+            slider_velocity: -spring,
+            drift: 0.0,
+            force,
+            guard: Jet { orders, ..at.guard },
+        }
+    }
+
     fn fastest_rate(&self) -> f64 {
         1.0_f64.max(self.constants.omega).max(self.constants.rate)
     }
 }
 
 impl NoContact<f64> {
-    /// -q replaced by a straight line above it: its tangent at the right end where it is concave
-    /// (q >= 0), else its chord.
-    fn flattened(&self, left: &Point<f64>, right: &Point<f64>, swing: f64) -> Piece {
-        let length = right.elapsed - left.elapsed;
-        let (q_left, q_right) = (left.state.q, right.state.q);
-        let slope =
-            if q_left >= 0.0 { q_right * self.constants.rate } else { (q_left - q_right) / length };
-        let with_line = |at: &Point<f64>, value: f64| {
-            let [p, y, force, force_rate] = self.height(at);
-            [p + value, y + slope, force, force_rate]
-        };
-        Piece {
-            left: with_line(left, -q_right - slope * length),
-            right: with_line(right, -q_right),
-            length,
-            eighth: (f64::NEG_INFINITY, swing),
-        }
+    fn shape(&self) -> Shape {
+        let Constants { a, b, omega, omega6, per_omega2, rate, rate8, .. } = self.constants;
+        Shape { curvature: b, grain: 0.0, strength: a, omega, omega6, per_omega2, rate, rate8 }
     }
 
-    /// The harmonic replaced by its amplitude, the exponential as above: a parabola, exactly.
-    fn slow(&self, left: &Point<f64>, right: &Point<f64>) -> Piece {
-        let mut piece = self.flattened(left, right, 0.0);
-        let constants = &self.constants;
-        let omega2 = constants.omega * constants.omega;
-        for (orders, at) in [(&mut piece.left, left), (&mut piece.right, right)] {
-            orders[0] += (at.force[0] - constants.b) / omega2 + constants.a_over_omega2;
-            orders[1] += at.force[1] / omega2;
-            orders[2] = constants.b;
-            orders[3] = 0.0;
+    /// h = (p - g) - q, where p'' = F.
+    fn parts(&self, at: &Point<f64>) -> Parts {
+        let Constants { b, omega, .. } = self.constants;
+        Parts {
+            elapsed: at.elapsed,
+            value: at.guard.orders[0] + at.state.q,
+            slope: at.state.y,
+            bow: at.force[0] - b,
+            quarter: at.force[1] / omega,
+            lasting: -at.state.q,
+            room: slack(at, at),
         }
-        piece
     }
 }

@@ -1,14 +1,19 @@
 //! The guard of a progression: the drift velocity w falls to zero when the slider's bottom stops.
 
+use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
+use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::trend::Trend;
+use crate::crossing::walk::{End, Parts, Shape, Walk};
+use crate::flow::forcing::EntryAngle;
 use crate::flow::progression::Progression;
-use crate::flow::{Flow, Point};
+use crate::flow::stride::{PUSHING, Strides};
+use crate::flow::{Jet, Point};
+use crate::state::State;
 
-/// Up to this many decay times the exponential stays in the interpolant: its eighth derivative then
-/// costs 0.02 of its own size.
-const DECAY_TIMES: f64 = 4.0;
+/// Up to this forcing angle one piece may do.
+const SHORT: f64 = 4.0;
 
 impl Progression<f64> {
     /// The trend of -w, which rises to zero.
@@ -43,49 +48,72 @@ impl Guarded for Progression<f64> {
     }
 
     fn entry(&self) -> Point<f64> {
-        self.at(0.0)
+        let Constants { a, b, omega, omega2, rate, .. } = self.constants;
+        let EntryAngle { sin, cos } = self.angle;
+        let [u, v, w] = [a * cos, -(a * omega * sin), -(a * omega2 * cos)];
+        let lag_rate = self.closing * rate;
+        let orders = [
+            self.drift_rate,
+            (u + (b - 1.0)) + lag_rate,
+            v - lag_rate * rate,
+            w + lag_rate * rate * rate,
+        ];
+        Point {
+            elapsed: 0.0,
+            state: self.entry,
+            slider_velocity: self.closing,
+            drift: 0.0,
+            force: [b + u, v, w],
+            guard: Jet { orders, largest_term: self.drift_rate.abs() },
+        }
     }
 
     fn imposed(&self) -> Ends {
         Ends { left: self.drift_rate == 0.0, left_double: false, right: false }
     }
 
-    fn outlook(&self, left: &Point<f64>, limit: f64) -> Outlook {
+    fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
         if left.elapsed == 0.0
             && let Some(slip) = self.short_slip(left)
         {
             return Outlook::Root(slip);
         }
-        self.trend().outlook(left.elapsed, true, limit)
+        self.trend().outlook(strides, left.elapsed, true, limit)
     }
 
-    fn certify(&self, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
-        let corridor = self.corridor();
+    fn certify(
+        &self,
+        strides: &Strides,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: Ends,
+    ) -> Verdict {
         let slack = slack(left, right);
         let length = right.elapsed - left.elapsed;
-        let constants = &self.constants;
-        let swing = constants.a * constants.omega.powi(7);
-        let whole = if length * constants.rate <= DECAY_TIMES {
-            let drop = left.slider_velocity.max(0.0) * constants.rate.powi(8);
+        let Constants { omega, rate, rate8, a, omega6, .. } = self.constants;
+        if length * rate <= PUSHING && length * omega <= SHORT {
+            let drop = left.slider_velocity.max(0.0) * rate8;
             let piece = Piece {
                 left: left.guard.orders,
                 right: right.guard.orders,
                 length,
-                eighth: (-swing - drop, f64::INFINITY),
+                eighth: (-a * omega * omega6 - drop, 0.0),
             };
-            piece.verdict(&corridor, ends, slack)
-        } else {
-            self.flattened(left, right, swing).verdict(&corridor, ends, slack)
-        };
-        if whole != Verdict::Open || length * constants.omega < 4.0 {
-            return whole;
+            let verdict = piece.verdict(&self.corridor(), ends, slack);
+            if verdict != Verdict::Open || length * omega < 0.5 * SHORT {
+                return verdict;
+            }
         }
-        self.slow(left, right).verdict(&corridor, Ends::FREE, slack)
+        let end = |at: &Point<f64>| End {
+            orders: at.guard.orders.map(|order| -order),
+            parts: self.parts(at),
+        };
+        Walk::new(&self.shape(), strides).verdict(end(left), end(right), ends)
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         let (from, to) = (left.elapsed, right.elapsed);
-        self.trend().division(from, to, DECAY_TIMES).unwrap_or_else(|| {
+        self.trend().division(from, to, PUSHING).unwrap_or_else(|| {
             let piece = Piece {
                 left: left.guard.orders,
                 right: right.guard.orders,
@@ -96,50 +124,64 @@ impl Guarded for Progression<f64> {
         })
     }
 
+    fn series(&self, at: &Point<f64>) -> Series {
+        let Constants { rate, omega, .. } = self.constants;
+        let mut lag = at.slider_velocity * (rate * rate * rate);
+        let [_, mut force, mut next] = at.force;
+        Series::new(&at.guard.orders, || {
+            lag *= -rate;
+            (force, next) = (next, -(omega * omega * force));
+            next + lag
+        })
+    }
+
+    fn continued(
+        &self,
+        at: &Point<f64>,
+        step: f64,
+        series: &Series,
+        (value, slope): (f64, f64),
+    ) -> Point<f64> {
+        let Constants { g, rate, two_xi, .. } = self.constants;
+        let lag = at.slider_velocity + at.slider_velocity * short_decay(rate * step);
+        let q = 1.0 - two_xi * lag;
+        let force = Push::new(&self.constants, &at.force, step).force;
+        let turn = lag * rate * rate;
+        let orders = [value, slope, force[1] - turn, force[2] + turn * rate];
+        Point {
+            elapsed: at.elapsed + step,
+            state: State { p: q + g, y: lag + value, q },
+            slider_velocity: lag,
+            drift: at.drift + series.integral(step),
+            force,
+            guard: Jet { orders, ..at.guard },
+        }
+    }
+
     fn fastest_rate(&self) -> f64 {
         1.0_f64.max(self.constants.omega).max(self.constants.rate)
     }
 }
 
 impl Progression<f64> {
-    /// w = y - q' with q' replaced by a straight line above it: its chord where it is convex
-    /// (q <= 1), else its tangent at the right end.
-    fn flattened(&self, left: &Point<f64>, right: &Point<f64>, swing: f64) -> Piece {
-        let length = right.elapsed - left.elapsed;
-        let (lag_left, lag_right) = (left.slider_velocity, right.slider_velocity);
-        let slope = if lag_left >= 0.0 {
-            (lag_right - lag_left) / length
-        } else {
-            -lag_right * self.constants.rate
-        };
-        let with_line = |at: &Point<f64>, line: f64| {
-            [at.state.y - line, at.force[0] - 1.0 - slope, at.force[1], at.force[2]]
-        };
-        let mut piece = Piece {
-            left: with_line(left, lag_right - slope * length),
-            right: with_line(right, lag_right),
-            length,
-            eighth: (-swing, f64::INFINITY),
-        };
-        // The chord meets the guard at both ends: keep the better of the two roundings.
-        piece.right[0] = right.guard.orders[0];
-        if lag_left >= 0.0 {
-            piece.left[0] = left.guard.orders[0];
-        }
-        piece
+    fn shape(&self) -> Shape {
+        let Constants { a, b, omega, omega6, per_omega2, rate, rate8, .. } = self.constants;
+        // The slope is 1 - F.
+        let (grain, strength) = (1.0 + b.abs(), a * omega);
+        Shape { curvature: 0.0, grain, strength, omega, omega6, per_omega2, rate, rate8 }
     }
 
-    /// The harmonic replaced by its amplitude, the exponential as above: a straight line, exactly.
-    fn slow(&self, left: &Point<f64>, right: &Point<f64>) -> Piece {
-        let mut piece = self.flattened(left, right, 0.0);
-        let constants = &self.constants;
-        let omega2 = constants.omega * constants.omega;
-        for (orders, at) in [(&mut piece.left, left), (&mut piece.right, right)] {
-            orders[0] += at.force[1] / omega2 - constants.a_over_omega;
-            orders[1] -= at.force[0] - constants.b;
-            orders[2] = 0.0;
-            orders[3] = 0.0;
+    /// -w = -y + q', where y' = F - 1.
+    fn parts(&self, at: &Point<f64>) -> Parts {
+        let Constants { b, omega, .. } = self.constants;
+        Parts {
+            elapsed: at.elapsed,
+            value: -at.state.y,
+            slope: 1.0 - at.force[0],
+            bow: -at.force[1],
+            quarter: omega * (at.force[0] - b),
+            lasting: at.slider_velocity,
+            room: slack(at, at),
         }
-        piece
     }
 }

@@ -1,12 +1,10 @@
-//! From a guess or a bracket to a root, with a closed-form evaluation a step.
+//! From a guess or a bracket to a root, with a closed-form evaluation a step and a series at the end.
 
-use crate::crossing::guarded::Guarded;
+use crate::crossing::guarded::{Guarded, SLACK};
+use crate::crossing::series::REACH;
 use crate::crossing::{Counters, Root};
 use crate::flow::Point;
-
-/// A Taylor step of second order from the last evaluation is exact to 1e-18 where it is shorter
-/// than this against the fastest rate of the motion: (3e-6)^3/6 = 5e-18.
-const TAYLOR: f64 = 3e-6;
+use crate::two_word::TwoWord;
 
 /// Evaluates with counting.
 pub fn evaluate<G: Guarded>(phase: &G, elapsed: f64, counters: &mut Counters) -> Point<f64> {
@@ -21,18 +19,59 @@ fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> CubicStep {
     let (above, below) = (value - corridor.high, value - corridor.low);
     let rises = above.abs() <= below.abs();
     let over = if rises { above } else { below };
-    let residual = |step: f64| over + step * (slope + step * (0.5 * bend + step * third / 6.0));
-    let mut step = -over / slope;
-    // Three steps do on a transversal crossing; next to a graze Newton only halves at first.
-    for _ in 0..40 {
-        let change = residual(step) / (slope + step * (bend + step * 0.5 * third));
-        step -= change;
-        if change.abs() <= 1e-12 * step.abs() || change.is_nan() {
-            break;
-        }
+    let cubic = Cubic { over, slope, bend, third };
+    let step = cubic.near_zero().unwrap_or_else(|| cubic.zero());
+    let room = SLACK * point.guard.largest_term + 1e-6 * over.abs();
+    CubicStep { step, rises, settled: cubic.at(step).abs() <= room }
+}
+
+/// A guard's excess around a point.
+struct Cubic {
+    over: f64,
+    slope: f64,
+    bend: f64,
+    third: f64,
+}
+
+impl Cubic {
+    fn at(&self, step: f64) -> f64 {
+        let Self { over, slope, bend, third } = *self;
+        over + step * (slope + step * (0.5 * bend + step * (third * (1.0 / 6.0))))
     }
-    let room = 4.0 * f64::EPSILON * (point.guard.largest_term + over.abs());
-    CubicStep { step, rises, settled: residual(step).abs() <= room }
+
+    /// Its zero by reversion of the series, where that is so near that the guard is almost straight, and
+    /// one step more with the slope to first order: with one division. What is left is the third power
+    /// of 0.02 times its square.
+    fn near_zero(&self) -> Option<f64> {
+        const STRAIGHT: f64 = 0.02;
+        let inverse = 1.0 / self.slope;
+        let newton = -self.over * inverse;
+        let (b, c) = (0.5 * self.bend * inverse, self.third * inverse * (1.0 / 6.0));
+        let (first, second) = (b * newton, c * newton * newton);
+        if !(first.abs() < STRAIGHT && second.abs() < STRAIGHT * STRAIGHT) {
+            return None;
+        }
+        let step = newton * (1.0 - first + 2.0 * first * first - second);
+        let rest = step * (1.0 + step * (b + step * c)) - newton;
+        Some(step - rest * (1.0 - 2.0 * b * step))
+    }
+
+    /// Its zero by Newton's method: three steps do on a transversal crossing; next to a graze it only
+    /// halves at first.
+    #[cold]
+    fn zero(&self) -> f64 {
+        const ATTEMPTS: usize = 40;
+        let Self { over, slope, bend, third } = *self;
+        let mut step = -over / slope;
+        for _ in 0..ATTEMPTS {
+            let change = self.at(step) / (slope + step * (bend + step * 0.5 * third));
+            step -= change;
+            if change.abs() <= 1e-6 * step.abs() || change.is_nan() {
+                break;
+            }
+        }
+        step
+    }
 }
 
 /// Where a point's cubic meets a threshold.
@@ -44,11 +83,44 @@ struct CubicStep {
     settled: bool,
 }
 
-/// Whether a Taylor step reaches the root with all its digits and ends at a point that is next to the
-/// root as seen from `left` too: in a very short phase a certificate cannot use one far beyond it.
-fn reaches(step: f64, root: f64, left: f64, reach: f64) -> bool {
-    const NEAR: f64 = 1e-3;
-    step.abs() <= reach && step.abs() <= NEAR * (root - left)
+impl CubicStep {
+    /// Whether the series reaches the root with all its digits, and the root is not so much closer to
+    /// `left` than the point is that the point's rounding would show.
+    fn is_short(&self, point: &Point<f64>, left: f64, reach: f64) -> bool {
+        const NEAR: f64 = 0.25;
+        let root = point.elapsed + self.step;
+        self.settled && self.step.abs() <= reach && self.step.abs() <= NEAR * (root - left)
+    }
+}
+
+/// The root that the guard's series has next to a point's cubic step; none where that is no
+/// crossing outwards.
+fn polished<G: Guarded>(phase: &G, point: &Point<f64>, cubic: &CubicStep) -> Option<Root> {
+    const ATTEMPTS: usize = 5;
+    /// What Newton's last step may change the slope by: it is put right to third order, so that the force
+    /// of an impact keeps its digits; the time is settled by twice as many.
+    const SETTLED: f64 = 1e-12;
+    let CubicStep { mut step, rises, .. } = *cubic;
+    let corridor = phase.corridor();
+    let threshold = if rises { corridor.high } else { corridor.low };
+    let series = phase.series(point);
+    for attempt in 1..=ATTEMPTS {
+        let (value, slope) = series.value_and_slope(step);
+        let change = (threshold - value) / slope;
+        step += change;
+        let [_, _, bend, third, fourth, ..] = series.0;
+        let gain = change * (bend + step * (third + 0.5 * step * fourth));
+        let settled = gain.abs() <= SETTLED * slope.abs();
+        // Next to a graze rounding keeps the time from settling any further.
+        let hidden = (value - threshold).abs() <= SLACK * point.guard.largest_term;
+        if settled || (attempt == ATTEMPTS && hidden) {
+            let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step);
+            let end = phase.continued(point, step, &series, (threshold, slope + gain));
+            let end = Point { elapsed, ..end };
+            return leaves(&end, rises).then_some(Root { point: end, low, rises });
+        }
+    }
+    None
 }
 
 fn leaves(point: &Point<f64>, rises: bool) -> bool {
@@ -66,22 +138,19 @@ pub fn follow<G: Guarded>(
     counters: &mut Counters,
 ) -> Result<Root, Point<f64>> {
     const ATTEMPTS: usize = 5;
-    let reach = TAYLOR / phase.fastest_rate();
+    let reach = REACH / phase.fastest_rate();
     let mut point = evaluate(phase, guess, counters);
     let mut last_step = f64::INFINITY;
     for _ in 0..ATTEMPTS {
-        let CubicStep { step, rises, settled } = cubic_step(phase, &point);
+        let cubic = cubic_step(phase, &point);
+        let step = cubic.step;
         let next = point.elapsed + step;
         // Written so that a NaN gives up.
         if !(next > left && next <= limit && step.abs() < 0.5 * last_step) {
             return Err(point);
         }
-        if reaches(step, next, left, reach) {
-            return if settled && leaves(&point, rises) {
-                Ok(Root { point, step, rises })
-            } else {
-                Err(point)
-            };
+        if cubic.is_short(&point, left, reach) {
+            return polished(phase, &point, &cubic).ok_or(point);
         }
         last_step = step.abs();
         point = evaluate(phase, next, counters);
@@ -90,6 +159,7 @@ pub fn follow<G: Guarded>(
 }
 
 /// The root between `left` (inside) and `right` (outside): safeguarded, ends always.
+#[cold]
 pub fn bracketed<G: Guarded>(
     phase: &G,
     left: &Point<f64>,
@@ -97,22 +167,26 @@ pub fn bracketed<G: Guarded>(
     counters: &mut Counters,
 ) -> Root {
     let corridor = phase.corridor();
-    let reach = TAYLOR / phase.fastest_rate();
+    let reach = REACH / phase.fastest_rate();
     let mut rises = right.guard.orders[0] >= corridor.high;
     let (mut inside, mut outside) = (left.elapsed, right.elapsed);
     let mut point = *right;
     let mut halvings = 0_usize;
     loop {
-        let CubicStep { step, rises: side, settled } = cubic_step(phase, &point);
-        let root = point.elapsed + step;
-        let within = root >= inside && root <= outside && side == rises && leaves(&point, rises);
-        if within && settled && reaches(step, root, left.elapsed, reach) {
-            return Root { point, step, rises };
+        let cubic = cubic_step(phase, &point);
+        let root = point.elapsed + cubic.step;
+        let within =
+            root >= inside && root <= outside && cubic.rises == rises && leaves(&point, rises);
+        if within
+            && cubic.is_short(&point, left.elapsed, reach)
+            && let Some(root) = polished(phase, &point, &cubic)
+        {
+            return root;
         }
         halvings += 1;
         let middle = middle(inside, outside, halvings);
         if middle <= inside || middle >= outside {
-            return Root { point, step: 0.0, rises };
+            return Root { point, low: 0.0, rises };
         }
         let interior = root > inside && root < outside;
         let next = if within && interior { root } else { middle };

@@ -5,6 +5,7 @@ use crate::crossing::guarded::{Guarded, Outlook, slack};
 use crate::crossing::root::{bracketed, evaluate, follow, middle};
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::Point;
+use crate::flow::stride::Strides;
 
 /// The right end of a piece.
 #[derive(Clone, Copy)]
@@ -27,7 +28,12 @@ impl Target {
 }
 
 /// The first crossing after the start of the phase and not after `horizon` (elapsed, may be infinite).
-pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counters) -> Crossing {
+pub fn first_crossing<G: Guarded>(
+    phase: &G,
+    strides: &Strides,
+    horizon: f64,
+    counters: &mut Counters,
+) -> Crossing {
     let mut left = phase.entry();
     let mut ends = phase.imposed();
     let mut stride = STRIDE / phase.fastest_rate();
@@ -35,7 +41,7 @@ pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counte
         return Crossing::Horizon;
     }
     loop {
-        let outlook = phase.outlook(&left, horizon);
+        let outlook = phase.outlook(strides, &left, horizon);
         let target = match onwards(outlook, left.elapsed, &mut stride) {
             Outlook::ClearFrom(time) if time <= left.elapsed => return Crossing::Never,
             Outlook::ClearUntil(time) => {
@@ -71,7 +77,7 @@ pub fn first_crossing<G: Guarded>(phase: &G, horizon: f64, counters: &mut Counte
                 Target::Point(evaluate(phase, time, counters))
             }
         };
-        match settle(phase, left, ends, target, counters) {
+        match settle((phase, strides), left, ends, target, counters) {
             Target::Root(root) if root.elapsed().high <= horizon => return Crossing::At(root),
             Target::Point(point) if point.elapsed < horizon => left = point,
             _ => return Crossing::Horizon,
@@ -113,7 +119,7 @@ fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
 /// Certifies everything from `left` to `target`, or to the earlier crossing that turns up.
 #[inline]
 fn settle<G: Guarded>(
-    phase: &G,
+    (phase, strides): (&G, &Strides),
     left: Point<f64>,
     mut ends: Ends,
     target: Target,
@@ -121,16 +127,16 @@ fn settle<G: Guarded>(
 ) -> Target {
     let target = inside_or_root(phase, &left, target, counters);
     ends.right = target.is_root();
-    if phase.certify(&left, target.point(), ends) == Verdict::Inside {
+    if phase.certify(strides, &left, target.point(), ends) == Verdict::Inside {
         return target;
     }
-    divide(phase, left, ends, target, counters)
+    divide((phase, strides), left, ends, target, counters)
 }
 
 /// The piecewise way, where one certificate does not reach from `left` to `target`.
 #[cold]
 fn divide<G: Guarded>(
-    phase: &G,
+    (phase, strides): (&G, &Strides),
     mut left: Point<f64>,
     mut ends: Ends,
     target: Target,
@@ -140,7 +146,7 @@ fn divide<G: Guarded>(
     while let Some(target) = pending.last().copied() {
         let right = target.point();
         ends.right = target.is_root();
-        let mut verdict = phase.certify(&left, right, ends);
+        let mut verdict = phase.certify(strides, &left, right, ends);
         if verdict == Verdict::Touches && uneven(&left, right) {
             verdict = Verdict::Open;
         }

@@ -14,6 +14,7 @@ use crate::flow::Point;
 use crate::flow::contact::Contact;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
+use crate::two_word::TwoWord;
 
 /// A guard with one-sided bounds of its curvature.
 pub trait Bending: Guarded {
@@ -124,5 +125,6 @@ fn arrival(point: &Point<f64>, corridor: &Corridor) -> Root {
         let residual = over + step * (slope + step * (0.5 * bend + step * third / 6.0));
         step -= residual / (slope + step * (bend + step * 0.5 * third));
     }
-    Root { point: *point, step, rises }
+    let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step);
+    Root { point: Point { elapsed, ..*point }, low, rises }
 }

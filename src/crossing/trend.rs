@@ -8,6 +8,8 @@
 //! has to be searched each time the bound becomes positive.
 
 use crate::crossing::guarded::Outlook;
+use crate::crossing::swing::meeting;
+use crate::flow::stride::{Stride, Strides};
 use crate::remainders::decay;
 use std::f64::consts::TAU;
 
@@ -94,23 +96,20 @@ impl Trend {
     }
 
     /// Where the search should look after elapsed time `from`; `inside` as for [`Self::guess`].
-    pub fn outlook(&self, from: f64, inside: bool, limit: f64) -> Outlook {
-        let bound = self.bound(from);
-        match bound {
-            // A jump costs an evaluation; the guess steps over a few periods for less.
-            Bound::OpenFrom(time) if time > from + 4.0 * TAU / self.omega => {
-                return Outlook::ClearUntil(time);
-            }
-            Bound::Never => return Outlook::ClearFrom(from),
-            Bound::NeverAfter(time) | Bound::OpenFrom(time) if time > limit => {
-                return Outlook::Onward(limit);
-            }
-            _ => {}
+    pub fn outlook(&self, strides: &Strides, from: f64, inside: bool, limit: f64) -> Outlook {
+        if let Some(time) = self.guess(&strides.look, from, inside, limit) {
+            return Outlook::Root(time);
         }
-        match (self.guess(from, inside, limit), bound) {
-            (Some(time), _) => Outlook::Root(time),
-            (None, Bound::NeverAfter(time)) => Outlook::Onward(time),
-            _ => Outlook::Onward(from + TAU / self.omega),
+        match self.bound(from) {
+            Bound::OpenFrom(time) if time > from + 4.0 * TAU / self.omega => {
+                Outlook::ClearUntil(time)
+            }
+            Bound::Never => Outlook::ClearFrom(from),
+            Bound::NeverAfter(time) | Bound::OpenFrom(time) if time > limit => {
+                Outlook::Onward(limit)
+            }
+            Bound::NeverAfter(time) => Outlook::Onward(time),
+            Bound::OpenFrom(_) => Outlook::Onward(from + TAU / self.omega),
         }
     }
 
@@ -149,82 +148,98 @@ impl Trend {
     }
 
     /// A guess, not a proof, of the first rise of G to zero after `from`; `inside` says that G is
-    /// known to be negative just after `from`. None if the bound forbids it before `limit`.
-    pub fn guess(&self, from: f64, inside: bool, limit: f64) -> Option<f64> {
-        const STEP: f64 = 0.5; // radians of forcing angle
-        const STEPS: usize = 40; // three periods
-        let step = STEP / self.omega;
-        let mut inside = inside;
-        let mut last = from;
+    /// known to be negative just after `from`. None if there is none within three periods in which the
+    /// bound allows one, or none before `limit`.
+    fn guess(&self, look: &Stride, from: f64, mut inside: bool, limit: f64) -> Option<f64> {
+        const STEPS: usize = 40;
+        // At larger angles one leap more, with an evaluation, is worth its cost.
+        const FURTHEST: f64 = 1e6;
+        const SHORT_LIVED: f64 = 0.05;
+        let mut here = self.near(from);
         for _ in 0..STEPS {
-            let mut next = last + step;
-            if self.parabola(next) + self.amplitude < 0.0 {
+            if self.parabola(here.elapsed) + self.amplitude < 0.0 {
                 inside = true;
-                match self.bound(next) {
-                    Bound::OpenFrom(open) => {
-                        last = open.max(next);
-                        next = last + step;
-                    }
-                    Bound::Never | Bound::NeverAfter(_) => return None,
+                let opens = here.elapsed + self.opens_after(here.elapsed)?;
+                if (opens - here.elapsed) * self.omega > FURTHEST {
+                    return None;
+                }
+                if opens > here.elapsed + look.length {
+                    here = self.near(opens);
                 }
             }
-            if next.is_nan() || last > limit {
+            let next = here.after(look);
+            if here.elapsed.is_nan() || here.elapsed > limit {
                 return None;
             }
-            if self.estimate(next).0 >= 0.0 {
+            let (value, rate) = self.value_and_rate(&next);
+            if value >= 0.0 {
                 if inside {
-                    return Some(self.refine(last, next));
+                    if look.decay < SHORT_LIVED {
+                        // The cubic would follow its slope, of which nothing is left at the root.
+                        here.lasting = 0.0;
+                    }
+                    let (last, last_rate) = self.value_and_rate(&here);
+                    let slopes = (last_rate * look.length, rate * look.length);
+                    return Some(here.elapsed + look.length * meeting(last, value, slopes));
                 }
             } else {
                 inside = true;
             }
-            last = next;
+            here = next;
         }
         None
     }
 
-    /// A few safeguarded Newton steps on the estimate, from the right end.
-    fn refine(&self, mut left: f64, mut right: f64) -> f64 {
-        let mut d = right;
-        for _ in 0..5 {
-            let (value, rate) = self.estimate(d);
-            if value >= 0.0 {
-                right = d;
-            } else {
-                left = d;
-            }
-            let newton = d - value / rate;
-            let next = if newton > left && newton < right { newton } else { 0.5 * (left + right) };
-            if (next - d).abs() < 1e-7 * step_scale(self.omega) {
-                return next;
-            }
-            d = next;
-        }
-        d
+    /// When the parabola next rises to where the harmonic may reach zero.
+    fn opens_after(&self, from: f64) -> Option<f64> {
+        let value = self.parabola(from) + self.amplitude;
+        first_root(value, self.slope + self.curvature * from, self.curvature)
     }
 
-    /// G and its slope to about 1e-6, without a call of a library function.
-    fn estimate(&self, d: f64) -> (f64, f64) {
-        let (sin, cos) = quick_sin_cos(self.omega * d);
-        let cosine = self.cos * cos - self.sin * sin;
-        let sine = self.sin * cos + self.cos * sin;
-        let lasting = self.exponential * quick_decay(self.rate * d);
+    /// Harmonic and exponential to about 1e-7 and a per cent, without a call of a library function.
+    fn near(&self, elapsed: f64) -> Place {
+        let (sin, cos) = quick_sin_cos(self.omega * elapsed);
+        Place {
+            elapsed,
+            sin: self.sin * cos + self.cos * sin,
+            cos: self.cos * cos - self.sin * sin,
+            lasting: self.exponential * quick_decay(self.rate * elapsed),
+        }
+    }
+
+    /// G and its slope.
+    fn value_and_rate(&self, at: &Place) -> (f64, f64) {
+        let Self { slope, curvature, amplitude, omega, rate, .. } = *self;
+        let Place { elapsed, sin, cos, lasting } = *at;
         (
-            self.parabola(d) - self.amplitude * cosine - lasting,
-            self.slope
-                + self.curvature * d
-                + self.amplitude * self.omega * sine
-                + self.rate * lasting,
+            self.parabola(elapsed) - amplitude * cos - lasting,
+            slope + curvature * elapsed + amplitude * omega * sin + rate * lasting,
         )
     }
 }
 
-fn step_scale(omega: f64) -> f64 {
-    1.0 / (1.0 + omega)
+/// A place on the way of a guess.
+struct Place {
+    elapsed: f64,
+    sin: f64,
+    cos: f64,
+    lasting: f64,
+}
+
+impl Place {
+    fn after(&self, stride: &Stride) -> Self {
+        let Stride { length, sin, cos, decay, .. } = *stride;
+        Self {
+            elapsed: self.elapsed + length,
+            sin: self.sin * cos + self.cos * sin,
+            cos: self.cos * cos - self.sin * sin,
+            lasting: self.lasting * decay,
+        }
+    }
 }
 
 /// The first t > 0 with value + rising t + curvature t^2/2 = 0, for value < 0.
-fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
+pub fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
     let discriminant = rising * rising - 2.0 * curvature * value;
     if discriminant < 0.0 {
         return None; // curvature < 0 and the crest stays below zero
@@ -245,14 +260,16 @@ fn last_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
     time.is_finite().then_some(time)
 }
 
-/// Sine and cosine to about 1e-7.
+/// Sine and cosine to about 1e-7, for angles up to 1e9 or so.
 fn quick_sin_cos(x: f64) -> (f64, f64) {
-    let turns = (x * std::f64::consts::FRAC_2_PI).round();
+    // Adding and taking off 1.5 * 2^52 rounds to a whole number.
+    const ROUNDER: f64 = 6_755_399_441_055_744.0;
+    let turns = (x * std::f64::consts::FRAC_2_PI + ROUNDER) - ROUNDER;
     let r = x - turns * std::f64::consts::FRAC_PI_2;
     let s = r * r;
-    let sin = r * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s / 5040.0)));
-    let cos = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s * (1.0 / 720.0 - s / 40320.0)));
-    match (turns as i64).rem_euclid(4) {
+    let sin = r * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * (1.0 / 5040.0))));
+    let cos = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s * (1.0 / 720.0 - s * (1.0 / 40320.0))));
+    match (turns as i64) & 3 {
         0 => (sin, cos),
         1 => (cos, -sin),
         2 => (-sin, -cos),
@@ -260,8 +277,8 @@ fn quick_sin_cos(x: f64) -> (f64, f64) {
     }
 }
 
-/// exp(-z) to a per cent or so.
-fn quick_decay(z: f64) -> f64 {
+/// exp(-z) to a per cent or so for z < 1, and never less than it.
+pub fn quick_decay(z: f64) -> f64 {
     let base = 1.0 + z * (1.0 / 16.0 + z * (1.0 / 512.0));
     let fourth = base * base * (base * base);
     let eighth = fourth * fourth;

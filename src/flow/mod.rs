@@ -12,6 +12,7 @@ pub mod forcing;
 pub mod no_contact;
 pub mod progression;
 pub mod steady;
+pub mod stride;
 
 use crate::number::Number;
 use crate::state::State;

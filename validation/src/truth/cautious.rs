@@ -9,7 +9,9 @@ use super::forms::Motion;
 use percuss::crossing::certificate::{Corridor, Ends, Verdict};
 use percuss::crossing::guarded::{Guarded, Outlook};
 use percuss::crossing::search::first_crossing;
+use percuss::crossing::series::Series;
 use percuss::crossing::{Counters, Crossing};
+use percuss::flow::stride::Strides;
 use percuss::flow::{Flow, Point};
 
 /// Rounding an entry to f64 moves the guard by a unit or two of its largest term; its own rounding is
@@ -44,16 +46,36 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
         self.0.imposed()
     }
 
-    fn outlook(&self, left: &Point<f64>, limit: f64) -> Outlook {
-        self.0.outlook(left, limit)
+    fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
+        self.0.outlook(strides, left, limit)
     }
 
-    fn certify(&self, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
-        self.0.certify(left, right, ends)
+    fn certify(
+        &self,
+        strides: &Strides,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: Ends,
+    ) -> Verdict {
+        self.0.certify(strides, left, right, ends)
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         self.0.divide(left, right)
+    }
+
+    fn series(&self, at: &Point<f64>) -> Series {
+        self.0.series(at)
+    }
+
+    fn continued(
+        &self,
+        at: &Point<f64>,
+        step: f64,
+        series: &Series,
+        (value, slope): (f64, f64),
+    ) -> Point<f64> {
+        self.0.continued(at, step, series, (value, slope))
     }
 
     fn fastest_rate(&self) -> f64 {
@@ -62,12 +84,12 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
 }
 
 /// How the phase ends before `limit`, and whether every certificate left the room asked for.
-pub(super) fn crossing(motion: &Motion<f64>, limit: f64) -> (Crossing, bool) {
+pub(super) fn crossing(motion: &Motion<f64>, strides: &Strides, limit: f64) -> (Crossing, bool) {
     let mut counters = Counters::default();
     let crossing = match motion {
-        Motion::NoContact(it) => first_crossing(&Cautious(it), limit, &mut counters),
-        Motion::Contact(it) => first_crossing(&Cautious(it), limit, &mut counters),
-        Motion::Progression(it) => first_crossing(&Cautious(it), limit, &mut counters),
+        Motion::NoContact(it) => first_crossing(&Cautious(it), strides, limit, &mut counters),
+        Motion::Contact(it) => first_crossing(&Cautious(it), strides, limit, &mut counters),
+        Motion::Progression(it) => first_crossing(&Cautious(it), strides, limit, &mut counters),
     };
     (crossing, counters.undecidable == 0)
 }

@@ -5,6 +5,7 @@ use percuss::flow::contact::Contact;
 use percuss::flow::forcing::EntryAngle;
 use percuss::flow::no_contact::NoContact;
 use percuss::flow::progression::Progression;
+use percuss::flow::stride::Strides;
 use percuss::flow::{Flow, Point};
 use percuss::number::Number;
 use percuss::two_word::TwoWord;
@@ -36,6 +37,7 @@ pub(super) enum Motion<T> {
 pub(super) struct Forms {
     pub(super) constants: Constants<DoubleDouble>,
     rounded: Constants<f64>,
+    pub(super) strides: Strides,
     phi: DoubleDouble,
     pub(super) omega: f64,
 }
@@ -46,6 +48,7 @@ impl Forms {
         Self {
             constants: Constants::new(parameters),
             rounded: Constants::new(parameters),
+            strides: Strides::new(parameters),
             phi: phi.into(),
             omega: parameters.omega,
         }

@@ -1,0 +1,108 @@
+//! Where a contact may end, guessed, or proved to go on.
+
+use crate::constants::Constants;
+use crate::crossing::contact::Split;
+use crate::crossing::guarded::{Guarded, Outlook};
+use crate::crossing::trend::first_root;
+use crate::flow::Point;
+use crate::flow::contact::Contact;
+use crate::flow::damped::Damping;
+use crate::flow::stride::Strides;
+
+impl Contact<f64> {
+    /// A guess, or a proof, about what comes after `left`.
+    pub(super) fn ahead(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
+        if let Some(time) = self.soon(left) {
+            return Outlook::Root(time);
+        }
+        let split = self.split(left);
+        let onward = match self.exit(strides, left, &split) {
+            Ok(time) => return Outlook::Root(time),
+            Err(time) => Outlook::Onward(time.min(limit)),
+        };
+        if self.rests(&split) {
+            return Outlook::ClearFrom(left.elapsed);
+        }
+        match self.calm(left, &split) {
+            calm if calm > 8.0 => Outlook::ClearUntil(left.elapsed + calm),
+            _ => onward,
+        }
+    }
+
+    /// Whether f can never again leave [0, 1] by more than rounding: amplitude and energy norm of the
+    /// free part fit inside. At rest on a threshold, with no force, they fit exactly.
+    fn rests(&self, split: &Split) -> bool {
+        let b = self.constants.b;
+        let reach = split.amplitude + split.free[0].hypot(split.free[1]);
+        let room = 4.0 * f64::EPSILON * (b.abs() + reach);
+        b + reach <= 1.0 + room && b - reach >= -room
+    }
+
+    /// A time for which f certainly stays inside, by one of two slow changes.
+    ///
+    /// With x = f - b the equation x'' + 2 xi x' + x = a cos(..) - 2 xi a omega sin(..) lets the
+    /// energy norm of (x, x') grow no faster than the amplitude of its right-hand side: that
+    /// carries over many oscillations where the forcing is weak, resonant or not. And the steady
+    /// part moves no faster than its amplitude times omega, around which the free part keeps
+    /// within its own energy norm: that carries where the forcing is slow.
+    fn calm(&self, left: &Point<f64>, split: &Split) -> f64 {
+        const ROOM: f64 = 1e-12;
+        let Constants { a, b, two_xi, omega, .. } = self.constants;
+        let f = left.guard.orders[0] + self.reference;
+        let push = a * 1.0_f64.hypot(two_xi * omega);
+        let weak = (b.min(1.0 - b) - (f - b).hypot(left.guard.orders[1]) - ROOM) / push;
+        let free = split.free[0].hypot(split.free[1]);
+        let steady = f - split.free[0];
+        let slow = (steady.min(1.0 - steady) - free - ROOM) / (split.amplitude * omega);
+        weak.max(slow)
+    }
+
+    /// The first place where a cubic from `left` leaves the corridor, if that is soon.
+    fn soon(&self, left: &Point<f64>) -> Option<f64> {
+        const SOON: f64 = 0.4;
+        let [f, f1, f2, f3] = left.guard.orders;
+        let horizon = SOON / self.fastest_rate();
+        let cubic = |d: f64| f + d * (f1 + d * (0.5 * f2 + d * (f3 * (1.0 / 6.0))));
+        let corridor = self.corridor();
+        let beyond = |d: &f64| corridor.excess(cubic(*d)) >= 0.0;
+        let outside = [0.5 * horizon, horizon].into_iter().find(beyond)?;
+        let high = cubic(outside) >= corridor.high;
+        let (threshold, outward) = if high { (corridor.high, 1.0) } else { (corridor.low, -1.0) };
+        let time = if f == threshold {
+            // The cubic without its zero at the start.
+            first_root(outward * f1, outward * 0.5 * f2, outward * f3 / 3.0)?
+        } else {
+            let mut d = outside;
+            for _ in 0..4 {
+                d -= (cubic(d) - threshold) / (f1 + d * (f2 + d * (0.5 * f3)));
+            }
+            d
+        };
+        // Newton may have left the interval.
+        let time = if time > 0.0 && time < outside { time } else { outside };
+        Some(left.elapsed + time)
+    }
+
+    /// A guess of the first exit, or where the look-out for it has ended: in strides as the free
+    /// oscillation moves, about which a fast forcing only ripples; in shorter and then longer ones under
+    /// strong damping, as its fast part lives and dies.
+    fn exit(&self, strides: &Strides, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
+        const QUICK: usize = 16;
+        const STEPS: usize = 24;
+        const DEAD: f64 = 40.0; // exp(-40) is below the rounding of what it is added to
+        let shape = self.shape(0.0, 0.0);
+        let mut parts = self.parts(left, split);
+        let mut look = &strides.contact_look;
+        if let Damping::Over { fast, .. } = self.constants.damping {
+            if fast * left.elapsed > DEAD {
+                look = &strides.slow_look;
+            } else {
+                match parts.first_exit(&shape, &strides.quick_look, QUICK) {
+                    Ok(time) => return Ok(time),
+                    Err(further) => parts = further,
+                }
+            }
+        }
+        parts.first_exit(&shape, look, STEPS).map_err(|further| further.elapsed)
+    }
+}

@@ -1,0 +1,140 @@
+//! A contact followed in fixed strides from an evaluation: where the trial force may leave its
+//! corridor (a guess), and that it does not before (a certificate in pieces).
+//!
+//! The force less b is a free oscillation and a forced one. A stride of the model's own length turns
+//! both by known factors, so that places around an evaluation need none of their own.
+
+use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
+use crate::flow::stride::Swing;
+
+/// The trial force in parts, at some place.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts {
+    /// When.
+    pub elapsed: f64,
+    /// Free part.
+    pub free: f64,
+    /// Its rate.
+    pub free_rate: f64,
+    /// Forced part.
+    pub forced: f64,
+    /// Its rate over omega.
+    pub quarter: f64,
+}
+
+/// What the parts have in common at all places.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape {
+    /// b less the guard's reference.
+    pub level: f64,
+    /// 2 xi
+    pub two_xi: f64,
+    /// omega
+    pub omega: f64,
+    /// Where the guard stays.
+    pub corridor: Corridor,
+    /// A bound of the guard's eighth derivative.
+    pub eighth: f64,
+    /// Rounding room.
+    pub slack: f64,
+}
+
+impl Parts {
+    fn after(&self, swing: &Swing) -> Self {
+        let Swing { length, sin, cos, c, s, s_rate } = *swing;
+        Self {
+            elapsed: self.elapsed + length,
+            free: self.free * c + self.free_rate * s,
+            free_rate: self.free_rate * s_rate - self.free * s,
+            forced: self.forced * cos + self.quarter * sin,
+            quarter: self.quarter * cos - self.forced * sin,
+        }
+    }
+
+    /// The guard and its first three derivatives.
+    fn orders(&self, shape: &Shape) -> [f64; 4] {
+        let Shape { level, two_xi, omega, .. } = *shape;
+        let Self { free, free_rate, forced, quarter, .. } = *self;
+        // x'' + 2 xi x' + x = 0
+        let free2 = -(two_xi * free_rate + free);
+        let free3 = -(two_xi * free2 + free_rate);
+        let omega2 = omega * omega;
+        [
+            level + free + forced,
+            free_rate + omega * quarter,
+            free2 - omega2 * forced,
+            free3 - omega * omega2 * quarter,
+        ]
+    }
+
+    fn value_and_rate(&self, shape: &Shape) -> (f64, f64) {
+        (shape.level + self.free + self.forced, self.free_rate + shape.omega * self.quarter)
+    }
+
+    /// A guess of the first exit in so many strides, or the parts where they end.
+    pub fn first_exit(&self, shape: &Shape, swing: &Swing, strides: usize) -> Result<f64, Self> {
+        let corridor = shape.corridor;
+        let mut here = *self;
+        let (mut last, mut last_rate) = here.value_and_rate(shape);
+        for _ in 0..strides {
+            let next = here.after(swing);
+            let (value, rate) = next.value_and_rate(shape);
+            if corridor.excess(value) >= 0.0 {
+                let threshold = if value >= corridor.high { corridor.high } else { corridor.low };
+                let slopes = (last_rate * swing.length, rate * swing.length);
+                let share = meeting(last - threshold, value - threshold, slopes);
+                return Ok(here.elapsed + swing.length * share);
+            }
+            (here, last, last_rate) = (next, value, rate);
+        }
+        Err(here)
+    }
+
+    /// Whether the guard stays inside from here to the right end: proved, or not known.
+    pub fn stays_inside(
+        &self,
+        orders: &[f64; 4],
+        (right, right_orders): (f64, &[f64; 4]),
+        ends: Ends,
+        shape: &Shape,
+        swing: &Swing,
+    ) -> bool {
+        const MOST_PIECES: usize = 8;
+        /// The last piece may be this much longer than a stride.
+        const REST: f64 = 1.3;
+        let inside = |left: &[f64; 4], right: &[f64; 4], length: f64, ends: Ends| {
+            let eighth = (-shape.eighth, shape.eighth);
+            let piece = Piece { left: *left, right: *right, length, eighth };
+            piece.verdict(&shape.corridor, ends, shape.slack) == Verdict::Inside
+        };
+        let (mut here, mut orders) = (*self, *orders);
+        let mut left_ends = Ends { right: false, ..ends };
+        for _ in 0..MOST_PIECES {
+            let rest = right - here.elapsed;
+            if rest < REST * swing.length {
+                let ends = Ends { right: ends.right, ..left_ends };
+                return inside(&orders, right_orders, rest, ends);
+            }
+            let next = here.after(swing);
+            let next_orders = next.orders(shape);
+            if !inside(&orders, &next_orders, swing.length, left_ends) {
+                return false;
+            }
+            (here, orders, left_ends) = (next, next_orders, Ends::FREE);
+        }
+        false
+    }
+}
+
+/// Where the cubic through two values with these slopes, all in units of the stride, is zero.
+pub fn meeting(left: f64, right: f64, (left_slope, right_slope): (f64, f64)) -> f64 {
+    let rise = right - left;
+    let second = 3.0 * rise - 2.0 * left_slope - right_slope;
+    let third = left_slope + right_slope - 2.0 * rise;
+    let mut t = -left / rise;
+    for _ in 0..2 {
+        let value = left + t * (left_slope + t * (second + t * third));
+        t -= value / (left_slope + t * (2.0 * second + t * (3.0 * third)));
+    }
+    if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.5 }
+}

@@ -1,0 +1,266 @@
+//! The certificate of a long flight or progression: pieces in fixed strides from both ends.
+//!
+//! The guard, counted so that it is negative inside, is a parabola, a harmonic and an exponential.
+//! All three are known at an evaluation, and a stride of the model's own length turns the harmonic
+//! and shrinks the exponential by known factors: the ends of the pieces need no evaluation. In between
+//! there is mostly nothing to prove: the parabola lies below minus the harmonic's amplitude.
+//!
+//! An exponential that lasts longer than a piece stays in the interpolant. Of a shorter one the first
+//! piece takes the life; what is left is replaced by a line above it: by its tangent at the right end
+//! where it pulls inwards (it is concave then), else by its chord.
+
+use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
+use crate::flow::stride::{PULLING, PUSHING, Stride, Strides};
+
+/// A guard's excess in parts, at some place.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts {
+    /// When.
+    pub elapsed: f64,
+    /// Parabola and harmonic.
+    pub value: f64,
+    /// Their slope.
+    pub slope: f64,
+    /// The harmonic's second derivative.
+    pub bow: f64,
+    /// Its third over omega.
+    pub quarter: f64,
+    /// The exponential.
+    pub lasting: f64,
+    /// Rounding room of all that.
+    pub room: f64,
+}
+
+/// What the parts have in common at all places.
+#[derive(Clone, Copy, Debug)]
+pub struct Shape {
+    /// The parabola's second derivative.
+    pub curvature: f64,
+    /// The largest terms that cancel in the slope at an evaluation.
+    pub grain: f64,
+    /// The largest `bow`.
+    pub strength: f64,
+    /// omega
+    pub omega: f64,
+    /// omega^6
+    pub omega6: f64,
+    /// 1/omega^2
+    pub per_omega2: f64,
+    /// Rate of the exponential.
+    pub rate: f64,
+    /// Its eighth power.
+    pub rate8: f64,
+}
+
+/// An end of a piece: the guard's own orders there, and its parts.
+#[derive(Clone, Copy, Debug)]
+pub struct End {
+    /// Value and three derivatives of the excess.
+    pub orders: [f64; 4],
+    /// The same in parts.
+    pub parts: Parts,
+}
+
+impl Parts {
+    fn after(&self, stride: &Stride, shape: &Shape) -> Self {
+        const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+        let Shape { curvature, strength, grain, .. } = *shape;
+        let Stride { length, sin, cos, decay, speed, sag, fall, drop } = *stride;
+        let (lift, gain) = (0.5 * length * curvature, length * curvature);
+        let change = length * (self.slope + lift);
+        let slopes = self.slope.abs() + lift.abs() + grain;
+        let terms = self.value.abs() + length.abs() * slopes;
+        Self {
+            elapsed: self.elapsed + length,
+            value: self.value + (change + (self.bow * fall + self.quarter * drop)),
+            slope: self.slope + (gain + (self.bow * speed + self.quarter * sag)),
+            bow: self.bow * cos + self.quarter * sin,
+            quarter: self.quarter * cos - self.bow * sin,
+            lasting: self.lasting * decay,
+            room: self.room + ROUNDINGS * (terms + strength * fall + self.lasting.abs()),
+        }
+    }
+
+    fn before(&self, stride: &Stride, shape: &Shape) -> Self {
+        self.after(&stride.reversed(), shape)
+    }
+
+    /// Value and slope of the parabola and a line that stands for the exponential.
+    fn slow(&self, shape: &Shape, line: &Line) -> (f64, f64) {
+        let value = self.value + self.bow * shape.per_omega2;
+        let slope = self.slope + self.quarter * (shape.omega * shape.per_omega2);
+        (value + line.at(self.elapsed), slope + line.slope)
+    }
+}
+
+/// The straight line that stands for the exponential.
+#[derive(Clone, Copy)]
+struct Line {
+    end: f64,
+    value: f64,
+    slope: f64,
+}
+
+impl Line {
+    /// Not below the exponential anywhere between the two places.
+    fn above(from: &Parts, to: &Parts, rate: f64) -> Self {
+        // At the right end it may have sunk below the smallest number: the left one has its sign.
+        let slope = if from.lasting > 0.0 {
+            (to.lasting - from.lasting) / (to.elapsed - from.elapsed)
+        } else {
+            -rate * to.lasting
+        };
+        Self { end: to.elapsed, value: to.lasting, slope }
+    }
+
+    fn at(&self, elapsed: f64) -> f64 {
+        self.value + self.slope * (elapsed - self.end)
+    }
+}
+
+/// A stretch of the guard between two evaluations.
+pub struct Walk<'a> {
+    shape: &'a Shape,
+    strides: &'a Strides,
+    /// Once the exponential has lived.
+    line: Option<Line>,
+}
+
+/// Pieces after which the stretch is left to divisions.
+const MOST_PIECES: usize = 12;
+
+/// The last piece may be this much longer than a stride.
+const REST: f64 = 1.3;
+
+const BELOW_ZERO: Corridor = Corridor { low: f64::NEG_INFINITY, high: 0.0 };
+
+impl<'a> Walk<'a> {
+    /// Of a model's guard.
+    pub fn new(shape: &'a Shape, strides: &'a Strides) -> Self {
+        Self { shape, strides, line: None }
+    }
+
+    /// What can be said about the excess between the two ends.
+    pub fn verdict(mut self, left: End, right: End, ends: Ends) -> Verdict {
+        let rate = self.shape.rate;
+        let pushes = left.parts.lasting > 0.0;
+        let decay_times = if pushes { PUSHING } else { PULLING };
+        let length = right.parts.elapsed - left.parts.elapsed;
+        let left_ends = Ends { right: false, ..ends };
+        if rate * self.strides.piece.length <= decay_times || rate * length <= decay_times {
+            return self.between((left, left_ends), (right, ends.right));
+        }
+        let life = if pushes { &self.strides.pushing } else { &self.strides.pulling };
+        let settled = left.parts.after(life, self.shape);
+        let first = self.piece(&left, &self.end(settled), left_ends);
+        if first == Verdict::Open {
+            return first;
+        }
+        let line = Line::above(&settled, &right.parts, rate);
+        // From here on the line stands for it.
+        let (mut settled, mut right) = (settled, right);
+        (settled.lasting, right.parts.lasting) = (0.0, 0.0);
+        let mut orders = self.above(&right.parts, &line);
+        if ends.right {
+            orders[0] = right.orders[0];
+        }
+        self.line = Some(line);
+        let rest =
+            self.between((self.end(settled), Ends::FREE), (End { orders, ..right }, ends.right));
+        first.max(rest)
+    }
+
+    /// From the left end until the amplitude takes over, then back from the right end.
+    fn between(
+        &self,
+        (mut near, mut near_ends): (End, Ends),
+        (mut far, mut is_root): (End, bool),
+    ) -> Verdict {
+        let stride = &self.strides.piece;
+        let mut worst = Verdict::Inside;
+        for _ in 0..MOST_PIECES {
+            let room = near.parts.room.max(far.parts.room);
+            let (here, most) = self.crests(&near.parts, &far.parts);
+            if most < -room {
+                return worst;
+            }
+            if far.parts.elapsed - near.parts.elapsed < REST * stride.length {
+                let last = self.piece(&near, &far, Ends { right: is_root, ..near_ends });
+                return worst.max(last);
+            }
+            let (left, right, ends);
+            if here < -room {
+                let next = self.end(far.parts.before(stride, self.shape));
+                (left, right, ends) = (next, far, Ends { right: is_root, ..Ends::FREE });
+                (far, is_root) = (next, false);
+            } else {
+                let next = self.end(near.parts.after(stride, self.shape));
+                (left, right, ends) = (near, next, near_ends);
+                (near, near_ends) = (next, Ends::FREE);
+            }
+            let verdict = self.piece(&left, &right, ends);
+            // A crest that rounding hides stops no pieces short of the whole stretch.
+            if verdict == Verdict::Open || (verdict == Verdict::Touches && most <= room) {
+                return if most <= room { Verdict::Touches } else { Verdict::Open };
+            }
+            worst = worst.max(verdict);
+        }
+        Verdict::Open
+    }
+
+    /// How high the harmonic's crests may be: at the left place, and anywhere up to the right one.
+    fn crests(&self, near: &Parts, far: &Parts) -> (f64, f64) {
+        let Shape { curvature, strength, per_omega2, rate, .. } = *self.shape;
+        let line = self.line.unwrap_or_else(|| Line::above(near, far, rate));
+        let amplitude = strength * per_omega2;
+        let (here, rising) = near.slow(self.shape, &line);
+        let (there, falling) = far.slow(self.shape, &line);
+        let mut most = here.max(there);
+        if curvature < 0.0 && rising > 0.0 && falling < 0.0 {
+            most = most.max(here - 0.5 * rising * rising / curvature);
+        }
+        (here + amplitude, most + amplitude)
+    }
+
+    fn piece(&self, left: &End, right: &End, ends: Ends) -> Verdict {
+        let Shape { strength, omega6, rate8, .. } = *self.shape;
+        let lift = match self.line {
+            None => left.parts.lasting.max(0.0) * rate8,
+            Some(_) => 0.0,
+        };
+        let piece = Piece {
+            left: left.orders,
+            right: right.orders,
+            length: right.parts.elapsed - left.parts.elapsed,
+            eighth: (0.0, strength * omega6 + lift),
+        };
+        let slack = left.parts.room.max(right.parts.room);
+        piece.verdict(&BELOW_ZERO, ends, slack)
+    }
+
+    fn end(&self, parts: Parts) -> End {
+        let orders = match &self.line {
+            Some(line) => self.above(&parts, line),
+            None => {
+                let rate = self.shape.rate;
+                let [value, slope, bend, third] = self.bare(&parts);
+                let fall = rate * parts.lasting;
+                let turn = rate * fall;
+                [value + parts.lasting, slope - fall, bend + turn, third - rate * turn]
+            }
+        };
+        End { orders, parts }
+    }
+
+    /// The orders with a line in place of the exponential.
+    fn above(&self, parts: &Parts, line: &Line) -> [f64; 4] {
+        let [value, slope, bend, third] = self.bare(parts);
+        [value + line.at(parts.elapsed), slope + line.slope, bend, third]
+    }
+
+    /// The orders without the exponential.
+    fn bare(&self, parts: &Parts) -> [f64; 4] {
+        let Shape { omega, curvature, .. } = *self.shape;
+        [parts.value, parts.slope, curvature + parts.bow, omega * parts.quarter]
+    }
+}

@@ -1,0 +1,142 @@
+//! Steps of fixed length, whose sine, cosine and exponential belong to the model.
+//!
+//! By such steps the motion is followed from any evaluation to places around it, for guesses and for
+//! certificates, without a library function.
+
+use crate::flow::damped::Damping;
+use crate::parameters::Parameters;
+use crate::remainders::{Circular, circular};
+
+/// A step of fixed length outside contact.
+#[derive(Clone, Copy, Debug)]
+pub struct Stride {
+    /// How long it is.
+    pub length: f64,
+    /// Sine of x = omega times that.
+    pub sin: f64,
+    /// Cosine of x.
+    pub cos: f64,
+    /// exp(-rate length)
+    pub decay: f64,
+    /// sin x/omega: what a harmonic adds to its integral,
+    pub speed: f64,
+    /// (1 - cos x)/omega: what its quadrature adds.
+    pub sag: f64,
+    /// (1 - cos x)/omega^2: what a harmonic adds to its second integral,
+    pub fall: f64,
+    /// (x - sin x)/omega^2: what its quadrature adds.
+    pub drop: f64,
+}
+
+impl Stride {
+    fn new(length: f64, omega: f64, rate: f64) -> Self {
+        let Circular { sin, cos_minus_1, sin_minus_x } = circular(omega * length);
+        let omega2 = omega * omega;
+        Self {
+            length,
+            sin,
+            cos: 1.0 + cos_minus_1,
+            decay: libm::exp(-rate * length),
+            speed: sin / omega,
+            sag: -cos_minus_1 / omega,
+            fall: -cos_minus_1 / omega2,
+            drop: -sin_minus_x / omega2,
+        }
+    }
+
+    /// The same step backwards.
+    #[inline]
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let Self { length, sin, decay, speed, drop, .. } = *self;
+        let growth = if decay > f64::MIN_POSITIVE { 1.0 / decay } else { f64::MAX };
+        Self { length: -length, sin: -sin, decay: growth, speed: -speed, drop: -drop, ..*self }
+    }
+}
+
+/// A step of fixed length in contact.
+#[derive(Clone, Copy, Debug)]
+pub struct Swing {
+    /// How long it is.
+    pub length: f64,
+    /// Sine of omega times that.
+    pub sin: f64,
+    /// Cosine of omega times that.
+    pub cos: f64,
+    /// C of the free oscillation ([`crate::flow::damped`]).
+    pub c: f64,
+    /// S
+    pub s: f64,
+    /// S'
+    pub s_rate: f64,
+}
+
+impl Swing {
+    fn new(length: f64, omega: f64, damping: &Damping<f64>) -> Self {
+        let (sin, cos) = libm::sincos(omega * length);
+        let free = damping.at(length);
+        let (c, s_rate) = (1.0 + free.c_minus_1, 1.0 + free.s_rate_minus_1);
+        Self { length, sin, cos, c, s: free.s, s_rate }
+    }
+}
+
+/// Of a certificate's pieces, against the faster of forcing and free oscillation, radians: the
+/// interpolant's error is 2^8/2822400 = 1e-4 of the amplitude.
+const PIECE: f64 = 2.0;
+
+/// Of a guess: the cubic between two places errs by 0.5^4/384 = 2e-4 of the amplitude.
+const LOOK: f64 = 0.5;
+
+/// Up to this many decay times an exponential that pulls the guard inwards stays in one piece: its
+/// eighth derivative helps, and at twelve its third derivative begins to lift the coefficients.
+pub const PULLING: f64 = 10.0;
+
+/// And one that pushes it outwards: its eighth derivative then costs 0.02 of its own size.
+pub const PUSHING: f64 = 4.0;
+
+/// The steps of a model.
+#[derive(Clone, Copy, Debug)]
+pub struct Strides {
+    /// From piece to piece of a certificate.
+    pub piece: Stride,
+    /// Over the life of an exponential that pulls inwards.
+    pub pulling: Stride,
+    /// Over the life of an exponential that pushes outwards.
+    pub pushing: Stride,
+    /// From place to place of a guess.
+    pub look: Stride,
+    /// From piece to piece of a contact's certificate.
+    pub contact_piece: Swing,
+    /// From place to place of a contact's guess while a fast part lives, above critical damping.
+    pub quick_look: Swing,
+    /// From place to place of a contact's guess.
+    pub contact_look: Swing,
+    /// The same above critical damping when the fast part has died out.
+    pub slow_look: Swing,
+}
+
+impl Strides {
+    /// Of these parameters.
+    #[must_use]
+    pub fn new(parameters: &Parameters) -> Self {
+        let Parameters { omega, xi, .. } = *parameters;
+        let rate = 0.5 / xi;
+        let damping = &Damping::new(xi);
+        let stride = |length: f64| Stride::new(length, omega, rate);
+        let fastest = omega.max(1.0);
+        let (slowest, quickest) = match damping {
+            Damping::Over { slow, fast, .. } => (slow.max(omega).min(1.0), *fast),
+            _ => (1.0, 1.0),
+        };
+        Self {
+            piece: stride(PIECE / omega),
+            pulling: stride(0.9 * PULLING / rate),
+            pushing: stride(0.9 * PUSHING / rate),
+            look: stride(LOOK / omega),
+            contact_piece: Swing::new(PIECE / fastest, omega, damping),
+            quick_look: Swing::new(LOOK / quickest, omega, damping),
+            contact_look: Swing::new(LOOK, omega, damping),
+            slow_look: Swing::new(LOOK / slowest, omega, damping),
+        }
+    }
+}
