@@ -95,7 +95,7 @@ impl Trend {
         }
     }
 
-    /// Where the search should look after elapsed time `from`; `inside` as for [`Self::guess`].
+    /// Where the search should look after elapsed time `from`; `inside` as for the guess.
     pub fn outlook(&self, strides: &Strides, from: f64, inside: bool, limit: f64) -> Outlook {
         if let Some(time) = self.guess(&strides.look, from, inside, limit) {
             return Outlook::Root(time);
