@@ -30,13 +30,13 @@ pub fn reduce(angle: TwoWord) -> (i128, TwoWord) {
 }
 
 /// Brings a rest that may have left `[0, 2 pi)` by a few turns back into it.
+#[inline]
 #[must_use]
 pub(crate) fn wrap(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
     if rest.high > 0.0 && rest.high < TWO_PI.high {
         return (turns, rest);
     }
-    let whole = (rest.high / TWO_PI.high).floor();
-    let mut turns = turns + whole as i128;
+    let (mut turns, whole) = add_floor(turns, rest.high / TWO_PI.high);
     let mut rest = rest.minus(TWO_PI.times(whole));
     if rest.high < 0.0 {
         turns -= 1;
@@ -50,6 +50,20 @@ pub(crate) fn wrap(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
         }
     }
     (turns, rest)
+}
+
+/// The largest whole number not above `x`, added to `turns` and by itself; without a call of the
+/// library for any that a run meets.
+#[inline]
+fn add_floor(turns: i128, x: f64) -> (i128, f64) {
+    const SMALL: f64 = (1_u64 << 62) as f64;
+    if x.abs() < SMALL {
+        let towards_zero = x as i64;
+        let whole = towards_zero - i64::from(towards_zero as f64 > x);
+        (turns + i128::from(whole), whole as f64)
+    } else {
+        (turns + x.floor() as i128, x.floor())
+    }
 }
 
 /// `word / (2 pi)` as a whole number and a fraction in units of 2^-128, rounded down.

@@ -5,6 +5,7 @@
 //! one word would lose half a unit at every switch, always in the same direction.
 
 use crate::angle;
+use crate::circle;
 use crate::two_word::{TWO_PI, TwoWord};
 
 /// An instant: `omega tau = cycle 2 pi + angle` with `0 <= angle < 2 pi` (phi is not included).
@@ -83,7 +84,7 @@ impl Instant {
     #[must_use]
     pub(crate) fn forcing(&self, phi: TwoWord) -> (f64, f64) {
         let angle = self.angle.plus(phi);
-        let (sine, cosine) = libm::sincos(angle.high);
+        let (sine, cosine) = circle::sin_cos(angle.high);
         (sine + angle.low * cosine, cosine - angle.low * sine)
     }
 }

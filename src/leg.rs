@@ -1,10 +1,12 @@
 //! One phase of a run: where it begins, how long it lasts, and anything inside it on demand.
 
+use crate::constants::Constants;
 use crate::crossing::search::first_crossing;
 use crate::crossing::stepping;
 use crate::crossing::{Counters, Crossing, Root};
 use crate::entry::{Entry, Onset};
 use crate::flow::contact::Contact;
+use crate::flow::forcing::EntryAngle;
 use crate::flow::progression::Progression;
 use crate::flow::{Flow, Point};
 use crate::instant::Instant;
@@ -51,8 +53,8 @@ pub struct Leg {
     entry: Entry,
     exit: Exit,
     duration: TwoWord,
-    pub(crate) motion: Motion,
-    omega: f64,
+    angle: EntryAngle<f64>,
+    constants: Constants<f64>,
 }
 
 impl Leg {
@@ -64,7 +66,8 @@ impl Leg {
         counters: &mut Counters,
     ) -> Self {
         let omega = model.parameters().omega;
-        let motion = model.motion(&entry);
+        let angle = model.forcing_angle(&entry.instant);
+        let motion = Motion::new(model.constants(), &entry, angle);
         let strides = model.strides();
         let limit = horizon.map_or(f64::INFINITY, |h| h.since(&entry.instant, omega).value());
         let crossing = match &motion {
@@ -85,7 +88,16 @@ impl Leg {
             Crossing::Horizon => (Exit::Horizon, TwoWord::new(limit)),
             Crossing::Never => (Exit::Endless(endless(entry.phase())), TwoWord::new(f64::INFINITY)),
         };
-        Self { entry, exit, duration, motion, omega }
+        Self { entry, exit, duration, angle, constants: *model.constants() }
+    }
+
+    pub(crate) fn constants(&self) -> &Constants<f64> {
+        &self.constants
+    }
+
+    /// The closed form.
+    pub(crate) fn motion(&self) -> Motion<'_> {
+        Motion::new(&self.constants, &self.entry, self.angle)
     }
 
     /// Where the phase begins.
@@ -140,7 +152,7 @@ impl Leg {
         let [force, ..] = point.force;
         let [guard, ..] = point.guard.orders;
         let slider = point.slider_velocity;
-        match &self.motion {
+        match self.motion() {
             Motion::NoContact(_) => [point.state.y, force, slider, 0.0],
             Motion::Contact(contact) => [slider, force - (contact.reference + guard), slider, 0.0],
             Motion::Progression(_) => [slider, force - 1.0, slider, guard],
@@ -148,7 +160,7 @@ impl Leg {
     }
 
     pub(crate) fn point(&self, elapsed: f64) -> Point<f64> {
-        match &self.motion {
+        match self.motion() {
             Motion::NoContact(flight) => flight.at(elapsed),
             Motion::Contact(contact) => contact.at(elapsed),
             Motion::Progression(progression) => progression.at(elapsed),
@@ -158,26 +170,26 @@ impl Leg {
     /// The motion at an instant inside the phase.
     #[must_use]
     pub fn at_instant(&self, instant: &Instant) -> Sample {
-        self.at_two_word(instant.since(&self.entry.instant, self.omega))
+        self.at_two_word(instant.since(&self.entry.instant, self.constants.omega))
     }
 
     /// Time from the phase's beginning to an instant.
     #[must_use]
     pub fn elapsed_at(&self, instant: &Instant) -> f64 {
-        instant.since(&self.entry.instant, self.omega).value()
+        instant.since(&self.entry.instant, self.constants.omega).value()
     }
 
     /// The phase taken up again at an instant inside it: a motion that begins there and goes on as
     /// this one does, to within rounding.
     #[must_use]
     pub fn entry_at(&self, instant: &Instant) -> Entry {
-        let elapsed = instant.since(&self.entry.instant, self.omega);
+        let elapsed = instant.since(&self.entry.instant, self.constants.omega);
         if elapsed.value() <= 0.0 {
             return self.entry;
         }
         let (point, state, drift) = self.shifted_to(elapsed);
         let guard = point.guard.orders[0] + elapsed.low * point.guard.orders[1];
-        let (state, onset) = match &self.motion {
+        let (state, onset) = match self.motion() {
             Motion::NoContact(flight) => {
                 let constants = &flight.constants;
                 if state.p < state.q + constants.g {
@@ -189,7 +201,7 @@ impl Leg {
             Motion::Contact(Contact { constants, reference, .. }) => {
                 let f = reference + guard;
                 if f.min(1.0 - f) > FOUR_ULPS {
-                    (state, Onset::Contact { offset: guard, reference: *reference })
+                    (state, Onset::Contact { offset: guard, reference })
                 } else {
                     surface::onset(constants, state, Some(f), point.force)
                 }
@@ -211,15 +223,15 @@ impl Leg {
     #[must_use]
     pub fn judged_duration(&self, horizon: f64, evaluations: u64) -> Option<f64> {
         let mut counters = Counters::default();
-        let crossing = match &self.motion {
+        let crossing = match self.motion() {
             Motion::NoContact(flight) => {
-                stepping::first_crossing(flight, horizon, evaluations, &mut counters)
+                stepping::first_crossing(&flight, horizon, evaluations, &mut counters)
             }
             Motion::Contact(contact) => {
-                stepping::first_crossing(contact, horizon, evaluations, &mut counters)
+                stepping::first_crossing(&contact, horizon, evaluations, &mut counters)
             }
             Motion::Progression(slip) => {
-                stepping::first_crossing(slip, horizon, evaluations, &mut counters)
+                stepping::first_crossing(&slip, horizon, evaluations, &mut counters)
             }
         };
         crossing.map(|crossing| match crossing {
@@ -276,6 +288,8 @@ fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
             (State { p: q + constants.g, y, q }, Onset::Contact { offset: 0.0, reference: 1.0 })
         }
     };
-    let drift = entry.drift.plus(TwoWord::new(point.drift));
+    // Only a progression drifts.
+    let still = point.drift == 0.0;
+    let drift = if still { entry.drift } else { entry.drift.plus(TwoWord::new(point.drift)) };
     Entry { instant: entry.instant, state, drift, onset }
 }

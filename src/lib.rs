@@ -17,6 +17,7 @@
 //! ```
 
 pub mod angle;
+mod circle;
 mod constants;
 pub mod crossing;
 pub mod dynamics;

@@ -22,12 +22,35 @@ pub struct Model {
     phi: TwoWord,
 }
 
-/// The closed form of one phase.
+/// The closed form of one phase, with the constants of its model.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Motion {
-    NoContact(NoContact<f64>),
-    Contact(Contact<f64>),
-    Progression(Progression<f64>),
+pub(crate) enum Motion<'a> {
+    NoContact(NoContact<f64, &'a Constants<f64>>),
+    Contact(Contact<f64, &'a Constants<f64>>),
+    Progression(Progression<f64, &'a Constants<f64>>),
+}
+
+impl<'a> Motion<'a> {
+    /// That begins so, at this forcing angle.
+    #[inline]
+    pub(crate) fn new(
+        constants: &'a Constants<f64>,
+        begun: &Entry,
+        angle: EntryAngle<f64>,
+    ) -> Self {
+        let entry = begun.state;
+        let flight = |surface| Self::NoContact(NoContact { constants, entry, angle, surface });
+        match begun.onset {
+            Onset::Apart => flight(None),
+            Onset::Separation { h_rate } => flight(Some(h_rate)),
+            Onset::Contact { offset, reference } => {
+                Self::Contact(Contact { constants, entry, angle, offset, reference })
+            }
+            Onset::Progression { drift_rate, closing } => {
+                Self::Progression(Progression { constants, entry, angle, drift_rate, closing })
+            }
+        }
+    }
 }
 
 impl Model {
@@ -74,32 +97,5 @@ impl Model {
         let EntryAngle { sin, cos } = self.forcing_angle(instant);
         let Parameters { a, b, omega, .. } = self.parameters;
         [b + a * cos, -(a * omega * sin), -(a * omega * omega * cos)]
-    }
-
-    pub(crate) fn motion(&self, entry: &Entry) -> Motion {
-        let constants = self.constants;
-        let angle = self.forcing_angle(&entry.instant);
-        let state = entry.state;
-        match entry.onset {
-            Onset::Apart => {
-                Motion::NoContact(NoContact { constants, entry: state, angle, surface: None })
-            }
-            Onset::Separation { h_rate } => Motion::NoContact(NoContact {
-                constants,
-                entry: state,
-                angle,
-                surface: Some(h_rate),
-            }),
-            Onset::Contact { offset, reference } => {
-                Motion::Contact(Contact { constants, entry: state, angle, offset, reference })
-            }
-            Onset::Progression { drift_rate, closing } => Motion::Progression(Progression {
-                constants,
-                entry: state,
-                angle,
-                drift_rate,
-                closing,
-            }),
-        }
     }
 }

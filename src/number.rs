@@ -3,6 +3,7 @@
 //! The formulas are written once and evaluated in f64, in double-double for the truth, and in any
 //! other arithmetic that wraps itself in this trait.
 
+use crate::circle;
 use crate::two_word::TwoWord;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -93,7 +94,7 @@ impl Number for f64 {
 
     #[inline]
     fn sin_cos(self) -> (Self, Self) {
-        libm::sincos(self)
+        circle::sin_cos(self)
     }
 
     #[inline]

@@ -29,7 +29,7 @@ impl TwoWord {
 
     /// The exact sum of two words.
     #[must_use]
-    pub fn sum(a: f64, b: f64) -> Self {
+    pub const fn sum(a: f64, b: f64) -> Self {
         let high = a + b;
         let b_seen = high - a;
         let low = (a - (high - b_seen)) + (b - b_seen);
@@ -38,7 +38,7 @@ impl TwoWord {
 
     /// The exact product of two words, unless it over- or underflows.
     #[must_use]
-    pub fn product(a: f64, b: f64) -> Self {
+    pub const fn product(a: f64, b: f64) -> Self {
         let high = a * b;
         let (a_high, a_low) = halves(a);
         let (b_high, b_low) = halves(b);
@@ -48,13 +48,13 @@ impl TwoWord {
 
     /// Rounded to one word.
     #[must_use]
-    pub fn value(self) -> f64 {
+    pub const fn value(self) -> f64 {
         self.high + self.low
     }
 
     /// `self + other`.
     #[must_use]
-    pub fn plus(self, other: Self) -> Self {
+    pub const fn plus(self, other: Self) -> Self {
         let high = Self::sum(self.high, other.high);
         let low = Self::sum(self.low, other.low);
         let carried = quick_sum(high.high, high.low + low.high);
@@ -63,27 +63,27 @@ impl TwoWord {
 
     /// `self - other`.
     #[must_use]
-    pub fn minus(self, other: Self) -> Self {
+    pub const fn minus(self, other: Self) -> Self {
         self.plus(Self { high: -other.high, low: -other.low })
     }
 
     /// `self * factor`.
     #[must_use]
-    pub fn times(self, factor: f64) -> Self {
+    pub const fn times(self, factor: f64) -> Self {
         let high = Self::product(self.high, factor);
         quick_sum(high.high, high.low + self.low * factor)
     }
 
     /// `self * other`.
     #[must_use]
-    pub fn times_two_word(self, other: Self) -> Self {
+    pub const fn times_two_word(self, other: Self) -> Self {
         let high = Self::product(self.high, other.high);
         quick_sum(high.high, high.low + (self.high * other.low + self.low * other.high))
     }
 
     /// `self / divisor`.
     #[must_use]
-    pub fn over(self, divisor: f64) -> Self {
+    pub const fn over(self, divisor: f64) -> Self {
         let first = self.high / divisor;
         let rest = self.minus(Self::product(first, divisor));
         let second = rest.high / divisor;
@@ -94,13 +94,13 @@ impl TwoWord {
 }
 
 /// The exact sum where `|a| >= |b|`.
-fn quick_sum(a: f64, b: f64) -> TwoWord {
+const fn quick_sum(a: f64, b: f64) -> TwoWord {
     let high = a + b;
     TwoWord { high, low: b - (high - a) }
 }
 
 /// Veltkamp's splitting of a word into two of 26 bits.
-fn halves(a: f64) -> (f64, f64) {
+const fn halves(a: f64) -> (f64, f64) {
     const SPLITTER: f64 = 134_217_729.0; // 2^27 + 1
     let scaled = SPLITTER * a;
     let high = scaled - (scaled - a);

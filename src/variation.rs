@@ -12,6 +12,7 @@ use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
 use crate::leg::{Exit, Leg};
 use crate::model::Motion;
+use crate::phase::Phase;
 use crate::remainders::decay;
 
 /// Index of the forcing angle in a [`Matrix`].
@@ -67,10 +68,10 @@ impl Leg {
     /// Derivative of the motion a time `elapsed` into the phase, at fixed time.
     #[must_use]
     pub fn variation(&self, elapsed: f64) -> Matrix {
-        match &self.motion {
-            Motion::NoContact(flight) => flight_variation(flight, elapsed),
-            Motion::Contact(contact) => contact_variation(contact, elapsed),
-            Motion::Progression(slip) => progression_variation(slip, elapsed),
+        match self.motion() {
+            Motion::NoContact(flight) => flight_variation(&flight, elapsed),
+            Motion::Contact(contact) => contact_variation(&contact, elapsed),
+            Motion::Progression(slip) => progression_variation(&slip, elapsed),
         }
     }
 
@@ -97,7 +98,7 @@ impl Leg {
         let (Some(landing), Exit::Switch(next)) = (self.landing(), self.exit()) else {
             return saltation;
         };
-        let Motion::NoContact(flight) = &self.motion else { return saltation };
+        let Motion::NoContact(flight) = self.motion() else { return saltation };
         let two_xi = flight.constants.two_xi;
         let f = two_xi * landing.guard_rate;
         // What one unit of A = dp - dq adds to (p, y, q, v).
@@ -117,17 +118,12 @@ impl Leg {
         let Exit::Switch(_) = self.exit() else { return None };
         let sample = self.point(self.duration());
         let guard_rate = sample.guard.orders[1];
-        let (Constants { omega, .. }, guard, guard_rate) = match &self.motion {
-            Motion::NoContact(flight) => (flight.constants, [0.0, 1.0, 0.0, -1.0, 0.0], guard_rate),
-            Motion::Contact(contact) => {
-                let two_xi = contact.constants.two_xi;
-                (contact.constants, [0.0, 0.0, two_xi, 1.0, 0.0], guard_rate)
-            }
+        let &Constants { omega, two_xi, .. } = self.constants();
+        let (guard, guard_rate) = match self.phase() {
+            Phase::NoContact => ([0.0, 1.0, 0.0, -1.0, 0.0], guard_rate),
+            Phase::Contact => ([0.0, 0.0, two_xi, 1.0, 0.0], guard_rate),
             // The guard is w; f = 1 + 2 xi w.
-            Motion::Progression(slip) => {
-                let two_xi = slip.constants.two_xi;
-                (slip.constants, [0.0, 0.0, two_xi, 1.0, 0.0], two_xi * guard_rate)
-            }
+            Phase::Progression => ([0.0, 0.0, two_xi, 1.0, 0.0], two_xi * guard_rate),
         };
         let [p, y, q, v] = self.field(&sample);
         Some(Landing { field: [omega, p, y, q, v], guard, guard_rate })
@@ -154,7 +150,7 @@ fn by_angle(
     (impulse, displacement, harmonic)
 }
 
-fn flight_variation(flight: &NoContact<f64>, d: f64) -> Matrix {
+fn flight_variation(flight: &NoContact<f64, &Constants<f64>>, d: f64) -> Matrix {
     let (impulse, displacement, _) = by_angle(&flight.constants, &flight.angle, d);
     let mut variation = IDENTITY;
     variation[P][ANGLE] = displacement;
@@ -164,7 +160,7 @@ fn flight_variation(flight: &NoContact<f64>, d: f64) -> Matrix {
     variation
 }
 
-fn progression_variation(slip: &Progression<f64>, d: f64) -> Matrix {
+fn progression_variation(slip: &Progression<f64, &Constants<f64>>, d: f64) -> Matrix {
     let (impulse, displacement, _) = by_angle(&slip.constants, &slip.angle, d);
     let decay = decay(slip.constants.rate * d);
     let mut variation = IDENTITY;
@@ -177,7 +173,7 @@ fn progression_variation(slip: &Progression<f64>, d: f64) -> Matrix {
     variation
 }
 
-fn contact_variation(contact: &Contact<f64>, d: f64) -> Matrix {
+fn contact_variation(contact: &Contact<f64, &Constants<f64>>, d: f64) -> Matrix {
     let Constants { a, damping, forced, .. } = contact.constants;
     let (_, _, harmonic) = by_angle(&contact.constants, &contact.angle, d);
     let free = damping.at(d);

@@ -80,33 +80,27 @@ impl Piece {
     /// Checks all Bernstein coefficients against the corridor, with `slack` for rounding.
     #[inline]
     pub fn verdict(&self, corridor: &Corridor, ends: Ends, slack: f64) -> Verdict {
-        let coefficients = self.coefficients();
-        let mut excesses = if corridor.low == f64::NEG_INFINITY {
-            coefficients.map(|coefficient| coefficient - corridor.high)
-        } else {
-            coefficients.map(|coefficient| corridor.excess(coefficient))
-        };
+        let (pairs, middle) = self.coefficients();
+        let mut excesses = pairs.map(|pair| pair.map(|coefficient| corridor.excess(coefficient)));
         let square = self.length * self.length;
         let scale = square * square * (square * square) * (1.0 / MIDDLE);
-        let middle = coefficients[4];
         let up = middle + larger(self.eighth.1, 0.0) * scale - corridor.high;
         let down = corridor.low - middle - smaller(self.eighth.0, 0.0) * scale;
-        excesses[4] = larger(up, down);
         if ends.left {
-            excesses[0] = f64::NEG_INFINITY;
+            excesses[0][0] = f64::NEG_INFINITY;
         }
         if ends.left_double {
-            excesses[1] = f64::NEG_INFINITY;
+            excesses[1][0] = f64::NEG_INFINITY;
         }
         if ends.right {
-            excesses[8] = f64::NEG_INFINITY;
+            excesses[0][1] = f64::NEG_INFINITY;
             // Next to a root the sign alone is asked for: the slope there is known to be outward.
-            if excesses[7] < 0.0 {
-                excesses[7] = f64::NEG_INFINITY;
+            if excesses[1][1] < 0.0 {
+                excesses[1][1] = f64::NEG_INFINITY;
             }
         }
-        let worst = excesses.into_iter().fold(f64::NEG_INFINITY, larger);
-        let size = coefficients.into_iter().map(f64::abs).fold(0.0, larger);
+        let worst = largest(excesses, larger(up, down));
+        let size = largest(pairs.map(|pair| pair.map(f64::abs)), middle.abs());
         let slack = slack + f64::EPSILON * size;
         // The middle coefficient holds all orders of both ends: any NaN is one there.
         if worst < -slack && !middle.is_nan() {
@@ -118,21 +112,37 @@ impl Piece {
         }
     }
 
-    /// Bernstein coefficients of degree eight of the Hermite interpolant.
+    /// Bernstein coefficients of degree eight of the Hermite interpolant: in pairs from both ends
+    /// inwards, which are computed side by side, and the middle one.
     #[inline]
-    fn coefficients(&self) -> [f64; 9] {
-        let [a, b, c, d] = from_end(&self.left, self.length);
-        let [h, g, f, e] = from_end(&self.right, -self.length);
+    fn coefficients(&self) -> ([[f64; 2]; 4], f64) {
+        let [a, b, c, d] = self.from_ends();
+        let mixed = |from: [f64; 2], to: [f64; 2], share: f64| {
+            let keep = 1.0 - share;
+            [keep * from[0] + share * to[0], keep * from[1] + share * to[1]]
+        };
+        let pairs = [a, mixed(a, b, 0.875), mixed(b, c, 0.75), mixed(c, d, 0.625)];
+        (pairs, 0.5 * (d[0] + d[1]))
+    }
+
+    /// The four Bernstein coefficients of degree seven next to the left end, and to the right one.
+    #[inline]
+    fn from_ends(&self) -> [[f64; 2]; 4] {
+        let [value, slope, bend, third] = [0, 1, 2, 3].map(|k| [self.left[k], self.right[k]]);
+        let seventh = self.length * (1.0 / 7.0);
+        let steps = [seventh, -seventh];
+        let square = seventh * self.length * (1.0 / 6.0);
+        let fifth = self.length * (1.0 / 5.0);
+        let cubes = [square * fifth, -(square * fifth)];
+        let sides = |of: fn([f64; 4]) -> f64| {
+            [0, 1]
+                .map(|k| of([value[k], slope[k] * steps[k], bend[k] * square, third[k] * cubes[k]]))
+        };
         [
-            a,
-            (a + 7.0 * b) * 0.125,
-            (b + 3.0 * c) * 0.25,
-            (3.0 * c + 5.0 * d) * 0.125,
-            (d + e) * 0.5,
-            (5.0 * e + 3.0 * f) * 0.125,
-            (3.0 * f + g) * 0.25,
-            (7.0 * g + h) * 0.125,
-            h,
+            value,
+            sides(|[value, first, ..]| value + first),
+            sides(|[value, first, second, _]| value + (2.0 * first + second)),
+            sides(|[value, first, second, third]| value + (3.0 * (first + second) + third)),
         ]
     }
 
@@ -162,7 +172,8 @@ impl Piece {
 
     fn sampled_crest(&self, corridor: &Corridor) -> f64 {
         const PLACES: i32 = 32;
-        let coefficients = self.coefficients();
+        let ([a, b, c, d], middle) = self.coefficients();
+        let coefficients = [a[0], b[0], c[0], d[0], middle, d[1], c[1], b[1], a[1]];
         let excess = |s: &f64| corridor.excess(de_casteljau(coefficients, *s));
         let places = (3..=PLACES - 3).map(|k| f64::from(k) / f64::from(PLACES));
         let crest = places.max_by(|s, t| excess(s).total_cmp(&excess(t)));
@@ -170,15 +181,13 @@ impl Piece {
     }
 }
 
-/// The four Bernstein coefficients of degree seven next to an end.
+/// The largest of four pairs and one more.
 #[inline]
-fn from_end(orders: &[f64; 4], length: f64) -> [f64; 4] {
-    let seventh = length * (1.0 / 7.0);
-    let first = orders[1] * seventh;
-    let second = orders[2] * (seventh * length * (1.0 / 6.0));
-    let third = orders[3] * (seventh * length * length * (1.0 / 30.0));
-    let value = orders[0];
-    [value, value + first, value + (2.0 * first + second), value + (3.0 * (first + second) + third)]
+fn largest(pairs: [[f64; 2]; 4], middle: f64) -> f64 {
+    let side_by_side = |a: [f64; 2], b: [f64; 2]| [larger(a[0], b[0]), larger(a[1], b[1])];
+    let [a, b, c, d] = pairs;
+    let [left, right] = side_by_side(side_by_side(a, b), side_by_side(c, d));
+    larger(larger(left, right), middle)
 }
 
 /// The larger of two numbers, in one instruction; of a NaN nothing is promised.

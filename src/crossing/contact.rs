@@ -12,6 +12,7 @@ use crate::flow::forcing::EntryAngle;
 use crate::flow::stride::Strides;
 use crate::flow::{Jet, Point};
 use crate::state::State;
+use std::borrow::Borrow;
 
 /// Up to this angle of the faster of forcing and free oscillation one piece must do.
 const SHORT: f64 = 2.0;
@@ -25,9 +26,9 @@ pub struct Split {
     pub(super) amplitude: f64,
 }
 
-impl Contact<f64> {
+impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     pub(super) fn split(&self, at: &Point<f64>) -> Split {
-        let constants = &self.constants;
+        let constants = self.constants.borrow();
         let forced = constants.steady.orders([at.force[0] - constants.b, at.force[1], at.force[2]]);
         let [f, f1, f2, f3] = at.guard.orders;
         let level = f + (self.reference - constants.b);
@@ -39,13 +40,13 @@ impl Contact<f64> {
     ///
     /// x'' + 2 xi x' + x = 0 holds for every derivative of x as well, and x^2 + x'^2 never grows.
     fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
-        let two_xi = self.constants.two_xi;
+        let two_xi = self.constants.borrow().two_xi;
         let (mut x, mut rate) = (split.free[0], split.free[1]);
         for _ in 0..8 {
             (x, rate) = (rate, -(two_xi * rate + x));
         }
         let by_energy = (x * x + rate * rate).sqrt();
-        if let Damping::Over { fast, slow, .. } = self.constants.damping {
+        if let Damping::Over { fast, slow, .. } = self.constants.borrow().damping {
             // Eight derivatives of a stiff oscillation are rounding once its fast part has died out.
             let quick = self.fast_amplitude(split) * quick_decay(fast * at.elapsed);
             let lasting = split.free[0].abs() + quick;
@@ -58,7 +59,7 @@ impl Contact<f64> {
     /// |x| <= |f| + |b| + A and |x'| <= 2 xi (a + |b| + |f|) + |y| + omega A with A the forced
     /// amplitude, 2 xi/spread < 2 and slow < 1 < spread (from xi^2 - 1 > 1/2).
     fn fast_amplitude(&self, split: &Split) -> f64 {
-        let constants = &self.constants;
+        let constants = self.constants.borrow();
         let force = constants.a + constants.b.abs() + self.offset.abs() + self.reference;
         4.0 * force + self.entry.y.abs() + (1.0 + constants.omega) * split.amplitude
     }
@@ -67,37 +68,38 @@ impl Contact<f64> {
     pub(crate) fn second_derivative_bound(&self, at: &Point<f64>) -> f64 {
         let split = self.split(at);
         let [.., x2, x3] = split.free;
-        x2.hypot(x3) + split.amplitude * self.constants.omega * self.constants.omega
+        x2.hypot(x3)
+            + split.amplitude * self.constants.borrow().omega * self.constants.borrow().omega
     }
 
     /// The parts of the trial force, from their split.
     pub(super) fn parts(&self, at: &Point<f64>, split: &Split) -> Parts {
         let [free, free_rate, ..] = split.free;
         let [f, f1, ..] = at.guard.orders;
-        let level = self.constants.b - self.reference;
+        let level = self.constants.borrow().b - self.reference;
         Parts {
             elapsed: at.elapsed,
             free,
             free_rate,
             forced: (f - level) - free,
-            quarter: (f1 - free_rate) / self.constants.omega,
+            quarter: (f1 - free_rate) / self.constants.borrow().omega,
         }
     }
 
     /// What the parts have in common.
     pub(super) fn shape(&self, eighth: f64, slack: f64) -> Shape {
-        let Constants { b, two_xi, omega, .. } = self.constants;
+        let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
         Shape { level: b - self.reference, two_xi, omega, corridor: self.corridor(), eighth, slack }
     }
 }
 
-impl Guarded for Contact<f64> {
+impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
     fn corridor(&self) -> Corridor {
         Corridor { low: -self.reference, high: 1.0 - self.reference }
     }
 
     fn entry(&self) -> Point<f64> {
-        let Constants { a, b, two_xi, omega, omega2, .. } = self.constants;
+        let Constants { a, b, two_xi, omega, omega2, .. } = *self.constants.borrow();
         let EntryAngle { sin, cos } = self.angle;
         let [u, v, w] = [a * cos, -(a * omega * sin), -(a * omega2 * cos)];
         let y = self.entry.y;
@@ -136,7 +138,7 @@ impl Guarded for Contact<f64> {
         let length = right.elapsed - left.elapsed;
         let split = self.split(left);
         let free = self.free_eighth(left, &split);
-        let eighth = free + self.constants.forced_eighth;
+        let eighth = free + self.constants.borrow().forced_eighth;
         let whole = Piece {
             left: left.guard.orders,
             right: right.guard.orders,
@@ -144,7 +146,7 @@ impl Guarded for Contact<f64> {
             eighth: (-eighth, eighth),
         };
         let verdict = whole.verdict(&corridor, ends, slack);
-        if verdict != Verdict::Open || length * self.constants.omega.max(1.0) < SHORT {
+        if verdict != Verdict::Open || length * self.constants.borrow().omega.max(1.0) < SHORT {
             return verdict;
         }
         self.certify_long(strides, (left, &split, free), right, ends)
@@ -164,7 +166,7 @@ impl Guarded for Contact<f64> {
     }
 
     fn series(&self, at: &Point<f64>) -> Series {
-        let Constants { b, two_xi, omega, .. } = self.constants;
+        let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
         // f'' + 2 xi f' + f = F + 2 xi F'
         let (u, v) = (at.force[0] - b, at.force[1]);
         let omega2 = omega * omega;
@@ -184,8 +186,8 @@ impl Guarded for Contact<f64> {
         series: &Series,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
-        let Constants { g, two_xi, .. } = self.constants;
-        let Push { force, impulse } = Push::new(&self.constants, &at.force, step);
+        let Constants { g, two_xi, .. } = *self.constants.borrow();
+        let Push { force, impulse } = Push::new(self.constants.borrow(), &at.force, step);
         let y = at.state.y + (impulse - (self.reference * step + series.integral(step)));
         let (bend, third) = series.bend_and_third(step);
         let orders = [value, slope, bend, third];
@@ -201,11 +203,11 @@ impl Guarded for Contact<f64> {
     }
 
     fn fastest_rate(&self) -> f64 {
-        1.0_f64.max(self.constants.omega).max(self.constants.two_xi)
+        1.0_f64.max(self.constants.borrow().omega).max(self.constants.borrow().two_xi)
     }
 }
 
-impl Contact<f64> {
+impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// In pieces; or, where the forcing is fast, by the free part alone, in a corridor narrowed by the
     /// forced amplitude.
     fn certify_long(
@@ -219,14 +221,14 @@ impl Contact<f64> {
         const ROUNDINGS: f64 = 16.0;
         /// Under stronger damping the free part's derivatives would multiply its rounding.
         const MILD: f64 = 4.0;
-        let Constants { b, two_xi, omega, .. } = self.constants;
+        let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
         let slack = slack(left, right);
         let [x, x1, x2, x3] = split.free;
         let length = right.elapsed - left.elapsed;
         if two_xi < MILD {
             let size = split.amplitude + x.abs() + x1.abs();
             let room = slack + ROUNDINGS * f64::EPSILON * (size + b.abs());
-            let shape = self.shape(free + self.constants.forced_eighth, room);
+            let shape = self.shape(free + self.constants.borrow().forced_eighth, room);
             let right = (right.elapsed, &right.guard.orders);
             let swing = &strides.contact_piece;
             let parts = self.parts(left, split);

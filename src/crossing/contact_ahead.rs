@@ -8,8 +8,9 @@ use crate::flow::Point;
 use crate::flow::contact::Contact;
 use crate::flow::damped::Damping;
 use crate::flow::stride::Strides;
+use std::borrow::Borrow;
 
-impl Contact<f64> {
+impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// A guess, or a proof, about what comes after `left`.
     pub(super) fn ahead(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
         if let Some(time) = self.soon(left) {
@@ -32,7 +33,7 @@ impl Contact<f64> {
     /// Whether f can never again leave [0, 1] by more than rounding: amplitude and energy norm of the
     /// free part fit inside. At rest on a threshold, with no force, they fit exactly.
     fn rests(&self, split: &Split) -> bool {
-        let b = self.constants.b;
+        let b = self.constants.borrow().b;
         let reach = split.amplitude + split.free[0].hypot(split.free[1]);
         let room = 4.0 * f64::EPSILON * (b.abs() + reach);
         b + reach <= 1.0 + room && b - reach >= -room
@@ -47,7 +48,7 @@ impl Contact<f64> {
     /// within its own energy norm: that carries where the forcing is slow.
     fn calm(&self, left: &Point<f64>, split: &Split) -> f64 {
         const ROOM: f64 = 1e-12;
-        let Constants { a, b, two_xi, omega, .. } = self.constants;
+        let Constants { a, b, two_xi, omega, .. } = *self.constants.borrow();
         let f = left.guard.orders[0] + self.reference;
         let push = a * 1.0_f64.hypot(two_xi * omega);
         let weak = (b.min(1.0 - b) - (f - b).hypot(left.guard.orders[1]) - ROOM) / push;
@@ -93,7 +94,7 @@ impl Contact<f64> {
         let shape = self.shape(0.0, 0.0);
         let mut parts = self.parts(left, split);
         let mut look = &strides.contact_look;
-        if let Damping::Over { fast, .. } = self.constants.damping {
+        if let Damping::Over { fast, .. } = self.constants.borrow().damping {
             if fast * left.elapsed > DEAD {
                 look = &strides.slow_look;
             } else {

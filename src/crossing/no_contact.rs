@@ -11,17 +11,18 @@ use crate::flow::no_contact::NoContact;
 use crate::flow::stride::{PULLING, Strides};
 use crate::flow::{Jet, Point};
 use crate::state::State;
+use std::borrow::Borrow;
 
 /// Up to this forcing angle one piece may do.
 const SHORT: f64 = 4.0;
 
-impl NoContact<f64> {
+impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
     fn separates(&self) -> bool {
         self.surface == Some(0.0)
     }
 
     fn trend(&self) -> Trend {
-        let constants = &self.constants;
+        let constants = self.constants.borrow();
         Trend {
             offset: self.entry.p - constants.g + constants.a_over_omega2 * self.angle.cos,
             slope: self.entry.y - constants.a_over_omega * self.angle.sin,
@@ -38,7 +39,7 @@ impl NoContact<f64> {
     /// Just after separation h = h2 d^2/2 + h3 d^3/6 + h4 d^4/24.
     fn short_hop(&self, entry: &Point<f64>) -> Option<f64> {
         let [.., h2, h3] = entry.guard.orders;
-        let spring = self.entry.q * self.constants.rate.powi(4);
+        let spring = self.entry.q * self.constants.borrow().rate.powi(4);
         let h4 = entry.force[2] - spring;
         let discriminant = 16.0 * h3 * h3 - 48.0 * h4 * h2;
         let hop = -24.0 * h2 / (4.0 * h3 + discriminant.sqrt());
@@ -46,13 +47,13 @@ impl NoContact<f64> {
     }
 }
 
-impl Guarded for NoContact<f64> {
+impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
     fn corridor(&self) -> Corridor {
         Corridor { low: f64::NEG_INFINITY, high: 0.0 }
     }
 
     fn entry(&self) -> Point<f64> {
-        let Constants { a, b, g, omega, omega2, rate, .. } = self.constants;
+        let Constants { a, b, g, omega, omega2, rate, .. } = *self.constants.borrow();
         let EntryAngle { sin, cos } = self.angle;
         let [u, v, w] = [a * cos, -(a * omega * sin), -(a * omega2 * cos)];
         let State { p, y, q } = self.entry;
@@ -100,7 +101,7 @@ impl Guarded for NoContact<f64> {
     ) -> Verdict {
         let slack = slack(left, right);
         let length = right.elapsed - left.elapsed;
-        let Constants { omega, rate, rate8, a, omega6, .. } = self.constants;
+        let Constants { omega, rate, rate8, a, omega6, .. } = *self.constants.borrow();
         if length * rate <= PULLING && length * omega <= SHORT {
             let lift = (-left.state.q).max(0.0) * rate8;
             let piece = Piece {
@@ -132,7 +133,7 @@ impl Guarded for NoContact<f64> {
     }
 
     fn series(&self, at: &Point<f64>) -> Series {
-        let Constants { rate, omega, b, .. } = self.constants;
+        let Constants { rate, omega, b, .. } = *self.constants.borrow();
         let mut spring = at.state.q * (rate * rate * rate);
         let (mut force, mut next) = (at.force[0] - b, at.force[1]);
         Series::new(&at.guard.orders, || {
@@ -149,8 +150,8 @@ impl Guarded for NoContact<f64> {
         _: &Series,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
-        let Constants { g, rate, .. } = self.constants;
-        let Push { force, impulse } = Push::new(&self.constants, &at.force, step);
+        let Constants { g, rate, .. } = *self.constants.borrow();
+        let Push { force, impulse } = Push::new(self.constants.borrow(), &at.force, step);
         let y = at.state.y + impulse;
         let q = at.state.q + at.state.q * short_decay(rate * step);
         let spring = q * rate;
@@ -166,19 +167,20 @@ impl Guarded for NoContact<f64> {
     }
 
     fn fastest_rate(&self) -> f64 {
-        1.0_f64.max(self.constants.omega).max(self.constants.rate)
+        1.0_f64.max(self.constants.borrow().omega).max(self.constants.borrow().rate)
     }
 }
 
-impl NoContact<f64> {
+impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
     fn shape(&self) -> Shape {
-        let Constants { a, b, omega, omega6, per_omega2, rate, rate8, .. } = self.constants;
+        let Constants { a, b, omega, omega6, per_omega2, rate, rate8, .. } =
+            *self.constants.borrow();
         Shape { curvature: b, grain: 0.0, strength: a, omega, omega6, per_omega2, rate, rate8 }
     }
 
     /// h = (p - g) - q, where p'' = F.
     fn parts(&self, at: &Point<f64>) -> Parts {
-        let Constants { b, omega, .. } = self.constants;
+        let Constants { b, omega, .. } = *self.constants.borrow();
         Parts {
             elapsed: at.elapsed,
             value: at.guard.orders[0] + at.state.q,

@@ -11,14 +11,15 @@ use crate::flow::progression::Progression;
 use crate::flow::stride::{PUSHING, Strides};
 use crate::flow::{Jet, Point};
 use crate::state::State;
+use std::borrow::Borrow;
 
 /// Up to this forcing angle one piece may do.
 const SHORT: f64 = 4.0;
 
-impl Progression<f64> {
+impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
     /// The trend of -w, which rises to zero.
     fn trend(&self) -> Trend {
-        let constants = &self.constants;
+        let constants = self.constants.borrow();
         Trend {
             offset: constants.a_over_omega * self.angle.sin - self.entry.y,
             slope: 1.0 - constants.b,
@@ -42,13 +43,13 @@ impl Progression<f64> {
     }
 }
 
-impl Guarded for Progression<f64> {
+impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
     fn corridor(&self) -> Corridor {
         Corridor { low: 0.0, high: f64::INFINITY }
     }
 
     fn entry(&self) -> Point<f64> {
-        let Constants { a, b, omega, omega2, rate, .. } = self.constants;
+        let Constants { a, b, omega, omega2, rate, .. } = *self.constants.borrow();
         let EntryAngle { sin, cos } = self.angle;
         let [u, v, w] = [a * cos, -(a * omega * sin), -(a * omega2 * cos)];
         let lag_rate = self.closing * rate;
@@ -90,7 +91,7 @@ impl Guarded for Progression<f64> {
     ) -> Verdict {
         let slack = slack(left, right);
         let length = right.elapsed - left.elapsed;
-        let Constants { omega, rate, rate8, a, omega6, .. } = self.constants;
+        let Constants { omega, rate, rate8, a, omega6, .. } = *self.constants.borrow();
         if length * rate <= PUSHING && length * omega <= SHORT {
             let drop = left.slider_velocity.max(0.0) * rate8;
             let piece = Piece {
@@ -125,7 +126,7 @@ impl Guarded for Progression<f64> {
     }
 
     fn series(&self, at: &Point<f64>) -> Series {
-        let Constants { rate, omega, .. } = self.constants;
+        let Constants { rate, omega, .. } = *self.constants.borrow();
         let mut lag = at.slider_velocity * (rate * rate * rate);
         let [_, mut force, mut next] = at.force;
         Series::new(&at.guard.orders, || {
@@ -142,10 +143,10 @@ impl Guarded for Progression<f64> {
         series: &Series,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
-        let Constants { g, rate, two_xi, .. } = self.constants;
+        let Constants { g, rate, two_xi, .. } = *self.constants.borrow();
         let lag = at.slider_velocity + at.slider_velocity * short_decay(rate * step);
         let q = 1.0 - two_xi * lag;
-        let force = Push::new(&self.constants, &at.force, step).force;
+        let force = Push::new(self.constants.borrow(), &at.force, step).force;
         let turn = lag * rate * rate;
         let orders = [value, slope, force[1] - turn, force[2] + turn * rate];
         Point {
@@ -159,13 +160,14 @@ impl Guarded for Progression<f64> {
     }
 
     fn fastest_rate(&self) -> f64 {
-        1.0_f64.max(self.constants.omega).max(self.constants.rate)
+        1.0_f64.max(self.constants.borrow().omega).max(self.constants.borrow().rate)
     }
 }
 
-impl Progression<f64> {
+impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
     fn shape(&self) -> Shape {
-        let Constants { a, b, omega, omega6, per_omega2, rate, rate8, .. } = self.constants;
+        let Constants { a, b, omega, omega6, per_omega2, rate, rate8, .. } =
+            *self.constants.borrow();
         // The slope is 1 - F.
         let (grain, strength) = (1.0 + b.abs(), a * omega);
         Shape { curvature: 0.0, grain, strength, omega, omega6, per_omega2, rate, rate8 }
@@ -173,7 +175,7 @@ impl Progression<f64> {
 
     /// -w = -y + q', where y' = F - 1.
     fn parts(&self, at: &Point<f64>) -> Parts {
-        let Constants { b, omega, .. } = self.constants;
+        let Constants { b, omega, .. } = *self.constants.borrow();
         Parts {
             elapsed: at.elapsed,
             value: -at.state.y,

@@ -28,20 +28,56 @@ impl Target {
 }
 
 /// The first crossing after the start of the phase and not after `horizon` (elapsed, may be infinite).
+///
+/// Mostly the first guess leads to the root, and one certificate says that it is the first.
+#[inline]
 pub fn first_crossing<G: Guarded>(
     phase: &G,
     strides: &Strides,
     horizon: f64,
     counters: &mut Counters,
 ) -> Crossing {
-    let mut left = phase.entry();
-    let mut ends = phase.imposed();
-    let mut stride = STRIDE / phase.fastest_rate();
     if horizon <= 0.0 {
         return Crossing::Horizon;
     }
+    let left = phase.entry();
+    let outlook = phase.outlook(strides, &left, horizon);
+    let mut tried = None;
+    if let Outlook::Root(time) = outlook
+        && time > 0.0
+        && time < horizon
+    {
+        match follow(phase, 0.0, time, horizon, counters) {
+            Ok(root) => {
+                let ends = Ends { right: true, ..phase.imposed() };
+                if root.elapsed().high <= horizon
+                    && phase.certify(strides, &left, &root.point, ends) == Verdict::Inside
+                {
+                    return Crossing::At(root);
+                }
+                tried = Some(Ok(root));
+            }
+            Err(point) => tried = Some(Err(point)),
+        }
+    }
+    search((phase, strides), left, (outlook, tried), horizon, counters)
+}
+
+/// A guess that has been followed: to a root, or in vain.
+type Followed = Result<Root, Point<f64>>;
+
+/// The walk in pieces, from an outlook whose guess may have been followed already.
+#[cold]
+fn search<G: Guarded>(
+    (phase, strides): (&G, &Strides),
+    mut left: Point<f64>,
+    (mut outlook, mut tried): (Outlook, Option<Followed>),
+    horizon: f64,
+    counters: &mut Counters,
+) -> Crossing {
+    let mut ends = phase.imposed();
+    let mut stride = STRIDE / phase.fastest_rate();
     loop {
-        let outlook = phase.outlook(strides, &left, horizon);
         let target = match onwards(outlook, left.elapsed, &mut stride) {
             Outlook::ClearFrom(time) if time <= left.elapsed => return Crossing::Never,
             Outlook::ClearUntil(time) => {
@@ -53,12 +89,16 @@ pub fn first_crossing<G: Guarded>(
                 if !target.is_root() {
                     left = point;
                     ends = Ends::FREE;
+                    outlook = phase.outlook(strides, &left, horizon);
                     continue;
                 }
                 target
             }
             Outlook::Root(time) if time < horizon => {
-                match follow(phase, left.elapsed, time, horizon, counters) {
+                let followed = tried
+                    .take()
+                    .unwrap_or_else(|| follow(phase, left.elapsed, time, horizon, counters));
+                match followed {
                     Ok(root) => Target::Root(root),
                     Err(point) => {
                         // A guess that led nowhere: the next ones must lead further.
@@ -83,6 +123,7 @@ pub fn first_crossing<G: Guarded>(
             _ => return Crossing::Horizon,
         }
         ends = Ends::FREE;
+        outlook = phase.outlook(strides, &left, horizon);
     }
 }
 

@@ -6,6 +6,7 @@
 //! nine evaluations a switch where [`crate::crossing::search`] takes two or three, and shares with it
 //! nothing but the closed forms.
 
+use crate::constants::Constants;
 use crate::crossing::certificate::Corridor;
 use crate::crossing::guarded::{Guarded, slack};
 use crate::crossing::root::evaluate;
@@ -15,6 +16,7 @@ use crate::flow::contact::Contact;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
 use crate::two_word::TwoWord;
+use std::borrow::Borrow;
 
 /// A guard with one-sided bounds of its curvature.
 pub trait Bending: Guarded {
@@ -26,9 +28,9 @@ pub trait Bending: Guarded {
     fn head_start(&self, entry: &Point<f64>) -> f64;
 }
 
-impl Bending for NoContact<f64> {
+impl<C: Borrow<Constants<f64>>> Bending for NoContact<f64, C> {
     fn bend(&self, at: &Point<f64>) -> f64 {
-        let constants = &self.constants;
+        let constants = self.constants.borrow();
         let spring = (-at.state.q).max(0.0) * constants.rate * constants.rate;
         (constants.a + constants.b + spring).max(f64::MIN_POSITIVE)
     }
@@ -37,15 +39,15 @@ impl Bending for NoContact<f64> {
         if self.surface != Some(0.0) {
             return 0.0;
         }
-        let constants = &self.constants;
+        let constants = self.constants.borrow();
         let third = constants.a * constants.omega + self.entry.q.max(0.0) * constants.rate.powi(3);
         -3.0 * entry.guard.orders[2] / third
     }
 }
 
-impl Bending for Progression<f64> {
+impl<C: Borrow<Constants<f64>>> Bending for Progression<f64, C> {
     fn bend(&self, at: &Point<f64>) -> f64 {
-        let constants = &self.constants;
+        let constants = self.constants.borrow();
         let lag = at.slider_velocity.max(0.0) * constants.rate * constants.rate;
         (constants.a * constants.omega + lag).max(f64::MIN_POSITIVE)
     }
@@ -55,7 +57,7 @@ impl Bending for Progression<f64> {
     }
 }
 
-impl Bending for Contact<f64> {
+impl<C: Borrow<Constants<f64>>> Bending for Contact<f64, C> {
     fn bend(&self, at: &Point<f64>) -> f64 {
         self.second_derivative_bound(at).max(f64::MIN_POSITIVE)
     }

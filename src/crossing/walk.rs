@@ -6,11 +6,12 @@
 //! there is mostly nothing to prove: the parabola lies below minus the harmonic's amplitude.
 //!
 //! An exponential that lasts longer than a piece stays in the interpolant. Of a shorter one the first
-//! piece takes the life; what is left is replaced by a line above it: by its tangent at the right end
+//! piece takes the life, or, after a separation under a strong spring, an inequality its beginning; what
+//! is left is replaced by a line above it: by its tangent at the right end
 //! where it pulls inwards (it is concave then), else by its chord.
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
-use crate::flow::stride::{PULLING, PUSHING, Stride, Strides};
+use crate::flow::stride::{GRIP, PULLING, PUSHING, Stride, Strides};
 
 /// A guard's excess in parts, at some place.
 #[derive(Clone, Copy, Debug)]
@@ -150,9 +151,13 @@ impl<'a> Walk<'a> {
         if rate * self.strides.piece.length <= decay_times || rate * length <= decay_times {
             return self.between((left, left_ends), (right, ends.right));
         }
-        let life = if pushes { &self.strides.pushing } else { &self.strides.pulling };
-        let settled = left.parts.after(life, self.shape);
-        let first = self.piece(&left, &self.end(settled), left_ends);
+        let (settled, first) = if ends.left_double && self.parts_for_certain(&left.parts) {
+            (left.parts.after(&self.strides.parting, self.shape), Verdict::Inside)
+        } else {
+            let life = if pushes { &self.strides.pushing } else { &self.strides.pulling };
+            let settled = left.parts.after(life, self.shape);
+            (settled, self.piece(&left, &self.end(settled), left_ends))
+        };
         if first == Verdict::Open {
             return first;
         }
@@ -168,6 +173,13 @@ impl<'a> Walk<'a> {
         let rest =
             self.between((self.end(settled), Ends::FREE), (End { orders, ..right }, ends.right));
         first.max(rest)
+    }
+
+    /// Whether a flight that begins with value and slope zero stays inside until z = [`PARTING`]: its
+    /// guard is at most the largest force times d^2/2 less q0 (exp(-z) - 1 + z).
+    fn parts_for_certain(&self, left: &Parts) -> bool {
+        let Shape { curvature, strength, rate, .. } = *self.shape;
+        -left.lasting * (rate * rate) * GRIP > (strength + curvature.max(0.0)) * (1.0 + 1e-9)
     }
 
     /// From the left end until the amplitude takes over, then back from the right end.

@@ -232,7 +232,7 @@ fn impact_factor(leg: &Leg, next: Phase, two_xi: f64) -> f64 {
     let d = leg.duration();
     let e = (-d / two_xi).exp();
     let lost = two_xi * e * d;
-    match (next, &leg.motion) {
+    match (next, &leg.motion()) {
         (Phase::Progression, Motion::NoContact(_)) => {
             let f = two_xi * leg.point(d).guard.orders[1];
             e + (1.0 - e - lost) / f

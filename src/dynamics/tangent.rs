@@ -47,7 +47,7 @@ impl Tangent {
 
     /// Carries both a time `elapsed` on inside a phase.
     pub fn flow(&mut self, leg: &Leg, elapsed: f64) {
-        match &leg.motion {
+        match leg.motion() {
             Motion::NoContact(_) => {
                 let variation = leg.variation(elapsed);
                 self.turn(&variation);
@@ -72,7 +72,7 @@ impl Tangent {
 
     /// Carries both over the switch that ends a phase.
     pub fn switch(&mut self, leg: &Leg) {
-        if !matches!(leg.motion, Motion::NoContact(_)) {
+        if !matches!(leg.motion(), Motion::NoContact(_)) {
             return;
         }
         let saltation = leg.saltation();

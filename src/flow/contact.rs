@@ -7,13 +7,14 @@ use crate::flow::forcing::EntryAngle;
 use crate::flow::{Flow, Jet, Point};
 use crate::number::Number;
 use crate::state::State;
+use std::borrow::Borrow;
 
 /// One contact. Its guard is the trial force f = 2 xi y + q, which stays between 0 and 1; it is
 /// carried as f less `reference`, so that a switch at either threshold begins with an exact zero.
 #[derive(Clone, Copy, Debug)]
-pub struct Contact<T> {
-    /// The model's constants.
-    pub constants: Constants<T>,
+pub struct Contact<T, C = Constants<T>> {
+    /// The model's constants: its own, or borrowed while a switch is looked for.
+    pub constants: C,
     /// State when the contact begins; p = q + g.
     pub entry: State<T>,
     /// Forcing angle then.
@@ -24,12 +25,12 @@ pub struct Contact<T> {
     pub reference: T,
 }
 
-impl<T: Number> Flow<T> for Contact<T> {
+impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Contact<T, C> {
     #[inline]
     fn at(&self, d: T) -> Point<T> {
-        let Constants { a, b, g, two_xi, damping, forced, .. } = self.constants;
+        let Constants { a, b, g, two_xi, damping, forced, .. } = *self.constants.borrow();
         let State { y: y0, q: q0, .. } = self.entry;
-        let harmonic = self.angle.harmonic(&self.constants, d);
+        let harmonic = self.angle.harmonic(self.constants.borrow(), d);
         let free = damping.at(d);
         let response = forced.at(d, &harmonic.turn, &free);
         let steady = |r: Complex<T>| a * (self.angle.cos * r.re - self.angle.sin * r.im);
@@ -67,11 +68,11 @@ impl<T: Number> Flow<T> for Contact<T> {
     }
 }
 
-impl<T: Number> Contact<T> {
+impl<T: Number, C: Borrow<Constants<T>>> Contact<T, C> {
     /// The guard and its derivatives from its value and y; `force` is F - b, F', F''.
     #[inline]
     fn orders(&self, d: T, force: &[T; 3], free: &Free<T>, excess: T, y: T) -> [T; 4] {
-        let Constants { b, two_xi, damping, .. } = self.constants;
+        let Constants { b, two_xi, damping, .. } = *self.constants.borrow();
         if let Damping::Over { fast, slow, spread } = damping
             && fast * d > T::one()
         {
@@ -98,7 +99,7 @@ impl<T: Number> Contact<T> {
         quick: T,
         excess: T,
     ) -> [T; 4] {
-        let Constants { a, b, two_xi, omega, steady, .. } = self.constants;
+        let Constants { a, b, two_xi, omega, steady, .. } = *self.constants.borrow();
         let EntryAngle { sin, cos } = self.angle;
         let (a_cos, a_sin_omega) = (a * cos, a * sin * omega);
         let [then, then_rate, ..] = steady.orders([a_cos, -a_sin_omega, -(omega * omega * a_cos)]);

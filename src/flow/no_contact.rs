@@ -6,12 +6,13 @@ use crate::flow::{Flow, Jet, Point};
 use crate::number::Number;
 use crate::remainders::decay;
 use crate::state::State;
+use std::borrow::Borrow;
 
 /// One flight; its guard is h = p - q - g, negative until the impact.
 #[derive(Clone, Copy, Debug)]
-pub struct NoContact<T> {
-    /// The model's constants.
-    pub constants: Constants<T>,
+pub struct NoContact<T, C = Constants<T>> {
+    /// The model's constants: its own, or borrowed while a switch is looked for.
+    pub constants: C,
     /// State when the flight begins.
     pub entry: State<T>,
     /// Forcing angle then.
@@ -21,12 +22,12 @@ pub struct NoContact<T> {
     pub surface: Option<T>,
 }
 
-impl<T: Number> Flow<T> for NoContact<T> {
+impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
     #[inline]
     fn at(&self, d: T) -> Point<T> {
-        let Constants { b, g, rate, .. } = self.constants;
+        let Constants { b, g, rate, .. } = *self.constants.borrow();
         let State { p: p0, y: y0, q: q0 } = self.entry;
-        let harmonic = self.angle.harmonic(&self.constants, d);
+        let harmonic = self.angle.harmonic(self.constants.borrow(), d);
         let decay = decay(rate * d);
 
         let lift = b * d * d * T::exact(0.5);

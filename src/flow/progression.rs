@@ -6,13 +6,14 @@ use crate::flow::{Flow, Jet, Point};
 use crate::number::Number;
 use crate::remainders::decay;
 use crate::state::State;
+use std::borrow::Borrow;
 
 /// One progression; its guard is the drift velocity w = v' = (f - 1)/(2 xi), positive until the
 /// slider's bottom stops. In w the exit state keeps the digits that f - 1 would cost it.
 #[derive(Clone, Copy, Debug)]
-pub struct Progression<T> {
-    /// The model's constants.
-    pub constants: Constants<T>,
+pub struct Progression<T, C = Constants<T>> {
+    /// The model's constants: its own, or borrowed while a switch is looked for.
+    pub constants: C,
     /// State when the progression begins; p = q + g.
     pub entry: State<T>,
     /// Forcing angle then.
@@ -23,12 +24,12 @@ pub struct Progression<T> {
     pub closing: T,
 }
 
-impl<T: Number> Flow<T> for Progression<T> {
+impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Progression<T, C> {
     #[inline]
     fn at(&self, d: T) -> Point<T> {
-        let Constants { b, g, rate, two_xi, .. } = self.constants;
+        let Constants { b, g, rate, two_xi, .. } = *self.constants.borrow();
         let Self { entry: State { y: y0, q: q0, .. }, drift_rate: w0, closing, .. } = *self;
-        let harmonic = self.angle.harmonic(&self.constants, d);
+        let harmonic = self.angle.harmonic(self.constants.borrow(), d);
         let decay = decay(rate * d);
         let one = T::one();
 

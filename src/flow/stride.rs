@@ -91,6 +91,14 @@ const LOOK: f64 = 0.5;
 /// eighth derivative helps, and at twelve its third derivative begins to lift the coefficients.
 pub const PULLING: f64 = 10.0;
 
+/// Decay times after which a flight has got off the surface for certain, where its spring was stronger
+/// than any force ([`GRIP`]).
+pub const PARTING: f64 = 2.0;
+
+/// How much of q0 z^2/2 the slider's return q0 (exp(-z) - 1 + z) comes to at z = [`PARTING`], and more
+/// before: their quotient only falls.
+pub const GRIP: f64 = 0.5676;
+
 /// And one that pushes it outwards: its eighth derivative then costs 0.02 of its own size.
 pub const PUSHING: f64 = 4.0;
 
@@ -101,6 +109,8 @@ pub struct Strides {
     pub piece: Stride,
     /// Over the life of an exponential that pulls inwards.
     pub pulling: Stride,
+    /// Until a flight has got off the surface.
+    pub parting: Stride,
     /// Over the life of an exponential that pushes outwards.
     pub pushing: Stride,
     /// From place to place of a guess.
@@ -131,6 +141,7 @@ impl Strides {
         Self {
             piece: stride(PIECE / omega),
             pulling: stride(0.9 * PULLING / rate),
+            parting: stride(PARTING / rate),
             pushing: stride(0.9 * PUSHING / rate),
             look: stride(LOOK / omega),
             contact_piece: Swing::new(PIECE / fastest, omega, damping),
@@ -138,5 +149,19 @@ impl Strides {
             contact_look: Swing::new(LOOK, omega, damping),
             slow_look: Swing::new(LOOK / slowest, omega, damping),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::remainders::decay;
+
+    #[test]
+    fn the_grip_is_least_at_parting() {
+        let share = |z: f64| decay(z).remainder / (0.5 * z * z);
+        let shares: Vec<f64> = (1..=1000).map(|k| share(PARTING * f64::from(k) / 1000.0)).collect();
+        assert!(shares.windows(2).all(|pair| pair[1] < pair[0]));
+        assert!(shares[999] > GRIP && shares[999] - GRIP < 1e-4);
     }
 }
