@@ -151,7 +151,7 @@ fn by_angle(
 }
 
 fn flight_variation(flight: &NoContact<f64, &Constants<f64>>, d: f64) -> Matrix {
-    let (impulse, displacement, _) = by_angle(&flight.constants, &flight.angle, d);
+    let (impulse, displacement, _) = by_angle(flight.constants, &flight.angle, d);
     let mut variation = IDENTITY;
     variation[P][ANGLE] = displacement;
     variation[P][Y] = d;
@@ -161,7 +161,7 @@ fn flight_variation(flight: &NoContact<f64, &Constants<f64>>, d: f64) -> Matrix 
 }
 
 fn progression_variation(slip: &Progression<f64, &Constants<f64>>, d: f64) -> Matrix {
-    let (impulse, displacement, _) = by_angle(&slip.constants, &slip.angle, d);
+    let (impulse, displacement, _) = by_angle(slip.constants, &slip.angle, d);
     let decay = decay(slip.constants.rate * d);
     let mut variation = IDENTITY;
     variation[P][Q] = decay.minus_1;
@@ -175,7 +175,7 @@ fn progression_variation(slip: &Progression<f64, &Constants<f64>>, d: f64) -> Ma
 
 fn contact_variation(contact: &Contact<f64, &Constants<f64>>, d: f64) -> Matrix {
     let Constants { a, damping, forced, .. } = contact.constants;
-    let (_, _, harmonic) = by_angle(&contact.constants, &contact.angle, d);
+    let (_, _, harmonic) = by_angle(contact.constants, &contact.angle, d);
     let free = damping.at(d);
     let response = forced.at(d, &harmonic.turn, &free);
     let EntryAngle { sin, cos } = contact.angle;

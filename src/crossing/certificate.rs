@@ -116,7 +116,7 @@ impl Piece {
     /// inwards, which are computed side by side, and the middle one.
     #[inline]
     fn coefficients(&self) -> ([[f64; 2]; 4], f64) {
-        let [a, b, c, d] = self.from_ends();
+        let [a, b, c, d] = self.next_to_ends();
         let mixed = |from: [f64; 2], to: [f64; 2], share: f64| {
             let keep = 1.0 - share;
             [keep * from[0] + share * to[0], keep * from[1] + share * to[1]]
@@ -127,7 +127,7 @@ impl Piece {
 
     /// The four Bernstein coefficients of degree seven next to the left end, and to the right one.
     #[inline]
-    fn from_ends(&self) -> [[f64; 2]; 4] {
+    fn next_to_ends(&self) -> [[f64; 2]; 4] {
         let [value, slope, bend, third] = [0, 1, 2, 3].map(|k| [self.left[k], self.right[k]]);
         let seventh = self.length * (1.0 / 7.0);
         let steps = [seventh, -seventh];
