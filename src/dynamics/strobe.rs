@@ -15,6 +15,7 @@
 //! branch of orbits may turn or lose its stability without a multiplier having passed through 1 or -1.
 //! Where contact grazes f = 1 or f = 0 the field is continuous and nothing jumps.
 
+use super::linear;
 use super::section::Section;
 use crate::entry::Entry;
 use crate::error::InputError;
@@ -24,6 +25,9 @@ use crate::model::Model;
 use crate::phase::Phase;
 use crate::state::State;
 use crate::variation::{IDENTITY, Matrix, P, Q, V, Y, product};
+
+/// On the slider q moves with p.
+const TOGETHER: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
 
 /// A point of the section: p, y, q.
 pub type Point = [f64; 3];
@@ -113,6 +117,16 @@ impl Passage {
     #[must_use]
     pub fn jacobian(&self) -> Jacobian {
         [P, Y, Q].map(|row| [P, Y, Q].map(|column| self.derivative[row][column]))
+    }
+
+    /// The same with respect to what of (p, y, q) can change: a mass on the surface takes the slider along,
+    /// and off the surface the derivative of a contact means nothing.
+    #[must_use]
+    pub fn free_jacobian(&self) -> Jacobian {
+        match self.phases.first() {
+            Some(Phase::Contact | Phase::Progression) => linear::product(&self.jacobian(), &TOGETHER),
+            _ => self.jacobian(),
+        }
     }
 
     /// Gradient of the drift gained with respect to (p, y, q).

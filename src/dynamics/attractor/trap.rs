@@ -8,7 +8,7 @@
 //!
 //! About a strobe on the slider only motions that are on it too are taken: there p and q are one.
 
-use crate::dynamics::linear::{apply, dot, product};
+use crate::dynamics::linear::{IDENTITY, apply, dot, product};
 use crate::dynamics::orbit::Orbit;
 use crate::dynamics::section::Section;
 use crate::dynamics::strobe::{Jacobian, Point, StrobeMap};
@@ -24,8 +24,6 @@ pub(super) struct Trap {
     slider: Option<f64>,
 }
 
-/// On the slider q moves with p.
-const TOGETHER: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
 /// p = q + g to within this share of its terms: some roundings.
 const ON_SLIDER: f64 = 1e-12;
 
@@ -56,10 +54,10 @@ impl Trap {
 
     fn around(map: &StrobeMap, centre: Point, period: u64) -> Option<Self> {
         let entry = map.entry(centre).ok()?;
-        let turn = map.passage(&entry, period).jacobian();
+        let turn = map.passage(&entry, period).free_jacobian();
         let on_slider = entry.phase() != Phase::NoContact;
         let slider = on_slider.then_some(map.model().parameters().g);
-        let metric = metric(&if on_slider { product(&turn, &TOGETHER) } else { turn })?;
+        let metric = metric(&turn)?;
         let largest = metric[0][0] + metric[1][1] + metric[2][2];
         let shrinks = 1.0 - 0.5 / largest;
         let upper = upper_factor(&metric)?;
@@ -115,7 +113,7 @@ impl Trap {
 
 /// S; none where the multipliers are not inside the unit circle.
 fn metric(turn: &Jacobian) -> Option<Jacobian> {
-    let mut sum = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let mut sum = IDENTITY;
     let mut power = *turn;
     for _ in 0..DOUBLINGS {
         let more = product(&transposed(&power), &product(&sum, &power));

@@ -5,10 +5,6 @@ use super::super::strobe::{Jacobian, Passage, Point, StrobeMap};
 use super::{LARGEST_PERIOD, NoOrbit, Reason};
 use crate::phase::Phase;
 
-/// A mass on the surface takes the slider along: there is no other change of it, and off the surface the
-/// derivative of a contact means nothing.
-const TOGETHER: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
-
 /// Roundings of a phase's closed form and of the state it hands on, in units of eps.
 const ROUNDINGS: f64 = 8.0;
 
@@ -58,13 +54,9 @@ impl Chain {
         for point in points {
             let entry = map.entry(*point).ok()?;
             let passage = map.passage(&entry, 1);
-            let jacobian = match entry.phase() {
-                Phase::NoContact => passage.jacobian(),
-                _ => product(&passage.jacobian(), &TOGETHER),
-            };
             chain.points.push(entry.point());
+            chain.jacobians.push(passage.free_jacobian());
             chain.passages.push(passage);
-            chain.jacobians.push(jacobian);
         }
         for (k, passage) in chain.passages.iter().enumerate() {
             let next = chain.points[(k + 1) % count];
