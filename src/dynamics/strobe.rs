@@ -124,7 +124,9 @@ impl Passage {
     #[must_use]
     pub fn free_jacobian(&self) -> Jacobian {
         match self.phases.first() {
-            Some(Phase::Contact | Phase::Progression) => linear::product(&self.jacobian(), &TOGETHER),
+            Some(Phase::Contact | Phase::Progression) => {
+                linear::product(&self.jacobian(), &TOGETHER)
+            }
             _ => self.jacobian(),
         }
     }

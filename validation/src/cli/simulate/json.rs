@@ -2,6 +2,7 @@
 
 use super::plan::Plan;
 use super::rows::{Row, Sink};
+use crate::cli::model::ParametersJson;
 use anyhow::Result;
 use percuss::Phase;
 use serde::Serialize;
@@ -10,16 +11,6 @@ use std::io::{self, Write};
 pub(super) struct Json<'a> {
     out: &'a mut dyn Write,
     rows: u64,
-}
-
-#[derive(Serialize)]
-struct Parameters {
-    a: f64,
-    b: f64,
-    xi: f64,
-    omega: f64,
-    g: f64,
-    phi: f64,
 }
 
 /// The start as the run takes it; the phase only where it was stated.
@@ -78,8 +69,7 @@ impl Sink for Json<'_> {
             "{{\"schema\":1,\"percuss\":\"{}\",\"parameters\":",
             env!("CARGO_PKG_VERSION")
         )?;
-        let percuss::Parameters { a, b, xi, omega, g, phi } = *plan.problem.model.parameters();
-        self.value(&Parameters { a, b, xi, omega, g, phi })?;
+        self.value(&ParametersJson::from(plan.problem.model.parameters()))?;
         write!(self.out, ",\"start\":")?;
         let given = plan.problem.start;
         let state = plan.problem.entry.state;

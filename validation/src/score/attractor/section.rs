@@ -2,8 +2,9 @@
 
 use crate::case::{Given, Problem};
 use crate::engine::{Event, Failure, Grid, Outcome, Task};
-use percuss::variation::{Matrix, product};
-use percuss::{Entry, Exit, Model, Parameters, Phase, Start};
+use percuss::dynamics::linear::apply;
+use percuss::dynamics::strobe::StrobeMap;
+use percuss::{Parameters, Phase, Start};
 use std::collections::BTreeMap;
 
 /// The section of a run after its transient.
@@ -74,10 +75,10 @@ fn words(events: &[Event], period: f64, transient: u32, periods: usize) -> BTree
 fn lyapunov(task: &Task, points: &[[f64; 3]]) -> f64 {
     let mut direction = [0.6, 0.48, 0.64];
     let (mut sum, mut counted) = (0.0, 0_u32);
-    for point in points {
-        let Some(derivative) = strobe_derivative(task, *point) else { continue };
-        let image: [f64; 3] =
-            std::array::from_fn(|i| (0..3).map(|j| derivative[i + 1][j + 1] * direction[j]).sum());
+    let map = StrobeMap::new(task.problem.model, task.problem.entry.instant);
+    for &[p, y, q] in points {
+        let Ok(entry) = map.entry([p.min(q + task.parameters.g), y, q]) else { continue };
+        let image = apply(&map.passage(&entry, 1).jacobian(), &direction);
         let size = image.iter().map(|x| x * x).sum::<f64>().sqrt();
         if size > 0.0 && size.is_finite() {
             sum += size.ln();
@@ -86,28 +87,4 @@ fn lyapunov(task: &Task, points: &[[f64; 3]]) -> f64 {
         }
     }
     sum / f64::from(counted)
-}
-
-/// The derivative of one forcing period from a point of the section, by angle, p, y, q and v.
-fn strobe_derivative(task: &Task, [p, y, q]: [f64; 3]) -> Option<Matrix> {
-    let model = &task.problem.model;
-    let entry = strobe_entry(task, model, [p.min(q + task.parameters.g), y, q])?;
-    let horizon = entry.instant.after_periods(1, 1);
-    let mut whole: Option<Matrix> = None;
-    for leg in model.trajectory(entry).until(horizon) {
-        let step = match leg.exit() {
-            Exit::Switch(_) => product(&leg.saltation(), &leg.variation(leg.duration())),
-            _ => {
-                let rest = horizon.since(&leg.entry().instant, task.parameters.omega);
-                leg.variation(rest.value())
-            }
-        };
-        whole = Some(whole.map_or(step, |before| product(&step, &before)));
-    }
-    whole
-}
-
-fn strobe_entry(task: &Task, model: &Model, [p, y, q]: [f64; 3]) -> Option<Entry> {
-    let start = Start { p, y, q: Some(q), v: 0.0, phase: None, ..task.problem.start };
-    model.start(&start).ok()
 }
