@@ -51,7 +51,7 @@ pub trait Heat: Racer {
 }
 
 /// An engine as a contestant.
-struct Entered(&'static dyn Engine);
+pub struct Entered(pub &'static dyn Engine);
 
 impl Contestant for Entered {
     fn name(&self) -> &'static str {

@@ -27,6 +27,8 @@ pub struct Score {
     pub state_error: f64,
     /// Largest error of a switch's time.
     pub event_time_error: f64,
+    /// |dv| at the end.
+    pub drift_error: f64,
 }
 
 /// Only the switches and the end are asked for.
@@ -94,12 +96,14 @@ impl Course {
         let score = Score {
             state_error: worst(states.map(|(row, state)| state_error(row, &state))),
             event_time_error: worst(pairs().map(|(row, event)| off(row.elapsed, event.elapsed))),
+            drift_error: off(self.truth.end.state[3], answer.end[3]),
         };
         // Written so that a NaN is wrong.
-        if score.state_error <= SCORED_ERROR && score.event_time_error.is_finite() {
+        let largest = worst([score.state_error, score.drift_error].into_iter());
+        if largest <= SCORED_ERROR && score.event_time_error.is_finite() {
             Ok(score)
         } else {
-            let error = brief(score.state_error);
+            let error = brief(largest);
             Err(Failure::new(format!("wrong: off by {error}, accepted is {SCORED_ERROR}")))
         }
     }

@@ -120,8 +120,8 @@ impl Bench {
             cases: courses.clone().map(entry).collect(),
             results: contests.iter().flat_map(|(course, all)| rows(course, all)).collect(),
             floor: Floor {
-                chained_ns: floors.chained.typical(),
-                independent_ns: floors.independent.typical(),
+                chained_ns: floors.chained.best(),
+                independent_ns: floors.independent.best(),
             },
             switches: courses.enumerate().map(|(i, it)| switch(it, floors, i)).collect(),
             length,
@@ -165,11 +165,12 @@ fn rows(course: &Course, finishers: &[Finisher]) -> Vec<Row> {
 fn switch(course: &Course, floors: &Floors, i: usize) -> Switch {
     let cost = floors.switches.get(i).and_then(|it| it.as_ref().ok());
     let failed = floors.switches.get(i).and_then(|it| it.as_ref().err());
-    let in_units_of = |floor: &Series| cost.map(|it| it.series.ratio_to(floor));
+    // Least times: a neighbour on the same core slows a switch down, and the chained floor hardly.
+    let in_units_of = |floor: &Series| cost.map(|it| it.series.best() / floor.best());
     Switch {
         case: course.name.clone(),
         evaluations_per_switch: cost.map(|it| it.evaluations),
-        ns_per_switch: cost.map(|it| it.series.typical()),
+        ns_per_switch: cost.map(|it| it.series.best()),
         floors_per_switch: in_units_of(&floors.chained),
         independent_floors_per_switch: in_units_of(&floors.independent),
         why: failed.map(ToString::to_string),

@@ -201,12 +201,12 @@ mod tests {
 
     #[test]
     fn a_racer_that_answers_wrongly_in_any_batch_has_no_times() {
-        let pace = Pace { batch: 1.0, batches: 2 };
+        let pace = Pace { batch: 1e4, batches: 2 };
         let (mut right, mut late) =
-            (Faulty { checks: 0, last: u32::MAX }, Faulty { checks: 0, last: 6 });
+            (Faulty { checks: 0, last: u32::MAX }, Faulty { checks: 0, last: 3 });
         let results = race(&mut [&mut right, &mut late], 4, pace, &|| ());
         assert!(results[0].as_ref().is_ok_and(|series| series.0.len() == 4), "{results:?}");
         assert_eq!(results[1], Err(Failure::new("wrong")));
-        assert_eq!((right.checks, late.checks), (8, 6));
+        assert!(right.checks >= 4 && late.checks == 3);
     }
 }

@@ -71,7 +71,17 @@ fn engines(bench: &Bench) -> String {
             table.add_row(cells(case, row));
         }
     }
-    shown(table, 2)
+    shown(table, 2) + &reasons(bench)
+}
+
+/// Why engines that are right at no setting are not, at the last of them.
+fn reasons(bench: &Bench) -> String {
+    let last = bench.cases.iter().flat_map(|entry| best(bench, &entry.case));
+    let reason = |row: &Row| {
+        let why = row.why.as_ref()?;
+        Some(format!("no time: {} {} {}: {why}\n", row.case, row.engine, setting(row)))
+    };
+    last.filter_map(reason).collect()
 }
 
 /// One row an engine: at its most accurate setting, or, where no answer was right, the last.
@@ -86,10 +96,6 @@ fn cells(case: &str, row: &Row) -> [String; 8] {
     let figure = |value: Option<f64>, show: fn(f64) -> String| {
         value.filter(|it| it.is_finite()).map_or("-".to_owned(), show)
     };
-    let ratio = match &row.why {
-        Some(why) => why.clone(),
-        None => figure(row.ratio_to_exact, ratio),
-    };
     [
         case.to_owned(),
         row.engine.to_owned(),
@@ -98,7 +104,7 @@ fn cells(case: &str, row: &Row) -> [String; 8] {
         figure(row.state_error_max, brief),
         figure(row.event_time_error_max, brief),
         figure(row.rhs_per_period, |it| format!("{it:.1}")),
-        ratio,
+        figure(row.ratio_to_exact, ratio),
     ]
 }
 

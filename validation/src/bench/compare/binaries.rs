@@ -22,9 +22,9 @@ pub struct Pair<'a> {
 }
 
 /// Times both are started anew.
-pub const LIVES: u32 = 8;
+pub const LIVES: u32 = 20;
 /// Rounds in one life.
-const ROUNDS: u32 = 12;
+const ROUNDS: u32 = 8;
 /// Batches a turn, and how long they are, ns: short enough to lie between two interruptions, long enough
 /// that a clock that ticks in tens of nanoseconds tells a thousandth.
 const BATCHES: u32 = 4;
