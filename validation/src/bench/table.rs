@@ -9,6 +9,8 @@ use comfy_table::{CellAlignment, Table, presets};
 pub fn table(bench: &Bench) -> String {
     let mut text = engines(bench);
     text.push_str(&switches(bench));
+    text.push_str(&lengths(bench));
+    text.push('\n');
     for entry in &bench.cases {
         text.push_str(&lead(bench, &entry.case).map(|it| it.line()).unwrap_or_default());
     }
@@ -139,6 +141,24 @@ fn switches(bench: &Bench) -> String {
         floor.independent_ns,
         shown(table, 1)
     )
+}
+
+/// Cost against length, where that was measured.
+fn lengths(bench: &Bench) -> String {
+    if bench.length.is_empty() {
+        return String::new();
+    }
+    let mut table = plain(["periods", "ns/period", "state err", "MB held at most"]);
+    for it in &bench.length {
+        let held = it.peak_bytes.map(|bytes| format!("{:.1}", bytes as f64 / 1e6));
+        table.add_row([
+            it.periods.to_string(),
+            format!("{:.0}", it.ns_per_period),
+            brief(it.state_error_max),
+            held.unwrap_or_else(|| "-".to_owned()),
+        ]);
+    }
+    format!("\n{}", shown(table, 0))
 }
 
 fn plain<const N: usize>(header: [&str; N]) -> Table {
