@@ -17,27 +17,34 @@ const MUCH: u64 = 22_000;
 /// Where valgrind is not installed or gives no count.
 pub fn per_unit(bench: &str) -> Result<f64, Failure> {
     let (little, much) = (count(bench, LITTLE)?, count(bench, MUCH)?);
-    Ok((much as f64 - little as f64) / (MUCH - LITTLE) as f64)
+    if much <= little {
+        return Err(Failure::new(format!("valgrind counts {little} and, for more work, {much}")));
+    }
+    Ok((much - little) as f64 / (MUCH - LITTLE) as f64)
 }
 
 fn count(bench: &str, units: u64) -> Result<u64, Failure> {
-    let failed = |what: String| Failure::new(format!("valgrind {what}"));
+    let failed = |what: &str| Failure::new(format!("valgrind {what}"));
     let this = std::env::current_exe().map_err(Failure::new)?;
     let child = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
         .arg(this)
         .args(["bench", "worker"])
         .stdin(Stdio::piped())
-        .stdout(Stdio::null())
+        .stdout(Stdio::piped())
         .stderr(Stdio::piped())
         .spawn();
-    let mut child = child.map_err(|error| failed(format!("cannot be run ({error})")))?;
+    let mut child = child.map_err(|error| failed(&format!("cannot be run ({error})")))?;
     if let Some(mut input) = child.stdin.take() {
-        writeln!(input, "best {bench} {units} 1").map_err(Failure::new)?;
+        writeln!(input, "run {bench} {units}").map_err(Failure::new)?;
     }
     let output = child.wait_with_output().map_err(Failure::new)?;
-    let said = String::from_utf8_lossy(&output.stderr);
+    let [answered, said] =
+        [&output.stdout, &output.stderr].map(|bytes| String::from_utf8_lossy(bytes).into_owned());
+    if !answered.lines().any(|line| line.starts_with("ran ")) {
+        return Err(failed("does not run the workload"));
+    }
     let collected = said.lines().find_map(|line| line.split_once("Collected :"));
     let collected = collected.and_then(|(_, count)| count.trim().parse().ok());
-    collected.ok_or_else(|| failed("gives no count".to_owned()))
+    collected.ok_or_else(|| failed("gives no count"))
 }

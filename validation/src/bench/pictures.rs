@@ -4,8 +4,7 @@ use super::report::{Bench, Damped, Row};
 use crate::bench::history::{History, Record};
 use crate::engine;
 use crate::picture::{
-    Axis, BASIN_COLOURS, Curve, Curves, DrawError, INK, Marker, Scale, basin_colours, looks, png,
-    svg,
+    Axis, Curve, Curves, DrawError, INK, Marker, Scale, basin_colours, looks, png, svg,
 };
 use crate::report::Picture;
 
@@ -112,6 +111,10 @@ fn damping(bench: &Bench) -> Curves {
     }
 }
 
+/// Two workloads share a colour or a marker, never both.
+const MARKERS: [Marker; 5] =
+    [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::Nabla];
+
 /// What a unit of each workload has cost, version by version.
 #[must_use]
 pub fn history(history: &History) -> Curves {
@@ -137,7 +140,7 @@ pub fn history(history: &History) -> Curves {
     let curve = |(i, bench): (usize, &&str)| Curve {
         name: (*bench).to_owned(),
         colour: basin_colours(i).1,
-        marker: Some(if i < BASIN_COLOURS { Marker::Circle } else { Marker::Square }),
+        marker: Some(MARKERS[i % MARKERS.len()]),
         width: 2.0,
         dashed: false,
         points: points(bench),

@@ -7,6 +7,7 @@
 //! | | `percuss-bench 1 VERSION COMMIT` |
 //! | `names` | `names NAME NAME ...` |
 //! | `best NAME UNITS BATCHES` | `ns X`: processor time of the best batch of that many units, ns |
+//! | `run NAME UNITS` | `ran X`: evaluations; no clock is read, which valgrind would not have |
 //! | anything else | `error WHAT` |
 //!
 //! It ends with its input. The process stays alive, so that two of them can take turns within milliseconds.
@@ -52,24 +53,22 @@ fn answer(workloads: &[Box<dyn Workload + '_>], line: &str) -> String {
             Ok(format!("names {}", names.join(" ")))
         }
         ["best", name, units, batches] => best(workloads, name, units, batches),
-        _ => Err("accepted are: names, best NAME UNITS BATCHES".to_owned()),
+        ["run", name, units] => ran(workloads, name, units),
+        _ => Err("accepted are: names, best NAME UNITS BATCHES, run NAME UNITS".to_owned()),
     };
     found.unwrap_or_else(|what| format!("error {what}"))
 }
 
+type Workloads<'a, 'b> = &'a [Box<dyn Workload + 'b>];
+
 fn best(
-    workloads: &[Box<dyn Workload + '_>],
+    workloads: Workloads<'_, '_>,
     name: &str,
     units: &str,
     batches: &str,
 ) -> Result<String, String> {
-    let count = |text: &str, most: u64| {
-        let count = text.parse().ok().filter(|it| (1..=most).contains(it));
-        count.ok_or_else(|| format!("{text}: accepted is 1 to {most}"))
-    };
+    let workload = named(workloads, name)?;
     let (units, batches) = (count(units, MOST_UNITS)?, count(batches, MOST_BATCHES)?);
-    let workload = workloads.iter().find(|it| it.name() == name);
-    let workload = workload.ok_or_else(|| format!("{name}: there is no such workload"))?;
     let mut best = f64::INFINITY;
     for _ in 0..batches {
         let watch = Stopwatch::start();
@@ -77,6 +76,21 @@ fn best(
         best = best.min(watch.nanoseconds());
     }
     Ok(format!("ns {best}"))
+}
+
+fn ran(workloads: Workloads<'_, '_>, name: &str, units: &str) -> Result<String, String> {
+    let evaluations = named(workloads, name)?.run(count(units, MOST_UNITS)?);
+    evaluations.map(|it| format!("ran {it}")).map_err(|failure| failure.0)
+}
+
+fn named<'a>(workloads: Workloads<'a, 'a>, name: &str) -> Result<&'a dyn Workload, String> {
+    let workload = workloads.iter().find(|it| it.name() == name);
+    workload.map(AsRef::as_ref).ok_or_else(|| format!("{name}: there is no such workload"))
+}
+
+fn count(text: &str, most: u64) -> Result<u64, String> {
+    let count = text.parse().ok().filter(|it| (1..=most).contains(it));
+    count.ok_or_else(|| format!("{text}: accepted is 1 to {most}"))
 }
 
 #[cfg(test)]
@@ -98,19 +112,19 @@ mod tests {
 
     #[test]
     fn every_line_is_answered() {
-        let asked = "names\nbest idle 7 2\nbest idle 13 1\nbest idle 0 1\nbest idle 1 x\nbest no 1 1\nstray\n\n";
+        let asked = "names\nbest idle 7 2\nrun idle 7\nbest idle 13 1\nbest idle 0 1\nbest idle 1 x\nbest no 1 1\nstray\n\n";
         let mut said = Vec::new();
         let workloads: [Box<dyn Workload>; 1] = [Box::new(Idle)];
         let served = serve(&workloads, asked.as_bytes(), &mut said);
         let said = String::from_utf8(said).unwrap_or_default();
         assert!(served.is_ok(), "{served:?}");
         let lines: Vec<_> = said.lines().collect();
-        assert_eq!(lines.len(), 9, "{said}");
+        assert_eq!(lines.len(), 10, "{said}");
         assert!(lines[0].starts_with(GREETING));
         assert_eq!(lines[1], "names idle");
         let time = lines[2].strip_prefix("ns ").and_then(|it| it.parse::<f64>().ok());
         assert!(time.is_some_and(|it| it >= 0.0), "{said}");
-        assert_eq!(lines[3], "error unlucky");
-        assert!(lines[4..].iter().all(|line| line.starts_with("error ")), "{said}");
+        assert_eq!(lines[3..5], ["ran 7", "error unlucky"]);
+        assert!(lines[5..].iter().all(|line| line.starts_with("error ")), "{said}");
     }
 }
