@@ -4,7 +4,7 @@
 //! run tells the quotients.
 //!
 //! `cargo bench -p percuss-validation --bench first_crossing`. For exploration: numbers of a noisy
-//! machine; regressions are judged by counts.
+//! machine; `percuss bench compare` holds versions against each other.
 
 #![allow(
     missing_docs,
@@ -75,19 +75,5 @@ fn switches(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn evaluations(criterion: &mut Criterion) {
-    let model = model(1.4, 0.01);
-    let run: Vec<Leg> = legs(&model).take(30).collect();
-    let mut group = criterion.benchmark_group("closed form");
-    for phase in percuss::Phase::ALL {
-        let Some(leg) = run.iter().find(|leg| leg.phase() == phase) else { continue };
-        let middle = 0.5 * leg.duration();
-        group.bench_function(phase.token(), |bencher| {
-            bencher.iter(|| leg.at(black_box(middle)));
-        });
-    }
-    group.finish();
-}
-
-criterion_group!(benches, floor, switches, evaluations);
+criterion_group!(benches, floor, switches);
 criterion_main!(benches);

@@ -4,6 +4,7 @@
 //! [`engine::Engine`] among others, held against tables ([`truth`]) that none of them knows.
 
 pub mod arrays;
+pub mod bench;
 pub mod case;
 pub mod cli;
 pub mod engine;

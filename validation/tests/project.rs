@@ -66,6 +66,21 @@ fn the_readmes_blocks_are_what_their_commands_print() {
     }
 }
 
+/// The block of the bench is written by the commands that CONTRIBUTING.md names; times are not asserted. It
+/// must be of the cases that are raced today.
+#[test]
+fn the_readmes_bench_is_of_todays_cases() {
+    let readme = read("README.md");
+    let (_, block) = readme.split_once("<!-- begin: bench -->\n```text\n").expect("a block");
+    let (block, _) = block.split_once("```\n<!-- end: bench -->").expect("it ends");
+    let lines: Vec<_> = block.lines().collect();
+    assert!(lines[0].starts_with("percuss ") && lines[0].contains(" at "), "{}", lines[0]);
+    assert!(lines[1].starts_with("floor: "), "{}", lines[1]);
+    let cases: Vec<_> =
+        lines[3..].iter().filter_map(|line| line.split_whitespace().next()).collect();
+    assert_eq!(cases, percuss_validation::bench::cases::USUAL);
+}
+
 /// The block of the full suite is written by the command that CONTRIBUTING.md names, which takes minutes and
 /// is not run here. It must be of a run that was clean, and of the rows that the suite has today.
 #[test]

@@ -1,6 +1,7 @@
 //! The command line, a file a verb. What it promises is in the project's CONTRACT.
 
 mod basins;
+mod bench;
 mod bifurcation;
 mod endless;
 mod engines;
@@ -52,6 +53,7 @@ enum Verb {
     Engines(engines::Arguments),
     Validate(validate::Arguments),
     Reproduce(reproduce::Arguments),
+    Bench(bench::Arguments),
     Orbit(Box<orbits::find::Arguments>),
     Continue(Box<orbits::follow::Arguments>),
 }
@@ -76,6 +78,7 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Engines(engines) => engines::run(engines).map(|()| DONE),
         Verb::Validate(validate) => validate::run(validate, arguments.threads),
         Verb::Reproduce(reproduce) => reproduce::run(reproduce, arguments.threads),
+        Verb::Bench(bench) => bench::run(bench),
         Verb::Orbit(orbit) => orbits::find::run(orbit),
         Verb::Continue(branch) => orbits::follow::run(branch),
     };

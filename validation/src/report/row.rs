@@ -284,7 +284,7 @@ impl Row {
 }
 
 /// The processor's name where the system tells it, else its architecture.
-fn cpu() -> String {
+pub fn cpu() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
     model.map_or(std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())

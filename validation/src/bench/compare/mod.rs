@@ -1,0 +1,9 @@
+//! Versions against each other.
+
+pub mod binaries;
+pub mod process;
+pub mod recorded;
+pub mod verdict;
+pub mod worker;
+
+pub use verdict::Verdict;

@@ -1,0 +1,89 @@
+//! When a version is slower: warned of at 1 %, failed at 2 % twice in a row.
+//!
+//! A quotient that interleaved rounds give repeats within half a percent on a busy machine, so 1 % is seldom
+//! noise and 2 % hardly ever; but among a dozen workloads something rare happens now and then. A whole
+//! second measurement, of processes started anew, has to say the same.
+
+/// From here on it is said.
+pub const WARN: f64 = 1.01;
+/// From here on, twice in a row, it fails.
+pub const FAIL: f64 = 1.02;
+
+/// What is said of a workload.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// As fast as before, or faster.
+    Pass,
+    /// Slower by 1 % or more, or by 2 % once.
+    Warn,
+    /// Slower by 2 % or more, twice in a row.
+    Fail,
+}
+
+impl Verdict {
+    /// The verdict on successive quotients of new to old.
+    #[must_use]
+    pub fn of(quotients: &[f64]) -> Self {
+        if quotients.windows(2).any(|pair| pair.iter().all(|it| is_doubtful(*it))) {
+            Self::Fail
+        } else if quotients.iter().all(|it| *it < WARN) {
+            Self::Pass
+        } else {
+            Self::Warn
+        }
+    }
+
+    /// Its word.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Pass => "pass",
+            Self::Warn => "warn",
+            Self::Fail => "fail",
+        }
+    }
+}
+
+/// Whether a first quotient has to be measured again.
+#[must_use]
+pub fn is_doubtful(quotient: f64) -> bool {
+    quotient >= FAIL || quotient.is_nan()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slower_by_two_percent_twice_in_a_row_fails() {
+        assert_eq!(Verdict::of(&[1.03, 1.03]), Verdict::Fail);
+        assert_eq!(Verdict::of(&[1.02, 1.02]), Verdict::Fail);
+        assert_eq!(Verdict::of(&[1.0, 1.05, 1.021]), Verdict::Fail);
+    }
+
+    #[test]
+    fn once_or_not_in_a_row_is_a_warning() {
+        assert_eq!(Verdict::of(&[1.03]), Verdict::Warn);
+        assert_eq!(Verdict::of(&[1.03, 1.0]), Verdict::Warn);
+        assert_eq!(Verdict::of(&[1.03, 1.0, 1.03]), Verdict::Warn);
+    }
+
+    #[test]
+    fn slower_by_one_and_a_half_percent_is_a_warning_however_often() {
+        assert_eq!(Verdict::of(&[1.015, 1.015, 1.015]), Verdict::Warn);
+        assert_eq!(Verdict::of(&[1.01]), Verdict::Warn);
+    }
+
+    #[test]
+    fn faster_or_the_same_passes() {
+        assert_eq!(Verdict::of(&[1.009]), Verdict::Pass);
+        assert_eq!(Verdict::of(&[0.5, 0.5]), Verdict::Pass);
+    }
+
+    #[test]
+    fn a_nan_passes_nothing() {
+        assert_eq!(Verdict::of(&[f64::NAN]), Verdict::Warn);
+        assert_eq!(Verdict::of(&[f64::NAN, f64::NAN]), Verdict::Fail);
+        assert!(is_doubtful(f64::NAN) && is_doubtful(1.02) && !is_doubtful(1.0199));
+    }
+}

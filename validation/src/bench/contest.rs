@@ -1,0 +1,113 @@
+//! One course, all contestants: who answers rightly at which setting, and how fast.
+
+use super::contestant::{Contestant, Heat, ladder};
+use super::course::{Course, Score};
+use super::rounds::{PACE, Racer, Series, race};
+use crate::engine::{Accuracy, Failure, Stepping, Work};
+
+/// A contestant at a setting, and what came of it.
+#[derive(Clone, Debug)]
+pub struct Finisher {
+    /// The contestant.
+    pub name: &'static str,
+    /// The library it is of.
+    pub library: &'static str,
+    /// How it chooses its steps.
+    pub stepping: Stepping,
+    /// What it was asked for.
+    pub setting: Accuracy,
+    /// Score and times, or why there are none: a wrong answer has no time.
+    pub result: Result<Timed, Failure>,
+}
+
+/// A right answer and its times.
+#[derive(Clone, Debug)]
+pub struct Timed {
+    /// How good the answer is.
+    pub score: Score,
+    /// What the run counted.
+    pub work: Work,
+    /// The best time of each round, ns a forcing period.
+    pub series: Series,
+}
+
+/// Races all contestants at all their settings.
+pub fn contest(
+    course: &Course,
+    contestants: &[&dyn Contestant],
+    rounds: usize,
+    done: &dyn Fn(),
+) -> Vec<Finisher> {
+    let settings = |it: &&dyn Contestant| ladder(it.stepping());
+    let asked = contestants.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
+    contest_at(course, &asked.collect::<Vec<_>>(), rounds, done)
+}
+
+/// Races contestants at the settings given.
+pub fn contest_at(
+    course: &Course,
+    asked: &[(&dyn Contestant, Accuracy)],
+    rounds: usize,
+    done: &dyn Fn(),
+) -> Vec<Finisher> {
+    let mut heats: Vec<Result<Box<dyn Heat + '_>, Failure>> = Vec::new();
+    for (contestant, setting) in asked {
+        heats.push(qualified(*contestant, course, *setting));
+        done();
+    }
+    let mut racers: Vec<&mut dyn Racer> =
+        heats.iter_mut().flatten().map(|heat| &mut **heat as &mut dyn Racer).collect();
+    // Those that are out take no time; their share of the work is done.
+    (0..rounds * (asked.len() - racers.len())).for_each(|_| done());
+    let mut raced = race(&mut racers, rounds, PACE, done).into_iter();
+    let mut result = |heat: Result<Box<dyn Heat + '_>, Failure>| {
+        let heat = heat?;
+        let series = raced.next().unwrap_or_else(|| Err(Failure::new("not raced")))?;
+        let scale = 1.0 / (heat.runs() * course.periods());
+        let series = Series(series.0.into_iter().map(|time| time * scale).collect());
+        Ok(Timed { score: heat.score()?, work: heat.work(), series })
+    };
+    let finisher = |((contestant, setting), heat): (&(&dyn Contestant, Accuracy), _)| Finisher {
+        name: contestant.name(),
+        library: contestant.library(),
+        stepping: contestant.stepping(),
+        setting: *setting,
+        result: result(heat),
+    };
+    asked.iter().zip(heats).map(finisher).collect()
+}
+
+/// Those whose answer is right are raced.
+fn qualified<'a>(
+    contestant: &'a dyn Contestant,
+    course: &'a Course,
+    setting: Accuracy,
+) -> Result<Box<dyn Heat + 'a>, Failure> {
+    let mut heat = contestant.enter(course, setting)?;
+    heat.call()?;
+    heat.score()?;
+    Ok(heat)
+}
+
+/// How much work a contest is, for progress.
+#[must_use]
+pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
+    let settings: usize = contestants.iter().map(|it| ladder(it.stepping()).len()).sum();
+    (settings * (rounds + 1)) as u64
+}
+
+/// The exact solver's row, which all others are held against.
+#[must_use]
+pub fn exact(finishers: &[Finisher]) -> Option<&Timed> {
+    let own = finishers.iter().find(|it| it.stepping == Stepping::Exact && it.name == "exact");
+    own?.result.as_ref().ok()
+}
+
+/// Each contestant's most accurate setting: the right answer with the least error.
+#[must_use]
+pub fn most_accurate<'a>(finishers: &'a [Finisher], name: &str) -> Option<&'a Finisher> {
+    let error =
+        |it: &&Finisher| it.result.as_ref().map_or(f64::INFINITY, |it| it.score.state_error);
+    let own = finishers.iter().filter(|it| it.name == name && it.result.is_ok());
+    own.min_by(|a, b| error(a).total_cmp(&error(b)))
+}

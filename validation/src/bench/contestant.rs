@@ -1,0 +1,144 @@
+//! Who is timed: whatever can run a course and show what came of it.
+//!
+//! An engine is one ([`Entered`]). Something that is no engine, such as many runs at once in the lanes of
+//! a processor, implements [`Contestant`] in a file of its own and is named in [`all`].
+
+use super::course::{Course, Score};
+use super::rounds::Racer;
+use crate::engine::{self, Accuracy, Engine, Failure, Limits, Outcome, Stepping, Work, contain};
+use crate::number::brief;
+
+/// Calls (right-hand sides, Jacobians, guards) beyond which a run is given up: a second or less.
+const BUDGET: u64 = 5_000_000;
+
+/// Something that can be timed on a course.
+pub trait Contestant: Sync {
+    /// Its name, as in `-e`.
+    fn name(&self) -> &'static str;
+
+    /// The library it is of.
+    fn library(&self) -> &'static str;
+
+    /// How it chooses its steps: what an answer is asked for in.
+    fn stepping(&self) -> Stepping;
+
+    /// Made ready for a course; nothing of this is timed.
+    ///
+    /// # Errors
+    /// Why it does not run there.
+    fn enter<'a>(
+        &'a self,
+        course: &'a Course,
+        setting: Accuracy,
+    ) -> Result<Box<dyn Heat + 'a>, Failure>;
+}
+
+/// A contestant on a course. What is timed is its `call`.
+pub trait Heat: Racer {
+    /// Runs of the course's length that a call makes.
+    fn runs(&self) -> f64 {
+        1.0
+    }
+
+    /// How good the last call's answer is.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    fn score(&self) -> Result<Score, Failure>;
+
+    /// What the last call counted.
+    fn work(&self) -> Work;
+}
+
+/// An engine as a contestant.
+pub struct Entered(pub &'static dyn Engine);
+
+impl Contestant for Entered {
+    fn name(&self) -> &'static str {
+        self.0.declaration().name
+    }
+
+    fn library(&self) -> &'static str {
+        self.0.declaration().library
+    }
+
+    fn stepping(&self) -> Stepping {
+        self.0.declaration().stepping
+    }
+
+    fn enter<'a>(
+        &'a self,
+        course: &'a Course,
+        setting: Accuracy,
+    ) -> Result<Box<dyn Heat + 'a>, Failure> {
+        enter(self.0, course, setting)
+    }
+}
+
+/// An engine made ready for a course.
+///
+/// # Errors
+/// Why it does not run there.
+pub fn enter<'a>(
+    engine: &'a dyn Engine,
+    course: &'a Course,
+    setting: Accuracy,
+) -> Result<Box<dyn Heat + 'a>, Failure> {
+    engine.available().map_err(Failure::new)?;
+    let least = engine.least_work(&course.task, setting);
+    if least > BUDGET as f64 {
+        let budget = brief(BUDGET as f64);
+        let reason =
+            format!("not run: {} right-hand sides at the least, of {budget}", brief(least));
+        return Err(Failure::new(reason));
+    }
+    Ok(Box::new(EngineHeat { engine, course, setting, answer: Outcome::default() }))
+}
+
+struct EngineHeat<'a> {
+    engine: &'a dyn Engine,
+    course: &'a Course,
+    setting: Accuracy,
+    answer: Outcome,
+}
+
+impl Racer for EngineHeat<'_> {
+    fn call(&mut self) -> Result<(), Failure> {
+        let limits = Limits { calls: BUDGET, ..Limits::default() };
+        let Self { engine, course, setting, .. } = self;
+        self.answer = contain(|| engine.run(&course.task, *setting, &limits))?;
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), Failure> {
+        self.score().map(|_| ())
+    }
+}
+
+impl Heat for EngineHeat<'_> {
+    fn score(&self) -> Result<Score, Failure> {
+        self.course.score(&self.answer)
+    }
+
+    fn work(&self) -> Work {
+        self.answer.work
+    }
+}
+
+/// Every contestant, the exact solver first.
+#[must_use]
+pub fn all() -> Vec<Box<dyn Contestant>> {
+    let engines = engine::all().iter();
+    engines.map(|engine| Box::new(Entered(*engine)) as Box<dyn Contestant>).collect()
+}
+
+/// What a contestant is asked for: every decade of tolerance down to where rounding rules, or halved steps.
+#[must_use]
+pub fn ladder(stepping: Stepping) -> Vec<Accuracy> {
+    const TOLERANCES: [f64; 8] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13];
+    match stepping {
+        Stepping::Exact => vec![Accuracy::Exact],
+        Stepping::Fixed { .. } => (2..=6).map(|k| Accuracy::Step(0.5_f64.powi(k))).collect(),
+        _ => TOLERANCES.map(Accuracy::Tolerance).to_vec(),
+    }
+}

@@ -1,0 +1,127 @@
+//! What contestants run: a case from its start to its horizon, with the truth that answers are held to.
+
+use crate::case::{Case, FileError, Given};
+use crate::engine::{Event, Failure, Grid, Outcome, Task};
+use crate::number::brief;
+use crate::score::{Matching, SCORED_ERROR, WINDOW};
+use crate::truth::{Library, Row, Truth};
+use percuss::{Parameters, Start};
+
+/// A run to be made and what is true of it.
+#[derive(Clone, Debug)]
+pub struct Course {
+    /// Its name.
+    pub name: String,
+    /// The regime it stands for.
+    pub regime: String,
+    /// The run. It asks for no samples: switches and the end are the answer.
+    pub task: Task,
+    /// The truth.
+    pub truth: Truth,
+}
+
+/// How good a right answer is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Score {
+    /// max(|dp|, |dy|, |dq|) over the switches, each at its own time, and the end of the run.
+    pub state_error: f64,
+    /// Largest error of a switch's time.
+    pub event_time_error: f64,
+    /// |dv| at the end.
+    pub drift_error: f64,
+}
+
+/// Only the switches and the end are asked for.
+const NO_SAMPLES: Grid = Grid { per_period: 1, count: 0 };
+
+impl Course {
+    /// The run of a case.
+    ///
+    /// # Errors
+    /// [`FileError`] for reference data that are missing, altered or of another case.
+    pub fn of(case: &Case, library: &Library) -> Result<Self, FileError> {
+        let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
+        let problem = given.check().map_err(FileError)?;
+        Ok(Self {
+            name: case.name.clone(),
+            regime: case.regime.clone(),
+            task: Task::of(case, problem, NO_SAMPLES),
+            truth: library.truth(case)?,
+        })
+    }
+
+    /// A run from rest of any model; its truth is the run made again in 106 bits.
+    ///
+    /// # Errors
+    /// [`Failure`] for a model that is not accepted, or a run that 106 bits do not decide.
+    pub fn from_rest(parameters: Parameters, periods: u64) -> Result<Self, Failure> {
+        let given = Given { parameters, start: Start::default(), ..Given::default() };
+        let problem = given.check().map_err(Failure::new)?;
+        let horizon = problem.entry.instant.after_periods(periods, 1);
+        let truth = Truth::replayed(&parameters, &problem.entry, horizon, (0, 1));
+        Ok(Self {
+            name: format!("omega {}, xi {}", parameters.omega, parameters.xi),
+            regime: "from rest".to_owned(),
+            task: Task::until(parameters, problem, horizon, NO_SAMPLES),
+            truth: truth.map_err(Failure::new)?,
+        })
+    }
+
+    /// Its length in forcing periods.
+    #[must_use]
+    pub fn periods(&self) -> f64 {
+        self.task.span / self.task.problem.model.period()
+    }
+
+    /// How good an answer is, if it is right: every switch there in its order and none besides, and no
+    /// error beyond the 1e-3 at which runs count as lost.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn score(&self, answer: &Outcome) -> Result<Score, Failure> {
+        let truth = &self.truth.switches;
+        let window = WINDOW * self.task.problem.model.period();
+        let same = truth.len() == answer.events.len()
+            && truth.iter().zip(&answer.events).all(|(row, event)| is_same(row, event, window));
+        if !same {
+            let matched = Matching::of(truth, &answer.events, window).pairs.len();
+            let (missed, invented) = (truth.len() - matched, answer.events.len() - matched);
+            return Err(Failure::new(format!(
+                "wrong: {missed} switches missed, {invented} invented"
+            )));
+        }
+        let pairs = || truth.iter().zip(&answer.events);
+        let ends = [(&self.truth.end, answer.end)];
+        let states = pairs().map(|(row, event)| (row, event.state)).chain(ends);
+        let score = Score {
+            state_error: worst(states.map(|(row, state)| state_error(row, &state))),
+            event_time_error: worst(pairs().map(|(row, event)| off(row.elapsed, event.elapsed))),
+            drift_error: off(self.truth.end.state[3], answer.end[3]),
+        };
+        // Written so that a NaN is wrong.
+        let largest = worst([score.state_error, score.drift_error].into_iter());
+        if largest <= SCORED_ERROR && score.event_time_error.is_finite() {
+            Ok(score)
+        } else {
+            let error = brief(largest);
+            Err(Failure::new(format!("wrong: off by {error}, accepted is {SCORED_ERROR}")))
+        }
+    }
+}
+
+fn is_same(row: &Row, event: &Event, window: f64) -> bool {
+    row.phase == Some(event.phase) && off(row.elapsed, event.elapsed) <= window
+}
+
+fn state_error(row: &Row, state: &[f64; 4]) -> f64 {
+    worst((0..3).map(|k| off(row.state[k], state[k])))
+}
+
+fn off(truth: percuss::two_word::TwoWord, value: f64) -> f64 {
+    truth.minus(percuss::two_word::TwoWord::new(value)).value().abs()
+}
+
+/// A maximum that keeps a NaN.
+fn worst(errors: impl Iterator<Item = f64>) -> f64 {
+    errors.fold(0.0, |worst: f64, it| if it > worst || it.is_nan() { it } else { worst })
+}

@@ -1,0 +1,67 @@
+//! What a run costs against xi: the slider relaxes in 2 xi, which an explicit method has to follow step by
+//! step, an implicit one at the price of linear systems, and a closed form not at all.
+
+use super::contest::{Finisher, contest_at};
+use super::contestant::Contestant;
+use super::course::Course;
+use crate::engine::{Accuracy, Failure, Stepping};
+use percuss::Parameters;
+
+const XI: [f64; 9] = [1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4];
+/// That of the stiffness ladder.
+const OMEGA: f64 = 1.2;
+const PERIODS: u64 = 20;
+/// Tight enough that most are right all the way, loose enough that stability chooses their steps.
+const TOLERANCE: f64 = 1e-9;
+/// A second is enough for one curve: what is dear at every xi says nothing about xi.
+const SHOWN: [&str; 8] = [
+    "diffsol-bdf",
+    "diffsol-tsit45",
+    "ode_solvers-dopri5",
+    "ode_solvers-dop853-time",
+    "differential-equations-rkv655e",
+    "differential-equations-rkv767e",
+    "differential-equations-radau5",
+    "differential-equations-bdf",
+];
+
+/// All contestants at one damping ratio.
+#[derive(Clone, Debug)]
+pub struct Rung {
+    /// The damping ratio.
+    pub xi: f64,
+    /// What came of it.
+    pub finishers: Vec<Finisher>,
+}
+
+/// Races a few engines of every library, and the exact solver, down the ladder of xi.
+///
+/// # Errors
+/// [`Failure`] for a run that 106 bits do not decide.
+pub fn ladder(
+    contestants: &[&dyn Contestant],
+    rounds: usize,
+    done: &dyn Fn(),
+) -> Result<Vec<Rung>, Failure> {
+    let asked = asked(contestants);
+    let rung = |xi: f64| {
+        let parameters = Parameters { xi, omega: OMEGA, ..Parameters::default() };
+        let course = Course::from_rest(parameters, PERIODS)?;
+        Ok(Rung { xi, finishers: contest_at(&course, &asked, rounds, done) })
+    };
+    XI.into_iter().map(rung).collect()
+}
+
+/// How much work that is, for progress.
+#[must_use]
+pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
+    (XI.len() * asked(contestants).len() * (rounds + 1)) as u64
+}
+
+fn asked<'a>(contestants: &[&'a dyn Contestant]) -> Vec<(&'a dyn Contestant, Accuracy)> {
+    let setting = |it: &&'a dyn Contestant| match it.stepping() {
+        Stepping::Exact => Some((*it, Accuracy::Exact)),
+        _ => SHOWN.contains(&it.name()).then_some((*it, Accuracy::Tolerance(TOLERANCE))),
+    };
+    contestants.iter().filter_map(setting).collect()
+}

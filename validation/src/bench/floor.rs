@@ -1,0 +1,87 @@
+//! The floor: what one evaluation of a closed form costs at the least, its sine, cosine and exponential.
+//!
+//! A switch needs one evaluation: the state at the root. It is timed in the same rounds as the switches,
+//! chained (each waits for the last, as in one run) and independent (as in many runs side by side).
+
+use super::rounds::{Pace, Plain, Racer, Series, race};
+use super::workload::{Repeated, Workload};
+use crate::engine::Failure;
+use std::hint::black_box;
+
+/// Units of work a call.
+const UNITS: u64 = 2000;
+
+/// Short batches, many of them: nothing else runs so briefly.
+const PACE: Pace = Pace { batch: 0.5e6, batches: 5 };
+
+/// What an evaluation costs at the least, and what a switch costs in the same rounds.
+#[derive(Clone, Debug)]
+pub struct Floors {
+    /// Each evaluation waits for the last, ns.
+    pub chained: Series,
+    /// They do not, ns.
+    pub independent: Series,
+    /// The workloads.
+    pub switches: Vec<Result<Cost, Failure>>,
+}
+
+/// What a workload costs.
+#[derive(Clone, Debug)]
+pub struct Cost {
+    /// Its name.
+    pub name: String,
+    /// Closed-form evaluations a unit.
+    pub evaluations: f64,
+    /// The best time of each round, ns a unit.
+    pub series: Series,
+}
+
+/// One sine-cosine pair and one exponential of the library that the solver uses.
+fn transcendental(angle: f64) -> f64 {
+    let (sin, cos) = libm::sincos(angle);
+    1.0 + 0.5 * sin * libm::exp(-cos.abs())
+}
+
+/// Races the floor and the workloads.
+///
+/// # Errors
+/// Never for a floor that can be computed.
+pub fn floors(
+    workloads: &[Box<dyn Workload + '_>],
+    rounds: usize,
+    done: &dyn Fn(),
+) -> Result<Floors, Failure> {
+    let angles: Vec<f64> = (0..UNITS).map(|k| 1.0 + 1e-3 * k as f64).collect();
+    let mut chained = Plain(|| {
+        let last = (0..UNITS).fold(black_box(0.3), |angle, _| transcendental(angle));
+        black_box(last);
+    });
+    let mut independent = Plain(|| {
+        let sum: f64 = black_box(&angles).iter().map(|angle| transcendental(*angle)).sum();
+        black_box(sum);
+    });
+    let mut repeated: Vec<_> =
+        workloads.iter().map(|it| Repeated { workload: it.as_ref(), units: UNITS }).collect();
+    let mut racers: Vec<&mut dyn Racer> = vec![&mut chained, &mut independent];
+    racers.extend(repeated.iter_mut().map(|it| it as &mut dyn Racer));
+    let per_unit = |series: Series| Series(series.0.iter().map(|it| it / UNITS as f64).collect());
+    let mut raced = race(&mut racers, rounds, PACE, done).into_iter();
+    let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced"))).map(per_unit);
+    let (chained, independent) = (next()?, next()?);
+    let mut cost = |workload: &dyn Workload| {
+        let series = next()?;
+        let evaluations = workload.run(UNITS)? as f64 / UNITS as f64;
+        Ok(Cost { name: workload.name(), evaluations, series })
+    };
+    Ok(Floors {
+        chained,
+        independent,
+        switches: workloads.iter().map(|it| cost(it.as_ref())).collect(),
+    })
+}
+
+/// How much work that is, for progress.
+#[must_use]
+pub fn size(workloads: usize, rounds: usize) -> u64 {
+    ((workloads + 2) * rounds) as u64
+}

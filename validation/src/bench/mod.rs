@@ -1,0 +1,28 @@
+//! Speed: every engine against the exact solver in interleaved rounds, each answer checked against the
+//! truth; what a switch costs against the floor; versions against each other.
+//!
+//! A time means something only beside another that was taken in the same rounds ([`rounds`]), of an answer
+//! that was right ([`course`]). Who is timed is a [`contestant`]; what versions are compared by, a
+//! [`workload`].
+
+pub mod build;
+pub mod cases;
+pub mod clock;
+pub mod compare;
+pub mod contest;
+pub mod contestant;
+pub mod course;
+pub mod damping;
+pub mod floor;
+pub mod history;
+pub mod instructions;
+pub mod length;
+mod pictures;
+pub mod report;
+pub mod rounds;
+pub mod table;
+pub mod workload;
+
+pub use pictures::{history as history_picture, pictures};
+pub use report::Bench;
+pub use table::table;

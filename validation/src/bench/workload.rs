@@ -1,0 +1,80 @@
+//! The exact solver's work a switch, apart from any engine's: what is recorded, and what two binaries are
+//! compared by.
+//!
+//! Work of another kind is one more [`Workload`], named in [`all`].
+
+use super::course::Course;
+use super::rounds::Racer;
+use crate::engine::Failure;
+use percuss::{Counters, Entry, Exit, Model};
+use std::hint::black_box;
+
+/// Work in units of which any number can be done.
+pub trait Workload {
+    /// Its name, as in the history.
+    fn name(&self) -> String;
+
+    /// Does this many units; the closed-form evaluations that took.
+    ///
+    /// # Errors
+    /// Why there is no such work.
+    fn run(&self, units: u64) -> Result<u64, Failure>;
+}
+
+/// Switches of a case's run, followed beyond its horizon; one that ends is begun again.
+pub struct Switches<'a> {
+    course: &'a Course,
+}
+
+impl Workload for Switches<'_> {
+    fn name(&self) -> String {
+        format!("switches/{}", self.course.name)
+    }
+
+    fn run(&self, units: u64) -> Result<u64, Failure> {
+        let problem = &self.course.task.problem;
+        let (mut done, mut evaluations) = (0, 0);
+        while done < units {
+            let counters = switches(&problem.model, problem.entry, units - done);
+            if counters.switches == 0 {
+                return Err(Failure::new("its first phase never ends: there is no switch to time"));
+            }
+            done += counters.switches;
+            evaluations += counters.evaluations;
+        }
+        Ok(evaluations)
+    }
+}
+
+/// Follows a run for this many switches, or to its end.
+fn switches(model: &Model, entry: Entry, most: u64) -> Counters {
+    let mut run = model.trajectory(black_box(entry));
+    while run.counters().switches < most {
+        match run.next() {
+            Some(leg) if matches!(leg.exit(), Exit::Switch(_)) => black_box(&leg),
+            _ => break,
+        };
+    }
+    run.counters()
+}
+
+/// The workloads of these courses.
+#[must_use]
+pub fn all(courses: &[Course]) -> Vec<Box<dyn Workload + '_>> {
+    let own = courses.iter().map(|course| Box::new(Switches { course }) as Box<dyn Workload + '_>);
+    own.collect()
+}
+
+/// A workload to be timed.
+pub struct Repeated<'a> {
+    /// The work.
+    pub workload: &'a dyn Workload,
+    /// Its units a call.
+    pub units: u64,
+}
+
+impl Racer for Repeated<'_> {
+    fn call(&mut self) -> Result<(), Failure> {
+        self.workload.run(self.units).map(|_| ())
+    }
+}

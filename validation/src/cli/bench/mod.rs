@@ -1,0 +1,186 @@
+//! `bench`: how fast, and how accurate at that.
+
+mod compare;
+mod history;
+mod record;
+mod worker;
+
+use super::output::{Destination, reader_left, write_whole};
+use super::{DONE, OUT_OF_BOUNDS, format, output, parse, work};
+use crate::bench::contest::{self, Finisher, contest};
+use crate::bench::contestant::{self, Contestant};
+use crate::bench::course::Course;
+use crate::bench::report::Measured;
+use crate::bench::{Bench, cases, damping, floor, length, pictures, table, workload};
+use crate::case::{self, Case};
+use crate::engine::{Stepping, hush_contained_panics};
+use crate::truth::Library;
+use anyhow::{Context, Result, anyhow, bail};
+use clap::{Args, Subcommand};
+use indicatif::ProgressBar;
+use regex::Regex;
+use std::path::{Path, PathBuf};
+
+/// Time every engine against the exact solver in interleaved rounds
+#[derive(Args)]
+#[command(args_conflicts_with_subcommands = true)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    other: Option<Other>,
+    /// Only engines whose name matches, beside the exact solver; several are alternatives
+    #[arg(short, long = "engine", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
+    engine: Vec<Regex>,
+    /// Only cases whose name matches, of all that validate has; several are alternatives
+    #[arg(short, long = "case", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
+    case: Vec<Regex>,
+    /// Writes bench.json and pictures into this folder
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    /// Interleaved rounds
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    rounds: u16,
+    /// Runs of 1e7 and 1e8 forcing periods too
+    #[arg(long)]
+    long: bool,
+}
+
+/// What there is between versions.
+#[derive(Subcommand)]
+enum Other {
+    Record(record::Arguments),
+    Compare(compare::Arguments),
+    History(history::Arguments),
+    /// Answer `names` and `best NAME UNITS BATCHES` on stdin with times, for compare
+    Worker,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<u8> {
+    match &arguments.other {
+        None => race(arguments),
+        Some(Other::Record(record)) => record::run(record).map(|()| DONE),
+        Some(Other::Compare(compare)) => compare::run(compare),
+        Some(Other::History(history)) => history::run(history).map(|()| DONE),
+        Some(Other::Worker) => worker::run().map(|()| DONE),
+    }
+}
+
+fn race(arguments: &Arguments) -> Result<u8> {
+    let all = contestant::all();
+    let contestants = chosen_engines(&all, &arguments.engine)?;
+    let courses = courses(&chosen_cases(&arguments.case)?)?;
+    if let Some(folder) = &arguments.out {
+        make_folder(folder)?;
+    }
+    hush_contained_panics();
+    let bench = measured(arguments, &contestants, &courses)?;
+    if let Some(folder) = &arguments.out {
+        write(&bench, folder)?;
+    }
+    let text = table(&bench);
+    let shown = Destination::Stdout.write(|out| Ok(out.write_all(text.as_bytes())?));
+    shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
+    Ok(DONE)
+}
+
+fn measured(
+    arguments: &Arguments,
+    contestants: &[&dyn Contestant],
+    courses: &[Course],
+) -> Result<Bench> {
+    let rounds = usize::from(arguments.rounds);
+    // Length and xi are of no case: they belong to the whole.
+    let whole = arguments.case.is_empty();
+    let bar = bar(arguments, contestants, courses.len(), whole);
+    let done = || bar.inc(1);
+    // First, while the process holds nothing: its peak is then the run's own.
+    let length = if whole { length::lengths(arguments.long, &done)? } else { Vec::new() };
+    let workloads = workload::all(courses);
+    let floors = floor::floors(&workloads, FLOOR_ROUNDS * rounds, &done)?;
+    let contests: Vec<(&Course, Vec<Finisher>)> =
+        courses.iter().map(|it| (it, contest(it, contestants, rounds, &done))).collect();
+    let damping = if whole { damping::ladder(contestants, rounds, &done)? } else { Vec::new() };
+    bar.finish_and_clear();
+    let measured = Measured { contests: &contests, floors: &floors, length, damping: &damping };
+    Ok(Bench::new(rounds, measured))
+}
+
+/// The floor and the switches take milliseconds a round.
+const FLOOR_ROUNDS: usize = 5;
+
+fn bar(
+    arguments: &Arguments,
+    contestants: &[&dyn Contestant],
+    courses: usize,
+    whole: bool,
+) -> ProgressBar {
+    let rounds = usize::from(arguments.rounds);
+    let mut size = courses as u64 * contest::size(contestants, rounds)
+        + floor::size(courses, FLOOR_ROUNDS * rounds);
+    if whole {
+        size += length::size(arguments.long) + damping::size(contestants, rounds);
+    }
+    work::bar(size, "turns")
+}
+
+/// The exact solver is what all are held against: it always runs.
+fn chosen_engines<'a>(
+    all: &'a [Box<dyn Contestant>],
+    patterns: &[Regex],
+) -> Result<Vec<&'a dyn Contestant>> {
+    let matches = |it: &dyn Contestant| {
+        patterns.is_empty() || patterns.iter().any(|pattern| pattern.is_match(it.name()))
+    };
+    if !all.iter().any(|it| matches(it.as_ref())) {
+        let names: Vec<_> = all.iter().map(|it| it.name()).collect();
+        bail!("--engine {} matches no engine: accepted are {}", shown(patterns), names.join(", "));
+    }
+    let is_unit = |it: &dyn Contestant| it.name() == "exact" && it.stepping() == Stepping::Exact;
+    Ok(all.iter().map(AsRef::as_ref).filter(|it| is_unit(*it) || matches(*it)).collect())
+}
+
+fn chosen_cases(patterns: &[Regex]) -> Result<Vec<Case>> {
+    let all = case::embedded()?;
+    let wanted = |case: &Case| {
+        if patterns.is_empty() {
+            cases::USUAL.contains(&case.name.as_str())
+        } else {
+            patterns.iter().any(|it| it.is_match(&case.name))
+        }
+    };
+    let mut chosen: Vec<Case> = all.into_iter().filter(wanted).collect();
+    if chosen.is_empty() {
+        bail!("--case {} matches no case: percuss validate has their names", shown(patterns));
+    }
+    let place = |case: &Case| cases::USUAL.iter().position(|it| *it == case.name);
+    chosen.sort_by_key(|case| place(case).unwrap_or(usize::MAX));
+    Ok(chosen)
+}
+
+/// The cases that are raced where none are named, and that versions are compared by.
+fn cases_by_default() -> Result<Vec<Case>> {
+    chosen_cases(&[])
+}
+
+fn courses(cases: &[Case]) -> Result<Vec<Course>> {
+    let library = Library::embedded()?;
+    Ok(cases.iter().map(|case| Course::of(case, &library)).collect::<Result<_, _>>()?)
+}
+
+fn make_folder(folder: &Path) -> Result<()> {
+    std::fs::create_dir_all(folder).map_err(|error| {
+        let folder = folder.display();
+        anyhow!("--out {folder} cannot be made ({error}); accepted is a writable folder")
+    })
+}
+
+fn write(bench: &Bench, folder: &Path) -> Result<()> {
+    Destination::new(Some(&folder.join("bench.json"))).json(bench).context("--out")?;
+    for (name, bytes) in pictures(bench)? {
+        write_whole(&folder.join(name), |out| Ok(out.write_all(&bytes)?)).context("--out")?;
+    }
+    Ok(())
+}
+
+fn shown(patterns: &[Regex]) -> String {
+    patterns.iter().map(Regex::as_str).collect::<Vec<_>>().join(" ")
+}

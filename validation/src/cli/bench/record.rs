@@ -1,0 +1,111 @@
+//! `bench record`: lines of this version, appended to the history.
+
+use super::output::{Destination, reader_left, write_whole};
+use super::{cases_by_default, courses, work};
+use crate::bench::contestant::enter;
+use crate::bench::course::Course;
+use crate::bench::floor::{self, Floors};
+use crate::bench::history::{self, Figures, History, Record};
+use crate::bench::rounds::Series;
+use crate::bench::{instructions, workload};
+use crate::engine::{Accuracy, Failure, exact};
+use anyhow::{Context, Result, anyhow};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// Append this version to the history
+#[derive(Args)]
+pub(in super::super) struct Arguments {
+    /// The history
+    #[arg(long, value_name = "FILE", default_value = history::FILE)]
+    history: PathBuf,
+    /// Interleaved rounds, twice
+    #[arg(long, value_name = "N", default_value_t = 150, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    rounds: u16,
+    /// Counts instructions too; valgrind has to be installed
+    #[arg(long)]
+    instructions: bool,
+}
+
+pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    let before = raw(&arguments.history)?;
+    History::read(&arguments.history).map_err(|what| anyhow!("--history {what}"))?;
+    let courses = courses(&cases_by_default()?)?;
+    let records = records(arguments, &courses)?;
+    let text = History { records: records.clone() }.text().map_err(|what| anyhow!(what))?;
+    let gap = if before.is_empty() || before.ends_with('\n') { "" } else { "\n" };
+    let whole = format!("{before}{gap}{text}");
+    write_whole(&arguments.history, |out| Ok(out.write_all(whole.as_bytes())?))
+        .context("--history")?;
+    let shown = Destination::Stdout.write(|out| {
+        writeln!(out, "bench,best_ns,median_ns,floors,floors_again,evaluations_per_switch,instructions")?;
+        for it in &records {
+            let instructions = it.instructions.map(|it| it.to_string()).unwrap_or_default();
+            let Record { bench, best_ns, median_ns, floors, floors_again, .. } = it;
+let evaluations = it.evaluations_per_switch;
+            writeln!(out, "{bench},{best_ns:.1},{median_ns:.1},{floors:.3},{floors_again:.3},{evaluations:.4},{instructions}")?;
+        }
+        Ok(())
+    });
+    shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })
+}
+
+/// What the file holds, untouched: old lines stay as they were written.
+fn raw(path: &Path) -> Result<String> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => Ok(text),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
+        Err(error) => Err(anyhow!(
+            "--history {}: cannot be read ({error}); accepted is a history that bench record wrote",
+            path.display()
+        )),
+    }
+}
+
+fn records(arguments: &Arguments, courses: &[Course]) -> Result<Vec<Record>> {
+    let rounds = usize::from(arguments.rounds);
+    let workloads = workload::all(courses);
+    let counted = if arguments.instructions { courses.len() as u64 } else { 0 };
+    let bar = work::bar(2 * floor::size(workloads.len(), rounds) + counted, "turns");
+    let half = || floor::floors(&workloads, rounds, &|| bar.inc(1));
+    let halves = [half()?, half()?];
+    let record = |(i, course): (usize, &Course)| {
+        let name = workloads[i].name();
+        let instructions = if arguments.instructions {
+            let count = instructions::per_unit(&name).context("--instructions")?;
+            bar.inc(1);
+            Some(count)
+        } else {
+            None
+        };
+        let figures = Figures { instructions, ..figures(course, &halves, i)? };
+        Ok(Record::of_this(&name, figures))
+    };
+    let records = courses.iter().enumerate().map(record).collect();
+    bar.finish_and_clear();
+    records
+}
+
+/// What both halves of the rounds say of a workload.
+fn figures(course: &Course, halves: &[Floors; 2], i: usize) -> Result<Figures, Failure> {
+    let mut heat = enter(exact(), course, Accuracy::Exact)?;
+    heat.call()?;
+    let cost = |half: &Floors| {
+        let cost = half.switches.get(i).cloned();
+        cost.unwrap_or_else(|| Err(Failure::new("not timed")))
+    };
+    let [first, second] = [cost(&halves[0])?, cost(&halves[1])?];
+    let floor = |half: &Floors| half.chained.best();
+    let rounds = [first.series.0.clone(), second.series.0.clone()].concat();
+    let whole = Series(rounds);
+    Ok(Figures {
+        instructions: None,
+        best_ns: whole.best(),
+        median_ns: whole.typical(),
+        floor_ns: floor(&halves[0]).min(floor(&halves[1])),
+        floors: first.series.best() / floor(&halves[0]),
+        floors_again: second.series.best() / floor(&halves[1]),
+        evaluations_per_switch: first.evaluations,
+        state_error_max: heat.score()?.state_error,
+    })
+}

@@ -1,0 +1,169 @@
+//! `bench`: a wrong answer has no time, versions are held against each other, and what is given wrongly is
+//! refused.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
+
+mod exact;
+mod support;
+
+use percuss_validation::bench::cases::USUAL;
+use percuss_validation::bench::contest::{contest_at, most_accurate};
+use percuss_validation::bench::contestant::{Contestant, Entered};
+use percuss_validation::bench::course::Course;
+use percuss_validation::engine::{Accuracy, CONTROL, Engine, all, wrong};
+use percuss_validation::truth::Library;
+use std::path::{Path, PathBuf};
+use support::{refused, run, stdout, text};
+
+fn course(name: &str) -> Course {
+    let library = Library::embedded().expect("the tables are read");
+    Course::of(&exact::case(name), &library).expect("a course")
+}
+
+fn exact_solver() -> &'static dyn Engine {
+    all()[0]
+}
+
+/// Faults that a run of a few dozen switches shows; a dropped hundredth or a digit lost after 1e8 cycles
+/// need longer ones.
+const SHOWN: [&str; 5] = ["wrong-omega", "wrong-xi", "wrong-drift", "wrong-arctan", "wrong-impact"];
+
+#[test]
+fn a_wrong_answer_has_no_time() {
+    let course = course("impact-into-progression");
+    let faulty = wrong().iter().map(|it| it.engine);
+    let faulty = faulty.filter(|it| SHOWN.contains(&it.declaration().name));
+    let engines: Vec<Entered> =
+        [exact_solver(), CONTROL].into_iter().chain(faulty).map(Entered).collect();
+    assert_eq!(engines.len(), 2 + SHOWN.len());
+    let asked: Vec<(&dyn Contestant, Accuracy)> =
+        engines.iter().map(|it| (it as &dyn Contestant, Accuracy::Exact)).collect();
+    let finishers = contest_at(&course, &asked, 2, &|| ());
+    for finisher in &finishers[..2] {
+        let timed = finisher.result.as_ref().expect("it is right");
+        assert_eq!(timed.series.0.len(), 2);
+        assert!(timed.score.state_error < 1e-9, "{finisher:?}");
+    }
+    for finisher in &finishers[2..] {
+        let failure = finisher.result.as_ref().expect_err("it is wrong");
+        assert!(failure.0.starts_with("wrong: "), "{finisher:?}");
+        assert!(most_accurate(&finishers, finisher.name).is_none());
+    }
+}
+
+#[test]
+fn the_usual_cases_are_there_and_the_exact_solver_is_right_on_them() {
+    for name in USUAL {
+        let course = course(name);
+        let found = contest_at(&course, &[(&Entered(exact_solver()), Accuracy::Exact)], 1, &|| ());
+        let timed = found[0].result.as_ref().expect("right");
+        assert!(timed.score.state_error < 1e-10, "{name}: {:?}", timed.score);
+        assert_eq!(timed.work.steps, course.truth.switches.len() as u64 + 1);
+    }
+}
+
+fn binary() -> String {
+    assert_cmd::cargo::cargo_bin("percuss").display().to_string()
+}
+
+const ONE: [&str; 2] = ["-b", "^switches/critical-xi-1$"];
+
+#[test]
+fn a_binary_is_compared_with_itself() {
+    let own = binary();
+    let output = run(&[&["bench", "compare", &own, &own], &ONE[..]].concat());
+    let said = text(&output.stdout);
+    // Whether it passes is for a check that takes its time: CONTRIBUTING.md.
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{}", text(&output.stderr));
+    let lines: Vec<_> = said.lines().collect();
+    assert!(lines[0].starts_with("old ") && lines[1].starts_with("new "), "{said}");
+    assert_eq!(lines[2], "bench,quotient,lives_apart,again,verdict");
+    assert!(lines[3].starts_with("switches/critical-xi-1,") && lines.len() == 4, "{said}");
+}
+
+#[test]
+fn twice_the_work_fails() {
+    let own = binary();
+    let slowed = ["bench", "compare", &own, &own, "--slowdown", "1"];
+    let output = run(&[&slowed, &ONE[..]].concat());
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).trim_end().ends_with(",fail"));
+}
+
+/// A line of a history.
+fn line(commit: &str, floors: f64) -> String {
+    format!(
+        r#"{{"schema":1,"percuss":"0.0.1","commit":"{commit}","rustc":"r","target_cpu":"t","cpu":"c","bench":"one","instructions":null,"best_ns":1,"median_ns":1,"floor_ns":1,"floors":{floors},"floors_again":{floors},"evaluations_per_switch":1,"state_error_max":0}}"#
+    )
+}
+
+fn history(folder: &Path, lines: &[String]) -> String {
+    let path: PathBuf = folder.join("history.jsonl");
+    std::fs::write(&path, lines.join("\n")).expect("written");
+    path.display().to_string()
+}
+
+#[test]
+fn recorded_versions_are_compared() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let lines = [line("aaaaaaa1", 10.0), line("bbbbbbb2", 10.15), line("ccccccc3", 10.3)];
+    let path = history(folder.path(), &lines);
+    let compared = |old, new| {
+        let output = run(&["bench", "compare", old, new, "--history", &path]);
+        (output.status.code(), text(&output.stdout))
+    };
+    assert_eq!(compared("aaaaaaa", "aaaaaaa1").0, Some(0));
+    let (code, said) = compared("aaaaaaa1", "bbbbbbb2");
+    assert!(code == Some(0) && said.contains("one,floors,10,10.15,1.0150,warn"), "{said}");
+    let (code, said) = compared("aaaaaaa1", "ccccccc3");
+    assert!(code == Some(1) && said.contains("one,floors,10,10.3,1.0300,fail"), "{said}");
+    assert_eq!(compared("ccccccc3", "aaaaaaa1").0, Some(0));
+}
+
+#[test]
+fn what_cannot_be_compared_is_refused() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let good = history(folder.path(), &[line("aaaaaaa1", 10.0)]);
+    let own = binary();
+    let with = |path: &str, sides: [&str; 2], wanted: &[&str]| {
+        refused(&["bench", "compare", sides[0], sides[1], "--history", path], wanted);
+    };
+    with(&good, ["aaaaaaa1", "1.2.3"], &["1.2.3", "neither a file nor a version", "aaaaaaa1"]);
+    with(&good, [&own, "aaaaaaa1"], &[&own, "two binaries or two recorded versions"]);
+    with("/no/such", ["0.1.0", "0.2.0"], &["/no/such", "none is recorded"]);
+    with("/", ["0.1.0", "0.2.0"], &["--history", "cannot be read"]);
+    let corrupt = history(folder.path(), &[line("aaaaaaa1", 10.0), "{\"schema\":1".to_owned()]);
+    with(&corrupt, ["aaaaaaa1", "aaaaaaa1"], &["history.jsonl:2: ", "bench record"]);
+    refused(&["bench", "history", "--history", &corrupt], &["history.jsonl:2: "]);
+    refused(&["bench", "record", "--history", &corrupt], &["history.jsonl:2: "]);
+    refused(&["bench", "history", "--history", "/no/such"], &["/no/such", "holds no record"]);
+    // No program, a program that is no worker, and one that says nothing.
+    refused(&["bench", "compare", &good, &own], &[&good, "cannot be run"]);
+    #[cfg(unix)]
+    for stranger in ["/bin/cat", "/bin/echo", "/bin/true"] {
+        refused(&["bench", "compare", &own, stranger], &["percuss that has bench worker"]);
+    }
+    refused(&["bench", "compare", &own, &own, "-b", "nothing"], &["--bench nothing", "switches/"]);
+    for share in ["-0.1", "1.5", "nan", "x"] {
+        refused(
+            &["bench", "compare", &own, &own, &format!("--slowdown={share}")],
+            &["--slowdown", share],
+        );
+    }
+    refused(&["bench", "compare", "0.1.0", "0.1.0", "--slowdown", "0.1"], &["--slowdown"]);
+    refused(&["bench", "compare", &own], &["NEW"]);
+}
+
+#[test]
+fn what_matches_nothing_is_refused() {
+    refused(&["bench", "-e", "sundials"], &["--engine", "sundials", "diffsol-bdf"]);
+    refused(&["bench", "-c", "no-such-case"], &["--case", "no-such-case"]);
+    refused(&["bench", "-e", "("], &["--engine", "(", "regular expression"]);
+    for rounds in ["0", "-1", "1.5", "1001", "x"] {
+        refused(&["bench", &format!("--rounds={rounds}")], &["--rounds", rounds]);
+    }
+    refused(&["bench", "--omega", "1"], &["--omega"]);
+    refused(&["bench", "-c", "small-b", "--out", "/proc/nowhere"], &["--out", "/proc/nowhere"]);
+    refused(&["bench", "recrod"], &["recrod"]);
+    assert!(stdout(&["bench", "--help"]).contains("compare"));
+}
