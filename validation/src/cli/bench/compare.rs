@@ -7,6 +7,7 @@ use crate::bench::compare::recorded::changes;
 use crate::bench::compare::verdict::{Verdict, is_doubtful};
 use crate::bench::history::{self, History, Record};
 use crate::cli::parse;
+use crate::number::shortest;
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
 use regex::Regex;
@@ -110,7 +111,7 @@ fn recorded(arguments: &Arguments) -> Result<Said> {
             eprintln!("{bench}: recorded on {} and on {}", old.cpu, new.cpu);
         }
         for it in changes(&old, &new) {
-            let [before, after] = it.figures;
+            let [before, after] = it.figures.map(shortest);
             let (quotient, word) = (it.quotient(), it.verdict.word());
             lines.push(format!("{bench},{},{before},{after},{quotient:.4},{word}", it.figure));
             verdicts.push(it.verdict);
