@@ -25,6 +25,8 @@ mod error;
 pub mod flow;
 mod growth;
 mod instant;
+#[cfg(feature = "lanes")]
+pub mod lanes;
 mod leg;
 mod model;
 pub mod number;
