@@ -1,57 +1,149 @@
-//! What many runs at once cost: a grid of starts, each followed for the same number of forcing periods, one
-//! after the other and on all threads. Another way to run an ensemble is one more function here, beside
-//! the others.
+//! What a switch costs in an ensemble: by each instruction set that the processor has, on one core and in
+//! one interleaved run, beside the scalar solver; and two threads beside two processes.
 //!
-//! `cargo bench -p percuss-validation --bench ensembles`. For exploration.
+//! `cargo bench -p percuss-validation --bench ensembles`. Of every round the quotients are taken, of the rounds
+//! their median: what else the machine does then weighs on both sides. For exploration, no test.
 
-#![allow(
-    missing_docs,
-    clippy::expect_used,
-    reason = "a bench's macros make public items; a panic is a failed bench"
-)]
+#![allow(clippy::expect_used, reason = "a panic is a failed bench")]
 
-use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use percuss::dynamics::strobe::StrobeMap;
-use percuss::{Entry, Model, Parameters, Start};
-use rayon::prelude::*;
+use percuss::dynamics::ensemble::{Motion, Watcher, follow_by};
+use percuss::dynamics::section::section;
+use percuss::lanes::Instructions;
+use percuss::{Endless, Entry, Model, Parameters, Start};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::hint::black_box;
+use std::ops::ControlFlow;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
 
-const PERIODS: u64 = 20;
-const SIDE: u32 = 16;
+/// omega, xi: chaos with progression, period two, the attractors of Fig. 7.
+const REGIMES: [(f64, f64); 4] = [(1.4, 0.01), (0.1, 0.01), (1.6, 0.1), (1.4, 0.1)];
+const STARTS: usize = 256;
+const PERIODS: u32 = 100;
+const ROUNDS: usize = 9;
+/// How long two threads and two processes work in each round.
+const SPELL: Duration = Duration::from_millis(500);
+const PROCESS: &str = "--process";
 
-/// Cell centres of a square in (p, y).
-fn starts(map: &StrobeMap) -> Vec<Entry> {
-    let centre = |k: u32| -1.0 + 2.0 * (f64::from(k) + 0.5) / f64::from(SIDE);
-    let cells = (0..SIDE).flat_map(|row| (0..SIDE).map(move |column| [column, row]));
-    let entry = |[p, y]: [u32; 2]| map.entry([centre(p), centre(y), 0.0]).expect("in range");
-    cells.map(entry).collect()
+/// Counts what passes.
+struct Count {
+    left: u32,
+    switches: u64,
 }
 
-/// Where a run ends, as p, y, q.
-fn end(model: &Model, start: &Entry) -> [f64; 3] {
-    let horizon = start.instant.after_periods(PERIODS, 1);
-    let last = model.trajectory(*start).until(horizon).last().expect("a phase");
-    last.entry_at(&horizon).point()
+impl Watcher for Count {
+    fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
+        black_box(strobe);
+        self.left -= 1;
+        if self.left > 0 { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    }
+
+    fn enter(&mut self, _: &Entry) {
+        self.switches += 1;
+    }
 }
 
-fn ensembles(criterion: &mut Criterion) {
-    let parameters = Parameters { omega: 1.6, xi: 0.1, ..Parameters::default() };
-    let model = Model::new(parameters).expect("in range");
-    let rest = model.start(&Start::default()).expect("rest is a start");
-    let starts = starts(&StrobeMap::new(model, rest.instant));
-    let mut group = criterion.benchmark_group("ensemble");
-    group.throughput(Throughput::Elements(starts.len() as u64 * PERIODS));
-    group.bench_function("one after the other", |bencher| {
-        bencher
-            .iter(|| black_box(&starts).iter().map(|start| end(&model, start)).collect::<Vec<_>>());
-    });
-    group.bench_function("on all threads", |bencher| {
-        bencher.iter(|| {
-            black_box(&starts).par_iter().map(|start| end(&model, start)).collect::<Vec<_>>()
+/// Starts on an attractor.
+struct Ensemble {
+    model: Model,
+    starts: Vec<Entry>,
+}
+
+impl Ensemble {
+    fn new(omega: f64, xi: f64) -> Self {
+        let model = Model::new(Parameters { omega, xi, ..Parameters::default() });
+        let model = model.expect("in range");
+        let rest = model.start(&Start::default()).expect("rest is a start");
+        let starts = section(&model, rest, 0.0, 100, STARTS as u64).collect();
+        Self { model, starts }
+    }
+
+    /// Follows all starts; the number of switches.
+    fn run(&self, by: Instructions) -> u64 {
+        let (counts, _) = follow_by(by, self.starts.len(), |number| {
+            let entry = self.starts[number];
+            let watcher = Count { left: PERIODS, switches: 0 };
+            let first = entry.instant.after_periods(1, 1);
+            Motion { model: &self.model, entry, first, horizon: None, watcher }
         });
-    });
-    group.finish();
+        counts.iter().map(|count| count.switches).sum()
+    }
+
+    /// Nanoseconds a switch.
+    fn cost(&self, by: Instructions) -> f64 {
+        let clock = Instant::now();
+        let switches = self.run(by);
+        clock.elapsed().as_secs_f64() * 1e9 / switches as f64
+    }
+
+    /// Switches a second while a spell lasts.
+    fn throughput(&self) -> f64 {
+        let clock = Instant::now();
+        let mut switches = 0;
+        while clock.elapsed() < SPELL {
+            switches += self.run(Instructions::widest());
+        }
+        switches as f64 / clock.elapsed().as_secs_f64()
+    }
 }
 
-criterion_group!(benches, ensembles);
-criterion_main!(benches);
+fn threads(count: usize) -> ThreadPool {
+    ThreadPoolBuilder::new().num_threads(count).build().expect("a pool of threads")
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// Instruction sets beside the scalar solver, one thread.
+fn one_core(ensemble: &Ensemble) {
+    let sets = Instructions::available();
+    let rounds: Vec<Vec<f64>> =
+        (0..ROUNDS).map(|_| sets.iter().map(|set| ensemble.cost(*set)).collect()).collect();
+    for (k, set) in sets.iter().enumerate() {
+        let cost = median(rounds.iter().map(|round| round[k]).collect());
+        let gain = median(rounds.iter().map(|round| round[0] / round[k]).collect());
+        println!(
+            "  {:8} {cost:6.1} ns a switch, {gain:.2} times the scalar throughput",
+            set.name()
+        );
+    }
+}
+
+fn process() -> Child {
+    let program = std::env::current_exe().expect("this program");
+    let mut command = Command::new(program);
+    command.arg(PROCESS).stdout(Stdio::piped());
+    command.spawn().expect("a process")
+}
+
+fn output(process: Child) -> f64 {
+    let output = process.wait_with_output().expect("it ends");
+    String::from_utf8_lossy(&output.stdout).trim().parse().expect("a number")
+}
+
+/// Two threads beside two processes.
+fn two_cores(ensemble: &Ensemble) {
+    let two = threads(2);
+    let quotient = |_| {
+        let pair = [process(), process()];
+        let apart: f64 = pair.into_iter().map(output).sum();
+        two.install(|| ensemble.throughput()) / apart
+    };
+    let quotient = median((0..ROUNDS).map(quotient).collect());
+    println!("two threads: {quotient:.2} of what two processes reach");
+}
+
+fn main() {
+    let (omega, xi) = REGIMES[0];
+    if std::env::args().any(|argument| argument == PROCESS) {
+        println!("{}", threads(1).install(|| Ensemble::new(omega, xi).throughput()));
+        return;
+    }
+    for (omega, xi) in REGIMES {
+        println!("omega {omega}, xi {xi}");
+        threads(1).install(|| one_core(&Ensemble::new(omega, xi)));
+    }
+    two_cores(&Ensemble::new(omega, xi));
+}

@@ -25,6 +25,17 @@ impl Instant {
         Self { cycle: turns + i128::from(cycle), angle }
     }
 
+    /// An instant that is known to be one: `0 <= angle < 2 pi`.
+    #[cfg(feature = "lanes")]
+    pub(crate) const fn from_parts(cycle: i128, angle: TwoWord) -> Self {
+        Self { cycle, angle }
+    }
+
+    /// The instant one forcing period later.
+    pub(crate) const fn next_cycle(self) -> Self {
+        Self { cycle: self.cycle + 1, ..self }
+    }
+
     /// Whole forcing cycles since `tau = 0`.
     #[must_use]
     pub const fn cycle(&self) -> i128 {

@@ -26,6 +26,8 @@ mod error;
 pub mod flow;
 mod growth;
 mod instant;
+#[cfg(feature = "lanes")]
+pub mod lanes;
 mod leg;
 mod model;
 pub mod number;

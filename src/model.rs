@@ -81,6 +81,12 @@ impl Model {
         &self.constants
     }
 
+    /// phi within one turn, in two words.
+    #[cfg(feature = "lanes")]
+    pub(crate) const fn phi(&self) -> TwoWord {
+        self.phi
+    }
+
     pub(crate) fn strides(&self) -> &Strides {
         &self.strides
     }

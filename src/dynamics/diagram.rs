@@ -4,7 +4,7 @@
 //! ([`Follow::Carry`]); Fig. 10b starts every value from the same state ([`Follow::Reset`]) and jumps
 //! wherever that state changes basins.
 
-use super::parallel;
+use super::ensemble::{self, Motion, Watcher};
 use super::section::Section;
 use super::strobe::{Point, StrobeMap};
 use crate::entry::Entry;
@@ -14,6 +14,7 @@ use crate::leg::Endless;
 use crate::model::Model;
 use crate::parameters::{Parameter, Parameters};
 use crate::start::Start;
+use std::ops::ControlFlow;
 
 /// How each value is started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,6 +61,9 @@ pub struct Step {
     pub endless: Option<Endless>,
 }
 
+/// Values that are looked at in one go: their models and strobes are held in memory meanwhile.
+const BLOCK: usize = 1024;
+
 impl Diagram {
     /// The parameter's value at a step.
     #[must_use]
@@ -80,13 +84,11 @@ impl Diagram {
         let steps: Vec<u32> = (0..self.steps).collect();
         match self.follow {
             Follow::Reset => {
-                let step = |step: &u32| {
-                    let model = self.model(*step)?;
-                    let done = self.step(&model, *step, model.start(&self.start)?);
-                    seen();
-                    Ok(done)
-                };
-                parallel::map(&steps, step).into_iter().collect()
+                let mut done = Vec::with_capacity(steps.len());
+                for block in steps.chunks(BLOCK) {
+                    done.extend(self.reset(block, &seen)?);
+                }
+                Ok(done)
             }
             Follow::Carry => {
                 let mut last: Option<Point> = None;
@@ -118,19 +120,69 @@ impl Diagram {
         Instant::at(model.parameters().omega, self.start.tau, self.start.cycle)
     }
 
+    /// Steps that know nothing of each other.
+    fn reset(&self, steps: &[u32], seen: &(impl Fn() + Sync)) -> Result<Vec<Step>, InputError> {
+        let begun = |step: &u32| {
+            let model = self.model(*step)?;
+            let entry = model.start(&self.start)?;
+            Ok((model, entry))
+        };
+        let begun: Vec<(Model, Entry)> = steps.iter().map(begun).collect::<Result<_, _>>()?;
+        let strobes = ensemble::follow(begun.len(), |number| {
+            let (model, entry) = &begun[number];
+            self.motion(model, *entry, Some(seen))
+        });
+        let done = strobes.into_iter().zip(&begun).zip(steps);
+        Ok(done.map(|((strobes, (model, _)), step)| strobes.step(self, model, *step)).collect())
+    }
+
     fn step(&self, model: &Model, step: u32, entry: Entry) -> Step {
+        ensemble::follow_alone(self.motion(model, entry, None)).step(self, model, step)
+    }
+
+    fn motion<'a>(
+        &self,
+        model: &'a Model,
+        entry: Entry,
+        seen: Option<&'a (dyn Fn() + Sync)>,
+    ) -> Motion<'a, Strobes<'a>> {
         let first = entry.instant.after_periods(self.transient, 1);
-        let last = first.after_periods(u64::from(self.periods), 1);
-        let strobes = Section::along(model.trajectory(entry).until(last), first);
-        // One strobe more than is kept closes the last period.
+        let horizon = Some(first.after_periods(u64::from(self.periods), 1));
         let kept = self.periods as usize;
-        let strobes: Vec<Entry> = strobes.take(kept + 1).collect();
+        let watcher = Strobes { kept, strobes: Vec::with_capacity(kept + 1), seen };
+        Motion { model, entry, first, horizon, watcher }
+    }
+}
+
+/// The strobes that are kept, and one more, which closes the last period.
+struct Strobes<'a> {
+    kept: usize,
+    strobes: Vec<Entry>,
+    seen: Option<&'a (dyn Fn() + Sync)>,
+}
+
+impl Watcher for Strobes<'_> {
+    fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
+        self.strobes.push(*strobe);
+        if self.strobes.len() <= self.kept {
+            return ControlFlow::Continue(());
+        }
+        if let Some(seen) = self.seen {
+            seen();
+        }
+        ControlFlow::Break(())
+    }
+}
+
+impl Strobes<'_> {
+    fn step(self, diagram: &Diagram, model: &Model, step: u32) -> Step {
+        let Self { kept, strobes, .. } = self;
         let drift_per_period = match (strobes.first(), strobes.last()) {
             (Some(first), Some(last)) if kept > 0 => (last.v() - first.v()) / kept as f64,
             _ => f64::NAN,
         };
         let points = strobes.iter().take(kept).map(Entry::point).collect();
         let endless = strobes.last().and_then(|last| Section::endless_at(model, last));
-        Step { value: self.value(step), points, drift_per_period, endless }
+        Step { value: diagram.value(step), points, drift_per_period, endless }
     }
 }

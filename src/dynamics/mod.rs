@@ -3,6 +3,7 @@
 pub mod attractor;
 pub mod continuation;
 pub mod diagram;
+pub mod ensemble;
 pub mod linear;
 pub mod lyapunov;
 pub mod orbit;

@@ -1,10 +1,12 @@
 //! Stroboscopic sections: the motion at successive instants with one forcing angle.
 
+use super::ensemble::{self, Motion, Watcher};
 use crate::entry::Entry;
 use crate::instant::Instant;
 use crate::leg::{Endless, Exit, Leg};
 use crate::model::Model;
 use crate::trajectory::Trajectory;
+use std::ops::ControlFlow;
 
 /// The strobes of one motion from some instant on: one pass over its phases, in constant memory.
 ///
@@ -68,4 +70,43 @@ pub fn section(
     let last = first.after_periods(count, 1);
     let strobes = Section::along(model.trajectory(from).until(last), first);
     (0..count).zip(strobes).map(|(_, strobe)| strobe)
+}
+
+/// The same of many motions of one model, all at once: their strobes in the order of the starts.
+#[must_use]
+pub fn sections(
+    model: &Model,
+    starts: &[Entry],
+    angle: f64,
+    transient: u64,
+    count: usize,
+) -> Vec<Vec<Entry>> {
+    if count == 0 {
+        return vec![Vec::new(); starts.len()];
+    }
+    let kept = ensemble::follow(starts.len(), |number| {
+        let entry = starts[number];
+        let first = entry.instant.after_periods(transient, 1).first_at_angle(angle);
+        let horizon = Some(first.after_periods(count as u64, 1));
+        let watcher = Kept { wanted: count, strobes: Vec::new() };
+        Motion { model, entry, first, horizon, watcher }
+    });
+    kept.into_iter().map(|it| it.strobes).collect()
+}
+
+/// The first so many strobes.
+struct Kept {
+    wanted: usize,
+    strobes: Vec<Entry>,
+}
+
+impl Watcher for Kept {
+    fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
+        self.strobes.push(*strobe);
+        if self.strobes.len() < self.wanted {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
+    }
 }

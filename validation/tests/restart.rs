@@ -1,4 +1,4 @@
-//! The restart test of the exact solver on every case.
+//! The restart test of the exact solver on every case, one by one and in lanes.
 //!
 //! `cargo test --release --test restart -- --nocapture` prints the figures of every case; with
 //! `--ignored` from ten thousand states each.
@@ -8,7 +8,9 @@
 mod exact;
 
 use percuss::Phase;
+use percuss::lanes::Instructions;
 use percuss_validation::case::{Case, Problem, embedded};
+use percuss_validation::engine::{Failure, Outcome, Task};
 use percuss_validation::score::{Restart, RestartTest};
 
 /// Of the runs with an impact, in eps (1 + |value|) x growth: twice the largest median measured (1.0,
@@ -20,6 +22,9 @@ const LARGEST: f64 = 10.0;
 /// The mass never strikes the slider again on these attractors.
 const WITHOUT_IMPACT: [&str; 3] = ["never-returns", "never-stops", "rests-for-ever"];
 
+/// How a motion is solved.
+type Run = dyn Fn(&Task) -> Result<Outcome, Failure> + Sync;
+
 fn restarts(case: &Case, count: usize) -> (RestartTest, Restart) {
     let test = RestartTest::new(&exact::problem(case), count);
     let restart = test.score(f64::EPSILON, exact::run);
@@ -27,37 +32,45 @@ fn restarts(case: &Case, count: usize) -> (RestartTest, Restart) {
 }
 
 fn every_case(count: usize) {
+    let lanes = |task: &Task| Ok(exact::run_in_lanes(Instructions::widest(), task));
     for case in embedded().expect("the cases are read") {
-        let (_, restart) = restarts(&case, count);
-        let Restart { with_impact, units, absolute, .. } = &restart;
-        println!(
-            "{:24} {with_impact:6} median {:.3} q99 {:.2} max {:.2} \
+        let test = RestartTest::new(&exact::problem(&case), count);
+        holds_its_digits(&case, &test, "alone", &exact::run);
+        holds_its_digits(&case, &test, "in lanes", &lanes);
+    }
+}
+
+fn holds_its_digits(case: &Case, test: &RestartTest, how: &str, run: &Run) {
+    let restart = test.score(f64::EPSILON, run);
+    let count = test.runs.len() + test.undecided;
+    let Restart { with_impact, units, absolute, .. } = &restart;
+    println!(
+        "{:24} {how:8} {with_impact:6} median {:.3} q99 {:.2} max {:.2} \
              drift {:.3} {:.2} {:.2} time {:.3} {:.2} {:.2} absolute {:.1e} {:.1e} {:.1e}",
-            case.name,
-            units.median,
-            units.q99,
-            units.max,
-            restart.drift_units.median,
-            restart.drift_units.q99,
-            restart.drift_units.max,
-            restart.time_units.median,
-            restart.time_units.q99,
-            restart.time_units.max,
-            absolute.median,
-            absolute.q99,
-            absolute.max
-        );
-        let unhappy = (restart.undecided, restart.failed, restart.wrong_words);
-        assert_eq!((restart.runs, unhappy), (count, (0, 0, 0)), "{}", case.name);
-        if WITHOUT_IMPACT.contains(&case.name.as_str()) {
-            assert_eq!(*with_impact, 0, "{}", case.name);
-            continue;
-        }
-        assert!(*with_impact > 0, "{}", case.name);
-        assert!(units.median <= MEDIAN, "{}: median {}", case.name, units.median);
-        for max in [units.max, restart.drift_units.max, restart.time_units.max] {
-            assert!(max <= LARGEST, "{}: max {max}", case.name);
-        }
+        case.name,
+        units.median,
+        units.q99,
+        units.max,
+        restart.drift_units.median,
+        restart.drift_units.q99,
+        restart.drift_units.max,
+        restart.time_units.median,
+        restart.time_units.q99,
+        restart.time_units.max,
+        absolute.median,
+        absolute.q99,
+        absolute.max
+    );
+    let unhappy = (restart.undecided, restart.failed, restart.wrong_words);
+    assert_eq!((restart.runs, unhappy), (count, (0, 0, 0)), "{}", case.name);
+    if WITHOUT_IMPACT.contains(&case.name.as_str()) {
+        assert_eq!(*with_impact, 0, "{}", case.name);
+        return;
+    }
+    assert!(*with_impact > 0, "{}", case.name);
+    assert!(units.median <= MEDIAN, "{}: median {}", case.name, units.median);
+    for max in [units.max, restart.drift_units.max, restart.time_units.max] {
+        assert!(max <= LARGEST, "{}: max {max}", case.name);
     }
 }
 
@@ -116,7 +129,7 @@ fn an_error_of_a_few_eps_is_seen() {
 #[test]
 fn a_failure_is_no_number() {
     let (test, _) = restarts(&exact::case("chaos-from-rest"), 20);
-    let failing = test.score(1e-9, |_| Err(percuss_validation::engine::Failure::new("tired")));
+    let failing = test.score(1e-9, |_| Err(Failure::new("tired")));
     assert_eq!((failing.failed, failing.with_impact), (20, 20));
     assert!(failing.units.max.is_nan() && failing.absolute.median.is_nan());
 }

@@ -1,14 +1,14 @@
-//! The attractors that are known so far, and the recognition of a motion that approaches one.
+//! The attractors that are known so far, and where starts lead.
 
 use super::Attractor;
-use super::cells::{Cells, RECURRENCES};
+use super::cells::Cells;
+use super::recognition::Recognition;
 use super::settle::Settled;
 use super::trap::Trap;
+use crate::dynamics::ensemble::{self, Motion};
 use crate::dynamics::parallel;
-use crate::dynamics::section::Section;
 use crate::dynamics::strobe::{Point, StrobeMap};
 use crate::entry::Entry;
-use crate::leg::Endless;
 
 /// Where a start leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -49,11 +49,9 @@ const BLOCK: usize = 1 << 14;
 const LARGEST_BATCH: usize = 64;
 /// Two runs are on one attractor when this share of one lies in the cells of the other.
 const SAME: f64 = 0.5;
-/// So many turns in a row have to bring a motion in a trap closer.
-const TURNS: u32 = 3;
 /// A motion is at rest on an orbit when the square of its distance is so small a share of the
 /// trap's radius: it need not come closer still.
-const AT_REST: f64 = 1e-12;
+pub(super) const AT_REST: f64 = 1e-12;
 
 impl Atlas {
     /// Of no attractor yet. A start is followed for `transient` forcing periods (at least one), and
@@ -91,19 +89,14 @@ impl Atlas {
     /// Where many starts lead; attractors not met before are added. `seen` is told how many starts more
     /// are done.
     pub fn label_all(&mut self, starts: &[Point], seen: &(dyn Fn(u64) + Sync)) -> Vec<Label> {
-        let first = |start: &Point| {
-            let Ok(entry) = self.map.entry(*start) else { return Ok(Label::Unresolved) };
-            let first = self.recognised_if_any(entry);
-            seen(u64::from(first.is_ok()));
-            first
-        };
-        let mut labels = Vec::with_capacity(starts.len());
+        let mut labels = vec![Label::Unresolved; starts.len()];
         let mut open = Vec::new();
-        for block in starts.chunks(BLOCK) {
-            for outcome in parallel::map(block, first) {
-                open.extend(outcome.err().map(|entry| (labels.len(), entry)));
-                labels.push(outcome.unwrap_or(Label::Unresolved));
-            }
+        for (block, from) in starts.chunks(BLOCK).zip((0..).step_by(BLOCK)) {
+            let entry =
+                |(start, place): (&Point, usize)| Some((place, self.map.entry(*start).ok()?));
+            let entries: Vec<_> = block.iter().zip(from..).filter_map(entry).collect();
+            seen((block.len() - entries.len()) as u64);
+            open.extend(self.still_open(entries, &mut labels, seen));
         }
         self.settle_all(open, &mut labels, seen);
         labels
@@ -129,18 +122,7 @@ impl Atlas {
             open = rest;
             if self.known.len() > before {
                 batch = 1;
-                let again = parallel::map(&open, |(_, entry)| self.recognised_if_any(*entry));
-                let mut still = Vec::new();
-                for ((index, _), outcome) in open.into_iter().zip(again) {
-                    match outcome {
-                        Ok(label) => {
-                            labels[index] = label;
-                            seen(1);
-                        }
-                        Err(entry) => still.push((index, entry)),
-                    }
-                }
-                open = still;
+                open = self.still_open(open, labels, seen);
             }
         }
     }
@@ -159,33 +141,42 @@ impl Atlas {
         }))
     }
 
-    fn recognised_if_any(&self, from: Entry) -> Result<Label, Entry> {
-        if self.known.is_empty() { Err(from) } else { self.recognised(from, self.transient) }
+    /// Labels the motions that are recognised, if anything is known; the others, where they are then.
+    fn still_open(
+        &self,
+        motions: Vec<(usize, Entry)>,
+        labels: &mut [Label],
+        seen: &(dyn Fn(u64) + Sync),
+    ) -> Vec<(usize, Entry)> {
+        if self.known.is_empty() {
+            return motions;
+        }
+        let recognitions = ensemble::follow(motions.len(), |number| {
+            let from = motions[number].1;
+            let watcher = Recognition::new(&self.known, from, self.transient, seen);
+            self.motion(from, watcher)
+        });
+        let mut open = Vec::new();
+        for ((place, _), recognition) in motions.into_iter().zip(recognitions) {
+            match recognition.outcome() {
+                Ok(label) => labels[place] = label,
+                Err(last) => open.push((place, last)),
+            }
+        }
+        open
     }
 
     /// Follows a motion until it is recognised, for at most so many strobes; where it is then if it
     /// is not.
     pub(super) fn recognised(&self, from: Entry, strobes: u64) -> Result<Label, Entry> {
-        let mut section = Section::along(self.map.model().trajectory(from), from.instant);
-        let mut watch = Watch::new(&self.known);
-        let mut last = from;
-        for n in 0..=strobes {
-            let Some(strobe) = section.next() else { break };
-            if escapes(&section) {
-                return Ok(Label::Escaping);
-            }
-            if let Some(known) = watch.see(n, &strobe.point()) {
-                return Ok(Label::Attractor(known));
-            }
-            last = strobe;
-        }
-        Err(last)
+        let watcher = Recognition::new(&self.known, from, strobes, &|_| {});
+        ensemble::follow_alone(self.motion(from, watcher)).outcome()
     }
-}
 
-/// Whether a motion is in a phase that never ends, other than rest on the slider, which is an orbit.
-pub(super) fn escapes(section: &Section) -> bool {
-    matches!(section.endless(), Some(Endless::NeverReturns | Endless::NeverStops))
+    fn motion<W>(&self, from: Entry, watcher: W) -> Motion<'_, W> {
+        let model = self.map.model();
+        Motion { model, entry: from, first: from.instant, horizon: None, watcher }
+    }
 }
 
 impl Known {
@@ -208,69 +199,5 @@ impl Known {
 
     pub(super) fn period(&self) -> u64 {
         u64::from(self.attractor.period().unwrap_or(1))
-    }
-}
-
-/// What one motion has met of the known attractors.
-pub(super) struct Watch<'a> {
-    known: &'a [Known],
-    /// Strobes in a row in the cells of each.
-    streaks: Vec<u32>,
-    entered: Option<Entered<'a>>,
-}
-
-/// A trap was entered; each turn of the orbit from there on has to bring the motion closer.
-struct Entered<'a> {
-    known: usize,
-    trap: &'a Trap,
-    due: u64,
-    size: f64,
-    turns: u32,
-}
-
-impl<'a> Watch<'a> {
-    pub fn new(known: &'a [Known]) -> Self {
-        Self { known, streaks: vec![0; known.len()], entered: None }
-    }
-
-    /// Takes the n-th strobe; which attractor it is known to lead to.
-    pub fn see(&mut self, n: u64, point: &Point) -> Option<usize> {
-        if let Some(entered) = &mut self.entered
-            && entered.due == n
-        {
-            let size = entered.trap.size(point);
-            let closer = size < entered.size || size < AT_REST;
-            entered.turns += 1;
-            if closer && entered.turns >= TURNS {
-                return Some(entered.known);
-            }
-            (entered.size, entered.due) = (size, n + self.known[entered.known].period());
-            if !closer {
-                self.entered = None;
-            }
-        }
-        if self.entered.is_none() {
-            self.entered = self.enter(n, point);
-        }
-        for (known, streak) in self.streaks.iter_mut().enumerate() {
-            if let Evidence::Cells(cells) = &self.known[known].evidence {
-                *streak = if cells.hold(point) { *streak + 1 } else { 0 };
-                if *streak >= RECURRENCES {
-                    return Some(known);
-                }
-            }
-        }
-        None
-    }
-
-    fn enter(&self, n: u64, point: &Point) -> Option<Entered<'a>> {
-        self.known.iter().enumerate().find_map(|(known, it)| {
-            let Evidence::Traps(traps) = &it.evidence else { return None };
-            let inside = |trap: &'a Trap| {
-                let size = trap.size(point);
-                (size <= 1.0).then(|| Entered { known, trap, due: n + it.period(), size, turns: 0 })
-            };
-            traps.iter().find_map(inside)
-        })
     }
 }

@@ -17,6 +17,7 @@ mod atlas;
 mod cells;
 mod fractal;
 mod grid;
+mod recognition;
 mod settle;
 mod trap;
 

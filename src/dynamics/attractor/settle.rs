@@ -1,7 +1,8 @@
 //! What a motion settles on that approaches no attractor known so far.
 
-use super::atlas::{Atlas, Evidence, Known, Label, Watch, escapes};
+use super::atlas::{Atlas, Evidence, Known, Label};
 use super::cells::{Cells, REFERENCE};
+use super::recognition::{Watch, escapes};
 use super::trap::Trap;
 use super::{Attractor, ERRORS, Kind};
 use crate::dynamics::lyapunov::Spectrum;

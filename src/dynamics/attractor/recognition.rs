@@ -1,0 +1,122 @@
+//! The recognition of a motion that approaches a known attractor.
+
+use super::atlas::{AT_REST, Evidence, Known, Label};
+use super::cells::RECURRENCES;
+use super::trap::Trap;
+use crate::dynamics::ensemble::Watcher;
+use crate::dynamics::section::Section;
+use crate::dynamics::strobe::Point;
+use crate::entry::Entry;
+use crate::leg::Endless;
+use std::ops::ControlFlow;
+
+/// So many turns in a row have to bring a motion in a trap closer.
+const TURNS: u32 = 3;
+
+/// Watches for what is known.
+pub(super) struct Recognition<'a> {
+    watch: Watch<'a>,
+    label: Option<Label>,
+    last: Entry,
+    /// Strobes met, and the number after which it is given up.
+    met: u64,
+    most: u64,
+    seen: &'a (dyn Fn(u64) + Sync),
+}
+
+impl<'a> Recognition<'a> {
+    pub fn new(known: &'a [Known], from: Entry, most: u64, seen: &'a (dyn Fn(u64) + Sync)) -> Self {
+        Self { watch: Watch::new(known), label: None, last: from, met: 0, most, seen }
+    }
+
+    /// Its label, or where the motion is if it has none.
+    pub fn outcome(self) -> Result<Label, Entry> {
+        self.label.ok_or(self.last)
+    }
+}
+
+impl Watcher for Recognition<'_> {
+    fn see(&mut self, strobe: &Entry, endless: Option<Endless>) -> ControlFlow<()> {
+        let escapes = matches!(endless, Some(Endless::NeverReturns | Endless::NeverStops));
+        self.label = if escapes {
+            Some(Label::Escaping)
+        } else {
+            self.watch.see(self.met, &strobe.point()).map(Label::Attractor)
+        };
+        (self.last, self.met) = (*strobe, self.met + 1);
+        if self.label.is_some() {
+            (self.seen)(1);
+            return ControlFlow::Break(());
+        }
+        if self.met > self.most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// Whether a motion is in a phase that never ends, other than rest on the slider, which is an orbit.
+pub(super) fn escapes(section: &Section) -> bool {
+    matches!(section.endless(), Some(Endless::NeverReturns | Endless::NeverStops))
+}
+
+/// What one motion has met of the known attractors.
+pub(super) struct Watch<'a> {
+    known: &'a [Known],
+    /// Strobes in a row in the cells of each.
+    streaks: Vec<u32>,
+    entered: Option<Entered<'a>>,
+}
+
+/// A trap was entered; each turn of the orbit from there on has to bring the motion closer.
+struct Entered<'a> {
+    known: usize,
+    trap: &'a Trap,
+    due: u64,
+    size: f64,
+    turns: u32,
+}
+
+impl<'a> Watch<'a> {
+    pub fn new(known: &'a [Known]) -> Self {
+        Self { known, streaks: vec![0; known.len()], entered: None }
+    }
+
+    /// Takes the n-th strobe; which attractor it is known to lead to.
+    pub fn see(&mut self, n: u64, point: &Point) -> Option<usize> {
+        if let Some(entered) = &mut self.entered
+            && entered.due == n
+        {
+            let size = entered.trap.size(point);
+            let closer = size < entered.size || size < AT_REST;
+            entered.turns += 1;
+            if closer && entered.turns >= TURNS {
+                return Some(entered.known);
+            }
+            (entered.size, entered.due) = (size, n + self.known[entered.known].period());
+            if !closer {
+                self.entered = None;
+            }
+        }
+        if self.entered.is_none() {
+            self.entered = self.enter(n, point);
+        }
+        for (known, streak) in self.streaks.iter_mut().enumerate() {
+            if let Evidence::Cells(cells) = &self.known[known].evidence {
+                *streak = if cells.hold(point) { *streak + 1 } else { 0 };
+                if *streak >= RECURRENCES {
+                    return Some(known);
+                }
+            }
+        }
+        None
+    }
+
+    fn enter(&self, n: u64, point: &Point) -> Option<Entered<'a>> {
+        self.known.iter().enumerate().find_map(|(known, it)| {
+            let Evidence::Traps(traps) = &it.evidence else { return None };
+            let inside = |trap: &'a Trap| {
+                let size = trap.size(point);
+                (size <= 1.0).then(|| Entered { known, trap, due: n + it.period(), size, turns: 0 })
+            };
+            traps.iter().find_map(inside)
+        })
+    }
+}

@@ -1,0 +1,72 @@
+//! One motion on its way, phase by phase.
+
+use super::{Motion, Watcher};
+use crate::crossing::Counters;
+use crate::entry::Entry;
+use crate::instant::Instant;
+use crate::leg::{Endless, Exit, Leg};
+use crate::model::Model;
+use std::ops::ControlFlow;
+
+/// A motion and where it is.
+pub struct Course<'a, W> {
+    /// What moves.
+    pub model: &'a Model,
+    /// Where its phase began.
+    pub entry: Entry,
+    /// When it is next looked at.
+    pub due: Instant,
+    horizon: Option<Instant>,
+    watcher: W,
+}
+
+impl<'a, W: Watcher> Course<'a, W> {
+    pub fn new(motion: Motion<'a, W>) -> Self {
+        let Motion { model, entry, first, horizon, watcher } = motion;
+        Self { model, entry, due: first, horizon, watcher }
+    }
+
+    /// Follows it to its end by the scalar solver: who watched, and the number of phases.
+    pub fn watched_alone(mut self) -> (W, u64) {
+        let mut phases = 1;
+        while self.pass().is_continue() {
+            phases += 1;
+        }
+        (self.watcher, phases)
+    }
+
+    /// Who watched.
+    #[cfg(feature = "lanes")]
+    pub fn into_watcher(self) -> W {
+        self.watcher
+    }
+
+    /// Takes one phase by the scalar solver.
+    pub fn pass(&mut self) -> ControlFlow<()> {
+        let horizon = self.horizon.as_ref();
+        let leg = Leg::new(self.model, self.entry, horizon, &mut Counters::default());
+        let endless = match leg.exit() {
+            Exit::Endless(endless) => Some(*endless),
+            Exit::Switch(_) | Exit::Horizon => None,
+        };
+        while !leg.ends_by(&self.due) {
+            self.see(&leg.entry_at(&self.due), endless)?;
+        }
+        if let Exit::Switch(next) = leg.exit() {
+            self.enter(next);
+        }
+        ControlFlow::Continue(())
+    }
+
+    /// Goes on to the next phase.
+    pub fn enter(&mut self, next: &Entry) {
+        self.watcher.enter(next);
+        self.entry = *next;
+    }
+
+    /// Shows the strobe that was due.
+    pub fn see(&mut self, strobe: &Entry, endless: Option<Endless>) -> ControlFlow<()> {
+        self.due = self.due.next_cycle();
+        self.watcher.see(strobe, endless)
+    }
+}

@@ -1,0 +1,108 @@
+//! Motions on their way in lanes: those whose phases are of one kind are taken together.
+//!
+//! So many motions are under way that some kind always fills a vector, until there are no more to begin. Which
+//! ones share a vector depends on how they happen to meet; what becomes of them does not.
+
+use super::course::Course;
+use super::seat::Seat;
+use super::{Done, Motion, Tally, Watcher};
+use crate::lanes::{Batch, Permit, Stage};
+use crate::model::Model;
+
+/// The motions of one thread.
+pub struct Pool<'a, W> {
+    permit: Permit,
+    seats: Vec<Option<Seat<'a, W>>>,
+    free: Vec<usize>,
+    /// Seats by the stage that they wait for.
+    waiting: [Vec<usize>; Stage::ALL.len()],
+    batch: Box<Batch>,
+    /// Whose constants each lane of the batch has.
+    shaped: Vec<Option<&'a Model>>,
+    done: Vec<(usize, W)>,
+    tally: Tally,
+}
+
+impl<'a, W: Watcher> Pool<'a, W> {
+    pub fn new(permit: Permit) -> Self {
+        // With one less than a vector waiting for each stage and one motion more, some vector is full.
+        let seats = Stage::ALL.len() * permit.width();
+        Self {
+            permit,
+            seats: (0..seats).map(|_| None).collect(),
+            free: (0..seats).collect(),
+            waiting: Default::default(),
+            batch: Box::default(),
+            shaped: vec![None; permit.width()],
+            done: Vec::new(),
+            tally: Tally::default(),
+        }
+    }
+
+    /// Follows motions as long as there is a next one; their numbers and watchers.
+    pub fn follow(
+        mut self,
+        next: &mut dyn FnMut() -> Option<usize>,
+        begin: &impl Fn(usize) -> Motion<'a, W>,
+    ) -> Done<W> {
+        let mut more = true;
+        loop {
+            while more && let Some(place) = self.free.pop() {
+                match next() {
+                    Some(number) => self.enter(place, number, Course::new(begin(number))),
+                    None => {
+                        more = false;
+                        self.free.push(place);
+                    }
+                }
+            }
+            let fullest = Stage::ALL.into_iter().max_by_key(|it| self.waiting[*it as usize].len());
+            match fullest {
+                Some(stage) if !self.waiting[stage as usize].is_empty() => self.work(stage),
+                _ => return Done { watchers: self.done, tally: self.tally },
+            }
+        }
+    }
+
+    fn enter(&mut self, place: usize, number: usize, course: Course<'a, W>) {
+        let mut seat = Seat::new(number, course);
+        let stage = seat.next_stage();
+        self.seats[place] = Some(seat);
+        self.queue(place, stage);
+    }
+
+    fn queue(&mut self, place: usize, stage: Option<Stage>) {
+        match stage {
+            Some(stage) => self.waiting[stage as usize].push(place),
+            None => {
+                if let Some((number, watcher, tally)) = self.seats[place].take().map(Seat::leave) {
+                    self.done.push((number, watcher));
+                    self.tally.add(tally);
+                }
+                self.free.push(place);
+            }
+        }
+    }
+
+    /// Takes a vector of one kind one stage further. Lanes left over repeat what they had.
+    fn work(&mut self, stage: Stage) {
+        let waiting = &mut self.waiting[stage as usize];
+        let taken = waiting.len().min(self.permit.width());
+        let places = waiting.split_off(waiting.len() - taken);
+        for (lane, place) in places.iter().enumerate() {
+            let Some(seat) = &self.seats[*place] else { continue };
+            let model = seat.model();
+            if !self.shaped[lane].is_some_and(|it| std::ptr::eq(it, model)) {
+                seat.shape(lane, &mut self.batch.shape);
+                self.shaped[lane] = Some(model);
+            }
+            seat.begin(stage, lane, &mut self.batch.begin);
+        }
+        self.permit.work(stage, &mut self.batch);
+        for (lane, place) in places.into_iter().enumerate() {
+            let Some(seat) = &mut self.seats[place] else { continue };
+            let stage = seat.advance(stage, lane, &self.batch.end);
+            self.queue(place, stage);
+        }
+    }
+}

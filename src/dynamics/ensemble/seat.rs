@@ -1,0 +1,200 @@
+//! One motion of a pool: into a lane and out of it.
+
+use super::course::Course;
+use super::{Tally, Watcher};
+use crate::entry::{Entry, Onset};
+use crate::instant::Instant;
+use crate::lanes::{Begin, Column, End, Shape, Stage};
+use crate::model::Model;
+use crate::state::State;
+use crate::surface::FOUR_ULPS;
+use crate::two_word::TwoWord;
+use std::ops::ControlFlow;
+
+/// A motion, what the lanes need of its model, and what begins when its phase ends, if that is known.
+pub struct Seat<'a, W> {
+    number: usize,
+    course: Course<'a, W>,
+    shape: Option<Shape<f64>>,
+    next: Option<Entry>,
+    tally: Tally,
+}
+
+impl<'a, W: Watcher> Seat<'a, W> {
+    pub fn new(number: usize, course: Course<'a, W>) -> Self {
+        let shape = Shape::new(course.model);
+        Self { number, course, shape, next: None, tally: Tally::default() }
+    }
+
+    /// The motion's number and its watcher, and by what its phases were solved.
+    pub fn leave(self) -> (usize, W, Tally) {
+        (self.number, self.course.into_watcher(), self.tally)
+    }
+
+    pub fn model(&self) -> &'a Model {
+        self.course.model
+    }
+
+    /// Gives a lane the constants.
+    pub fn shape(&self, lane: usize, shape: &mut Shape<Column>) {
+        if let Some(mine) = &self.shape {
+            shape.set(lane, mine);
+        }
+    }
+
+    /// What the lanes are to do next; what they cannot is done before. None when the watcher has seen enough.
+    pub fn next_stage(&mut self) -> Option<Stage> {
+        loop {
+            let stage = match self.course.entry.onset {
+                _ if self.shape.is_none() => None,
+                Onset::Separation { h_rate: 0.0 } => Some(Stage::Flight),
+                Onset::Contact { .. } => Some(Stage::Contact),
+                Onset::Progression { .. } => Some(Stage::Slip),
+                Onset::Apart | Onset::Separation { .. } => None,
+            };
+            if stage.is_some() {
+                return stage;
+            }
+            self.tally.alone += 1;
+            if self.course.pass().is_break() {
+                return None;
+            }
+        }
+    }
+
+    /// The phase, and in it the strobe that is due, by the scalar solver.
+    fn pass_alone(&mut self) -> Option<Stage> {
+        self.tally.alone += 1;
+        match self.course.pass() {
+            ControlFlow::Continue(()) => self.next_stage(),
+            ControlFlow::Break(()) => None,
+        }
+    }
+
+    /// Fills a lane.
+    #[inline]
+    pub fn begin(&self, stage: Stage, lane: usize, begin: &mut Begin) {
+        let Entry { instant, state, onset, .. } = &self.course.entry;
+        let angle = instant.angle_two_word();
+        begin.angle[lane] = angle.high;
+        begin.angle_low[lane] = angle.low;
+        begin.y[lane] = state.y;
+        begin.q[lane] = state.q;
+        let (first, second) = match *onset {
+            Onset::Contact { offset, reference } => (offset, reference),
+            Onset::Progression { drift_rate, closing } => (drift_rate, closing),
+            Onset::Apart | Onset::Separation { .. } => (0.0, 0.0),
+        };
+        begin.first[lane] = first;
+        begin.second[lane] = second;
+        if stage.is_strobe() {
+            let due = self.course.due;
+            let angle = due.angle_two_word();
+            begin.due_cycles[lane] = (due.cycle() - instant.cycle()) as i64 as f64;
+            begin.due[lane] = angle.high;
+            begin.due_low[lane] = angle.low;
+        }
+    }
+
+    /// Takes what a lane has found; what it has not, the scalar solver finds. What to do next.
+    #[inline]
+    pub fn advance(&mut self, stage: Stage, lane: usize, end: &End) -> Option<Stage> {
+        if end.fine[lane] != 1.0 {
+            return stage.again().or_else(|| self.pass_alone());
+        }
+        if stage.is_strobe() {
+            let Some(strobe) = self.strobe(stage, lane, end) else { return self.pass_alone() };
+            if self.course.see(&strobe, None).is_break() {
+                return None;
+            }
+            return match self.next {
+                Some(next) => self.onwards(stage, next),
+                None => self.pass_alone(),
+            };
+        }
+        self.tally.in_lanes += 1;
+        let next = self.landed(stage, lane, end);
+        self.onwards(stage, next)
+    }
+
+    /// The next strobe in the phase, or the phase after it.
+    #[inline]
+    fn onwards(&mut self, stage: Stage, next: Entry) -> Option<Stage> {
+        // As a leg shows them: what is due when the phase ends belongs to the next one.
+        while next.instant > self.course.due {
+            if self.course.due > self.course.entry.instant {
+                self.next = Some(next);
+                return Some(stage.strobe());
+            }
+            let entry = self.course.entry;
+            if self.course.see(&entry, None).is_break() {
+                return None;
+            }
+        }
+        self.course.enter(&next);
+        self.next_stage()
+    }
+
+    /// What begins at a switch, with what is known there imposed ([`crate::leg`]).
+    #[inline]
+    fn landed(&self, stage: Stage, lane: usize, end: &End) -> Entry {
+        let Entry { instant, drift, .. } = self.course.entry;
+        let constants = self.course.model.constants();
+        let angle = TwoWord { high: end.angle[lane], low: end.angle_low[lane] };
+        let instant =
+            Instant::from_parts(instant.cycle() + i128::from(end.cycles[lane] as i64), angle);
+        let y = end.y[lane];
+        let (q, onset, drift) = match stage {
+            Stage::Contact | Stage::ContactAgain | Stage::ContactStrobe => {
+                let threshold = end.guard[lane];
+                let onset = if threshold == 1.0 {
+                    Onset::Progression { drift_rate: 0.0, closing: y }
+                } else {
+                    Onset::Separation { h_rate: 0.0 }
+                };
+                (threshold - constants.two_xi * y, onset, drift)
+            }
+            Stage::Slip | Stage::SlipStrobe => {
+                let onset = Onset::Contact { offset: 0.0, reference: 1.0 };
+                let drift = drift.plus(TwoWord::new(end.drift[lane]));
+                (1.0 - constants.two_xi * y, onset, drift)
+            }
+            Stage::Flight | Stage::FlightAgain | Stage::FlightStrobe => {
+                let (f, q, rate) = (end.guard[lane], end.q[lane], constants.rate);
+                let onset = if f < 1.0 {
+                    Onset::Contact { offset: f, reference: 0.0 }
+                } else {
+                    Onset::Progression { drift_rate: (f - 1.0) * rate, closing: (1.0 - q) * rate }
+                };
+                (q, onset, drift)
+            }
+        };
+        Entry { instant, state: State { p: q + constants.g, y, q }, drift, onset }
+    }
+
+    /// The phase taken up at the strobe ([`crate::Leg::entry_at`]); none next to a threshold.
+    #[inline]
+    fn strobe(&self, stage: Stage, lane: usize, end: &End) -> Option<Entry> {
+        let Entry { drift, onset, .. } = self.course.entry;
+        let g = self.course.model.constants().g;
+        let state = State { p: end.p[lane], y: end.y[lane], q: end.q[lane] };
+        let guard = end.guard[lane];
+        let (onset, drift) = match (stage, onset) {
+            (Stage::FlightStrobe, _) => {
+                let clear = state.p < state.q + g;
+                (clear.then_some(Onset::Apart)?, drift)
+            }
+            (_, Onset::Contact { reference, .. }) => {
+                let f = reference + guard;
+                let clear = f.min(1.0 - f) > FOUR_ULPS;
+                (clear.then_some(Onset::Contact { offset: guard, reference })?, drift)
+            }
+            _ => {
+                let clear = guard > FOUR_ULPS * end.terms[lane];
+                let onset = Onset::Progression { drift_rate: guard, closing: end.closing[lane] };
+                (clear.then_some(onset)?, drift.plus(TwoWord::new(end.drift[lane])))
+            }
+        };
+        Some(Entry { instant: self.course.due, state, drift, onset })
+    }
+}

@@ -1,0 +1,124 @@
+//! As many phases of one kind as there are lanes: how they begin and what becomes of them.
+
+use super::shape::Shape;
+use super::wide::Column;
+
+/// What the lanes of a batch have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(usize)]
+pub enum Stage {
+    /// Flights, from separation to impact.
+    Flight,
+    /// Contacts, to either threshold.
+    Contact,
+    /// Flights whose certificate has failed, with great care.
+    FlightAgain,
+    /// Contacts whose certificate has failed, with great care.
+    ContactAgain,
+    /// Progressions, until the slider's bottom stops.
+    Slip,
+    /// Strobes in a flight.
+    FlightStrobe,
+    /// Strobes in a contact.
+    ContactStrobe,
+    /// Strobes in a progression.
+    SlipStrobe,
+}
+
+impl Stage {
+    /// All of them.
+    pub const ALL: [Self; 8] = [
+        Self::Flight,
+        Self::Contact,
+        Self::FlightAgain,
+        Self::ContactAgain,
+        Self::Slip,
+        Self::FlightStrobe,
+        Self::ContactStrobe,
+        Self::SlipStrobe,
+    ];
+
+    /// Whether it is one of the strobes.
+    pub const fn is_strobe(self) -> bool {
+        matches!(self, Self::FlightStrobe | Self::ContactStrobe | Self::SlipStrobe)
+    }
+
+    /// The same with great care, where there is more than one way.
+    pub const fn again(self) -> Option<Self> {
+        match self {
+            Self::Flight => Some(Self::FlightAgain),
+            Self::Contact => Some(Self::ContactAgain),
+            _ => None,
+        }
+    }
+
+    /// Strobes in the same phase.
+    pub const fn strobe(self) -> Self {
+        match self {
+            Self::Flight | Self::FlightAgain | Self::FlightStrobe => Self::FlightStrobe,
+            Self::Contact | Self::ContactAgain | Self::ContactStrobe => Self::ContactStrobe,
+            Self::Slip | Self::SlipStrobe => Self::SlipStrobe,
+        }
+    }
+}
+
+/// How the phases begin.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Begin {
+    /// omega tau mod 2 pi.
+    pub angle: Column,
+    /// Its second word.
+    pub angle_low: Column,
+    /// Velocity of the mass.
+    pub y: Column,
+    /// Displacement of the slider's top; the mass is in touch with it.
+    pub q: Column,
+    /// In contact the force less its reference; in progression the drift velocity.
+    pub first: Column,
+    /// In contact the reference; in progression the velocity of the slider's top.
+    pub second: Column,
+    /// Of a strobe: forcing cycles from the phase's own,
+    pub due_cycles: Column,
+    /// its forcing angle,
+    pub due: Column,
+    /// and the second word of that.
+    pub due_low: Column,
+}
+
+/// What becomes of them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct End {
+    /// One where the lane's result is proved; else it is to be left alone.
+    pub fine: Column,
+    /// omega tau mod 2 pi at the switch.
+    pub angle: Column,
+    /// Its second word.
+    pub angle_low: Column,
+    /// Forcing cycles passed.
+    pub cycles: Column,
+    /// Displacement of the mass (at a strobe).
+    pub p: Column,
+    /// Velocity of the mass.
+    pub y: Column,
+    /// Displacement of the slider's top (not where contact or progression end).
+    pub q: Column,
+    /// Of an impact the trial force; of a contact's end the threshold; at a strobe the guard.
+    pub guard: Column,
+    /// Drift gained.
+    pub drift: Column,
+    /// At a strobe in progression the velocity of the slider's top,
+    pub closing: Column,
+    /// and the largest term of its guard.
+    pub terms: Column,
+}
+
+/// Constants, beginnings and ends of all lanes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Batch {
+    /// Constants.
+    pub shape: Shape<Column>,
+    /// Beginnings.
+    pub begin: Begin,
+    /// Ends.
+    pub end: End,
+}

@@ -1,0 +1,298 @@
+//! Flights that begin by separation ([`crate::flow::no_contact`]): guess, evaluation, certificate, landing.
+//!
+//! # Certificate
+//!
+//! h = H - q with H'' = F, and -q is concave because q > 0: it lies below its tangent at the root r. So h is
+//! at most E = H + that tangent, E(r) = h(r) = 0 and E'' = F, whose sign is known: negative between the
+//! forcing angles t and 2 pi - t with cos t = -b/a. Where F is positive E is convex and lies below its chord.
+//! Where it is negative E is concave and lies below its tangents; at the ends of such a stretch sine and
+//! cosine are constants of the model. So a flight is proved by a parabola at a few places.
+//!
+//! Near the double zero at the start the tangent does not help. There h itself is concave as long as F is
+//! negative; or, up to two decay times d, q0 (exp(-z) - 1 + z) >= 0.5676 q0 z^2/2 outweighs the force if
+//! 0.5676 q0 rate^2 exceeds the largest force until then. Flights that meet neither are certified with great care: as the scalar solver
+//! certifies short ones ([`crate::crossing::no_contact`]).
+
+use super::certificate::Piece;
+use super::crest::{Bound, Tangent};
+use super::functions::shrink;
+use super::guess::Trend;
+use super::harmonic::{Angle, Harmonic, change, shifted, short_decay};
+use super::root::{Care, Found, Phase, SHORT, find};
+use super::shape::{SETTLED, Shape};
+use super::wide::{Mask, Wide};
+use pulp::Simd;
+use std::f64::consts::TAU;
+
+/// Flights on the contact surface with f = 0.
+pub struct Flight<'a, S: Simd> {
+    /// The model.
+    pub shape: &'a Shape<Wide<S>>,
+    /// Forcing angle at the start.
+    pub angle: Angle<S>,
+    /// Velocity of the mass then.
+    pub y: Wide<S>,
+    /// Displacement of the slider's top then.
+    pub q: Wide<S>,
+}
+
+/// A flight at some time.
+#[derive(Clone, Copy)]
+pub struct Aloft<S: Simd> {
+    /// h and its first three derivatives.
+    h: [Wide<S>; 4],
+    force: [Wide<S>; 3],
+    /// What p has changed by.
+    risen: Wide<S>,
+    y: Wide<S>,
+    q: Wide<S>,
+}
+
+/// An impact.
+pub struct Impact<S: Simd> {
+    /// When: an evaluation, and from there to the root.
+    pub elapsed: (Wide<S>, Wide<S>),
+    /// Velocity of the mass.
+    pub y: Wide<S>,
+    /// Displacement of the slider's top.
+    pub q: Wide<S>,
+    /// Trial force.
+    pub f: Wide<S>,
+    /// Where all this is proved.
+    pub fine: Mask<S>,
+}
+
+/// Decay times after which an exponential is less than 1e-19 of what it was.
+const DEAD: f64 = 45.0;
+/// 2 (exp(-2) - 1 + 2)/2^2, rounded down.
+const SINKING: f64 = 0.5676;
+/// Certified stretches in which the force is negative, after which a lane is left to the scalar solver.
+const STRETCHES: usize = 6;
+/// Nearer to a threshold than this, in units of the largest term, the scalar solver decides: it takes 4 eps.
+pub const TIE: f64 = 64.0 * f64::EPSILON;
+
+impl<S: Simd> Phase<S> for Flight<'_, S> {
+    type At = Aloft<S>;
+
+    #[inline(always)]
+    fn at(&self, d: Wide<S>) -> Aloft<S> {
+        let Shape { b, rate, .. } = *self.shape;
+        let Harmonic { force, impulse, displacement, .. } = self.angle.after(self.shape, d);
+        let decay = shrink(rate * d);
+        let y_change = b.times_plus(d, impulse);
+        let lift = b * d * d * 0.5;
+        let q = self.q * decay.exp;
+        let spring = q * rate;
+        let h = (lift - self.q * decay.remainder) + displacement;
+        let h_rate = y_change + self.q * rate * decay.minus_1;
+        let total = b + force[0];
+        Aloft {
+            h: [
+                h,
+                h_rate,
+                rate.times_from(spring, total),
+                (rate * rate).times_plus(spring, force[1]),
+            ],
+            force: [total, force[1], force[2]],
+            risen: self.y.times_plus(d, lift + displacement),
+            y: self.y + y_change,
+            q,
+        }
+    }
+
+    #[inline(always)]
+    fn excess(&self, at: &Aloft<S>) -> [Wide<S>; 4] {
+        at.h
+    }
+
+    #[inline(always)]
+    fn is_short(&self, d: Wide<S>, step: Wide<S>) -> Mask<S> {
+        let Shape { pace, rate, .. } = *self.shape;
+        let step = step.abs();
+        (step * pace).below(SHORT) & ((step * rate).below(SHORT) | (rate * d).above(DEAD))
+    }
+}
+
+impl<S: Simd> Flight<'_, S> {
+    /// The impacts that end the flights.
+    #[inline(always)]
+    pub fn impact(&self, care: Care) -> Impact<S> {
+        let Shape { two_xi, rate, look, look_decay, .. } = *self.shape;
+        let (guess, guessed) = self.trend().first_root();
+        // Within the first stride of a short-lived exponential: its end, from where the convex h leads back.
+        let hasty = guess.less(look) & look_decay.is(0.0);
+        let guess = hasty.choose(look, guess);
+        let Found { at, elapsed, step, fine } = find(self, guess, guessed);
+        let lost = at.q * short_decay(rate * step);
+        let kick = change(at.force, step);
+        let (y, q) = (at.y + kick, at.q + lost);
+        let f = two_xi * (at.h[1] + (kick + rate * lost));
+        let largest = (two_xi * y).abs().larger(q.abs());
+        let clear =
+            (largest * TIE).less(f) & (largest.larger(y.same(1.0)) * TIE).less((f - 1.0).abs());
+        let root = elapsed + step;
+        let certified = match care {
+            Care::Usual => self.stays_below(root, q, care),
+            Care::Great => {
+                let [u, v, w] = at.force;
+                let force = shifted(self.shape.omega2, [u - self.shape.b, v, w], step);
+                self.stays_below(root, q, care)
+                    | self.hops(root, [f * rate, q * rate, force[0] + self.shape.b, force[1]])
+            }
+        };
+        let fine = fine & clear & self.q.above(0.0) & certified;
+        Impact { elapsed: (elapsed, step), y, q, f, fine }
+    }
+
+    /// Displacement of the mass, its velocity and the slider's top at some time, and the rate of the latter
+    /// and of the velocity.
+    #[inline(always)]
+    pub fn state(&self, d: Wide<S>) -> ([Wide<S>; 3], [Wide<S>; 3]) {
+        let at = self.at(d);
+        let p = (self.q + self.shape.g) + at.risen;
+        ([p, at.y, at.q], [at.y, at.force[0], -(at.q * self.shape.rate)])
+    }
+
+    #[inline(always)]
+    fn trend(&self) -> Trend<'_, S> {
+        let Shape { a_over_omega, a_over_omega2, b, .. } = *self.shape;
+        let Angle { sin, cos, .. } = self.angle;
+        let offset = a_over_omega2.times_plus(cos, self.q);
+        Trend {
+            shape: self.shape,
+            offset,
+            slope: a_over_omega.times_from(sin, self.y),
+            curvature: b,
+            amplitude: a_over_omega2,
+            sin,
+            cos,
+            exponential: self.q,
+            first: b.same(0.0),
+        }
+    }
+
+    /// The same by three tangents more in between: at forcing angles whose sine and cosine are constants. Those
+    /// before the place where the stretch is entered do not count.
+    #[inline(always)]
+    fn stays_below_between(
+        &self,
+        bound: &Bound<S>,
+        near: &Tangent<S>,
+        far: &Tangent<S>,
+        length: Wide<S>,
+    ) -> Mask<S> {
+        let Shape { halfway_sin, halfway_cos, .. } = *self.shape;
+        let zero = length.same(0.0);
+        let inner = [
+            (0.75, halfway_sin, halfway_cos),
+            (0.5, zero, length.same(-1.0)),
+            (0.25, -halfway_sin, halfway_cos),
+        ];
+        let mut last = Tangent { ..*near };
+        let mut below = !zero.less(zero);
+        for (rest, sin, cos) in inner {
+            let from = length.times_from(length.same(rest), far.from);
+            let (value, slope) = bound.at(from, sin, cos);
+            let ahead = last.from.less(from);
+            let next = Tangent {
+                from: ahead.choose(from, last.from),
+                value: ahead.choose(value, last.value),
+                slope: ahead.choose(slope, last.slope),
+            };
+            below = below & (last.stays_below_to(&next) | !ahead);
+            last = next;
+        }
+        below & last.stays_below_to(far)
+    }
+
+    /// Where one interpolant shows that h is negative from the start to the root, at which these are h', the
+    /// slider's velocity, the force and its rate.
+    #[inline(always)]
+    fn hops(&self, root: Wide<S>, [slope, spring, force, force_rate]: [Wide<S>; 4]) -> Mask<S> {
+        /// Decay times and forcing angle up to which that may do.
+        const LIFE: f64 = 10.0;
+        const ANGLE: f64 = 4.0;
+        let Shape { a, b, omega, omega2, rate, .. } = *self.shape;
+        let zero = root.same(0.0);
+        let orders = |spring: Wide<S>, force: Wide<S>, force_rate: Wide<S>| {
+            [rate.times_from(spring, force), (rate * rate).times_plus(spring, force_rate)]
+        };
+        let [u, v, _] = self.angle.force(self.shape);
+        let [bend, third] = orders(self.q * rate, b + u, v);
+        let [last_bend, last_third] = orders(spring, force, force_rate);
+        let everywhere = !zero.less(zero);
+        let piece = Piece {
+            left: [zero, zero, bend.smaller(zero), third],
+            right: [zero, slope, last_bend, last_third],
+            length: root,
+            eighth: a * (omega2 * omega2 * omega2),
+            bare: everywhere,
+            double: everywhere,
+            to_root: everywhere,
+        };
+        let terms = (a + b.abs()) * root * root + self.q * (rate * root + 1.0);
+        let short = (root * rate).below(LIFE) & (root * omega).below(ANGLE);
+        let lowest = zero.same(f64::NEG_INFINITY);
+        short & piece.stays_between(lowest, zero, terms * (4.0 * f64::EPSILON))
+    }
+
+    /// Where h is negative from the start to the root, at which the slider's top is `q`.
+    #[inline(always)]
+    fn stays_below(&self, root: Wide<S>, q: Wide<S>, care: Care) -> Mask<S> {
+        let Shape { a, b, omega, rate, turning, turning_sin, turning_cos, .. } = *self.shape;
+        let Angle { value: angle, sin, cos } = self.angle;
+        let zero = root.same(0.0);
+        let bound = Bound::new(self, root, q);
+
+        let concave_at_first = !angle.less(turning) & !(-turning + TAU).less(angle);
+        let settled = rate.same(SETTLED) / rate;
+        let concave_until = ((-turning + TAU) - angle) / omega;
+        let Shape { settling_sin, settling_cos, .. } = *self.shape;
+        let settled_sin = sin.times_plus(settling_cos, cos * settling_sin);
+        let settled_cos = sin.times_from(settling_sin, cos * settling_cos);
+        // The largest force until then: at either end, unless a crest lies between.
+        let no_crest = settled.times_plus(omega, angle).below(TAU);
+        let crest = no_crest.choose(cos.larger(settled_cos), cos.same(1.0));
+        let strongest = a.times_plus(crest, b) + (a + b.abs()) * 1e-12;
+        let sinks = strongest.less(self.q * rate * rate * SINKING);
+        let by_sinking = sinks & !(concave_at_first & settled.less(concave_until));
+        let start = by_sinking.choose(settled, concave_until);
+        let start_sin = by_sinking.choose(settled_sin, -turning_sin);
+        let start_cos = by_sinking.choose(settled_cos, turning_cos);
+        let (start_value, start_slope) = bound.at(start, start_sin, start_cos);
+        let mut fine = (sinks | concave_at_first) & start.less(root) & start_value.less(zero);
+
+        // The stretch of negative force that the flight begins in, or the first one after that.
+        let late = (-turning + TAU).less(angle);
+        let mut begins = ((turning - angle) + late.choose(zero.same(TAU), zero)) / omega;
+        let period = omega.same(TAU) / omega;
+        let length = (-turning + std::f64::consts::PI) * 2.0 / omega;
+        let mut open = fine;
+        for _ in 0..STRETCHES {
+            let ends = begins + length;
+            // The last stretch rises to the root, and what begins after the root does not count.
+            open = open & ends.less(root);
+            if !open.any() {
+                return fine;
+            }
+            let clipped = begins.less(start);
+            let from = clipped.choose(start, begins);
+            let (left, left_slope) = bound.at(begins, turning_sin, turning_cos);
+            let left = clipped.choose(start_value, left);
+            let rise = clipped.choose(start_slope, left_slope);
+            let (right, fall) = bound.at(ends, -turning_sin, turning_cos);
+            let (near, far) = (
+                Tangent { from, value: left, slope: rise },
+                Tangent { from: ends, value: right, slope: fall },
+            );
+            let below = match care {
+                Care::Usual => near.stays_below_to(&far),
+                Care::Great => self.stays_below_between(&bound, &near, &far, length),
+            };
+            fine = fine & (below | !open | !start.less(ends));
+            begins = begins + period;
+            open = open & fine;
+        }
+        fine & !open
+    }
+}

@@ -1,0 +1,174 @@
+//! Guesses of roots outside contact: the slow part of a guard and its harmonic, looked at in strides
+//! ([`crate::crossing::trend`]).
+
+use super::functions::{FURTHEST, sin_cos};
+use super::shape::Shape;
+use super::wide::{Mask, Wide};
+use pulp::Simd;
+
+/// The guard, counted so that it rises to zero: c + s d + k d^2/2 - K cos(omega d + angle) - e exp(-rate d).
+pub struct Trend<'a, S: Simd> {
+    /// The model.
+    pub shape: &'a Shape<Wide<S>>,
+    /// c
+    pub offset: Wide<S>,
+    /// s
+    pub slope: Wide<S>,
+    /// k
+    pub curvature: Wide<S>,
+    /// K
+    pub amplitude: Wide<S>,
+    /// Sine of `angle`.
+    pub sin: Wide<S>,
+    /// And cosine.
+    pub cos: Wide<S>,
+    /// e
+    pub exponential: Wide<S>,
+    /// The guard at the beginning, without its exponential where that lives less than a stride.
+    pub first: Wide<S>,
+}
+
+struct Place<S: Simd> {
+    elapsed: Wide<S>,
+    sin: Wide<S>,
+    cos: Wide<S>,
+    lasting: Wide<S>,
+    value: Wide<S>,
+    rate: Wide<S>,
+}
+
+/// Strides after which a lane is left to the scalar solver.
+const STRIDES: usize = 24;
+
+impl<S: Simd> Trend<'_, S> {
+    /// When the guard may first rise to zero, and in which lanes that is told.
+    #[inline(always)]
+    pub fn first_root(&self) -> (Wide<S>, Mask<S>) {
+        let Shape { look, look_sin, look_cos, look_decay, omega, .. } = *self.shape;
+        let zero = look.same(0.0);
+        let alive = look_decay.above(0.0);
+        let lasting = alive.choose(self.exponential, zero);
+        let mut here = self.place(zero, self.sin, self.cos, lasting);
+        here.value = self.first;
+        let mut chord = (here.value, zero, here.rate, zero, zero);
+        let mut open = !(zero.less(zero));
+        let mut found = zero.less(zero);
+        for _ in 0..STRIDES {
+            let closed = open & (self.parabola(here.elapsed) + self.amplitude).less(zero);
+            if closed.any() {
+                here = self.skipped(here, closed);
+            }
+            let next = self.place(
+                here.elapsed + look,
+                here.sin.times_plus(look_cos, here.cos * look_sin),
+                here.sin.times_from(look_sin, here.cos * look_cos),
+                here.lasting * look_decay,
+            );
+            let risen = open & !next.value.less(zero);
+            chord = (
+                risen.choose(here.value, chord.0),
+                risen.choose(next.value, chord.1),
+                risen.choose(here.rate, chord.2),
+                risen.choose(next.rate, chord.3),
+                risen.choose(here.elapsed, chord.4),
+            );
+            found = found | risen;
+            open = open & !risen & (next.elapsed * omega).below(FURTHEST);
+            if !open.any() {
+                break;
+            }
+            here = next;
+        }
+        let (left, right, left_rate, right_rate, from) = chord;
+        let share = meeting(left, right, (left_rate * look, right_rate * look));
+        (share.times_plus(look, from), found)
+    }
+
+    #[inline(always)]
+    fn place(&self, elapsed: Wide<S>, sin: Wide<S>, cos: Wide<S>, lasting: Wide<S>) -> Place<S> {
+        let Self { slope, curvature, amplitude, .. } = *self;
+        let Shape { omega, rate: decay, .. } = *self.shape;
+        let value = self.parabola(elapsed) - amplitude.times_plus(cos, lasting);
+        let rise = curvature.times_plus(elapsed, slope);
+        let rate = (amplitude * omega).times_plus(sin, decay.times_plus(lasting, rise));
+        Place { elapsed, sin, cos, lasting, value, rate }
+    }
+
+    #[inline(always)]
+    fn parabola(&self, d: Wide<S>) -> Wide<S> {
+        d.times_plus(d.times_plus(self.curvature * 0.5, self.slope), self.offset)
+    }
+
+    /// Where the parabola lies below minus the amplitude: the place where it no longer does.
+    #[inline(always)]
+    fn skipped(&self, here: Place<S>, closed: Mask<S>) -> Place<S> {
+        let Shape { omega, look, .. } = *self.shape;
+        let value = self.parabola(here.elapsed) + self.amplitude;
+        let rising = self.curvature.times_plus(here.elapsed, self.slope);
+        let square = (self.curvature * value * 2.0).times_from(value.same(1.0), rising * rising);
+        let root = square.sqrt();
+        // Of the two forms of the root the one that adds.
+        let falling = rising.below(0.0);
+        let above = falling.choose(root - rising, value * -2.0);
+        let time = above / falling.choose(self.curvature, rising + root);
+        // A NaN is no place further on.
+        let further = closed & look.less(time) & (time * omega).below(FURTHEST);
+        let opens = further.choose(here.elapsed + time, here.elapsed);
+        let (sin, cos) = sin_cos(omega * opens);
+        let moved = self.place(
+            opens,
+            self.sin.times_plus(cos, self.cos * sin),
+            self.sin.times_from(sin, self.cos * cos),
+            opens.same(0.0),
+        );
+        Place {
+            elapsed: opens,
+            sin: further.choose(moved.sin, here.sin),
+            cos: further.choose(moved.cos, here.cos),
+            lasting: further.choose(moved.lasting, here.lasting),
+            value: further.choose(moved.value, here.value),
+            rate: further.choose(moved.rate, here.rate),
+        }
+    }
+}
+
+/// Where the cubic through two values with these slopes, all in units of the stride, is zero; if it begins
+/// with a zero, the one after that.
+#[inline(always)]
+pub fn meeting<S: Simd>(
+    left: Wide<S>,
+    right: Wide<S>,
+    (left_slope, right_slope): (Wide<S>, Wide<S>),
+) -> Wide<S> {
+    let rise = right - left;
+    let second = (rise * 3.0 - left_slope * 2.0) - right_slope;
+    let third = (left_slope + right_slope) - rise * 2.0;
+    let cubic =
+        |t: Wide<S>| t.times_plus(t.times_plus(t.times_plus(third, second), left_slope), left);
+    // The third in which it is: behind a crest Newton's method would go astray.
+    let third_of = left.same(1.0 / 3.0);
+    let (early, later) = (cubic(third_of), cubic(third_of + third_of));
+    let (in_first, in_second) = (!early.below(0.0), !later.below(0.0));
+    let (zero, one) = (left.same(0.0), left.same(1.0));
+    let from = in_first.choose(zero, in_second.choose(third_of, third_of + third_of));
+    let here = in_first.choose(left, in_second.choose(early, later));
+    let there = in_first.choose(early, in_second.choose(later, right));
+    let mut t = from - third_of * (here / (there - here));
+    for _ in 0..2 {
+        let slope = t.times_plus(t.times_plus(third * 3.0, second * 2.0), left_slope);
+        t = (t - cubic(t) / slope).larger(from).smaller(from + third_of);
+    }
+    let deflated = left.is(0.0);
+    if deflated.any() {
+        // left_slope + second t + third t^2 = 0
+        let root = (third * left_slope * 4.0).times_from(t.same(1.0), second * second).sqrt();
+        let sign = second.below(0.0).choose(-root, root);
+        let sum = (second + sign) * -0.5;
+        let (one, other) = (left_slope / sum, sum / third);
+        let inside = |x: Wide<S>| x.above(0.0) & x.below(1.0);
+        t = deflated.choose(inside(one).choose(one, other), t);
+    }
+    // A NaN becomes the middle.
+    let ordered = t.above(-1e300) & t.below(1e300);
+    ordered.choose(t, t.same(0.5)).larger(zero).smaller(one)
+}

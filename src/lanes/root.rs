@@ -1,0 +1,97 @@
+//! From a guess to the root of a guard: two evaluations mostly.
+
+use super::wide::{Mask, Wide};
+use pulp::Simd;
+
+/// A phase whose guard can be evaluated.
+pub trait Phase<S: Simd> {
+    /// What an evaluation gives.
+    type At: Copy;
+
+    /// The motion after `d`.
+    fn at(&self, d: Wide<S>) -> Self::At;
+
+    /// The guard less its threshold, with three derivatives.
+    fn excess(&self, at: &Self::At) -> [Wide<S>; 4];
+
+    /// Where a step from an evaluation at `d` is so short that Taylor series of three terms lose nothing.
+    fn is_short(&self, d: Wide<S>, step: Wide<S>) -> Mask<S>;
+}
+
+/// What a certificate may cost.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Care {
+    /// As is enough nearly always.
+    Usual,
+    /// For what that has left open.
+    Great,
+}
+
+/// A root next to an evaluation.
+#[derive(Clone, Copy)]
+pub struct Found<S: Simd, A> {
+    /// The evaluation.
+    pub at: A,
+    /// When.
+    pub elapsed: Wide<S>,
+    /// From there to the root.
+    pub step: Wide<S>,
+    /// Where there is one.
+    pub fine: Mask<S>,
+}
+
+/// A step against the fastest rate of the motion that leaves 4e-18 to the fourth order.
+pub const SHORT: f64 = 1e-4;
+
+/// What rounding leaves of an excess where its cubic is zero: some units of it,
+const RESIDUAL: f64 = 16.0 * f64::EPSILON;
+/// and where it is zero itself.
+const TINY: f64 = 1e-300;
+
+/// Evaluations after which a lane is left to the scalar solver.
+const ATTEMPTS: usize = 5;
+
+/// Follows guesses.
+#[inline(always)]
+pub fn find<S: Simd, P: Phase<S>>(phase: &P, guess: Wide<S>, guessed: Mask<S>) -> Found<S, P::At> {
+    let zero = guess.same(0.0);
+    let mut elapsed = guess;
+    let mut alive = guessed;
+    let mut found;
+    let mut attempt = 1;
+    loop {
+        let at = phase.at(elapsed);
+        let excess = phase.excess(&at);
+        let step = cubic_step(excess);
+        let next = elapsed + step;
+        alive = alive & zero.less(next);
+        // Next to a crest that misses, Newton's method may stop anywhere.
+        let settled = cubic(excess, step).abs().less(excess[0].abs() * RESIDUAL + TINY);
+        let short = phase.is_short(elapsed, step) & settled;
+        found = Found { at, elapsed, step, fine: alive & short };
+        if attempt == ATTEMPTS || !(alive & !short).any() {
+            return found;
+        }
+        elapsed = (alive & !short).choose(next, elapsed);
+        attempt += 1;
+    }
+}
+
+/// The step to where the cubic through a guard's excess is zero, by Newton's method: of a step that is short
+/// against the guard's bending nothing is left after three.
+#[inline(always)]
+fn cubic_step<S: Simd>(excess: [Wide<S>; 4]) -> Wide<S> {
+    let [over, slope, bend, third] = excess;
+    let mut step = -(over / slope);
+    for _ in 0..2 {
+        let rise = step.times_plus(step.times_plus(third * 0.5, bend), slope);
+        step = step - cubic(excess, step) / rise;
+    }
+    step
+}
+
+#[inline(always)]
+fn cubic<S: Simd>([over, slope, bend, third]: [Wide<S>; 4], step: Wide<S>) -> Wide<S> {
+    let curve = step.times_plus(third * (1.0 / 6.0), bend * 0.5);
+    step.times_plus(step.times_plus(curve, slope), over)
+}

@@ -1,0 +1,219 @@
+//! What the lanes need of the parameters: of one model, and of as many as there are lanes.
+
+use super::wide::{Column, Wide};
+use crate::constants::Constants;
+use crate::flow::damped::Damping;
+use crate::flow::forced::Forced;
+use crate::model::Model;
+use pulp::Simd;
+
+macro_rules! shape {
+    ($($(#[$text:meta])* $name:ident,)*) => {
+        /// Constants of the closed forms, in one arithmetic.
+        #[derive(Clone, Copy, Debug, Default)]
+        pub struct Shape<T> {
+            $($(#[$text])* pub $name: T,)*
+        }
+
+        impl Shape<Column> {
+            /// Takes one lane's constants.
+            pub fn set(&mut self, lane: usize, shape: &Shape<f64>) {
+                $(self.$name[lane] = shape.$name;)*
+            }
+
+            /// Of all lanes.
+            #[inline(always)]
+            pub fn load<S: Simd>(&self, simd: S) -> Shape<Wide<S>> {
+                Shape { $($name: Wide::load(simd, &self.$name),)* }
+            }
+        }
+    };
+}
+
+shape! {
+    /// Amplitude of the harmonic force.
+    a,
+    /// Static force.
+    b,
+    /// Gap.
+    g,
+    /// Forcing frequency.
+    omega,
+    /// omega^2
+    omega2,
+    /// Phase of the harmonic force in two words, radians.
+    phi,
+    /// Its second word.
+    phi_low,
+    /// a/omega
+    a_over_omega,
+    /// a/omega^2
+    a_over_omega2,
+    /// Damping ratio.
+    xi,
+    /// 2 xi
+    two_xi,
+    /// 1/(2 xi)
+    rate,
+    /// The faster of 1 and omega.
+    pace,
+    /// The forcing angle from which on the force is negative, up to 2 pi less this.
+    turning,
+    /// Its sine; its cosine is -b/a.
+    turning_sin,
+    /// And its cosine.
+    turning_cos,
+    /// Sine of the angle halfway from there to pi.
+    halfway_sin,
+    /// And its cosine.
+    halfway_cos,
+    /// Sine of omega times two decay times of the slider.
+    settling_sin,
+    /// And its cosine.
+    settling_cos,
+    /// A step of a guess, outside contact.
+    look,
+    /// Sine of omega times that.
+    look_sin,
+    /// And its cosine.
+    look_cos,
+    /// exp(-rate look), zero if there is little left.
+    look_decay,
+    /// Damped frequency.
+    nu,
+    /// What rounding took from it.
+    nu_low,
+    /// 1/nu
+    per_nu,
+    /// 1/(1 - omega^2 + 2 i xi omega), real part.
+    response,
+    /// And imaginary part.
+    response_im,
+    /// What the steady trial force takes of F - b.
+    steady,
+    /// And of F'.
+    steady_rate,
+    /// A bound of the eighth derivative of the forced trial force.
+    forced_eighth,
+    /// A step of a guess in contact.
+    swing,
+    /// Sine of omega times that.
+    swing_sin,
+    /// And its cosine.
+    swing_cos,
+    /// C, S and S' of the free oscillation after it.
+    swing_c,
+    /// S
+    swing_s,
+    /// S'
+    swing_s_rate,
+    /// A piece of a certificate in contact.
+    piece,
+    /// Sine of omega times that.
+    piece_sin,
+    /// And its cosine.
+    piece_cos,
+    /// C, S and S' of the free oscillation after it.
+    piece_c,
+    /// S
+    piece_s,
+    /// S'
+    piece_s_rate,
+}
+
+/// A step of a guess, radians of the forcing (in contact of the faster of forcing and free
+/// oscillation): the cubic between two places errs by 1/384 of the amplitude, which two evaluations
+/// put right.
+const LOOK: f64 = 1.0;
+const SWING: f64 = 0.8;
+
+/// Of a certificate in contact, likewise: the interpolant errs by 3^8/2822400 = 0.002 of the amplitude.
+const PIECE: f64 = 2.0;
+
+/// Of an exponential less than this is forgotten in one step of a guess.
+const SHORT_LIVED: f64 = 0.05;
+
+impl Shape<f64> {
+    /// Of a model; none where lanes do not know the closed form: above 0.7 of critical damping, near
+    /// resonance, without forcing or where the force never changes sign to positive, and where powers of
+    /// the parameters come near the ends of the f64 range.
+    pub fn new(model: &Model) -> Option<Self> {
+        let Constants { a, b, g, xi, omega, omega2, two_xi, rate, .. } = *model.constants();
+        let Constants { damping, forced, steady, forced_eighth, .. } = *model.constants();
+        let Damping::Under { nu, nu_low, .. } = damping else { return None };
+        let Forced::Plain { inverse, .. } = forced else { return None };
+        let moderate = |x: f64, low: f64, high: f64| x >= low && x <= high;
+        let suits = moderate(a, 1e-6, 1e6)
+            && moderate(b, -a, 1e6)
+            && moderate(g, 0.0, 1e6)
+            && moderate(xi, 1e-6, 1.0)
+            && moderate(omega, 1e-3, 1e3);
+        if !suits {
+            return None;
+        }
+        let turning_cos = (-b / a).clamp(-1.0, 1.0);
+        let turning = libm::acos(turning_cos);
+        let (halfway_sin, halfway_cos) = libm::sincos(0.5 * (turning + std::f64::consts::PI));
+        let (settling_sin, settling_cos) = libm::sincos(omega * SETTLED / rate);
+        let (look_sin, look_cos) = libm::sincos(LOOK);
+        let look = LOOK / omega;
+        let look_decay = libm::exp(-rate * look);
+        let pace = omega.max(1.0);
+        let swing = SWING / pace;
+        let (swing_sin, swing_cos) = libm::sincos(omega * swing);
+        let free = damping.at(swing);
+        let piece = PIECE / pace;
+        let (piece_sin, piece_cos) = libm::sincos(omega * piece);
+        let held = damping.at(piece);
+        let phi = model.phi();
+        Some(Self {
+            a,
+            b,
+            g,
+            omega,
+            omega2,
+            phi: phi.high,
+            phi_low: phi.low,
+            a_over_omega: a / omega,
+            a_over_omega2: a / omega2,
+            xi,
+            two_xi,
+            rate,
+            pace,
+            turning,
+            turning_sin: libm::sin(turning),
+            turning_cos,
+            halfway_sin,
+            halfway_cos,
+            settling_sin,
+            settling_cos,
+            look,
+            look_sin,
+            look_cos,
+            look_decay: if look_decay < SHORT_LIVED { 0.0 } else { look_decay },
+            nu,
+            nu_low,
+            per_nu: 1.0 / nu,
+            response: inverse.re,
+            response_im: inverse.im,
+            steady: steady.orders([1.0, 0.0, 0.0])[0],
+            steady_rate: steady.orders([0.0, 1.0, 0.0])[0],
+            forced_eighth,
+            swing,
+            swing_sin,
+            swing_cos,
+            swing_c: 1.0 + free.c_minus_1,
+            swing_s: free.s,
+            swing_s_rate: 1.0 + free.s_rate_minus_1,
+            piece,
+            piece_sin,
+            piece_cos,
+            piece_c: 1.0 + held.c_minus_1,
+            piece_s: held.s,
+            piece_s_rate: 1.0 + held.s_rate_minus_1,
+        })
+    }
+}
+
+/// Decay times of the slider after which a flight is certified without its exponential's curvature.
+pub const SETTLED: f64 = 2.0;

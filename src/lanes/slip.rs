@@ -1,0 +1,168 @@
+//! Progressions ([`crate::flow::progression`]): guess, evaluation, certificate, landing.
+//!
+//! The drift velocity w begins at zero or above, w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's
+//! lag only decays. Let c = 1 - a - b be positive and a omega < c rate. As long as lag rate >= c, w is
+//! concave; from then on it falls. So it is positive between its start and its only root. Nor has it another
+//! one where it is concave up to the root, a omega < lag rate^2 there. Other progressions are left to the
+//! scalar solver.
+
+use super::functions::shrink;
+use super::guess::Trend;
+use super::harmonic::{Angle, Harmonic, short_decay};
+use super::root::{Found, Phase, SHORT, find};
+use super::shape::Shape;
+use super::wide::{Mask, Wide};
+use pulp::Simd;
+
+/// Progressions.
+pub struct Slip<'a, S: Simd> {
+    /// The model.
+    pub shape: &'a Shape<Wide<S>>,
+    /// Forcing angle at the start.
+    pub angle: Angle<S>,
+    /// Velocity of the mass then.
+    pub y: Wide<S>,
+    /// Displacement of the slider's top then.
+    pub q: Wide<S>,
+    /// Drift velocity then.
+    pub drift_rate: Wide<S>,
+    /// Velocity of the slider's top then.
+    pub closing: Wide<S>,
+}
+
+/// A progression at some time.
+#[derive(Clone, Copy)]
+pub struct Sliding<S: Simd> {
+    /// w and its first three derivatives.
+    w: [Wide<S>; 4],
+    /// Velocity of the slider's top.
+    lag: Wide<S>,
+    y: Wide<S>,
+    q: Wide<S>,
+    /// Of the velocity of the mass.
+    y_rate: Wide<S>,
+    drift: Wide<S>,
+    /// The largest terms of w.
+    terms: Wide<S>,
+}
+
+/// A progression as strobes show it.
+pub struct Slipping<S: Simd> {
+    /// Displacement of the slider's top, velocity of the mass, drift since the start, drift velocity.
+    pub values: [Wide<S>; 4],
+    /// Their rates.
+    pub rates: [Wide<S>; 4],
+    /// Velocity of the slider's top.
+    pub lag: Wide<S>,
+    /// The largest term of the drift velocity.
+    pub terms: Wide<S>,
+}
+
+/// The slider's bottom stops.
+pub struct Stop<S: Simd> {
+    /// When: an evaluation, and from there to the root.
+    pub elapsed: (Wide<S>, Wide<S>),
+    /// Velocity of the mass, and of the slider's top.
+    pub y: Wide<S>,
+    /// Drift since the start.
+    pub drift: Wide<S>,
+    /// Where all this is proved.
+    pub fine: Mask<S>,
+}
+
+impl<S: Simd> Phase<S> for Slip<'_, S> {
+    type At = Sliding<S>;
+
+    #[inline(always)]
+    fn at(&self, d: Wide<S>) -> Sliding<S> {
+        let Shape { b, rate, two_xi, a_over_omega, .. } = *self.shape;
+        let Self { y: y0, q: q0, drift_rate: w0, closing, .. } = *self;
+        let Harmonic { force, impulse, displacement, turn } = self.angle.after(self.shape, d);
+        let decay = shrink(rate * d);
+        let push = (b - 1.0) * d;
+        let y_change = push + impulse;
+        let y = y0 + y_change;
+        let lag = closing * decay.exp;
+        let moved = closing * decay.minus_1;
+        let pushed = (push * d).times_plus(d.same(0.5), displacement);
+        let early = decay.exp.above(0.5);
+        let settling = two_xi * closing * decay.remainder;
+        let drift = early.choose(w0 * d + pushed + settling, y0 * d + pushed + two_xi * moved);
+        let w = early.choose(w0 + (y_change - moved), y - lag);
+        let q = early.choose(two_xi.times_from(moved, q0), two_xi.times_from(lag, d.same(1.0)));
+        let late_terms = y0.abs() + lag.abs() * (rate * d + 1.0);
+        let terms = early.choose(w0.abs() + moved.abs(), late_terms)
+            + push.abs()
+            + a_over_omega * (turn.sin.abs() - turn.cos_minus_1);
+        let lag_rate = lag * rate;
+        let y_rate = force[0] + (b - 1.0);
+        let turned = lag_rate * rate;
+        Sliding {
+            w: [w, y_rate + lag_rate, force[1] - turned, rate.times_plus(turned, force[2])],
+            lag,
+            y,
+            q,
+            y_rate,
+            drift,
+            terms,
+        }
+    }
+
+    #[inline(always)]
+    fn excess(&self, at: &Sliding<S>) -> [Wide<S>; 4] {
+        at.w
+    }
+
+    #[inline(always)]
+    fn is_short(&self, _: Wide<S>, step: Wide<S>) -> Mask<S> {
+        let Shape { pace, rate, .. } = *self.shape;
+        (step.abs() * pace.larger(rate)).below(SHORT)
+    }
+}
+
+impl<S: Simd> Slip<'_, S> {
+    /// Where the slider's bottom stops.
+    #[inline(always)]
+    pub fn stop(&self) -> Stop<S> {
+        let Shape { a, b, omega, rate, .. } = *self.shape;
+        let (guess, guessed) = self.trend().first_root();
+        let Found { at, elapsed, step, fine } = find(self, guess, guessed);
+        let lag = at.lag + at.lag * short_decay(rate * step);
+        let [w, w1, w2, w3] = at.w;
+        let slope = step.times_plus(step.times_plus(w3 * 0.5, w2), w1);
+        let moved = step.times_plus(w2 * (1.0 / 6.0), w1 * 0.5);
+        let drift = at.drift + step * step.times_plus(moved, w);
+        const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;
+        let steepest = a * omega * ROOM;
+        let rises_once = steepest.less(((-b + 1.0) - a * ROOM) * rate);
+        let certified = rises_once | steepest.less(lag * rate * rate);
+        let begins = !self.drift_rate.below(0.0);
+        let fine = fine & certified & begins & slope.below(0.0);
+        Stop { elapsed: (elapsed, step), y: lag, drift, fine }
+    }
+
+    /// The progressions at some time.
+    #[inline(always)]
+    pub fn state(&self, d: Wide<S>) -> Slipping<S> {
+        let Sliding { w, lag, y, q, y_rate, drift, terms } = self.at(d);
+        Slipping { values: [q, y, drift, w[0]], rates: [lag, y_rate, w[0], w[1]], lag, terms }
+    }
+
+    #[inline(always)]
+    fn trend(&self) -> Trend<'_, S> {
+        let Shape { a_over_omega, b, look_decay, .. } = *self.shape;
+        let Angle { sin, cos, .. } = self.angle;
+        let zero = b.same(0.0);
+        Trend {
+            shape: self.shape,
+            offset: a_over_omega.times_plus(sin, -self.y),
+            slope: -b + 1.0,
+            curvature: zero,
+            amplitude: a_over_omega,
+            sin: -cos,
+            cos: sin,
+            exponential: -self.closing,
+            first: look_decay.is(0.0).choose(-self.y, -self.drift_rate),
+        }
+    }
+}

@@ -1,0 +1,216 @@
+//! One f64 a lane, with the arithmetic of a number.
+//!
+//! A product and a sum are fused only where [`Wide::times_plus`] says so, and no operation looks at a
+//! neighbouring lane: every instruction set gives the same bits, whatever its width.
+
+use pulp::Simd;
+use pulp::bytemuck::cast_slice_mut;
+use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
+
+/// As many lanes as the widest instruction set has.
+pub const WIDEST: usize = 8;
+
+/// A value of each lane in memory.
+pub type Column = [f64; WIDEST];
+
+/// One f64 a lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Wide<S: Simd> {
+    simd: S,
+    value: S::f64s,
+}
+
+/// One truth value a lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Mask<S: Simd> {
+    simd: S,
+    value: S::m64s,
+}
+
+impl<S: Simd> Wide<S> {
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub fn splat(simd: S, value: f64) -> Self {
+        Self { simd, value: simd.splat_f64s(value) }
+    }
+
+    /// The first lanes of a column.
+    #[inline(always)]
+    pub fn load(simd: S, column: &Column) -> Self {
+        Self { simd, value: S::as_simd_f64s(column).0[0] }
+    }
+
+    /// Writes the lanes to the first places of a column.
+    #[inline(always)]
+    pub fn store(self, column: &mut Column) {
+        S::as_mut_simd_f64s(column).0[0] = self.value;
+    }
+
+    /// The same number in all lanes.
+    #[inline(always)]
+    pub fn same(self, value: f64) -> Self {
+        Self::splat(self.simd, value)
+    }
+
+    /// `self * factor + term`, rounded once.
+    #[inline(always)]
+    pub fn times_plus(self, factor: Self, term: Self) -> Self {
+        Self { value: self.simd.mul_add_f64s(self.value, factor.value, term.value), ..self }
+    }
+
+    /// `term - self * factor`, rounded once.
+    #[inline(always)]
+    pub fn times_from(self, factor: Self, term: Self) -> Self {
+        (-self).times_plus(factor, term)
+    }
+
+    /// The absolute value.
+    #[inline(always)]
+    pub fn abs(self) -> Self {
+        Self { value: self.simd.abs_f64s(self.value), ..self }
+    }
+
+    /// The square root.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        Self { value: self.simd.sqrt_f64s(self.value), ..self }
+    }
+
+    /// The larger one; of a NaN nothing is promised.
+    #[inline(always)]
+    pub fn larger(self, other: Self) -> Self {
+        self.less(other).choose(other, self)
+    }
+
+    /// The smaller one; of a NaN nothing is promised.
+    #[inline(always)]
+    pub fn smaller(self, other: Self) -> Self {
+        other.less(self).choose(other, self)
+    }
+
+    /// Where it is less; not where either is a NaN.
+    #[inline(always)]
+    pub fn less(self, other: Self) -> Mask<S> {
+        Mask { simd: self.simd, value: self.simd.less_than_f64s(self.value, other.value) }
+    }
+
+    /// Where it is less than a number.
+    #[inline(always)]
+    pub fn below(self, other: f64) -> Mask<S> {
+        self.less(self.same(other))
+    }
+
+    /// Where it is greater than a number.
+    #[inline(always)]
+    pub fn above(self, other: f64) -> Mask<S> {
+        self.same(other).less(self)
+    }
+
+    /// Where it is this number.
+    #[inline(always)]
+    pub fn is(self, other: f64) -> Mask<S> {
+        let other = self.simd.splat_f64s(other);
+        Mask { simd: self.simd, value: self.simd.equal_f64s(self.value, other) }
+    }
+
+    /// The bits of a sum with [`ROUNDER`], whose lowest ones are those of a whole number: where this one
+    /// of them is set.
+    #[inline(always)]
+    pub fn has_bit(self, bit: u64) -> Mask<S> {
+        let simd = self.simd;
+        let bits = simd.transmute_u64s_f64s(self.value);
+        let found = simd.and_u64s(bits, simd.splat_u64s(bit));
+        Mask { simd, value: simd.greater_than_u64s(found, simd.splat_u64s(0)) }
+    }
+
+    /// 2^n of a sum n + [`ROUNDER`], for the exponents of normal numbers.
+    #[inline(always)]
+    pub fn power_of_two(self) -> Self {
+        const BIAS: u64 = 1023;
+        let mut value = [self.value];
+        for word in cast_slice_mut::<S::f64s, u64>(&mut value) {
+            *word = word.wrapping_add(BIAS) << 52;
+        }
+        Self { value: value[0], ..self }
+    }
+}
+
+/// Adding 1.5 * 2^52 rounds to a whole number, which the lowest bits of the sum hold.
+pub const ROUNDER: f64 = 6_755_399_441_055_744.0;
+
+impl<S: Simd> Mask<S> {
+    /// One value where it holds, the other elsewhere.
+    #[inline(always)]
+    pub fn choose(self, yes: Wide<S>, no: Wide<S>) -> Wide<S> {
+        Wide { simd: self.simd, value: self.simd.select_f64s(self.value, yes.value, no.value) }
+    }
+
+    /// Whether it holds in some lane.
+    #[inline(always)]
+    pub fn any(self) -> bool {
+        self.simd.first_true_m64s(self.value) < S::F64_LANES
+    }
+
+    /// One where it holds, zero elsewhere.
+    #[inline(always)]
+    pub fn number(self) -> Wide<S> {
+        self.choose(Wide::splat(self.simd, 1.0), Wide::splat(self.simd, 0.0))
+    }
+}
+
+macro_rules! operator {
+    ($operator:ident, $method:ident, $simd:ident) => {
+        impl<S: Simd> $operator for Wide<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                Self { value: self.simd.$simd(self.value, other.value), ..self }
+            }
+        }
+
+        impl<S: Simd> $operator<f64> for Wide<S> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: f64) -> Self {
+                self.$method(self.same(other))
+            }
+        }
+    };
+}
+
+operator!(Add, add, add_f64s);
+operator!(Sub, sub, sub_f64s);
+operator!(Mul, mul, mul_f64s);
+operator!(Div, div, div_f64s);
+
+impl<S: Simd> Neg for Wide<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        Self { value: self.simd.neg_f64s(self.value), ..self }
+    }
+}
+
+impl<S: Simd> BitAnd for Mask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitand(self, other: Self) -> Self {
+        Self { value: self.simd.and_m64s(self.value, other.value), ..self }
+    }
+}
+
+impl<S: Simd> BitOr for Mask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn bitor(self, other: Self) -> Self {
+        Self { value: self.simd.or_m64s(self.value, other.value), ..self }
+    }
+}
+
+impl<S: Simd> Not for Mask<S> {
+    type Output = Self;
+    #[inline(always)]
+    fn not(self) -> Self {
+        Self { value: self.simd.not_m64s(self.value), ..self }
+    }
+}

@@ -1,0 +1,194 @@
+//! A batch worked off, from the lanes' beginnings to their ends.
+
+use super::batch::{Batch, Begin, End, Stage};
+use super::contact::{Contact, Release};
+use super::flight::{Flight, Impact};
+use super::harmonic::Angle;
+use super::root::Care;
+use super::shape::Shape;
+use super::slip::{Slip, Slipping, Stop};
+use super::wide::{Column, Mask, Wide};
+use super::words::Words;
+use pulp::{Simd, WithSimd};
+
+/// A batch to be worked off.
+pub struct Work<'a> {
+    /// What it is.
+    pub stage: Stage,
+    /// The batch.
+    pub batch: &'a mut Batch,
+}
+
+impl WithSimd for Work<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let Batch { shape, begin, end } = self.batch;
+        let lanes = Lanes { shape: &shape.load(simd), begin, simd };
+        match self.stage {
+            Stage::Flight => lanes.flight(Care::Usual, end),
+            Stage::Contact => lanes.contact(Care::Usual, end),
+            Stage::FlightAgain => lanes.flight(Care::Great, end),
+            Stage::ContactAgain => lanes.contact(Care::Great, end),
+            Stage::Slip => lanes.slip(end),
+            Stage::FlightStrobe => lanes.flight_strobe(end),
+            Stage::ContactStrobe => lanes.contact_strobe(end),
+            Stage::SlipStrobe => lanes.slip_strobe(end),
+        }
+    }
+}
+
+struct Lanes<'a, S: Simd> {
+    shape: &'a Shape<Wide<S>>,
+    begin: &'a Begin,
+    simd: S,
+}
+
+/// Longer phases are left to the scalar solver, whose reduction of the angle knows no bound.
+const LONGEST: f64 = 1e5;
+
+impl<'a, S: Simd> Lanes<'a, S> {
+    #[inline(always)]
+    fn load(&self, column: &Column) -> Wide<S> {
+        Wide::load(self.simd, column)
+    }
+
+    #[inline(always)]
+    fn angle(&self) -> Words<S> {
+        Words { high: self.load(&self.begin.angle), low: self.load(&self.begin.angle_low) }
+    }
+
+    #[inline(always)]
+    fn flights(&self) -> Flight<'a, S> {
+        Flight {
+            shape: self.shape,
+            angle: Angle::new(self.shape, self.angle()),
+            y: self.load(&self.begin.y),
+            q: self.load(&self.begin.q),
+        }
+    }
+
+    #[inline(always)]
+    fn contacts(&self) -> Contact<'a, S> {
+        Contact {
+            shape: self.shape,
+            angle: Angle::new(self.shape, self.angle()),
+            y: self.load(&self.begin.y),
+            offset: self.load(&self.begin.first),
+            reference: self.load(&self.begin.second),
+        }
+    }
+
+    #[inline(always)]
+    fn slips(&self) -> Slip<'a, S> {
+        Slip {
+            shape: self.shape,
+            angle: Angle::new(self.shape, self.angle()),
+            y: self.load(&self.begin.y),
+            q: self.load(&self.begin.q),
+            drift_rate: self.load(&self.begin.first),
+            closing: self.load(&self.begin.second),
+        }
+    }
+
+    #[inline(always)]
+    fn flight(&self, care: Care, end: &mut End) {
+        let Impact { elapsed, y, q, f, fine } = self.flights().impact(care);
+        self.switch(elapsed, fine, end);
+        y.store(&mut end.y);
+        q.store(&mut end.q);
+        f.store(&mut end.guard);
+    }
+
+    #[inline(always)]
+    fn contact(&self, care: Care, end: &mut End) {
+        let Release { elapsed, y, rises, fine } = self.contacts().release(care);
+        self.switch(elapsed, fine, end);
+        y.store(&mut end.y);
+        rises.number().store(&mut end.guard);
+    }
+
+    #[inline(always)]
+    fn slip(&self, end: &mut End) {
+        let Stop { elapsed, y, drift, fine } = self.slips().stop();
+        self.switch(elapsed, fine, end);
+        y.store(&mut end.y);
+        drift.store(&mut end.drift);
+    }
+
+    /// When the phases end.
+    #[inline(always)]
+    fn switch(&self, (evaluated, step): (Wide<S>, Wide<S>), fine: Mask<S>, end: &mut End) {
+        let omega = self.shape.omega;
+        let elapsed = Words::sum(evaluated, step);
+        let (cycles, angle) = self.angle().plus(elapsed.times(omega)).wrapped();
+        let fine = fine & (elapsed.high * self.shape.pace).below(LONGEST);
+        fine.number().store(&mut end.fine);
+        angle.high.store(&mut end.angle);
+        angle.low.store(&mut end.angle_low);
+        cycles.store(&mut end.cycles);
+    }
+
+    /// Time from the phase's beginning to the strobe.
+    #[inline(always)]
+    fn until_due(&self, end: &mut End) -> Words<S> {
+        let due = Words { high: self.load(&self.begin.due), low: self.load(&self.begin.due_low) };
+        let Words { high, low } = self.angle();
+        let change = due.plus(Words { high: -high, low: -low });
+        let cycles = self.load(&self.begin.due_cycles);
+        let elapsed = Words::turns(cycles).plus(change).over(self.shape.omega);
+        let near = (elapsed.high * self.shape.pace).below(LONGEST);
+        near.number().store(&mut end.fine);
+        elapsed
+    }
+
+    #[inline(always)]
+    fn flight_strobe(&self, end: &mut End) {
+        let elapsed = self.until_due(end);
+        let (values, rates) = self.flights().state(elapsed.high);
+        let [p, y, q] = moved(values, rates, elapsed.low);
+        p.store(&mut end.p);
+        y.store(&mut end.y);
+        q.store(&mut end.q);
+    }
+
+    #[inline(always)]
+    fn contact_strobe(&self, end: &mut End) {
+        let elapsed = self.until_due(end);
+        let (values, rates) = self.contacts().state(elapsed.high);
+        let [q, y, guard] = moved(values, rates, elapsed.low);
+        (q + self.shape.g).store(&mut end.p);
+        y.store(&mut end.y);
+        q.store(&mut end.q);
+        guard.store(&mut end.guard);
+    }
+
+    #[inline(always)]
+    fn slip_strobe(&self, end: &mut End) {
+        let elapsed = self.until_due(end);
+        let Slipping { values, rates, lag, terms } = self.slips().state(elapsed.high);
+        let [q, y, drift, guard] = moved(values, rates, elapsed.low);
+        (q + self.shape.g).store(&mut end.p);
+        y.store(&mut end.y);
+        q.store(&mut end.q);
+        drift.store(&mut end.drift);
+        guard.store(&mut end.guard);
+        lag.store(&mut end.closing);
+        terms.store(&mut end.terms);
+    }
+}
+
+/// A second word of time later.
+#[inline(always)]
+fn moved<S: Simd, const N: usize>(
+    values: [Wide<S>; N],
+    rates: [Wide<S>; N],
+    low: Wide<S>,
+) -> [Wide<S>; N] {
+    let mut moved = values;
+    for (value, rate) in moved.iter_mut().zip(rates) {
+        *value = low.times_plus(rate, *value);
+    }
+    moved
+}
