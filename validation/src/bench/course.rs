@@ -31,6 +31,18 @@ pub struct Score {
     pub drift_error: f64,
 }
 
+impl Score {
+    /// The larger errors of two runs.
+    #[must_use]
+    pub fn or_worse(&self, other: &Self) -> Self {
+        Self {
+            state_error: self.state_error.max(other.state_error),
+            event_time_error: self.event_time_error.max(other.event_time_error),
+            drift_error: self.drift_error.max(other.drift_error),
+        }
+    }
+}
+
 /// Only the switches and the end are asked for.
 const NO_SAMPLES: Grid = Grid { per_period: 1, count: 0 };
 

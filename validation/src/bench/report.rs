@@ -153,7 +153,10 @@ fn rows(course: &Course, finishers: &[Finisher]) -> Vec<Row> {
             state_error_max: timed.map(|it| it.score.state_error),
             event_time_error_max: timed.map(|it| it.score.event_time_error),
             ratio_to_exact: timed.map(|it| it.series.ratio_to(&unit)).filter(|it| it.is_finite()),
-            rhs_per_period: timed.map(|it| it.work.rhs_evaluations as f64 / course.periods()),
+            rhs_per_period: timed
+                .map(|it| it.work.rhs_evaluations)
+                .filter(|it| *it > 0)
+                .map(|it| it as f64 / course.periods()),
             most_accurate: best,
             adaptive: !matches!(it.stepping, Stepping::Exact | Stepping::Fixed { .. }),
             why: it.result.as_ref().err().map(ToString::to_string),

@@ -10,6 +10,7 @@ mod differential_equations;
 mod diffsol;
 mod exact;
 mod field;
+mod in_lanes;
 mod joining;
 mod location;
 mod meter;
@@ -25,6 +26,7 @@ mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
 pub use field::{Equations, GUARDS, Oscillator};
+pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use order::claimed_order;
 pub use registry::{all, exact, select};

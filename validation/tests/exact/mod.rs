@@ -1,12 +1,9 @@
 //! The exact solver as the harness runs it, and the problems that cases pose.
 #![allow(dead_code, reason = "each test uses its own part")]
 
-use percuss::dynamics::ensemble::{Motion, Watcher, follow_by};
 use percuss::lanes::Instructions;
-use percuss::{Endless, Entry, Instant};
 use percuss_validation::case::{Case, Given, Problem, embedded};
-use percuss_validation::engine::{Accuracy, Engine, Event, Failure, Limits, Outcome, Task, all};
-use std::ops::ControlFlow;
+use percuss_validation::engine::{Accuracy, Engine, Failure, Limits, Outcome, Task, all};
 
 fn engine() -> &'static dyn Engine {
     let mut engines = all().iter().copied();
@@ -18,40 +15,9 @@ pub fn run(task: &Task) -> Result<Outcome, Failure> {
     engine().run(task, Accuracy::Exact, &Limits::default())
 }
 
-/// What a task asks for, of a motion in lanes.
-struct Record {
-    outcome: Outcome,
-    start: Instant,
-    omega: f64,
-}
-
-impl Watcher for Record {
-    fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
-        let [p, y, q] = strobe.point();
-        self.outcome.end = [p, y, q, strobe.v()];
-        ControlFlow::Break(())
-    }
-
-    fn enter(&mut self, phase: &Entry) {
-        let [p, y, q] = phase.point();
-        self.outcome.events.push(Event {
-            phase: phase.phase(),
-            elapsed: phase.instant.since(&self.start, self.omega).value(),
-            state: [p, y, q, phase.v()],
-        });
-    }
-}
-
 /// Runs a task by these instructions.
 pub fn run_in_lanes(by: Instructions, task: &Task) -> Outcome {
-    let Problem { model, entry, .. } = &task.problem;
-    let (mut done, _) = follow_by(by, 1, |_| {
-        let (start, omega) = (entry.instant, task.parameters.omega);
-        let watcher = Record { outcome: Outcome::default(), start, omega };
-        let (first, horizon) = (task.horizon, Some(task.horizon));
-        Motion { model, entry: *entry, first, horizon, watcher }
-    });
-    done.pop().map(|record| record.outcome).expect("one motion")
+    percuss_validation::engine::run_in_lanes(by, task, 1).pop().expect("one motion")
 }
 
 /// The embedded case of this name.

@@ -72,7 +72,8 @@ fn race(arguments: &Arguments) -> Result<u8> {
         make_folder(folder)?;
     }
     hush_contained_panics();
-    let bench = measured(arguments, &contestants, &courses)?;
+    // One thread, this pool's, so that its own time is that of the ensembles too.
+    let bench = work::pool(Some(1))?.install(|| measured(arguments, &contestants, &courses))?;
     if let Some(folder) = &arguments.out {
         write(&bench, folder)?;
     }

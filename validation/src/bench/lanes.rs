@@ -1,0 +1,69 @@
+//! The exact solver in the lanes of the processor: a run many times at once, on one thread.
+//!
+//! All runs are the same one, so that each can be held to the truth. That is no help to the lanes: they
+//! take phases of one kind from whatever motions are under way, and different motions fill them as well.
+
+use super::contestant::{Contestant, Heat};
+use super::course::{Course, Score};
+use super::rounds::Racer;
+use crate::engine::{Accuracy, Failure, Outcome, Stepping, Work, contain, run_in_lanes};
+use percuss::lanes::Instructions;
+
+/// Runs a call: several times as many as are under way at once in the widest vectors.
+const RUNS: usize = 256;
+
+/// Exact, by the widest instructions that the processor has.
+pub struct Lanes;
+
+impl Contestant for Lanes {
+    fn name(&self) -> &'static str {
+        "exact-lanes"
+    }
+
+    fn library(&self) -> &'static str {
+        "percuss"
+    }
+
+    fn stepping(&self) -> Stepping {
+        Stepping::Exact
+    }
+
+    fn enter<'a>(&'a self, course: &'a Course, _: Accuracy) -> Result<Box<dyn Heat + 'a>, Failure> {
+        Ok(Box::new(Many { course, answers: Vec::new() }))
+    }
+}
+
+struct Many<'a> {
+    course: &'a Course,
+    answers: Vec<Outcome>,
+}
+
+impl Racer for Many<'_> {
+    fn call(&mut self) -> Result<(), Failure> {
+        let task = &self.course.task;
+        self.answers = contain(|| Ok(run_in_lanes(Instructions::widest(), task, RUNS)))?;
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), Failure> {
+        self.score().map(|_| ())
+    }
+}
+
+impl Heat for Many<'_> {
+    fn runs(&self) -> f64 {
+        RUNS as f64
+    }
+
+    /// The worst of all.
+    fn score(&self) -> Result<Score, Failure> {
+        let none = Failure::new("no run has ended");
+        let mut scores = self.answers.iter().map(|answer| self.course.score(answer));
+        let first = scores.next().ok_or(none)??;
+        scores.try_fold(first, |worst, score| Ok(worst.or_worse(&score?)))
+    }
+
+    fn work(&self) -> Work {
+        self.answers.first().map(|answer| answer.work).unwrap_or_default()
+    }
+}

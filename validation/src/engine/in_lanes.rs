@@ -1,0 +1,49 @@
+//! The exact solver's ensembles, as far as an outcome goes: switches and the end of a run, no samples.
+
+use super::{Event, Outcome, Task, Work};
+use crate::case::Problem;
+use percuss::dynamics::ensemble::{Motion, Watcher, follow_by};
+use percuss::lanes::Instructions;
+use percuss::{Endless, Entry, Instant};
+use std::ops::ControlFlow;
+
+/// What a task asks for, of a motion in lanes.
+struct Record {
+    outcome: Outcome,
+    start: Instant,
+    omega: f64,
+}
+
+impl Watcher for Record {
+    fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
+        let [p, y, q] = strobe.point();
+        self.outcome.end = [p, y, q, strobe.v()];
+        ControlFlow::Break(())
+    }
+
+    fn enter(&mut self, phase: &Entry) {
+        let [p, y, q] = phase.point();
+        self.outcome.events.push(Event {
+            phase: phase.phase(),
+            elapsed: phase.instant.since(&self.start, self.omega).value(),
+            state: [p, y, q, phase.v()],
+        });
+    }
+}
+
+/// Runs a task so many times at once, by these instructions.
+#[must_use]
+pub fn run_in_lanes(by: Instructions, task: &Task, times: usize) -> Vec<Outcome> {
+    let Problem { model, entry, .. } = &task.problem;
+    let (done, _) = follow_by(by, times, |_| {
+        let (start, omega) = (entry.instant, task.parameters.omega);
+        let watcher = Record { outcome: Outcome::default(), start, omega };
+        let (first, horizon) = (task.horizon, Some(task.horizon));
+        Motion { model, entry: *entry, first, horizon, watcher }
+    });
+    let counted = |Record { mut outcome, .. }| {
+        outcome.work = Work { steps: outcome.events.len() as u64 + 1, ..Work::default() };
+        outcome
+    };
+    done.into_iter().map(counted).collect()
+}
