@@ -61,6 +61,10 @@ pub fn looks(engines: &[(&str, &str)]) -> Vec<Look> {
 }
 
 fn look((name, library): &(&str, &str), all: &[(&str, &str)]) -> Look {
+    if *name == "exact-lanes" {
+        let [light, dark] = [RGBColor(125, 125, 125), RGBColor(150, 150, 150)];
+        return Look { light, dark, marker: Marker::Diamond };
+    }
     if name.starts_with("exact") {
         let [light, dark] = [RGBColor(20, 20, 20), RGBColor(245, 245, 245)];
         return Look { light, dark, marker: Marker::Circle };

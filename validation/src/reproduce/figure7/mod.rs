@@ -129,18 +129,38 @@ fn settle(
     )?
     .evidence("every start of the frame followed; orbits by Newton with multipliers, chaos by a positive exponent", shares.join("; "))
     .evidence("a coarser grid of starts", coarse.join("; "));
+    if !agrees(frame, printed) {
+        second = second.note(difference(frame, printed));
+    }
     for (method, finding) in frame.integrated(&again)? {
         second = second.evidence(method, finding);
     }
     Ok([first, second])
 }
 
-/// Whether periods and number of chaotic attractors are those that the paper names.
-fn agrees(frame: &Frame, printed: &Printed) -> bool {
+/// Periods and number of chaotic attractors.
+fn census(frame: &Frame) -> (Vec<u32>, usize) {
     let mut periods: Vec<_> = frame.attractors.iter().filter_map(|it| it.period).collect();
     periods.sort_unstable();
     let chaotic = frame.attractors.iter().filter(|it| it.kind == Kind::Chaotic.token()).count();
+    (periods, chaotic)
+}
+
+/// Whether they are those that the paper names.
+fn agrees(frame: &Frame, printed: &Printed) -> bool {
+    let (periods, chaotic) = census(frame);
     periods == printed.periods && printed.chaotic == Some(chaotic)
+}
+
+/// In what they are not.
+fn difference(frame: &Frame, printed: &Printed) -> String {
+    let said = |periods: &[u32], chaotic: usize| {
+        let periods: Vec<_> = periods.iter().map(u32::to_string).collect();
+        format!("{chaotic} chaotic and the periods {}", periods.join(", "))
+    };
+    let (periods, chaotic) = census(frame);
+    let papers = said(&printed.periods, printed.chaotic.unwrap_or(0));
+    format!("here {}, in the paper {papers}", said(&periods, chaotic))
 }
 
 fn sheet(
