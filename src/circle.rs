@@ -1,9 +1,10 @@
 //! Sine and cosine of an f64 by a table of the turn's 64th parts.
 //!
-//! A switch needs three or four of them, one after the other, and the library's take a fifth of its
-//! time. Between two entries of the table a series of four terms does; the entries are held in two
-//! words, so that what is left is the rounding of the sum: 0.51 units in the last place. Only
-//! additions and multiplications, hence the same bits on every platform.
+//! A switch needs three or four of them, one after the other. Between two entries of the table a series
+//! of four terms does, in little more than half the instructions of the library; the entries are held in
+//! two words. Errors are below half a unit in the last place of the value and a tenth of one of 1: three
+//! fifths of a unit where the value is large, more units where it is small. Only additions and
+//! multiplications, hence the same bits on every platform.
 
 use crate::two_word::{TWO_PI, TwoWord};
 
@@ -108,14 +109,16 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The library's error is below 0.8 units in the last place, ours below 0.55.
-    const ROOM: f64 = 1.4 * f64::EPSILON;
+    /// What is added to the table's entry is below 0.051, and rounded four times.
+    const CORRECTION: f64 = 4.0 * 0.051 * 0.5 * f64::EPSILON;
+
+    /// The library's error is below 0.8 units in the last place, ours below half a unit and that.
+    const ROOM: f64 = 1.3 * f64::EPSILON;
 
     fn agrees(x: f64) -> Result<(), TestCaseError> {
         let ((sin, cos), (s, c)) = (sin_cos(x), libm::sincos(x));
-        // Half the distance of two numbers at most, relative, where they are not tiny: next to a zero
-        // the reduction leaves 2^-90 of the angle.
-        let room = |value: f64| ROOM * value.abs() + 1e-22 * x.abs();
+        // Next to a zero the reduction leaves 2^-90 of the angle.
+        let room = |value: f64| ROOM * value.abs() + CORRECTION + 1e-22 * x.abs();
         prop_assert!((sin - s).abs() <= room(s), "sin {x}: {sin} {s}");
         prop_assert!((cos - c).abs() <= room(c), "cos {x}: {cos} {c}");
         Ok(())
@@ -134,6 +137,38 @@ mod tests {
             agrees(end + off)?;
             agrees(end)?;
         }
+    }
+
+    /// The same in two words: whole quarters of the turn taken off, then the series.
+    fn exact(x: f64) -> (TwoWord, TwoWord) {
+        let quarters = (x / (0.25 * TWO_PI.high)).round();
+        let rest = TwoWord::new(x).minus(TWO_PI.times(0.25 * quarters));
+        let backwards = rest.high < 0.0;
+        let turned = |it: TwoWord| TwoWord { high: -it.high, low: -it.low };
+        let (mut sin, mut cos) = taylor(if backwards { turned(rest) } else { rest });
+        if backwards {
+            sin = turned(sin);
+        }
+        for _ in 0..quarters.rem_euclid(4.0) as u32 {
+            (sin, cos) = (cos, turned(sin));
+        }
+        (sin, cos)
+    }
+
+    #[test]
+    fn errs_by_the_last_rounding_and_those_of_a_small_correction() {
+        let share = |found: f64, exact: TwoWord| {
+            let unit = f64::from_bits(exact.high.abs().to_bits() + 1) - exact.high.abs();
+            TwoWord::new(found).minus(exact).value().abs() / (0.5 * unit + CORRECTION)
+        };
+        let mut worst = 0.0_f64;
+        for k in 0..400_000 {
+            let x = f64::from(k) * 1.000_244_140_625e-4 - 20.0;
+            let ((sin, cos), (s, c)) = (sin_cos(x), exact(x));
+            worst = worst.max(share(sin, s)).max(share(cos, c));
+        }
+        println!("worst: {worst} of the room");
+        assert!(worst <= 1.0, "{worst}");
     }
 
     #[test]

@@ -75,7 +75,7 @@ pub struct Counters {
     /// Switches found.
     pub switches: u64,
     /// Closed-form evaluations spent on finding them: each takes a sine-cosine pair and an exponential
-    /// of the library (in contact one more of either), or their series where the arguments are small.
+    /// (in contact one more of either), or their series where the arguments are small.
     /// Not counted are the sine and cosine of the forcing angle at which a phase begins, one pair a
     /// phase, and the exponential of a [`trend`] that is asked about whole futures because nothing is
     /// guessed. Guesses, series and certificates call none.
