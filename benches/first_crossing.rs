@@ -14,6 +14,7 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use percuss::{Leg, Model, Parameters, Start};
+use percuss_validation::bench::floor::transcendental;
 use std::hint::black_box;
 
 const SWITCHES: usize = 2_000;
@@ -29,12 +30,6 @@ fn model(omega: f64, xi: f64) -> Model {
 
 fn legs(model: &Model) -> impl Iterator<Item = Leg> {
     model.trajectory(model.start(&Start::default()).expect("rest is a start"))
-}
-
-/// One sine-cosine pair and one exponential of the library that the solver uses.
-fn transcendental(angle: f64) -> f64 {
-    let (sin, cos) = libm::sincos(angle);
-    1.0 + 0.5 * sin * libm::exp(-cos.abs())
 }
 
 fn floor(criterion: &mut Criterion) {

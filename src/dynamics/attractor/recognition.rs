@@ -4,7 +4,6 @@ use super::atlas::{AT_REST, Evidence, Known, Label};
 use super::cells::RECURRENCES;
 use super::trap::Trap;
 use crate::dynamics::ensemble::Watcher;
-use crate::dynamics::section::Section;
 use crate::dynamics::strobe::Point;
 use crate::entry::Entry;
 use crate::leg::Endless;
@@ -37,8 +36,7 @@ impl<'a> Recognition<'a> {
 
 impl Watcher for Recognition<'_> {
     fn see(&mut self, strobe: &Entry, endless: Option<Endless>) -> ControlFlow<()> {
-        let escapes = matches!(endless, Some(Endless::NeverReturns | Endless::NeverStops));
-        self.label = if escapes {
+        self.label = if escapes(endless) {
             Some(Label::Escaping)
         } else {
             self.watch.see(self.met, &strobe.point()).map(Label::Attractor)
@@ -53,8 +51,8 @@ impl Watcher for Recognition<'_> {
 }
 
 /// Whether a motion is in a phase that never ends, other than rest on the slider, which is an orbit.
-pub(super) fn escapes(section: &Section) -> bool {
-    matches!(section.endless(), Some(Endless::NeverReturns | Endless::NeverStops))
+pub(super) fn escapes(endless: Option<Endless>) -> bool {
+    matches!(endless, Some(Endless::NeverReturns | Endless::NeverStops))
 }
 
 /// What one motion has met of the known attractors.

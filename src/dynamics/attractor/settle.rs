@@ -100,7 +100,7 @@ impl Atlas {
         let mut run = Vec::with_capacity(REFERENCE as usize);
         for n in 0..REFERENCE {
             let strobe = section.next()?;
-            if escapes(&section) {
+            if escapes(section.endless()) {
                 return Some(Settled::Label(Label::Escaping));
             }
             if let Some(known) = watch.see(n, &strobe.point()) {

@@ -36,8 +36,10 @@ pub struct Cost {
     pub series: Series,
 }
 
-/// One sine-cosine pair and one exponential of the library that the solver uses.
-fn transcendental(angle: f64) -> f64 {
+/// One sine-cosine pair and one exponential of libm, which any version is held against: the solver has
+/// its sines from a table of its own by now.
+#[must_use]
+pub fn transcendental(angle: f64) -> f64 {
     let (sin, cos) = libm::sincos(angle);
     1.0 + 0.5 * sin * libm::exp(-cos.abs())
 }

@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         for it in &records {
             let instructions = it.instructions.map(|it| it.to_string()).unwrap_or_default();
             let Record { bench, best_ns, median_ns, floors, floors_again, .. } = it;
-let evaluations = it.evaluations_per_switch;
+            let evaluations = it.evaluations_per_switch;
             writeln!(out, "{bench},{best_ns:.1},{median_ns:.1},{floors:.3},{floors_again:.3},{evaluations:.4},{instructions}")?;
         }
         Ok(())
