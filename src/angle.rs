@@ -36,8 +36,8 @@ pub(crate) fn wrap(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
     if rest.high > 0.0 && rest.high < TWO_PI.high {
         return (turns, rest);
     }
-    let (mut turns, whole) = add_floor(turns, rest.high / TWO_PI.high);
-    let mut rest = rest.minus(TWO_PI.times(whole));
+    let (mut turns, whole) = add_floor(turns, rest.high * (1.0 / TWO_PI.high));
+    let mut rest = less_turns(rest, whole);
     if rest.high < 0.0 {
         turns -= 1;
         rest = rest.plus(TWO_PI);
@@ -50,6 +50,29 @@ pub(crate) fn wrap(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
         }
     }
     (turns, rest)
+}
+
+/// `rest` less so many turns.
+#[inline]
+fn less_turns(rest: TwoWord, whole: f64) -> TwoWord {
+    /// Up to here the products with the parts of 2 pi are exact.
+    const FEW: f64 = (1 << 20) as f64;
+    /// 2 pi in parts of 33 bits, and the rest.
+    const FIRST: f64 = cut(TWO_PI.high);
+    const SECOND: f64 = cut((TWO_PI.high - FIRST) + TWO_PI.low);
+    const THIRD: f64 = ((TWO_PI.high - FIRST) - SECOND) + TWO_PI.low;
+    if !(1.0..FEW).contains(&whole) {
+        return rest.minus(TWO_PI.times(whole));
+    }
+    // The first difference is exact: its digits are those of `rest`, whose unit is 2^-50 at least, and no
+    // more than a turn is left.
+    let sum = TwoWord::sum(rest.high - whole * FIRST, -(whole * SECOND));
+    TwoWord::sum(sum.high, sum.low + (rest.low - whole * THIRD))
+}
+
+/// The first 33 bits of a word.
+const fn cut(word: f64) -> f64 {
+    f64::from_bits(word.to_bits() & !((1 << 20) - 1))
 }
 
 /// The largest whole number not above `x`, added to `turns` and by itself; without a call of the
@@ -142,6 +165,18 @@ mod tests {
             let back = TWO_PI.times(turns as f64).plus(rest).minus(TwoWord::new(angle));
             // Four roundings of 2^-105 relative to 1e6.
             prop_assert!(back.value().abs() <= 1e-25);
+        }
+
+        #[test]
+        fn whole_turns_come_off_as_they_would_by_a_product(
+            turns in 1.0..1e6_f64, share in 0.0..1.0_f64, low in -1.0..1.0_f64,
+        ) {
+            let whole = turns.floor();
+            let high = (whole + share) * TWO_PI.high;
+            let rest = TwoWord::sum(high, 0.25 * f64::EPSILON * high * low);
+            let difference = less_turns(rest, whole).minus(rest.minus(TWO_PI.times(whole))).value();
+            // Either rounds by eps^2 of the angle, as its second word did.
+            prop_assert!(difference.abs() <= 2.0 * f64::EPSILON * f64::EPSILON * high);
         }
 
         #[test]

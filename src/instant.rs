@@ -6,6 +6,7 @@
 
 use crate::angle;
 use crate::circle;
+use crate::flow::forcing::EntryAngle;
 use crate::two_word::{TWO_PI, TwoWord};
 
 /// An instant: `omega tau = cycle 2 pi + angle` with `0 <= angle < 2 pi` (phi is not included).
@@ -66,10 +67,22 @@ impl Instant {
         radians(self.cycle - earlier.cycle, self.angle.minus(earlier.angle)).over(omega)
     }
 
+    /// Bounds of [`Self::since`] that cost little.
+    #[inline]
+    pub(crate) fn since_roughly(&self, earlier: &Self, omega: f64) -> (f64, f64) {
+        /// Some roundings of the whole and of the angles.
+        const ROOM: f64 = 16.0 * f64::EPSILON;
+        let cycles = to_f64(self.cycle - earlier.cycle) * TWO_PI.high;
+        let radians = cycles + (self.angle.high - earlier.angle.high);
+        let room = ROOM * (cycles.abs() + TWO_PI.high);
+        ((radians - room) / omega, (radians + room) / omega)
+    }
+
     /// The instant a time `elapsed >= 0` later.
     #[must_use]
     pub fn after(&self, elapsed: TwoWord, omega: f64) -> Self {
-        let (cycle, angle) = angle::wrap(self.cycle, self.angle.plus(elapsed.times(omega)));
+        let (cycle, angle) =
+            angle::wrap(self.cycle, self.angle.plus_positive(elapsed.times(omega)));
         Self { cycle, angle }
     }
 
@@ -91,12 +104,18 @@ impl Instant {
         if here >= *self { here } else { Self { cycle: self.cycle + 1, angle } }
     }
 
-    /// The forcing angle with its phase, `omega tau + phi`, as sine and cosine.
+    /// The forcing angle with its phase, `omega tau + phi`.
+    #[inline]
     #[must_use]
-    pub(crate) fn forcing(&self, phi: TwoWord) -> (f64, f64) {
-        let angle = self.angle.plus(phi);
+    pub(crate) fn forcing(&self, phi: TwoWord) -> EntryAngle<f64> {
+        let angle = if phi == TwoWord::ZERO { self.angle } else { self.angle.plus(phi) };
         let (sine, cosine) = circle::sin_cos(angle.high);
-        (sine + angle.low * cosine, cosine - angle.low * sine)
+        let turn = if angle.high < TWO_PI.high { 0.0 } else { TWO_PI.high };
+        EntryAngle {
+            radians: angle.high - turn,
+            sin: sine + angle.low * cosine,
+            cos: cosine - angle.low * sine,
+        }
     }
 }
 
@@ -111,7 +130,16 @@ impl PartialOrd for Instant {
 }
 
 fn radians(cycles: i128, angle: TwoWord) -> TwoWord {
-    TWO_PI.times(cycles as f64).plus(angle)
+    TWO_PI.times(to_f64(cycles)).plus(angle)
+}
+
+/// Without a call of the library for any count that a run meets.
+#[inline]
+fn to_f64(cycles: i128) -> f64 {
+    match i64::try_from(cycles) {
+        Ok(few) => few as f64,
+        Err(_) => cycles as f64,
+    }
 }
 
 #[cfg(test)]

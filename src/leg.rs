@@ -1,7 +1,7 @@
 //! One phase of a run: where it begins, how long it lasts, and anything inside it on demand.
 
 use crate::constants::Constants;
-use crate::crossing::search::first_crossing;
+use crate::crossing::search::first_crossing_and;
 use crate::crossing::stepping;
 use crate::crossing::{Counters, Crossing, Root};
 use crate::entry::{Entry, Onset};
@@ -57,37 +57,80 @@ pub struct Leg {
     constants: Constants<f64>,
 }
 
+/// A phase that may have come to its end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passed {
+    /// How it ends.
+    pub exit: Exit,
+    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless.
+    pub duration: TwoWord,
+    /// The forcing angle at which the next phase begins, if one does.
+    pub angle: Option<EntryAngle<f64>>,
+}
+
+/// Finds how the phase that begins at `entry`, under this forcing angle, ends; switches after `horizon`
+/// do not count.
+pub(crate) fn pass(
+    model: &Model,
+    entry: &Entry,
+    angle: EntryAngle<f64>,
+    horizon: Option<&Instant>,
+    counters: &mut Counters,
+) -> Passed {
+    let omega = model.parameters().omega;
+    let motion = Motion::new(model.constants(), entry, angle);
+    let strides = model.strides();
+    // The horizon in two words is computed only where it matters.
+    let (certain, limit) =
+        horizon.map_or((f64::INFINITY, f64::INFINITY), |h| h.since_roughly(&entry.instant, omega));
+    let next = |root: &Root| {
+        let instant = entry.instant.after(root.elapsed(), omega);
+        (instant, model.forcing_angle(&instant))
+    };
+    let (crossing, next) = match &motion {
+        Motion::NoContact(flight) => first_crossing_and((flight, strides), limit, counters, next),
+        Motion::Contact(contact) => first_crossing_and((contact, strides), limit, counters, next),
+        Motion::Progression(slip) => first_crossing_and((slip, strides), limit, counters, next),
+    };
+    let left = || horizon.map_or(f64::INFINITY, |h| h.since(&entry.instant, omega).value());
+    let ended = |exit, duration| Passed { exit, duration: TwoWord::new(duration), angle: None };
+    match (crossing, next) {
+        (Crossing::At(root), Some((instant, angle))) => {
+            let elapsed = root.elapsed();
+            if elapsed.high > certain && elapsed.high > left() {
+                return ended(Exit::Horizon, left());
+            }
+            counters.switches += 1;
+            let next = Entry { instant, ..land(model, entry, &motion, &root) };
+            Passed { exit: Exit::Switch(next), duration: elapsed, angle: Some(angle) }
+        }
+        (Crossing::Never, _) => ended(Exit::Endless(endless(entry.phase())), f64::INFINITY),
+        _ => ended(Exit::Horizon, left()),
+    }
+}
+
 impl Leg {
-    /// Finds how the phase that begins at `entry` ends; switches after `horizon` do not count.
+    /// The phase that begins at `entry` ([`pass`]).
     pub(crate) fn new(
         model: &Model,
         entry: Entry,
         horizon: Option<&Instant>,
         counters: &mut Counters,
     ) -> Self {
-        let omega = model.parameters().omega;
         let angle = model.forcing_angle(&entry.instant);
-        let motion = Motion::new(model.constants(), &entry, angle);
-        let strides = model.strides();
-        let limit = horizon.map_or(f64::INFINITY, |h| h.since(&entry.instant, omega).value());
-        let crossing = match &motion {
-            Motion::NoContact(flight) => first_crossing(flight, strides, limit, counters),
-            Motion::Contact(contact) => first_crossing(contact, strides, limit, counters),
-            Motion::Progression(progression) => {
-                first_crossing(progression, strides, limit, counters)
-            }
-        };
-        let (exit, duration) = match crossing {
-            Crossing::At(root) => {
-                counters.switches += 1;
-                let elapsed = root.elapsed();
-                let mut next = land(model, &entry, &motion, &root);
-                next.instant = entry.instant.after(elapsed, omega);
-                (Exit::Switch(next), elapsed)
-            }
-            Crossing::Horizon => (Exit::Horizon, TwoWord::new(limit)),
-            Crossing::Never => (Exit::Endless(endless(entry.phase())), TwoWord::new(f64::INFINITY)),
-        };
+        let Passed { exit, duration, .. } = pass(model, &entry, angle, horizon, counters);
+        Self::passed(model, entry, angle, exit, duration)
+    }
+
+    /// The phase that has been passed so.
+    #[inline]
+    pub(crate) fn passed(
+        model: &Model,
+        entry: Entry,
+        angle: EntryAngle<f64>,
+        exit: Exit,
+        duration: TwoWord,
+    ) -> Self {
         Self { entry, exit, duration, angle, constants: *model.constants() }
     }
 
@@ -257,7 +300,7 @@ fn endless(phase: Phase) -> Endless {
 
 /// The next phase's beginning (its instant still that of `entry`), with what is known imposed.
 fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
-    let Root { point, rises, .. } = root;
+    let point = &root.point;
     let constants = model.constants();
     let (state, onset) = match motion {
         Motion::NoContact(_) => {
@@ -272,10 +315,10 @@ fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
             }
         }
         Motion::Contact(_) => {
-            let threshold = f64::from(u8::from(*rises));
+            let threshold = if root.rises() { 1.0 } else { 0.0 };
             let y = point.state.y;
             let q = threshold - constants.two_xi * y;
-            let onset = if *rises {
+            let onset = if root.rises() {
                 Onset::Progression { drift_rate: 0.0, closing: y }
             } else {
                 Onset::Separation { h_rate: 0.0 }

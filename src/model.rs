@@ -93,14 +93,13 @@ impl Model {
 
     /// Sine and cosine of omega tau + phi.
     pub(crate) fn forcing_angle(&self, instant: &Instant) -> EntryAngle<f64> {
-        let (sin, cos) = instant.forcing(self.phi);
-        EntryAngle { sin, cos }
+        instant.forcing(self.phi)
     }
 
     /// The external force a cos(omega tau + phi) + b and its first two derivatives.
     #[must_use]
     pub fn force(&self, instant: &Instant) -> [f64; 3] {
-        let EntryAngle { sin, cos } = self.forcing_angle(instant);
+        let EntryAngle { sin, cos, .. } = self.forcing_angle(instant);
         let Parameters { a, b, omega, .. } = self.parameters;
         [b + a * cos, -(a * omega * sin), -(a * omega * omega * cos)]
     }

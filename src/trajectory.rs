@@ -2,8 +2,9 @@
 
 use crate::crossing::Counters;
 use crate::entry::Entry;
+use crate::flow::forcing::EntryAngle;
 use crate::instant::Instant;
-use crate::leg::{Exit, Leg};
+use crate::leg::{Exit, Leg, Passed, pass};
 use crate::model::Model;
 
 /// An iterator over the phases of a run; memory does not grow with its length.
@@ -13,7 +14,7 @@ use crate::model::Model;
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     model: Model,
-    next: Option<Entry>,
+    next: Option<(Entry, EntryAngle<f64>)>,
     horizon: Option<Instant>,
     counters: Counters,
 }
@@ -22,7 +23,9 @@ impl Model {
     /// The run that begins at `entry`.
     #[must_use]
     pub fn trajectory(&self, entry: Entry) -> Trajectory {
-        Trajectory { model: *self, next: Some(entry), horizon: None, counters: Counters::default() }
+        let angle = self.forcing_angle(&entry.instant);
+        let next = Some((entry, angle));
+        Trajectory { model: *self, next, horizon: None, counters: Counters::default() }
     }
 }
 
@@ -40,6 +43,23 @@ impl Trajectory {
         self.counters
     }
 
+    /// Passes the next phase without keeping it: how it ends. What iterating gives as [`Leg::exit`], at
+    /// less cost.
+    pub fn pass(&mut self) -> Option<Exit> {
+        let (entry, angle) = self.next?;
+        Some(self.go_on(&entry, angle).exit)
+    }
+
+    #[inline]
+    fn go_on(&mut self, entry: &Entry, angle: EntryAngle<f64>) -> Passed {
+        let passed = pass(&self.model, entry, angle, self.horizon.as_ref(), &mut self.counters);
+        self.next = match (&passed.exit, passed.angle) {
+            (Exit::Switch(next), Some(angle)) => Some((*next, angle)),
+            _ => None,
+        };
+        passed
+    }
+
     /// The model that runs.
     #[must_use]
     pub fn model(&self) -> &Model {
@@ -51,11 +71,8 @@ impl Iterator for Trajectory {
     type Item = Leg;
 
     fn next(&mut self) -> Option<Leg> {
-        let entry = self.next.take()?;
-        let leg = Leg::new(&self.model, entry, self.horizon.as_ref(), &mut self.counters);
-        if let Exit::Switch(next) = leg.exit() {
-            self.next = Some(*next);
-        }
-        Some(leg)
+        let (entry, angle) = self.next?;
+        let Passed { exit, duration, .. } = self.go_on(&entry, angle);
+        Some(Leg::passed(&self.model, entry, angle, exit, duration))
     }
 }

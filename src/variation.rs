@@ -178,7 +178,7 @@ fn contact_variation(contact: &Contact<f64, &Constants<f64>>, d: f64) -> Matrix 
     let (_, _, harmonic) = by_angle(contact.constants, &contact.angle, d);
     let free = damping.at(d);
     let response = forced.at(d, &harmonic.turn, &free);
-    let EntryAngle { sin, cos } = contact.angle;
+    let EntryAngle { sin, cos, .. } = contact.angle;
     let q_by_angle = -(a * (sin * response.displacement.re + cos * response.displacement.im));
     let y_by_angle = -(a * (sin * response.rate.re + cos * response.rate.im));
     let mut variation = IDENTITY;

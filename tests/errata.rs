@@ -67,8 +67,9 @@ fn begun(tau0: f64, [p, y, q]: [f64; 3]) -> Begun {
 
 fn entry(begun: &Begun) -> (Constants<f64>, EntryAngle<f64>) {
     let Parameters { omega, phi, .. } = begun.parameters;
-    let (sin, cos) = (omega * begun.tau0 + phi).sin_cos();
-    (Constants::new(&begun.parameters), EntryAngle { sin, cos })
+    let radians = omega * begun.tau0 + phi;
+    let (sin, cos) = radians.sin_cos();
+    (Constants::new(&begun.parameters), EntryAngle { radians, sin, cos })
 }
 
 fn flight(begun: &Begun, d: f64) -> Point<f64> {

@@ -112,6 +112,26 @@ impl Piece {
         }
     }
 
+    /// Whether the guard stays inside, where the hull of the whole piece is too wide to tell: the bounding
+    /// polynomials are divided at their crests, which takes no evaluation and narrows the hull.
+    #[cold]
+    pub fn stays_inside_in_parts(&self, corridor: &Corridor, ends: Ends, slack: f64) -> bool {
+        let ([a, b, c, d], middle) = self.coefficients();
+        let square = self.length * self.length;
+        let scale = square * square * (square * square) * (1.0 / MIDDLE);
+        let up = middle + larger(self.eighth.1, 0.0) * scale;
+        let down = middle + smaller(self.eighth.0, 0.0) * scale;
+        let all = |middle: f64| [a[0], b[0], c[0], d[0], middle, d[1], c[1], b[1], a[1]];
+        let size = all(up).iter().chain(&all(down)).fold(0.0, |size, c| larger(size, c.abs()));
+        // Eight roundings more for each division.
+        let slack = slack + 8.0 * f64::from(DIVISIONS + 1) * f64::EPSILON * size;
+        let excess = |sign: f64, middle: f64, threshold: f64| {
+            Excess(all(middle).map(|coefficient| sign * (coefficient - threshold)))
+        };
+        excess(1.0, up, corridor.high).is_negative(ends, slack, DIVISIONS)
+            && excess(-1.0, down, corridor.low).is_negative(ends, slack, DIVISIONS)
+    }
+
     /// Bernstein coefficients of degree eight of the Hermite interpolant: in pairs from both ends
     /// inwards, which are computed side by side, and the middle one.
     #[inline]
@@ -178,6 +198,50 @@ impl Piece {
         let places = (3..=PLACES - 3).map(|k| f64::from(k) / f64::from(PLACES));
         let crest = places.max_by(|s, t| excess(s).total_cmp(&excess(t)));
         self.length * crest.unwrap_or(0.5)
+    }
+}
+
+/// How often a bounding polynomial is divided: each time its hull comes four times nearer to it.
+const DIVISIONS: i32 = 3;
+
+/// The Bernstein coefficients of a bounding polynomial's excess.
+struct Excess([f64; 9]);
+
+impl Excess {
+    fn is_negative(&self, ends: Ends, slack: f64, divisions: i32) -> bool {
+        let Ends { left, left_double, right } = ends;
+        let known = |i: usize| match i {
+            0 => left,
+            1 => left_double,
+            7 => right && self.0[7] < 0.0,
+            8 => right,
+            _ => false,
+        };
+        // Written so that a NaN is not negative.
+        let fails = |i: &usize| !(known(*i) || self.0[*i] < -slack);
+        let Some(first) = (0..9).find(fails) else { return true };
+        let ends_outside = |i: usize| !known(i) && fails(&i);
+        if divisions == 0 || ends_outside(0) || ends_outside(8) {
+            return false;
+        }
+        let crest = (first..9).filter(fails).max_by(|i, j| self.0[*i].total_cmp(&self.0[*j]));
+        let place = (crest.unwrap_or(4) as f64 / 8.0).clamp(0.25, 0.75);
+        let (before, after) = self.divided(place);
+        before.is_negative(Ends { right: false, ..ends }, slack, divisions - 1)
+            && after.is_negative(Ends { right, ..Ends::FREE }, slack, divisions - 1)
+    }
+
+    /// De Casteljau's division at a share of the length.
+    fn divided(&self, place: f64) -> (Self, Self) {
+        let mut points = self.0;
+        let (mut before, mut after) = ([0.0; 9], [0.0; 9]);
+        for order in (0..9).rev() {
+            (before[8 - order], after[order]) = (points[0], points[order]);
+            for i in 0..order {
+                points[i] += place * (points[i + 1] - points[i]);
+            }
+        }
+        (Self(before), Self(after))
     }
 }
 

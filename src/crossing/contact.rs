@@ -3,7 +3,7 @@
 use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
-use crate::crossing::series::{Push, Series};
+use crate::crossing::series::{Push, REACH, SHORT_REACH, Series};
 use crate::crossing::swing::{Parts, Shape};
 use crate::crossing::trend::quick_decay;
 use crate::flow::contact::Contact;
@@ -100,7 +100,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
 
     fn entry(&self) -> Point<f64> {
         let Constants { a, b, two_xi, omega, omega2, .. } = *self.constants.borrow();
-        let EntryAngle { sin, cos } = self.angle;
+        let EntryAngle { sin, cos, .. } = self.angle;
         let [u, v, w] = [a * cos, -(a * omega * sin), -(a * omega2 * cos)];
         let y = self.entry.y;
         let pull = (u + (b - self.reference)) - self.offset;
@@ -146,8 +146,12 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
             eighth: (-eighth, eighth),
         };
         let verdict = whole.verdict(&corridor, ends, slack);
-        if verdict != Verdict::Open || length * self.constants.borrow().omega.max(1.0) < SHORT {
+        if verdict != Verdict::Open {
             return verdict;
+        }
+        if length * self.constants.borrow().omega.max(1.0) < SHORT {
+            let inside = whole.stays_inside_in_parts(&corridor, ends, slack);
+            return if inside { Verdict::Inside } else { verdict };
         }
         self.certify_long(strides, (left, &split, free), right, ends)
     }
@@ -165,7 +169,17 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         piece.worst_place(left.elapsed, &self.corridor())
     }
 
-    fn series(&self, at: &Point<f64>) -> Series {
+    fn reaches(&self) -> [f64; 2] {
+        let rate = self.fastest_rate();
+        // Above critical damping the higher derivatives come from the series.
+        let few_terms = match self.constants.borrow().damping {
+            Damping::Over { .. } => 0.0,
+            _ => SHORT_REACH,
+        };
+        [few_terms / rate, REACH / rate]
+    }
+
+    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
         let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
         // f'' + 2 xi f' + f = F + 2 xi F'
         let (u, v) = (at.force[0] - b, at.force[1]);
@@ -179,17 +193,25 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         })
     }
 
-    fn continued(
+    fn continued<const N: usize>(
         &self,
         at: &Point<f64>,
         step: f64,
-        series: &Series,
+        series: &Series<N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
-        let Constants { g, two_xi, .. } = *self.constants.borrow();
+        let Constants { b, g, two_xi, damping, .. } = *self.constants.borrow();
         let Push { force, impulse } = Push::new(self.constants.borrow(), &at.force, step);
         let y = at.state.y + (impulse - (self.reference * step + series.integral(step)));
-        let (bend, third) = series.bend_and_third(step);
+        let (bend, third) = if matches!(damping, Damping::Over { .. }) {
+            series.bend_and_third(step)
+        } else {
+            // f' = 2 xi (F - f) + y
+            let pull = (force[0] + (b - self.reference)) - value;
+            let pull_rate = force[1] - slope;
+            let bend = two_xi * pull_rate + pull;
+            (bend, two_xi * (force[2] - bend) + pull_rate)
+        };
         let orders = [value, slope, bend, third];
         let q = (self.reference + value) - two_xi * y;
         Point {

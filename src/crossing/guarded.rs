@@ -1,7 +1,7 @@
 //! What the search asks of a phase.
 
 use crate::crossing::certificate::{Corridor, Ends, Verdict};
-use crate::crossing::series::Series;
+use crate::crossing::series::{REACH, SHORT_REACH, Series};
 use crate::flow::stride::Strides;
 use crate::flow::{Flow, Point};
 
@@ -45,14 +45,20 @@ pub trait Guarded: Flow<f64> {
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64;
 
     /// The guard's Taylor series at an evaluation.
-    fn series(&self, at: &Point<f64>) -> Series;
+    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N>;
+
+    /// How far that reaches with few terms, and with all.
+    fn reaches(&self) -> [f64; 2] {
+        let rate = self.fastest_rate();
+        [SHORT_REACH / rate, REACH / rate]
+    }
 
     /// The motion a short `step` after an evaluation, where the guard has this value and slope.
-    fn continued(
+    fn continued<const N: usize>(
         &self,
         at: &Point<f64>,
         step: f64,
-        series: &Series,
+        series: &Series<N>,
         guard: (f64, f64),
     ) -> Point<f64>;
 

@@ -33,6 +33,7 @@ pub mod search;
 pub mod series;
 pub mod stepping;
 pub mod swing;
+pub mod tangents;
 pub mod trend;
 pub mod walk;
 
@@ -57,11 +58,35 @@ pub struct Root {
     pub point: Point<f64>,
     /// What rounding took from the point's elapsed time.
     pub low: f64,
-    /// Whether the guard rises through the upper threshold (else it falls through the lower one).
-    pub rises: bool,
+    /// The threshold that the guard passes.
+    pub side: Side,
+}
+
+/// One of a guard's thresholds; a whole word, because a root is copied in words.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u64)]
+pub enum Side {
+    /// The guard falls through it.
+    Low,
+    /// The guard rises through it.
+    High,
+}
+
+impl Side {
+    /// The upper threshold or the lower one.
+    #[must_use]
+    pub fn high(is: bool) -> Self {
+        if is { Self::High } else { Self::Low }
+    }
 }
 
 impl Root {
+    /// Whether the guard rises through the upper threshold (else it falls through the lower one).
+    #[must_use]
+    pub fn rises(&self) -> bool {
+        self.side == Side::High
+    }
+
     /// Time from the start of the phase to the crossing.
     #[must_use]
     pub fn elapsed(&self) -> TwoWord {

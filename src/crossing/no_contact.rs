@@ -4,6 +4,7 @@ use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
 use crate::crossing::series::{Push, Series, short_decay};
+use crate::crossing::tangents::stays_below;
 use crate::crossing::trend::Trend;
 use crate::crossing::walk::{End, Parts, Shape, Walk};
 use crate::flow::forcing::EntryAngle;
@@ -54,7 +55,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
 
     fn entry(&self) -> Point<f64> {
         let Constants { a, b, g, omega, omega2, rate, .. } = *self.constants.borrow();
-        let EntryAngle { sin, cos } = self.angle;
+        let EntryAngle { sin, cos, .. } = self.angle;
         let [u, v, w] = [a * cos, -(a * omega * sin), -(a * omega2 * cos)];
         let State { p, y, q } = self.entry;
         let spring = q * rate;
@@ -99,6 +100,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         right: &Point<f64>,
         ends: Ends,
     ) -> Verdict {
+        let whole = left.elapsed == 0.0 && ends.left_double && ends.right;
+        if whole && stays_below(self, strides, right) {
+            return Verdict::Inside;
+        }
         let slack = slack(left, right);
         let length = right.elapsed - left.elapsed;
         let Constants { omega, rate, rate8, a, omega6, .. } = *self.constants.borrow();
@@ -132,7 +137,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         })
     }
 
-    fn series(&self, at: &Point<f64>) -> Series {
+    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
         let Constants { rate, omega, b, .. } = *self.constants.borrow();
         let mut spring = at.state.q * (rate * rate * rate);
         let (mut force, mut next) = (at.force[0] - b, at.force[1]);
@@ -143,11 +148,11 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         })
     }
 
-    fn continued(
+    fn continued<const N: usize>(
         &self,
         at: &Point<f64>,
         step: f64,
-        _: &Series,
+        _: &Series<N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
         let Constants { g, rate, .. } = *self.constants.borrow();

@@ -50,7 +50,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
 
     fn entry(&self) -> Point<f64> {
         let Constants { a, b, omega, omega2, rate, .. } = *self.constants.borrow();
-        let EntryAngle { sin, cos } = self.angle;
+        let EntryAngle { sin, cos, .. } = self.angle;
         let [u, v, w] = [a * cos, -(a * omega * sin), -(a * omega2 * cos)];
         let lag_rate = self.closing * rate;
         let orders = [
@@ -89,6 +89,9 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         right: &Point<f64>,
         ends: Ends,
     ) -> Verdict {
+        if left.elapsed == 0.0 && ends.right && self.stops_once(right) {
+            return Verdict::Inside;
+        }
         let slack = slack(left, right);
         let length = right.elapsed - left.elapsed;
         let Constants { omega, rate, rate8, a, omega6, .. } = *self.constants.borrow();
@@ -125,7 +128,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         })
     }
 
-    fn series(&self, at: &Point<f64>) -> Series {
+    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
         let Constants { rate, omega, .. } = *self.constants.borrow();
         let mut lag = at.slider_velocity * (rate * rate * rate);
         let [_, mut force, mut next] = at.force;
@@ -136,11 +139,11 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         })
     }
 
-    fn continued(
+    fn continued<const N: usize>(
         &self,
         at: &Point<f64>,
         step: f64,
-        series: &Series,
+        series: &Series<N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
         let Constants { g, rate, two_xi, .. } = *self.constants.borrow();
@@ -165,6 +168,20 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
 }
 
 impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
+    /// Whether w, not negative at the start, has no root before this one: proved, or not known.
+    ///
+    /// w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's lag only decays. With c = 1 - a - b
+    /// and a omega < c rate, w is concave as long as lag rate >= c and falls from then on; and it is
+    /// concave up to a root at which a omega < lag rate^2.
+    fn stops_once(&self, root: &Point<f64>) -> bool {
+        /// Of the few roundings in the inequalities.
+        const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;
+        let Constants { a, b, omega, rate, .. } = *self.constants.borrow();
+        let steepest = a * omega * ROOM;
+        let lowest = steepest < ((1.0 - b) - a * ROOM) * rate;
+        self.drift_rate >= 0.0 && (lowest || steepest < root.slider_velocity * rate * rate)
+    }
+
     fn shape(&self) -> Shape {
         let Constants { a, b, omega, omega6, per_omega2, rate, rate8, .. } =
             *self.constants.borrow();

@@ -1,8 +1,8 @@
 //! From a guess or a bracket to a root, with a closed-form evaluation a step and a series at the end.
 
 use crate::crossing::guarded::{Guarded, SLACK};
-use crate::crossing::series::REACH;
-use crate::crossing::{Counters, Root};
+use crate::crossing::series::{SHORT_TERMS, Series, TERMS};
+use crate::crossing::{Counters, Root, Side};
 use crate::flow::Point;
 use crate::two_word::TwoWord;
 
@@ -39,9 +39,9 @@ impl Cubic {
         over + step * (slope + step * (0.5 * bend + step * (third * (1.0 / 6.0))))
     }
 
-    /// Its zero by reversion of the series, where that is so near that the guard is almost straight, and
-    /// one step more with the slope to first order: with one division. What is left is the third power
-    /// of 0.02 times its square.
+    /// Its zero by reversion of the series, where that is so near that the guard is almost straight: with
+    /// one division. What is left is the third power of 0.02, and is put right with the series' own
+    /// remainder.
     fn near_zero(&self) -> Option<f64> {
         const STRAIGHT: f64 = 0.02;
         let inverse = 1.0 / self.slope;
@@ -51,9 +51,7 @@ impl Cubic {
         if !(first.abs() < STRAIGHT && second.abs() < STRAIGHT * STRAIGHT) {
             return None;
         }
-        let step = newton * (1.0 - first + 2.0 * first * first - second);
-        let rest = step * (1.0 + step * (b + step * c)) - newton;
-        Some(step - rest * (1.0 - 2.0 * b * step))
+        Some(newton * (1.0 - first + 2.0 * first * first - second))
     }
 
     /// Its zero by Newton's method: three steps do on a transversal crossing; next to a graze it only
@@ -95,29 +93,47 @@ impl CubicStep {
 
 /// The root that the guard's series has next to a point's cubic step; none where that is no
 /// crossing outwards.
+#[inline]
 fn polished<G: Guarded>(phase: &G, point: &Point<f64>, cubic: &CubicStep) -> Option<Root> {
+    let [few_terms, _] = phase.reaches();
+    if cubic.step.abs() <= few_terms {
+        polished_by(phase, point, cubic, &phase.series::<SHORT_TERMS>(point))
+    } else {
+        polished_by(phase, point, cubic, &phase.series::<TERMS>(point))
+    }
+}
+
+fn polished_by<G: Guarded, const N: usize>(
+    phase: &G,
+    point: &Point<f64>,
+    cubic: &CubicStep,
+    series: &Series<N>,
+) -> Option<Root> {
     const ATTEMPTS: usize = 5;
-    /// What Newton's last step may change the slope by: it is put right to third order, so that the force
-    /// of an impact keeps its digits; the time is settled by twice as many.
-    const SETTLED: f64 = 1e-12;
+    /// What Newton's last step may change the slope by: it is put right to fifth order, which leaves
+    /// REACH^4/24 = 3e-8 of that, so that the force of an impact keeps its digits; the time is settled by
+    /// twice as many.
+    const SETTLED: f64 = 1e-9;
     let CubicStep { mut step, rises, .. } = *cubic;
     let corridor = phase.corridor();
     let threshold = if rises { corridor.high } else { corridor.low };
-    let series = phase.series(point);
     for attempt in 1..=ATTEMPTS {
         let (value, slope) = series.value_and_slope(step);
         let change = (threshold - value) / slope;
         step += change;
-        let [_, _, bend, third, fourth, ..] = series.0;
-        let gain = change * (bend + step * (third + 0.5 * step * fourth));
+        let gain = change * series.bend(step);
         let settled = gain.abs() <= SETTLED * slope.abs();
         // Next to a graze rounding keeps the time from settling any further.
         let hidden = (value - threshold).abs() <= SLACK * point.guard.largest_term;
         if settled || (attempt == ATTEMPTS && hidden) {
             let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step);
-            let end = phase.continued(point, step, &series, (threshold, slope + gain));
+            let end = phase.continued(point, step, series, (threshold, slope + gain));
             let end = Point { elapsed, ..end };
-            return leaves(&end, rises).then_some(Root { point: end, low, rises });
+            return leaves(&end, rises).then_some(Root {
+                point: end,
+                low,
+                side: Side::high(rises),
+            });
         }
     }
     None
@@ -138,7 +154,7 @@ pub fn follow<G: Guarded>(
     counters: &mut Counters,
 ) -> Result<Root, Point<f64>> {
     const ATTEMPTS: usize = 5;
-    let reach = REACH / phase.fastest_rate();
+    let [_, reach] = phase.reaches();
     let mut point = evaluate(phase, guess, counters);
     let mut last_step = f64::INFINITY;
     for _ in 0..ATTEMPTS {
@@ -167,7 +183,7 @@ pub fn bracketed<G: Guarded>(
     counters: &mut Counters,
 ) -> Root {
     let corridor = phase.corridor();
-    let reach = REACH / phase.fastest_rate();
+    let [_, reach] = phase.reaches();
     let mut rises = right.guard.orders[0] >= corridor.high;
     let (mut inside, mut outside) = (left.elapsed, right.elapsed);
     let mut point = *right;
@@ -186,7 +202,7 @@ pub fn bracketed<G: Guarded>(
         halvings += 1;
         let middle = middle(inside, outside, halvings);
         if middle <= inside || middle >= outside {
-            return Root { point, low: 0.0, rises };
+            return Root { point, low: 0.0, side: Side::high(rises) };
         }
         let interior = root > inside && root < outside;
         let next = if within && interior { root } else { middle };

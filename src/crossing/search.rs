@@ -28,17 +28,29 @@ impl Target {
 }
 
 /// The first crossing after the start of the phase and not after `horizon` (elapsed, may be infinite).
-///
-/// Mostly the first guess leads to the root, and one certificate says that it is the first.
-#[inline]
 pub fn first_crossing<G: Guarded>(
     phase: &G,
     strides: &Strides,
     horizon: f64,
     counters: &mut Counters,
 ) -> Crossing {
+    first_crossing_and((phase, strides), horizon, counters, |_| ()).0
+}
+
+/// The same with what follows from a crossing.
+///
+/// Mostly the first guess leads to the root, and one certificate says that it is the first. What comes
+/// next waits for the root but not for the certificate: it is begun before that, so that the processor
+/// works on both.
+#[inline]
+pub fn first_crossing_and<G: Guarded, T>(
+    (phase, strides): (&G, &Strides),
+    horizon: f64,
+    counters: &mut Counters,
+    next: impl Fn(&Root) -> T,
+) -> (Crossing, Option<T>) {
     if horizon <= 0.0 {
-        return Crossing::Horizon;
+        return (Crossing::Horizon, None);
     }
     let left = phase.entry();
     let outlook = phase.outlook(strides, &left, horizon);
@@ -49,18 +61,24 @@ pub fn first_crossing<G: Guarded>(
     {
         match follow(phase, 0.0, time, horizon, counters) {
             Ok(root) => {
+                let next = next(&root);
                 let ends = Ends { right: true, ..phase.imposed() };
                 if root.elapsed().high <= horizon
                     && phase.certify(strides, &left, &root.point, ends) == Verdict::Inside
                 {
-                    return Crossing::At(root);
+                    return (Crossing::At(root), Some(next));
                 }
                 tried = Some(Ok(root));
             }
             Err(point) => tried = Some(Err(point)),
         }
     }
-    search((phase, strides), left, (outlook, tried), horizon, counters)
+    let crossing = search((phase, strides), left, (outlook, tried), horizon, counters);
+    let next = match &crossing {
+        Crossing::At(root) => Some(next(root)),
+        _ => None,
+    };
+    (crossing, next)
 }
 
 /// A guess that has been followed: to a root, or in vain.

@@ -5,37 +5,45 @@
 //! is shorter than [`REACH`] against the fastest rate of the motion, ten terms give the guard and its
 //! first three derivatives to the last digit: what is left out of the third is REACH^8/8! = 2e-17 of
 //! its size. A guess that comes so close is finished without a second evaluation, and the state is
-//! carried along in one step, which rounds it once, as a second evaluation would.
+//! carried along in one step, which rounds it once, as a second evaluation would. Most guesses come
+//! closer than [`SHORT_REACH`]: there five terms leave SHORT_REACH^5/5! = 8e-18 of the slope, and the
+//! higher derivatives follow from the equation of motion.
 
 use crate::constants::Constants;
 
 /// The longest step against the fastest rate of the motion.
 pub const REACH: f64 = 0.03;
 
-/// The highest power kept.
-pub const DEGREE: usize = 10;
+/// Terms kept up to there, that of order zero included.
+pub const TERMS: usize = 11;
+
+/// The longest step for which fewer terms do, in the same unit.
+pub const SHORT_REACH: f64 = 1e-3;
+
+/// Terms kept up to there.
+pub const SHORT_TERMS: usize = 6;
 
 /// 1/k!
-const INVERSE_FACTORIALS: [f64; DEGREE + 1] = {
-    let mut table = [1.0; DEGREE + 1];
+const INVERSE_FACTORIALS: [f64; TERMS + 1] = {
+    let mut table = [1.0; TERMS + 1];
     let mut k = 1;
-    while k <= DEGREE {
+    while k <= TERMS {
         table[k] = table[k - 1] / k as f64;
         k += 1;
     }
     table
 };
 
-/// The derivatives of orders 0 to [`DEGREE`] at an evaluation.
+/// The derivatives of orders 0 and on at an evaluation.
 #[derive(Clone, Copy, Debug)]
-pub struct Series(pub [f64; DEGREE + 1]);
+pub struct Series<const N: usize>(pub [f64; N]);
 
-impl Series {
+impl<const N: usize> Series<N> {
     /// The guard's own orders, completed by its derivatives of orders four and on, one by one.
     #[inline]
     pub fn new(orders: &[f64; 4], mut next: impl FnMut() -> f64) -> Self {
-        let [value, slope, bend, third] = *orders;
-        let mut derivatives = [value, slope, bend, third, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        let mut derivatives = [0.0; N];
+        derivatives[..4].copy_from_slice(orders);
         for derivative in &mut derivatives[4..] {
             *derivative = next();
         }
@@ -48,7 +56,7 @@ impl Series {
     pub fn value_and_slope(&self, step: f64) -> (f64, f64) {
         let square = step * step;
         let (mut value, mut slope) = ([0.0; 2], [0.0; 2]);
-        for k in (0..DEGREE).rev().map(|k| k + 1) {
+        for k in (1..N).rev() {
             let side = k % 2;
             value[side] = self.0[k] * INVERSE_FACTORIALS[k] + square * value[side];
             slope[side] = self.0[k] * INVERSE_FACTORIALS[k - 1] + square * slope[side];
@@ -58,11 +66,18 @@ impl Series {
         (self.0[0] + (step * odd + square * even), even_slope + step * odd_slope)
     }
 
+    /// Second derivative a time `step` later, without terms above order five.
+    #[inline]
+    pub fn bend(&self, step: f64) -> f64 {
+        let [third, fourth, fifth] = [self.0[3], self.0[4], self.0[5]];
+        self.0[2] + step * (third + step * (0.5 * fourth + step * (1.0 / 6.0) * fifth))
+    }
+
     /// Second and third derivative a time `step` later.
     #[inline]
     pub fn bend_and_third(&self, step: f64) -> (f64, f64) {
         let (mut bend, mut third) = (0.0, 0.0);
-        for k in (0..DEGREE - 2).rev().map(|k| k + 3) {
+        for k in (3..N).rev() {
             bend = self.0[k] * INVERSE_FACTORIALS[k - 2] + step * bend;
             third = self.0[k] * INVERSE_FACTORIALS[k - 3] + step * third;
         }
@@ -73,7 +88,7 @@ impl Series {
     #[inline]
     pub fn integral(&self, step: f64) -> f64 {
         let mut sum = 0.0;
-        for k in (0..DEGREE).rev() {
+        for k in (0..N).rev() {
             sum = self.0[k] * INVERSE_FACTORIALS[k + 1] + step * sum;
         }
         step * sum
@@ -135,10 +150,19 @@ mod tests {
     use proptest::prelude::*;
 
     fn agrees<G: Guarded>(phase: &G, d: f64, share: f64) -> Result<(), TestCaseError> {
-        let step = share * REACH / phase.fastest_rate();
+        let [few_terms, all] = phase.reaches();
+        agrees_by::<G, SHORT_TERMS>(phase, d, share * few_terms)?;
+        agrees_by::<G, TERMS>(phase, d, share * all)
+    }
+
+    fn agrees_by<G: Guarded, const N: usize>(
+        phase: &G,
+        d: f64,
+        step: f64,
+    ) -> Result<(), TestCaseError> {
         let (from, to) = (phase.at(d), phase.at(d + step));
         let step = to.elapsed - from.elapsed;
-        let series = phase.series(&from);
+        let series = phase.series::<N>(&from);
         let reached = phase.continued(&from, step, &series, series.value_and_slope(step));
         // Two evaluations, each within the four roundings of its terms that the search grants it.
         let rate = phase.fastest_rate();
@@ -166,7 +190,7 @@ mod tests {
             let parameters = Parameters { xi, omega, ..Parameters::default() };
             let constants = Constants::new(&parameters);
             let d = d + 0.1;
-            let angle = EntryAngle { sin: angle.sin(), cos: angle.cos() };
+            let angle = EntryAngle { radians: angle, sin: angle.sin(), cos: angle.cos() };
             let entry = State { p: q + 0.02, y, q };
             agrees(&NoContact { constants, entry, angle, surface: None }, d, share)?;
             let offset = 2.0 * xi * y + q;

@@ -10,7 +10,7 @@ use crate::constants::Constants;
 use crate::crossing::certificate::Corridor;
 use crate::crossing::guarded::{Guarded, slack};
 use crate::crossing::root::evaluate;
-use crate::crossing::{Counters, Crossing, Root};
+use crate::crossing::{Counters, Crossing, Root, Side};
 use crate::flow::Point;
 use crate::flow::contact::Contact;
 use crate::flow::no_contact::NoContact;
@@ -128,5 +128,5 @@ fn arrival(point: &Point<f64>, corridor: &Corridor) -> Root {
         step -= residual / (slope + step * (bend + step * 0.5 * third));
     }
     let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step);
-    Root { point: Point { elapsed, ..*point }, low, rises }
+    Root { point: Point { elapsed, ..*point }, low, side: Side::high(rises) }
 }

@@ -105,7 +105,11 @@ impl Parts {
         let inside = |left: &[f64; 4], right: &[f64; 4], length: f64, ends: Ends| {
             let eighth = (-shape.eighth, shape.eighth);
             let piece = Piece { left: *left, right: *right, length, eighth };
-            piece.verdict(&shape.corridor, ends, shape.slack) == Verdict::Inside
+            match piece.verdict(&shape.corridor, ends, shape.slack) {
+                Verdict::Inside => true,
+                Verdict::Touches => false,
+                Verdict::Open => piece.stays_inside_in_parts(&shape.corridor, ends, shape.slack),
+            }
         };
         let (mut here, mut orders) = (*self, *orders);
         let mut left_ends = Ends { right: false, ..ends };

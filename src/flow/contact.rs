@@ -100,7 +100,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Contact<T, C> {
         excess: T,
     ) -> [T; 4] {
         let Constants { a, b, two_xi, omega, steady, .. } = *self.constants.borrow();
-        let EntryAngle { sin, cos } = self.angle;
+        let EntryAngle { sin, cos, .. } = self.angle;
         let (a_cos, a_sin_omega) = (a * cos, a * sin * omega);
         let [then, then_rate, ..] = steady.orders([a_cos, -a_sin_omega, -(omega * omega * a_cos)]);
         let level = self.reference - b;

@@ -4,9 +4,12 @@ use crate::constants::Constants;
 use crate::number::Number;
 use crate::remainders::{Circular, circular_of};
 
-/// Sine and cosine of the forcing angle `omega tau + phi` when the phase begins.
+/// The forcing angle `omega tau + phi` when the phase begins.
 #[derive(Clone, Copy, Debug)]
 pub struct EntryAngle<T> {
+    /// omega tau0 + phi within `[0, 2 pi)`, rounded: certificates find the force's changes of sign by it.
+    /// The motion itself is computed from its sine and cosine.
+    pub radians: T,
     /// sin(omega tau0 + phi)
     pub sin: T,
     /// cos(omega tau0 + phi)

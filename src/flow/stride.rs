@@ -6,6 +6,7 @@
 use crate::flow::damped::Damping;
 use crate::parameters::Parameters;
 use crate::remainders::{Circular, circular};
+use std::f64::consts::{PI, TAU};
 
 /// A step of fixed length outside contact.
 #[derive(Clone, Copy, Debug)]
@@ -80,6 +81,33 @@ impl Swing {
     }
 }
 
+/// Where the force changes its sign: it is negative from this forcing angle to 2 pi less it.
+#[derive(Clone, Copy, Debug)]
+pub struct Turning {
+    /// t within `[0, pi]`, cos t = -b/a; pi if the force is never negative, 0 if it is never positive.
+    pub angle: f64,
+    /// sin t
+    pub sin: f64,
+    /// cos t
+    pub cos: f64,
+    /// How long the force is negative in a period.
+    pub length: f64,
+    /// The forcing period.
+    pub period: f64,
+}
+
+impl Turning {
+    fn new(parameters: &Parameters) -> Self {
+        let Parameters { a, b, omega, .. } = *parameters;
+        // Without harmonic the quotient is infinite, or no number where there is no force at all.
+        let cos = (-b / a).clamp(-1.0, 1.0);
+        let cos = if cos.is_nan() { -1.0 } else { cos };
+        let angle = libm::acos(cos);
+        let length = 2.0 * (PI - angle) / omega;
+        Self { angle, sin: libm::sin(angle), cos, length, period: TAU / omega }
+    }
+}
+
 /// Of a certificate's pieces, against the faster of forcing and free oscillation, radians: the
 /// interpolant's error is 2^8/2822400 = 1e-4 of the amplitude.
 const PIECE: f64 = 2.0;
@@ -123,6 +151,8 @@ pub struct Strides {
     pub contact_look: Swing,
     /// The same above critical damping when the fast part has died out.
     pub slow_look: Swing,
+    /// Where the force changes its sign.
+    pub turning: Turning,
 }
 
 impl Strides {
@@ -148,6 +178,7 @@ impl Strides {
             quick_look: Swing::new(LOOK / quickest, omega, damping),
             contact_look: Swing::new(LOOK, omega, damping),
             slow_look: Swing::new(LOOK / slowest, omega, damping),
+            turning: Turning::new(parameters),
         }
     }
 }

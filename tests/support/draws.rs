@@ -90,13 +90,13 @@ impl<T: Number> Form<T> {
         }
     }
 
-    /// The same phase under another forcing angle.
+    /// The same phase under another sine and cosine of the forcing angle: the closed forms read no more of it.
     pub fn with_angle(mut self, change: fn(&EntryAngle<T>) -> (T, T)) -> Self {
         let (Self::Flight(NoContact { angle, .. })
         | Self::Contact(Contact { angle, .. })
         | Self::Slip(Progression { angle, .. })) = &mut self;
         let (sin, cos) = change(angle);
-        *angle = EntryAngle { sin, cos };
+        *angle = EntryAngle { sin, cos, ..*angle };
         self
     }
 
@@ -118,11 +118,13 @@ impl Regime {
         let a = if draw.once_in(10) { 0.0 } else { draw.between(0.0, 1.5) };
         let b = draw.between(-0.5, 1.5);
         let parameters = Parameters { a, b, xi, omega, g: draw.between(0.0, 0.5), phi: 0.0 };
-        let (sin, cos) = libm::sincos(draw.between(0.0, std::f64::consts::TAU));
+        let radians = draw.between(0.0, std::f64::consts::TAU);
+        let (sin, cos) = libm::sincos(radians);
+        let angle = EntryAngle { radians, sin, cos };
         let (rounded, exact) = match phase {
-            Phase::NoContact => flight(&parameters, EntryAngle { sin, cos }, draw),
-            Phase::Contact => contact(&parameters, EntryAngle { sin, cos }, draw),
-            Phase::Progression => slip(&parameters, EntryAngle { sin, cos }, draw),
+            Phase::NoContact => flight(&parameters, angle, draw),
+            Phase::Contact => contact(&parameters, angle, draw),
+            Phase::Progression => slip(&parameters, angle, draw),
         };
         let period = std::f64::consts::TAU / omega;
         let elapsed = if draw.once_in(2) {
@@ -162,7 +164,7 @@ fn dd(value: f64) -> DoubleDouble {
 }
 
 fn exactly(angle: EntryAngle<f64>) -> EntryAngle<DoubleDouble> {
-    EntryAngle { sin: dd(angle.sin), cos: dd(angle.cos) }
+    EntryAngle { radians: dd(angle.radians), sin: dd(angle.sin), cos: dd(angle.cos) }
 }
 
 fn round(state: State<DoubleDouble>) -> State<f64> {

@@ -64,15 +64,19 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
         self.0.divide(left, right)
     }
 
-    fn series(&self, at: &Point<f64>) -> Series {
+    fn reaches(&self) -> [f64; 2] {
+        self.0.reaches()
+    }
+
+    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
         self.0.series(at)
     }
 
-    fn continued(
+    fn continued<const N: usize>(
         &self,
         at: &Point<f64>,
         step: f64,
-        series: &Series,
+        series: &Series<N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
         self.0.continued(at, step, series, (value, slope))

@@ -61,8 +61,9 @@ impl Forms {
         entry: State<DoubleDouble>,
         onset: Onset<DoubleDouble>,
     ) -> Motion<DoubleDouble> {
-        let (sin, cos) = (DoubleDouble::from(instant.angle_two_word()) + self.phi).sin_cos();
-        motion(self.constants, entry, EntryAngle { sin, cos }, onset)
+        let radians = DoubleDouble::from(instant.angle_two_word()) + self.phi;
+        let (sin, cos) = radians.sin_cos();
+        motion(self.constants, entry, EntryAngle { radians, sin, cos }, onset)
     }
 
     /// The same phase with everything rounded to f64.
@@ -81,7 +82,8 @@ impl Forms {
                 Onset::Progression { drift_rate: f(it.drift_rate), closing: f(it.closing) }
             }
         };
-        let angle = EntryAngle { sin: f(angle.sin), cos: f(angle.cos) };
+        let [radians, sin, cos] = [angle.radians, angle.sin, angle.cos].map(f);
+        let angle = EntryAngle { radians, sin, cos };
         motion(self.rounded, entry, angle, onset)
     }
 }

@@ -124,7 +124,7 @@ impl Replay {
                 if instant > self.horizon {
                     return passage(None);
                 }
-                let landing = self.forms.landing(&begin.motion, &at, root.rises);
+                let landing = self.forms.landing(&begin.motion, &at, root.rises());
                 let (state, onset) = landing.ok_or("the force of an impact")?;
                 passage(Some(self::begin(
                     &self.forms,
@@ -169,7 +169,7 @@ fn refine(motion: &Motion<DoubleDouble>, root: &Root) -> Option<Point<DoubleDoub
     // A root that f64 has misplaced by more is none.
     const ASTRAY: f64 = 1e-5;
     let threshold = match motion {
-        Motion::Contact(contact) if root.rises => DoubleDouble::one() - contact.reference,
+        Motion::Contact(contact) if root.rises() => DoubleDouble::one() - contact.reference,
         Motion::Contact(contact) => -contact.reference,
         _ => DoubleDouble::zero(),
     };
@@ -204,7 +204,7 @@ const RESOLUTION: f64 = f64::EPSILON * f64::EPSILON;
 fn leaves_upwards(motion: &Motion<DoubleDouble>, root: &Root) -> bool {
     match motion {
         Motion::NoContact(_) => true,
-        Motion::Contact(_) => root.rises,
+        Motion::Contact(_) => root.rises(),
         Motion::Progression(_) => false,
     }
 }

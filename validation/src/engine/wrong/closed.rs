@@ -35,7 +35,7 @@ impl Closed {
         let [p, y, q, _] = begun;
         let entry = State { p, y, q };
         let (sin, cos) = angle.sin_cos();
-        let angles = EntryAngle { sin, cos };
+        let angles = EntryAngle { radians: angle, sin, cos };
         let force = constants.two_xi * y + q;
         let form = match phase {
             Phase::NoContact => {

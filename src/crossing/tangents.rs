@@ -1,0 +1,142 @@
+//! The certificate of a whole flight, from the separation to the impact, by tangents and chords.
+//!
+//! h = H - q with H'' = F, and -q is concave because q >= 0: it lies below its tangent at the root r. So
+//! h is at most E = H + that tangent, with E(r) = h(r) = 0 and E'' = F. The sign of F is known: negative
+//! between the forcing angles t and 2 pi - t with cos t = -b/a. Where F is positive E is convex and lies
+//! below its chord. Where it is negative E is concave and lies below its tangents; at the ends of such a
+//! stretch sine and cosine are constants of the model. So a flight is proved by a parabola at a few
+//! places. Behind the last of them that lies before r there is a chord to r, or the tangent there.
+//!
+//! Near the double zero at the start E does not help. There h itself is concave as long as F is
+//! negative; or, up to z = [`PARTING`] decay times, q0 (exp(-z) - 1 + z) >= [`GRIP`] q0 z^2/2 outweighs
+//! the force, if GRIP q0 rate^2 exceeds the largest force. What neither serves is left to
+//! [`crate::crossing::walk`].
+
+use crate::constants::Constants;
+use crate::crossing::guarded::slack;
+use crate::flow::Point;
+use crate::flow::no_contact::NoContact;
+use crate::flow::stride::{GRIP, Strides, Turning};
+use std::borrow::Borrow;
+use std::f64::consts::TAU;
+
+/// Stretches of negative force after which a flight is left to the other certificate.
+const MOST_STRETCHES: usize = 8;
+
+/// A concave function at one place.
+#[derive(Clone, Copy)]
+struct Tangent {
+    from: f64,
+    value: f64,
+    slope: f64,
+}
+
+impl Tangent {
+    /// Whether the function is negative up to a place further on, by the tangents at both: where they
+    /// meet, times the difference of their slopes, if that lies between.
+    #[inline]
+    fn stays_below_to(&self, end: &Self) -> bool {
+        let ends = self.value < 0.0 && end.value < 0.0;
+        let peaks = self.slope > 0.0 && end.slope < 0.0;
+        let back = end.value - end.slope * (end.from - self.from);
+        ends && (!peaks || self.slope * back < end.slope * self.value)
+    }
+}
+
+/// E, raised by what its terms may round off.
+struct Bound {
+    offset: f64,
+    slope: f64,
+    curvature: f64,
+    amplitude: f64,
+    speed: f64,
+}
+
+impl Bound {
+    #[inline]
+    fn new<C: Borrow<Constants<f64>>>(flight: &NoContact<f64, C>, root: &Point<f64>) -> Self {
+        /// Eight roundings of terms that are counted twice.
+        const ROOM: f64 = 16.0 * f64::EPSILON;
+        let Constants { b, a_over_omega, a_over_omega2, .. } = *flight.constants.borrow();
+        let (y, q) = (flight.entry.y, flight.entry.q);
+        let spring = -root.slider_velocity;
+        let slope = (y - a_over_omega * flight.angle.sin) + spring;
+        let at_start = root.state.q + spring * root.elapsed;
+        let speeds = y.abs() + a_over_omega + b.abs() * root.elapsed + spring;
+        let terms = q + root.state.q + a_over_omega2 * TAU + speeds * root.elapsed;
+        Self {
+            offset: (q + a_over_omega2 * flight.angle.cos - at_start)
+                + (terms * ROOM + slack(root, root)),
+            slope,
+            curvature: b,
+            amplitude: a_over_omega2,
+            speed: a_over_omega,
+        }
+    }
+
+    /// Value and slope where the forcing angle has this sine and cosine.
+    #[inline]
+    fn at(&self, from: f64, (sin, cos): (f64, f64)) -> Tangent {
+        let Self { offset, slope, curvature, amplitude, speed } = *self;
+        let value = offset + from * (slope + 0.5 * curvature * from) - amplitude * cos;
+        Tangent { from, value, slope: slope + curvature * from + speed * sin }
+    }
+}
+
+/// Whether h is negative between the separation that begins the flight and this root: proved, or not
+/// known.
+#[inline]
+pub fn stays_below<C: Borrow<Constants<f64>>>(
+    flight: &NoContact<f64, C>,
+    strides: &Strides,
+    root: &Point<f64>,
+) -> bool {
+    let Turning { angle, sin, cos, length, period } = strides.turning;
+    let omega = flight.constants.borrow().omega;
+    let bound = Bound::new(flight, root);
+    let Some(start) = off_the_surface(flight, strides, &bound) else { return false };
+    // Written so that a NaN proves nothing.
+    if !(start.from < root.elapsed && start.value < 0.0 && flight.entry.q > 0.0) {
+        return false;
+    }
+    // The stretch of negative force that the flight begins in, or the first one after that.
+    let late = flight.angle.radians > TAU - angle;
+    let mut begins = (angle - flight.angle.radians) / omega + if late { period } else { 0.0 };
+    for _ in 0..MOST_STRETCHES {
+        let ends = begins + length;
+        if ends >= root.elapsed {
+            return true;
+        }
+        if ends > start.from {
+            let near = if begins < start.from { start } else { bound.at(begins, (sin, cos)) };
+            if !near.stays_below_to(&bound.at(ends, (-sin, cos))) {
+                return false;
+            }
+        }
+        begins += period;
+    }
+    false
+}
+
+/// E at a time until which h is negative by what happens at its beginning.
+#[inline]
+fn off_the_surface<C: Borrow<Constants<f64>>>(
+    flight: &NoContact<f64, C>,
+    strides: &Strides,
+    bound: &Bound,
+) -> Option<Tangent> {
+    let Constants { a, b, omega, rate, .. } = *flight.constants.borrow();
+    let Turning { angle, sin, cos, .. } = strides.turning;
+    let (radians, entry) = (flight.angle.radians, flight.angle);
+    let parting = &strides.parting;
+    let concave_until = if radians < angle { 0.0 } else { (TAU - angle - radians) / omega };
+    let sinks = (a + b.max(0.0)) * (1.0 + 1e-9) < flight.entry.q * (rate * rate) * GRIP;
+    if sinks && parting.length > concave_until {
+        let turned = (
+            entry.sin * parting.cos + entry.cos * parting.sin,
+            entry.cos * parting.cos - entry.sin * parting.sin,
+        );
+        return Some(bound.at(parting.length, turned));
+    }
+    (concave_until > 0.0).then(|| bound.at(concave_until, (-sin, cos)))
+}
