@@ -108,7 +108,7 @@ impl Instant {
     #[inline]
     #[must_use]
     pub(crate) fn forcing(&self, phi: TwoWord) -> EntryAngle<f64> {
-        let angle = if phi == TwoWord::ZERO { self.angle } else { self.angle.plus(phi) };
+        let angle = if phi == TwoWord::ZERO { self.angle } else { self.angle.plus_positive(phi) };
         let (sine, cosine) = circle::sin_cos(angle.high);
         let turn = if angle.high < TWO_PI.high { 0.0 } else { TWO_PI.high };
         EntryAngle {
@@ -136,10 +136,12 @@ fn radians(cycles: i128, angle: TwoWord) -> TwoWord {
 /// Without a call of the library for any count that a run meets.
 #[inline]
 fn to_f64(cycles: i128) -> f64 {
-    match i64::try_from(cycles) {
-        Ok(few) => few as f64,
-        Err(_) => cycles as f64,
+    #[cold]
+    #[inline(never)] // else it is merged with the short way
+    fn many(cycles: i128) -> f64 {
+        cycles as f64
     }
+    i64::try_from(cycles).map_or_else(|_| many(cycles), |few| few as f64)
 }
 
 #[cfg(test)]

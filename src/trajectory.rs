@@ -50,6 +50,12 @@ impl Trajectory {
         Some(self.go_on(&entry, angle).exit)
     }
 
+    /// Where the next phase begins; none at the end of the run.
+    #[must_use]
+    pub fn upcoming(&self) -> Option<&Entry> {
+        self.next.as_ref().map(|(entry, _)| entry)
+    }
+
     #[inline]
     fn go_on(&mut self, entry: &Entry, angle: EntryAngle<f64>) -> Passed {
         let passed = pass(&self.model, entry, angle, self.horizon.as_ref(), &mut self.counters);

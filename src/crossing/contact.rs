@@ -200,14 +200,14 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         series: &Series<N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
-        let Constants { b, g, two_xi, damping, .. } = *self.constants.borrow();
+        let Constants { g, two_xi, damping, .. } = *self.constants.borrow();
         let Push { force, impulse } = Push::new(self.constants.borrow(), &at.force, step);
         let y = at.state.y + (impulse - (self.reference * step + series.integral(step)));
         let (bend, third) = if matches!(damping, Damping::Over { .. }) {
             series.bend_and_third(step)
         } else {
             // f' = 2 xi (F - f) + y
-            let pull = (force[0] + (b - self.reference)) - value;
+            let pull = (force[0] - self.reference) - value;
             let pull_rate = force[1] - slope;
             let bend = two_xi * pull_rate + pull;
             (bend, two_xi * (force[2] - bend) + pull_rate)

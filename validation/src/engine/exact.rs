@@ -2,7 +2,7 @@
 
 use super::meter::{Failure, Limits};
 use super::{Accuracy, Declaration, Engine, Event, Location, Outcome, Stepping, Task, Work, pins};
-use percuss::{Exit, Leg, Sample};
+use percuss::{Entry, Exit, Leg, Sample};
 
 /// The closed forms, joined at proved first crossings.
 pub(super) struct Exact;
@@ -24,16 +24,26 @@ impl Engine for Exact {
         let start = task.problem.entry;
         let mut outcome = Outcome::default();
         let mut run = task.problem.model.trajectory(start).until(task.horizon);
-        for leg in run.by_ref() {
-            sample(task, &leg, &mut outcome.samples);
-            match leg.exit() {
-                Exit::Switch(next) => outcome.events.push(Event {
-                    phase: next.phase(),
-                    elapsed: next.instant.since(&start.instant, task.parameters.omega).value(),
-                    state: [next.state.p, next.state.y, next.state.q, next.v()],
-                }),
+        let event = |next: &Entry| {
+            let elapsed = next.instant.since(&start.instant, task.parameters.omega).value();
+            let state = [next.state.p, next.state.y, next.state.q, next.v()];
+            Event { phase: next.phase(), elapsed, state }
+        };
+        while let Some(begun) = run.upcoming().copied() {
+            let more = outcome.samples.len() < task.grid.count;
+            let exit = if more {
+                let Some(leg) = run.next() else { break };
+                sample(task, &leg, &mut outcome.samples);
+                *leg.exit()
+            } else {
+                let Some(exit) = run.pass() else { break };
+                exit
+            };
+            match exit {
+                Exit::Switch(next) => outcome.events.push(event(&next)),
                 Exit::Horizon | Exit::Endless(_) => {
-                    outcome.end = state(&leg.at_instant(&task.horizon))
+                    let last = task.problem.model.trajectory(begun).until(task.horizon).next();
+                    outcome.end = last.map_or(outcome.end, |leg| state(&leg.at_instant(&task.horizon)));
                 }
             }
             if outcome.events.len() > limits.events {
