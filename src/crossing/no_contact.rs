@@ -5,11 +5,11 @@ use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::tangents::stays_below;
-use crate::crossing::trend::Trend;
+use crate::crossing::trend::{Place, Trend};
 use crate::crossing::walk::{End, Parts, Shape, Walk};
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
-use crate::flow::stride::{PULLING, Strides};
+use crate::flow::stride::{PULLING, Strides, Turning};
 use crate::flow::{Jet, Point};
 use crate::state::State;
 use std::borrow::Borrow;
@@ -34,6 +34,17 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
             exponential: self.entry.q,
             rate: constants.rate,
             omega: constants.omega,
+        }
+    }
+
+    /// Until where h is concave after a separation: as long as the force is negative.
+    fn clear_of_the_surface(&self, trend: &Trend, turning: &Turning) -> Place {
+        match turning.negative_until(self.angle.radians) {
+            Some(angle) => {
+                let elapsed = (angle - self.angle.radians) / self.constants.borrow().omega;
+                trend.place(elapsed, (-turning.sin, turning.cos))
+            }
+            None => trend.start(),
         }
     }
 
@@ -90,7 +101,14 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         {
             return Outlook::Root(hop);
         }
-        self.trend().outlook(strides, left.elapsed, !first || self.surface.is_some(), limit)
+        let trend = self.trend();
+        let place = match first {
+            true if self.separates() => self.clear_of_the_surface(&trend, &strides.turning),
+            true => trend.start(),
+            false => trend.near(left.elapsed),
+        };
+        let inside = !first || self.surface.is_some();
+        trend.outlook(strides, left.elapsed, (place, inside), limit)
     }
 
     fn certify(

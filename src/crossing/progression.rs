@@ -79,7 +79,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         {
             return Outlook::Root(slip);
         }
-        self.trend().outlook(strides, left.elapsed, true, limit)
+        let trend = self.trend();
+        let first = left.elapsed == 0.0;
+        let place = if first { trend.start() } else { trend.near(left.elapsed) };
+        trend.outlook(strides, left.elapsed, (place, true), limit)
     }
 
     fn certify(

@@ -36,10 +36,10 @@ impl Tangent {
     /// meet, times the difference of their slopes, if that lies between.
     #[inline]
     fn stays_below_to(&self, end: &Self) -> bool {
-        let ends = self.value < 0.0 && end.value < 0.0;
-        let peaks = self.slope > 0.0 && end.slope < 0.0;
+        let ends = (self.value < 0.0) & (end.value < 0.0);
+        let peaks = (self.slope > 0.0) & (end.slope < 0.0);
         let back = end.value - end.slope * (end.from - self.from);
-        ends && (!peaks || self.slope * back < end.slope * self.value)
+        ends & (!peaks | (self.slope * back < end.slope * self.value))
     }
 }
 
@@ -107,11 +107,12 @@ pub fn stays_below<C: Borrow<Constants<f64>>>(
         if ends >= root.elapsed {
             return true;
         }
-        if ends > start.from {
-            let near = if begins < start.from { start } else { bound.at(begins, (sin, cos)) };
-            if !near.stays_below_to(&bound.at(ends, (-sin, cos))) {
-                return false;
-            }
+        let begun = bound.at(begins, (sin, cos));
+        let near = if begins < start.from { start } else { begun };
+        let below = near.stays_below_to(&bound.at(ends, (-sin, cos)));
+        // One jump for both: which of them holds cannot be foretold.
+        if !(below | (ends <= start.from)) {
+            return false;
         }
         begins += period;
     }
@@ -126,10 +127,11 @@ fn off_the_surface<C: Borrow<Constants<f64>>>(
     bound: &Bound,
 ) -> Option<Tangent> {
     let Constants { a, b, omega, rate, .. } = *flight.constants.borrow();
-    let Turning { angle, sin, cos, .. } = strides.turning;
-    let (radians, entry) = (flight.angle.radians, flight.angle);
+    let Turning { sin, cos, .. } = strides.turning;
+    let entry = flight.angle;
     let parting = &strides.parting;
-    let concave_until = if radians < angle { 0.0 } else { (TAU - angle - radians) / omega };
+    let negative_until = strides.turning.negative_until(entry.radians);
+    let concave_until = (negative_until.unwrap_or(entry.radians) - entry.radians) / omega;
     let sinks = (a + b.max(0.0)) * (1.0 + 1e-9) < flight.entry.q * (rate * rate) * GRIP;
     if sinks && parting.length > concave_until {
         let turned = (

@@ -95,9 +95,16 @@ impl Trend {
         }
     }
 
-    /// Where the search should look after elapsed time `from`; `inside` as for the guess.
-    pub fn outlook(&self, strides: &Strides, from: f64, inside: bool, limit: f64) -> Outlook {
-        if let Some(time) = self.guess(&strides.look, from, inside, limit) {
+    /// Where the search should look after elapsed time `from`; `inside` as for the guess, which begins at
+    /// a `place` before which there is nothing to be found.
+    pub fn outlook(
+        &self,
+        strides: &Strides,
+        from: f64,
+        (place, inside): (Place, bool),
+        limit: f64,
+    ) -> Outlook {
+        if let Some(time) = self.guess(&strides.look, place, inside, limit) {
             return Outlook::Root(time);
         }
         match self.bound(from) {
@@ -147,15 +154,14 @@ impl Trend {
         self.offset + d * (self.slope + 0.5 * self.curvature * d)
     }
 
-    /// A guess, not a proof, of the first rise of G to zero after `from`; `inside` says that G is
-    /// known to be negative just after `from`. None if there is none within three periods in which the
+    /// A guess, not a proof, of the first rise of G to zero after this place; `inside` says that G is
+    /// known to be negative just after it. None if there is none within three periods in which the
     /// bound allows one, or none before `limit`.
-    fn guess(&self, look: &Stride, from: f64, mut inside: bool, limit: f64) -> Option<f64> {
+    fn guess(&self, look: &Stride, mut here: Place, mut inside: bool, limit: f64) -> Option<f64> {
         const STEPS: usize = 40;
         // At larger angles one leap more, with an evaluation, is worth its cost.
         const FURTHEST: f64 = 1e6;
         const SHORT_LIVED: f64 = 0.05;
-        let mut here = self.near(from);
         for _ in 0..STEPS {
             if self.parabola(here.elapsed) + self.amplitude < 0.0 {
                 inside = true;
@@ -196,15 +202,22 @@ impl Trend {
         first_root(value, self.slope + self.curvature * from, self.curvature)
     }
 
+    /// The start of the phase.
+    pub fn start(&self) -> Place {
+        Place { elapsed: 0.0, sin: self.sin, cos: self.cos, lasting: self.exponential }
+    }
+
+    /// Where the harmonic is known.
+    pub fn place(&self, elapsed: f64, (sin, cos): (f64, f64)) -> Place {
+        let lasting = self.exponential * quick_decay(self.rate * elapsed);
+        Place { elapsed, sin, cos, lasting }
+    }
+
     /// Harmonic and exponential to about 1e-7 and a per cent, without a call of a library function.
-    fn near(&self, elapsed: f64) -> Place {
+    pub fn near(&self, elapsed: f64) -> Place {
         let (sin, cos) = quick_sin_cos(self.omega * elapsed);
-        Place {
-            elapsed,
-            sin: self.sin * cos + self.cos * sin,
-            cos: self.cos * cos - self.sin * sin,
-            lasting: self.exponential * quick_decay(self.rate * elapsed),
-        }
+        let turned = (self.sin * cos + self.cos * sin, self.cos * cos - self.sin * sin);
+        self.place(elapsed, turned)
     }
 
     /// G and its slope.
@@ -219,7 +232,8 @@ impl Trend {
 }
 
 /// A place on the way of a guess.
-struct Place {
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
     elapsed: f64,
     sin: f64,
     cos: f64,
@@ -269,12 +283,14 @@ fn quick_sin_cos(x: f64) -> (f64, f64) {
     let s = r * r;
     let sin = r * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * (1.0 / 5040.0))));
     let cos = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s * (1.0 / 720.0 - s * (1.0 / 40320.0))));
-    match (turns as i64) & 3 {
-        0 => (sin, cos),
-        1 => (cos, -sin),
-        2 => (-sin, -cos),
-        _ => (-cos, sin),
-    }
+    // Quarters of the turn: which of the two, and with which sign, without a jump that cannot be foretold.
+    let quarters = turns as i64 as u64;
+    let sign = |quarters: u64| (quarters & 2) << 62;
+    let (s, c) = if quarters & 1 == 0 { (sin, cos) } else { (cos, sin) };
+    (
+        f64::from_bits(s.to_bits() ^ sign(quarters)),
+        f64::from_bits(c.to_bits() ^ sign(quarters.wrapping_add(1))),
+    )
 }
 
 /// exp(-z) to a per cent or so for z < 1, and never less than it.

@@ -4,6 +4,7 @@
 //! certificates, without a library function.
 
 use crate::flow::damped::Damping;
+use crate::flow::steady::Steady;
 use crate::parameters::Parameters;
 use crate::remainders::{Circular, circular};
 use std::f64::consts::{PI, TAU};
@@ -106,6 +107,15 @@ impl Turning {
         let length = 2.0 * (PI - angle) / omega;
         Self { angle, sin: libm::sin(angle), cos, length, period: TAU / omega }
     }
+
+    /// Up to which forcing angle the force is negative from `radians` on, within `[0, 2 pi)`; none if it is
+    /// not negative there.
+    #[inline]
+    #[must_use]
+    pub fn negative_until(&self, radians: f64) -> Option<f64> {
+        let end = TAU - self.angle;
+        (radians >= self.angle && radians < end).then_some(end)
+    }
 }
 
 /// Of a certificate's pieces, against the faster of forcing and free oscillation, radians: the
@@ -114,6 +124,15 @@ const PIECE: f64 = 2.0;
 
 /// Of a guess: the cubic between two places errs by 0.5^4/384 = 2e-4 of the amplitude.
 const LOOK: f64 = 0.5;
+
+/// As far as a contact's guess may step: as the free oscillation moves, unless the forced one is so strong and
+/// so fast that the cubic between two places would err by more than a thousandth of the corridor.
+fn contact_look(parameters: &Parameters) -> f64 {
+    const RIPPLE: f64 = 1e-3;
+    let Parameters { a, xi, omega, .. } = *parameters;
+    let amplitude = Steady::new(a, xi, omega).amplitude;
+    LOOK.min((384.0 * RIPPLE / amplitude).sqrt().sqrt() / omega)
+}
 
 /// Up to this many decay times an exponential that pulls the guard inwards stays in one piece: its
 /// eighth derivative helps, and at twelve its third derivative begins to lift the coefficients.
@@ -176,7 +195,7 @@ impl Strides {
             look: stride(LOOK / omega),
             contact_piece: Swing::new(PIECE / fastest, omega, damping),
             quick_look: Swing::new(LOOK / quickest, omega, damping),
-            contact_look: Swing::new(LOOK, omega, damping),
+            contact_look: Swing::new(contact_look(parameters), omega, damping),
             slow_look: Swing::new(LOOK / slowest, omega, damping),
             turning: Turning::new(parameters),
         }
