@@ -146,6 +146,7 @@ fn leaves(point: &Point<f64>, rises: bool) -> bool {
 
 /// Follows a guess to a root beyond `left`, where the guard leaves its corridor; or gives the last
 /// evaluation back.
+#[inline(always)] // else a root is copied twice on its way
 pub fn follow<G: Guarded>(
     phase: &G,
     left: f64,
