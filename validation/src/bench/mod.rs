@@ -19,6 +19,7 @@ pub mod instructions;
 pub mod lanes;
 pub mod length;
 mod pictures;
+pub mod registry;
 pub mod report;
 pub mod rounds;
 pub mod table;
