@@ -11,7 +11,6 @@ pub mod engine;
 pub mod number;
 pub mod picture;
 pub mod power;
-pub mod probes;
 pub mod report;
 pub mod reproduce;
 pub mod score;

@@ -3,10 +3,10 @@
 use super::SCORED_ERROR;
 use super::growth::Growth;
 use super::matching::{Matching, WINDOW};
+use super::probed::Probed;
 use super::statistics::Spread;
 use crate::case::{Quantity, Statistic};
 use crate::engine::{Event, Outcome, Task};
-use crate::probes::Probed;
 use crate::truth::{Row, Truth};
 use percuss::Phase;
 use percuss::two_word::TwoWord;
