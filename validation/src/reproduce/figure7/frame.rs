@@ -1,6 +1,5 @@
 //! One frame: its attractors and the label of every start.
 
-use super::colours::Place;
 use crate::arrays::Npz;
 use crate::engine::{self, Accuracy, Failure, Limits};
 use crate::picture::{Layer, Plot, Raster, basin_colours};
@@ -13,6 +12,9 @@ use percuss::dynamics::attractor::{Attractor, Basins, Label};
 use plotters::style::RGBColor;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The place of an attractor's colours among those of basin pictures.
+pub(super) type Place = usize;
 
 /// Attractors and labels, as they are kept when work is interrupted.
 #[derive(Clone, Debug, Serialize, Deserialize)]
