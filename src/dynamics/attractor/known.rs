@@ -15,6 +15,18 @@ pub enum Label {
     Unresolved,
 }
 
+impl Label {
+    /// The number used in files: an attractor's place, -1 of what is not known, -2 of what escapes.
+    #[must_use]
+    pub fn number(self) -> i32 {
+        match self {
+            Self::Attractor(place) => i32::try_from(place).unwrap_or(i32::MAX),
+            Self::Unresolved => -1,
+            Self::Escaping => -2,
+        }
+    }
+}
+
 /// An attractor and what a motion near it is recognised by.
 #[derive(Clone, Debug)]
 pub(super) struct Known {

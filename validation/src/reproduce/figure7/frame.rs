@@ -22,7 +22,9 @@ pub(super) struct Frame {
     pub omega: f64,
     cells: u32,
     pub attractors: Vec<Kept>,
-    /// A label a start, rows from the lowest y on: -1 unresolved, -2 escaping.
+    /// The share of starts of which it is not known where they lead.
+    pub unresolved: String,
+    /// The number of a start's label ([`Label::number`]), rows from the lowest y on.
     labels: Vec<i32>,
 }
 
@@ -32,12 +34,14 @@ pub(super) struct Kept {
     pub kind: String,
     pub period: Option<u32>,
     pub said: String,
+    /// The share of starts that lead there, and its standard error.
+    pub share: String,
     pub points: Vec<[f64; 3]>,
 }
 
 /// The steps of progress that a frame tells.
 const STEPS: u64 = 10;
-/// Basins are drawn with so many cells a side at most.
+/// Starts that lead to no attractor.
 const UNRESOLVED: RGBColor = RGBColor(150, 150, 150);
 
 impl Frame {
@@ -66,40 +70,25 @@ impl Frame {
             (steps(before)..steps(before + more)).for_each(|_| (work.step)());
         };
         let basins = Basins::of(&map(omega)?, &grid(cells), TRANSIENT, &seen);
-        let number = |label: &Label| match label {
-            Label::Attractor(id) => i32::try_from(*id).unwrap_or(i32::MAX),
-            Label::Unresolved => -1,
-            Label::Escaping => -2,
-        };
-        let kept = |it: &Attractor| Kept {
-            kind: it.kind.token().to_owned(),
-            period: it.period(),
-            said: described(it),
-            points: it.points.clone(),
+        let share = |label| 100.0 * basins.fraction(label);
+        let error = |label| 100.0 * basins.fraction_error(label);
+        let kept = |(place, it): (usize, &Attractor)| {
+            let label = Label::Attractor(place);
+            Kept {
+                kind: it.kind.token().to_owned(),
+                period: it.period(),
+                said: described(it),
+                share: format!("{:.2} +- {:.2} %", share(label), error(label)),
+                points: it.points.clone(),
+            }
         };
         Ok(Self {
             omega,
             cells,
-            attractors: basins.attractors.iter().map(kept).collect(),
-            labels: basins.labels.iter().map(number).collect(),
+            attractors: basins.attractors.iter().enumerate().map(kept).collect(),
+            unresolved: format!("{:.2} %", share(Label::Unresolved)),
+            labels: basins.labels.iter().map(|label| label.number()).collect(),
         })
-    }
-
-    /// The share of all starts that have a label.
-    pub(super) fn share(&self, label: Label) -> f64 {
-        let number = match label {
-            Label::Attractor(id) => i32::try_from(id).unwrap_or(i32::MAX),
-            Label::Unresolved => -1,
-            Label::Escaping => -2,
-        };
-        let count = self.labels.iter().filter(|it| **it == number).count();
-        count as f64 / self.labels.len().max(1) as f64
-    }
-
-    /// Its standard error, as of independent starts.
-    pub(super) fn share_error(&self, label: Label) -> f64 {
-        let share = self.share(label);
-        (share * (1.0 - share) / self.labels.len().max(1) as f64).sqrt()
     }
 
     /// Each orbit integrated over its period: a second method that knows no closed form.
