@@ -1,14 +1,13 @@
 //! One frame: its attractors and the label of every start.
 
 use crate::arrays::Npz;
-use crate::engine::{self, Accuracy, Failure, Limits};
+use crate::engine::Failure;
 use crate::picture::{Layer, Plot, Raster, basin_colours};
 use crate::reproduce::attractors::{TRANSIENT, WINDOW, described, grid, map};
-use crate::reproduce::paper::attractors_model;
+use crate::reproduce::integrated::{NAME, strobes};
 use crate::reproduce::work::Work;
-use crate::score::attractor::run_of;
-use percuss::Start;
 use percuss::dynamics::attractor::{Attractor, Basins, Label};
+use percuss::dynamics::orbit::Orbit;
 use plotters::style::RGBColor;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -91,37 +90,23 @@ impl Frame {
         })
     }
 
-    /// Each orbit integrated over its period: a second method that knows no closed form.
+    /// Each orbit integrated over its period.
     pub(super) fn integrated(
         &self,
         attractors: &[Attractor],
     ) -> Result<Vec<(String, String)>, Failure> {
         const TOLERANCE: f64 = 1e-11;
-        let engines =
-            engine::select(&[regex::Regex::new("^ode_solvers-dopri5$").map_err(Failure::new)?])
-                .map_err(Failure::new)?;
-        let Some(engine) = engines.first() else { return Ok(Vec::new()) };
-        let mut found = Vec::new();
-        for orbit in attractors.iter().filter_map(|it| it.orbit.as_ref()) {
-            let [p, y, q] = orbit.points[0];
-            let start = Start { p, y, q: Some(q), ..Start::default() };
-            let refused = || Failure::new("the orbit's point is refused");
-            let task = run_of(attractors_model(self.omega), start, orbit.period());
-            let task = task.ok_or_else(refused)?;
-            let accuracy = Accuracy::Tolerance(TOLERANCE);
-            let outcome = engine.run(&task, accuracy, &Limits::default())?;
-            let last = outcome.samples.last().copied().ok_or_else(refused)?;
-            let apart = [last[0] - p, last[1] - y].map(f64::abs);
-            found.push((
-                format!(
-                    "{}, tolerance {TOLERANCE:e}, from the orbit of period {}",
-                    engine.declaration().name,
-                    orbit.period()
-                ),
-                format!("after one period it is back within {:.1e}", apart[0].max(apart[1])),
-            ));
-        }
-        Ok(found)
+        let back = |orbit: &Orbit| {
+            let (first, period) = (orbit.points[0], orbit.period());
+            let strobes = strobes(self.omega, first, period, TOLERANCE)?;
+            let last = strobes[strobes.len() - 1];
+            let apart = (last[0] - first[0]).abs().max((last[1] - first[1]).abs());
+            Ok((
+                format!("{NAME}, tolerance {TOLERANCE:e}, from the orbit of period {period}"),
+                format!("after one period it is back within {apart:.1e}"),
+            ))
+        };
+        attractors.iter().filter_map(|it| it.orbit.as_ref()).map(back).collect()
     }
 
     /// Labels and grid for NumPy.
