@@ -5,6 +5,7 @@
 
 pub mod arrays;
 pub mod bench;
+pub mod build;
 pub mod case;
 pub mod cli;
 pub mod engine;

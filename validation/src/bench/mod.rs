@@ -5,7 +5,6 @@
 //! that was right ([`course`]). Who is timed is a [`contestant`]; what versions are compared by, a
 //! [`workload`].
 
-pub mod build;
 pub mod cases;
 pub mod clock;
 pub mod compare;
