@@ -15,7 +15,7 @@ mod sheet;
 mod strips;
 mod tiles;
 
-pub use basin_map::{BASIN_COLOURS, BasinMap, Cell, Shown, basin_colours};
+pub use basin_map::{BASIN_COLOURS, BasinMap, Shown, basin_colours};
 pub use caption::{caption, caption_without, symbol};
 pub use curves::{Curve, Curves};
 pub use frame::{Axis, Scale};
