@@ -4,8 +4,8 @@
 //! ([`Follow::Carry`]); Fig. 10b starts every value from the same state ([`Follow::Reset`]) and jumps
 //! wherever that state changes basins.
 
-use super::ensemble::{self, Motion, Watcher};
-use super::section::Section;
+use super::ensemble::{self, Motion};
+use super::section::{Kept, Section};
 use super::strobe::{Point, StrobeMap};
 use crate::entry::Entry;
 use crate::error::InputError;
@@ -14,7 +14,6 @@ use crate::leg::Endless;
 use crate::model::Model;
 use crate::parameters::{Parameter, Parameters};
 use crate::start::Start;
-use std::ops::ControlFlow;
 
 /// How each value is started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,10 +101,10 @@ impl Diagram {
                             .entry(point)
                             .or_else(|_| model.start(&self.start))?,
                     };
-                    let next = self.step(&model, step, entry);
+                    let kept = ensemble::follow_alone(self.motion(&model, entry, &seen));
+                    let next = self.step(&model, step, &kept.strobes);
                     last = next.points.last().copied();
                     done.push(next);
-                    seen();
                 }
                 Ok(done)
             }
@@ -128,61 +127,35 @@ impl Diagram {
             Ok((model, entry))
         };
         let begun: Vec<(Model, Entry)> = steps.iter().map(begun).collect::<Result<_, _>>()?;
-        let strobes = ensemble::follow(begun.len(), |number| {
+        let kept = ensemble::follow(begun.len(), |number| {
             let (model, entry) = &begun[number];
-            self.motion(model, *entry, Some(seen))
+            self.motion(model, *entry, seen)
         });
-        let done = strobes.into_iter().zip(&begun).zip(steps);
-        Ok(done.map(|((strobes, (model, _)), step)| strobes.step(self, model, *step)).collect())
+        let done = kept.into_iter().zip(&begun).zip(steps);
+        Ok(done.map(|((kept, (model, _)), step)| self.step(model, *step, &kept.strobes)).collect())
     }
 
-    fn step(&self, model: &Model, step: u32, entry: Entry) -> Step {
-        ensemble::follow_alone(self.motion(model, entry, None)).step(self, model, step)
-    }
-
+    /// The strobes that are shown, and one more, which closes the last period.
     fn motion<'a>(
         &self,
         model: &'a Model,
         entry: Entry,
-        seen: Option<&'a (dyn Fn() + Sync)>,
-    ) -> Motion<'a, Strobes<'a>> {
+        seen: &'a (dyn Fn() + Sync),
+    ) -> Motion<'a, Kept<'a>> {
         let first = entry.instant.after_periods(self.transient, 1);
         let horizon = Some(first.after_periods(u64::from(self.periods), 1));
-        let kept = self.periods as usize;
-        let watcher = Strobes { kept, strobes: Vec::with_capacity(kept + 1), seen };
+        let watcher = Kept::new(self.periods as usize + 1, seen);
         Motion { model, entry, first, horizon, watcher }
     }
-}
 
-/// The strobes that are kept, and one more, which closes the last period.
-struct Strobes<'a> {
-    kept: usize,
-    strobes: Vec<Entry>,
-    seen: Option<&'a (dyn Fn() + Sync)>,
-}
-
-impl Watcher for Strobes<'_> {
-    fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
-        self.strobes.push(*strobe);
-        if self.strobes.len() <= self.kept {
-            return ControlFlow::Continue(());
-        }
-        if let Some(seen) = self.seen {
-            seen();
-        }
-        ControlFlow::Break(())
-    }
-}
-
-impl Strobes<'_> {
-    fn step(self, diagram: &Diagram, model: &Model, step: u32) -> Step {
-        let Self { kept, strobes, .. } = self;
-        let drift_per_period = match (strobes.first(), strobes.last()) {
-            (Some(first), Some(last)) if kept > 0 => (last.v() - first.v()) / kept as f64,
+    fn step(&self, model: &Model, step: u32, strobes: &[Entry]) -> Step {
+        let shown = self.periods as usize;
+        let drift_per_period = match strobes {
+            [first, .., last] => (last.v() - first.v()) / shown as f64,
             _ => f64::NAN,
         };
-        let points = strobes.iter().take(kept).map(Entry::point).collect();
+        let points = strobes.iter().take(shown).map(Entry::point).collect();
         let endless = strobes.last().and_then(|last| Section::endless_at(model, last));
-        Step { value: diagram.value(step), points, drift_per_period, endless }
+        Step { value: self.value(step), points, drift_per_period, endless }
     }
 }

@@ -1,6 +1,10 @@
 //! Linear algebra of a few rows: solving, invariants and eigenvalues of real 3 x 3 matrices.
 
-use super::strobe::{Jacobian, Point};
+/// A point of the section, or a step between two: p, y, q.
+pub type Point = [f64; 3];
+
+/// A derivative with respect to (p, y, q), row by row.
+pub type Jacobian = [[f64; 3]; 3];
 
 /// No change.
 pub const IDENTITY: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];

@@ -88,25 +88,32 @@ pub fn sections(
         let entry = starts[number];
         let first = entry.instant.after_periods(transient, 1).first_at_angle(angle);
         let horizon = Some(first.after_periods(count as u64, 1));
-        let watcher = Kept { wanted: count, strobes: Vec::new() };
-        Motion { model, entry, first, horizon, watcher }
+        Motion { model, entry, first, horizon, watcher: Kept::new(count, &|| ()) }
     });
     kept.into_iter().map(|it| it.strobes).collect()
 }
 
-/// The first so many strobes.
-struct Kept {
+/// Keeps the first so many strobes.
+pub(super) struct Kept<'a> {
     wanted: usize,
-    strobes: Vec<Entry>,
+    pub strobes: Vec<Entry>,
+    /// Told when it has them.
+    done: &'a (dyn Fn() + Sync),
 }
 
-impl Watcher for Kept {
+impl<'a> Kept<'a> {
+    pub fn new(wanted: usize, done: &'a (dyn Fn() + Sync)) -> Self {
+        Self { wanted, strobes: Vec::new(), done }
+    }
+}
+
+impl Watcher for Kept<'_> {
     fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
         self.strobes.push(*strobe);
         if self.strobes.len() < self.wanted {
-            ControlFlow::Continue(())
-        } else {
-            ControlFlow::Break(())
+            return ControlFlow::Continue(());
         }
+        (self.done)();
+        ControlFlow::Break(())
     }
 }

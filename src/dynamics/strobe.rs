@@ -16,6 +16,7 @@
 //! Where contact grazes f = 1 or f = 0 the field is continuous and nothing jumps.
 
 use super::linear;
+pub use super::linear::{Jacobian, Point};
 use super::section::Section;
 use crate::entry::Entry;
 use crate::error::InputError;
@@ -28,12 +29,6 @@ use crate::variation::{IDENTITY, Matrix, P, Q, V, Y, product};
 
 /// On the slider q moves with p.
 const TOGETHER: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
-
-/// A point of the section: p, y, q.
-pub type Point = [f64; 3];
-
-/// A derivative with respect to (p, y, q).
-pub type Jacobian = [[f64; 3]; 3];
 
 /// The strobe map at one forcing angle.
 #[derive(Clone, Copy, Debug)]

@@ -5,13 +5,13 @@
 
 pub mod arrays;
 pub mod bench;
+pub mod build;
 pub mod case;
 pub mod cli;
 pub mod engine;
 pub mod number;
 pub mod picture;
 pub mod power;
-pub mod probes;
 pub mod report;
 pub mod reproduce;
 pub mod score;

@@ -6,9 +6,8 @@
 use crate::case::{Bound, Quantity};
 use crate::engine::{Accuracy, Limits, Wrong};
 use crate::number::brief;
-use crate::probes::Extent;
 use crate::score::{Checked, Subject, Verdict, judge};
-use crate::suite::Prepared;
+use crate::suite::{Extent, Prepared};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 

@@ -1,57 +1,28 @@
 //! The attractors that are known so far, and where starts lead.
 
 use super::Attractor;
-use super::cells::Cells;
+use super::known::{Known, Label};
 use super::recognition::Recognition;
-use super::settle::Settled;
-use super::trap::Trap;
+use super::settle::{Search, Settled};
 use crate::dynamics::ensemble::{self, Motion};
 use crate::dynamics::parallel;
 use crate::dynamics::strobe::{Point, StrobeMap};
 use crate::entry::Entry;
 
-/// Where a start leads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Label {
-    /// To an attractor, by its place in the atlas.
-    Attractor(usize),
-    /// To a phase that never ends: the mass never returns or the slider never stops.
-    Escaping,
-    /// Not known.
-    Unresolved,
-}
-
-/// An attractor and what a motion near it is recognised by.
-#[derive(Clone, Debug)]
-pub(super) struct Known {
-    pub attractor: Attractor,
-    pub evidence: Evidence,
-}
-
-/// What a motion is recognised by.
-#[derive(Clone, Debug)]
-pub(super) enum Evidence {
-    Traps(Vec<Trap>),
-    Cells(Cells),
-}
-
 /// The attractors of a strobe map that have been met.
 #[derive(Clone, Debug)]
 pub struct Atlas {
-    pub(super) map: StrobeMap,
-    pub(super) transient: u64,
-    pub(super) known: Vec<Known>,
+    map: StrobeMap,
+    transient: u64,
+    known: Vec<Known>,
 }
 
 /// Starts looked at in one go: what is kept of each until then is ten times its label.
 const BLOCK: usize = 1 << 14;
 /// Most starts that are settled between two looks at what has been found.
 const LARGEST_BATCH: usize = 64;
-/// Two runs are on one attractor when this share of one lies in the cells of the other.
-const SAME: f64 = 0.5;
-/// A motion is at rest on an orbit when the square of its distance is so small a share of the
-/// trap's radius: it need not come closer still.
-pub(super) const AT_REST: f64 = 1e-12;
+/// How often a transient is doubled before a start is given up.
+const EXTENSIONS: u32 = 3;
 
 impl Atlas {
     /// Of no attractor yet. A start is followed for `transient` forcing periods (at least one), and
@@ -76,14 +47,7 @@ impl Atlas {
     #[must_use]
     pub fn label(&self, start: Point) -> Label {
         let Ok(entry) = self.map.entry(start) else { return Label::Unresolved };
-        let mut from = entry;
-        for extension in 0..=super::settle::EXTENSIONS {
-            match self.recognised(from, self.transient << extension) {
-                Ok(label) => return label,
-                Err(last) => from = last,
-            }
-        }
-        Label::Unresolved
+        self.extended(entry, Result::ok).unwrap_or(Label::Unresolved)
     }
 
     /// Where many starts lead; attractors not met before are added. `seen` is told how many starts more
@@ -127,6 +91,32 @@ impl Atlas {
         }
     }
 
+    /// What a motion settles on.
+    fn settled(&self, from: Entry) -> Settled {
+        let search = Search { map: &self.map, known: &self.known };
+        let settled = self.extended(from, |recognised| match recognised {
+            Ok(label) => Some(Settled::Label(label)),
+            Err(last) => search.identified(last),
+        });
+        settled.unwrap_or(Settled::Label(Label::Unresolved))
+    }
+
+    /// Follows a motion for its transient, and for the extensions of that as long as nothing is `made` of
+    /// the label that it has by then, or of where it is without one.
+    fn extended<T>(
+        &self,
+        mut from: Entry,
+        made: impl Fn(Result<Label, Entry>) -> Option<T>,
+    ) -> Option<T> {
+        (0..=EXTENSIONS).find_map(|extension| {
+            let recognised = self.recognised(from, self.transient << extension);
+            if let Err(last) = recognised {
+                from = last;
+            }
+            made(recognised)
+        })
+    }
+
     /// The label of what was settled; an attractor not known before is added.
     fn adopted(&mut self, settled: Settled) -> Label {
         let new = match settled {
@@ -168,7 +158,7 @@ impl Atlas {
 
     /// Follows a motion until it is recognised, for at most so many strobes; where it is then if it
     /// is not.
-    pub(super) fn recognised(&self, from: Entry, strobes: u64) -> Result<Label, Entry> {
+    fn recognised(&self, from: Entry, strobes: u64) -> Result<Label, Entry> {
         let watcher = Recognition::new(&self.known, from, strobes, &|_| {});
         ensemble::follow_alone(self.motion(from, watcher)).outcome()
     }
@@ -176,28 +166,5 @@ impl Atlas {
     fn motion<W>(&self, from: Entry, watcher: W) -> Motion<'_, W> {
         let model = self.map.model();
         Motion { model, entry: from, first: from.instant, horizon: None, watcher }
-    }
-}
-
-impl Known {
-    /// Whether both are the same attractor.
-    fn is(&self, other: &Self) -> bool {
-        match (&self.evidence, &other.evidence) {
-            (Evidence::Traps(traps), Evidence::Traps(_)) => {
-                self.attractor.period() == other.attractor.period()
-                    && traps.iter().any(|trap| {
-                        other.attractor.points.iter().any(|point| trap.size(point) < AT_REST)
-                    })
-            }
-            (Evidence::Cells(cells), Evidence::Cells(others)) => {
-                cells.share(&other.attractor.points) > SAME
-                    || others.share(&self.attractor.points) > SAME
-            }
-            _ => false,
-        }
-    }
-
-    pub(super) fn period(&self) -> u64 {
-        u64::from(self.attractor.period().unwrap_or(1))
     }
 }

@@ -9,8 +9,8 @@
 //! latter exceeds ln 2 the boundary is fractal: along a smooth one nearly all boxes hold two labels. It
 //! needs three labels, and is sufficient, not necessary.
 
-use super::atlas::Label;
 use super::grid::{Basins, Window};
+use super::known::Label;
 use crate::dynamics::parallel;
 use crate::dynamics::strobe::Point;
 use std::collections::{BTreeMap, HashMap};

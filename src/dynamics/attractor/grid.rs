@@ -1,6 +1,7 @@
 //! A grid of starts, and which attractor each of them reaches.
 
-use super::atlas::{Atlas, Label};
+use super::atlas::Atlas;
+use super::known::Label;
 use super::{Attractor, Kind};
 use crate::dynamics::strobe::{Point, StrobeMap};
 use crate::error::InputError;

@@ -17,14 +17,15 @@ mod atlas;
 mod cells;
 mod fractal;
 mod grid;
+mod known;
 mod recognition;
 mod settle;
 mod trap;
 
-pub use atlas::{Atlas, Label};
+pub use atlas::Atlas;
 pub use fractal::{Entropy, Scale, Uncertainty, entropy, uncertainty, uncertainty_of};
-
 pub use grid::{Basins, Grid, Window};
+pub use known::Label;
 
 use super::lyapunov::Spectrum;
 use super::orbit::Orbit;

@@ -1,7 +1,7 @@
 //! The recognition of a motion that approaches a known attractor.
 
-use super::atlas::{AT_REST, Evidence, Known, Label};
 use super::cells::RECURRENCES;
+use super::known::{AT_REST, Evidence, Known, Label};
 use super::trap::Trap;
 use crate::dynamics::ensemble::Watcher;
 use crate::dynamics::strobe::Point;

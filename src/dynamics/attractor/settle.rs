@@ -1,18 +1,16 @@
 //! What a motion settles on that approaches no attractor known so far.
 
-use super::atlas::{Atlas, Evidence, Known, Label};
 use super::cells::{Cells, REFERENCE};
+use super::known::{Evidence, Known, Label};
 use super::recognition::{Watch, escapes};
 use super::trap::Trap;
 use super::{Attractor, ERRORS, Kind};
 use crate::dynamics::lyapunov::Spectrum;
 use crate::dynamics::orbit::Orbit;
 use crate::dynamics::section::Section;
-use crate::dynamics::strobe::Point;
+use crate::dynamics::strobe::{Point, StrobeMap};
 use crate::entry::Entry;
 
-/// How often a transient is doubled before a start is given up.
-pub(super) const EXTENSIONS: u32 = 3;
 /// The longest period that is looked for.
 const LONGEST: usize = 128;
 /// Strobes that repeat this closely (relative to their size) are handed to Newton's method.
@@ -40,23 +38,15 @@ pub(super) enum Settled {
     New(Box<Known>),
 }
 
-impl Atlas {
-    /// What the motion settles on.
-    pub(super) fn settled(&self, from: Entry) -> Settled {
-        let mut from = from;
-        for extension in 0..=EXTENSIONS {
-            match self.recognised(from, self.transient << extension) {
-                Ok(label) => return Settled::Label(label),
-                Err(last) => from = last,
-            }
-            if let Some(settled) = self.identified(from) {
-                return settled;
-            }
-        }
-        Settled::Label(Label::Unresolved)
-    }
+/// Looks for attractors of a map that are not known yet.
+pub(super) struct Search<'a> {
+    pub map: &'a StrobeMap,
+    pub known: &'a [Known],
+}
 
-    fn identified(&self, from: Entry) -> Option<Settled> {
+impl Search<'_> {
+    /// What a motion settles on; none where that does not show so early.
+    pub fn identified(&self, from: Entry) -> Option<Settled> {
         let strobes: Vec<Entry> = self.section(from).take(2 * LONGEST).collect();
         if let Some(orbit) = self.orbit(&strobes) {
             return Some(orbit);
@@ -77,13 +67,13 @@ impl Atlas {
     fn orbit(&self, strobes: &[Entry]) -> Option<Settled> {
         let points: Vec<Point> = strobes.iter().map(Entry::point).collect();
         let last = strobes.last()?;
-        let orbit = Orbit::find(&self.map, last.point(), repeats(&points)?).ok()?;
+        let orbit = Orbit::find(self.map, last.point(), repeats(&points)?).ok()?;
         if !orbit.is_stable() {
             return None;
         }
-        let traps = Trap::all(&self.map, &orbit);
+        let traps = Trap::all(self.map, &orbit);
         let period = u64::from(orbit.period());
-        let attractor = Attractor::periodic(&self.map, orbit);
+        let attractor = Attractor::periodic(self.map, orbit);
         let new = Known { attractor, evidence: Evidence::Traps(traps) };
         let known = std::slice::from_ref(&new);
         let mut watch = Watch::new(known);
@@ -96,7 +86,7 @@ impl Atlas {
     /// A long run that may turn out to be on an attractor without period.
     fn reference(&self, from: Entry) -> Option<Settled> {
         let mut section = self.section(from);
-        let mut watch = Watch::new(&self.known);
+        let mut watch = Watch::new(self.known);
         let mut run = Vec::with_capacity(REFERENCE as usize);
         for n in 0..REFERENCE {
             let strobe = section.next()?;

@@ -1,8 +1,9 @@
 //! The multipliers of a closed chain.
 
-use super::super::linear::{Complex, IDENTITY, adjugate, eigenvalues, product, roots, trace};
-use super::super::strobe::Jacobian;
 use super::chain::Chain;
+use crate::dynamics::linear::{
+    Complex, IDENTITY, Jacobian, adjugate, eigenvalues, product, roots, trace,
+};
 use crate::phase::Phase;
 
 /// Sum, and sum of the products of two, of an orbit's multipliers.

@@ -1,12 +1,12 @@
 //! Who is timed: whatever can run a course and show what came of it.
 //!
 //! An engine is one ([`Entered`]). Something that is no engine, such as many runs at once
-//! ([`super::lanes`]), implements [`Contestant`] in a file of its own and is named in [`all`].
+//! ([`super::lanes`]), implements [`Contestant`] in a file of its own and is named in
+//! [`super::registry`].
 
 use super::course::{Course, Score};
-use super::lanes::Lanes;
 use super::rounds::Racer;
-use crate::engine::{self, Accuracy, Engine, Failure, Limits, Outcome, Stepping, Work, contain};
+use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Stepping, Work, contain};
 use crate::number::brief;
 
 /// Calls (right-hand sides, Jacobians, guards) beyond which a run is given up: a second or less.
@@ -124,16 +124,6 @@ impl Heat for EngineHeat<'_> {
     fn work(&self) -> Work {
         self.answer.work
     }
-}
-
-/// Every contestant, the exact solver first.
-#[must_use]
-pub fn all() -> Vec<Box<dyn Contestant>> {
-    let engines = engine::all().iter();
-    let entered = engines.map(|engine| Box::new(Entered(*engine)) as Box<dyn Contestant>);
-    let mut all: Vec<_> = entered.collect();
-    all.insert(1, Box::new(Lanes));
-    all
 }
 
 /// What a contestant is asked for: every decade of tolerance down to where rounding rules, or halved steps.

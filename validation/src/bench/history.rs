@@ -1,6 +1,6 @@
 //! The history: a line of JSON a workload and recorded version, oldest first, appended to and never rewritten.
 
-use super::build::{Build, TARGET_CPU};
+use crate::build::{Build, TARGET_CPU};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

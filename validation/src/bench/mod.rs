@@ -5,7 +5,6 @@
 //! that was right ([`course`]). Who is timed is a [`contestant`]; what versions are compared by, a
 //! [`workload`].
 
-pub mod build;
 pub mod cases;
 pub mod clock;
 pub mod compare;
@@ -19,6 +18,7 @@ pub mod instructions;
 pub mod lanes;
 pub mod length;
 mod pictures;
+pub mod registry;
 pub mod report;
 pub mod rounds;
 pub mod table;

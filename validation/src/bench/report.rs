@@ -1,12 +1,12 @@
 //! What a `bench` holds: the keys of `bench.json`.
 
-use super::build::Build;
 use super::contest::{Finisher, exact, most_accurate};
 use super::course::Course;
 use super::damping::Rung;
 use super::floor::Floors;
 use super::length::Length;
 use super::rounds::Series;
+use crate::build::Build;
 use crate::engine::Stepping;
 use serde::Serialize;
 

@@ -121,7 +121,7 @@ impl ModelFlags {
     }
 }
 
-/// The model's parameters as JSON.
+/// The model's parameters as JSON; null for a NaN.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub(super) struct ParametersJson {
     a: f64,

@@ -4,6 +4,7 @@ use super::frame::{Panel, Ruler};
 use super::look::Marker;
 use super::pen::{At, Pen, Side};
 use super::{DrawError, Drawing, palette};
+use percuss::dynamics::attractor::Label;
 use plotters::coord::Shift;
 use plotters::prelude::*;
 
@@ -18,21 +19,10 @@ pub struct BasinMap {
     pub window: [[f64; 2]; 2],
     /// Cells along p.
     pub columns: usize,
-    /// Of each cell, row by row from the lowest y on: the place of its attractor in `attractors`.
-    pub cells: Vec<Cell>,
+    /// Where each cell leads, row by row from the lowest y on: an attractor by its place in `attractors`.
+    pub cells: Vec<Label>,
     /// The attractors.
     pub attractors: Vec<Shown>,
-}
-
-/// Where a cell leads.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cell {
-    /// To an attractor, by its place.
-    Attractor(usize),
-    /// Away for good.
-    Escaping,
-    /// Not known.
-    Unresolved,
 }
 
 /// An attractor in a basin picture.
@@ -93,11 +83,11 @@ impl Drawing for BasinMap {
 }
 
 impl BasinMap {
-    fn paper(&self, cell: Cell) -> RGBColor {
+    fn paper(&self, cell: Label) -> RGBColor {
         match cell {
-            Cell::Attractor(k) => self.attractors.get(k).map_or(WHITE, |it| it.colours().0),
-            Cell::Escaping => WHITE,
-            Cell::Unresolved => palette::UNRESOLVED,
+            Label::Attractor(k) => self.attractors.get(k).map_or(WHITE, |it| it.colours().0),
+            Label::Escaping => WHITE,
+            Label::Unresolved => palette::UNRESOLVED,
         }
     }
 
@@ -131,8 +121,8 @@ impl BasinMap {
             at.1 += 20.0 + 24.0 * shown.name.lines().count() as f64;
         }
         let others = [
-            (Cell::Unresolved, "unresolved", palette::UNRESOLVED),
-            (Cell::Escaping, "escaping (white)", WHITE),
+            (Label::Unresolved, "unresolved", palette::UNRESOLVED),
+            (Label::Escaping, "escaping (white)", WHITE),
         ];
         for (cell, name, colour) in others {
             if self.cells.contains(&cell) {

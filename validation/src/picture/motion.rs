@@ -2,6 +2,7 @@
 
 use super::axes::{around, label};
 use super::font::FAMILY;
+use super::piece::Piece;
 use super::{DrawError, Drawing, palette};
 use crate::case::Problem;
 use percuss::{Exit, Instant, Leg, Phase};
@@ -12,21 +13,11 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 const SIZE: (u32, u32) = (1500, 860);
 /// Points drawn for the whole run.
 const POINTS: f64 = 6000.0;
-/// Points of even the shortest phase.
-const FEWEST: usize = 12;
-
 /// Cosine of a turn between neighbouring pieces of a curve that counts as sharp.
 const SHARP: f64 = 0.9;
 
 const TEXT: u32 = 22;
 const TITLE: u32 = 24;
-
-/// One phase's curve.
-struct Piece {
-    phase: Phase,
-    /// tau, p, y and v.
-    points: Vec<[f64; 4]>,
-}
 
 /// A run ready to be drawn.
 pub struct Motion {
@@ -35,7 +26,7 @@ pub struct Motion {
 }
 
 /// A figure of a point.
-type Figure = fn(&[f64; 4]) -> f64;
+type Figure = fn(&[f64; 5]) -> f64;
 
 /// What one panel shows.
 struct Panel {
@@ -48,9 +39,9 @@ struct Panel {
 }
 
 const HISTORIES: [Panel; 3] = [
-    Panel { below: "", beside: "x = p + v", x: |at| at[0], y: |at| at[1] + at[3], ticks: 5 },
+    Panel { below: "", beside: "x = p + v", x: |at| at[0], y: |at| at[1] + at[4], ticks: 5 },
     Panel { below: "", beside: "p", x: |at| at[0], y: |at| at[1], ticks: 5 },
-    Panel { below: "\u{3c4} (time)", beside: "v (drift)", x: |at| at[0], y: |at| at[3], ticks: 5 },
+    Panel { below: "\u{3c4} (time)", beside: "v (drift)", x: |at| at[0], y: |at| at[4], ticks: 5 },
 ];
 const PHASE_PLANE: Panel = Panel {
     below: "p (displacement)",
@@ -96,7 +87,7 @@ impl Motion {
                 Exit::Switch(_) => leg.duration(),
                 Exit::Horizon | Exit::Endless(_) => last.since(&leg.entry().instant, omega).value(),
             };
-            Piece::of(leg, begins.tau(omega) + since, lasts, span)
+            Piece::of(leg, begins.tau(omega) + since, lasts, POINTS * lasts / span)
         });
         Self {
             title: format!("a = {a}, b = {b}, \u{3be} = {xi}, \u{3c9} = {omega}, g = {g}"),
@@ -193,17 +184,4 @@ fn smooth(points: &[(f64, f64)], [width, height]: [f64; 2]) -> Vec<&[(f64, f64)]
     }
     stretches.push(&points[begin..]);
     stretches
-}
-
-impl Piece {
-    fn of(leg: &Leg, begins: f64, lasts: f64, span: f64) -> Self {
-        let share = (POINTS * lasts / span).ceil();
-        let count = if share.is_finite() { (share as usize).max(FEWEST) } else { FEWEST };
-        let point = |i: usize| {
-            let elapsed = lasts * (i as f64 / count as f64);
-            let at = leg.at(elapsed);
-            [begins + elapsed, at.state.p, at.state.y, at.v]
-        };
-        Self { phase: leg.phase(), points: (0..=count).map(point).collect() }
-    }
 }

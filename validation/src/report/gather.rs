@@ -2,10 +2,9 @@
 
 use super::evidence::{CaseNote, ErrorGrowth, Evidence, Fault, RestartHistogram, SectionPair};
 use crate::power::{Finding, Gate};
-use crate::probes::is_shown;
 use crate::score::attractor::{AttractorTest, Comparison};
 use crate::score::{Histogram, Measures, sample_errors};
-use crate::suite::{Prepared, Scored, Status};
+use crate::suite::{Prepared, Scored, Status, is_shown};
 
 /// Cases whose name says so are chaotic: their growth of errors is shown.
 const CHAOTIC: &str = "chaos";

@@ -23,7 +23,7 @@ pub use baseline::Baseline;
 pub use evidence::{CaseNote, ErrorGrowth, Evidence, Fault, Graze, RestartHistogram, SectionPair};
 pub use orders::{Order, orders};
 pub use pictures::{Picture, pictures};
-pub use row::{EngineEntry, Report, Row, Summary, ValidHorizons, cpu};
+pub use row::{EngineEntry, Report, Row, Summary, ValidHorizons};
 pub use table::table;
 
 use std::io::{self, Write};

@@ -1,5 +1,6 @@
 //! What a report holds: the keys of `report.json`.
 
+use crate::build::Build;
 use crate::engine::Declaration;
 use crate::score::attractor::Comparison;
 use crate::score::{Checked, Horizons, Restart, Spread, Verdict, order};
@@ -10,16 +11,9 @@ use std::collections::BTreeMap;
 /// A whole report.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// The format's number.
-    pub schema: u32,
-    /// The program's version.
-    pub percuss: &'static str,
-    /// The commit it was built from, where that is known.
-    pub commit: Option<&'static str>,
-    /// The compiler.
-    pub rustc: &'static str,
-    /// The processor.
-    pub cpu: String,
+    /// The format's number, and what was run where.
+    #[serde(flatten)]
+    pub build: Build,
     /// How much was run.
     pub suite: Suite,
     /// The engines that were run.
@@ -138,13 +132,8 @@ impl Report {
     pub fn new(suite: Suite, engines: &[Declaration], rows: &[Scored]) -> Self {
         let mut results: Vec<Row> = rows.iter().map(Row::of).collect();
         fill_orders(&mut results);
-        let commit = env!("PERCUSS_COMMIT");
         Self {
-            schema: 1,
-            percuss: env!("CARGO_PKG_VERSION"),
-            commit: (!commit.is_empty()).then_some(commit),
-            rustc: env!("PERCUSS_RUSTC"),
-            cpu: cpu(),
+            build: Build::this(),
             suite,
             engines: engines.iter().map(EngineEntry::of).collect(),
             summary: Summary::of(&results),
@@ -281,11 +270,4 @@ impl Row {
             why: scored.judgement.why.clone(),
         }
     }
-}
-
-/// The processor's name where the system tells it, else its architecture.
-pub fn cpu() -> String {
-    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
-    model.map_or(std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
 }

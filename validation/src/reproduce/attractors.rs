@@ -4,8 +4,8 @@ use super::paper::attractors_model;
 use super::work::model;
 use crate::engine::Failure;
 use percuss::dynamics::attractor::{Attractor, Basins, Grid, Kind, Window};
-use percuss::dynamics::strobe::StrobeMap;
-use percuss::{Instant, Model};
+use percuss::dynamics::strobe::{Point, StrobeMap};
+use percuss::{Instant, Start};
 
 /// A window that holds every attractor of Figs. 7 to 10; the paper prints none.
 pub(super) const WINDOW: Window = Window { p: [-3.0, 1.2], y: [-1.5, 1.5] };
@@ -16,8 +16,12 @@ const SEARCH: u32 = 64;
 
 /// The strobe map at omega tau = 0.
 pub(super) fn map(omega: f64) -> Result<StrobeMap, Failure> {
-    let model: Model = model(attractors_model(omega))?;
-    Ok(StrobeMap::new(model, Instant::at(omega, 0.0, 0)))
+    Ok(StrobeMap::new(model(attractors_model(omega))?, Instant::at(omega, 0.0, 0)))
+}
+
+/// The start at a strobe.
+pub(super) fn start([p, y, q]: Point) -> Start {
+    Start { p, y, q: Some(q), ..Start::default() }
 }
 
 /// Square cells over the window; the slider's top at rest, or on the surface where p >= g.

@@ -1,16 +1,16 @@
 //! Where the attractors of Fig. 7 come from and go to: the bifurcations that Section 5 names.
 
-use super::attractors::{found, map, of_period};
+use super::attractors::{described, found, map, of_period};
 use super::brute::{bracket, settled};
 use super::claim::{Claim, Verdict};
-use super::paper::{Printed, attractors_model};
+use super::continued::{family, first};
+use super::integrated::{NAME, strobes};
+use super::paper::Printed;
 use super::work::{Findings, Work};
-use crate::engine::{self, Accuracy, Failure, Limits};
-use crate::score::attractor::run_of;
+use crate::engine::Failure;
 use percuss::dynamics::attractor::{Attractor, Kind as Attracts};
-use percuss::dynamics::continuation::{Bifurcation, Branch, Criticality, Doubling, Family, Kind};
+use percuss::dynamics::continuation::{Bifurcation, Criticality, Doubling, Kind};
 use percuss::dynamics::strobe::Point;
-use percuss::{Instant, Parameter, Start};
 
 /// Claims of this item, in its order.
 pub(super) const CLAIMS: &[&str] = &[
@@ -23,45 +23,6 @@ pub(super) const CLAIMS: &[&str] = &[
     "five-emerges",
 ];
 
-/// A bifurcation by continuation, with the orbit where it was begun.
-struct Met {
-    kind: Kind,
-    value: f64,
-    error: f64,
-    /// The orbit at the bifurcation.
-    point: Point,
-    period: u32,
-    family: Family,
-    met: Bifurcation,
-}
-
-/// The first fold or flip of an orbit on the way from one frequency to another.
-fn met(orbit: &Attractor, from: f64, to: f64, kind: Kind) -> Result<Met, Failure> {
-    let period = orbit.period().ok_or_else(|| Failure::new("it is no orbit"))?;
-    let family = Family::new(attractors_model(from), Parameter::Omega, Instant::at(from, 0.0, 0));
-    let branch = Branch::follow(&family, orbit.points[0], period, from, to, &mut |_| {})
-        .map_err(Failure::new)?;
-    let first = branch.bifurcations.iter().find(|it| it.kind == kind);
-    let missing =
-        || Failure::new(format!("period {period} meets no {} from {from} to {to}", kind.token()));
-    let first = first.ok_or_else(missing)?;
-    let point = first.orbit.points[0];
-    let (value, error, met) = (first.value, first.error, first.clone());
-    Ok(Met { kind, value, error, point, period, family, met })
-}
-
-impl Met {
-    fn said(&self) -> String {
-        format!(
-            "{} of period {} at omega = {:.10} +- {:.0e}",
-            self.kind.token(),
-            self.period,
-            self.value,
-            self.error
-        )
-    }
-}
-
 /// Forcing periods after which motions next to a bifurcation are taken to be at rest: at 1e-5 from a
 /// flip the multiplier is some 2e-4 from -1.
 const REST: u64 = 300_000;
@@ -69,32 +30,36 @@ const REST: u64 = 300_000;
 const REPEATS: f64 = 1e-4;
 /// Width of the intervals found by brute force.
 const WIDTH: f64 = 2e-5;
+/// What the integrator is asked for.
+const TOLERANCE: f64 = 1e-10;
 
 pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     let mut findings = Findings::default();
-    let six = found(1.58)?;
-    let six = of_period(&six, 6)?.clone();
-    let three = found(1.70)?;
-    let three = of_period(&three, 3)?.clone();
-    let four = found(1.56)?;
-    let four = of_period(&four, 4)?.clone();
-    let cascade = met(&six, 1.58, 1.55, Kind::Flip)?;
-    findings.claims.push(flips(work, "omega-1.571", &cascade, -1.0)?);
-    (work.step)();
-    findings.claims.push(criticality(work, "subcritical-1.571", &cascade, -1.0)?);
-    (work.step)();
-    findings.claims.push(disappears(work, &four)?);
-    (work.step)();
-    let tripling = met(&three, 1.70, 1.60, Kind::Flip)?;
-    findings.claims.push(flips(work, "omega-1.6395", &tripling, -1.0)?);
-    (work.step)();
-    findings.claims.push(criticality(work, "subcritical-1.6395", &tripling, -1.0)?);
-    (work.step)();
-    findings.claims.push(red(work, &cascade)?);
-    (work.step)();
-    findings.claims.push(five(work)?);
-    (work.step)();
+    let of = |omega: f64, period: u32| Ok::<_, Failure>(of_period(&found(omega)?, period)?.clone());
+    let (six, three, four) = (of(1.58, 6)?, of(1.70, 3)?, of(1.56, 4)?);
+    let cascade = first(Kind::Flip, &six, 1.58, 1.55)?;
+    let tripling = first(Kind::Flip, &three, 1.70, 1.60)?;
+    let claims: [&dyn Fn() -> Result<Claim, Failure>; CLAIMS.len()] = [
+        &|| flips(work, "omega-1.571", &cascade),
+        &|| criticality(work, "subcritical-1.571", &cascade),
+        &|| disappears(work, &four),
+        &|| flips(work, "omega-1.6395", &tripling),
+        &|| criticality(work, "subcritical-1.6395", &tripling),
+        &|| red(work, &cascade),
+        &|| five(work),
+    ];
+    for claim in claims {
+        findings.claims.push(claim()?);
+        (work.step)();
+    }
     Ok(findings)
+}
+
+/// A bifurcation in words.
+fn said(met: &Bifurcation) -> String {
+    let Bifurcation { kind, value, error, orbit, .. } = met;
+    let (kind, period) = (kind.token(), orbit.period());
+    format!("{kind} of period {period} at omega = {value:.10} +- {error:.0e}")
 }
 
 /// Whether a value is the printed one to its last digit.
@@ -112,14 +77,14 @@ fn between(printed: &Printed, value: f64) -> Option<f64> {
     Some(0.5 * (edge + value))
 }
 
-/// A flip: by continuation, by brute force from both sides, and by an integrator where we differ.
-fn flips(work: &Work<'_>, id: &str, flip: &Met, beyond: f64) -> Result<Claim, Failure> {
+/// A flip downwards in omega: by continuation, by brute force from both sides, and by an integrator where we
+/// differ.
+fn flips(work: &Work<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Failure> {
     let printed = work.paper.claim(id)?;
-    let period = flip.period as usize;
-    let start = flip.point;
+    let period = flip.orbit.period() as usize;
+    let start = flip.orbit.points[0];
     let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(period));
-    let (holds, fails) =
-        bracket(flip.value - beyond * 0.003, flip.value + beyond * 0.003, WIDTH, keeps)?;
+    let (holds, fails) = bracket(flip.value + 0.003, flip.value - 0.003, WIDTH, keeps)?;
     let mut claim = Claim::settle(
         &work.paper,
         id,
@@ -131,7 +96,7 @@ fn flips(work: &Work<'_>, id: &str, flip: &Met, beyond: f64) -> Result<Claim, Fa
             flip.value
         ),
     )?
-    .evidence("continuation with multipliers", flip.said())
+    .evidence("continuation with multipliers", said(flip))
     .evidence(
         format!("brute force: strobes after {REST} forcing periods"),
         format!("period {period} at omega = {holds:.6}, no longer at {fails:.6}"),
@@ -142,7 +107,7 @@ fn flips(work: &Work<'_>, id: &str, flip: &Met, beyond: f64) -> Result<Claim, Fa
         claim = claim
             .evidence(format!("exact solver at omega = {omega:.5}, between the two values"), format!("period {seen}"))
             .evidence(
-                format!("ode_solvers-dopri5, tolerance 1e-10, at omega = {omega:.5}"),
+                format!("{NAME}, tolerance {TOLERANCE:e}, at omega = {omega:.5}"),
                 integrated(omega, start, &[period, 2 * period])?,
             )
             .note("the paper's value is approximate (it writes \u{2248}); every method here gives ours");
@@ -151,37 +116,31 @@ fn flips(work: &Work<'_>, id: &str, flip: &Met, beyond: f64) -> Result<Claim, Fa
 }
 
 /// Which of some periods an integrator's strobes repeat with, at rest.
-fn integrated(omega: f64, [p, y, q]: Point, periods: &[usize]) -> Result<String, Failure> {
+fn integrated(omega: f64, point: Point, periods: &[usize]) -> Result<String, Failure> {
     const RUN: u32 = 4000;
-    let pattern = regex::Regex::new("^ode_solvers-dopri5$").map_err(Failure::new)?;
-    let engines = engine::select(&[pattern]).map_err(Failure::new)?;
-    let engine = engines.first().ok_or_else(|| Failure::new("no such engine"))?;
-    let start = Start { p, y, q: Some(q), ..Start::default() };
-    let refused = || Failure::new("the start is refused");
-    let task = run_of(attractors_model(omega), start, RUN).ok_or_else(refused)?;
-    let limits = Limits { calls: 1_000_000_000, ..Limits::default() };
-    let outcome = engine.run(&task, Accuracy::Tolerance(1e-10), &limits)?;
-    let last = outcome.samples.len() - 1;
+    let strobes = strobes(omega, point, RUN, TOLERANCE)?;
+    let last = strobes.len() - 1;
     let apart = |period: &usize| {
-        let (now, then) = (outcome.samples[last], outcome.samples[last - period]);
+        let (now, then) = (strobes[last], strobes[last - period]);
         format!("to {:.0e} after {period}", (now[0] - then[0]).abs().max((now[1] - then[1]).abs()))
     };
     let apart: Vec<_> = periods.iter().map(apart).collect();
     Ok(format!("after {RUN} periods its strobes repeat {}", apart.join(", ")))
 }
 
-/// Whether a flip is super- or subcritical: what is there beyond it, and how wide.
-fn criticality(work: &Work<'_>, id: &str, flip: &Met, beyond: f64) -> Result<Claim, Failure> {
-    let doubled = 2 * flip.period as usize;
+/// Whether a flip downwards in omega is super- or subcritical: what is there beyond it, and how wide.
+fn criticality(work: &Work<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Failure> {
+    let period = flip.orbit.period();
+    let doubled = 2 * period as usize;
     let width = |distance: f64| -> Result<Option<f64>, Failure> {
-        let omega = flip.value + beyond * distance;
-        let (period, point) = settled(omega, flip.point, REST, 1e-7)?;
-        if period != Some(doubled) {
+        let omega = flip.value - distance;
+        let (repeats, point) = settled(omega, flip.orbit.points[0], REST, 1e-7)?;
+        if repeats != Some(doubled) {
             return Ok(None);
         }
         let map = map(omega)?;
         let entry = map.entry(point).map_err(Failure::new)?;
-        let half = map.strobes(entry, u64::from(flip.period)).last();
+        let half = map.strobes(entry, u64::from(period)).last();
         let half = half.ok_or_else(|| Failure::new("no strobes"))?.point();
         Ok(Some((half[0] - point[0]).hypot(half[1] - point[1])))
     };
@@ -190,7 +149,7 @@ fn criticality(work: &Work<'_>, id: &str, flip: &Met, beyond: f64) -> Result<Cla
     let grows =
         matches!((near, far), (Some(near), Some(far)) if (1.6..2.5).contains(&(far / near)));
     let within = (flip.value - 0.01, flip.value + 0.01);
-    let doubling = Doubling::of(&flip.family, &flip.met, within.0, within.1, &mut |_| {});
+    let doubling = Doubling::of(&family(), flip, within.0, within.1, &mut |_| {});
     let followed = doubling.map(|it| it.criticality);
     let verdict = match (followed, grows) {
         (Some(Criticality::Subcritical), false) => Verdict::Reproduced,
@@ -229,8 +188,8 @@ fn criticality(work: &Work<'_>, id: &str, flip: &Met, beyond: f64) -> Result<Cla
 fn disappears(work: &Work<'_>, four: &Attractor) -> Result<Claim, Failure> {
     const ID: &str = "omega-1.5757";
     let printed = work.paper.claim(ID)?;
-    let fold = met(four, 1.56, 1.62, Kind::Fold)?;
-    let start = fold.point;
+    let fold = first(Kind::Fold, four, 1.56, 1.62)?;
+    let start = fold.orbit.points[0];
     let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(4));
     let (holds, fails) = bracket(fold.value - 0.001, fold.value + 0.001, WIDTH / 10.0, keeps)?;
     let mut claim = Claim::settle(
@@ -239,7 +198,7 @@ fn disappears(work: &Work<'_>, four: &Attractor) -> Result<Claim, Failure> {
         Verdict::of(agrees(printed, fold.value)),
         format!("period four ends in a fold at omega = {:.7}", fold.value),
     )?
-    .evidence("continuation with multipliers", fold.said())
+    .evidence("continuation with multipliers", said(&fold))
     .evidence(
         format!("brute force: strobes after {REST} forcing periods"),
         format!("period 4 at omega = {holds:.6}, no longer at {fails:.6}"),
@@ -247,7 +206,7 @@ fn disappears(work: &Work<'_>, four: &Attractor) -> Result<Claim, Failure> {
     if let (Verdict::Differs, Some(omega)) = (claim.verdict, between(printed, fold.value)) {
         claim = claim
             .evidence(
-                format!("ode_solvers-dopri5, tolerance 1e-10, at omega = {omega:.6}, between the two values"),
+                format!("{NAME}, tolerance {TOLERANCE:e}, at omega = {omega:.6}, between the two values"),
                 integrated(omega, start, &[4])?,
             )
             .note(format!(
@@ -275,13 +234,13 @@ fn others(omega: f64) -> Result<Vec<Attractor>, Failure> {
 }
 
 /// Period twelve goes, and the attractor of the period-six cascade appears.
-fn red(work: &Work<'_>, cascade: &Met) -> Result<Claim, Failure> {
+fn red(work: &Work<'_>, cascade: &Bifurcation) -> Result<Claim, Failure> {
     let twelve = found(1.45)?;
     let twelve = of_period(&twelve, 12)?;
-    let fold = met(twelve, 1.45, 1.56, Kind::Fold)?;
+    let fold = first(Kind::Fold, twelve, 1.45, 1.56)?;
     let (there, gone) = bracket(1.56, 1.53, 1e-4, |omega| Ok(!others(omega)?.is_empty()))?;
     let seen = others(there)?;
-    let seen: Vec<_> = seen.iter().map(super::attractors::described).collect();
+    let seen: Vec<_> = seen.iter().map(described).collect();
     let holds = fold.value > 1.45 && fold.value < 1.56 && gone > 1.45 && there < 1.56;
     let computed = format!(
         "period twelve ends in a fold at omega = {:.7}; the cascade's attractor is there from {there:.4} on",
@@ -292,7 +251,7 @@ fn red(work: &Work<'_>, cascade: &Met) -> Result<Claim, Failure> {
             "it is born chaotic at its crisis and passes backwards through the cascade that ends at {:.7}; at 1.56 it is periodic",
             cascade.value
         ))
-        .evidence("continuation of period twelve", fold.said())
+        .evidence("continuation of period twelve", said(&fold))
         .evidence("attractors reached from a grid of starts, by halving", format!("at {there:.5}: {}; none at {gone:.5}", seen.join("; "))))
 }
 
@@ -300,8 +259,8 @@ fn red(work: &Work<'_>, cascade: &Met) -> Result<Claim, Failure> {
 fn five(work: &Work<'_>) -> Result<Claim, Failure> {
     let attractors = found(1.6)?;
     let five = of_period(&attractors, 5)?;
-    let flip = met(five, 1.6, 1.58, Kind::Flip)?;
-    let fold = met(five, 1.6, 1.62, Kind::Fold)?;
+    let flip = first(Kind::Flip, five, 1.6, 1.58)?;
+    let fold = first(Kind::Fold, five, 1.6, 1.62)?;
     let start = five.points[0];
     let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(5));
     let (holds_at, fails_at) = bracket(1.6, 1.59, WIDTH, keeps)?;
@@ -310,7 +269,7 @@ fn five(work: &Work<'_>) -> Result<Claim, Failure> {
         format!("period five is stable from omega = {:.7} to {:.7}", flip.value, fold.value);
     Ok(Claim::settle(&work.paper, "five-emerges", Verdict::of(holds), computed)?
         .note("below it doubles; above it ends in a fold")
-        .evidence("continuation with multipliers", format!("{}; {}", flip.said(), fold.said()))
+        .evidence("continuation with multipliers", format!("{}; {}", said(&flip), said(&fold)))
         .evidence(
             format!("brute force: strobes after {REST} forcing periods"),
             format!("period 5 at omega = {holds_at:.5}, no longer at {fails_at:.5}"),

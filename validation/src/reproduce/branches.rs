@@ -2,14 +2,12 @@
 //! double and graze.
 
 use super::attractors::{found, of_period};
-use super::paper::attractors_model;
+use super::continued::branch;
 use super::work::{Findings, Work};
 use crate::engine::Failure;
 use crate::picture::{INK, KeyEntry, Layer, Plot, Sheet, Stroke};
-use percuss::dynamics::continuation::{Bifurcation, Branch, BranchPoint, Family, Kind};
+use percuss::dynamics::continuation::{Bifurcation, Branch, BranchPoint, Kind};
 use percuss::dynamics::orbit::Orbit;
-use percuss::dynamics::strobe::Point;
-use percuss::{Instant, Parameter};
 use plotters::style::RGBColor;
 
 const RANGE: (f64, f64) = (1.35, 1.72);
@@ -29,16 +27,11 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     for (period, omega, colour) in FAMILIES {
         let attractors = found(omega)?;
         let first = of_period(&attractors, period)?.points[0];
-        let follow = |from: f64, guess: Point, to: f64| {
-            let instant = Instant::at(from, 0.0, 0);
-            let family = Family::new(attractors_model(from), Parameter::Omega, instant);
-            Branch::follow(&family, guess, period, from, to, &mut |_| {}).map_err(Failure::new)
-        };
-        let down = follow(omega, first, RANGE.0)?;
+        let down = branch(first, period, omega, RANGE.0)?;
         // From the low end up, so that a branch that turns is seen all the way back.
         let low = down.points.last().filter(|_| down.is_complete());
         let (from, guess) = low.map_or((omega, first), |it| (it.value, it.orbit.points[0]));
-        branches.push((period, colour, follow(from, guess, RANGE.1)?));
+        branches.push((period, colour, branch(guess, period, from, RANGE.1)?));
         if !down.is_complete() {
             branches.push((period, colour, down));
         }

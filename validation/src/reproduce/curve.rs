@@ -1,17 +1,7 @@
 //! A run as lines in the paper's notation: no contact dash-dotted, contact solid, progression dotted.
 
-use crate::picture::{KeyEntry, Layer, Stroke, phase_colour};
+use crate::picture::{KeyEntry, Layer, Piece, Stroke, phase_colour};
 use percuss::{Exit, Instant, Leg, Phase};
-
-/// One phase's motion, sampled.
-pub(super) struct Piece {
-    pub phase: Phase,
-    /// tau, p, y, q, v.
-    pub points: Vec<[f64; 5]>,
-}
-
-/// Points of even the shortest phase.
-const FEWEST: usize = 12;
 
 /// The phases of a run up to `last`, some `per_period` points a forcing period.
 pub(super) fn pieces(legs: &[Leg], last: &Instant, omega: f64, per_period: f64) -> Vec<Piece> {
@@ -22,13 +12,7 @@ pub(super) fn pieces(legs: &[Leg], last: &Instant, omega: f64, per_period: f64) 
             _ => leg.elapsed_at(last),
         };
         let begins = leg.entry().instant.tau(omega);
-        let count = ((lasts / spacing).ceil() as usize).max(FEWEST);
-        let point = |i: usize| {
-            let elapsed = lasts * (i as f64 / count as f64);
-            let at = leg.at(elapsed);
-            [begins + elapsed, at.state.p, at.state.y, at.state.q, at.v]
-        };
-        Piece { phase: leg.phase(), points: (0..=count).map(point).collect() }
+        Piece::of(leg, begins, lasts, lasts / spacing)
     };
     legs.iter().map(piece).collect()
 }

@@ -1,15 +1,17 @@
 //! Fig. 10: the period-four attractor followed in omega, with and without correction of the start.
 
-use super::attractors::{described, found, map, of_period};
+use super::attractors::{described, found, of_period, start};
 use super::claim::{Claim, Verdict};
+use super::continued::first;
 use super::paper::attractors_model;
 use super::work::{Findings, Work};
 use crate::engine::Failure;
 use crate::picture::{INK, Layer, Plot, Sheet};
-use percuss::dynamics::continuation::{Branch, Family, Kind};
+use percuss::Parameter;
+use percuss::dynamics::attractor::Attractor;
+use percuss::dynamics::continuation::{Bifurcation, Kind};
 use percuss::dynamics::diagram::{Diagram, Follow, Step};
 use percuss::dynamics::strobe::Point;
-use percuss::{Instant, Parameter, Start};
 
 /// Where the period-four attractor is taken up, and how far it is followed to both sides.
 const BEGIN: f64 = 1.4;
@@ -23,16 +25,16 @@ const SAME: f64 = 1e-4;
 
 pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     let attractors = found(BEGIN)?;
-    let four = of_period(&attractors, 4)?.points[0];
-    let corrected = corrected(four)?;
+    let four = of_period(&attractors, 4)?;
+    let corrected = corrected(four.points[0])?;
     (work.step)();
-    let uncorrected = diagram(four, RANGE.0, RANGE.1, VALUES, Follow::Reset)?;
+    let uncorrected = diagram(four.points[0], RANGE.0, RANGE.1, VALUES, Follow::Reset)?;
     (work.step)();
-    let branch = branch(four)?;
+    let stable = Stable::of(four, BEGIN)?;
     let mut findings = Findings::default();
-    findings.claims.push(settle_a(work, &corrected, &branch)?);
-    findings.claims.push(settle_b(work, &uncorrected, &branch)?);
-    findings.claims.push(settle_12(work, &uncorrected, &branch)?);
+    findings.claims.push(settle_a(work, &corrected, &stable)?);
+    findings.claims.push(settle_b(work, &uncorrected, &stable)?);
+    findings.claims.push(settle_12(work, &uncorrected, &stable)?);
     findings.picture("figure-10", &sheet(&corrected, &uncorrected))?;
     for (name, steps) in [("figure-10a", &corrected), ("figure-10b", &uncorrected)] {
         findings.csv(name, &["omega", "p", "y", "q", "drift_per_period"], rows(steps))?;
@@ -49,7 +51,7 @@ fn rows(steps: &[Step]) -> impl Iterator<Item = Vec<String>> {
 }
 
 fn diagram(
-    [p, y, q]: Point,
+    point: Point,
     from: f64,
     to: f64,
     steps: u32,
@@ -57,7 +59,7 @@ fn diagram(
 ) -> Result<Vec<Step>, Failure> {
     let diagram = Diagram {
         parameters: attractors_model(from),
-        start: Start { p, y, q: Some(q), ..Start::default() },
+        start: start(point),
         parameter: Parameter::Omega,
         from,
         to,
@@ -80,24 +82,21 @@ fn corrected(four: Point) -> Result<Vec<Step>, Failure> {
     Ok(steps)
 }
 
-/// The orbit itself, up to its fold and down to the end of the range.
+/// Between what an orbit is stable.
 struct Stable {
-    /// Where the orbit ends upwards and what it is there, with its error.
-    fold: (f64, f64),
     /// Where it loses its stability downwards.
-    flip: (f64, f64),
+    flip: Bifurcation,
+    /// Where it ends upwards.
+    fold: Bifurcation,
 }
 
-fn branch(four: Point) -> Result<Stable, Failure> {
-    let family = Family::new(attractors_model(BEGIN), Parameter::Omega, Instant::at(BEGIN, 0.0, 0));
-    let first = |to: f64, kind: Kind| {
-        let branch =
-            Branch::follow(&family, four, 4, BEGIN, to, &mut |_| {}).map_err(Failure::new)?;
-        let first = branch.bifurcations.iter().find(|it| it.kind == kind);
-        let missing = || Failure::new(format!("period four has no {} up to {to}", kind.token()));
-        first.map(|it| (it.value, it.error)).ok_or_else(missing)
-    };
-    Ok(Stable { fold: first(RANGE.1, Kind::Fold)?, flip: first(RANGE.0, Kind::Flip)? })
+impl Stable {
+    /// Of an orbit at some frequency, as far as the range goes.
+    fn of(orbit: &Attractor, omega: f64) -> Result<Self, Failure> {
+        let flip = first(Kind::Flip, orbit, omega, RANGE.0)?;
+        let fold = first(Kind::Fold, orbit, omega, RANGE.1)?;
+        Ok(Self { flip, fold })
+    }
 }
 
 /// How many different points a step shows, up to some.
@@ -115,8 +114,9 @@ fn count(step: &Step) -> usize {
 /// Steps inside the orbit's stable interval; next to its ends motions settle too slowly to be counted.
 fn inside<'a>(steps: &'a [Step], stable: &'a Stable) -> impl Iterator<Item = &'a Step> {
     const ROOM: f64 = 0.002;
-    let within =
-        move |step: &&Step| step.value > stable.flip.0 + ROOM && step.value < stable.fold.0 - ROOM;
+    let within = move |step: &&Step| {
+        step.value > stable.flip.value + ROOM && step.value < stable.fold.value - ROOM
+    };
     steps.iter().filter(within)
 }
 
@@ -125,7 +125,7 @@ fn settle_a(work: &Work<'_>, steps: &[Step], stable: &Stable) -> Result<Claim, F
     let four = inside(steps, stable).filter(|step| count(step) == 4).count();
     let computed = format!(
         "carried along, the motion stays on period four at all {four} of {all} values between omega = {:.4} and {:.4}",
-        stable.flip.0, stable.fold.0
+        stable.flip.value, stable.fold.value
     );
     Ok(Claim::settle(&work.paper, "fig10a", Verdict::of(four == all && all > 0), computed)?
         .note(format!(
@@ -140,7 +140,7 @@ fn settle_a(work: &Work<'_>, steps: &[Step], stable: &Stable) -> Result<Claim, F
             "continuation of the orbit",
             format!(
                 "stable from a flip at {:.10} +- {:.0e} to a fold at {:.10} +- {:.0e}",
-                stable.flip.0, stable.flip.1, stable.fold.0, stable.fold.1
+                stable.flip.value, stable.flip.error, stable.fold.value, stable.fold.error
             ),
         ))
 }
@@ -171,11 +171,11 @@ fn settle_12(work: &Work<'_>, uncorrected: &[Step], stable: &Stable) -> Result<C
         .filter(|step| count(step) == 12)
         .map(|step| format!("{:.4}", step.value))
         .collect();
-    let interval = born(twelve.points[0], OMEGA)?;
-    let untouched = stable.flip.0 < interval.0 && stable.fold.0 > interval.1;
+    let beside = Stable::of(twelve, OMEGA)?;
+    let untouched = stable.flip.value < beside.flip.value && stable.fold.value > beside.fold.value;
     let computed = format!(
         "period four has no bifurcation between {:.4} and {:.4}; period twelve is stable beside it from {:.6} to {:.6}",
-        stable.flip.0, stable.fold.0, interval.0, interval.1
+        stable.flip.value, stable.fold.value, beside.flip.value, beside.fold.value
     );
     Ok(Claim::settle(&work.paper, "false-12", Verdict::of(untouched), computed)?
         .evidence("orbits at omega = 1.45 by Newton", format!("{}; {}", described(four), described(twelve)))
@@ -188,19 +188,6 @@ fn settle_12(work: &Work<'_>, uncorrected: &[Step], stable: &Stable) -> Result<C
                 format!("shows period twelve at omega = {}", twelves.join(", "))
             },
         ))
-}
-
-/// Between which values an orbit is stable around one: its flip below, its fold above.
-fn born(point: Point, omega: f64) -> Result<(f64, f64), Failure> {
-    map(omega)?;
-    let family = Family::new(attractors_model(omega), Parameter::Omega, Instant::at(omega, 0.0, 0));
-    let first = |to: f64| {
-        let branch =
-            Branch::follow(&family, point, 12, omega, to, &mut |_| {}).map_err(Failure::new)?;
-        let end = branch.bifurcations.iter().find(|it| it.kind != Kind::Grazing);
-        end.map(|it| it.value).ok_or_else(|| Failure::new("period twelve does not end"))
-    };
-    Ok((first(RANGE.0)?, first(RANGE.1)?))
 }
 
 fn sheet(corrected: &[Step], uncorrected: &[Step]) -> Sheet {

@@ -1,11 +1,11 @@
 //! Fig. 2: the drift is taken out of the motion.
 
 use super::claim::{Claim, Verdict};
-use super::curve::{self, HEADER, Piece};
+use super::curve::{self, HEADER};
 use super::paper::table_1_model;
 use super::work::{Findings, Work, from_rest};
 use crate::engine::Failure;
-use crate::picture::{Layer, Plot, Sheet, Stroke, caption};
+use crate::picture::{Layer, Piece, Plot, Sheet, Stroke, caption};
 use percuss::Phase;
 
 const PERIODS: u64 = 12;

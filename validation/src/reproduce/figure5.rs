@@ -1,11 +1,11 @@
 //! Fig. 5: the chaotic phase portrait.
 
 use super::claim::{Claim, Verdict};
-use super::curve::{self, HEADER, Piece};
+use super::curve::{self, HEADER};
 use super::paper::chaotic_model;
 use super::work::{Findings, Work, from_rest};
 use crate::engine::Failure;
-use crate::picture::{Layer, Plot, Sheet, caption};
+use crate::picture::{Layer, Piece, Plot, Sheet, caption};
 use percuss::{Parameters, Phase};
 
 const TRANSIENT: u64 = 100;

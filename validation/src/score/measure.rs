@@ -3,10 +3,10 @@
 use super::SCORED_ERROR;
 use super::growth::Growth;
 use super::matching::{Matching, WINDOW};
+use super::probed::Probed;
 use super::statistics::Spread;
 use crate::case::{Quantity, Statistic};
 use crate::engine::{Event, Outcome, Task};
-use crate::probes::Probed;
 use crate::truth::{Row, Truth};
 use percuss::Phase;
 use percuss::two_word::TwoWord;
@@ -154,8 +154,7 @@ fn worst(errors: impl Iterator<Item = f64>) -> f64 {
         .fold(0.0, |worst: f64, error| if error > worst || error.is_nan() { error } else { worst })
 }
 
-/// A sample that the engine did not deliver is a NaN.
-/// max(|dp|, |dy|, |dq|) at each sample of the truth.
+/// max(|dp|, |dy|, |dq|) at each sample of the truth; NaN at one that the engine did not deliver.
 #[must_use]
 pub fn sample_errors(truth: &Truth, outcome: &Outcome) -> Vec<f64> {
     let error = |(k, row): (usize, &Row)| {

@@ -1,6 +1,7 @@
 //! A report with everything in it, and with what is hard to show: numbers that are not finite, names
 //! that need escaping, engines without a result.
 
+use percuss_validation::build::Build;
 use percuss_validation::report::{
     CaseNote, EngineEntry, ErrorGrowth, Evidence, Fault, Graze, Report, RestartHistogram, Row,
     SectionPair, Summary, ValidHorizons,
@@ -140,11 +141,13 @@ pub fn report() -> Report {
         method: "a method of order 5(4) & its \"dense output\"",
     };
     Report {
-        schema: 1,
-        percuss: "0.1.0",
-        commit: None,
-        rustc: "rustc",
-        cpu: "a <processor>".to_owned(),
+        build: Build {
+            schema: 1,
+            percuss: "0.1.0",
+            commit: None,
+            rustc: "rustc",
+            cpu: "a <processor>".to_owned(),
+        },
         suite: Suite::Quick,
         engines: ENGINES.iter().map(engine).collect(),
         summary: Summary {

@@ -1,7 +1,7 @@
 //! The basins as a picture.
 
 use super::Survey;
-use crate::picture::{self, BASIN_COLOURS, BasinMap, Cell, Shown};
+use crate::picture::{self, BASIN_COLOURS, BasinMap, Shown};
 use anyhow::Result;
 use percuss::dynamics::attractor::{Attractor, Basins, Kind, Label};
 
@@ -19,18 +19,10 @@ pub(super) fn bytes(survey: &Survey) -> Result<Vec<u8>> {
         ),
         window: [grid.window.p, grid.window.y],
         columns: grid.columns as usize,
-        cells: basins.labels.iter().map(|label| cell(*label)).collect(),
+        cells: basins.labels.clone(),
         attractors: shown.map(|((id, it), colour)| shown_as(basins, id, it, colour)).collect(),
     };
     Ok(picture::png(&map)?)
-}
-
-const fn cell(label: Label) -> Cell {
-    match label {
-        Label::Attractor(id) => Cell::Attractor(id),
-        Label::Escaping => Cell::Escaping,
-        Label::Unresolved => Cell::Unresolved,
-    }
 }
 
 /// The first chaotic attractor is orange on yellow, as in the paper; all others take the colours

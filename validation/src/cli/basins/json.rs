@@ -61,19 +61,6 @@ struct EntropyJson {
 const POINTS: usize = 1000;
 /// Cells along the side of a box of the basin entropy, as in its authors' paper.
 const BOX: u32 = 5;
-/// The id of what escapes.
-pub(super) const ESCAPING: i32 = -2;
-/// The label of what is not known.
-pub(super) const UNRESOLVED: i32 = -1;
-
-/// A label as it is written.
-pub(super) fn id(label: Label) -> i32 {
-    match label {
-        Label::Attractor(id) => i32::try_from(id).unwrap_or(i32::MAX),
-        Label::Escaping => ESCAPING,
-        Label::Unresolved => UNRESOLVED,
-    }
-}
 
 impl Json {
     pub(super) fn of(survey: &Survey) -> Self {
@@ -110,7 +97,7 @@ impl AttractorJson {
         let points = &attractor.points;
         let from = if attractor.orbit.is_some() { 0 } else { points.len().saturating_sub(POINTS) };
         Self {
-            id: id(label),
+            id: label.number(),
             kind: attractor.kind.token(),
             period: attractor.period(),
             fraction: basins.fraction(label),
@@ -127,7 +114,7 @@ impl AttractorJson {
     /// slider that never stops gathers speed.
     fn escaping(basins: &Basins, b: f64) -> Self {
         Self {
-            id: ESCAPING,
+            id: Label::Escaping.number(),
             kind: "escaping",
             period: None,
             fraction: basins.fraction(Label::Escaping),

@@ -1,7 +1,7 @@
 //! The labels as arrays for NumPy.
 
 use super::Survey;
-use super::json::{Json, id};
+use super::json::Json;
 use crate::arrays::Npz;
 use anyhow::Result;
 use percuss::dynamics::attractor::Label;
@@ -10,10 +10,11 @@ use percuss::dynamics::attractor::Label;
 pub(super) fn bytes(survey: &Survey, json: &Json) -> Result<Vec<u8>> {
     let basins = &survey.basins;
     let (columns, rows) = (basins.grid.columns as usize, basins.grid.rows as usize);
-    let ids: Vec<i32> = (0..basins.attractors.len()).map(|k| id(Label::Attractor(k))).collect();
+    let ids: Vec<i32> =
+        (0..basins.attractors.len()).map(|k| Label::Attractor(k).number()).collect();
     let meta = serde_json::to_vec(json)?;
     let mut archive = Npz::default();
-    archive.add("labels", &[rows, columns], basins.labels.iter().map(|label| id(*label)))?;
+    archive.add("labels", &[rows, columns], basins.labels.iter().map(|label| label.number()))?;
     archive.add("p", &[columns], basins.grid.p())?;
     archive.add("y", &[rows], basins.grid.y())?;
     archive.add("ids", &[ids.len()], ids)?;

@@ -8,10 +8,10 @@ mod worker;
 use super::output::{Destination, reader_left, write_whole};
 use super::{DONE, OUT_OF_BOUNDS, format, output, parse, work};
 use crate::bench::contest::{self, Finisher, contest};
-use crate::bench::contestant::{self, Contestant};
+use crate::bench::contestant::Contestant;
 use crate::bench::course::Course;
 use crate::bench::report::Measured;
-use crate::bench::{Bench, cases, damping, floor, length, pictures, table, workload};
+use crate::bench::{Bench, cases, damping, floor, length, pictures, registry, table, workload};
 use crate::case::{self, Case};
 use crate::engine::{Stepping, hush_contained_panics};
 use crate::truth::Library;
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
 }
 
 fn race(arguments: &Arguments) -> Result<u8> {
-    let all = contestant::all();
+    let all = registry::all();
     let contestants = chosen_engines(&all, &arguments.engine)?;
     let courses = courses(&chosen_cases(&arguments.case)?)?;
     if let Some(folder) = &arguments.out {

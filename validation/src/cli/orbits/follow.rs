@@ -1,7 +1,7 @@
 //! `continue`: a branch of periodic orbits.
 
 use super::find::scanned;
-use super::json::{Course, Doubled, Followed, Values};
+use super::json::{Course, Doubled, Followed};
 use super::{Format, period};
 use crate::case::Problem;
 use crate::cli::format::OutputFlags;
@@ -17,7 +17,7 @@ use percuss::dynamics::strobe::StrobeMap;
 #[derive(Args)]
 pub(crate) struct Arguments {
     /// The parameter that varies: a, b, xi, omega, g or phi
-    #[arg(long, value_name = "NAME", value_parser = parameter)]
+    #[arg(long, value_name = "NAME", value_parser = parse::parameter)]
     parameter: Parameter,
     /// Its first value
     #[arg(long, value_name = "X", value_parser = parse::number, allow_hyphen_values = true)]
@@ -37,10 +37,6 @@ pub(crate) struct Arguments {
     model: ModelFlags,
 }
 
-fn parameter(text: &str) -> Result<Parameter, String> {
-    Parameter::named(text).ok_or_else(|| "accepted are a, b, xi, omega, g, phi".to_owned())
-}
-
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     let Arguments { parameter, from, to, .. } = *arguments;
     arguments.output.format(Format::Json)?;
@@ -56,7 +52,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     let followed = Followed {
         schema: 1,
         percuss: env!("CARGO_PKG_VERSION"),
-        parameters: Values::of(&problem.model).without(parameter),
+        // JSON has null for a NaN: what varies has no value.
+        parameters: (&parameter.set(*problem.model.parameters(), f64::NAN)).into(),
         period: branch.as_ref().ok().and_then(|it| it.points.first()).map(|it| it.orbit.period()),
         course: branch.as_ref().map(|it| Course::of(it, parameter, complete)).unwrap_or_default(),
         doubled,

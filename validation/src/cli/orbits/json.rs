@@ -1,50 +1,18 @@
 //! Orbits and branches as JSON.
 
+use crate::cli::model::ParametersJson;
 use percuss::dynamics::continuation::{Bifurcation, Branch, BranchPoint};
 use percuss::dynamics::orbit::Orbit;
 use percuss::dynamics::strobe::Point;
-use percuss::{Model, Parameter, Parameters, Phase};
+use percuss::{Model, Parameter, Phase};
 use serde::Serialize;
-
-/// The model's parameters; null for one that varies.
-#[derive(Serialize)]
-pub(super) struct Values {
-    a: Option<f64>,
-    b: Option<f64>,
-    xi: Option<f64>,
-    omega: Option<f64>,
-    g: Option<f64>,
-    phi: Option<f64>,
-}
-
-impl Values {
-    pub(super) fn of(model: &Model) -> Self {
-        let Parameters { a, b, xi, omega, g, phi } = *model.parameters();
-        let [a, b, xi, omega, g, phi] = [a, b, xi, omega, g, phi].map(Some);
-        Self { a, b, xi, omega, g, phi }
-    }
-
-    /// Leaves out the one that varies.
-    pub(super) fn without(mut self, parameter: Parameter) -> Self {
-        let value = match parameter {
-            Parameter::A => &mut self.a,
-            Parameter::B => &mut self.b,
-            Parameter::Xi => &mut self.xi,
-            Parameter::Omega => &mut self.omega,
-            Parameter::G => &mut self.g,
-            Parameter::Phi => &mut self.phi,
-        };
-        *value = None;
-        self
-    }
-}
 
 /// What `orbit` writes; where none was found the lists are empty and the numbers null.
 #[derive(Serialize)]
 pub(super) struct Found {
     pub(super) schema: u32,
     pub(super) percuss: &'static str,
-    pub(super) parameters: Values,
+    pub(super) parameters: ParametersJson,
     pub(super) converged: bool,
     pub(super) period: Option<u32>,
     pub(super) points: Vec<Point>,
@@ -62,7 +30,7 @@ impl Found {
         Self {
             schema: 1,
             percuss: env!("CARGO_PKG_VERSION"),
-            parameters: Values::of(model),
+            parameters: model.parameters().into(),
             converged: found.is_some(),
             period: found.map(Orbit::period),
             points: found.map(|it| it.points.clone()).unwrap_or_default(),
@@ -84,7 +52,7 @@ fn tokens(orbit: &Orbit) -> Vec<&'static str> {
 pub(super) struct Followed {
     pub(super) schema: u32,
     pub(super) percuss: &'static str,
-    pub(super) parameters: Values,
+    pub(super) parameters: ParametersJson,
     pub(super) period: Option<u32>,
     #[serde(flatten)]
     pub(super) course: Course,

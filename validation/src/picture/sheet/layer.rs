@@ -246,13 +246,11 @@ impl Raster {
             let y = bottom + height * i as f64;
             let mut begin = 0;
             // Neighbours of one colour are one rectangle.
-            for end in 1..=row.len() {
-                if end < row.len() && row[end] == row[begin] {
-                    continue;
-                }
+            for run in row.chunk_by(|a, b| a == b) {
+                let end = begin + run.len();
                 let x = |cell: usize| left + width * cell as f64;
                 let corners = (panel.place((x(begin), y + height)), panel.place((x(end), y)));
-                pen.fill(corners.0, corners.1, row[begin])?;
+                pen.fill(corners.0, corners.1, run[0])?;
                 begin = end;
             }
         }

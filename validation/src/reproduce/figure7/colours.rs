@@ -4,15 +4,12 @@
 //! starting where the last ended. The attractor that the motion is on in the next frame inherits the
 //! colours; where two lead to the same, those of its own kind and period, else those that come first.
 
-use super::frame::Frame;
+use super::frame::{Frame, Place};
 use crate::engine::Failure;
-use crate::reproduce::attractors::map;
+use crate::reproduce::attractors::start;
 use crate::reproduce::paper::attractors_model;
+use percuss::Parameter;
 use percuss::dynamics::diagram::{Diagram, Follow};
-use percuss::{Parameter, Start};
-
-/// The place of an attractor's colours among those of basin pictures.
-pub(super) type Place = usize;
 
 /// The paper's orange on yellow, for the strange attractor; the others follow.
 const STRANGE: Place = 0;
@@ -67,11 +64,10 @@ fn inherited(
 }
 
 /// The attractor of a frame that a motion carried there is on.
-fn carried(from: f64, [p, y, q]: [f64; 3], frame: &Frame) -> Result<Option<usize>, Failure> {
-    map(from)?;
+fn carried(from: f64, point: [f64; 3], frame: &Frame) -> Result<Option<usize>, Failure> {
     let diagram = Diagram {
         parameters: attractors_model(from),
-        start: Start { p, y, q: Some(q), ..Start::default() },
+        start: start(point),
         parameter: Parameter::Omega,
         from,
         to: frame.omega,

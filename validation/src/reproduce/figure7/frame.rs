@@ -1,18 +1,19 @@
 //! One frame: its attractors and the label of every start.
 
-use super::colours::Place;
 use crate::arrays::Npz;
-use crate::engine::{self, Accuracy, Failure, Limits};
+use crate::engine::Failure;
 use crate::picture::{Layer, Plot, Raster, basin_colours};
 use crate::reproduce::attractors::{TRANSIENT, WINDOW, described, grid, map};
-use crate::reproduce::paper::attractors_model;
+use crate::reproduce::integrated::{NAME, strobes};
 use crate::reproduce::work::Work;
-use crate::score::attractor::run_of;
-use percuss::Start;
 use percuss::dynamics::attractor::{Attractor, Basins, Label};
+use percuss::dynamics::orbit::Orbit;
 use plotters::style::RGBColor;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicU64, Ordering};
+
+/// The place of an attractor's colours among those of basin pictures.
+pub(super) type Place = usize;
 
 /// Attractors and labels, as they are kept when work is interrupted.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -20,7 +21,9 @@ pub(super) struct Frame {
     pub omega: f64,
     cells: u32,
     pub attractors: Vec<Kept>,
-    /// A label a start, rows from the lowest y on: -1 unresolved, -2 escaping.
+    /// The share of starts of which it is not known where they lead.
+    pub unresolved: String,
+    /// The number of a start's label ([`Label::number`]), rows from the lowest y on.
     labels: Vec<i32>,
 }
 
@@ -30,12 +33,14 @@ pub(super) struct Kept {
     pub kind: String,
     pub period: Option<u32>,
     pub said: String,
+    /// The share of starts that lead there, and its standard error.
+    pub share: String,
     pub points: Vec<[f64; 3]>,
 }
 
 /// The steps of progress that a frame tells.
 const STEPS: u64 = 10;
-/// Basins are drawn with so many cells a side at most.
+/// Starts that lead to no attractor.
 const UNRESOLVED: RGBColor = RGBColor(150, 150, 150);
 
 impl Frame {
@@ -64,73 +69,44 @@ impl Frame {
             (steps(before)..steps(before + more)).for_each(|_| (work.step)());
         };
         let basins = Basins::of(&map(omega)?, &grid(cells), TRANSIENT, &seen);
-        let number = |label: &Label| match label {
-            Label::Attractor(id) => i32::try_from(*id).unwrap_or(i32::MAX),
-            Label::Unresolved => -1,
-            Label::Escaping => -2,
-        };
-        let kept = |it: &Attractor| Kept {
-            kind: it.kind.token().to_owned(),
-            period: it.period(),
-            said: described(it),
-            points: it.points.clone(),
+        let share = |label| 100.0 * basins.fraction(label);
+        let error = |label| 100.0 * basins.fraction_error(label);
+        let kept = |(place, it): (usize, &Attractor)| {
+            let label = Label::Attractor(place);
+            Kept {
+                kind: it.kind.token().to_owned(),
+                period: it.period(),
+                said: described(it),
+                share: format!("{:.2} +- {:.2} %", share(label), error(label)),
+                points: it.points.clone(),
+            }
         };
         Ok(Self {
             omega,
             cells,
-            attractors: basins.attractors.iter().map(kept).collect(),
-            labels: basins.labels.iter().map(number).collect(),
+            attractors: basins.attractors.iter().enumerate().map(kept).collect(),
+            unresolved: format!("{:.2} %", share(Label::Unresolved)),
+            labels: basins.labels.iter().map(|label| label.number()).collect(),
         })
     }
 
-    /// The share of all starts that have a label.
-    pub(super) fn share(&self, label: Label) -> f64 {
-        let number = match label {
-            Label::Attractor(id) => i32::try_from(id).unwrap_or(i32::MAX),
-            Label::Unresolved => -1,
-            Label::Escaping => -2,
-        };
-        let count = self.labels.iter().filter(|it| **it == number).count();
-        count as f64 / self.labels.len().max(1) as f64
-    }
-
-    /// Its standard error, as of independent starts.
-    pub(super) fn share_error(&self, label: Label) -> f64 {
-        let share = self.share(label);
-        (share * (1.0 - share) / self.labels.len().max(1) as f64).sqrt()
-    }
-
-    /// Each orbit integrated over its period: a second method that knows no closed form.
+    /// Each orbit integrated over its period.
     pub(super) fn integrated(
         &self,
         attractors: &[Attractor],
     ) -> Result<Vec<(String, String)>, Failure> {
         const TOLERANCE: f64 = 1e-11;
-        let engines =
-            engine::select(&[regex::Regex::new("^ode_solvers-dopri5$").map_err(Failure::new)?])
-                .map_err(Failure::new)?;
-        let Some(engine) = engines.first() else { return Ok(Vec::new()) };
-        let mut found = Vec::new();
-        for orbit in attractors.iter().filter_map(|it| it.orbit.as_ref()) {
-            let [p, y, q] = orbit.points[0];
-            let start = Start { p, y, q: Some(q), ..Start::default() };
-            let refused = || Failure::new("the orbit's point is refused");
-            let task = run_of(attractors_model(self.omega), start, orbit.period());
-            let task = task.ok_or_else(refused)?;
-            let accuracy = Accuracy::Tolerance(TOLERANCE);
-            let outcome = engine.run(&task, accuracy, &Limits::default())?;
-            let last = outcome.samples.last().copied().ok_or_else(refused)?;
-            let apart = [last[0] - p, last[1] - y].map(f64::abs);
-            found.push((
-                format!(
-                    "{}, tolerance {TOLERANCE:e}, from the orbit of period {}",
-                    engine.declaration().name,
-                    orbit.period()
-                ),
-                format!("after one period it is back within {:.1e}", apart[0].max(apart[1])),
-            ));
-        }
-        Ok(found)
+        let back = |orbit: &Orbit| {
+            let (first, period) = (orbit.points[0], orbit.period());
+            let strobes = strobes(self.omega, first, period, TOLERANCE)?;
+            let last = strobes[strobes.len() - 1];
+            let apart = (last[0] - first[0]).abs().max((last[1] - first[1]).abs());
+            Ok((
+                format!("{NAME}, tolerance {TOLERANCE:e}, from the orbit of period {period}"),
+                format!("after one period it is back within {apart:.1e}"),
+            ))
+        };
+        attractors.iter().filter_map(|it| it.orbit.as_ref()).map(back).collect()
     }
 
     /// Labels and grid for NumPy.

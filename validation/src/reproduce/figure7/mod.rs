@@ -12,7 +12,7 @@ use crate::engine::Failure;
 use crate::picture::{Sheet, caption, caption_without};
 use frame::Frame;
 use percuss::Parameter;
-use percuss::dynamics::attractor::{Kind, Label};
+use percuss::dynamics::attractor::Kind;
 
 /// Cells along a side.
 const CELLS: u32 = 300;
@@ -100,24 +100,18 @@ fn settle(
     figure: &str,
     census: &str,
 ) -> Result<[Claim; 2], Failure> {
-    let shares: Vec<_> = (0..frame.attractors.len())
-        .map(|id| {
-            let label = Label::Attractor(id);
-            let (share, error) = (frame.share(label), frame.share_error(label));
-            format!("{}: {:.2} +- {:.2} %", frame.attractors[id].said, 100.0 * share, 100.0 * error)
-        })
-        .collect();
-    let unresolved = frame.share(Label::Unresolved);
+    let shares = frame.attractors.iter().map(|it| format!("{}: {}", it.said, it.share));
+    let shares = shares.collect::<Vec<_>>().join("; ");
     let printed = work.paper.claim(figure)?;
     let count = frame.attractors.len();
-    let computed = format!("{count} attractors; unresolved {:.2} %", 100.0 * unresolved);
+    let computed = format!("{count} attractors; unresolved {}", frame.unresolved);
     let first = Claim::settle(
         &work.paper,
         figure,
         Verdict::of(printed.attractors == Some(count)),
         computed,
     )?
-    .evidence("shares of the starts", shares.join("; "));
+    .evidence("shares of the starts", shares.as_str());
     let printed = work.paper.claim(census)?;
     let again = found(frame.omega)?;
     let coarse: Vec<_> = again.iter().map(described).collect();
@@ -127,7 +121,7 @@ fn settle(
         Verdict::of(agrees(frame, printed)),
         frame.attractors.iter().map(|it| it.said.clone()).collect::<Vec<_>>().join("; "),
     )?
-    .evidence("every start of the frame followed; orbits by Newton with multipliers, chaos by a positive exponent", shares.join("; "))
+    .evidence("every start of the frame followed; orbits by Newton with multipliers, chaos by a positive exponent", shares)
     .evidence("a coarser grid of starts", coarse.join("; "));
     if !agrees(frame, printed) {
         second = second.note(difference(frame, printed));

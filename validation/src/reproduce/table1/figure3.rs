@@ -1,11 +1,11 @@
 //! Fig. 3: the phase plane of the motion of Table 1, and the zoom of its stick-slip part.
 
 use super::super::claim::{Claim, Verdict};
-use super::super::curve::{self, Piece};
+use super::super::curve;
 use super::super::work::Work;
 use super::Told;
 use crate::engine::Failure;
-use crate::picture::{INK, Layer, Plot, Sheet, Window, caption};
+use crate::picture::{INK, Layer, Piece, Plot, Sheet, Window, caption};
 use percuss::Phase;
 
 /// The zoom: where the slider is met, compressed and left.

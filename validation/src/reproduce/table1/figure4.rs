@@ -1,11 +1,11 @@
 //! Fig. 4: the progression over Table 1, by Eqs. (19) and (20) with the sign that Eq. (20) needs.
 
 use super::super::claim::{Claim, Verdict};
-use super::super::curve::{self, Piece};
+use super::super::curve;
 use super::super::work::Work;
 use super::Told;
 use crate::engine::Failure;
-use crate::picture::{Plot, Sheet, caption};
+use crate::picture::{Piece, Plot, Sheet, caption};
 use percuss::{Parameters, Phase};
 
 /// Eq. (20) from a row of the table, `d` later; `sign` is that of its exponential term.

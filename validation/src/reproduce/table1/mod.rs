@@ -4,10 +4,11 @@ mod figure3;
 mod figure4;
 
 use super::claim::{Claim, Verdict};
-use super::curve::{self, HEADER, Piece};
+use super::curve::{self, HEADER};
 use super::paper::{PrintedRow, TABLE_1_UNIT, table_1_model};
 use super::work::{Findings, Work, from_rest};
 use crate::engine::Failure;
+use crate::picture::Piece;
 use percuss::dynamics::orbit::Orbit;
 use percuss::dynamics::strobe::StrobeMap;
 use percuss::{Entry, Instant, Leg, Model, Parameters};

@@ -1,65 +1,15 @@
 //! The whole matrix: every engine on every case at every tolerance, in parallel and in order.
 
+use super::probes::{Extent, Probes};
+use super::scope::Suite;
 use crate::case::{Case, Defaults, FileError};
-use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Stepping, Task, contain};
+use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Task, contain};
 use crate::number::brief;
-use crate::probes::{Extent, Probes};
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
 use crate::score::{Growth, Judgement, Measures, Subject, Verdict, judge, measure};
 use crate::truth::{Library, Truth};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
-
-/// How much is run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Suite {
-    /// Three tolerances, a minute on two cores.
-    Quick,
-    /// Every decade of tolerance down to where rounding begins to show.
-    Full,
-}
-
-impl Suite {
-    /// What engines are asked for that choose their accuracy in this way.
-    #[must_use]
-    pub fn accuracies(self, stepping: Stepping) -> Vec<Accuracy> {
-        let decades = |exponents: &[i32]| {
-            exponents
-                .iter()
-                .map(|k| Accuracy::Tolerance(format!("1e-{k}").parse().unwrap_or(f64::NAN)))
-                .collect()
-        };
-        let halvings = |exponents: &[i32]| {
-            exponents.iter().map(|k| Accuracy::Step(0.5_f64.powi(*k))).collect()
-        };
-        match (stepping, self) {
-            (Stepping::Exact, _) => vec![Accuracy::Exact],
-            (Stepping::Fixed { .. }, Self::Quick) => halvings(&[2, 4, 6]),
-            (Stepping::Fixed { .. }, Self::Full) => halvings(&[1, 2, 3, 4, 5, 6, 7]),
-            (_, Self::Quick) => decades(&[6, 9, 12]),
-            (_, Self::Full) => decades(&[4, 5, 6, 7, 8, 9, 10, 11, 12]),
-        }
-    }
-}
-
-impl Suite {
-    /// Right-hand sides beyond which a row is not run, where that is known beforehand.
-    #[must_use]
-    pub fn budget(self) -> f64 {
-        match self {
-            Self::Quick => 3e6,
-            Self::Full => 3e7,
-        }
-    }
-
-    /// What a row's run may cost before it is given up as a failure. The slowest method takes a
-    /// microsecond a call.
-    #[must_use]
-    pub fn limits(self) -> Limits {
-        Limits { calls: 4 * self.budget() as u64 + 8_000_000, ..Limits::default() }
-    }
-}
 
 /// A case made ready: checked, with its truth and the growth along it.
 pub struct Prepared {

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-/// What every file of a bench begins with.
+/// What every report and every file of a bench begins with.
 #[derive(Clone, Debug, Serialize)]
 pub struct Build {
     /// The format's number.
@@ -27,10 +27,17 @@ impl Build {
             percuss: env!("CARGO_PKG_VERSION"),
             commit: (!commit.is_empty()).then_some(commit),
             rustc: env!("PERCUSS_RUSTC"),
-            cpu: crate::report::cpu(),
+            cpu: cpu(),
         }
     }
 }
 
 /// The processor it was compiled for.
 pub const TARGET_CPU: &str = env!("PERCUSS_TARGET_CPU");
+
+/// The processor's name where the system tells it, else its architecture.
+fn cpu() -> String {
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    model.map_or(std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
+}

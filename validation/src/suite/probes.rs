@@ -1,19 +1,18 @@
 //! What is asked of an engine beyond the run of a case itself: restarts, valid horizons and the same
 //! attractor. Which cases ask what of integrators is said in their files (`[probes]`).
 
+use super::scope::Suite;
 use crate::case::{Case, FileError, Problem};
 use crate::engine::{Accuracy, Engine, Limits, contain};
-use crate::score::attractor::{AttractorTest, Calibrated, Comparison};
-use crate::score::{HorizonTest, Horizons, Restart, RestartTest};
-use crate::suite::Suite;
+use crate::score::attractor::{AttractorTest, Calibrated};
+use crate::score::{HorizonTest, Probed, RestartTest};
 
 /// One engine a library: those that restart and run for long in the quick suite too.
 const REPRESENTATIVES: [&str; 3] =
     ["diffsol-bdf", "ode_solvers-dopri5", "differential-equations-rkv655e"];
 
 /// Whether an engine stands for its library where all of them would be too many.
-#[must_use]
-pub fn is_representative(engine: &str) -> bool {
+fn is_representative(engine: &str) -> bool {
     engine == "exact" || REPRESENTATIVES.contains(&engine)
 }
 
@@ -38,34 +37,6 @@ pub struct Probes {
     pub horizons: Option<HorizonTest>,
     /// A long run's section.
     pub attractor: Option<AttractorTest>,
-}
-
-/// What the probes gave for one engine.
-#[derive(Clone, Debug, Default)]
-pub struct Probed {
-    /// The restart test.
-    pub restart: Option<Restart>,
-    /// Valid horizons.
-    pub horizons: Option<Horizons>,
-    /// The same-attractor test; without a comparison where the engine failed, with its reason.
-    pub attractor: Option<Result<Comparison, String>>,
-}
-
-impl Probed {
-    /// Whether there are restarts to speak of.
-    #[must_use]
-    pub fn restarted(&self) -> bool {
-        self.restart.as_ref().is_some_and(|it| it.with_impact > 0)
-    }
-
-    /// The largest distance of the section in units of its limit; NaN where there is none.
-    #[must_use]
-    pub fn share(&self) -> f64 {
-        match &self.attractor {
-            Some(Ok(comparison)) => comparison.share(),
-            _ => f64::NAN,
-        }
-    }
 }
 
 impl Probes {
@@ -177,7 +148,7 @@ impl Extent {
 }
 
 /// Runs from which a valid horizon is taken: as many as a median needs to be good to a period or two.
-pub const HORIZONS: usize = 200;
+const HORIZONS: usize = 200;
 /// Those of a wrong engine, which is off by far more than that.
 const HORIZONS_OF_WRONG: usize = 40;
 

@@ -1,0 +1,72 @@
+//! What is known of an attractor that has been met: what a motion near it is recognised by.
+
+use super::Attractor;
+use super::cells::Cells;
+use super::trap::Trap;
+
+/// Where a start leads.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Label {
+    /// To an attractor, by its place in the atlas.
+    Attractor(usize),
+    /// To a phase that never ends: the mass never returns or the slider never stops.
+    Escaping,
+    /// Not known.
+    Unresolved,
+}
+
+impl Label {
+    /// The number used in files: an attractor's place, -1 of what is not known, -2 of what escapes.
+    #[must_use]
+    pub fn number(self) -> i32 {
+        match self {
+            Self::Attractor(place) => i32::try_from(place).unwrap_or(i32::MAX),
+            Self::Unresolved => -1,
+            Self::Escaping => -2,
+        }
+    }
+}
+
+/// An attractor and what a motion near it is recognised by.
+#[derive(Clone, Debug)]
+pub(super) struct Known {
+    pub attractor: Attractor,
+    pub evidence: Evidence,
+}
+
+/// What a motion is recognised by.
+#[derive(Clone, Debug)]
+pub(super) enum Evidence {
+    Traps(Vec<Trap>),
+    Cells(Cells),
+}
+
+/// Two runs are on one attractor when this share of one lies in the cells of the other.
+const SAME: f64 = 0.5;
+/// A motion is at rest on an orbit when the square of its distance is so small a share of the
+/// trap's radius: it need not come closer still.
+pub(super) const AT_REST: f64 = 1e-12;
+
+impl Known {
+    /// Whether both are the same attractor.
+    pub fn is(&self, other: &Self) -> bool {
+        match (&self.evidence, &other.evidence) {
+            (Evidence::Traps(traps), Evidence::Traps(_)) => {
+                self.attractor.period() == other.attractor.period()
+                    && traps.iter().any(|trap| {
+                        other.attractor.points.iter().any(|point| trap.size(point) < AT_REST)
+                    })
+            }
+            (Evidence::Cells(cells), Evidence::Cells(others)) => {
+                cells.share(&other.attractor.points) > SAME
+                    || others.share(&self.attractor.points) > SAME
+            }
+            _ => false,
+        }
+    }
+
+    /// Of the orbit; one where it is none.
+    pub fn period(&self) -> u64 {
+        u64::from(self.attractor.period().unwrap_or(1))
+    }
+}

@@ -1,0 +1,30 @@
+//! A phase's motion as points to be drawn.
+
+use percuss::{Leg, Phase};
+
+/// One phase's motion, sampled.
+#[derive(Clone, Debug)]
+pub struct Piece {
+    /// The phase.
+    pub phase: Phase,
+    /// tau, p, y, q, v.
+    pub points: Vec<[f64; 5]>,
+}
+
+/// Points of even the shortest phase.
+const FEWEST: usize = 12;
+
+impl Piece {
+    /// A phase from where it `begins` for as long as it `lasts`, both in tau, in about so many `points`.
+    #[must_use]
+    pub fn of(leg: &Leg, begins: f64, lasts: f64, points: f64) -> Self {
+        let count = points.ceil();
+        let count = if count.is_finite() { (count as usize).max(FEWEST) } else { FEWEST };
+        let point = |i: usize| {
+            let elapsed = lasts * (i as f64 / count as f64);
+            let at = leg.at(elapsed);
+            [begins + elapsed, at.state.p, at.state.y, at.state.q, at.v]
+        };
+        Self { phase: leg.phase(), points: (0..=count).map(point).collect() }
+    }
+}

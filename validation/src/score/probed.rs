@@ -1,0 +1,33 @@
+//! What was asked of an engine beyond the run of a case itself, and how it did.
+
+use super::attractor::Comparison;
+use super::horizon::Horizons;
+use super::restart::Restart;
+
+/// What the probes gave for one engine.
+#[derive(Clone, Debug, Default)]
+pub struct Probed {
+    /// The restart test.
+    pub restart: Option<Restart>,
+    /// Valid horizons.
+    pub horizons: Option<Horizons>,
+    /// The same-attractor test; without a comparison where the engine failed, with its reason.
+    pub attractor: Option<Result<Comparison, String>>,
+}
+
+impl Probed {
+    /// Whether there are restarts to speak of.
+    #[must_use]
+    pub fn restarted(&self) -> bool {
+        self.restart.as_ref().is_some_and(|it| it.with_impact > 0)
+    }
+
+    /// The largest distance of the section in units of its limit; NaN where there is none.
+    #[must_use]
+    pub fn share(&self) -> f64 {
+        match &self.attractor {
+            Some(Ok(comparison)) => comparison.share(),
+            _ => f64::NAN,
+        }
+    }
+}
