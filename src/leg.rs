@@ -167,6 +167,12 @@ impl Leg {
         self.duration.value()
     }
 
+    /// The same in two words.
+    #[must_use]
+    pub fn duration_two_word(&self) -> TwoWord {
+        self.duration
+    }
+
     /// The motion a time `elapsed` after the phase began, at most [`Self::duration`].
     #[must_use]
     pub fn at(&self, elapsed: f64) -> Sample {

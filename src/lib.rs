@@ -53,4 +53,4 @@ pub use parameters::{Parameter, Parameters};
 pub use phase::{Phase, UnknownPhase};
 pub use start::Start;
 pub use state::State;
-pub use trajectory::Trajectory;
+pub use trajectory::{Step, Trajectory};

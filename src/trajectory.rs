@@ -6,6 +6,7 @@ use crate::flow::forcing::EntryAngle;
 use crate::instant::Instant;
 use crate::leg::{Exit, Leg, Passed, pass};
 use crate::model::Model;
+use crate::two_word::TwoWord;
 
 /// An iterator over the phases of a run; memory does not grow with its length.
 ///
@@ -17,6 +18,20 @@ pub struct Trajectory {
     next: Option<(Entry, EntryAngle<f64>)>,
     horizon: Option<Instant>,
     counters: Counters,
+}
+
+/// One phase passed ([`Trajectory::step`]).
+#[derive(Clone, Debug)]
+pub enum Step {
+    /// It ends by a switch.
+    Switch {
+        /// How long it lasts.
+        duration: TwoWord,
+        /// How the next phase begins.
+        next: Entry,
+    },
+    /// It is the run's last: cut by the horizon, or endless.
+    Last(Box<Leg>),
 }
 
 impl Model {
@@ -43,17 +58,14 @@ impl Trajectory {
         self.counters
     }
 
-    /// Passes the next phase without keeping it: how it ends. What iterating gives as [`Leg::exit`], at
-    /// less cost.
-    pub fn pass(&mut self) -> Option<Exit> {
+    /// Passes the next phase; unlike iterating without keeping it, at less cost.
+    pub fn step(&mut self) -> Option<Step> {
         let (entry, angle) = self.next?;
-        Some(self.go_on(&entry, angle).exit)
-    }
-
-    /// Where the next phase begins; none at the end of the run.
-    #[must_use]
-    pub fn upcoming(&self) -> Option<&Entry> {
-        self.next.as_ref().map(|(entry, _)| entry)
+        let Passed { exit, duration, .. } = self.go_on(&entry, angle);
+        Some(match exit {
+            Exit::Switch(next) => Step::Switch { duration, next },
+            _ => Step::Last(Box::new(Leg::passed(&self.model, entry, angle, exit, duration))),
+        })
     }
 
     #[inline]

@@ -2,7 +2,8 @@
 
 use super::meter::{Failure, Limits};
 use super::{Accuracy, Declaration, Engine, Event, Location, Outcome, Stepping, Task, Work, pins};
-use percuss::{Entry, Exit, Leg, Sample};
+use percuss::two_word::TwoWord;
+use percuss::{Exit, Leg, Sample, Step, Trajectory};
 
 /// The closed forms, joined at proved first crossings.
 pub(super) struct Exact;
@@ -21,31 +22,24 @@ impl Engine for Exact {
     }
 
     fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let start = task.problem.entry;
-        let mut outcome = Outcome::default();
-        let mut run = task.problem.model.trajectory(start).until(task.horizon);
-        let event = |next: &Entry| {
-            let elapsed = next.instant.since(&start.instant, task.parameters.omega).value();
-            let state = [next.state.p, next.state.y, next.state.q, next.v()];
-            Event { phase: next.phase(), elapsed, state }
-        };
-        while let Some(begun) = run.upcoming().copied() {
-            let more = outcome.samples.len() < task.grid.count;
-            let exit = if more {
-                let Some(leg) = run.next() else { break };
-                sample(task, &leg, &mut outcome.samples);
-                *leg.exit()
-            } else {
-                let Some(exit) = run.pass() else { break };
-                exit
-            };
-            match exit {
-                Exit::Switch(next) => outcome.events.push(event(&next)),
-                Exit::Horizon | Exit::Endless(_) => {
-                    let last = task.problem.model.trajectory(begun).until(task.horizon).next();
-                    outcome.end = last.map_or(outcome.end, |leg| state(&leg.at_instant(&task.horizon)));
+        let mut outcome = Outcome { events: Vec::with_capacity(USUAL), ..Outcome::default() };
+        let mut run = task.problem.model.trajectory(task.problem.entry).until(task.horizon);
+        let mut elapsed = TwoWord::ZERO;
+        loop {
+            let (duration, next) = match phase(task, &mut run, &mut outcome.samples) {
+                Some(Step::Switch { duration, next }) => (duration, next),
+                Some(Step::Last(leg)) => {
+                    outcome.end = state(&leg.at_instant(&task.horizon));
+                    break;
                 }
-            }
+                None => break,
+            };
+            elapsed = elapsed.plus(duration);
+            outcome.events.push(Event {
+                phase: next.phase(),
+                elapsed: elapsed.value(),
+                state: [next.state.p, next.state.y, next.state.q, next.v()],
+            });
             if outcome.events.len() > limits.events {
                 return Err(Failure::new(format!("gave up after {} switches", limits.events)));
             }
@@ -58,6 +52,22 @@ impl Engine for Exact {
         };
         Ok(outcome)
     }
+}
+
+/// How many switches a run has room for at first.
+const USUAL: usize = 128;
+
+/// The run's next phase, sampled as long as samples are asked for.
+fn phase(task: &Task, run: &mut Trajectory, samples: &mut Vec<[f64; 4]>) -> Option<Step> {
+    if samples.len() == task.grid.count {
+        return run.step();
+    }
+    let leg = run.next()?;
+    sample(task, &leg, samples);
+    Some(match leg.exit() {
+        Exit::Switch(next) => Step::Switch { duration: leg.duration_two_word(), next: *next },
+        Exit::Horizon | Exit::Endless(_) => Step::Last(Box::new(leg)),
+    })
 }
 
 /// The grid's instants that lie in this phase.
