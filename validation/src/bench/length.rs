@@ -8,7 +8,7 @@ use crate::engine::Failure;
 use crate::number::brief;
 use percuss::dynamics::orbit::Orbit;
 use percuss::dynamics::strobe::StrobeMap;
-use percuss::{Entry, Model, Parameters, Start};
+use percuss::{Entry, Model, Parameters, Start, Step};
 
 /// Lengths in forcing periods, multiples of the orbit's five.
 const LENGTHS: [u64; 6] = [10, 100, 1_000, 10_000, 100_000, 1_000_000];
@@ -87,8 +87,12 @@ fn length(model: &Model, start: &Entry, periods: u64) -> Result<Length, Failure>
 /// Where a run of this many forcing periods ends.
 fn end(model: &Model, start: &Entry, periods: u64) -> Result<Entry, Failure> {
     let horizon = start.instant.after_periods(periods, 1);
-    let last = model.trajectory(*start).until(horizon).last();
-    Ok(last.ok_or_else(|| Failure::new("an empty run"))?.entry_at(&horizon))
+    let mut run = model.trajectory(*start).until(horizon);
+    let last = std::iter::from_fn(|| run.step()).find_map(|step| match step {
+        Step::Last(leg) => Some(leg),
+        Step::Switch { .. } => None,
+    });
+    Ok(last.ok_or_else(|| Failure::new("a run without end"))?.entry_at(&horizon))
 }
 
 fn distance(one: &[f64; 3], other: &[f64; 3]) -> f64 {

@@ -6,7 +6,7 @@
 use super::course::Course;
 use super::rounds::Racer;
 use crate::engine::Failure;
-use percuss::{Counters, Entry, Exit, Model};
+use percuss::{Counters, Entry, Model, Step};
 use std::hint::black_box;
 
 /// Work in units of which any number can be done.
@@ -50,8 +50,8 @@ impl Workload for Switches<'_> {
 fn switches(model: &Model, entry: Entry, most: u64) -> Counters {
     let mut run = model.trajectory(black_box(entry));
     while run.counters().switches < most {
-        match run.next() {
-            Some(leg) if matches!(leg.exit(), Exit::Switch(_)) => black_box(&leg),
+        match run.step() {
+            Some(Step::Switch { next, .. }) => black_box(&next),
             _ => break,
         };
     }
