@@ -109,6 +109,12 @@ fn parameters() -> impl Strategy<Value = Parameters> {
         .prop_map(|(omega, xi, a, b, g, phi)| Parameters { a, b, xi, omega, g, phi })
 }
 
+/// Where the forced oscillation is a divided difference, down to no more than a hundred-thousandth of damping.
+fn near_resonance() -> impl Strategy<Value = Parameters> {
+    (parameters(), 0.75..1.2_f64, (1e-5_f64.ln()..0.2_f64.ln()).prop_map(f64::exp))
+        .prop_map(|(others, omega, xi)| Parameters { omega, xi, ..others })
+}
+
 fn starts() -> impl Strategy<Value = Vec<(f64, f64)>> {
     prop::collection::vec((-1.0..0.5_f64, -1.0..1.0_f64), 11)
 }
@@ -123,6 +129,19 @@ proptest! {
     #[test]
     fn phases_and_strobes_are_those_of_the_scalar_solver(
         parameters in parameters(), starts in starts(),
+    ) {
+        let motions = motions(parameters, &starts);
+        for set in sets() {
+            for ((model, _), diary) in motions.iter().zip(diaries(set, &motions, 6).0) {
+                prop_assert_eq!(diary.strobes.len(), 6);
+                largest_error(model, &diary)?;
+            }
+        }
+    }
+
+    #[test]
+    fn resonant_contacts_are_those_of_the_scalar_solver(
+        parameters in near_resonance(), starts in starts(),
     ) {
         let motions = motions(parameters, &starts);
         for set in sets() {
@@ -162,7 +181,20 @@ fn on_attractor(omega: f64, xi: f64, count: u64) -> Vec<(Model, Entry)> {
     strobes.map(|strobe| (model, strobe)).collect()
 }
 
-const ATTRACTORS: [(f64, f64); 5] = [(1.4, 0.01), (0.1, 0.01), (1.6, 0.1), (1.58, 0.1), (1.4, 0.3)];
+const ATTRACTORS: [(f64, f64); 12] = [
+    (1.4, 0.01),
+    (0.1, 0.01),
+    (1.6, 0.1),
+    (1.58, 0.1),
+    (1.4, 0.3),
+    (1.2, 0.01),
+    (1.2, 0.1),
+    (0.9, 0.1),
+    (1.4, 0.8),
+    (1.4, 1.0),
+    (0.9, 1.0),
+    (1.4, 1.2),
+];
 
 /// What is left to the scalar solver on attractors: the starts away from the slider, and a share of the phases.
 #[test]

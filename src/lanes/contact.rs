@@ -1,11 +1,12 @@
-//! Contacts ([`crate::flow::contact`]), below 0.7 of critical damping and away from resonance: guess,
-//! evaluation, certificate, landing.
+//! Contacts ([`crate::flow::contact`]), up to critical damping and near it: guess, evaluation, certificate, landing.
 //!
 //! The certificate is the scalar solver's ([`crate::crossing::certificate`]), in pieces of fixed length, which are
 //! shorter where great care is taken.
 
 use super::certificate::Piece;
-use super::functions::{Turn, shrink, turn_of};
+use super::complex::Complex;
+use super::damped::Free;
+use super::forced::Response;
 use super::guess::meeting;
 use super::harmonic::{Angle, Harmonic, shifted};
 use super::root::{Care, Found, Phase, SHORT, find};
@@ -84,7 +85,7 @@ impl<S: Simd> Phase<S> for Leaving<'_, '_, S> {
 
     #[inline(always)]
     fn is_short(&self, _: Wide<S>, step: Wide<S>) -> Mask<S> {
-        (step.abs() * self.contact.shape.pace).below(SHORT)
+        (step.abs() * self.contact.shape.quickest).below(SHORT)
     }
 }
 
@@ -92,37 +93,14 @@ impl<S: Simd> Contact<'_, S> {
     /// The motion after `d`.
     #[inline(always)]
     fn at(&self, d: Wide<S>) -> Pressed<S> {
-        let Shape { a, b, xi, two_xi, omega, nu, nu_low, per_nu, response, response_im, .. } =
-            *self.shape;
+        let Shape { a, b, two_xi, .. } = *self.shape;
         let Harmonic { force, turn, .. } = self.angle.after(self.shape, d);
-        let free = turn_of(nu, Some(nu_low), d);
-        let decay = shrink(xi * d);
-        let s = decay.exp * free.sin * per_nu;
-        let s_minus_d = decay.minus_1.times_plus(free.sin, free.sin_minus_x) * per_nu;
-        let turned = decay.exp * free.cos_minus_1;
-        let weak = (xi * d).below(0.5);
-        let c_minus_1 = weak.choose(
-            xi.times_plus(s_minus_d, decay.remainder + turned),
-            xi.times_plus(s, decay.minus_1 + turned),
-        );
-        let s_rate_minus_1 = two_xi.times_from(s, c_minus_1);
-
-        let Turn { sin, cos_minus_1, sin_minus_x } = turn;
-        let short = d.below(1.0);
-        let sines =
-            short.choose(omega.times_from(s_minus_d, sin_minus_x), omega.times_from(s, sin));
-        let rate_re = omega.times_from(sin, s);
-        let rate_im = omega * (cos_minus_1 - s_rate_minus_1);
-        let force_re = (two_xi * omega).times_from(sin, cos_minus_1 - s_rate_minus_1);
-        let force_im = two_xi.times_plus(rate_im, sines);
-        let product = |re: Wide<S>, im: Wide<S>| {
-            (im.times_from(response_im, re * response), im.times_plus(response, re * response_im))
-        };
-        let steady =
-            |(re, im): (Wide<S>, Wide<S>)| a * self.angle.sin.times_from(im, self.angle.cos * re);
-        let driving = product(force_re, force_im);
-        let driven = steady(driving);
-        let y_driven = steady(product(rate_re, rate_im));
+        let free = Free::after(self.shape, d);
+        let Free { s, c_minus_1, s_rate_minus_1, .. } = free;
+        let response = Response::after(self.shape, d, &turn, &free);
+        let steady = |it: Complex<S>| a * self.angle.sin.times_from(it.im, self.angle.cos * it.re);
+        let (driven, y_driven) = (steady(response.force), steady(response.rate));
+        let driven_bound = a * (response.force.re.abs() + response.force.im.abs());
 
         let level = self.offset + (self.reference - b);
         let relaxing = level * s_rate_minus_1;
@@ -135,8 +113,7 @@ impl<S: Simd> Contact<'_, S> {
         let carried = self.y.abs() * d.smaller(one)
             + level.abs() * (d * d).smaller(one)
             + (pulls + pulls) * (two_xi * d).smaller(one);
-        let terms =
-            self.offset.abs() + relaxing.abs() + carried + a * (driving.0.abs() + driving.1.abs());
+        let terms = self.offset.abs() + relaxing.abs() + carried + driven_bound;
         let q = two_xi.times_from(y, excess + self.reference);
         Pressed { f: self.orders(force, excess, y), force, y, q, terms }
     }

@@ -11,9 +11,12 @@
 
 mod batch;
 mod certificate;
+mod complex;
 mod contact;
 mod crest;
+mod damped;
 mod flight;
+mod forced;
 mod functions;
 mod guess;
 mod harmonic;

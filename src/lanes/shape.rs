@@ -79,16 +79,40 @@ shape! {
     look_cos,
     /// exp(-rate look), zero if there is little left.
     look_decay,
-    /// Damped frequency.
+    /// Damped frequency; this and the next two are zero at and above critical damping.
     nu,
     /// What rounding took from it.
     nu_low,
     /// 1/nu
     per_nu,
-    /// 1/(1 - omega^2 + 2 i xi omega), real part.
+    /// One near critical damping, zero elsewhere,
+    near_critical,
+    /// and there 1 - xi^2; zero elsewhere.
+    discriminant,
+    /// The difference of the two rates above critical damping, zero elsewhere,
+    spread,
+    /// and the smaller one.
+    lasting,
+    /// The fastest rate of a contact.
+    quickest,
+    /// 1/(1 - omega^2 + 2 i xi omega), real part; zero near resonance.
     response,
     /// And imaginary part.
     response_im,
+    /// 1/(2 nu) near resonance, zero elsewhere: which of the two forms serves.
+    half_over_nu,
+    /// omega - nu
+    delta,
+    /// 1/(xi + i delta), real part.
+    slow,
+    /// And imaginary part.
+    slow_im,
+    /// The time after which forced and free oscillation are out of step.
+    in_step,
+    /// 1/(xi + i (omega + nu)), real part.
+    quick,
+    /// And imaginary part.
+    quick_im,
     /// What the steady trial force takes of F - b.
     steady,
     /// And of F'.
@@ -134,19 +158,20 @@ const PIECE: f64 = 2.0;
 const SHORT_LIVED: f64 = 0.05;
 
 impl Shape<f64> {
-    /// Of a model; none where lanes do not know the closed form: above 0.7 of critical damping, near
-    /// resonance, without forcing or where the force never changes sign to positive, and where powers of
+    /// Of a model; none where lanes do not know the closed form: clearly above critical damping,
+    /// without forcing or where the force never changes sign to positive, and where powers of
     /// the parameters come near the ends of the f64 range.
     pub fn new(model: &Model) -> Option<Self> {
         let Constants { a, b, g, xi, omega, omega2, two_xi, rate, .. } = *model.constants();
         let Constants { damping, forced, steady, forced_eighth, .. } = *model.constants();
-        let Damping::Under { nu, nu_low, .. } = damping else { return None };
-        let Forced::Plain { inverse, .. } = forced else { return None };
         let moderate = |x: f64, low: f64, high: f64| x >= low && x <= high;
+        if matches!(damping, Damping::Over { .. }) {
+            return None;
+        }
         let suits = moderate(a, 1e-6, 1e6)
             && moderate(b, -a, 1e6)
             && moderate(g, 0.0, 1e6)
-            && moderate(xi, 1e-6, 1.0)
+            && moderate(xi, 1e-6, 1e2)
             && moderate(omega, 1e-3, 1e3);
         if !suits {
             return None;
@@ -191,11 +216,6 @@ impl Shape<f64> {
             look_sin,
             look_cos,
             look_decay: if look_decay < SHORT_LIVED { 0.0 } else { look_decay },
-            nu,
-            nu_low,
-            per_nu: 1.0 / nu,
-            response: inverse.re,
-            response_im: inverse.im,
             steady: steady.orders([1.0, 0.0, 0.0])[0],
             steady_rate: steady.orders([0.0, 1.0, 0.0])[0],
             forced_eighth,
@@ -211,7 +231,44 @@ impl Shape<f64> {
             piece_c: 1.0 + held.c_minus_1,
             piece_s: held.s,
             piece_s_rate: 1.0 + held.s_rate_minus_1,
+            ..Self::oscillating(&damping, &forced, pace)
         })
+    }
+
+    /// What the free and the forced oscillation need.
+    fn oscillating(damping: &Damping<f64>, forced: &Forced<f64>, pace: f64) -> Self {
+        let free = Self { quickest: pace, ..Self::default() };
+        let free = match *damping {
+            Damping::Under { nu, nu_low, .. } => Self { nu, nu_low, per_nu: 1.0 / nu, ..free },
+            Damping::NearCritical { xi, discriminant } => {
+                let root = discriminant.abs().sqrt();
+                let near =
+                    Self { near_critical: 1.0, discriminant, quickest: pace.max(2.0 * xi), ..free };
+                if discriminant > 0.0 {
+                    Self { nu: root, per_nu: 1.0 / root, ..near }
+                } else {
+                    Self { spread: root + root, lasting: 1.0 / (xi + root), ..near }
+                }
+            }
+            Damping::Over { fast, slow, spread } => {
+                Self { spread, lasting: slow, quickest: pace.max(fast), ..free }
+            }
+        };
+        match *forced {
+            Forced::Plain { inverse, .. } => {
+                Self { response: inverse.re, response_im: inverse.im, ..free }
+            }
+            Forced::Resonant { half_over_nu, delta, slow, in_step, quick, .. } => Self {
+                half_over_nu,
+                delta,
+                slow: slow.re,
+                slow_im: slow.im,
+                in_step,
+                quick: quick.re,
+                quick_im: quick.im,
+                ..free
+            },
+        }
     }
 }
 
