@@ -100,7 +100,7 @@ fn parameters() -> impl Strategy<Value = Parameters> {
     let logarithmic = |low: f64, high: f64| (low.ln()..high.ln()).prop_map(f64::exp);
     (
         logarithmic(0.05, 20.0),
-        logarithmic(1e-3, 2.0),
+        logarithmic(1e-3, 50.0),
         0.02..1.0_f64,
         0.0..0.5_f64,
         0.0..0.1_f64,
@@ -181,7 +181,7 @@ fn on_attractor(omega: f64, xi: f64, count: u64) -> Vec<(Model, Entry)> {
     strobes.map(|strobe| (model, strobe)).collect()
 }
 
-const ATTRACTORS: [(f64, f64); 12] = [
+const ATTRACTORS: [(f64, f64); 16] = [
     (1.4, 0.01),
     (0.1, 0.01),
     (1.6, 0.1),
@@ -194,6 +194,10 @@ const ATTRACTORS: [(f64, f64); 12] = [
     (1.4, 1.0),
     (0.9, 1.0),
     (1.4, 1.2),
+    (1.4, 1.5),
+    (0.7, 1.5),
+    (1.4, 5.0),
+    (0.4, 20.0),
 ];
 
 /// What is left to the scalar solver on attractors: the starts away from the slider, and a share of the phases.
@@ -245,8 +249,9 @@ fn beside_changes(parameters: Parameters, y: f64) -> Option<[(Model, Entry); 2]>
 proptest! {
     #[test]
     fn near_grazes_are_decided_as_the_scalar_solver_does(
-        (omega, xi) in (0.5..3.0_f64, 0.01..0.5_f64), y in -0.5..0.5_f64,
+        (omega, decade) in (0.5..3.0_f64, -2.0..1.0_f64), y in -0.5..0.5_f64,
     ) {
+        let xi = 10.0_f64.powf(decade);
         let parameters = Parameters { omega, xi, ..Parameters::default() };
         let Some(motions) = beside_changes(parameters, y) else { return Ok(()) };
         for set in sets() {

@@ -1,6 +1,7 @@
 //! Free oscillation in contact ([`crate::flow::damped`]): a rotation, a series near critical damping, two
 //! exponentials above.
 
+use super::contact_shape::Forms;
 use super::functions::{Shrink, Turn, cosines, shrink, turn_of};
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
@@ -31,7 +32,10 @@ const SERIES: f64 = 0.5;
 impl<S: Simd> Free<S> {
     /// After `d`.
     #[inline(always)]
-    pub fn after(shape: &Shape<Wide<S>>, d: Wide<S>) -> Self {
+    pub fn after(shape: &Shape<Wide<S>>, forms: Forms, d: Wide<S>) -> Self {
+        if forms == Forms::Usual {
+            return Self::rotation(shape, d);
+        }
         let m = shape.discriminant * d * d;
         let series = shape.near_critical.above(0.0) & m.abs().below(SERIES);
         let over = shape.spread.above(0.0) & !series;

@@ -2,6 +2,7 @@
 //! difference.
 
 use super::complex::Complex;
+use super::contact_shape::Forms;
 use super::damped::Free;
 use super::functions::{Turn, short_turn};
 use super::shape::Shape;
@@ -15,14 +16,22 @@ pub struct Response<S: Simd> {
     pub rate: Complex<S>,
     /// Trial force.
     pub force: Complex<S>,
+    /// Displacement.
+    pub displacement: Complex<S>,
 }
 
 impl<S: Simd> Response<S> {
     /// After `d`; `turn` belongs to `omega d`, `free` to `d`.
     #[inline(always)]
-    pub fn after(shape: &Shape<Wide<S>>, d: Wide<S>, turn: &Turn<S>, free: &Free<S>) -> Self {
+    pub fn after(
+        shape: &Shape<Wide<S>>,
+        forms: Forms,
+        d: Wide<S>,
+        turn: &Turn<S>,
+        free: &Free<S>,
+    ) -> Self {
         let resonant = shape.half_over_nu.above(0.0);
-        if !resonant.any() {
+        if forms == Forms::Usual || !resonant.any() {
             return Self::plain(shape, d, turn, free);
         }
         let near = Self::resonant(shape, d, turn, free);
@@ -33,6 +42,7 @@ impl<S: Simd> Response<S> {
         Self {
             rate: Complex::choose(resonant, near.rate, far.rate),
             force: Complex::choose(resonant, near.force, far.force),
+            displacement: Complex::choose(resonant, near.displacement, far.displacement),
         }
     }
 
@@ -40,7 +50,7 @@ impl<S: Simd> Response<S> {
     fn plain(shape: &Shape<Wide<S>>, d: Wide<S>, turn: &Turn<S>, free: &Free<S>) -> Self {
         let Shape { two_xi, omega, response, response_im, .. } = *shape;
         let Turn { sin, cos_minus_1, sin_minus_x } = *turn;
-        let Free { s, s_minus_d, s_rate_minus_1, .. } = *free;
+        let Free { s, s_minus_d, c_minus_1, s_rate_minus_1, .. } = *free;
         let short = d.below(1.0);
         let sines =
             short.choose(omega.times_from(s_minus_d, sin_minus_x), omega.times_from(s, sin));
@@ -50,7 +60,8 @@ impl<S: Simd> Response<S> {
             two_xi.times_plus(rate.im, sines),
         );
         let inverse = Complex::new(response, response_im);
-        Self { rate: rate * inverse, force: force * inverse }
+        let displacement = Complex::new(cos_minus_1 - c_minus_1, sines) * inverse;
+        Self { rate: rate * inverse, force: force * inverse, displacement }
     }
 
     #[inline(always)]
@@ -65,7 +76,7 @@ impl<S: Simd> Response<S> {
             two_xi.times_plus(rate.re, displacement.re),
             two_xi.times_plus(rate.im, displacement.im),
         );
-        Self { rate, force }
+        Self { rate, force, displacement }
     }
 }
 
