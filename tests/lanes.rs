@@ -221,19 +221,20 @@ fn lanes_take_nearly_all_of_an_attractor() {
     }
 }
 
-/// Where a motion's first so many phases change with its start: a graze, a tie or a touch lies between.
-fn beside_changes(parameters: Parameters, y: f64) -> Option<[(Model, Entry); 2]> {
+/// Where a motion's first so many phases change with a number of its start: a graze, a tie or a touch lies between.
+fn beside_changes(
+    parameters: Parameters,
+    number: f64,
+    start: impl Fn(f64) -> Start,
+) -> Option<[(Model, Entry); 2]> {
     let model = Model::new(parameters).expect("in range");
-    let entry = |y: f64| {
-        let start = Start { p: -0.3, y, q: Some(0.0), ..Start::default() };
-        model.start(&start).expect("a start")
-    };
-    let word = |y: f64| -> Vec<_> {
-        let start = entry(y);
+    let entry = |number: f64| model.start(&start(number)).expect("a start");
+    let word = |number: f64| -> Vec<_> {
+        let start = entry(number);
         let legs = model.trajectory(start).until(start.instant.after_periods(8, 1));
         legs.map(|leg| leg.phase()).take(6).collect()
     };
-    let (mut low, mut high) = (y, y + 0.2);
+    let (mut low, mut high) = (number, number + 0.2);
     let first = word(low);
     if first == word(high) {
         return None;
@@ -253,7 +254,28 @@ proptest! {
     ) {
         let xi = 10.0_f64.powf(decade);
         let parameters = Parameters { omega, xi, ..Parameters::default() };
-        let Some(motions) = beside_changes(parameters, y) else { return Ok(()) };
+        let start = |y| Start { p: -0.3, y, q: Some(0.0), ..Start::default() };
+        let Some(motions) = beside_changes(parameters, y, start) else { return Ok(()) };
+        for set in sets() {
+            for ((model, _), diary) in motions.iter().zip(diaries(set, &motions, 8).0) {
+                largest_error(model, &diary)?;
+            }
+        }
+    }
+}
+
+proptest! {
+    /// Contacts in which the quick exponential takes the force to a threshold and the slow one takes it back.
+    #[test]
+    fn dips_of_over_damped_contacts_are_decided_as_the_scalar_solver_does(
+        (omega, decade) in (0.3..3.0_f64, 0.1..1.3_f64),
+        (f, y, tau) in (0.02..0.9_f64, -1.0..0.0_f64, 0.0..2.0_f64),
+    ) {
+        let xi = 10.0_f64.powf(decade);
+        let parameters = Parameters { omega, xi, ..Parameters::default() };
+        let p = parameters.g + (f - 2.0 * xi * y);
+        let start = |tau: f64| Start { tau: 5.0 * tau, p, y, ..Start::default() };
+        let Some(motions) = beside_changes(parameters, tau, start) else { return Ok(()) };
         for set in sets() {
             for ((model, _), diary) in motions.iter().zip(diaries(set, &motions, 8).0) {
                 largest_error(model, &diary)?;
