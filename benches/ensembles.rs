@@ -16,8 +16,10 @@ use std::ops::ControlFlow;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// omega, xi: chaos with progression, period two, the attractors of Fig. 7.
-const REGIMES: [(f64, f64); 4] = [(1.4, 0.01), (0.1, 0.01), (1.6, 0.1), (1.4, 0.1)];
+/// omega, xi: chaos with progression, period two, the attractors of Fig. 7; near resonance, critically damped,
+/// over-damped.
+const REGIMES: [(f64, f64); 7] =
+    [(1.4, 0.01), (0.1, 0.01), (1.6, 0.1), (1.4, 0.1), (1.2, 0.01), (1.4, 1.0), (1.4, 5.0)];
 const STARTS: usize = 256;
 const PERIODS: u32 = 100;
 const ROUNDS: usize = 9;

@@ -100,13 +100,19 @@ fn parameters() -> impl Strategy<Value = Parameters> {
     let logarithmic = |low: f64, high: f64| (low.ln()..high.ln()).prop_map(f64::exp);
     (
         logarithmic(0.05, 20.0),
-        logarithmic(1e-3, 2.0),
+        logarithmic(1e-3, 50.0),
         0.02..1.0_f64,
         0.0..0.5_f64,
         0.0..0.1_f64,
         -7.0..7.0_f64,
     )
         .prop_map(|(omega, xi, a, b, g, phi)| Parameters { a, b, xi, omega, g, phi })
+}
+
+/// Where the forced oscillation is a divided difference, down to no more than a hundred-thousandth of damping.
+fn near_resonance() -> impl Strategy<Value = Parameters> {
+    (parameters(), 0.75..1.2_f64, (1e-5_f64.ln()..0.2_f64.ln()).prop_map(f64::exp))
+        .prop_map(|(others, omega, xi)| Parameters { omega, xi, ..others })
 }
 
 fn starts() -> impl Strategy<Value = Vec<(f64, f64)>> {
@@ -123,6 +129,19 @@ proptest! {
     #[test]
     fn phases_and_strobes_are_those_of_the_scalar_solver(
         parameters in parameters(), starts in starts(),
+    ) {
+        let motions = motions(parameters, &starts);
+        for set in sets() {
+            for ((model, _), diary) in motions.iter().zip(diaries(set, &motions, 6).0) {
+                prop_assert_eq!(diary.strobes.len(), 6);
+                largest_error(model, &diary)?;
+            }
+        }
+    }
+
+    #[test]
+    fn resonant_contacts_are_those_of_the_scalar_solver(
+        parameters in near_resonance(), starts in starts(),
     ) {
         let motions = motions(parameters, &starts);
         for set in sets() {
@@ -162,7 +181,24 @@ fn on_attractor(omega: f64, xi: f64, count: u64) -> Vec<(Model, Entry)> {
     strobes.map(|strobe| (model, strobe)).collect()
 }
 
-const ATTRACTORS: [(f64, f64); 5] = [(1.4, 0.01), (0.1, 0.01), (1.6, 0.1), (1.58, 0.1), (1.4, 0.3)];
+const ATTRACTORS: [(f64, f64); 16] = [
+    (1.4, 0.01),
+    (0.1, 0.01),
+    (1.6, 0.1),
+    (1.58, 0.1),
+    (1.4, 0.3),
+    (1.2, 0.01),
+    (1.2, 0.1),
+    (0.9, 0.1),
+    (1.4, 0.8),
+    (1.4, 1.0),
+    (0.9, 1.0),
+    (1.4, 1.2),
+    (1.4, 1.5),
+    (0.7, 1.5),
+    (1.4, 5.0),
+    (0.4, 20.0),
+];
 
 /// What is left to the scalar solver on attractors: the starts away from the slider, and a share of the phases.
 #[test]
@@ -185,19 +221,20 @@ fn lanes_take_nearly_all_of_an_attractor() {
     }
 }
 
-/// Where a motion's first so many phases change with its start: a graze, a tie or a touch lies between.
-fn beside_changes(parameters: Parameters, y: f64) -> Option<[(Model, Entry); 2]> {
+/// Where a motion's first so many phases change with a number of its start: a graze, a tie or a touch lies between.
+fn beside_changes(
+    parameters: Parameters,
+    number: f64,
+    start: impl Fn(f64) -> Start,
+) -> Option<[(Model, Entry); 2]> {
     let model = Model::new(parameters).expect("in range");
-    let entry = |y: f64| {
-        let start = Start { p: -0.3, y, q: Some(0.0), ..Start::default() };
-        model.start(&start).expect("a start")
-    };
-    let word = |y: f64| -> Vec<_> {
-        let start = entry(y);
+    let entry = |number: f64| model.start(&start(number)).expect("a start");
+    let word = |number: f64| -> Vec<_> {
+        let start = entry(number);
         let legs = model.trajectory(start).until(start.instant.after_periods(8, 1));
         legs.map(|leg| leg.phase()).take(6).collect()
     };
-    let (mut low, mut high) = (y, y + 0.2);
+    let (mut low, mut high) = (number, number + 0.2);
     let first = word(low);
     if first == word(high) {
         return None;
@@ -213,10 +250,32 @@ fn beside_changes(parameters: Parameters, y: f64) -> Option<[(Model, Entry); 2]>
 proptest! {
     #[test]
     fn near_grazes_are_decided_as_the_scalar_solver_does(
-        (omega, xi) in (0.5..3.0_f64, 0.01..0.5_f64), y in -0.5..0.5_f64,
+        (omega, decade) in (0.5..3.0_f64, -2.0..1.0_f64), y in -0.5..0.5_f64,
     ) {
+        let xi = 10.0_f64.powf(decade);
         let parameters = Parameters { omega, xi, ..Parameters::default() };
-        let Some(motions) = beside_changes(parameters, y) else { return Ok(()) };
+        let start = |y| Start { p: -0.3, y, q: Some(0.0), ..Start::default() };
+        let Some(motions) = beside_changes(parameters, y, start) else { return Ok(()) };
+        for set in sets() {
+            for ((model, _), diary) in motions.iter().zip(diaries(set, &motions, 8).0) {
+                largest_error(model, &diary)?;
+            }
+        }
+    }
+}
+
+proptest! {
+    /// Contacts in which the quick exponential takes the force to a threshold and the slow one takes it back.
+    #[test]
+    fn dips_of_over_damped_contacts_are_decided_as_the_scalar_solver_does(
+        (omega, decade) in (0.3..3.0_f64, 0.1..1.3_f64),
+        (f, y, tau) in (0.02..0.9_f64, -1.0..0.0_f64, 0.0..2.0_f64),
+    ) {
+        let xi = 10.0_f64.powf(decade);
+        let parameters = Parameters { omega, xi, ..Parameters::default() };
+        let p = parameters.g + (f - 2.0 * xi * y);
+        let start = |tau: f64| Start { tau: 5.0 * tau, p, y, ..Start::default() };
+        let Some(motions) = beside_changes(parameters, tau, start) else { return Ok(()) };
         for set in sets() {
             for ((model, _), diary) in motions.iter().zip(diaries(set, &motions, 8).0) {
                 largest_error(model, &diary)?;

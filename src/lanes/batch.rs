@@ -112,8 +112,9 @@ pub struct End {
     pub terms: Column,
 }
 
-/// Constants, beginnings and ends of all lanes.
+/// Constants, beginnings and ends of all lanes; a column is as long as a line of the cache and fills one.
 #[derive(Clone, Copy, Debug, Default)]
+#[repr(align(64))]
 pub struct Batch {
     /// Constants.
     pub shape: Shape<Column>,

@@ -1,16 +1,13 @@
-//! Contacts ([`crate::flow::contact`]), below 0.7 of critical damping and away from resonance: guess,
-//! evaluation, certificate, landing.
-//!
-//! The certificate is the scalar solver's ([`crate::crossing::certificate`]), in pieces of fixed length, which are
-//! shorter where great care is taken.
+//! Contacts ([`crate::flow::contact`]): evaluation and landing; guess and certificate are in [`super::contact_ahead`].
 
-use super::certificate::Piece;
-use super::functions::{Turn, shrink, turn_of};
-use super::guess::meeting;
-use super::harmonic::{Angle, Harmonic, shifted};
+use super::complex::Complex;
+use super::contact_shape::Forms;
+use super::damped::Free;
+use super::forced::Response;
+use super::harmonic::{Angle, Harmonic, shifted, short_decay};
 use super::root::{Care, Found, Phase, SHORT, find};
 use super::shape::Shape;
-use super::swing::{Parts, of_guess, of_piece};
+use super::swing::{Parts, each};
 use super::wide::{Mask, Wide};
 use pulp::Simd;
 
@@ -18,10 +15,14 @@ use pulp::Simd;
 pub struct Contact<'a, S: Simd> {
     /// The model.
     pub shape: &'a Shape<Wide<S>>,
+    /// Which closed forms it has.
+    pub forms: Forms,
     /// Forcing angle at the start.
     pub angle: Angle<S>,
     /// Velocity of the mass then.
     pub y: Wide<S>,
+    /// Displacement of the slider's top then.
+    pub q: Wide<S>,
     /// The guard then.
     pub offset: Wide<S>,
     /// The threshold, 0 or 1, from which it counts.
@@ -37,6 +38,8 @@ pub struct Pressed<S: Simd> {
     force: [Wide<S>; 3],
     y: Wide<S>,
     q: Wide<S>,
+    /// exp(-fast d) above critical damping.
+    quick: Wide<S>,
     /// The largest terms of the guard.
     terms: Wide<S>,
 }
@@ -59,15 +62,6 @@ struct Leaving<'a, 'b, S: Simd> {
     threshold: Wide<S>,
 }
 
-/// Pieces of a certificate, after which a lane is left to the scalar solver,
-const PIECES: usize = 8;
-/// the same with great care,
-const FINE_PIECES: usize = 16;
-/// and how much longer than a stride the last one may be.
-const REST: f64 = 1.3;
-/// Strides of a guess, after which a lane is left to the scalar solver.
-const STRIDES: usize = 24;
-
 impl<S: Simd> Phase<S> for Leaving<'_, '_, S> {
     type At = Pressed<S>;
 
@@ -84,7 +78,7 @@ impl<S: Simd> Phase<S> for Leaving<'_, '_, S> {
 
     #[inline(always)]
     fn is_short(&self, _: Wide<S>, step: Wide<S>) -> Mask<S> {
-        (step.abs() * self.contact.shape.pace).below(SHORT)
+        (step.abs() * self.contact.shape.quickest).below(SHORT)
     }
 }
 
@@ -92,41 +86,20 @@ impl<S: Simd> Contact<'_, S> {
     /// The motion after `d`.
     #[inline(always)]
     fn at(&self, d: Wide<S>) -> Pressed<S> {
-        let Shape { a, b, xi, two_xi, omega, nu, nu_low, per_nu, response, response_im, .. } =
-            *self.shape;
+        let Shape { a, b, two_xi, .. } = *self.shape;
         let Harmonic { force, turn, .. } = self.angle.after(self.shape, d);
-        let free = turn_of(nu, Some(nu_low), d);
-        let decay = shrink(xi * d);
-        let s = decay.exp * free.sin * per_nu;
-        let s_minus_d = decay.minus_1.times_plus(free.sin, free.sin_minus_x) * per_nu;
-        let turned = decay.exp * free.cos_minus_1;
-        let weak = (xi * d).below(0.5);
-        let c_minus_1 = weak.choose(
-            xi.times_plus(s_minus_d, decay.remainder + turned),
-            xi.times_plus(s, decay.minus_1 + turned),
-        );
-        let s_rate_minus_1 = two_xi.times_from(s, c_minus_1);
-
-        let Turn { sin, cos_minus_1, sin_minus_x } = turn;
-        let short = d.below(1.0);
-        let sines =
-            short.choose(omega.times_from(s_minus_d, sin_minus_x), omega.times_from(s, sin));
-        let rate_re = omega.times_from(sin, s);
-        let rate_im = omega * (cos_minus_1 - s_rate_minus_1);
-        let force_re = (two_xi * omega).times_from(sin, cos_minus_1 - s_rate_minus_1);
-        let force_im = two_xi.times_plus(rate_im, sines);
-        let product = |re: Wide<S>, im: Wide<S>| {
-            (im.times_from(response_im, re * response), im.times_plus(response, re * response_im))
-        };
-        let steady =
-            |(re, im): (Wide<S>, Wide<S>)| a * self.angle.sin.times_from(im, self.angle.cos * re);
-        let driving = product(force_re, force_im);
-        let driven = steady(driving);
-        let y_driven = steady(product(rate_re, rate_im));
+        let free = Free::after(self.shape, self.forms, d);
+        let Free { s, c_minus_1, s_rate_minus_1, .. } = free;
+        let response = Response::after(self.shape, self.forms, d, &turn, &free);
+        let steady = |it: Complex<S>| a * self.angle.sin.times_from(it.im, self.angle.cos * it.re);
+        let (driven, y_driven) = (steady(response.force), steady(response.rate));
+        let q_driven = steady(response.displacement);
+        let driven_bound = a * (response.force.re.abs() + response.force.im.abs());
 
         let level = self.offset + (self.reference - b);
         let relaxing = level * s_rate_minus_1;
         let f_change = self.y.times_plus(s, relaxing) + driven;
+        let q_change = (self.q - b).times_plus(c_minus_1, self.y * s) + q_driven;
         let y_change = level.times_from(s, self.y * c_minus_1) + y_driven;
         let excess = self.offset + f_change;
         let y = self.y + y_change;
@@ -135,10 +108,9 @@ impl<S: Simd> Contact<'_, S> {
         let carried = self.y.abs() * d.smaller(one)
             + level.abs() * (d * d).smaller(one)
             + (pulls + pulls) * (two_xi * d).smaller(one);
-        let terms =
-            self.offset.abs() + relaxing.abs() + carried + a * (driving.0.abs() + driving.1.abs());
-        let q = two_xi.times_from(y, excess + self.reference);
-        Pressed { f: self.orders(force, excess, y), force, y, q, terms }
+        let terms = self.offset.abs() + relaxing.abs() + carried + driven_bound;
+        let f = self.one_by_one(d, self.orders(force, excess, y), force, free.quick);
+        Pressed { f, force, y, q: self.q + q_change, quick: free.quick, terms }
     }
 
     /// The guard and its derivatives; `force` is F - b, F', F''.
@@ -153,10 +125,41 @@ impl<S: Simd> Contact<'_, S> {
         [excess, rate, bend, two_xi.times_plus(pull_bend, pull_rate)]
     }
 
+    /// The same at the start.
+    #[inline(always)]
+    fn first(&self) -> [Wide<S>; 4] {
+        self.orders(self.angle.force(self.shape), self.offset, self.y)
+    }
+
+    /// Clearly above critical damping, once the quick exponential has begun to die out, the equations of
+    /// motion would multiply the rounding of f by 2 xi with each derivative, although what is left of f moves
+    /// slowly. There its parts are differentiated one by one.
+    #[inline(always)]
+    fn one_by_one(
+        &self,
+        elapsed: Wide<S>,
+        orders: [Wide<S>; 4],
+        [u, v, w]: [Wide<S>; 3],
+        quick: Wide<S>,
+    ) -> [Wide<S>; 4] {
+        let Shape { b, omega, fast, steady, steady_rate, .. } = *self.shape;
+        let dying = (fast * elapsed).above(1.0);
+        if self.forms == Forms::Usual || !dying.any() {
+            return orders;
+        }
+        let quickly = self.parts(self.first()).free[1] * quick;
+        let forced = steady_rate.times_plus(v, steady * u);
+        let quarter = steady_rate.times_plus(w, steady * v) / omega;
+        let slowly = ((orders[0] - (b - self.reference)) - forced) - quickly;
+        let parts = Parts { free: [slowly, quickly], forced, quarter, forms: self.forms };
+        let [_, rate, bend, third] = parts.orders(self.shape, self.reference);
+        each(dying, [orders[0], rate, bend, third], orders)
+    }
+
     /// The switches that end the contacts.
     #[inline(always)]
     pub fn release(&self, care: Care) -> Release<S> {
-        let first = self.orders(self.angle.force(self.shape), self.offset, self.y);
+        let first = self.first();
         let (guess, threshold, guessed) = self.first_exit(first);
         let Found { at, elapsed, step, fine } =
             find(&Leaving { contact: self, threshold }, guess, guessed);
@@ -169,7 +172,8 @@ impl<S: Simd> Contact<'_, S> {
         let bent = step.times_plus(next * (1.0 / 24.0), (w - f2) * (1.0 / 6.0));
         let turning = step.times_plus(bent, (v - f1) * 0.5);
         let y = at.y + step * step.times_plus(turning, pull);
-        let last = self.orders(force, threshold, y);
+        let quick = at.quick + at.quick * short_decay(self.shape.fast * step);
+        let last = self.one_by_one(elapsed, self.orders(force, threshold, y), force, quick);
         let rises = !(threshold + self.reference).below(0.5);
         let outward = rises.choose(last[1], -last[1]).above(0.0);
         let fine = fine & outward & self.stays_inside(first, last, elapsed + step, at.terms, care);
@@ -186,112 +190,13 @@ impl<S: Simd> Contact<'_, S> {
 
     /// The force in parts at the start, from its orders there.
     #[inline(always)]
-    fn parts(&self, [f, f1, ..]: [Wide<S>; 4]) -> Parts<S> {
+    pub fn parts(&self, [f, f1, ..]: [Wide<S>; 4]) -> Parts<S> {
         let Shape { b, omega, steady, steady_rate, .. } = *self.shape;
         let [u, v, w] = self.angle.force(self.shape);
         let level = b - self.reference;
         let free = (f - level) - steady_rate.times_plus(v, steady * u);
         let free_rate = f1 - steady_rate.times_plus(w, steady * v);
-        Parts { free, free_rate, forced: (f - level) - free, quarter: (f1 - free_rate) / omega }
-    }
-
-    /// When the force may first leave its corridor, through which threshold, and where that is told.
-    #[inline(always)]
-    fn first_exit(&self, orders: [Wide<S>; 4]) -> (Wide<S>, Wide<S>, Mask<S>) {
-        let Shape { b, omega, swing: stride, .. } = *self.shape;
-        let swing = of_guess(self.shape);
-        let level = b - self.reference;
-        let (low, high) = (-self.reference, -self.reference + 1.0);
-        let mut here = self.parts(orders);
-        let (mut value, mut rate) = (orders[0], orders[1]);
-        let zero = b.same(0.0);
-        let mut elapsed = zero;
-        let mut found = zero.less(zero);
-        let mut open = !found;
-        let mut chord = (value, zero, rate, zero, zero, zero);
-        for _ in 0..STRIDES {
-            here = here.after(swing);
-            let next = level + here.free + here.forced;
-            let next_rate = omega.times_plus(here.quarter, here.free_rate);
-            let over = !next.less(high);
-            let leaves = open & (over | !low.less(next));
-            let threshold = over.choose(high, low);
-            chord = (
-                leaves.choose(value - threshold, chord.0),
-                leaves.choose(next - threshold, chord.1),
-                leaves.choose(rate, chord.2),
-                leaves.choose(next_rate, chord.3),
-                leaves.choose(elapsed, chord.4),
-                leaves.choose(threshold, chord.5),
-            );
-            found = found | leaves;
-            open = open & !leaves;
-            if !open.any() {
-                break;
-            }
-            (value, rate, elapsed) = (next, next_rate, elapsed + stride);
-        }
-        let (left, right, left_rate, right_rate, from, threshold) = chord;
-        let share = meeting(left, right, (left_rate * stride, right_rate * stride));
-        (share.times_plus(stride, from), threshold, found)
-    }
-
-    /// Where the force stays inside its corridor from the start to the root, by their orders: in pieces, whose
-    /// ends follow from the start in strides of the model's own length.
-    #[inline(always)]
-    fn stays_inside(
-        &self,
-        first: [Wide<S>; 4],
-        last: [Wide<S>; 4],
-        length: Wide<S>,
-        terms: Wide<S>,
-        care: Care,
-    ) -> Mask<S> {
-        let Shape { two_xi, forced_eighth, .. } = *self.shape;
-        let (low, high) = (-self.reference, -self.reference + 1.0);
-        let mut here = self.parts(first);
-        let (mut x, mut rate) = (here.free, here.free_rate);
-        for _ in 0..8 {
-            (x, rate) = (rate, -two_xi.times_plus(rate, x));
-        }
-        let eighth = x.times_plus(x, rate * rate).sqrt() + forced_eighth;
-        let slack = self.slack(&here, terms);
-        let (stride, swing, pieces) = match care {
-            Care::Usual => (self.shape.piece, of_piece(self.shape), PIECES),
-            Care::Great => (self.shape.swing, of_guess(self.shape), FINE_PIECES),
-        };
-        let mut left = first;
-        // The start's own value does not count where it is a threshold by the switch that began the contact.
-        let mut bare = first[0].is(0.0);
-        let mut rest = length;
-        let none = bare & !bare;
-        let (mut open, mut fine) = (!none, !none);
-        for _ in 0..pieces {
-            let is_last = rest.less(stride * REST);
-            here = here.after(swing);
-            let next = here.orders(self.shape, self.reference);
-            let right: [Wide<S>; 4] = std::array::from_fn(|k| is_last.choose(last[k], next[k]));
-            let length = is_last.choose(rest, stride);
-            let piece = Piece { left, right, length, eighth, bare, double: none, to_root: is_last };
-            fine = fine & (piece.stays_between(low, high, slack) | !open);
-            open = open & !is_last;
-            if !open.any() {
-                break;
-            }
-            (left, bare, rest) = (next, none, rest - stride);
-        }
-        fine & !open
-    }
-
-    /// Rounding room: four eps of the guard's terms, and what the strides round.
-    #[inline(always)]
-    fn slack(&self, parts: &Parts<S>, terms: Wide<S>) -> Wide<S> {
-        let size = parts.free.abs()
-            + parts.free_rate.abs()
-            + parts.forced.abs()
-            + parts.quarter.abs()
-            + self.shape.b.abs();
-        (terms.larger(self.offset.abs()) + 1.0) * (4.0 * f64::EPSILON)
-            + size * (16.0 * f64::EPSILON)
+        let (forced, quarter) = ((f - level) - free, (f1 - free_rate) / omega);
+        Parts::new(self.shape, self.forms, [free, free_rate], forced, quarter)
     }
 }

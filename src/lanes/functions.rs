@@ -143,6 +143,33 @@ const SINE: [f64; 9] = [
     -8.220_635_246_624_329e-18,
 ];
 
+/// cos x - 1 over x^2, in powers of x^2.
+const COSINE: [f64; 9] = [
+    -0.5,
+    4.166_666_666_666_666_4e-2,
+    -1.388_888_888_888_888_9e-3,
+    2.480_158_730_158_730_2e-5,
+    -2.755_731_922_398_589e-7,
+    2.087_675_698_786_809_8e-9,
+    -1.147_074_559_772_972_5e-11,
+    4.779_477_332_387_385e-14,
+    -1.561_920_696_858_622_6e-16,
+];
+
+/// cos x - 1 and (sin x)/x - 1 of x^2 up to 1, of either sign; beyond nothing is promised.
+#[inline(always)]
+pub fn cosines<S: Simd>(square: Wide<S>) -> (Wide<S>, Wide<S>) {
+    (square * polynomial(square, COSINE), square * polynomial(square, SINE))
+}
+
+/// Circular functions of `x` up to 1; beyond nothing is promised.
+#[inline(always)]
+pub fn short_turn<S: Simd>(x: Wide<S>) -> Turn<S> {
+    let (cos_minus_1, sine) = cosines(x * x);
+    let sin_minus_x = x * sine;
+    Turn { sin: x + sin_minus_x, cos_minus_1, sin_minus_x }
+}
+
 /// Circular functions of `rate * time` (`x`), where `correction` is what rounding took from it.
 #[inline(always)]
 pub fn turn<S: Simd>(x: Wide<S>, correction: Wide<S>) -> Turn<S> {

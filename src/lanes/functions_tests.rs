@@ -3,15 +3,15 @@
 use super::super::instructions::{Instructions, Permit};
 use super::super::wide::{Column, WIDEST};
 use super::*;
-use crate::remainders::{circular_of, decay};
+use crate::remainders::{Circular, circular, circular_of, decay};
 use proptest::prelude::*;
 use pulp::WithSimd;
 
-/// Sine and cosine, then the turn of `rate * x` and the decay of |x|.
+/// Sine and cosine, then the turn of `rate * x`, the decay of |x| and the short turn of x.
 struct All<'a> {
     x: &'a Column,
     rate: f64,
-    out: &'a mut [Column; 8],
+    out: &'a mut [Column; 11],
 }
 
 impl WithSimd for All<'_> {
@@ -23,6 +23,7 @@ impl WithSimd for All<'_> {
         let (sin, cos) = sin_cos(x);
         let turn = turn_of(x.same(self.rate), None, x);
         let shrink = shrink(x.abs());
+        let beat = short_turn(x);
         let values = [
             sin,
             cos,
@@ -32,6 +33,9 @@ impl WithSimd for All<'_> {
             shrink.exp,
             shrink.minus_1,
             shrink.remainder,
+            beat.sin,
+            beat.cos_minus_1,
+            beat.sin_minus_x,
         ];
         for (value, column) in values.into_iter().zip(self.out) {
             value.store(column);
@@ -39,8 +43,8 @@ impl WithSimd for All<'_> {
     }
 }
 
-fn computed(permit: Permit, x: &Column, rate: f64) -> [Column; 8] {
-    let mut out = [[0.0; WIDEST]; 8];
+fn computed(permit: Permit, x: &Column, rate: f64) -> [Column; 11] {
+    let mut out = [[0.0; WIDEST]; 11];
     let all = All { x, rate, out: &mut out };
     match permit {
         #[cfg(target_arch = "x86_64")]
@@ -59,12 +63,12 @@ fn close(a: f64, b: f64, ulps: f64, size: f64) -> Result<(), TestCaseError> {
 }
 
 fn agree(x: [f64; WIDEST], rate: f64) -> Result<(), TestCaseError> {
-    let mut before: Option<[Column; 8]> = None;
+    let mut before: Option<[Column; 11]> = None;
     for permit in Instructions::available().into_iter().filter_map(Instructions::permit) {
         let lanes = permit.width();
         let out = computed(permit, &x, rate);
         for (lane, x) in x.iter().enumerate().take(lanes) {
-            let [sin, cos, turned, cos_minus_1, sin_minus_x, exp, minus_1, remainder] =
+            let [sin, cos, turned, cos_minus_1, sin_minus_x, exp, minus_1, remainder, beat @ ..] =
                 out.map(|column| column[lane]);
             let (s, c) = libm::sincos(*x);
             // Half a unit of libm's, and one of ours.
@@ -92,6 +96,12 @@ fn agree(x: [f64; WIDEST], rate: f64) -> Result<(), TestCaseError> {
             // Beyond 1/2 it is a sum of larger numbers.
             let size = if x.abs() < 0.5 { shrink.remainder } else { x.abs() };
             close(remainder, shrink.remainder, 2.0, size)?;
+            if x.abs() <= 1.0 {
+                let Circular { sin, cos_minus_1, sin_minus_x } = circular(*x);
+                for (found, expected) in beat.into_iter().zip([sin, cos_minus_1, sin_minus_x]) {
+                    close(found, expected, 4.0, expected.abs())?;
+                }
+            }
             if let Some(before) = &before
                 && lane < 2
             {

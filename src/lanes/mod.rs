@@ -3,7 +3,7 @@
 //! What the scalar solver does for one phase (guess, evaluation, certificate, landing) is done here for
 //! as many as a vector has lanes, without a branch on what a lane holds. A switch is accepted only where a
 //! certificate proves it to be the first; the scalar solver takes every phase for which that fails, which
-//! comes near a tie or a graze, or whose closed form is not of the kind written here.
+//! comes near a tie or a graze, or which begins away from the slider.
 //!
 //! Every operation is one of IEEE 754 in each lane by itself, and products and sums are fused where they are
 //! written so, on every instruction set: a motion's bits depend neither on its neighbours nor on the
@@ -11,9 +11,14 @@
 
 mod batch;
 mod certificate;
+mod complex;
 mod contact;
+mod contact_ahead;
+mod contact_shape;
 mod crest;
+mod damped;
 mod flight;
+mod forced;
 mod functions;
 mod guess;
 mod harmonic;

@@ -2,8 +2,6 @@
 
 use super::wide::{Column, Wide};
 use crate::constants::Constants;
-use crate::flow::damped::Damping;
-use crate::flow::forced::Forced;
 use crate::model::Model;
 use pulp::Simd;
 
@@ -79,16 +77,48 @@ shape! {
     look_cos,
     /// exp(-rate look), zero if there is little left.
     look_decay,
-    /// Damped frequency.
+    /// Damped frequency; this and the next two are zero at and above critical damping.
     nu,
     /// What rounding took from it.
     nu_low,
     /// 1/nu
     per_nu,
-    /// 1/(1 - omega^2 + 2 i xi omega), real part.
+    /// One near resonance and near critical damping and above, zero elsewhere.
+    unusual,
+    /// One near critical damping, zero elsewhere,
+    near_critical,
+    /// and there 1 - xi^2; zero elsewhere.
+    discriminant,
+    /// The difference of the two rates above critical damping, zero elsewhere,
+    spread,
+    /// and the smaller one.
+    lasting,
+    /// The larger one clearly above critical damping, zero elsewhere,
+    fast,
+    /// its eighth power,
+    fast8,
+    /// and that of the smaller one.
+    lasting8,
+    /// The fastest rate of a contact.
+    quickest,
+    /// 1/(1 - omega^2 + 2 i xi omega), real part; zero near resonance.
     response,
     /// And imaginary part.
     response_im,
+    /// 1/(2 nu) near resonance, zero elsewhere: which of the two forms serves.
+    half_over_nu,
+    /// omega - nu
+    delta,
+    /// 1/(xi + i delta), real part.
+    slow,
+    /// And imaginary part.
+    slow_im,
+    /// The time after which forced and free oscillation are out of step.
+    in_step,
+    /// 1/(xi + i (omega + nu)), real part.
+    quick,
+    /// And imaginary part.
+    quick_im,
     /// What the steady trial force takes of F - b.
     steady,
     /// And of F'.
@@ -119,34 +149,48 @@ shape! {
     piece_s,
     /// S'
     piece_s_rate,
+    /// What the first step and the first piece in contact are of all others: one but clearly above critical
+    /// damping, where C, S and S' are the slow exponential, zero and the quick one.
+    early,
+    /// Sine of omega times the first step.
+    early_swing_sin,
+    /// And its cosine.
+    early_swing_cos,
+    /// C
+    early_swing_c,
+    /// S'
+    early_swing_s_rate,
+    /// Sine of omega times the first piece.
+    early_piece_sin,
+    /// And its cosine.
+    early_piece_cos,
+    /// C
+    early_piece_c,
+    /// S'
+    early_piece_s_rate,
+    /// What the steps may round off, eps of the parts' size
+    roundings,
+    /// together with this.
+    pulls,
 }
 
-/// A step of a guess, radians of the forcing (in contact of the faster of forcing and free
-/// oscillation): the cubic between two places errs by 1/384 of the amplitude, which two evaluations
-/// put right.
+/// A step of a guess outside contact, radians of the forcing: the cubic between two places errs by 1/384 of
+/// the amplitude, which two evaluations put right.
 const LOOK: f64 = 1.0;
-const SWING: f64 = 0.8;
-
-/// Of a certificate in contact, likewise: the interpolant errs by 3^8/2822400 = 0.002 of the amplitude.
-const PIECE: f64 = 2.0;
 
 /// Of an exponential less than this is forgotten in one step of a guess.
 const SHORT_LIVED: f64 = 0.05;
 
 impl Shape<f64> {
-    /// Of a model; none where lanes do not know the closed form: above 0.7 of critical damping, near
-    /// resonance, without forcing or where the force never changes sign to positive, and where powers of
-    /// the parameters come near the ends of the f64 range.
+    /// Of a model; none without forcing or where the force never changes sign to positive, and where
+    /// powers of the parameters come near the ends of the f64 range.
     pub fn new(model: &Model) -> Option<Self> {
         let Constants { a, b, g, xi, omega, omega2, two_xi, rate, .. } = *model.constants();
-        let Constants { damping, forced, steady, forced_eighth, .. } = *model.constants();
-        let Damping::Under { nu, nu_low, .. } = damping else { return None };
-        let Forced::Plain { inverse, .. } = forced else { return None };
         let moderate = |x: f64, low: f64, high: f64| x >= low && x <= high;
         let suits = moderate(a, 1e-6, 1e6)
             && moderate(b, -a, 1e6)
             && moderate(g, 0.0, 1e6)
-            && moderate(xi, 1e-6, 1.0)
+            && moderate(xi, 1e-6, 1e2)
             && moderate(omega, 1e-3, 1e3);
         if !suits {
             return None;
@@ -159,12 +203,6 @@ impl Shape<f64> {
         let look = LOOK / omega;
         let look_decay = libm::exp(-rate * look);
         let pace = omega.max(1.0);
-        let swing = SWING / pace;
-        let (swing_sin, swing_cos) = libm::sincos(omega * swing);
-        let free = damping.at(swing);
-        let piece = PIECE / pace;
-        let (piece_sin, piece_cos) = libm::sincos(omega * piece);
-        let held = damping.at(piece);
         let phi = model.phi();
         Some(Self {
             a,
@@ -191,26 +229,7 @@ impl Shape<f64> {
             look_sin,
             look_cos,
             look_decay: if look_decay < SHORT_LIVED { 0.0 } else { look_decay },
-            nu,
-            nu_low,
-            per_nu: 1.0 / nu,
-            response: inverse.re,
-            response_im: inverse.im,
-            steady: steady.orders([1.0, 0.0, 0.0])[0],
-            steady_rate: steady.orders([0.0, 1.0, 0.0])[0],
-            forced_eighth,
-            swing,
-            swing_sin,
-            swing_cos,
-            swing_c: 1.0 + free.c_minus_1,
-            swing_s: free.s,
-            swing_s_rate: 1.0 + free.s_rate_minus_1,
-            piece,
-            piece_sin,
-            piece_cos,
-            piece_c: 1.0 + held.c_minus_1,
-            piece_s: held.s,
-            piece_s_rate: 1.0 + held.s_rate_minus_1,
+            ..Self::of_contact(model.constants())
         })
     }
 }

@@ -3,8 +3,8 @@
 //! The drift velocity w begins at zero or above, w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's
 //! lag only decays. Let c = 1 - a - b be positive and a omega < c rate. As long as lag rate >= c, w is
 //! concave; from then on it falls. So it is positive between its start and its only root. Nor has it another
-//! one where it is concave up to the root, a omega < lag rate^2 there. Other progressions are left to the
-//! scalar solver.
+//! one where it falls from the start, lag rate < c there, as under strong damping; or where it is concave up to
+//! the root, a omega < lag rate^2 there. Other progressions are left to the scalar solver.
 
 use super::functions::shrink;
 use super::guess::Trend;
@@ -134,8 +134,10 @@ impl<S: Simd> Slip<'_, S> {
         let drift = at.drift + step * step.times_plus(moved, w);
         const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;
         let steepest = a * omega * ROOM;
-        let rises_once = steepest.less(((-b + 1.0) - a * ROOM) * rate);
-        let certified = rises_once | steepest.less(lag * rate * rate);
+        let least = (-b + 1.0) - a * ROOM;
+        let rises_once = steepest.less(least * rate);
+        let falls = (self.closing.larger(b.same(0.0)) * (rate * ROOM)).less(least);
+        let certified = rises_once | falls | steepest.less(lag * rate * rate);
         let begins = !self.drift_rate.below(0.0);
         let fine = fine & certified & begins & slope.below(0.0);
         Stop { elapsed: (elapsed, step), y: lag, drift, fine }

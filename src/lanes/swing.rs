@@ -1,42 +1,97 @@
 //! A contact followed in strides of fixed length ([`crate::crossing::swing`]).
+//!
+//! Clearly above critical damping the free part is carried as two exponentials, so that what is left of it
+//! has the derivatives of the slow one when the quick one has died out. Strides then begin as short as the
+//! quick one's life and double up to the length of all others.
 
+use super::contact_shape::Forms;
 use super::shape::Shape;
-use super::wide::Wide;
+use super::wide::{Mask, Wide};
 use pulp::Simd;
 
 /// The trial force in parts.
 #[derive(Clone, Copy)]
 pub struct Parts<S: Simd> {
-    /// Free part.
-    pub free: Wide<S>,
-    /// Its rate.
-    pub free_rate: Wide<S>,
+    /// Free part and its rate; clearly above critical damping the slow exponential and the quick one.
+    pub free: [Wide<S>; 2],
     /// Forced part.
     pub forced: Wide<S>,
     /// Its rate over omega.
     pub quarter: Wide<S>,
+    /// Whether some lanes may have exponentials.
+    pub forms: Forms,
 }
 
 impl<S: Simd> Parts<S> {
-    /// After a stride with these sine, cosine, C, S and S'.
+    /// From the free part and its rate.
     #[inline(always)]
-    pub fn after(&self, [sin, cos, c, s, s_rate]: [Wide<S>; 5]) -> Self {
-        Self {
-            free: self.free.times_plus(c, self.free_rate * s),
-            free_rate: self.free.times_from(s, self.free_rate * s_rate),
-            forced: self.forced.times_plus(cos, self.quarter * sin),
-            quarter: self.forced.times_from(sin, self.quarter * cos),
+    pub fn new(
+        shape: &Shape<Wide<S>>,
+        forms: Forms,
+        [x, rate]: [Wide<S>; 2],
+        forced: Wide<S>,
+        quarter: Wide<S>,
+    ) -> Self {
+        let mut free = [x, rate];
+        if forms == Forms::Any {
+            let over = shape.fast.above(0.0);
+            // x' + slow x = -spread (quick part)
+            let quick = -shape.lasting.times_plus(x, rate) / shape.spread;
+            free = [over.choose(x - quick, x), over.choose(quick, rate)];
         }
+        Self { free, forced, quarter, forms }
+    }
+
+    /// After a stride.
+    #[inline(always)]
+    pub fn after(&self, swing: &Swing<S>) -> Self {
+        let Swing { sin, cos, free: [c, s, s_rate], .. } = *swing;
+        let Self { free: [x, rate], forced, quarter, .. } = *self;
+        Self {
+            free: [x.times_plus(c, rate * s), x.times_from(s, rate * s_rate)],
+            forced: forced.times_plus(cos, quarter * sin),
+            quarter: forced.times_from(sin, quarter * cos),
+            ..*self
+        }
+    }
+
+    /// The free part and its first three derivatives.
+    #[inline(always)]
+    fn free_orders(&self, shape: &Shape<Wide<S>>) -> [Wide<S>; 4] {
+        let two_xi = shape.two_xi;
+        let [x, rate] = self.free;
+        // x'' + 2 xi x' + x = 0
+        let bend = -two_xi.times_plus(rate, x);
+        let orders = [x, rate, bend, -two_xi.times_plus(bend, rate)];
+        if self.forms == Forms::Usual {
+            return orders;
+        }
+        let Shape { lasting: slow, fast, .. } = *shape;
+        let (slowly, quickly) = (slow * x, fast * rate);
+        let (slowly2, quickly2) = (slow * slowly, fast * quickly);
+        let sums = [
+            x + rate,
+            -(slowly + quickly),
+            slowly2 + quickly2,
+            -(slow * slowly2 + fast * quickly2),
+        ];
+        each(shape.fast.above(0.0), sums, orders)
+    }
+
+    /// The guard, which counts from `reference`, and its first derivative.
+    #[inline(always)]
+    pub fn value_and_rate(&self, shape: &Shape<Wide<S>>, reference: Wide<S>) -> (Wide<S>, Wide<S>) {
+        let [free, free_rate, ..] = self.free_orders(shape);
+        let value = (shape.b - reference) + free + self.forced;
+        (value, shape.omega.times_plus(self.quarter, free_rate))
     }
 
     /// The guard, which counts from `reference`, and its first three derivatives.
     #[inline(always)]
     pub fn orders(&self, shape: &Shape<Wide<S>>, reference: Wide<S>) -> [Wide<S>; 4] {
-        let Shape { b, two_xi, omega, omega2, .. } = *shape;
-        let Self { free, free_rate, forced, quarter } = *self;
-        // x'' + 2 xi x' + x = 0
-        let bend = -two_xi.times_plus(free_rate, free);
-        let third = -two_xi.times_plus(bend, free_rate);
+        let Shape { b, omega, omega2, .. } = *shape;
+        let Self { forced, quarter, .. } = *self;
+        let [free, free_rate, bend, third] = self.free_orders(shape);
         [
             (b - reference) + free + forced,
             omega.times_plus(quarter, free_rate),
@@ -44,18 +99,149 @@ impl<S: Simd> Parts<S> {
             (omega * omega2).times_from(quarter, third),
         ]
     }
+
+    /// A bound of the free part's eighth derivative from here on: every derivative obeys the same equation,
+    /// and x^2 + x'^2 never grows.
+    #[inline(always)]
+    pub fn eighth(&self, shape: &Shape<Wide<S>>) -> Wide<S> {
+        let [mut x, mut rate] = self.free;
+        for _ in 0..8 {
+            (x, rate) = (rate, -shape.two_xi.times_plus(rate, x));
+        }
+        x.times_plus(x, rate * rate).sqrt()
+    }
+
+    /// The same clearly above critical damping, where both exponentials only shrink.
+    #[inline(always)]
+    pub fn eighth_of_exponentials(&self, shape: &Shape<Wide<S>>) -> Wide<S> {
+        let [slowly, quickly] = self.free;
+        slowly.abs().times_plus(shape.lasting8, quickly.abs() * shape.fast8)
+    }
+
+    /// The size of all parts.
+    #[inline(always)]
+    pub fn size(&self) -> Wide<S> {
+        let [x, rate] = self.free;
+        x.abs() + rate.abs() + self.forced.abs() + self.quarter.abs()
+    }
 }
 
-/// Sine and cosine of a stride of a guess, and its C, S and S'.
-#[inline(always)]
-pub fn of_guess<S: Simd>(shape: &Shape<Wide<S>>) -> [Wide<S>; 5] {
-    let Shape { swing_sin, swing_cos, swing_c, swing_s, swing_s_rate, .. } = *shape;
-    [swing_sin, swing_cos, swing_c, swing_s, swing_s_rate]
+/// A stride.
+#[derive(Clone, Copy)]
+pub struct Swing<S: Simd> {
+    /// How long it is.
+    pub length: Wide<S>,
+    /// Sine of omega times that.
+    pub sin: Wide<S>,
+    /// And cosine.
+    pub cos: Wide<S>,
+    /// C, S and S' of the free oscillation; clearly above critical damping the slow exponential, zero and
+    /// the quick one.
+    pub free: [Wide<S>; 3],
 }
 
-/// Those of a piece of a certificate.
+/// The strides of a contact: the first one, and all others up to doubling.
+#[derive(Clone, Copy)]
+pub struct Swings<S: Simd> {
+    /// The present one.
+    pub now: Swing<S>,
+    full: Swing<S>,
+    forms: Forms,
+}
+
+impl<S: Simd> Swings<S> {
+    /// Of a guess.
+    #[inline(always)]
+    pub fn of_guess(shape: &Shape<Wide<S>>, forms: Forms) -> Self {
+        let Shape { swing, swing_sin, swing_cos, swing_c, swing_s, swing_s_rate, .. } = *shape;
+        let Shape { early_swing_sin, early_swing_cos, early_swing_c, early_swing_s_rate, .. } =
+            *shape;
+        let full = Swing {
+            length: swing,
+            sin: swing_sin,
+            cos: swing_cos,
+            free: [swing_c, swing_s, swing_s_rate],
+        };
+        let first = Swing {
+            length: swing * shape.early,
+            sin: early_swing_sin,
+            cos: early_swing_cos,
+            free: [early_swing_c, swing_s, early_swing_s_rate],
+        };
+        Self::new(forms, first, full)
+    }
+
+    /// Of the pieces of a certificate.
+    #[inline(always)]
+    pub fn of_pieces(shape: &Shape<Wide<S>>, forms: Forms) -> Self {
+        let Shape { piece, piece_sin, piece_cos, piece_c, piece_s, piece_s_rate, .. } = *shape;
+        let Shape { early_piece_sin, early_piece_cos, early_piece_c, early_piece_s_rate, .. } =
+            *shape;
+        let full = Swing {
+            length: piece,
+            sin: piece_sin,
+            cos: piece_cos,
+            free: [piece_c, piece_s, piece_s_rate],
+        };
+        let first = Swing {
+            length: piece * shape.early,
+            sin: early_piece_sin,
+            cos: early_piece_cos,
+            free: [early_piece_c, piece_s, early_piece_s_rate],
+        };
+        Self::new(forms, first, full)
+    }
+
+    #[inline(always)]
+    fn new(forms: Forms, first: Swing<S>, full: Swing<S>) -> Self {
+        let now = match forms {
+            Forms::Usual => full,
+            Forms::Any => first,
+        };
+        Self { now, full, forms }
+    }
+
+    /// Goes on to the next one.
+    #[inline(always)]
+    pub fn next(&mut self) {
+        if self.forms == Forms::Usual {
+            return;
+        }
+        let Swing { length, sin, cos, free: [c, s, s_rate] } = self.now;
+        let length = length + length;
+        let doubled = Swing {
+            length,
+            sin: (sin + sin) * cos,
+            cos: (sin + sin).times_from(sin, sin.same(1.0)),
+            free: [c * c, s, s_rate * s_rate],
+        };
+        self.now = doubled.or(!(length * 1.5).less(self.full.length), self.full);
+    }
+}
+
+impl<S: Simd> Swing<S> {
+    #[inline(always)]
+    fn or(self, mask: Mask<S>, other: Self) -> Self {
+        Self {
+            length: mask.choose(other.length, self.length),
+            sin: mask.choose(other.sin, self.sin),
+            cos: mask.choose(other.cos, self.cos),
+            free: each(mask, other.free, self.free),
+        }
+    }
+}
+
+/// One of two where the mask holds, the other elsewhere. (Under run-time dispatch the closures of an array's `map`
+/// are calls.)
 #[inline(always)]
-pub fn of_piece<S: Simd>(shape: &Shape<Wide<S>>) -> [Wide<S>; 5] {
-    let Shape { piece_sin, piece_cos, piece_c, piece_s, piece_s_rate, .. } = *shape;
-    [piece_sin, piece_cos, piece_c, piece_s, piece_s_rate]
+pub fn each<S: Simd, const N: usize>(
+    mask: Mask<S>,
+    yes: [Wide<S>; N],
+    no: [Wide<S>; N],
+) -> [Wide<S>; N] {
+    let mut chosen = no;
+    for (k, value) in chosen.iter_mut().enumerate() {
+        *value = mask.choose(yes[k], *value);
+    }
+    chosen
 }

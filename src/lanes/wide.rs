@@ -187,7 +187,9 @@ impl<S: Simd> Neg for Wide<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        Self { value: self.simd.neg_f64s(self.value), ..self }
+        // pulp's own negation is inlined only if the compiler likes, and a call without vectors otherwise.
+        let sign = self.simd.splat_f64s(-0.0);
+        Self { value: self.simd.xor_f64s(self.value, sign), ..self }
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::batch::{Batch, Begin, End, Stage};
 use super::contact::{Contact, Release};
+use super::contact_shape::Forms;
 use super::flight::{Flight, Impact};
 use super::harmonic::Angle;
 use super::root::Care;
@@ -70,11 +71,13 @@ impl<'a, S: Simd> Lanes<'a, S> {
     }
 
     #[inline(always)]
-    fn contacts(&self) -> Contact<'a, S> {
+    fn contacts(&self, forms: Forms) -> Contact<'a, S> {
         Contact {
             shape: self.shape,
+            forms,
             angle: Angle::new(self.shape, self.angle()),
             y: self.load(&self.begin.y),
+            q: self.load(&self.begin.q),
             offset: self.load(&self.begin.first),
             reference: self.load(&self.begin.second),
         }
@@ -103,7 +106,11 @@ impl<'a, S: Simd> Lanes<'a, S> {
 
     #[inline(always)]
     fn contact(&self, care: Care, end: &mut End) {
-        let Release { elapsed, y, rises, fine } = self.contacts().release(care);
+        let release = match Forms::of(self.shape) {
+            Forms::Usual => self.contacts(Forms::Usual).release(care),
+            Forms::Any => self.contacts(Forms::Any).release(care),
+        };
+        let Release { elapsed, y, rises, fine } = release;
         self.switch(elapsed, fine, end);
         y.store(&mut end.y);
         rises.number().store(&mut end.guard);
@@ -156,7 +163,8 @@ impl<'a, S: Simd> Lanes<'a, S> {
     #[inline(always)]
     fn contact_strobe(&self, end: &mut End) {
         let elapsed = self.until_due(end);
-        let (values, rates) = self.contacts().state(elapsed.high);
+        let forms = Forms::of(self.shape);
+        let (values, rates) = self.contacts(forms).state(elapsed.high);
         let [q, y, guard] = moved(values, rates, elapsed.low);
         (q + self.shape.g).store(&mut end.p);
         y.store(&mut end.y);

@@ -7,8 +7,8 @@
 
 mod exact;
 
-use percuss::Phase;
 use percuss::lanes::Instructions;
+use percuss::{Parameters, Phase};
 use percuss_validation::case::{Case, Problem, embedded};
 use percuss_validation::engine::{Failure, Outcome, Task};
 use percuss_validation::score::{Restart, RestartTest};
@@ -71,6 +71,31 @@ fn holds_its_digits(case: &Case, test: &RestartTest, how: &str, run: &Run) {
     assert!(units.median <= MEDIAN, "{}: median {}", case.name, units.median);
     for max in [units.max, restart.drift_units.max, restart.time_units.max] {
         assert!(max <= LARGEST, "{}: max {max}", case.name);
+    }
+}
+
+/// omega, xi: what the cases have not, of every form that contacts take in lanes.
+const FORMS: [(f64, f64); 8] = [
+    (1.2, 0.01),
+    (1.2, 0.1),
+    (0.9, 0.01),
+    (1.4, 0.8),
+    (1.4, 1.0),
+    (1.4, 1.2),
+    (1.4, 1.5),
+    (1.4, 5.0),
+];
+
+#[test]
+fn lanes_keep_their_digits_in_every_form_of_contact() {
+    let lanes = |task: &Task| Ok(exact::run_in_lanes(Instructions::widest(), task));
+    for (omega, xi) in FORMS {
+        let mut case = exact::case("chaos-from-rest");
+        case.name = format!("omega {omega} xi {xi}");
+        case.parameters = Parameters { omega, xi, ..case.parameters };
+        let test = RestartTest::new(&exact::problem(&case), 1000);
+        holds_its_digits(&case, &test, "alone", &exact::run);
+        holds_its_digits(&case, &test, "in lanes", &lanes);
     }
 }
 

@@ -1,0 +1,124 @@
+//! Where a contact ends, guessed, and that it does not end before ([`crate::crossing::contact_ahead`]).
+//!
+//! The certificate is the scalar solver's ([`crate::crossing::certificate`]), in pieces of fixed length, which are
+//! shorter where great care is taken.
+
+use super::certificate::Piece;
+use super::contact::Contact;
+use super::contact_shape::Forms;
+use super::guess::meeting;
+use super::root::Care;
+use super::shape::Shape;
+use super::swing::{Parts, Swings, each};
+use super::wide::{Mask, Wide};
+use pulp::Simd;
+
+/// Pieces of a certificate, after which a lane is left to the scalar solver,
+const PIECES: usize = 8;
+/// the same with great care,
+const FINE_PIECES: usize = 16;
+/// and how much longer than a stride the last one may be.
+const REST: f64 = 1.3;
+/// Strides of a guess, after which a lane is left to the scalar solver.
+const STRIDES: usize = 24;
+
+impl<S: Simd> Contact<'_, S> {
+    /// When the force may first leave its corridor, through which threshold, and where that is told.
+    #[inline(always)]
+    pub fn first_exit(&self, orders: [Wide<S>; 4]) -> (Wide<S>, Wide<S>, Mask<S>) {
+        let (low, high) = (-self.reference, -self.reference + 1.0);
+        let mut here = self.parts(orders);
+        let (mut value, mut rate) = (orders[0], orders[1]);
+        let mut swings = Swings::of_guess(self.shape, self.forms);
+        let zero = value.same(0.0);
+        let mut elapsed = zero;
+        let mut found = zero.less(zero);
+        let mut open = !found;
+        let mut chord = (value, zero, rate, zero, zero, zero, zero);
+        for _ in 0..STRIDES {
+            let stride = swings.now.length;
+            here = here.after(&swings.now);
+            let (next, next_rate) = here.value_and_rate(self.shape, self.reference);
+            let over = !next.less(high);
+            let leaves = open & (over | !low.less(next));
+            let threshold = over.choose(high, low);
+            chord = (
+                leaves.choose(value - threshold, chord.0),
+                leaves.choose(next - threshold, chord.1),
+                leaves.choose(rate, chord.2),
+                leaves.choose(next_rate, chord.3),
+                leaves.choose(elapsed, chord.4),
+                leaves.choose(threshold, chord.5),
+                leaves.choose(stride, chord.6),
+            );
+            found = found | leaves;
+            open = open & !leaves;
+            if !open.any() {
+                break;
+            }
+            (value, rate, elapsed) = (next, next_rate, elapsed + stride);
+            swings.next();
+        }
+        let (left, right, left_rate, right_rate, from, threshold, stride) = chord;
+        let share = meeting(left, right, (left_rate * stride, right_rate * stride));
+        (share.times_plus(stride, from), threshold, found)
+    }
+
+    /// Where the force stays inside its corridor from the start to the root, by their orders: in pieces, whose
+    /// ends follow from the start in strides of the model's own length.
+    #[inline(always)]
+    pub fn stays_inside(
+        &self,
+        first: [Wide<S>; 4],
+        last: [Wide<S>; 4],
+        length: Wide<S>,
+        terms: Wide<S>,
+        care: Care,
+    ) -> Mask<S> {
+        let Shape { forced_eighth, fast, .. } = *self.shape;
+        let (low, high) = (-self.reference, -self.reference + 1.0);
+        let mut here = self.parts(first);
+        let over = fast.above(0.0);
+        let mut eighth = here.eighth(self.shape) + forced_eighth;
+        let slack = self.slack(&here, terms);
+        let (mut swings, pieces) = match care {
+            Care::Usual => (Swings::of_pieces(self.shape, self.forms), PIECES),
+            Care::Great => (Swings::of_guess(self.shape, self.forms), FINE_PIECES),
+        };
+        let mut left = first;
+        // The start's own value does not count where it is a threshold by the switch that began the contact.
+        let mut bare = first[0].is(0.0);
+        let mut rest = length;
+        let none = bare & !bare;
+        let (mut open, mut fine) = (!none, !none);
+        for _ in 0..pieces {
+            let stride = swings.now.length;
+            let is_last = rest.less(stride * REST);
+            if self.forms == Forms::Any {
+                let shrinking = here.eighth_of_exponentials(self.shape) + forced_eighth;
+                eighth = over.choose(shrinking, eighth);
+            }
+            here = here.after(&swings.now);
+            let next = here.orders(self.shape, self.reference);
+            let right = each(is_last, last, next);
+            let length = is_last.choose(rest, stride);
+            let piece = Piece { left, right, length, eighth, bare, double: none, to_root: is_last };
+            fine = fine & (piece.stays_between(low, high, slack) | !open);
+            open = open & !is_last;
+            if !open.any() {
+                break;
+            }
+            (left, bare, rest) = (next, none, rest - stride);
+            swings.next();
+        }
+        fine & !open
+    }
+
+    /// Rounding room: four eps of the guard's terms, and what the strides round.
+    #[inline(always)]
+    fn slack(&self, parts: &Parts<S>, terms: Wide<S>) -> Wide<S> {
+        let size = parts.size() + self.shape.pulls;
+        (terms.larger(self.offset.abs()) + 1.0) * (4.0 * f64::EPSILON)
+            + size * (self.shape.roundings * f64::EPSILON)
+    }
+}

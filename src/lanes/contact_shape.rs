@@ -1,0 +1,186 @@
+//! What the lanes need of a model in contact.
+
+use super::shape::Shape;
+use super::wide::Wide;
+use crate::constants::Constants;
+use crate::flow::damped::Damping;
+use crate::flow::forced::Forced;
+use pulp::Simd;
+
+/// Which closed forms the contacts of a vector have: what no lane needs is not asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Forms {
+    /// All are below 0.7 of critical damping and away from resonance.
+    Usual,
+    /// Each lane has its own.
+    Any,
+}
+
+impl Forms {
+    /// Those of these models.
+    #[inline(always)]
+    pub fn of<S: Simd>(shape: &Shape<Wide<S>>) -> Self {
+        if shape.unusual.above(0.0).any() { Self::Any } else { Self::Usual }
+    }
+}
+
+/// A step of a guess, radians of the faster of forcing and free oscillation: the cubic between two places errs
+/// by 1/384 of the amplitude, which two evaluations put right.
+const SWING: f64 = 0.8;
+
+/// Of a certificate, likewise: the interpolant errs by 3^8/2822400 = 0.002 of the amplitude.
+const PIECE: f64 = 2.0;
+
+/// Each stride rounds a few times its parts.
+const ROUNDINGS: f64 = 16.0;
+
+/// The first stride is at least this much of all others: each doubling doubles what it has rounded off.
+const SHORTEST: f64 = 1.0 / 256.0;
+
+/// The steps of a contact.
+struct Pace {
+    /// Strides are measured by this rate,
+    full: f64,
+    /// and the first one is this much of them.
+    early: f64,
+}
+
+impl Pace {
+    fn new(omega: f64, damping: &Damping<f64>) -> Self {
+        let Damping::Over { fast, slow, .. } = *damping else {
+            return Self { full: omega.max(1.0), early: 1.0 };
+        };
+        let full = omega.max(slow).max(fast * SHORTEST);
+        let mut early = 1.0;
+        while early * fast > full {
+            early *= 0.5;
+        }
+        Self { full, early }
+    }
+}
+
+/// A stride with what the free oscillation does in it.
+#[derive(Clone, Copy)]
+struct Stride {
+    length: f64,
+    sin: f64,
+    cos: f64,
+    c: f64,
+    s: f64,
+    s_rate: f64,
+}
+
+impl Stride {
+    fn new(length: f64, omega: f64, damping: &Damping<f64>) -> Self {
+        let (sin, cos) = libm::sincos(omega * length);
+        let [c, s, s_rate] = if let Damping::Over { fast, slow, .. } = *damping {
+            [libm::exp(-slow * length), 0.0, libm::exp(-fast * length)]
+        } else {
+            let free = damping.at(length);
+            [1.0 + free.c_minus_1, free.s, 1.0 + free.s_rate_minus_1]
+        };
+        Self { length, sin, cos, c, s, s_rate }
+    }
+}
+
+impl Shape<f64> {
+    /// The constants of contacts.
+    pub(super) fn of_contact(constants: &Constants<f64>) -> Self {
+        let Constants { a, b, omega, damping, steady, forced_eighth, .. } = *constants;
+        let pace = Pace::new(omega, &damping);
+        let stride = |radians: f64| Stride::new(radians / pace.full, omega, &damping);
+        let full = [SWING, PIECE].map(stride);
+        let first = [SWING * pace.early, PIECE * pace.early];
+        let early = if pace.early < 1.0 { first.map(stride) } else { full };
+        let ([swing, piece], [early_swing, early_piece]) = (full, early);
+        // Clearly above critical damping the exponentials come from the whole force at the start, and after n
+        // doublings the strides have lost less than 2^(n + 2) eps.
+        let (roundings, pulls) = match damping {
+            Damping::Over { .. } => (ROUNDINGS + 4.0 / pace.early, b.abs() + a),
+            _ => (ROUNDINGS, b.abs()),
+        };
+        Self {
+            steady: steady.orders([1.0, 0.0, 0.0])[0],
+            steady_rate: steady.orders([0.0, 1.0, 0.0])[0],
+            forced_eighth,
+            swing: swing.length,
+            swing_sin: swing.sin,
+            swing_cos: swing.cos,
+            swing_c: swing.c,
+            swing_s: swing.s,
+            swing_s_rate: swing.s_rate,
+            piece: piece.length,
+            piece_sin: piece.sin,
+            piece_cos: piece.cos,
+            piece_c: piece.c,
+            piece_s: piece.s,
+            piece_s_rate: piece.s_rate,
+            early: pace.early,
+            early_swing_sin: early_swing.sin,
+            early_swing_cos: early_swing.cos,
+            early_swing_c: early_swing.c,
+            early_swing_s_rate: early_swing.s_rate,
+            early_piece_sin: early_piece.sin,
+            early_piece_cos: early_piece.cos,
+            early_piece_c: early_piece.c,
+            early_piece_s_rate: early_piece.s_rate,
+            roundings,
+            pulls,
+            ..Self::forced(&constants.forced, Self::free(&damping, omega.max(1.0)))
+        }
+    }
+
+    /// What the free oscillation needs.
+    fn free(damping: &Damping<f64>, pace: f64) -> Self {
+        let free = Self { quickest: pace, ..Self::default() };
+        let strong = Self { unusual: 1.0, ..free };
+        match *damping {
+            Damping::Under { nu, nu_low, .. } => Self { nu, nu_low, per_nu: 1.0 / nu, ..free },
+            Damping::NearCritical { xi, discriminant } => {
+                let root = discriminant.abs().sqrt();
+                let quickest = pace.max(2.0 * xi);
+                let near = Self { near_critical: 1.0, discriminant, quickest, ..strong };
+                if discriminant > 0.0 {
+                    Self { nu: root, per_nu: 1.0 / root, ..near }
+                } else {
+                    Self { spread: root + root, lasting: 1.0 / (xi + root), ..near }
+                }
+            }
+            Damping::Over { fast, slow, spread } => Self {
+                spread,
+                lasting: slow,
+                fast,
+                fast8: eighth_power(fast),
+                lasting8: eighth_power(slow),
+                quickest: pace.max(fast),
+                ..strong
+            },
+        }
+    }
+
+    /// What the forced oscillation needs.
+    fn forced(forced: &Forced<f64>, free: Self) -> Self {
+        match *forced {
+            Forced::Plain { inverse, .. } => {
+                Self { response: inverse.re, response_im: inverse.im, ..free }
+            }
+            Forced::Resonant { half_over_nu, delta, slow, in_step, quick, .. } => Self {
+                unusual: 1.0,
+                half_over_nu,
+                delta,
+                slow: slow.re,
+                slow_im: slow.im,
+                in_step,
+                quick: quick.re,
+                quick_im: quick.im,
+                ..free
+            },
+        }
+    }
+}
+
+fn eighth_power(x: f64) -> f64 {
+    let square = x * x;
+    let fourth = square * square;
+    fourth * fourth
+}
