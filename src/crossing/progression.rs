@@ -174,15 +174,17 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
     /// Whether w, not negative at the start, has no root before this one: proved, or not known.
     ///
     /// w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's lag only decays. With c = 1 - a - b
-    /// and a omega < c rate, w is concave as long as lag rate >= c and falls from then on; and it is
-    /// concave up to a root at which a omega < lag rate^2.
+    /// and a omega < c rate, w is concave as long as lag rate >= c and falls from then on; it falls all the
+    /// time if lag rate < c at the start; and it is concave up to a root at which a omega < lag rate^2.
     fn stops_once(&self, root: &Point<f64>) -> bool {
         /// Of the few roundings in the inequalities.
         const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;
         let Constants { a, b, omega, rate, .. } = *self.constants.borrow();
         let steepest = a * omega * ROOM;
-        let lowest = steepest < ((1.0 - b) - a * ROOM) * rate;
-        self.drift_rate >= 0.0 && (lowest || steepest < root.slider_velocity * rate * rate)
+        let fall = (1.0 - b) - a * ROOM;
+        let falls = self.closing.max(0.0) * rate * ROOM < fall;
+        let bends = steepest < root.slider_velocity * rate * rate;
+        self.drift_rate >= 0.0 && (steepest < fall * rate || falls || bends)
     }
 
     fn shape(&self) -> Shape {
