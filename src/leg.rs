@@ -26,7 +26,11 @@ pub struct Sample {
 }
 
 /// Why a phase has no end.
+///
+/// It stands in an [`Exit`] where a switch has other numbers. Behind a byte those would be copied across the
+/// words in which they were written, for which a processor has to wait; so it is a whole word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u64)]
 pub enum Endless {
     /// The mass never returns to the slider (b too small).
     NeverReturns,
