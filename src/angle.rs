@@ -30,7 +30,7 @@ pub fn reduce(angle: TwoWord) -> (i128, TwoWord) {
 }
 
 /// Brings a rest that may have left `[0, 2 pi)` by a few turns back into it.
-#[inline]
+#[inline(always)]
 #[must_use]
 pub(crate) fn wrap(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
     if rest.high > 0.0 && rest.high < TWO_PI.high {

@@ -93,7 +93,7 @@ impl CubicStep {
 
 /// The root that the guard's series has next to a point's cubic step; none where that is no
 /// crossing outwards.
-#[inline]
+#[inline(always)]
 fn polished<G: Guarded>(phase: &G, point: &Point<f64>, cubic: &CubicStep) -> Option<Root> {
     let [few_terms, _] = phase.reaches();
     if cubic.step.abs() <= few_terms {
@@ -103,6 +103,7 @@ fn polished<G: Guarded>(phase: &G, point: &Point<f64>, cubic: &CubicStep) -> Opt
     }
 }
 
+#[inline(always)]
 fn polished_by<G: Guarded, const N: usize>(
     phase: &G,
     point: &Point<f64>,
