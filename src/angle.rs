@@ -38,6 +38,9 @@ pub(crate) fn wrap(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
     }
     let (mut turns, whole) = add_floor(turns, rest.high * (1.0 / TWO_PI.high));
     let mut rest = less_turns(rest, whole);
+    if !(-TWO_PI.high..=2.0 * TWO_PI.high).contains(&rest.high) {
+        return wrap_again(turns, rest);
+    }
     if rest.high < 0.0 {
         turns -= 1;
         rest = rest.plus(TWO_PI);
@@ -73,6 +76,13 @@ fn less_turns(rest: TwoWord, whole: f64) -> TwoWord {
 /// The first 33 bits of a word.
 const fn cut(word: f64) -> f64 {
     f64::from_bits(word.to_bits() & !((1 << 20) - 1))
+}
+
+/// Of more than 2^53 turns the first count is off by some.
+#[cold]
+#[inline(never)]
+fn wrap_again(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
+    if rest.high.is_finite() { wrap(turns, rest) } else { (turns, rest) }
 }
 
 /// The largest whole number not above `x`, added to `turns` and by itself; without a call of the
@@ -154,6 +164,14 @@ mod tests {
         for (angle, sine) in &KNOWN {
             let (_, rest) = reduce(TwoWord::new(*angle));
             approx::assert_abs_diff_eq!(rest.value().sin(), *sine, epsilon = 4.0 * f64::EPSILON);
+        }
+    }
+
+    #[test]
+    fn more_turns_than_a_word_counts_come_off_too() {
+        for rest in [4e17, -4e17, 1e30, 1e200, -1e200] {
+            let (_, wrapped) = wrap(0, TwoWord::new(rest));
+            assert!((0.0..=TWO_PI.high).contains(&wrapped.high), "{rest}: {wrapped:?}");
         }
     }
 

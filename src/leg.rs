@@ -101,14 +101,16 @@ pub(crate) fn pass(
     match (crossing, next) {
         (Crossing::At(root), Some((instant, angle))) => {
             let elapsed = root.elapsed();
-            if elapsed.high > certain && elapsed.high > left() {
+            if elapsed.high > certain && horizon.is_some_and(|horizon| instant > *horizon) {
                 return ended(Exit::Horizon, left());
             }
             counters.switches += 1;
             let next = Entry { instant, ..land(model, entry, &motion, &root) };
             Passed { exit: Exit::Switch(next), duration: elapsed, angle: Some(angle) }
         }
-        (Crossing::Never, _) => ended(Exit::Endless(endless(entry.phase())), f64::INFINITY),
+        (Crossing::Never, _) if certain > 0.0 || left() > 0.0 => {
+            ended(Exit::Endless(endless(entry.phase())), f64::INFINITY)
+        }
         _ => ended(Exit::Horizon, left()),
     }
 }

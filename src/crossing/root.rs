@@ -122,7 +122,7 @@ fn polished_by<G: Guarded, const N: usize>(
         let (value, slope) = series.value_and_slope(step);
         let change = (threshold - value) / slope;
         step += change;
-        let gain = change * series.bend(step);
+        let gain = change * (series.bend(step) + 0.5 * change * series.0[3]);
         let settled = gain.abs() <= SETTLED * slope.abs();
         // Next to a graze rounding keeps the time from settling any further.
         let hidden = (value - threshold).abs() <= SLACK * point.guard.largest_term;

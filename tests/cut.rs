@@ -1,0 +1,61 @@
+//! Where a horizon cuts a run: at the entry, and next to a switch.
+
+use percuss::two_word::TwoWord;
+use percuss::{Exit, Model, Parameters, Start, Step};
+
+fn from_rest(parameters: Parameters, p: f64) -> (Model, percuss::Entry) {
+    let model = Model::new(parameters).unwrap();
+    let entry = model.start(&Start { p, ..Start::default() }).unwrap();
+    (model, entry)
+}
+
+#[test]
+fn a_run_that_is_over_at_once_is_cut_even_if_it_never_ended() {
+    let (model, entry) = from_rest(Parameters { b: -0.1, ..Parameters::default() }, -1.0);
+    let leg = model.trajectory(entry).next().unwrap();
+    assert!(matches!(leg.exit(), Exit::Endless(_)));
+    let leg = model.trajectory(entry).until(entry.instant).next().unwrap();
+    assert!(matches!(leg.exit(), Exit::Horizon) && leg.duration() == 0.0, "{leg:?}");
+}
+
+#[test]
+fn a_switch_counts_up_to_the_horizon_and_no_later() {
+    let omega = Parameters::default().omega;
+    let (model, entry) = from_rest(Parameters::default(), 0.0);
+    let legs: Vec<_> = model.trajectory(entry).take(60).collect();
+    for leg in &legs {
+        let Exit::Switch(next) = leg.exit() else { unreachable!("the run goes on") };
+        for part in [0.0, 1e-30, 1e-25, 1e-20, 1e-18, 1e-17, 1e-16, 1e-14] {
+            let later = next.instant.after(TwoWord::new(part), omega);
+            let mut run = model.trajectory(*leg.entry()).until(later);
+            let first = run.next().unwrap();
+            assert_eq!(first.exit(), leg.exit());
+            let second = run.next().unwrap();
+            assert!(second.duration() >= 0.0, "{part}: {}", second.duration());
+        }
+        let before = leg.entry().instant.after(TwoWord::new(0.999 * leg.duration()), omega);
+        let cut = model.trajectory(*leg.entry()).until(before).next().unwrap();
+        assert!(matches!(cut.exit(), Exit::Horizon), "{cut:?}");
+        assert!((cut.duration() - 0.999 * leg.duration()).abs() <= 4e-16 * leg.duration());
+    }
+}
+
+#[test]
+fn steps_are_what_iterating_gives() {
+    let (model, entry) = from_rest(Parameters::default(), 0.0);
+    let horizon = entry.instant.after_periods(40, 1);
+    let mut run = model.trajectory(entry).until(horizon);
+    for leg in model.trajectory(entry).until(horizon) {
+        match (run.step().unwrap(), leg.exit()) {
+            (Step::Switch { duration, next }, exit) => {
+                assert_eq!(Exit::Switch(next), *exit);
+                assert_eq!(duration.value(), leg.duration());
+            }
+            (Step::Last(last), exit) => {
+                assert_eq!(last.exit(), exit);
+                assert_eq!(last.at_instant(&horizon), leg.at_instant(&horizon));
+            }
+        }
+    }
+    assert!(run.step().is_none());
+}
