@@ -84,9 +84,13 @@ pub(crate) fn pass(
     let omega = model.parameters().omega;
     let motion = Motion::new(model.constants(), entry, angle);
     let strides = model.strides();
-    // The horizon in two words is computed only where it matters.
-    let (certain, limit) =
-        horizon.map_or((f64::INFINITY, f64::INFINITY), |h| h.since_roughly(&entry.instant, omega));
+    // The horizon in two words is computed only where it matters. It is looked beyond by more than guesses
+    // err, so that a switch next to it is found as without it; its instant decides.
+    const BEYOND: f64 = 0.1;
+    let (certain, limit) = horizon.map_or((f64::INFINITY, f64::INFINITY), |h| {
+        let (certain, limit) = h.since_roughly(&entry.instant, omega);
+        (certain, limit + BEYOND / omega)
+    });
     let next = |root: &Root| {
         let instant = entry.instant.after(root.elapsed(), omega);
         (instant, model.forcing_angle(&instant))
