@@ -8,9 +8,10 @@
 //! [`search`] walks from the start of the phase in pieces. A piece counts as done only if a
 //! [`certificate`] proves that the guard stays inside its corridor there, and a root is accepted only
 //! as the right end of a certified piece. Guesses propose where pieces end; a bad guess costs
-//! evaluations, never a crossing. A long piece is certified in fixed strides from its ends ([`walk`],
-//! [`swing`]), which need no evaluation; where a certificate fails the piece is divided; if the guard is
-//! outside at the division, an earlier crossing is bracketed and takes the place of the right end.
+//! evaluations, never a crossing. A whole flight is mostly certified by [`tangents`], a whole progression by
+//! an inequality. A long piece is certified in fixed strides from its ends ([`walk`], [`swing`]), which need
+//! no evaluation; where a certificate fails the piece is divided; if the guard is outside at the division, an
+//! earlier crossing is bracketed and takes the place of the right end.
 //! What the guards can prove about whole futures (the mass never returns, never stops, rests for
 //! ever) comes from bounds on the slow part of the motion ([`trend`], and the energy of the free
 //! oscillation in contact).
