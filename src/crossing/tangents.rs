@@ -8,7 +8,7 @@
 //! places. Behind the last of them that lies before r there is a chord to r, or the tangent there.
 //!
 //! Near the double zero at the start E does not help. There h itself is concave as long as F is
-//! negative; or, up to z = [`PARTING`] decay times, q0 (exp(-z) - 1 + z) >= [`GRIP`] q0 z^2/2 outweighs
+//! negative; or, up to z = [`PARTING`](crate::flow::stride::PARTING) decay times, q0 (exp(-z) - 1 + z) >= [`GRIP`] q0 z^2/2 outweighs
 //! the force, if GRIP q0 rate^2 exceeds the largest force. What neither serves is left to
 //! [`crate::crossing::walk`].
 
