@@ -82,10 +82,8 @@ impl Piece {
     pub fn verdict(&self, corridor: &Corridor, ends: Ends, slack: f64) -> Verdict {
         let (pairs, middle) = self.coefficients();
         let mut excesses = pairs.map(|pair| pair.map(|coefficient| corridor.excess(coefficient)));
-        let square = self.length * self.length;
-        let scale = square * square * (square * square) * (1.0 / MIDDLE);
-        let up = middle + larger(self.eighth.1, 0.0) * scale - corridor.high;
-        let down = corridor.low - middle - smaller(self.eighth.0, 0.0) * scale;
+        let (lowest, highest) = self.bounds(middle);
+        let (up, down) = (highest - corridor.high, corridor.low - lowest);
         if ends.left {
             excesses[0][0] = f64::NEG_INFINITY;
         }
@@ -116,20 +114,24 @@ impl Piece {
     /// polynomials are divided at their crests, which takes no evaluation and narrows the hull.
     #[cold]
     pub fn stays_inside_in_parts(&self, corridor: &Corridor, ends: Ends, slack: f64) -> bool {
-        let ([a, b, c, d], middle) = self.coefficients();
-        let square = self.length * self.length;
-        let scale = square * square * (square * square) * (1.0 / MIDDLE);
-        let up = middle + larger(self.eighth.1, 0.0) * scale;
-        let down = middle + smaller(self.eighth.0, 0.0) * scale;
-        let all = |middle: f64| [a[0], b[0], c[0], d[0], middle, d[1], c[1], b[1], a[1]];
-        let size = all(up).iter().chain(&all(down)).fold(0.0, |size, c| larger(size, c.abs()));
+        let (pairs, middle) = self.coefficients();
+        let (lowest, highest) = self.bounds(middle);
+        let (below, above) = (in_order(pairs, lowest), in_order(pairs, highest));
+        let size = below.iter().chain(&above).fold(0.0, |size, c| larger(size, c.abs()));
         // Eight roundings more for each division.
         let slack = slack + 8.0 * f64::from(DIVISIONS + 1) * f64::EPSILON * size;
-        let excess = |sign: f64, middle: f64, threshold: f64| {
-            Excess(all(middle).map(|coefficient| sign * (coefficient - threshold)))
-        };
-        excess(1.0, up, corridor.high).is_negative(ends, slack, DIVISIONS)
-            && excess(-1.0, down, corridor.low).is_negative(ends, slack, DIVISIONS)
+        let over = Excess(above.map(|coefficient| coefficient - corridor.high));
+        let under = Excess(below.map(|coefficient| corridor.low - coefficient));
+        over.is_negative(ends, slack, DIVISIONS) && under.is_negative(ends, slack, DIVISIONS)
+    }
+
+    /// The middle coefficients of the polynomials that bound the guard from below and from above.
+    #[inline]
+    fn bounds(&self, middle: f64) -> (f64, f64) {
+        let square = self.length * self.length;
+        let scale = square * square * (square * square) * (1.0 / MIDDLE);
+        let (least, most) = self.eighth;
+        (middle + smaller(least, 0.0) * scale, middle + larger(most, 0.0) * scale)
     }
 
     /// Bernstein coefficients of degree eight of the Hermite interpolant: in pairs from both ends
@@ -192,9 +194,9 @@ impl Piece {
 
     fn sampled_crest(&self, corridor: &Corridor) -> f64 {
         const PLACES: i32 = 32;
-        let ([a, b, c, d], middle) = self.coefficients();
-        let coefficients = [a[0], b[0], c[0], d[0], middle, d[1], c[1], b[1], a[1]];
-        let excess = |s: &f64| corridor.excess(de_casteljau(coefficients, *s));
+        let (pairs, middle) = self.coefficients();
+        let coefficients = in_order(pairs, middle);
+        let excess = |s: &f64| corridor.excess(divided(coefficients, *s).1[0]);
         let places = (3..=PLACES - 3).map(|k| f64::from(k) / f64::from(PLACES));
         let crest = places.max_by(|s, t| excess(s).total_cmp(&excess(t)));
         self.length * crest.unwrap_or(0.5)
@@ -219,30 +221,32 @@ impl Excess {
         };
         // Written so that a NaN is not negative.
         let fails = |i: &usize| !(known(*i) || self.0[*i] < -slack);
-        let Some(first) = (0..9).find(fails) else { return true };
-        let ends_outside = |i: usize| !known(i) && fails(&i);
-        if divisions == 0 || ends_outside(0) || ends_outside(8) {
+        let crest = (0..9).filter(fails).max_by(|i, j| self.0[*i].total_cmp(&self.0[*j]));
+        let Some(crest) = crest else { return true };
+        if divisions == 0 || fails(&0) || fails(&8) {
             return false;
         }
-        let crest = (first..9).filter(fails).max_by(|i, j| self.0[*i].total_cmp(&self.0[*j]));
-        let place = (crest.unwrap_or(4) as f64 / 8.0).clamp(0.25, 0.75);
-        let (before, after) = self.divided(place);
-        before.is_negative(Ends { right: false, ..ends }, slack, divisions - 1)
-            && after.is_negative(Ends { right, ..Ends::FREE }, slack, divisions - 1)
+        let (before, after) = divided(self.0, (crest as f64 / 8.0).clamp(0.25, 0.75));
+        Self(before).is_negative(Ends { right: false, ..ends }, slack, divisions - 1)
+            && Self(after).is_negative(Ends { right, ..Ends::FREE }, slack, divisions - 1)
     }
+}
 
-    /// De Casteljau's division at a share of the length.
-    fn divided(&self, place: f64) -> (Self, Self) {
-        let mut points = self.0;
-        let (mut before, mut after) = ([0.0; 9], [0.0; 9]);
-        for order in (0..9).rev() {
-            (before[8 - order], after[order]) = (points[0], points[order]);
-            for i in 0..order {
-                points[i] += place * (points[i + 1] - points[i]);
-            }
+/// The coefficients from left to right.
+fn in_order([a, b, c, d]: [[f64; 2]; 4], middle: f64) -> [f64; 9] {
+    [a[0], b[0], c[0], d[0], middle, d[1], c[1], b[1], a[1]]
+}
+
+/// De Casteljau's division at a share of the length, where the later part begins with the value.
+fn divided(mut points: [f64; 9], place: f64) -> ([f64; 9], [f64; 9]) {
+    let (mut before, mut after) = ([0.0; 9], [0.0; 9]);
+    for order in (0..9).rev() {
+        (before[8 - order], after[order]) = (points[0], points[order]);
+        for i in 0..order {
+            points[i] += place * (points[i + 1] - points[i]);
         }
-        (Self(before), Self(after))
     }
+    (before, after)
 }
 
 /// The largest of four pairs and one more.
@@ -263,13 +267,4 @@ fn larger(a: f64, b: f64) -> f64 {
 #[inline]
 fn smaller(a: f64, b: f64) -> f64 {
     if a < b { a } else { b }
-}
-
-fn de_casteljau(mut points: [f64; 9], s: f64) -> f64 {
-    for order in (1..9).rev() {
-        for i in 0..order {
-            points[i] += s * (points[i + 1] - points[i]);
-        }
-    }
-    points[0]
 }
