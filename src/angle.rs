@@ -4,7 +4,7 @@
 //! of the two f64 values is known exactly in two words; so is its rest after division by 2 pi, if
 //! 1/(2 pi) is taken to enough bits (Payne and Hanek 1983).
 
-use crate::two_word::{TWO_PI, TwoWord};
+use crate::two_word::{TWO_PI, TwoWord, cut};
 
 /// The bits of 1/(2 pi) behind the binary point, most significant word first.
 const TURNS_PER_RADIAN: [u64; 9] = [
@@ -71,11 +71,6 @@ fn less_turns(rest: TwoWord, whole: f64) -> TwoWord {
     // more than a turn is left.
     let sum = TwoWord::sum(rest.high - whole * FIRST, -(whole * SECOND));
     TwoWord::sum(sum.high, sum.low + (rest.low - whole * THIRD))
-}
-
-/// The first 33 bits of a word.
-const fn cut(word: f64) -> f64 {
-    f64::from_bits(word.to_bits() & !((1 << 20) - 1))
 }
 
 /// Of more than 2^53 turns the first count is off by some.

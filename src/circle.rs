@@ -6,7 +6,7 @@
 //! fifths of a unit where the value is large, more units where it is small. Only additions and
 //! multiplications, hence the same bits on every platform.
 
-use crate::two_word::{TWO_PI, TwoWord};
+use crate::two_word::{TWO_PI, TwoWord, cut};
 
 /// Parts of a turn.
 const PARTS: usize = 64;
@@ -15,10 +15,7 @@ const PARTS: usize = 64;
 const LARGEST: f64 = 6e4;
 
 /// 2 pi/64 in three words, of which the first has 33 bits.
-const FIRST: f64 = {
-    let part = TWO_PI.high / PARTS as f64;
-    f64::from_bits(part.to_bits() & !((1 << 20) - 1))
-};
+const FIRST: f64 = cut(TWO_PI.high / PARTS as f64);
 const SECOND: f64 = (TWO_PI.high / PARTS as f64 - FIRST) + TWO_PI.low / PARTS as f64;
 
 /// Sine and cosine of a part's end.

@@ -99,6 +99,11 @@ impl TwoWord {
     }
 }
 
+/// The first 33 bits of a word: whole numbers below 2^20 times that are exact.
+pub(crate) const fn cut(word: f64) -> f64 {
+    f64::from_bits(word.to_bits() & !((1 << 20) - 1))
+}
+
 /// The exact sum where `|a| >= |b|`.
 const fn quick_sum(a: f64, b: f64) -> TwoWord {
     let high = a + b;
