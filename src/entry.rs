@@ -18,9 +18,7 @@ pub struct Entry {
 }
 
 /// How a phase begins: its kind, and what is known exactly at that instant.
-/// A whole word, for the reason that [`crate::leg::Endless`] is one.
 #[derive(Clone, Copy, Debug, PartialEq)]
-#[repr(u64)]
 pub(crate) enum Onset {
     /// No contact, the mass away from the slider: only ever at a start.
     Apart,

@@ -3,7 +3,7 @@
 use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
-use crate::crossing::series::{Push, REACH, SHORT_REACH, Series};
+use crate::crossing::series::{Push, SHORT_REACH, Series};
 use crate::crossing::swing::{Parts, Shape};
 use crate::crossing::trend::quick_decay;
 use crate::flow::contact::Contact;
@@ -169,14 +169,11 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         piece.worst_place(left.elapsed, &self.corridor())
     }
 
-    fn reaches(&self) -> [f64; 2] {
-        let rate = self.fastest_rate();
-        // Above critical damping the higher derivatives come from the series.
-        let few_terms = match self.constants.borrow().damping {
+    fn short_reach(&self) -> f64 {
+        match self.constants.borrow().damping {
             Damping::Over { .. } => 0.0,
             _ => SHORT_REACH,
-        };
-        [few_terms / rate, REACH / rate]
+        }
     }
 
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {

@@ -47,10 +47,16 @@ pub trait Guarded: Flow<f64> {
     /// The guard's Taylor series at an evaluation.
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N>;
 
-    /// How far that reaches with few terms, and with all.
+    /// How far that reaches with few terms, against the fastest rate: not at all where [`Self::continued`]
+    /// takes the higher derivatives from it.
+    fn short_reach(&self) -> f64 {
+        SHORT_REACH
+    }
+
+    /// How far it reaches with few terms, and with all.
     fn reaches(&self) -> [f64; 2] {
         let rate = self.fastest_rate();
-        [SHORT_REACH / rate, REACH / rate]
+        [self.short_reach() / rate, REACH / rate]
     }
 
     /// The motion a short `step` after an evaluation, where the guard has this value and slope.

@@ -64,8 +64,8 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
         self.0.divide(left, right)
     }
 
-    fn reaches(&self) -> [f64; 2] {
-        self.0.reaches()
+    fn short_reach(&self) -> f64 {
+        self.0.short_reach()
     }
 
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
