@@ -2,16 +2,9 @@
 //!
 //! # Certificate
 //!
-//! h = H - q with H'' = F, and -q is concave because q > 0: it lies below its tangent at the root r. So h is
-//! at most E = H + that tangent, E(r) = h(r) = 0 and E'' = F, whose sign is known: negative between the
-//! forcing angles t and 2 pi - t with cos t = -b/a. Where F is positive E is convex and lies below its chord.
-//! Where it is negative E is concave and lies below its tangents; at the ends of such a stretch sine and
-//! cosine are constants of the model. So a flight is proved by a parabola at a few places.
-//!
-//! Near the double zero at the start the tangent does not help. There h itself is concave as long as F is
-//! negative; or, up to two decay times d, q0 (exp(-z) - 1 + z) >= 0.5676 q0 z^2/2 outweighs the force if
-//! 0.5676 q0 rate^2 exceeds the largest force until then. Flights that meet neither are certified with great care: as the scalar solver
-//! certifies short ones ([`crate::crossing::no_contact`]).
+//! That of [`crate::crossing::tangents`], a lane's flight beside another's. Flights whose start neither concavity nor
+//! sinking clears are certified with great care, by three tangents more in a stretch or as the scalar solver certifies
+//! short ones ([`crate::crossing::no_contact`]).
 
 use super::certificate::Piece;
 use super::crest::{Bound, Tangent};
@@ -19,8 +12,9 @@ use super::functions::shrink;
 use super::guess::Trend;
 use super::harmonic::{Angle, Harmonic, change, shifted, short_decay};
 use super::root::{Care, Found, Phase, SHORT, find};
-use super::shape::{SETTLED, Shape};
+use super::shape::Shape;
 use super::wide::{Mask, Wide};
+use crate::flow::stride::{GRIP, PARTING};
 use pulp::Simd;
 use std::f64::consts::TAU;
 
@@ -64,8 +58,6 @@ pub struct Impact<S: Simd> {
 
 /// Decay times after which an exponential is less than 1e-19 of what it was.
 const DEAD: f64 = 45.0;
-/// 2 (exp(-2) - 1 + 2)/2^2, rounded down.
-const SINKING: f64 = 0.5676;
 /// Certified stretches in which the force is negative, after which a lane is left to the scalar solver.
 const STRETCHES: usize = 6;
 /// Nearer to a threshold than this, in units of the largest term, the scalar solver decides: it takes 4 eps.
@@ -245,7 +237,7 @@ impl<S: Simd> Flight<'_, S> {
         let bound = Bound::new(self, root, q);
 
         let concave_at_first = !angle.less(turning) & !(-turning + TAU).less(angle);
-        let settled = rate.same(SETTLED) / rate;
+        let settled = rate.same(PARTING) / rate;
         let concave_until = ((-turning + TAU) - angle) / omega;
         let Shape { settling_sin, settling_cos, .. } = *self.shape;
         let settled_sin = sin.times_plus(settling_cos, cos * settling_sin);
@@ -254,7 +246,7 @@ impl<S: Simd> Flight<'_, S> {
         let no_crest = settled.times_plus(omega, angle).below(TAU);
         let crest = no_crest.choose(cos.larger(settled_cos), cos.same(1.0));
         let strongest = a.times_plus(crest, b) + (a + b.abs()) * 1e-12;
-        let sinks = strongest.less(self.q * rate * rate * SINKING);
+        let sinks = strongest.less(self.q * rate * rate * GRIP);
         let by_sinking = sinks & !(concave_at_first & settled.less(concave_until));
         let start = by_sinking.choose(settled, concave_until);
         let start_sin = by_sinking.choose(settled_sin, -turning_sin);

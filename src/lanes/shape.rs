@@ -2,6 +2,7 @@
 
 use super::wide::{Column, Wide};
 use crate::constants::Constants;
+use crate::flow::stride::Strides;
 use crate::model::Model;
 use pulp::Simd;
 
@@ -195,10 +196,8 @@ impl Shape<f64> {
         if !suits {
             return None;
         }
-        let turning_cos = (-b / a).clamp(-1.0, 1.0);
-        let turning = libm::acos(turning_cos);
-        let (halfway_sin, halfway_cos) = libm::sincos(0.5 * (turning + std::f64::consts::PI));
-        let (settling_sin, settling_cos) = libm::sincos(omega * SETTLED / rate);
+        let Strides { turning, parting, .. } = *model.strides();
+        let (halfway_sin, halfway_cos) = libm::sincos(0.5 * (turning.angle + std::f64::consts::PI));
         let (look_sin, look_cos) = libm::sincos(LOOK);
         let look = LOOK / omega;
         let look_decay = libm::exp(-rate * look);
@@ -218,13 +217,13 @@ impl Shape<f64> {
             two_xi,
             rate,
             pace,
-            turning,
-            turning_sin: libm::sin(turning),
-            turning_cos,
+            turning: turning.angle,
+            turning_sin: turning.sin,
+            turning_cos: turning.cos,
             halfway_sin,
             halfway_cos,
-            settling_sin,
-            settling_cos,
+            settling_sin: parting.sin,
+            settling_cos: parting.cos,
             look,
             look_sin,
             look_cos,
@@ -233,6 +232,3 @@ impl Shape<f64> {
         })
     }
 }
-
-/// Decay times of the slider after which a flight is certified without its exponential's curvature.
-pub const SETTLED: f64 = 2.0;

@@ -156,19 +156,10 @@ impl<S: Simd> Swings<S> {
         let Shape { swing, swing_sin, swing_cos, swing_c, swing_s, swing_s_rate, .. } = *shape;
         let Shape { early_swing_sin, early_swing_cos, early_swing_c, early_swing_s_rate, .. } =
             *shape;
-        let full = Swing {
-            length: swing,
-            sin: swing_sin,
-            cos: swing_cos,
-            free: [swing_c, swing_s, swing_s_rate],
-        };
-        let first = Swing {
-            length: swing * shape.early,
-            sin: early_swing_sin,
-            cos: early_swing_cos,
-            free: [early_swing_c, swing_s, early_swing_s_rate],
-        };
-        Self::new(forms, first, full)
+        let free = [swing_c, swing_s, swing_s_rate];
+        let full = Swing { length: swing, sin: swing_sin, cos: swing_cos, free };
+        let early = [early_swing_sin, early_swing_cos, early_swing_c, early_swing_s_rate];
+        Self::new(shape, forms, full, early)
     }
 
     /// Of the pieces of a certificate.
@@ -177,26 +168,26 @@ impl<S: Simd> Swings<S> {
         let Shape { piece, piece_sin, piece_cos, piece_c, piece_s, piece_s_rate, .. } = *shape;
         let Shape { early_piece_sin, early_piece_cos, early_piece_c, early_piece_s_rate, .. } =
             *shape;
-        let full = Swing {
-            length: piece,
-            sin: piece_sin,
-            cos: piece_cos,
-            free: [piece_c, piece_s, piece_s_rate],
-        };
-        let first = Swing {
-            length: piece * shape.early,
-            sin: early_piece_sin,
-            cos: early_piece_cos,
-            free: [early_piece_c, piece_s, early_piece_s_rate],
-        };
-        Self::new(forms, first, full)
+        let free = [piece_c, piece_s, piece_s_rate];
+        let full = Swing { length: piece, sin: piece_sin, cos: piece_cos, free };
+        let early = [early_piece_sin, early_piece_cos, early_piece_c, early_piece_s_rate];
+        Self::new(shape, forms, full, early)
     }
 
+    /// From the full stride, and from sine, cosine, C and S' of the early one.
     #[inline(always)]
-    fn new(forms: Forms, first: Swing<S>, full: Swing<S>) -> Self {
+    fn new(
+        shape: &Shape<Wide<S>>,
+        forms: Forms,
+        full: Swing<S>,
+        [sin, cos, c, s_rate]: [Wide<S>; 4],
+    ) -> Self {
         let now = match forms {
             Forms::Usual => full,
-            Forms::Any => first,
+            Forms::Any => {
+                let [_, s, _] = full.free;
+                Swing { length: full.length * shape.early, sin, cos, free: [c, s, s_rate] }
+            }
         };
         Self { now, full, forms }
     }
