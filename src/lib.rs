@@ -23,6 +23,7 @@ pub mod crossing;
 pub mod dynamics;
 mod entry;
 mod error;
+mod exponential;
 pub mod flow;
 mod growth;
 mod instant;

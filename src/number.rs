@@ -4,6 +4,7 @@
 //! other arithmetic that wraps itself in this trait.
 
 use crate::circle;
+use crate::exponential;
 use crate::two_word::TwoWord;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -99,7 +100,7 @@ impl Number for f64 {
 
     #[inline]
     fn exp(self) -> Self {
-        libm::exp(self)
+        exponential::exp(self)
     }
 
     #[inline]

@@ -29,7 +29,7 @@ pub struct Decay<T> {
 }
 
 /// Sine, cosine and remainders of `x`: relative error of a few eps for `|x| <= 1`, absolute beyond.
-#[inline]
+#[inline(always)]
 pub fn circular<T: Number>(x: T) -> Circular<T> {
     if x.abs() < T::one() {
         let square = x * x;
@@ -44,7 +44,7 @@ pub fn circular<T: Number>(x: T) -> Circular<T> {
 }
 
 /// Circular functions of the product `rate * time`, whose rounding error is known and put back.
-#[inline]
+#[inline(always)]
 pub fn circular_of<T: Number>(x: T, correction: T) -> Circular<T> {
     let mut it = circular(x);
     // First order in the correction, which is below eps |x|.
@@ -56,7 +56,7 @@ pub fn circular_of<T: Number>(x: T, correction: T) -> Circular<T> {
 }
 
 /// exp(-z) and its remainders: relative error of a few eps where `|z| <= 1/2`, absolute beyond.
-#[inline]
+#[inline(always)]
 pub fn decay<T: Number>(z: T) -> Decay<T> {
     if z.abs() < T::exact(0.5) {
         let square = z * z;
@@ -75,20 +75,27 @@ pub fn decay<T: Number>(z: T) -> Decay<T> {
 /// -1/n! + s/(n+2)! - s^2/(n+4)! + ...
 #[inline]
 fn alternating<T: Number>(square: T, n: usize) -> T {
-    let mut sum = T::zero();
-    for k in (0..T::TERMS).rev() {
-        sum = T::inverse_factorial(n + 2 * k) - square * sum;
-    }
-    -sum
+    let (even, odd) = every_other(square, n, T::TERMS);
+    square * odd - even
 }
 
 /// 1/n! + s/(n+2)! + s^2/(n+4)! + ...
 #[inline]
 fn same_sign<T: Number>(square: T, n: usize) -> T {
-    let mut sum = T::zero();
     // s < 1/4 here: one term in four less than at argument 1.
-    for k in (0..T::TERMS - T::TERMS / 4).rev() {
-        sum = T::inverse_factorial(n + 2 * k) + square * sum;
+    let (even, odd) = every_other(square, n, T::TERMS - T::TERMS / 4);
+    even + square * odd
+}
+
+/// 1/n! + s^2/(n+4)! + ... and 1/(n+2)! + s^2/(n+6)! + ..., so many terms in all: two chains that run side by
+/// side, each half as long.
+#[inline]
+fn every_other<T: Number>(square: T, n: usize, terms: usize) -> (T, T) {
+    let fourth = square * square;
+    let mut sums = [T::zero(); 2];
+    for k in (0..terms).rev() {
+        sums[k % 2] = T::inverse_factorial(n + 2 * k) + fourth * sums[k % 2];
     }
-    sum
+    let [even, odd] = sums;
+    (even, odd)
 }
