@@ -23,6 +23,8 @@ pub struct Constants<T> {
     pub two_xi: T,
     /// 1/(2 xi), the rate at which the free slider returns.
     pub rate: T,
+    /// 1/a; zero without harmonic force.
+    pub per_a: T,
     /// a/omega
     pub a_over_omega: T,
     /// a/omega^2
@@ -31,12 +33,16 @@ pub struct Constants<T> {
     pub omega2: T,
     /// The eighth power of 1/(2 xi).
     pub rate8: T,
+    /// 1/omega
+    pub per_omega: T,
     /// 1/omega^2
     pub per_omega2: T,
     /// omega^6
     pub omega6: T,
     /// Free oscillation in contact.
     pub damping: Damping<T>,
+    /// What makes the eighth derivative of a free oscillation and the ninth of it and its rate.
+    pub free_eighth: [[T; 2]; 2],
     /// Forced oscillation in contact.
     pub forced: Forced<T>,
     /// A bound of the eighth derivative of the forced part of the trial force.
@@ -67,16 +73,31 @@ impl<T: Number> Constants<T> {
             g,
             two_xi,
             rate,
+            per_a: if a > T::zero() { T::one() / a } else { T::zero() },
             a_over_omega: a / omega,
             a_over_omega2: a / omega2,
             omega2,
             rate8: rate4 * rate4,
+            per_omega: T::one() / omega,
             per_omega2: T::one() / omega2,
             omega6: omega2 * omega4,
             damping,
+            free_eighth: free_eighth(two_xi),
             forced: Forced::new(xi, omega),
             forced_eighth: steady.amplitude * (omega4 * omega4),
             steady,
         }
     }
+}
+
+/// From x'' + 2 xi x' + x = 0, which holds for every derivative of x as well.
+fn free_eighth<T: Number>(two_xi: T) -> [[T; 2]; 2] {
+    let of = |mut x: T, mut rate: T| {
+        for _ in 0..8 {
+            (x, rate) = (rate, -(two_xi * rate + x));
+        }
+        [x, rate]
+    };
+    let ([a, c], [b, d]) = (of(T::one(), T::zero()), of(T::zero(), T::one()));
+    [[a, b], [c, d]]
 }

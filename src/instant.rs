@@ -79,11 +79,28 @@ impl Instant {
     }
 
     /// The instant a time `elapsed >= 0` later.
+    #[inline(always)]
     #[must_use]
     pub fn after(&self, elapsed: TwoWord, omega: f64) -> Self {
-        let (cycle, angle) =
-            angle::wrap(self.cycle, self.angle.plus_positive(elapsed.times(omega)));
+        let (cycle, angle) = angle::wrap(self.cycle, self.angle.plus_product(elapsed, omega));
         Self { cycle, angle }
+    }
+
+    /// The same with the forcing angle there, whose sine does not wait until whole turns have come off.
+    #[inline(always)]
+    pub(crate) fn after_with_forcing(
+        &self,
+        elapsed: TwoWord,
+        omega: f64,
+        phi: TwoWord,
+    ) -> (Self, EntryAngle<f64>) {
+        /// Up to here the angle's second word is a first-order correction of its sine.
+        const FAR: f64 = 1e3;
+        let angle = self.angle.plus_product(elapsed, omega);
+        let (cycle, wrapped) = angle::wrap(self.cycle, angle);
+        let instant = Self { cycle, angle: wrapped };
+        let (sin, cos) = sin_cos(with_phase(if angle.high < FAR { angle } else { wrapped }, phi));
+        (instant, EntryAngle { radians: instant.radians(phi), sin, cos })
     }
 
     /// The instant `numerator / denominator` forcing periods later.
@@ -105,18 +122,30 @@ impl Instant {
     }
 
     /// The forcing angle with its phase, `omega tau + phi`.
-    #[inline]
     #[must_use]
     pub(crate) fn forcing(&self, phi: TwoWord) -> EntryAngle<f64> {
-        let angle = if phi == TwoWord::ZERO { self.angle } else { self.angle.plus_positive(phi) };
-        let (sine, cosine) = circle::sin_cos(angle.high);
-        let turn = if angle.high < TWO_PI.high { 0.0 } else { TWO_PI.high };
-        EntryAngle {
-            radians: angle.high - turn,
-            sin: sine + angle.low * cosine,
-            cos: cosine - angle.low * sine,
-        }
+        let (sin, cos) = sin_cos(with_phase(self.angle, phi));
+        EntryAngle { radians: self.radians(phi), sin, cos }
     }
+
+    /// The same within `[0, 2 pi)`, rounded.
+    #[inline(always)]
+    fn radians(&self, phi: TwoWord) -> f64 {
+        let high = with_phase(self.angle, phi).high;
+        high - if high < TWO_PI.high { 0.0 } else { TWO_PI.high }
+    }
+}
+
+#[inline(always)]
+fn with_phase(angle: TwoWord, phi: TwoWord) -> TwoWord {
+    if phi == TwoWord::ZERO { angle } else { angle.plus_positive(phi) }
+}
+
+/// Sine and cosine of an angle whose second word is small.
+#[inline(always)]
+fn sin_cos(angle: TwoWord) -> (f64, f64) {
+    let (sine, cosine) = circle::sin_cos(angle.high);
+    (sine + angle.low * cosine, cosine - angle.low * sine)
 }
 
 impl PartialOrd for Instant {

@@ -1,9 +1,8 @@
 //! One phase of a run: where it begins, how long it lasts, and anything inside it on demand.
 
 use crate::constants::Constants;
-use crate::crossing::search::first_crossing_and;
 use crate::crossing::stepping;
-use crate::crossing::{Counters, Crossing, Root};
+use crate::crossing::{Counters, Crossing};
 use crate::entry::{Entry, Onset};
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
@@ -14,6 +13,7 @@ use crate::model::{Model, Motion};
 use crate::phase::Phase;
 use crate::state::State;
 use crate::surface::{self, FOUR_ULPS};
+use crate::switch::{Begun, End, Passed, pass};
 use crate::two_word::TwoWord;
 
 /// The motion at some instant.
@@ -61,87 +61,29 @@ pub struct Leg {
     constants: Constants<f64>,
 }
 
-/// A phase that may have come to its end.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Passed {
-    /// How it ends.
-    pub exit: Exit,
-    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless.
-    pub duration: TwoWord,
-    /// The forcing angle at which the next phase begins, if one does.
-    pub angle: Option<EntryAngle<f64>>,
-}
-
-/// Finds how the phase that begins at `entry`, under this forcing angle, ends; switches after `horizon`
-/// do not count.
-pub(crate) fn pass(
-    model: &Model,
-    entry: &Entry,
-    angle: EntryAngle<f64>,
-    horizon: Option<&Instant>,
-    counters: &mut Counters,
-) -> Passed {
-    let omega = model.parameters().omega;
-    let motion = Motion::new(model.constants(), entry, angle);
-    let strides = model.strides();
-    // The horizon in two words is computed only where it matters. It is looked beyond by more than guesses
-    // err, so that a switch next to it is found as without it; its instant decides.
-    const BEYOND: f64 = 0.1;
-    let (certain, limit) = horizon.map_or((f64::INFINITY, f64::INFINITY), |h| {
-        let (certain, limit) = h.since_roughly(&entry.instant, omega);
-        (certain, limit + BEYOND / omega)
-    });
-    let next = |root: &Root| {
-        let instant = entry.instant.after(root.elapsed(), omega);
-        (instant, model.forcing_angle(&instant))
-    };
-    let (crossing, next) = match &motion {
-        Motion::NoContact(flight) => first_crossing_and((flight, strides), limit, counters, next),
-        Motion::Contact(contact) => first_crossing_and((contact, strides), limit, counters, next),
-        Motion::Progression(slip) => first_crossing_and((slip, strides), limit, counters, next),
-    };
-    let left = || horizon.map_or(f64::INFINITY, |h| h.since(&entry.instant, omega).value());
-    let ended = |exit, duration| Passed { exit, duration: TwoWord::new(duration), angle: None };
-    match (crossing, next) {
-        (Crossing::At(root), Some((instant, angle))) => {
-            let elapsed = root.elapsed();
-            if elapsed.high > certain && horizon.is_some_and(|horizon| instant > *horizon) {
-                return ended(Exit::Horizon, left());
-            }
-            counters.switches += 1;
-            let next = Entry { instant, ..land(model, entry, &motion, &root) };
-            Passed { exit: Exit::Switch(next), duration: elapsed, angle: Some(angle) }
-        }
-        (Crossing::Never, _) if certain > 0.0 || left() > 0.0 => {
-            ended(Exit::Endless(endless(entry.phase())), f64::INFINITY)
-        }
-        _ => ended(Exit::Horizon, left()),
-    }
-}
-
 impl Leg {
-    /// The phase that begins at `entry` ([`pass`]).
+    /// The phase that has begun; if a switch ends it, `begun` becomes the next one ([`pass`]).
     pub(crate) fn new(
         model: &Model,
-        entry: Entry,
+        begun: &mut Begun,
         horizon: Option<&Instant>,
         counters: &mut Counters,
     ) -> Self {
-        let angle = model.forcing_angle(&entry.instant);
-        let Passed { exit, duration, .. } = pass(model, &entry, angle, horizon, counters);
-        Self::passed(model, entry, angle, exit, duration)
+        let before = *begun;
+        let passed = pass(model, begun, horizon, counters);
+        Self::passed(model, &before, &passed, &begun.entry)
     }
 
-    /// The phase that has been passed so.
+    /// The phase that has been passed so, and how the next one begins if a switch has ended it.
     #[inline]
-    pub(crate) fn passed(
-        model: &Model,
-        entry: Entry,
-        angle: EntryAngle<f64>,
-        exit: Exit,
-        duration: TwoWord,
-    ) -> Self {
-        Self { entry, exit, duration, angle, constants: *model.constants() }
+    pub(crate) fn passed(model: &Model, begun: &Begun, passed: &Passed, next: &Entry) -> Self {
+        let Begun { entry, angle, .. } = *begun;
+        let exit = match passed.end {
+            End::Switch => Exit::Switch(*next),
+            End::Horizon => Exit::Horizon,
+            End::Endless(why) => Exit::Endless(why),
+        };
+        Self { entry, exit, duration: passed.duration, angle, constants: *model.constants() }
     }
 
     pub(crate) fn constants(&self) -> &Constants<f64> {
@@ -304,51 +246,4 @@ impl Leg {
     pub fn ends_by(&self, instant: &Instant) -> bool {
         matches!(&self.exit, Exit::Switch(next) if next.instant <= *instant)
     }
-}
-
-fn endless(phase: Phase) -> Endless {
-    match phase {
-        Phase::NoContact => Endless::NeverReturns,
-        Phase::Contact => Endless::RestsForEver,
-        Phase::Progression => Endless::NeverStops,
-    }
-}
-
-/// The next phase's beginning (its instant still that of `entry`), with what is known imposed.
-fn land(model: &Model, entry: &Entry, motion: &Motion, root: &Root) -> Entry {
-    let point = &root.point;
-    let constants = model.constants();
-    let (state, onset) = match motion {
-        Motion::NoContact(_) => {
-            let f = constants.two_xi * point.guard.orders[1];
-            let (state, onset) = surface::onset(constants, point.state, Some(f), point.force);
-            match onset {
-                // The gap closed, by however little: a contact, which may end at once.
-                Onset::Separation { .. } => {
-                    (state, Onset::Contact { offset: f.max(0.0), reference: 0.0 })
-                }
-                onset => (state, onset),
-            }
-        }
-        Motion::Contact(_) => {
-            let threshold = if root.rises() { 1.0 } else { 0.0 };
-            let y = point.state.y;
-            let q = threshold - constants.two_xi * y;
-            let onset = if root.rises() {
-                Onset::Progression { drift_rate: 0.0, closing: y }
-            } else {
-                Onset::Separation { h_rate: 0.0 }
-            };
-            (State { p: q + constants.g, y, q }, onset)
-        }
-        Motion::Progression(_) => {
-            let y = point.slider_velocity;
-            let q = 1.0 - constants.two_xi * y;
-            (State { p: q + constants.g, y, q }, Onset::Contact { offset: 0.0, reference: 1.0 })
-        }
-    };
-    // Only a progression drifts.
-    let still = point.drift == 0.0;
-    let drift = if still { entry.drift } else { entry.drift.plus(TwoWord::new(point.drift)) };
-    Entry { instant: entry.instant, state, drift, onset }
 }

@@ -38,6 +38,7 @@ pub mod remainders;
 mod start;
 mod state;
 mod surface;
+mod switch;
 mod trajectory;
 pub mod two_word;
 pub mod variation;

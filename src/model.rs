@@ -96,6 +96,16 @@ impl Model {
         instant.forcing(self.phi)
     }
 
+    /// The instant a time `elapsed` later, with the same there.
+    #[inline(always)]
+    pub(crate) fn instant_after(
+        &self,
+        instant: &Instant,
+        elapsed: TwoWord,
+    ) -> (Instant, EntryAngle<f64>) {
+        instant.after_with_forcing(elapsed, self.parameters.omega, self.phi)
+    }
+
     /// The external force a cos(omega tau + phi) + b and its first two derivatives.
     #[must_use]
     pub fn force(&self, instant: &Instant) -> [f64; 3] {

@@ -15,6 +15,7 @@ pub(crate) const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
 ///
 /// `force` is the external force with its first two derivatives; `f` is the trial force if it is
 /// known better than as 2 xi y + q.
+#[inline(always)]
 pub(crate) fn onset(
     constants: &Constants<f64>,
     mut state: State,

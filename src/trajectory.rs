@@ -2,33 +2,36 @@
 
 use crate::crossing::Counters;
 use crate::entry::Entry;
-use crate::flow::forcing::EntryAngle;
 use crate::instant::Instant;
-use crate::leg::{Exit, Leg, Passed, pass};
+use crate::leg::{Exit, Leg};
 use crate::model::Model;
+use crate::switch::{Begun, End, Passed, pass};
 use crate::two_word::TwoWord;
 
 /// An iterator over the phases of a run; memory does not grow with its length.
+///
+/// A run taken up at one of its phases goes on as it did to within rounding, not to the last bit: a root is
+/// computed from where it was guessed, and what is guessed depends on the phase before.
 ///
 /// It ends after a phase that reaches the horizon or never ends; without a horizon and as long as
 /// switches come it goes on for ever.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     model: Model,
-    next: Option<(Entry, EntryAngle<f64>)>,
+    next: Option<Begun>,
     horizon: Option<Instant>,
     counters: Counters,
 }
 
 /// One phase passed ([`Trajectory::step`]).
 #[derive(Clone, Debug)]
-pub enum Step {
+pub enum Step<'a> {
     /// It ends by a switch.
     Switch {
         /// How long it lasts.
         duration: TwoWord,
         /// How the next phase begins.
-        next: Entry,
+        next: &'a Entry,
     },
     /// It is the run's last: cut by the horizon, or endless.
     Last(Box<Leg>),
@@ -38,8 +41,7 @@ impl Model {
     /// The run that begins at `entry`.
     #[must_use]
     pub fn trajectory(&self, entry: Entry) -> Trajectory {
-        let angle = self.forcing_angle(&entry.instant);
-        let next = Some((entry, angle));
+        let next = Some(Begun::at(self, entry));
         Trajectory { model: *self, next, horizon: None, counters: Counters::default() }
     }
 }
@@ -59,23 +61,26 @@ impl Trajectory {
     }
 
     /// Passes the next phase; unlike iterating without keeping it, at less cost.
-    pub fn step(&mut self) -> Option<Step> {
-        let (entry, angle) = self.next?;
-        let Passed { exit, duration, .. } = self.go_on(&entry, angle);
-        Some(match exit {
-            Exit::Switch(next) => Step::Switch { duration, next },
-            _ => Step::Last(Box::new(Leg::passed(&self.model, entry, angle, exit, duration))),
-        })
+    #[inline]
+    pub fn step(&mut self) -> Option<Step<'_>> {
+        let begun = self.next.as_mut()?;
+        let passed = pass(&self.model, begun, self.horizon.as_ref(), &mut self.counters);
+        match passed.end {
+            End::Switch => {
+                let next = &self.next.as_ref()?.entry;
+                Some(Step::Switch { duration: passed.duration, next })
+            }
+            End::Horizon | End::Endless(_) => {
+                self.last(&passed).map(|leg| Step::Last(Box::new(leg)))
+            }
+        }
     }
 
-    #[inline]
-    fn go_on(&mut self, entry: &Entry, angle: EntryAngle<f64>) -> Passed {
-        let passed = pass(&self.model, entry, angle, self.horizon.as_ref(), &mut self.counters);
-        self.next = match (&passed.exit, passed.angle) {
-            (Exit::Switch(next), Some(angle)) => Some((*next, angle)),
-            _ => None,
-        };
-        passed
+    /// The phase that no other follows.
+    #[cold]
+    fn last(&mut self, passed: &Passed) -> Option<Leg> {
+        let begun = self.next.take()?;
+        Some(Leg::passed(&self.model, &begun, passed, &begun.entry))
     }
 
     /// The model that runs.
@@ -89,8 +94,11 @@ impl Iterator for Trajectory {
     type Item = Leg;
 
     fn next(&mut self) -> Option<Leg> {
-        let (entry, angle) = self.next?;
-        let Passed { exit, duration, .. } = self.go_on(&entry, angle);
-        Some(Leg::passed(&self.model, entry, angle, exit, duration))
+        let begun = self.next.as_mut()?;
+        let leg = Leg::new(&self.model, begun, self.horizon.as_ref(), &mut self.counters);
+        if !matches!(leg.exit(), Exit::Switch(_)) {
+            self.next = None;
+        }
+        Some(leg)
     }
 }

@@ -74,6 +74,14 @@ impl TwoWord {
         quick_sum(high.high, high.low + (self.low + other.low))
     }
 
+    /// `self + time * rate` where none of them is negative.
+    #[must_use]
+    pub const fn plus_product(self, time: Self, rate: f64) -> Self {
+        let product = Self::product(time.high, rate);
+        let high = Self::sum(self.high, product.high);
+        quick_sum(high.high, high.low + (self.low + (product.low + time.low * rate)))
+    }
+
     /// `self * factor`.
     #[must_use]
     pub const fn times(self, factor: f64) -> Self {
@@ -124,6 +132,18 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
+        #[test]
+        fn a_product_is_added_as_it_would_be_by_itself(
+            a in 0.0..7.0_f64, time in 0.0..1e3_f64, rate in 0.01..100.0_f64, low in (-1.0..1.0_f64, -1.0..1.0_f64),
+        ) {
+            let word = |high: f64, low: f64| TwoWord::sum(high, 0.5 * f64::EPSILON * high * low);
+            let (a, time) = (word(a, low.0), word(time, low.1));
+            let rest = a.plus_product(time, rate).minus(a.plus(time.times(rate))).value();
+            // Three roundings of words below eps of the sum.
+            let size = a.high + time.high * rate;
+            prop_assert!(rest.abs() <= 3.0 * f64::EPSILON * f64::EPSILON * size);
+        }
+
         #[test]
         fn product_agrees_with_integers(a in -1_i64 << 50..1_i64 << 50, b in -1_i64 << 50..1_i64 << 50) {
             let product = TwoWord::product(a as f64, b as f64);

@@ -55,7 +55,7 @@ fn steps_are_what_iterating_gives() {
     for leg in model.trajectory(entry).until(horizon) {
         match (run.step().unwrap(), leg.exit()) {
             (Step::Switch { duration, next }, exit) => {
-                assert_eq!(Exit::Switch(next), *exit);
+                assert_eq!(Exit::Switch(*next), *exit);
                 assert_eq!(duration.value(), leg.duration());
             }
             (Step::Last(last), exit) => {

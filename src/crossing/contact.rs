@@ -36,16 +36,18 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         Split { free, amplitude: constants.steady.amplitude }
     }
 
-    /// A bound of the eighth derivative of the free part from `at` on.
-    ///
-    /// x'' + 2 xi x' + x = 0 holds for every derivative of x as well, and x^2 + x'^2 never grows.
+    /// A bound of the eighth derivative of the free part from `at` on: x^2 + x'^2 never grows, of no
+    /// derivative.
     fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
-        let two_xi = self.constants.borrow().two_xi;
-        let (mut x, mut rate) = (split.free[0], split.free[1]);
-        for _ in 0..8 {
-            (x, rate) = (rate, -(two_xi * rate + x));
-        }
-        let by_energy = (x * x + rate * rate).sqrt();
+        /// Of eight steps of the recurrence, and of the sums here.
+        const ROUNDINGS: f64 = 16.0;
+        let [[a, b], [c, d]] = self.constants.borrow().free_eighth;
+        let [x, rate, ..] = split.free;
+        let [ax, br, cx, dr] = [a * x, b * rate, c * x, d * rate];
+        let (eighth, ninth) = (ax + br, cx + dr);
+        let terms = (ax.abs() + br.abs()) + (cx.abs() + dr.abs());
+        let room = ROUNDINGS * f64::EPSILON * terms;
+        let by_energy = (eighth * eighth + ninth * ninth).sqrt() + room;
         if let Damping::Over { fast, slow, .. } = self.constants.borrow().damping {
             // Eight derivatives of a stiff oscillation are rounding once its fast part has died out.
             let quick = self.fast_amplitude(split) * quick_decay(fast * at.elapsed);
@@ -122,6 +124,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         Ends { left: self.offset == 0.0, left_double: false, right: false }
     }
 
+    #[inline(always)]
     fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
         self.ahead(strides, left, limit)
     }
@@ -190,6 +193,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         })
     }
 
+    #[inline(always)]
     fn continued<const N: usize>(
         &self,
         at: &Point<f64>,

@@ -12,6 +12,7 @@ use std::borrow::Borrow;
 
 impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// A guess, or a proof, about what comes after `left`.
+    #[inline(always)]
     pub(super) fn ahead(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
         if let Some(time) = self.soon(left) {
             return Outlook::Root(time);
@@ -59,6 +60,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     }
 
     /// The first place where a cubic from `left` leaves the corridor, if that is soon.
+    #[inline(always)]
     fn soon(&self, left: &Point<f64>) -> Option<f64> {
         const SOON: f64 = 0.4;
         let [f, f1, f2, f3] = left.guard.orders;
@@ -87,6 +89,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// A guess of the first exit, or where the look-out for it has ended: in strides as the free
     /// oscillation moves, about which a fast forcing only ripples; in shorter and then longer ones under
     /// strong damping, as its fast part lives and dies.
+    #[inline(always)]
     fn exit(&self, strides: &Strides, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
         const QUICK: usize = 16;
         const STEPS: usize = 24;

@@ -49,6 +49,7 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
     }
 
     /// Just after separation h = h2 d^2/2 + h3 d^3/6 + h4 d^4/24.
+    #[inline(always)]
     fn short_hop(&self, entry: &Point<f64>) -> Option<f64> {
         let [.., h2, h3] = entry.guard.orders;
         let spring = self.entry.q * self.constants.borrow().rate.powi(4);
@@ -93,6 +94,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         Ends { left: self.surface.is_some(), left_double: self.separates(), right: false }
     }
 
+    #[inline(always)]
     fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
         let first = left.elapsed == 0.0;
         if first
@@ -166,6 +168,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         })
     }
 
+    #[inline(always)]
     fn continued<const N: usize>(
         &self,
         at: &Point<f64>,

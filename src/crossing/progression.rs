@@ -35,6 +35,7 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
     }
 
     /// Just after a switch from contact w = w1 d + w2 d^2/2 + w3 d^3/6.
+    #[inline(always)]
     fn short_slip(&self, entry: &Point<f64>) -> Option<f64> {
         let [_, w1, w2, w3] = entry.guard.orders;
         let discriminant = 9.0 * w2 * w2 - 24.0 * w1 * w3;
@@ -73,6 +74,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         Ends { left: self.drift_rate == 0.0, left_double: false, right: false }
     }
 
+    #[inline(always)]
     fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
         if left.elapsed == 0.0
             && let Some(slip) = self.short_slip(left)
@@ -142,6 +144,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         })
     }
 
+    #[inline(always)]
     fn continued<const N: usize>(
         &self,
         at: &Point<f64>,

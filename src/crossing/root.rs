@@ -7,9 +7,17 @@ use crate::flow::Point;
 use crate::two_word::TwoWord;
 
 /// Evaluates with counting.
+#[inline(always)]
 pub fn evaluate<G: Guarded>(phase: &G, elapsed: f64, counters: &mut Counters) -> Point<f64> {
     counters.evaluations += 1;
     phase.at(elapsed)
+}
+
+/// The same out of the way of what every switch takes.
+#[cold]
+#[inline(never)]
+pub fn evaluate_again<G: Guarded>(phase: &G, elapsed: f64, counters: &mut Counters) -> Point<f64> {
+    evaluate(phase, elapsed, counters)
 }
 
 /// The step from a point to where its cubic meets the nearer threshold, and that threshold's side.
@@ -171,7 +179,7 @@ pub fn follow<G: Guarded>(
             return polished(phase, &point, &cubic).ok_or(point);
         }
         last_step = step.abs();
-        point = evaluate(phase, next, counters);
+        point = evaluate_again(phase, next, counters);
     }
     Err(point)
 }
@@ -208,7 +216,7 @@ pub fn bracketed<G: Guarded>(
         }
         let interior = root > inside && root < outside;
         let next = if within && interior { root } else { middle };
-        point = evaluate(phase, next, counters);
+        point = evaluate_again(phase, next, counters);
         if corridor.excess(point.guard.orders[0]) >= 0.0 {
             outside = next;
             // An earlier excursion may be through the other threshold.

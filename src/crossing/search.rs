@@ -2,7 +2,7 @@
 
 use crate::crossing::certificate::{Ends, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
-use crate::crossing::root::{bracketed, evaluate, follow, middle};
+use crate::crossing::root::{bracketed, evaluate_again, follow, middle};
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::Point;
 use crate::flow::stride::Strides;
@@ -34,7 +34,7 @@ pub fn first_crossing<G: Guarded>(
     horizon: f64,
     counters: &mut Counters,
 ) -> Crossing {
-    first_crossing_and((phase, strides), horizon, counters, |_| ()).0
+    first_crossing_and((phase, strides), None, horizon, counters, |_| ()).0
 }
 
 /// The same with what follows from a crossing.
@@ -45,6 +45,7 @@ pub fn first_crossing<G: Guarded>(
 #[inline]
 pub fn first_crossing_and<G: Guarded, T>(
     (phase, strides): (&G, &Strides),
+    guess: Option<f64>,
     horizon: f64,
     counters: &mut Counters,
     next: impl Fn(&Root) -> T,
@@ -53,7 +54,10 @@ pub fn first_crossing_and<G: Guarded, T>(
         return (Crossing::Horizon, None);
     }
     let left = phase.entry();
-    let outlook = phase.outlook(strides, &left, horizon);
+    let outlook = match guess {
+        Some(time) => Outlook::Root(time),
+        None => phase.outlook(strides, &left, horizon),
+    };
     let mut tried = None;
     if let Outlook::Root(time) = outlook
         && time > 0.0
@@ -102,7 +106,7 @@ fn search<G: Guarded>(
                 if time >= horizon {
                     return Crossing::Horizon;
                 }
-                let point = evaluate(phase, time, counters);
+                let point = evaluate_again(phase, time, counters);
                 let target = inside_or_root(phase, &left, Target::Point(point), counters);
                 if !target.is_root() {
                     left = point;
@@ -123,7 +127,11 @@ fn search<G: Guarded>(
                         stride *= 2.0;
                         let least = (left.elapsed + stride).min(horizon);
                         let near = point.elapsed < least;
-                        Target::Point(if near { evaluate(phase, least, counters) } else { point })
+                        Target::Point(if near {
+                            evaluate_again(phase, least, counters)
+                        } else {
+                            point
+                        })
                     }
                 }
             }
@@ -132,7 +140,7 @@ fn search<G: Guarded>(
                 if !time.is_finite() {
                     return Crossing::Horizon;
                 }
-                Target::Point(evaluate(phase, time, counters))
+                Target::Point(evaluate_again(phase, time, counters))
             }
         };
         match settle((phase, strides), left, ends, target, counters) {
@@ -216,7 +224,7 @@ fn divide<G: Guarded>(
             counters.divisions += 1;
             let proposed = phase.divide(&left, right);
             let place = between(left.elapsed, proposed, right.elapsed, pending.len());
-            let middle = evaluate(phase, place, counters);
+            let middle = evaluate_again(phase, place, counters);
             match inside_or_root(phase, &left, Target::Point(middle), counters) {
                 earlier @ Target::Root(_) => pending = vec![earlier],
                 inside @ Target::Point(_) => pending.push(inside),

@@ -72,6 +72,7 @@ impl Parts {
     }
 
     /// A guess of the first exit in so many strides, or the parts where they end.
+    #[inline(always)]
     pub fn first_exit(&self, shape: &Shape, swing: &Swing, strides: usize) -> Result<f64, Self> {
         let corridor = shape.corridor;
         let mut here = *self;
@@ -135,10 +136,11 @@ pub fn meeting(left: f64, right: f64, (left_slope, right_slope): (f64, f64)) -> 
     let rise = right - left;
     let second = 3.0 * rise - 2.0 * left_slope - right_slope;
     let third = left_slope + right_slope - 2.0 * rise;
-    let mut t = -left / rise;
-    for _ in 0..2 {
-        let value = left + t * (left_slope + t * (second + t * third));
-        t -= value / (left_slope + t * (2.0 * second + t * (3.0 * third)));
-    }
+    // Halley's method from the chord: one step where Newton's takes two, with a division less.
+    let chord = -left / rise;
+    let value = left + chord * (left_slope + chord * (second + chord * third));
+    let slope = left_slope + chord * (2.0 * second + chord * (3.0 * third));
+    let half_bend = second + chord * (3.0 * third);
+    let t = chord - value * slope / (slope * slope - value * half_bend);
     if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.5 }
 }

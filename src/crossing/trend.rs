@@ -97,6 +97,7 @@ impl Trend {
 
     /// Where the search should look after elapsed time `from`; `inside` as for the guess, which begins at
     /// a `place` before which there is nothing to be found.
+    #[inline(always)]
     pub fn outlook(
         &self,
         strides: &Strides,
@@ -157,6 +158,7 @@ impl Trend {
     /// A guess, not a proof, of the first rise of G to zero after this place; `inside` says that G is
     /// known to be negative just after it. None if there is none within three periods in which the
     /// bound allows one, or none before `limit`.
+    #[inline(always)]
     fn guess(&self, look: &Stride, mut here: Place, mut inside: bool, limit: f64) -> Option<f64> {
         const STEPS: usize = 40;
         // At larger angles one leap more, with an evaluation, is worth its cost.

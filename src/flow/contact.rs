@@ -26,7 +26,7 @@ pub struct Contact<T, C = Constants<T>> {
 }
 
 impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Contact<T, C> {
-    #[inline]
+    #[inline(always)]
     fn at(&self, d: T) -> Point<T> {
         let Constants { a, b, g, two_xi, damping, forced, .. } = *self.constants.borrow();
         let State { y: y0, q: q0, .. } = self.entry;

@@ -3,6 +3,7 @@
 use crate::constants::Constants;
 use crate::number::Number;
 use crate::remainders::{Circular, circular_of};
+use std::f64::consts::TAU;
 
 /// The forcing angle `omega tau + phi` when the phase begins.
 #[derive(Clone, Copy, Debug)]
@@ -35,7 +36,7 @@ pub struct Harmonic<T> {
 
 impl<T: Number> EntryAngle<T> {
     /// The harmonic force and its integrals after `d` (Eqs. 14, 18, 20, without cancellation).
-    #[inline]
+    #[inline(always)]
     pub fn harmonic(&self, constants: &Constants<T>, d: T) -> Harmonic<T> {
         let Constants { a, omega, a_over_omega, a_over_omega2, .. } = *constants;
         let angle = omega * d;
@@ -50,6 +51,27 @@ impl<T: Number> EntryAngle<T> {
             displacement_terms: a_over_omega2 * (sin_minus_x.abs() - cos_minus_1),
             impulse_terms: a_over_omega * (sin.abs() - cos_minus_1),
             turn,
+        }
+    }
+}
+
+impl EntryAngle<f64> {
+    /// The forcing angle a time `elapsed` later, where the force and its rate are these: to some roundings of
+    /// the force, for guesses.
+    #[inline]
+    pub(crate) fn roughly_after(
+        &self,
+        constants: &Constants<f64>,
+        elapsed: f64,
+        force: &[f64; 3],
+    ) -> Self {
+        let Constants { b, omega, per_a, per_omega, .. } = *constants;
+        let radians = self.radians + omega * elapsed;
+        let turns = (radians * (1.0 / TAU)) as i64 as f64;
+        Self {
+            radians: radians - turns * TAU,
+            sin: -(force[1] * (per_a * per_omega)),
+            cos: (force[0] - b) * per_a,
         }
     }
 }

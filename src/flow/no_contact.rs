@@ -23,7 +23,7 @@ pub struct NoContact<T, C = Constants<T>> {
 }
 
 impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
-    #[inline]
+    #[inline(always)]
     fn at(&self, d: T) -> Point<T> {
         let Constants { b, g, rate, .. } = *self.constants.borrow();
         let State { p: p0, y: y0, q: q0 } = self.entry;

@@ -25,7 +25,7 @@ pub struct Progression<T, C = Constants<T>> {
 }
 
 impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Progression<T, C> {
-    #[inline]
+    #[inline(always)]
     fn at(&self, d: T) -> Point<T> {
         let Constants { b, g, rate, two_xi, .. } = *self.constants.borrow();
         let Self { entry: State { y: y0, q: q0, .. }, drift_rate: w0, closing, .. } = *self;

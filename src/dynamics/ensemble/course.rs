@@ -6,6 +6,7 @@ use crate::entry::Entry;
 use crate::instant::Instant;
 use crate::leg::{Endless, Exit, Leg};
 use crate::model::Model;
+use crate::switch::Begun;
 use std::ops::ControlFlow;
 
 /// A motion and where it is.
@@ -14,6 +15,8 @@ pub struct Course<'a, W> {
     pub model: &'a Model,
     /// Where its phase began.
     pub entry: Entry,
+    /// The same with what the scalar solver knows of it, if that has passed the phase before.
+    begun: Option<Begun>,
     /// When it is next looked at.
     pub due: Instant,
     horizon: Option<Instant>,
@@ -23,7 +26,7 @@ pub struct Course<'a, W> {
 impl<'a, W: Watcher> Course<'a, W> {
     pub fn new(motion: Motion<'a, W>) -> Self {
         let Motion { model, entry, first, horizon, watcher } = motion;
-        Self { model, entry, due: first, horizon, watcher }
+        Self { model, entry, begun: None, due: first, horizon, watcher }
     }
 
     /// Follows it to its end by the scalar solver: who watched, and the number of phases.
@@ -44,7 +47,8 @@ impl<'a, W: Watcher> Course<'a, W> {
     /// Takes one phase by the scalar solver.
     pub fn pass(&mut self) -> ControlFlow<()> {
         let horizon = self.horizon.as_ref();
-        let leg = Leg::new(self.model, self.entry, horizon, &mut Counters::default());
+        let mut begun = self.begun.take().unwrap_or_else(|| Begun::at(self.model, self.entry));
+        let leg = Leg::new(self.model, &mut begun, horizon, &mut Counters::default());
         let endless = match leg.exit() {
             Exit::Endless(endless) => Some(*endless),
             Exit::Switch(_) | Exit::Horizon => None,
@@ -54,6 +58,7 @@ impl<'a, W: Watcher> Course<'a, W> {
         }
         if let Exit::Switch(next) = leg.exit() {
             self.enter(next);
+            self.begun = Some(begun);
         }
         ControlFlow::Continue(())
     }
@@ -62,6 +67,7 @@ impl<'a, W: Watcher> Course<'a, W> {
     pub fn enter(&mut self, next: &Entry) {
         self.watcher.enter(next);
         self.entry = *next;
+        self.begun = None;
     }
 
     /// Shows the strobe that was due.

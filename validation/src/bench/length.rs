@@ -88,11 +88,12 @@ fn length(model: &Model, start: &Entry, periods: u64) -> Result<Length, Failure>
 fn end(model: &Model, start: &Entry, periods: u64) -> Result<Entry, Failure> {
     let horizon = start.instant.after_periods(periods, 1);
     let mut run = model.trajectory(*start).until(horizon);
-    let last = std::iter::from_fn(|| run.step()).find_map(|step| match step {
-        Step::Last(leg) => Some(leg),
-        Step::Switch { .. } => None,
-    });
-    Ok(last.ok_or_else(|| Failure::new("a run without end"))?.entry_at(&horizon))
+    while let Some(step) = run.step() {
+        if let Step::Last(leg) = step {
+            return Ok(leg.entry_at(&horizon));
+        }
+    }
+    Err(Failure::new("a run without end"))
 }
 
 fn distance(one: &[f64; 3], other: &[f64; 3]) -> f64 {

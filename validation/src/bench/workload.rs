@@ -51,7 +51,7 @@ fn switches(model: &Model, entry: Entry, most: u64) -> Counters {
     let mut run = model.trajectory(black_box(entry));
     while run.counters().switches < most {
         match run.step() {
-            Some(Step::Switch { next, .. }) => black_box(&next),
+            Some(Step::Switch { next, .. }) => black_box(next),
             _ => break,
         };
     }

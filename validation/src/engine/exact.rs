@@ -3,7 +3,7 @@
 use super::meter::{Failure, Limits};
 use super::{Accuracy, Declaration, Engine, Event, Location, Outcome, Stepping, Task, Work, pins};
 use percuss::two_word::TwoWord;
-use percuss::{Exit, Leg, Sample, Step, Trajectory};
+use percuss::{Entry, Exit, Leg, Phase, Sample, Step, Trajectory};
 
 /// The closed forms, joined at proved first crossings.
 pub(super) struct Exact;
@@ -26,20 +26,16 @@ impl Engine for Exact {
         let mut run = task.problem.model.trajectory(task.problem.entry).until(task.horizon);
         let mut elapsed = TwoWord::ZERO;
         loop {
-            let (duration, next) = match phase(task, &mut run, &mut outcome.samples) {
-                Some(Step::Switch { duration, next }) => (duration, next),
-                Some(Step::Last(leg)) => {
-                    outcome.end = state(&leg.at_instant(&task.horizon));
+            let (duration, phase, state) = match passed(task, &mut run, &mut outcome.samples) {
+                Some(Passed::Switch { duration, phase, state }) => (duration, phase, state),
+                Some(Passed::Last(leg)) => {
+                    outcome.end = state_of(&leg.at_instant(&task.horizon));
                     break;
                 }
                 None => break,
             };
             elapsed = elapsed.plus(duration);
-            outcome.events.push(Event {
-                phase: next.phase(),
-                elapsed: elapsed.value(),
-                state: [next.state.p, next.state.y, next.state.q, next.v()],
-            });
+            outcome.events.push(Event { phase, elapsed: elapsed.value(), state });
             if outcome.events.len() > limits.events {
                 return Err(Failure::new(format!("gave up after {} switches", limits.events)));
             }
@@ -57,16 +53,34 @@ impl Engine for Exact {
 /// How many switches a run has room for at first.
 const USUAL: usize = 128;
 
+/// A phase, passed.
+enum Passed {
+    /// It lasts so long; then this phase begins, in this state.
+    Switch { duration: TwoWord, phase: Phase, state: [f64; 4] },
+    /// It is the run's last.
+    Last(Box<Leg>),
+}
+
+impl Passed {
+    fn by_switch(duration: TwoWord, next: &Entry) -> Self {
+        let state = [next.state.p, next.state.y, next.state.q, next.v()];
+        Self::Switch { duration, phase: next.phase(), state }
+    }
+}
+
 /// The run's next phase, sampled as long as samples are asked for.
-fn phase(task: &Task, run: &mut Trajectory, samples: &mut Vec<[f64; 4]>) -> Option<Step> {
+fn passed(task: &Task, run: &mut Trajectory, samples: &mut Vec<[f64; 4]>) -> Option<Passed> {
     if samples.len() == task.grid.count {
-        return run.step();
+        return Some(match run.step()? {
+            Step::Switch { duration, next } => Passed::by_switch(duration, next),
+            Step::Last(leg) => Passed::Last(leg),
+        });
     }
     let leg = run.next()?;
     sample(task, &leg, samples);
     Some(match leg.exit() {
-        Exit::Switch(next) => Step::Switch { duration: leg.duration_two_word(), next: *next },
-        Exit::Horizon | Exit::Endless(_) => Step::Last(Box::new(leg)),
+        Exit::Switch(next) => Passed::by_switch(leg.duration_two_word(), next),
+        Exit::Horizon | Exit::Endless(_) => Passed::Last(Box::new(leg)),
     })
 }
 
@@ -78,10 +92,10 @@ fn sample(task: &Task, leg: &Leg, samples: &mut Vec<[f64; 4]>) {
         if leg.ends_by(&instant) {
             return;
         }
-        samples.push(state(&leg.at_instant(&instant)));
+        samples.push(state_of(&leg.at_instant(&instant)));
     }
 }
 
-fn state(sample: &Sample) -> [f64; 4] {
+fn state_of(sample: &Sample) -> [f64; 4] {
     [sample.state.p, sample.state.y, sample.state.q, sample.v]
 }

@@ -1,0 +1,252 @@
+//! From one switch to the next.
+//!
+//! What every switch takes, guess, evaluation, root and landing, is inlined here: a processor has to wait where
+//! a call has written words that are read back in pairs, and such calls cost a sixth of a switch's time. What
+//! few switches take is kept out of the way.
+
+use crate::constants::Constants;
+use crate::crossing::guarded::{Guarded, Outlook};
+use crate::crossing::search::first_crossing_and;
+use crate::crossing::{Counters, Crossing, Root};
+use crate::entry::{Entry, Onset};
+use crate::flow::contact::Contact;
+use crate::flow::forcing::EntryAngle;
+use crate::flow::no_contact::NoContact;
+use crate::flow::progression::Progression;
+use crate::instant::Instant;
+use crate::leg::Endless;
+use crate::model::{Model, Motion};
+use crate::state::State;
+use crate::surface;
+use crate::two_word::TwoWord;
+
+/// How a phase begins.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Begun {
+    /// When and in which state.
+    pub entry: Entry,
+    /// The forcing angle then.
+    pub angle: EntryAngle<f64>,
+    /// After what time it may end: a guess.
+    pub guess: Option<f64>,
+}
+
+/// How a phase ends.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum End {
+    /// By a switch.
+    Switch,
+    /// Not before the horizon.
+    Horizon,
+    /// Never: proved.
+    Endless(Endless),
+}
+
+/// A phase that may have come to its end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passed {
+    /// How it ends.
+    pub end: End,
+    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless.
+    pub duration: TwoWord,
+}
+
+/// What a phase's end leads to.
+trait Landing: Guarded {
+    /// What it means that it has none.
+    const NONE: Endless;
+
+    /// State and onset of the next phase, with what is known imposed.
+    fn land(&self, root: &Root) -> (State, Onset);
+}
+
+/// Finds how a phase ends; if by a switch, the next phase takes its place. Switches after `horizon` do not
+/// count.
+pub(crate) fn pass(
+    model: &Model,
+    begun: &mut Begun,
+    horizon: Option<&Instant>,
+    counters: &mut Counters,
+) -> Passed {
+    match Motion::new(model.constants(), &begun.entry, begun.angle) {
+        Motion::NoContact(flight) => pass_by(&flight, model, begun, horizon, counters),
+        Motion::Contact(contact) => pass_by(&contact, model, begun, horizon, counters),
+        Motion::Progression(slip) => pass_by(&slip, model, begun, horizon, counters),
+    }
+}
+
+#[inline(always)]
+fn pass_by<P: Landing>(
+    phase: &P,
+    model: &Model,
+    begun: &mut Begun,
+    horizon: Option<&Instant>,
+    counters: &mut Counters,
+) -> Passed {
+    let omega = model.parameters().omega;
+    let (instant, guess) = (&begun.entry.instant, begun.guess);
+    // The horizon in two words is computed only where it matters. It is looked beyond by more than guesses
+    // err, so that a switch next to it is found as without it; its instant decides.
+    const BEYOND: f64 = 0.1;
+    let (certain, limit) = horizon.map_or((f64::INFINITY, f64::INFINITY), |h| {
+        let (certain, limit) = h.since_roughly(instant, omega);
+        (certain, limit + BEYOND / omega)
+    });
+    let next = |root: &Root| begun.after(model, phase, root);
+    let (crossing, next) =
+        first_crossing_and((phase, model.strides()), guess, limit, counters, next);
+    let left = || horizon.map_or(f64::INFINITY, |h| h.since(instant, omega).value());
+    let ended = |end, duration| Passed { end, duration: TwoWord::new(duration) };
+    match (crossing, next) {
+        (Crossing::At(root), Some(next)) => {
+            let elapsed = root.elapsed();
+            if elapsed.high > certain && horizon.is_some_and(|it| next.entry.instant > *it) {
+                return ended(End::Horizon, left());
+            }
+            counters.switches += 1;
+            *begun = next;
+            Passed { end: End::Switch, duration: elapsed }
+        }
+        (Crossing::Never, _) if certain > 0.0 || left() > 0.0 => {
+            ended(End::Endless(P::NONE), f64::INFINITY)
+        }
+        _ => ended(End::Horizon, left()),
+    }
+}
+
+impl Begun {
+    /// A phase of which no more is known.
+    pub(crate) fn at(model: &Model, entry: Entry) -> Self {
+        Self { entry, angle: model.forcing_angle(&entry.instant), guess: None }
+    }
+
+    /// The phase that begins at this root of this one.
+    ///
+    /// Its guess does not wait for the new forcing angle, which takes two words and a table: the force at the
+    /// root is known, and is as good. So the processor works on both, and then on the certificate of the
+    /// phase that has ended.
+    #[inline(always)]
+    fn after<P: Landing>(&self, model: &Model, phase: &P, root: &Root) -> Self {
+        let Root { point, .. } = root;
+        let (instant, angle) = model.instant_after(&self.entry.instant, root.elapsed());
+        let (state, onset) = phase.land(root);
+        // Only a progression drifts.
+        let still = point.drift == 0.0;
+        let before = self.entry.drift;
+        let drift = if still { before } else { before.plus(TwoWord::new(point.drift)) };
+        let entry = Entry { instant, state, drift, onset };
+        let about = self.angle.roughly_after(model.constants(), point.elapsed, &point.force);
+        Self { entry, angle, guess: guess(model, &entry, about) }
+    }
+}
+
+/// When the phase that begins at `entry`, at about this forcing angle, may end.
+#[inline(always)]
+fn guess(model: &Model, entry: &Entry, angle: EntryAngle<f64>) -> Option<f64> {
+    let strides = model.strides();
+    let outlook = match Motion::new(model.constants(), entry, angle) {
+        Motion::NoContact(flight) => flight.outlook(strides, &flight.entry(), f64::INFINITY),
+        Motion::Contact(contact) => contact.outlook(strides, &contact.entry(), f64::INFINITY),
+        Motion::Progression(slip) => slip.outlook(strides, &slip.entry(), f64::INFINITY),
+    };
+    // What an outlook proves is not to be proved from a rough angle.
+    match outlook {
+        Outlook::Root(time) => Some(time),
+        _ => None,
+    }
+}
+
+impl Landing for NoContact<f64, &Constants<f64>> {
+    const NONE: Endless = Endless::NeverReturns;
+
+    #[inline]
+    fn land(&self, root: &Root) -> (State, Onset) {
+        let Root { point, .. } = root;
+        let f = self.constants.two_xi * point.guard.orders[1];
+        let (state, onset) = surface::onset(self.constants, point.state, Some(f), point.force);
+        match onset {
+            // The gap closed, by however little: a contact, which may end at once.
+            Onset::Separation { .. } => {
+                (state, Onset::Contact { offset: f.max(0.0), reference: 0.0 })
+            }
+            onset => (state, onset),
+        }
+    }
+}
+
+impl Landing for Contact<f64, &Constants<f64>> {
+    const NONE: Endless = Endless::RestsForEver;
+
+    #[inline]
+    fn land(&self, root: &Root) -> (State, Onset) {
+        let y = root.point.state.y;
+        let (threshold, onset) = if root.rises() {
+            (1.0, Onset::Progression { drift_rate: 0.0, closing: y })
+        } else {
+            (0.0, Onset::Separation { h_rate: 0.0 })
+        };
+        let q = threshold - self.constants.two_xi * y;
+        (State { p: q + self.constants.g, y, q }, onset)
+    }
+}
+
+impl Landing for Progression<f64, &Constants<f64>> {
+    const NONE: Endless = Endless::NeverStops;
+
+    #[inline]
+    fn land(&self, root: &Root) -> (State, Onset) {
+        let y = root.point.slider_velocity;
+        let q = 1.0 - self.constants.two_xi * y;
+        (State { p: q + self.constants.g, y, q }, Onset::Contact { offset: 0.0, reference: 1.0 })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::crossing::guarded::SLACK;
+    use crate::flow::Flow;
+    use crate::parameters::Parameters;
+    use crate::start::Start;
+    use proptest::prelude::*;
+
+    /// What rounding of the guard moves a root by: each of two searches has a room of its own.
+    fn room(model: &Model, begun: &Begun, duration: f64) -> f64 {
+        let guard = match Motion::new(model.constants(), &begun.entry, begun.angle) {
+            Motion::NoContact(flight) => flight.at(duration).guard,
+            Motion::Contact(contact) => contact.at(duration).guard,
+            Motion::Progression(slip) => slip.at(duration).guard,
+        };
+        2.0 * (SLACK * guard.largest_term / guard.orders[1].abs() + f64::EPSILON * duration)
+    }
+
+    proptest! {
+        /// Switches are proved, so that a guess may cost evaluations but not change the run.
+        #[test]
+        fn a_phase_ends_where_it_does_without_a_guess(
+            (xi, omega) in (-7.0..2.5_f64, -3.0..3.0_f64).prop_map(|(x, o)| (x.exp(), o.exp())),
+            (a, b, g) in (0.0..2.0_f64, -0.1..1.1_f64, 0.0..0.3_f64),
+            (y, q, tau) in (-1.0..1.0_f64, 0.0..1.0_f64, 0.0..10.0_f64),
+        ) {
+            let model = Model::new(Parameters { a, b, xi, omega, g, ..Parameters::default() }).unwrap();
+            let entry = model.start(&Start { p: q + g, y, q: Some(q), tau, ..Start::default() });
+            let Ok(entry) = entry else { return Ok(()) };
+            let mut counters = Counters::default();
+            let mut run = Begun::at(&model, entry);
+            for _ in 0..30 {
+                let begun = run;
+                let mut alone = Begun { guess: None, ..begun };
+                let passed = pass(&model, &mut run, None, &mut counters);
+                let other = pass(&model, &mut alone, None, &mut counters);
+                prop_assert_eq!(format!("{:?}", passed.end), format!("{:?}", other.end));
+                if !matches!(passed.end, End::Switch) {
+                    break;
+                }
+                let (one, two) = (passed.duration.value(), other.duration.value());
+                let room = room(&model, &begun, one);
+                prop_assert!((one - two).abs() <= room, "{begun:?}: {one} {two} {room:e}");
+                prop_assert_eq!(run.entry.phase(), alone.entry.phase());
+            }
+        }
+    }
+}
