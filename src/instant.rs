@@ -12,9 +12,15 @@ use crate::two_word::{TWO_PI, TwoWord};
 /// An instant: `omega tau = cycle 2 pi + angle` with `0 <= angle < 2 pi` (phi is not included).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Instant {
-    cycle: i128,
+    cycle: Cycle,
     angle: TwoWord,
 }
+
+/// Whole cycles, aligned as the other words are: the tag of an option is as wide as its alignment, and one of
+/// sixteen bytes would be read across the words in which it was written, for which a processor has to wait.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(Rust, packed(8))]
+struct Cycle(i128);
 
 impl Instant {
     /// The instant `cycle` forcing periods after `tau`.
@@ -23,24 +29,24 @@ impl Instant {
     #[must_use]
     pub fn at(omega: f64, tau: f64, cycle: i64) -> Self {
         let (turns, angle) = angle::reduce(TwoWord::product(omega, tau));
-        Self { cycle: turns + i128::from(cycle), angle }
+        Self { cycle: Cycle(turns + i128::from(cycle)), angle }
     }
 
     /// An instant that is known to be one: `0 <= angle < 2 pi`.
     #[cfg(feature = "lanes")]
     pub(crate) const fn from_parts(cycle: i128, angle: TwoWord) -> Self {
-        Self { cycle, angle }
+        Self { cycle: Cycle(cycle), angle }
     }
 
     /// The instant one forcing period later.
     pub(crate) const fn next_cycle(self) -> Self {
-        Self { cycle: self.cycle + 1, ..self }
+        Self { cycle: Cycle(self.cycle.0 + 1), ..self }
     }
 
     /// Whole forcing cycles since `tau = 0`.
     #[must_use]
     pub const fn cycle(&self) -> i128 {
-        self.cycle
+        self.cycle.0
     }
 
     /// `omega tau mod 2 pi`, radians, rounded to one word.
@@ -58,13 +64,13 @@ impl Instant {
     /// The time tau of this instant, rounded to one word.
     #[must_use]
     pub fn tau(&self, omega: f64) -> f64 {
-        radians(self.cycle, self.angle).over(omega).value()
+        radians(self.cycle.0, self.angle).over(omega).value()
     }
 
     /// The time from `earlier` to this instant (negative if `earlier` is later).
     #[must_use]
     pub fn since(&self, earlier: &Self, omega: f64) -> TwoWord {
-        radians(self.cycle - earlier.cycle, self.angle.minus(earlier.angle)).over(omega)
+        radians(self.cycle.0 - earlier.cycle.0, self.angle.minus(earlier.angle)).over(omega)
     }
 
     /// Bounds of [`Self::since`] that cost little.
@@ -72,7 +78,7 @@ impl Instant {
     pub(crate) fn since_roughly(&self, earlier: &Self, omega: f64) -> (f64, f64) {
         /// Some roundings of the whole and of the angles.
         const ROOM: f64 = 16.0 * f64::EPSILON;
-        let cycles = to_f64(self.cycle - earlier.cycle) * TWO_PI.high;
+        let cycles = to_f64(self.cycle.0 - earlier.cycle.0) * TWO_PI.high;
         let radians = cycles + (self.angle.high - earlier.angle.high);
         let room = ROOM * (cycles.abs() + TWO_PI.high);
         ((radians - room) / omega, (radians + room) / omega)
@@ -82,8 +88,8 @@ impl Instant {
     #[inline(always)]
     #[must_use]
     pub fn after(&self, elapsed: TwoWord, omega: f64) -> Self {
-        let (cycle, angle) = angle::wrap(self.cycle, self.angle.plus_product(elapsed, omega));
-        Self { cycle, angle }
+        let (cycle, angle) = angle::wrap(self.cycle.0, self.angle.plus_product(elapsed, omega));
+        Self { cycle: Cycle(cycle), angle }
     }
 
     /// The same with the forcing angle there, whose sine does not wait until whole turns have come off.
@@ -97,8 +103,8 @@ impl Instant {
         /// Up to here the angle's second word is a first-order correction of its sine.
         const FAR: f64 = 1e3;
         let angle = self.angle.plus_product(elapsed, omega);
-        let (cycle, wrapped) = angle::wrap(self.cycle, angle);
-        let instant = Self { cycle, angle: wrapped };
+        let (cycle, wrapped) = angle::wrap(self.cycle.0, angle);
+        let instant = Self { cycle: Cycle(cycle), angle: wrapped };
         let (sin, cos) = sin_cos(with_phase(if angle.high < FAR { angle } else { wrapped }, phi));
         (instant, EntryAngle { radians: instant.radians(phi), sin, cos })
     }
@@ -108,8 +114,8 @@ impl Instant {
     pub fn after_periods(&self, numerator: u64, denominator: u64) -> Self {
         let (whole, rest) = (numerator / denominator, numerator % denominator);
         let step = TWO_PI.times(rest as f64).over(denominator as f64);
-        let (cycle, angle) = angle::wrap(self.cycle + i128::from(whole), self.angle.plus(step));
-        Self { cycle, angle }
+        let (cycle, angle) = angle::wrap(self.cycle.0 + i128::from(whole), self.angle.plus(step));
+        Self { cycle: Cycle(cycle), angle }
     }
 
     /// The first instant not before this one at which `omega tau mod 2 pi` is `angle` (radians, any
@@ -118,7 +124,7 @@ impl Instant {
     pub fn first_at_angle(&self, angle: f64) -> Self {
         let (_, angle) = angle::reduce(TwoWord::new(angle));
         let here = Self { cycle: self.cycle, angle };
-        if here >= *self { here } else { Self { cycle: self.cycle + 1, angle } }
+        if here >= *self { here } else { Self { cycle: Cycle(self.cycle.0 + 1), angle } }
     }
 
     /// The forcing angle with its phase, `omega tau + phi`.
@@ -151,7 +157,7 @@ fn sin_cos(angle: TwoWord) -> (f64, f64) {
 impl PartialOrd for Instant {
     fn partial_cmp(&self, other: &Self) -> Option<std::cmp::Ordering> {
         let angle = |instant: &Self| (instant.angle.high, instant.angle.low);
-        match self.cycle.cmp(&other.cycle) {
+        match self.cycle().cmp(&other.cycle()) {
             std::cmp::Ordering::Equal => angle(self).partial_cmp(&angle(other)),
             order => Some(order),
         }

@@ -24,7 +24,7 @@ pub const SHORT_REACH: f64 = 1e-3;
 pub const SHORT_TERMS: usize = 6;
 
 /// 1/k!
-const INVERSE_FACTORIALS: [f64; TERMS + 1] = {
+pub const INVERSE_FACTORIALS: [f64; TERMS + 1] = {
     let mut table = [1.0; TERMS + 1];
     let mut k = 1;
     while k <= TERMS {

@@ -4,11 +4,13 @@ use super::complex::Complex;
 use super::contact_shape::Forms;
 use super::damped::Free;
 use super::forced::Response;
-use super::harmonic::{Angle, Harmonic, shifted, short_decay};
-use super::root::{Care, Found, Phase, SHORT, find};
+use super::harmonic::{Angle, Harmonic, Push, short_decay};
+use super::root::{Care, Found, Phase, find};
+use super::series::LATER;
 use super::shape::Shape;
 use super::swing::{Parts, each};
 use super::wide::{Mask, Wide};
+use crate::crossing::series::REACH;
 use pulp::Simd;
 
 /// Contacts; their guard is the trial force less `reference`.
@@ -77,8 +79,25 @@ impl<S: Simd> Phase<S> for Leaving<'_, '_, S> {
     }
 
     #[inline(always)]
+    fn later(&self, at: &Pressed<S>) -> [Wide<S>; LATER] {
+        let Shape { two_xi, omega2, .. } = *self.contact.shape;
+        // f'' + 2 xi f' + f = F + 2 xi F'
+        let [u, v, _] = at.force;
+        let mut drive = (two_xi * omega2).times_from(u, v);
+        let mut next = -(omega2 * two_xi.times_plus(v, u));
+        let [.., mut before, mut last] = at.f;
+        let mut later = [last; LATER];
+        for order in &mut later {
+            (before, last) = (last, two_xi.times_from(last, next - before));
+            (drive, next) = (next, -(omega2 * drive));
+            *order = last;
+        }
+        later
+    }
+
+    #[inline(always)]
     fn is_short(&self, _: Wide<S>, step: Wide<S>) -> Mask<S> {
-        (step.abs() * self.contact.shape.quickest).below(SHORT)
+        (step.abs() * self.contact.shape.quickest).below(REACH)
     }
 }
 
@@ -161,17 +180,13 @@ impl<S: Simd> Contact<'_, S> {
     pub fn release(&self, care: Care) -> Release<S> {
         let first = self.first();
         let (guess, threshold, guessed) = self.first_exit(first);
-        let Found { at, elapsed, step, fine } =
+        let Found { at, elapsed, series, step, fine, .. } =
             find(&Leaving { contact: self, threshold }, guess, guessed);
         // y' = F - f
-        let force = shifted(self.shape.omega2, at.force, step);
-        let [f, f1, f2, f3] = at.f;
-        let [u, v, w] = at.force;
-        let pull = (u + (self.shape.b - self.reference)) - f;
-        let next = -(self.shape.omega2 * v) - f3;
-        let bent = step.times_plus(next * (1.0 / 24.0), (w - f2) * (1.0 / 6.0));
-        let turning = step.times_plus(bent, (v - f1) * 0.5);
-        let y = at.y + step * step.times_plus(turning, pull);
+        let [u, v, _] = at.force;
+        let Push { force, impulse } = Push::new(self.shape, [u, v], step);
+        let rest = (self.shape.b - self.reference) - threshold;
+        let y = at.y + (rest.times_plus(step, impulse) - series.integral(step));
         let quick = at.quick + at.quick * short_decay(self.shape.fast * step);
         let last = self.one_by_one(elapsed, self.orders(force, threshold, y), force, quick);
         let rises = !(threshold + self.reference).below(0.5);

@@ -25,7 +25,7 @@ impl Forms {
 }
 
 /// A step of a guess, radians of the faster of forcing and free oscillation: the cubic between two places errs
-/// by 1/384 of the amplitude, which two evaluations put right.
+/// by 1/384 of the amplitude, which the series puts right.
 const SWING: f64 = 0.8;
 
 /// Of a certificate, likewise: the interpolant errs by 3^8/2822400 = 0.002 of the amplitude.

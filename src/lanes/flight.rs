@@ -10,10 +10,12 @@ use super::certificate::Piece;
 use super::crest::{Bound, Tangent};
 use super::functions::shrink;
 use super::guess::Trend;
-use super::harmonic::{Angle, Harmonic, change, shifted, short_decay};
-use super::root::{Care, Found, Phase, SHORT, find};
+use super::harmonic::{Angle, Harmonic, Push, short_decay};
+use super::root::{Care, Found, Phase, find};
+use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
+use crate::crossing::series::REACH;
 use crate::flow::stride::{GRIP, PARTING};
 use pulp::Simd;
 use std::f64::consts::TAU;
@@ -98,10 +100,25 @@ impl<S: Simd> Phase<S> for Flight<'_, S> {
     }
 
     #[inline(always)]
+    fn later(&self, at: &Aloft<S>) -> [Wide<S>; LATER] {
+        let Shape { b, omega2, rate, .. } = *self.shape;
+        let mut spring = at.q * (rate * rate * rate);
+        let [total, mut next, _] = at.force;
+        let mut force = total - b;
+        let mut later = [force; LATER];
+        for order in &mut later {
+            spring = -(spring * rate);
+            (force, next) = (next, -(omega2 * force));
+            *order = next + spring;
+        }
+        later
+    }
+
+    #[inline(always)]
     fn is_short(&self, d: Wide<S>, step: Wide<S>) -> Mask<S> {
         let Shape { pace, rate, .. } = *self.shape;
         let step = step.abs();
-        (step * pace).below(SHORT) & ((step * rate).below(SHORT) | (rate * d).above(DEAD))
+        (step * pace).below(REACH) & ((step * rate).below(REACH) | (rate * (d - step)).above(DEAD))
     }
 }
 
@@ -109,16 +126,17 @@ impl<S: Simd> Flight<'_, S> {
     /// The impacts that end the flights.
     #[inline(always)]
     pub fn impact(&self, care: Care) -> Impact<S> {
-        let Shape { two_xi, rate, look, look_decay, .. } = *self.shape;
+        let Shape { b, two_xi, rate, look, look_decay, .. } = *self.shape;
         let (guess, guessed) = self.trend().first_root();
         // Within the first stride of a short-lived exponential: its end, from where the convex h leads back.
         let hasty = guess.less(look) & look_decay.is(0.0);
         let guess = hasty.choose(look, guess);
-        let Found { at, elapsed, step, fine } = find(self, guess, guessed);
+        let Found { at, elapsed, step, slope, fine, .. } = find(self, guess, guessed);
+        let [total, v, _] = at.force;
+        let push = Push::new(self.shape, [total - b, v], step);
         let lost = at.q * short_decay(rate * step);
-        let kick = change(at.force, step);
-        let (y, q) = (at.y + kick, at.q + lost);
-        let f = two_xi * (at.h[1] + (kick + rate * lost));
+        let (y, q) = (at.y + b.times_plus(step, push.impulse), at.q + lost);
+        let f = two_xi * slope;
         let largest = (two_xi * y).abs().larger(q.abs());
         let clear =
             (largest * TIE).less(f) & (largest.larger(y.same(1.0)) * TIE).less((f - 1.0).abs());
@@ -126,10 +144,9 @@ impl<S: Simd> Flight<'_, S> {
         let certified = match care {
             Care::Usual => self.stays_below(root, q, care),
             Care::Great => {
-                let [u, v, w] = at.force;
-                let force = shifted(self.shape.omega2, [u - self.shape.b, v, w], step);
+                let [force, force_rate, _] = push.force;
                 self.stays_below(root, q, care)
-                    | self.hops(root, [f * rate, q * rate, force[0] + self.shape.b, force[1]])
+                    | self.hops(root, [slope, q * rate, force + b, force_rate])
             }
         };
         let fine = fine & clear & self.q.above(0.0) & certified;

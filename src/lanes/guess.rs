@@ -140,6 +140,10 @@ pub fn meeting<S: Simd>(
     right: Wide<S>,
     (left_slope, right_slope): (Wide<S>, Wide<S>),
 ) -> Wide<S> {
+    let falls = left.above(0.0);
+    let rising = |x: Wide<S>| falls.choose(-x, x);
+    let (left, right) = (rising(left), rising(right));
+    let (left_slope, right_slope) = (rising(left_slope), rising(right_slope));
     let rise = right - left;
     let second = (rise * 3.0 - left_slope * 2.0) - right_slope;
     let third = (left_slope + right_slope) - rise * 2.0;

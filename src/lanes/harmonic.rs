@@ -1,6 +1,6 @@
 //! The external force over an elapsed time ([`crate::flow::forcing`]).
 
-use super::functions::{Turn, sin_cos, turn_of};
+use super::functions::{Turn, polynomial, sin_cos, turn_of};
 use super::shape::Shape;
 use super::wide::Wide;
 use super::words::Words;
@@ -67,35 +67,36 @@ impl<S: Simd> Angle<S> {
     }
 }
 
-/// The force less b and its first two derivatives a short step later: what is left out is the fourth power
-/// of omega times the step.
-#[inline(always)]
-pub fn shifted<S: Simd>(
-    omega2: Wide<S>,
-    [force, rate, bend]: [Wide<S>; 3],
-    step: Wide<S>,
-) -> [Wide<S>; 3] {
-    let turn = -(omega2 * rate);
-    let force = taylor(force, [rate, bend, turn], step);
-    let rate = taylor(rate, [bend, turn, -(omega2 * bend)], step);
-    [force, rate, -(omega2 * force)]
+/// The harmonic force after a short step, and what it has done to the velocity ([`crate::crossing::series`]).
+pub struct Push<S: Simd> {
+    /// The force less b with its first two derivatives.
+    pub force: [Wide<S>; 3],
+    /// Its integral over the step.
+    pub impulse: Wide<S>,
 }
 
-/// Three terms of a Taylor series.
-#[inline(always)]
-pub fn taylor<S: Simd>(value: Wide<S>, derivatives: [Wide<S>; 3], step: Wide<S>) -> Wide<S> {
-    value + change(derivatives, step)
-}
-
-/// What they add.
-#[inline(always)]
-pub fn change<S: Simd>([first, second, third]: [Wide<S>; 3], step: Wide<S>) -> Wide<S> {
-    let slope = step.times_plus(third * (1.0 / 6.0), second * 0.5);
-    step * step.times_plus(slope, first)
+impl<S: Simd> Push<S> {
+    /// From the force less b and its rate at an evaluation.
+    #[inline(always)]
+    pub fn new(shape: &Shape<Wide<S>>, [u, v]: [Wide<S>; 2], step: Wide<S>) -> Self {
+        let omega2 = shape.omega2;
+        let square = omega2 * step * step;
+        let time = step * polynomial(square, [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0]);
+        let area =
+            step * step * polynomial(square, [0.5, -1.0 / 24.0, 1.0 / 720.0, -1.0 / 40320.0]);
+        // u'' = -omega^2 u
+        let force = time.times_plus(v, (omega2 * area).times_from(u, u));
+        let rate = (omega2 * time).times_from(u, (omega2 * area).times_from(v, v));
+        let impulse = time.times_plus(u, area * v);
+        Self { force: [force, rate, -(omega2 * force)], impulse }
+    }
 }
 
 /// exp(-z) - 1 of a short z, of either sign.
 #[inline(always)]
 pub fn short_decay<S: Simd>(z: Wide<S>) -> Wide<S> {
-    super::functions::polynomial(z, [0.0, -1.0, 0.5, -1.0 / 6.0, 1.0 / 24.0, -1.0 / 120.0])
+    let square = z * z;
+    let even = polynomial(square, [0.5, 1.0 / 24.0, 1.0 / 720.0, 1.0 / 40320.0]);
+    let odd = polynomial(square, [1.0 / 6.0, 1.0 / 120.0, 1.0 / 5040.0]);
+    square.times_plus(z.times_from(odd, even), -z)
 }

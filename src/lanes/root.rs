@@ -1,5 +1,6 @@
-//! From a guess to the root of a guard: two evaluations mostly.
+//! From a guess to the root of a guard: one evaluation mostly, and the guard's series from there.
 
+use super::series::{LATER, Series};
 use super::wide::{Mask, Wide};
 use pulp::Simd;
 
@@ -14,7 +15,10 @@ pub trait Phase<S: Simd> {
     /// The guard less its threshold, with three derivatives.
     fn excess(&self, at: &Self::At) -> [Wide<S>; 4];
 
-    /// Where a step from an evaluation at `d` is so short that Taylor series of three terms lose nothing.
+    /// The guard's derivatives of orders four and on.
+    fn later(&self, at: &Self::At) -> [Wide<S>; LATER];
+
+    /// Where a step from an evaluation at `d` is so short that the guard's series loses nothing.
     fn is_short(&self, d: Wide<S>, step: Wide<S>) -> Mask<S>;
 }
 
@@ -34,19 +38,23 @@ pub struct Found<S: Simd, A> {
     pub at: A,
     /// When.
     pub elapsed: Wide<S>,
+    /// The guard's excess as a series from there.
+    pub series: Series<S>,
     /// From there to the root.
     pub step: Wide<S>,
+    /// The guard's slope at the root.
+    pub slope: Wide<S>,
     /// Where there is one.
     pub fine: Mask<S>,
 }
 
-/// A step against the fastest rate of the motion that leaves 4e-18 to the fourth order.
-pub const SHORT: f64 = 1e-4;
-
-/// What rounding leaves of an excess where its cubic is zero: some units of it,
-const RESIDUAL: f64 = 16.0 * f64::EPSILON;
+/// What may be left of an excess where its cubic is zero: the series puts it right,
+const RESIDUAL: f64 = 1e-6;
 /// and where it is zero itself.
 const TINY: f64 = 1e-300;
+
+/// The longest step against the time of the root.
+const NEAR: f64 = 0.25;
 
 /// Evaluations after which a lane is left to the scalar solver.
 const ATTEMPTS: usize = 5;
@@ -57,7 +65,6 @@ pub fn find<S: Simd, P: Phase<S>>(phase: &P, guess: Wide<S>, guessed: Mask<S>) -
     let zero = guess.same(0.0);
     let mut elapsed = guess;
     let mut alive = guessed;
-    let mut found;
     let mut attempt = 1;
     loop {
         let at = phase.at(elapsed);
@@ -67,10 +74,13 @@ pub fn find<S: Simd, P: Phase<S>>(phase: &P, guess: Wide<S>, guessed: Mask<S>) -
         alive = alive & zero.less(next);
         // Next to a crest that misses, Newton's method may stop anywhere.
         let settled = cubic(excess, step).abs().less(excess[0].abs() * RESIDUAL + TINY);
-        let short = phase.is_short(elapsed, step) & settled;
-        found = Found { at, elapsed, step, fine: alive & short };
+        // So much nearer to the start than the evaluation its rounding would show.
+        let far = step.abs().less(next * NEAR);
+        let short = phase.is_short(elapsed, step) & settled & far;
         if attempt == ATTEMPTS || !(alive & !short).any() {
-            return found;
+            let series = Series::new(excess, phase.later(&at));
+            let (step, slope, polished) = series.polished(step);
+            return Found { at, elapsed, series, step, slope, fine: alive & short & polished };
         }
         elapsed = (alive & !short).choose(next, elapsed);
         attempt += 1;

@@ -176,7 +176,7 @@ shape! {
 }
 
 /// A step of a guess outside contact, radians of the forcing: the cubic between two places errs by 1/384 of
-/// the amplitude, which two evaluations put right.
+/// the amplitude, which the series puts right.
 const LOOK: f64 = 1.0;
 
 /// Of an exponential less than this is forgotten in one step of a guess.

@@ -9,9 +9,11 @@
 use super::functions::shrink;
 use super::guess::Trend;
 use super::harmonic::{Angle, Harmonic, short_decay};
-use super::root::{Found, Phase, SHORT, find};
+use super::root::{Found, Phase, find};
+use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
+use crate::crossing::series::REACH;
 use pulp::Simd;
 
 /// Progressions.
@@ -41,6 +43,8 @@ pub struct Sliding<S: Simd> {
     q: Wide<S>,
     /// Of the velocity of the mass.
     y_rate: Wide<S>,
+    /// The force's first two derivatives.
+    force: [Wide<S>; 2],
     drift: Wide<S>,
     /// The largest terms of w.
     terms: Wide<S>,
@@ -103,6 +107,7 @@ impl<S: Simd> Phase<S> for Slip<'_, S> {
             y,
             q,
             y_rate,
+            force: [force[1], force[2]],
             drift,
             terms,
         }
@@ -114,9 +119,23 @@ impl<S: Simd> Phase<S> for Slip<'_, S> {
     }
 
     #[inline(always)]
+    fn later(&self, at: &Sliding<S>) -> [Wide<S>; LATER] {
+        let Shape { omega2, rate, .. } = *self.shape;
+        let mut lag = at.lag * (rate * rate * rate);
+        let [mut force, mut next] = at.force;
+        let mut later = [lag; LATER];
+        for order in &mut later {
+            lag = -(lag * rate);
+            (force, next) = (next, -(omega2 * force));
+            *order = next + lag;
+        }
+        later
+    }
+
+    #[inline(always)]
     fn is_short(&self, _: Wide<S>, step: Wide<S>) -> Mask<S> {
         let Shape { pace, rate, .. } = *self.shape;
-        (step.abs() * pace.larger(rate)).below(SHORT)
+        (step.abs() * pace.larger(rate)).below(REACH)
     }
 }
 
@@ -126,12 +145,9 @@ impl<S: Simd> Slip<'_, S> {
     pub fn stop(&self) -> Stop<S> {
         let Shape { a, b, omega, rate, .. } = *self.shape;
         let (guess, guessed) = self.trend().first_root();
-        let Found { at, elapsed, step, fine } = find(self, guess, guessed);
+        let Found { at, elapsed, series, step, slope, fine } = find(self, guess, guessed);
         let lag = at.lag + at.lag * short_decay(rate * step);
-        let [w, w1, w2, w3] = at.w;
-        let slope = step.times_plus(step.times_plus(w3 * 0.5, w2), w1);
-        let moved = step.times_plus(w2 * (1.0 / 6.0), w1 * 0.5);
-        let drift = at.drift + step * step.times_plus(moved, w);
+        let drift = at.drift + series.integral(step);
         const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;
         let steepest = a * omega * ROOM;
         let least = (-b + 1.0) - a * ROOM;
@@ -146,7 +162,7 @@ impl<S: Simd> Slip<'_, S> {
     /// The progressions at some time.
     #[inline(always)]
     pub fn state(&self, d: Wide<S>) -> Slipping<S> {
-        let Sliding { w, lag, y, q, y_rate, drift, terms } = self.at(d);
+        let Sliding { w, lag, y, q, y_rate, drift, terms, .. } = self.at(d);
         Slipping { values: [q, y, drift, w[0]], rates: [lag, y_rate, w[0], w[1]], lag, terms }
     }
 

@@ -6,7 +6,7 @@
 use super::course::Course;
 use super::seat::Seat;
 use super::{Done, Motion, Tally, Watcher};
-use crate::lanes::{Batch, Permit, Stage};
+use crate::lanes::{Batch, Permit, Stage, WIDEST};
 use crate::model::Model;
 
 /// The motions of one thread.
@@ -87,8 +87,12 @@ impl<'a, W: Watcher> Pool<'a, W> {
     /// Takes a vector of one kind one stage further. Lanes left over repeat what they had.
     fn work(&mut self, stage: Stage) {
         let waiting = &mut self.waiting[stage as usize];
-        let taken = waiting.len().min(self.permit.width());
-        let places = waiting.split_off(waiting.len() - taken);
+        let rest = waiting.len().saturating_sub(self.permit.width());
+        let taken = waiting.len() - rest;
+        let mut places = [0; WIDEST];
+        places[..taken].copy_from_slice(&waiting[rest..]);
+        waiting.truncate(rest);
+        let places = &places[..taken];
         for (lane, place) in places.iter().enumerate() {
             let Some(seat) = &self.seats[*place] else { continue };
             let model = seat.model();
@@ -99,10 +103,10 @@ impl<'a, W: Watcher> Pool<'a, W> {
             seat.begin(stage, lane, &mut self.batch.begin);
         }
         self.permit.work(stage, &mut self.batch);
-        for (lane, place) in places.into_iter().enumerate() {
-            let Some(seat) = &mut self.seats[place] else { continue };
+        for (lane, place) in places.iter().enumerate() {
+            let Some(seat) = &mut self.seats[*place] else { continue };
             let stage = seat.advance(stage, lane, &self.batch.end);
-            self.queue(place, stage);
+            self.queue(*place, stage);
         }
     }
 }
