@@ -228,7 +228,10 @@ mod tests {
             (a, b, g) in (0.0..2.0_f64, -0.1..1.1_f64, 0.0..0.3_f64),
             (y, q, tau) in (-1.0..1.0_f64, 0.0..1.0_f64, 0.0..10.0_f64),
         ) {
-            let model = Model::new(Parameters { a, b, xi, omega, g, ..Parameters::default() }).unwrap();
+            let parameters = Parameters { a, b, xi, omega, g, ..Parameters::default() };
+            let Ok(model) = Model::new(parameters) else {
+                return Err(TestCaseError::fail("out of range"));
+            };
             let entry = model.start(&Start { p: q + g, y, q: Some(q), tau, ..Start::default() });
             let Ok(entry) = entry else { return Ok(()) };
             let mut counters = Counters::default();
