@@ -41,7 +41,7 @@ fn by_table(x: f64) -> f64 {
     let scale = f64::from_bits(((1023 + doublings) as u64) << 52);
     let r = (x - parts * FIRST) - parts * SECOND;
     let square = r * r;
-    // exp(r) - 1 for |r| <= 0.0055: the next term is 2e-19.
+    // exp(r) - 1 for |r| <= 0.0055: the next term is 3e-20.
     let high = 1.0 / 24.0 + r * (1.0 / 120.0) + square * (1.0 / 720.0);
     let grown = r + square * ((0.5 + r * (1.0 / 6.0)) + square * high);
     scale * (power.high + (power.low + power.high * grown))

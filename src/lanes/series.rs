@@ -43,11 +43,11 @@ impl<S: Simd> Series<S> {
     /// settled.
     #[inline(always)]
     pub fn polished(&self, step: Wide<S>) -> (Wide<S>, Wide<S>, Mask<S>) {
-        /// Of what Newton's step changes the slope by the square is left out of the time, the whole third
-        /// order: 1e-10 of a step that is itself below 1e-7.
+        /// Of what Newton's step changes the slope by the square is left out of the time: 1e-10 of a step that is
+        /// mostly below 1e-7 itself, and next to a flat inflection below 1e-4.
         const SETTLED: f64 = 1e-5;
         let (value, slope) = self.value_and_slope(step);
-        // To fifth order, which leaves 3e-8 of what a change that is below 1e-7 does to the slope.
+        // To fifth order, which leaves 3e-8 of what the change does to the slope.
         let [_, _, second, third, fourth, fifth, ..] = self.0;
         let higher = step.times_plus(fifth * (1.0 / 6.0), fourth * 0.5);
         let bend = step.times_plus(step.times_plus(higher, third), second);

@@ -135,7 +135,7 @@ impl<'a, W: Watcher> Seat<'a, W> {
         self.next_stage()
     }
 
-    /// What begins at a switch, with what is known there imposed ([`crate::leg`]).
+    /// What begins at a switch, with what is known there imposed ([`crate::switch`]).
     #[inline]
     fn landed(&self, stage: Stage, lane: usize, end: &End) -> Entry {
         let Entry { instant, drift, .. } = self.course.entry;
