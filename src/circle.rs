@@ -6,7 +6,7 @@
 //! fifths of a unit where the value is large, more units where it is small. Only additions and
 //! multiplications, hence the same bits on every platform.
 
-use crate::two_word::{TWO_PI, TwoWord, cut};
+use crate::two_word::{ROUNDER, TWO_PI, TwoWord, cut};
 
 /// Parts of a turn.
 const PARTS: usize = 64;
@@ -37,8 +37,6 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
 
 #[inline]
 fn by_table(x: f64) -> (f64, f64) {
-    // Adding 1.5 * 2^52 rounds to a whole number and leaves it in the last bits.
-    const ROUNDER: f64 = 6_755_399_441_055_744.0;
     let rounded = x * (PARTS as f64 / TWO_PI.high) + ROUNDER;
     let End { sin, cos } = ENDS[rounded.to_bits() as usize % PARTS];
     let parts = rounded - ROUNDER;

@@ -4,7 +4,7 @@
 //! the table, which is held in two words. The error is half a unit in the last place and two hundredths. Only
 //! additions and multiplications, hence the same bits on every platform.
 
-use crate::two_word::{TwoWord, cut};
+use crate::two_word::{ROUNDER, TwoWord, cut};
 
 /// Parts of a doubling.
 const PARTS: usize = 64;
@@ -13,7 +13,8 @@ const PARTS: usize = 64;
 const LARGEST: f64 = 700.0;
 
 /// ln 2 (relative error 1e-33).
-const LN_2: TwoWord = TwoWord { high: std::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
+pub(crate) const LN_2: TwoWord =
+    TwoWord { high: std::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
 
 /// ln 2/64 in two words, of which the first has 33 bits.
 const FIRST: f64 = cut(LN_2.high / PARTS as f64);
@@ -31,8 +32,6 @@ pub fn exp(x: f64) -> f64 {
 
 #[inline]
 fn by_table(x: f64) -> f64 {
-    // Adding 1.5 * 2^52 rounds to a whole number and leaves it in the last bits, negative ones as well.
-    const ROUNDER: f64 = 6_755_399_441_055_744.0;
     let rounded = x * (PARTS as f64 / LN_2.high) + ROUNDER;
     let parts = rounded - ROUNDER;
     let number = rounded.to_bits() as i32;

@@ -78,8 +78,7 @@ impl TwoWord {
     #[must_use]
     pub const fn plus_product(self, time: Self, rate: f64) -> Self {
         let product = Self::product(time.high, rate);
-        let high = Self::sum(self.high, product.high);
-        quick_sum(high.high, high.low + (self.low + (product.low + time.low * rate)))
+        self.plus_positive(Self { low: product.low + time.low * rate, ..product })
     }
 
     /// `self * factor`.
@@ -106,6 +105,9 @@ impl TwoWord {
         quick_sum(first, rest / divisor)
     }
 }
+
+/// 1.5 * 2^52: a sum with it is rounded to a whole number, which its last bits hold, negative ones as well.
+pub(crate) const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// The first 33 bits of a word: whole numbers below 2^20 times that are exact.
 pub(crate) const fn cut(word: f64) -> f64 {

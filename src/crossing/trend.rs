@@ -11,6 +11,7 @@ use crate::crossing::guarded::Outlook;
 use crate::crossing::swing::meeting;
 use crate::flow::stride::{Stride, Strides};
 use crate::remainders::decay;
+use crate::two_word::ROUNDER;
 use std::f64::consts::TAU;
 
 /// See the module's text.
@@ -278,8 +279,6 @@ fn last_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
 
 /// Sine and cosine to about 1e-7, for angles up to 1e9 or so.
 fn quick_sin_cos(x: f64) -> (f64, f64) {
-    // Adding and taking off 1.5 * 2^52 rounds to a whole number.
-    const ROUNDER: f64 = 6_755_399_441_055_744.0;
     let turns = (x * std::f64::consts::FRAC_2_PI + ROUNDER) - ROUNDER;
     let r = x - turns * std::f64::consts::FRAC_PI_2;
     let s = r * r;

@@ -4,7 +4,9 @@
 //! words of pi/2: up to [`FURTHEST`] the third would be 1e-28); the kernels are those of fdlibm. Errors
 //! are below one unit in the last place.
 
-use super::wide::{Mask, ROUNDER, Wide};
+use super::wide::{Mask, Wide};
+use crate::exponential;
+use crate::two_word::ROUNDER;
 use pulp::Simd;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, LN_2, LOG2_E};
 
@@ -14,7 +16,7 @@ pub const FURTHEST: f64 = 1e5;
 /// What one word leaves of pi/2.
 const FRAC_PI_2_LOW: f64 = 6.123_233_995_736_766e-17;
 /// What one word leaves of ln 2.
-const LN_2_LOW: f64 = 2.319_046_813_846_299_6e-17;
+const LN_2_LOW: f64 = exponential::LN_2.low;
 
 /// Sine and cosine with their remainders.
 #[derive(Clone, Copy)]

@@ -1,7 +1,7 @@
 //! Numbers in two words, all lanes at once ([`crate::two_word`]).
 
-use super::wide::{ROUNDER, Wide};
-use crate::two_word::TWO_PI;
+use super::wide::Wide;
+use crate::two_word::{ROUNDER, TWO_PI};
 use pulp::Simd;
 
 /// An unevaluated sum.
