@@ -38,6 +38,13 @@ impl Instant {
         Self { cycle: Cycle(cycle), angle }
     }
 
+    /// The instant at an angle that may have left `[0, 2 pi)`.
+    #[inline(always)]
+    fn wrapped(cycle: i128, angle: TwoWord) -> Self {
+        let (cycle, angle) = angle::wrap(cycle, angle);
+        Self { cycle: Cycle(cycle), angle }
+    }
+
     /// The instant one forcing period later.
     pub(crate) const fn next_cycle(self) -> Self {
         Self { cycle: Cycle(self.cycle.0 + 1), ..self }
@@ -88,8 +95,7 @@ impl Instant {
     #[inline(always)]
     #[must_use]
     pub fn after(&self, elapsed: TwoWord, omega: f64) -> Self {
-        let (cycle, angle) = angle::wrap(self.cycle.0, self.angle.plus_product(elapsed, omega));
-        Self { cycle: Cycle(cycle), angle }
+        Self::wrapped(self.cycle.0, self.angle.plus_product(elapsed, omega))
     }
 
     /// The same with the forcing angle there, whose sine does not wait until whole turns have come off.
@@ -103,9 +109,9 @@ impl Instant {
         /// Up to here the angle's second word is a first-order correction of its sine.
         const FAR: f64 = 1e3;
         let angle = self.angle.plus_product(elapsed, omega);
-        let (cycle, wrapped) = angle::wrap(self.cycle.0, angle);
-        let instant = Self { cycle: Cycle(cycle), angle: wrapped };
-        let (sin, cos) = sin_cos(with_phase(if angle.high < FAR { angle } else { wrapped }, phi));
+        let instant = Self::wrapped(self.cycle.0, angle);
+        let near = if angle.high < FAR { angle } else { instant.angle };
+        let (sin, cos) = sin_cos(with_phase(near, phi));
         (instant, EntryAngle { radians: instant.radians(phi), sin, cos })
     }
 
@@ -114,8 +120,7 @@ impl Instant {
     pub fn after_periods(&self, numerator: u64, denominator: u64) -> Self {
         let (whole, rest) = (numerator / denominator, numerator % denominator);
         let step = TWO_PI.times(rest as f64).over(denominator as f64);
-        let (cycle, angle) = angle::wrap(self.cycle.0 + i128::from(whole), self.angle.plus(step));
-        Self { cycle: Cycle(cycle), angle }
+        Self::wrapped(self.cycle.0 + i128::from(whole), self.angle.plus(step))
     }
 
     /// The first instant not before this one at which `omega tau mod 2 pi` is `angle` (radians, any
