@@ -39,9 +39,9 @@ pub fn first_crossing<G: Guarded>(
 
 /// The same with what follows from a crossing.
 ///
-/// Mostly the first guess leads to the root, and one certificate says that it is the first. What comes
-/// next waits for the root but not for the certificate: it is begun before that, so that the processor
-/// works on both.
+/// Mostly the first guess, which may have been made already, leads to the root, and one certificate says
+/// that it is the first. What comes next waits for the root but not for the certificate: it is begun before
+/// that, so that the processor works on both.
 #[inline]
 pub fn first_crossing_and<G: Guarded, T>(
     (phase, strides): (&G, &Strides),

@@ -140,6 +140,7 @@ pub fn meeting<S: Simd>(
     right: Wide<S>,
     (left_slope, right_slope): (Wide<S>, Wide<S>),
 ) -> Wide<S> {
+    // A guard that falls is looked at upside down: below, the zero is where it rises.
     let falls = left.above(0.0);
     let rising = |x: Wide<S>| falls.choose(-x, x);
     let (left, right) = (rising(left), rising(right));
