@@ -115,9 +115,14 @@ fn pass_by<P: Landing>(
 }
 
 impl Begun {
-    /// A phase of which no more is known.
+    /// A phase of which no more is known; it is guessed when it is passed, but for a gap that closes soon.
     pub(crate) fn at(model: &Model, entry: Entry) -> Self {
-        Self { entry, angle: model.forcing_angle(&entry.instant), guess: None }
+        let angle = model.forcing_angle(&entry.instant);
+        let guess = match Motion::new(model.constants(), &entry, angle) {
+            Motion::NoContact(flight) => flight.first_closing(),
+            Motion::Contact(_) | Motion::Progression(_) => None,
+        };
+        Self { entry, angle, guess }
     }
 
     /// The phase that begins at this root of this one.

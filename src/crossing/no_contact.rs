@@ -5,7 +5,7 @@ use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::tangents::stays_below;
-use crate::crossing::trend::{Place, Trend};
+use crate::crossing::trend::{Place, Trend, first_root};
 use crate::crossing::walk::{End, Parts, Shape, Walk};
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
@@ -57,6 +57,24 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
         let discriminant = 16.0 * h3 * h3 - 48.0 * h4 * h2;
         let hop = -24.0 * h2 / (4.0 * h3 + discriminant.sqrt());
         (h3 > 0.0 && hop > 0.0 && hop * self.fastest_rate() < 0.7).then_some(hop)
+    }
+
+    /// Where the gap that a run begins with closes, if soon, by its first four derivatives. Strides might pass
+    /// over a short contact, and to find that out costs more than all of the search.
+    pub fn first_closing(&self) -> Option<f64> {
+        const SOON: f64 = 0.7;
+        if self.surface.is_some() {
+            return None;
+        }
+        let [h, h1, h2, h3] = self.entry().guard.orders;
+        let mut time = first_root(h, h1, h2)?;
+        for _ in 0..3 {
+            let value = h + time * (h1 + time * (0.5 * h2 + time * (h3 * (1.0 / 6.0))));
+            time -= value / (h1 + time * (h2 + time * (0.5 * h3)));
+        }
+        let Constants { omega, rate, .. } = *self.constants.borrow();
+        let fastest = if self.entry.q == 0.0 { omega } else { omega.max(rate) };
+        (time > 0.0 && time * fastest < SOON).then_some(time)
     }
 }
 
