@@ -62,16 +62,16 @@ pub struct Leg {
 }
 
 impl Leg {
-    /// The phase that has begun; if a switch ends it, `begun` becomes the next one ([`pass`]).
+    /// The phase that has begun; if a switch ends it, `next` becomes the one that follows ([`pass`]).
     pub(crate) fn new(
         model: &Model,
-        begun: &mut Begun,
+        begun: &Begun,
+        next: &mut Begun,
         horizon: Option<&Instant>,
         counters: &mut Counters,
     ) -> Self {
-        let before = *begun;
-        let passed = pass(model, begun, horizon, counters);
-        Self::passed(model, &before, &passed, &begun.entry)
+        let passed = pass(model, begun, next, horizon, counters);
+        Self::passed(model, begun, &passed, &next.entry)
     }
 
     /// The phase that has been passed so, and how the next one begins if a switch has ended it.

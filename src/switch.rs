@@ -6,8 +6,8 @@
 
 use crate::constants::Constants;
 use crate::crossing::guarded::{Guarded, Outlook};
-use crate::crossing::search::first_crossing_and;
-use crate::crossing::{Counters, Crossing, Root};
+use crate::crossing::search::{Found, first_crossing_and};
+use crate::crossing::{Counters, Root};
 use crate::entry::{Entry, Onset};
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
@@ -60,18 +60,19 @@ trait Landing: Guarded {
     fn land(&self, root: &Root) -> (State, Onset);
 }
 
-/// Finds how a phase ends; if by a switch, the next phase takes its place. Switches after `horizon` do not
-/// count.
+/// Finds how a phase ends; if by a switch, `next` becomes the one that follows. Switches after `horizon` do
+/// not count.
 pub(crate) fn pass(
     model: &Model,
-    begun: &mut Begun,
+    begun: &Begun,
+    next: &mut Begun,
     horizon: Option<&Instant>,
     counters: &mut Counters,
 ) -> Passed {
     match Motion::new(model.constants(), &begun.entry, begun.angle) {
-        Motion::NoContact(flight) => pass_by(&flight, model, begun, horizon, counters),
-        Motion::Contact(contact) => pass_by(&contact, model, begun, horizon, counters),
-        Motion::Progression(slip) => pass_by(&slip, model, begun, horizon, counters),
+        Motion::NoContact(flight) => pass_by(&flight, model, (begun, next), horizon, counters),
+        Motion::Contact(contact) => pass_by(&contact, model, (begun, next), horizon, counters),
+        Motion::Progression(slip) => pass_by(&slip, model, (begun, next), horizon, counters),
     }
 }
 
@@ -79,12 +80,12 @@ pub(crate) fn pass(
 fn pass_by<P: Landing>(
     phase: &P,
     model: &Model,
-    begun: &mut Begun,
+    (begun, next): (&Begun, &mut Begun),
     horizon: Option<&Instant>,
     counters: &mut Counters,
 ) -> Passed {
     let omega = model.parameters().omega;
-    let (instant, guess) = (&begun.entry.instant, begun.guess);
+    let instant = &begun.entry.instant;
     // The horizon in two words is computed only where it matters. It is looked beyond by more than guesses
     // err, so that a switch next to it is found as without it; its instant decides.
     const BEYOND: f64 = 0.1;
@@ -92,25 +93,22 @@ fn pass_by<P: Landing>(
         let (certain, limit) = h.since_roughly(instant, omega);
         (certain, limit + BEYOND / omega)
     });
-    let next = |root: &Root| begun.after(model, phase, root);
-    let (crossing, next) =
-        first_crossing_and((phase, model.strides()), guess, limit, counters, next);
+    let land = |root: &Root| *next = begun.after(model, phase, root);
+    let found = first_crossing_and((phase, model.strides()), begun.guess, limit, counters, land);
     let left = || horizon.map_or(f64::INFINITY, |h| h.since(instant, omega).value());
     let ended = |end, duration| Passed { end, duration: TwoWord::new(duration) };
-    match (crossing, next) {
-        (Crossing::At(root), Some(next)) => {
-            let elapsed = root.elapsed();
+    match found {
+        Found::At(elapsed) => {
             if elapsed.high > certain && horizon.is_some_and(|it| next.entry.instant > *it) {
                 return ended(End::Horizon, left());
             }
             counters.switches += 1;
-            *begun = next;
             Passed { end: End::Switch, duration: elapsed }
         }
-        (Crossing::Never, _) if certain > 0.0 || left() > 0.0 => {
+        Found::Never if certain > 0.0 || left() > 0.0 => {
             ended(End::Endless(P::NONE), f64::INFINITY)
         }
-        _ => ended(End::Horizon, left()),
+        Found::Never | Found::Horizon => ended(End::Horizon, left()),
     }
 }
 
@@ -232,20 +230,21 @@ mod tests {
             (xi, omega) in (-7.0..2.5_f64, -3.0..3.0_f64).prop_map(|(x, o)| (x.exp(), o.exp())),
             (a, b, g) in (0.0..2.0_f64, -0.1..1.1_f64, 0.0..0.3_f64),
             (y, q, tau) in (-1.0..1.0_f64, 0.0..1.0_f64, 0.0..10.0_f64),
+            gap in prop_oneof![Just(0.0), (-12.0..1.0_f64).prop_map(f64::exp)],
         ) {
             let parameters = Parameters { a, b, xi, omega, g, ..Parameters::default() };
             let Ok(model) = Model::new(parameters) else {
                 return Err(TestCaseError::fail("out of range"));
             };
-            let entry = model.start(&Start { p: q + g, y, q: Some(q), tau, ..Start::default() });
+            let entry = model.start(&Start { p: q + g - gap, y, q: Some(q), tau, ..Start::default() });
             let Ok(entry) = entry else { return Ok(()) };
             let mut counters = Counters::default();
-            let mut run = Begun::at(&model, entry);
+            let mut begun = Begun::at(&model, entry);
             for _ in 0..30 {
-                let begun = run;
-                let mut alone = Begun { guess: None, ..begun };
-                let passed = pass(&model, &mut run, None, &mut counters);
-                let other = pass(&model, &mut alone, None, &mut counters);
+                let unguessed = Begun { guess: None, ..begun };
+                let (mut next, mut alone) = (begun, begun);
+                let passed = pass(&model, &begun, &mut next, None, &mut counters);
+                let other = pass(&model, &unguessed, &mut alone, None, &mut counters);
                 prop_assert_eq!(passed.end, other.end);
                 if passed.end != End::Switch {
                     break;
@@ -253,7 +252,8 @@ mod tests {
                 let (one, two) = (passed.duration.value(), other.duration.value());
                 let room = room(&model, &begun, one);
                 prop_assert!((one - two).abs() <= room, "{begun:?}: {one} {two} {room:e}");
-                prop_assert_eq!(run.entry.phase(), alone.entry.phase());
+                prop_assert_eq!(next.entry.phase(), alone.entry.phase());
+                begun = next;
             }
         }
     }

@@ -3,7 +3,7 @@
 use crate::crossing::Counters;
 use crate::entry::Entry;
 use crate::instant::Instant;
-use crate::leg::{Exit, Leg};
+use crate::leg::Leg;
 use crate::model::Model;
 use crate::switch::{Begun, End, Passed, pass};
 use crate::two_word::TwoWord;
@@ -18,7 +18,11 @@ use crate::two_word::TwoWord;
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     model: Model,
-    next: Option<Begun>,
+    /// The phase that has begun and the one before it, whose place is the next one's: so none is copied.
+    begun: [Begun; 2],
+    /// Whether it is the second of these.
+    second: bool,
+    over: bool,
     horizon: Option<Instant>,
     counters: Counters,
 }
@@ -41,8 +45,14 @@ impl Model {
     /// The run that begins at `entry`.
     #[must_use]
     pub fn trajectory(&self, entry: Entry) -> Trajectory {
-        let next = Some(Begun::at(self, entry));
-        Trajectory { model: *self, next, horizon: None, counters: Counters::default() }
+        Trajectory {
+            model: *self,
+            begun: [Begun::at(self, entry); 2],
+            second: false,
+            over: false,
+            horizon: None,
+            counters: Counters::default(),
+        }
     }
 }
 
@@ -63,24 +73,35 @@ impl Trajectory {
     /// Passes the next phase; unlike iterating without keeping it, at less cost.
     #[inline]
     pub fn step(&mut self) -> Option<Step<'_>> {
-        let begun = self.next.as_mut()?;
-        let passed = pass(&self.model, begun, self.horizon.as_ref(), &mut self.counters);
-        match passed.end {
-            End::Switch => {
-                let next = &self.next.as_ref()?.entry;
-                Some(Step::Switch { duration: passed.duration, next })
-            }
-            End::Horizon | End::Endless(_) => {
-                self.last(&passed).map(|leg| Step::Last(Box::new(leg)))
-            }
+        let passed = self.pass()?;
+        if passed.end != End::Switch {
+            return Some(Step::Last(Box::new(self.end(&passed))));
         }
+        let next = &self.begun[usize::from(self.second)].entry;
+        Some(Step::Switch { duration: passed.duration, next })
+    }
+
+    /// Goes on to the next phase, if a switch leads to one.
+    #[inline]
+    fn pass(&mut self) -> Option<Passed> {
+        if self.over {
+            return None;
+        }
+        let [first, second] = &mut self.begun;
+        let (begun, next) = if self.second { (second, first) } else { (first, second) };
+        let passed = pass(&self.model, begun, next, self.horizon.as_ref(), &mut self.counters);
+        match passed.end {
+            End::Switch => self.second = !self.second,
+            End::Horizon | End::Endless(_) => self.over = true,
+        }
+        Some(passed)
     }
 
     /// The phase that no other follows.
     #[cold]
-    fn last(&mut self, passed: &Passed) -> Option<Leg> {
-        let begun = self.next.take()?;
-        Some(Leg::passed(&self.model, &begun, passed, &begun.entry))
+    fn end(&self, passed: &Passed) -> Leg {
+        let begun = &self.begun[usize::from(self.second)];
+        Leg::passed(&self.model, begun, passed, &begun.entry)
     }
 
     /// The model that runs.
@@ -94,11 +115,12 @@ impl Iterator for Trajectory {
     type Item = Leg;
 
     fn next(&mut self) -> Option<Leg> {
-        let begun = self.next.as_mut()?;
-        let leg = Leg::new(&self.model, begun, self.horizon.as_ref(), &mut self.counters);
-        if !matches!(leg.exit(), Exit::Switch(_)) {
-            self.next = None;
+        let passed = self.pass()?;
+        if passed.end != End::Switch {
+            return Some(self.end(&passed));
         }
-        Some(leg)
+        let [first, second] = &self.begun;
+        let (begun, before) = if self.second { (second, first) } else { (first, second) };
+        Some(Leg::passed(&self.model, before, &passed, &begun.entry))
     }
 }

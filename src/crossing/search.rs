@@ -6,6 +6,7 @@ use crate::crossing::root::{bracketed, evaluate_again, follow, middle};
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::Point;
 use crate::flow::stride::Strides;
+use crate::two_word::TwoWord;
 
 /// The right end of a piece.
 #[derive(Clone, Copy)]
@@ -34,24 +35,40 @@ pub fn first_crossing<G: Guarded>(
     horizon: f64,
     counters: &mut Counters,
 ) -> Crossing {
-    first_crossing_and((phase, strides), None, horizon, counters, |_| ()).0
+    if horizon <= 0.0 {
+        return Crossing::Horizon;
+    }
+    let left = phase.entry();
+    let outlook = phase.outlook(strides, &left, horizon);
+    search((phase, strides), left, (outlook, None), horizon, counters)
 }
 
-/// The same with what follows from a crossing.
+/// How a search has ended whose crossing has been told already.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Found {
+    /// By a crossing after this time.
+    At(TwoWord),
+    /// None before the horizon.
+    Horizon,
+    /// None ever: proved.
+    Never,
+}
+
+/// The same where `next` is told the crossing.
 ///
 /// Mostly the first guess, which may have been made already, leads to the root, and one certificate says
 /// that it is the first. What comes next waits for the root but not for the certificate: it is begun before
-/// that, so that the processor works on both.
+/// that, so that the processor works on both. If the certificate fails, `next` is told the right one after.
 #[inline]
-pub fn first_crossing_and<G: Guarded, T>(
+pub fn first_crossing_and<G: Guarded>(
     (phase, strides): (&G, &Strides),
     guess: Option<f64>,
     horizon: f64,
     counters: &mut Counters,
-    next: impl Fn(&Root) -> T,
-) -> (Crossing, Option<T>) {
+    mut next: impl FnMut(&Root),
+) -> Found {
     if horizon <= 0.0 {
-        return (Crossing::Horizon, None);
+        return Found::Horizon;
     }
     let left = phase.entry();
     let outlook = match guess {
@@ -65,24 +82,26 @@ pub fn first_crossing_and<G: Guarded, T>(
     {
         match follow(phase, 0.0, time, horizon, counters) {
             Ok(root) => {
-                let next = next(&root);
+                next(&root);
                 let ends = Ends { right: true, ..phase.imposed() };
                 if root.elapsed().high <= horizon
                     && phase.certify(strides, &left, &root.point, ends) == Verdict::Inside
                 {
-                    return (Crossing::At(root), Some(next));
+                    return Found::At(root.elapsed());
                 }
                 tried = Some(Ok(root));
             }
             Err(point) => tried = Some(Err(point)),
         }
     }
-    let crossing = search((phase, strides), left, (outlook, tried), horizon, counters);
-    let next = match &crossing {
-        Crossing::At(root) => Some(next(root)),
-        _ => None,
-    };
-    (crossing, next)
+    match search((phase, strides), left, (outlook, tried), horizon, counters) {
+        Crossing::At(root) => {
+            next(&root);
+            Found::At(root.elapsed())
+        }
+        Crossing::Horizon => Found::Horizon,
+        Crossing::Never => Found::Never,
+    }
 }
 
 /// A guess that has been followed: to a root, or in vain.

@@ -47,8 +47,9 @@ impl<'a, W: Watcher> Course<'a, W> {
     /// Takes one phase by the scalar solver.
     pub fn pass(&mut self) -> ControlFlow<()> {
         let horizon = self.horizon.as_ref();
-        let mut begun = self.begun.take().unwrap_or_else(|| Begun::at(self.model, self.entry));
-        let leg = Leg::new(self.model, &mut begun, horizon, &mut Counters::default());
+        let begun = self.begun.take().unwrap_or_else(|| Begun::at(self.model, self.entry));
+        let mut next_begun = begun;
+        let leg = Leg::new(self.model, &begun, &mut next_begun, horizon, &mut Counters::default());
         let endless = match leg.exit() {
             Exit::Endless(endless) => Some(*endless),
             Exit::Switch(_) | Exit::Horizon => None,
@@ -58,7 +59,7 @@ impl<'a, W: Watcher> Course<'a, W> {
         }
         if let Exit::Switch(next) = leg.exit() {
             self.enter(next);
-            self.begun = Some(begun);
+            self.begun = Some(next_begun);
         }
         ControlFlow::Continue(())
     }
