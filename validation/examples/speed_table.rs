@@ -7,6 +7,7 @@
 
 use anyhow::{Context, Result};
 use comfy_table::{CellAlignment, Table, presets};
+use percuss_validation::bench::lead::Shortfall;
 use percuss_validation::number::{brief, shortest};
 use serde_json::Value;
 
@@ -55,9 +56,11 @@ fn block(bench: &Value) -> Result<String> {
         column.set_padding((0, 2));
     }
     let lines: Vec<_> = table.to_string().lines().map(|line| line.trim_end().to_owned()).collect();
+    let short = cases.iter().filter_map(|case| shortfall(bench, case));
+    let short: String = short.map(|it| format!("{it}\n")).collect();
     Ok(format!(
         "```text\npercuss {} at {}, {}, on {}, {} rounds\nfloor: {:.1} ns a sine, cosine and \
-         exponential that wait for the last, {:.1} ns independent ones\n{}\n```\n",
+         exponential that wait for the last, {:.1} ns independent ones\n{}\n\n{short}```\n",
         word("percuss"),
         word("commit"),
         word("rustc"),
@@ -69,15 +72,30 @@ fn block(bench: &Value) -> Result<String> {
     ))
 }
 
-/// The exact solver on a case, and the adaptive engine that is least behind it at its most accurate.
-fn cells(bench: &Value, case: &str) -> Option<[String; 11]> {
-    let of =
-        |key: &str| bench[key].as_array().into_iter().flatten().filter(|it| it["case"] == case);
-    let switch = of("switches").next()?;
-    let exact = of("results").find(|row| row["engine"] == "exact")?;
+/// The rows of a case in a table of the bench.
+fn of<'a>(bench: &'a Value, table: &str, case: &str) -> impl Iterator<Item = &'a Value> {
+    bench[table].as_array().into_iter().flatten().filter(move |it| it["case"] == case)
+}
+
+/// The adaptive engine that is least behind the exact solver, each at its most accurate.
+fn least_behind<'a>(bench: &'a Value, case: &str) -> Option<&'a Value> {
     let best = |row: &&Value| row["adaptive"] == true && row["most_accurate"] == true;
-    let ratio = |row: &Value| row["ratio_to_exact"].as_f64().unwrap_or(f64::INFINITY);
-    let next = of("results").filter(best).min_by(|a, b| ratio(a).total_cmp(&ratio(b)))?;
+    let rows = of(bench, "results", case).filter(best);
+    rows.min_by(|a, b| ratio(a).total_cmp(&ratio(b)))
+}
+
+fn exact<'a>(bench: &'a Value, case: &str) -> Option<&'a Value> {
+    of(bench, "results", case).find(|row| row["engine"] == "exact")
+}
+
+fn ratio(row: &Value) -> f64 {
+    row["ratio_to_exact"].as_f64().unwrap_or(f64::INFINITY)
+}
+
+/// The exact solver on a case, and the engine that is least behind it.
+fn cells(bench: &Value, case: &str) -> Option<[String; 11]> {
+    let switch = of(bench, "switches", case).next()?;
+    let (exact, next) = (exact(bench, case)?, least_behind(bench, case)?);
     let number = |row: &Value, key: &str| row[key].as_f64().unwrap_or(f64::NAN);
     Some([
         case.to_owned(),
@@ -92,4 +110,20 @@ fn cells(bench: &Value, case: &str) -> Option<[String; 11]> {
         brief(number(next, "state_error_max")),
         format!("{:.0}", ratio(next)),
     ])
+}
+
+/// What is missing on a case to the lead that is asked for.
+fn shortfall<'a>(bench: &'a Value, entry: &'a Value) -> Option<Shortfall<'a>> {
+    let case = entry["case"].as_str()?;
+    let next = least_behind(bench, case)?;
+    let a_switch = entry["periods"].as_f64()? / entry["switches"].as_f64()?;
+    let it = Shortfall {
+        case,
+        engine: next["engine"].as_str()?,
+        ratio: ratio(next),
+        exact: exact(bench, case)?["ns_per_period"].as_f64()? * a_switch,
+        floor: bench["floor"]["chained_ns"].as_f64()?,
+        right_hand_sides: next["rhs_per_period"].as_f64()? * a_switch,
+    };
+    Some(it).filter(Shortfall::is_one)
 }

@@ -16,6 +16,7 @@ pub mod floor;
 pub mod history;
 pub mod instructions;
 pub mod lanes;
+pub mod lead;
 pub mod length;
 mod pictures;
 pub mod registry;

@@ -1,5 +1,6 @@
 //! The tables for people.
 
+use super::lead::{Shortfall, lead};
 use super::report::{Bench, Row};
 use crate::number::brief;
 use comfy_table::{CellAlignment, Table, presets};
@@ -10,48 +11,15 @@ pub fn table(bench: &Bench) -> String {
     let mut text = engines(bench);
     text.push_str(&switches(bench));
     text.push_str(&lengths(bench));
+    let cases = || bench.cases.iter().map(|entry| entry.case.as_str());
     text.push('\n');
-    for entry in &bench.cases {
-        text.push_str(&lead(bench, &entry.case).map(|it| it.line()).unwrap_or_default());
-    }
+    text.push_str(&lines(cases().filter_map(|case| lead(bench, case))));
+    text.push_str(&lines(cases().filter_map(|case| Shortfall::of(bench, case))));
     text
 }
 
-/// By how much an engine on a case is slower than the exact solver, and how much less accurate.
-#[derive(Clone, Debug)]
-pub struct Lead<'a> {
-    /// The adaptive engine that is least behind at its most accurate tolerance.
-    pub next: &'a Row,
-    /// How many times as long it takes.
-    pub ratio: f64,
-    /// Whether the exact solver errs less than every adaptive engine at any tolerance.
-    pub most_accurate: bool,
-}
-
-/// The exact solver's lead on a case; nothing where no adaptive engine is right.
-#[must_use]
-pub fn lead<'a>(bench: &'a Bench, case: &str) -> Option<Lead<'a>> {
-    let error = |row: &Row| row.state_error_max.unwrap_or(f64::INFINITY);
-    let rows = || bench.results.iter().filter(|row| row.case == case);
-    let exact = rows().find(|row| row.engine == "exact")?;
-    let ratio = |row: &'a Row| Some((row, row.ratio_to_exact?));
-    let engines = rows().filter(|row| row.adaptive && row.most_accurate).filter_map(ratio);
-    let (next, ratio) = engines.min_by(|a, b| a.1.total_cmp(&b.1))?;
-    let most_accurate = rows().filter(|row| row.adaptive).all(|row| error(exact) <= error(row));
-    Some(Lead { next, ratio, most_accurate })
-}
-
-impl Lead<'_> {
-    fn line(&self) -> String {
-        let Row { case, engine, .. } = self.next;
-        let setting = setting(self.next);
-        let accuracy = if self.most_accurate { "errs less" } else { "does not err less" };
-        format!(
-            "{case}: adaptive engines at their best take at least {:.0} times as long \
-             ({engine} {setting}); exact {accuracy}\n",
-            self.ratio
-        )
-    }
+fn lines(of: impl Iterator<Item = impl std::fmt::Display>) -> String {
+    of.map(|it| format!("{it}\n")).collect()
 }
 
 fn engines(bench: &Bench) -> String {
