@@ -20,8 +20,9 @@ pub struct Trajectory {
     model: Model,
     /// The phase that has begun and the one before it, whose place is the next one's: so none is copied.
     begun: [Begun; 2],
-    /// Whether it is the second of these.
+    /// Whether it is the second of these that has begun.
     second: bool,
+    /// Whether no phase follows.
     over: bool,
     horizon: Option<Instant>,
     counters: Counters,
@@ -74,11 +75,13 @@ impl Trajectory {
     #[inline]
     pub fn step(&mut self) -> Option<Step<'_>> {
         let passed = self.pass()?;
-        if passed.end != End::Switch {
-            return Some(Step::Last(Box::new(self.end(&passed))));
-        }
-        let next = &self.begun[usize::from(self.second)].entry;
-        Some(Step::Switch { duration: passed.duration, next })
+        let (begun, next) = self.last_and_next();
+        Some(match passed.end {
+            End::Switch => Step::Switch { duration: passed.duration, next: &next.entry },
+            End::Horizon | End::Endless(_) => {
+                Step::Last(Box::new(Leg::passed(&self.model, begun, &passed, &next.entry)))
+            }
+        })
     }
 
     /// Goes on to the next phase, if a switch leads to one.
@@ -87,21 +90,19 @@ impl Trajectory {
         if self.over {
             return None;
         }
+        self.second = !self.second;
         let [first, second] = &mut self.begun;
-        let (begun, next) = if self.second { (second, first) } else { (first, second) };
+        let (next, begun) = if self.second { (second, first) } else { (first, second) };
         let passed = pass(&self.model, begun, next, self.horizon.as_ref(), &mut self.counters);
-        match passed.end {
-            End::Switch => self.second = !self.second,
-            End::Horizon | End::Endless(_) => self.over = true,
-        }
+        self.over = passed.end != End::Switch;
         Some(passed)
     }
 
-    /// The phase that no other follows.
-    #[cold]
-    fn end(&self, passed: &Passed) -> Leg {
-        let begun = &self.begun[usize::from(self.second)];
-        Leg::passed(&self.model, begun, passed, &begun.entry)
+    /// The phase that was passed last, and the one that a switch has led to.
+    #[inline]
+    fn last_and_next(&self) -> (&Begun, &Begun) {
+        let [first, second] = &self.begun;
+        if self.second { (first, second) } else { (second, first) }
     }
 
     /// The model that runs.
@@ -116,11 +117,7 @@ impl Iterator for Trajectory {
 
     fn next(&mut self) -> Option<Leg> {
         let passed = self.pass()?;
-        if passed.end != End::Switch {
-            return Some(self.end(&passed));
-        }
-        let [first, second] = &self.begun;
-        let (begun, before) = if self.second { (second, first) } else { (first, second) };
-        Some(Leg::passed(&self.model, before, &passed, &begun.entry))
+        let (begun, next) = self.last_and_next();
+        Some(Leg::passed(&self.model, begun, &passed, &next.entry))
     }
 }
