@@ -51,6 +51,10 @@ pub(crate) struct Passed {
     pub duration: TwoWord,
 }
 
+/// The forcing angle by which a phase is cut that has no horizon: in two words nothing is known of the angle
+/// much later, and squares of times would overflow.
+const FURTHEST: f64 = 1e21;
+
 /// What a phase's end leads to.
 trait Landing: Guarded {
     /// What it means that it has none.
@@ -60,8 +64,8 @@ trait Landing: Guarded {
     fn land(&self, root: &Root) -> (State, Onset);
 }
 
-/// Finds how a phase ends; if by a switch, `next` becomes the one that follows. Switches after `horizon` do
-/// not count.
+/// Finds how a phase ends; if by a switch, `next` becomes the one that follows, else it holds nothing of use.
+/// Switches after `horizon` do not count.
 pub(crate) fn pass(
     model: &Model,
     begun: &Begun,
@@ -89,13 +93,13 @@ fn pass_by<P: Landing>(
     // The horizon in two words is computed only where it matters. It is looked beyond by more than guesses
     // err, so that a switch next to it is found as without it; its instant decides.
     const BEYOND: f64 = 0.1;
-    let (certain, limit) = horizon.map_or((f64::INFINITY, f64::INFINITY), |h| {
+    let (certain, limit) = horizon.map_or((f64::INFINITY, FURTHEST / omega), |h| {
         let (certain, limit) = h.since_roughly(instant, omega);
         (certain, limit + BEYOND / omega)
     });
     let land = |root: &Root| *next = begun.after(model, phase, root);
     let found = first_crossing_and((phase, model.strides()), begun.guess, limit, counters, land);
-    let left = || horizon.map_or(f64::INFINITY, |h| h.since(instant, omega).value());
+    let left = || horizon.map_or(FURTHEST / omega, |h| h.since(instant, omega).value());
     let ended = |end, duration| Passed { end, duration: TwoWord::new(duration) };
     match found {
         Found::At(elapsed) => {
@@ -113,7 +117,7 @@ fn pass_by<P: Landing>(
 }
 
 impl Begun {
-    /// A phase of which no more is known; it is guessed when it is passed, but for a gap that closes soon.
+    /// A phase of which no more is known: its end is guessed when it is passed, but for a gap that closes soon.
     pub(crate) fn at(model: &Model, entry: Entry) -> Self {
         let angle = model.forcing_angle(&entry.instant);
         let guess = match Motion::new(model.constants(), &entry, angle) {

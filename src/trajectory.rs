@@ -14,13 +14,14 @@ use crate::two_word::TwoWord;
 /// computed from where it was guessed, and what is guessed depends on the phase before.
 ///
 /// It ends after a phase that reaches the horizon or never ends; without a horizon and as long as
-/// switches come it goes on for ever.
+/// switches come it goes on for ever. A phase is cut after a forcing angle of 1e21 where nothing else ends it:
+/// two words do not know the angle much later.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     model: Model,
-    /// The phase that has begun and the one before it, whose place is the next one's: so none is copied.
+    /// The phase that has begun, and a place for the next one: so none is copied.
     begun: [Begun; 2],
-    /// Whether it is the second of these that has begun.
+    /// Whether the phase that has begun is the second of these.
     second: bool,
     /// Whether no phase follows.
     over: bool,

@@ -66,3 +66,45 @@ fn steps_are_what_iterating_gives() {
     }
     assert!(run.step().is_none());
 }
+
+/// A mass that is pushed by nothing.
+fn drifting(p: f64, y: f64) -> (Model, percuss::Entry) {
+    let parameters = Parameters { a: 0.0, b: 0.0, g: 0.0, ..Parameters::default() };
+    let model = Model::new(parameters).unwrap();
+    let entry = model.start(&Start { p, y, ..Start::default() }).unwrap();
+    (model, entry)
+}
+
+#[test]
+fn a_phase_that_outlasts_all_angles_is_cut() {
+    for y in [1e-100, 1e-155, 1e-200, 5e-324] {
+        let (model, entry) = drifting(-1.0, y);
+        let leg = model.trajectory(entry).next().unwrap();
+        assert!(matches!(leg.exit(), Exit::Horizon), "{y:e}: {leg:?}");
+        assert_eq!(leg.duration(), 1e21 / model.parameters().omega);
+    }
+}
+
+#[test]
+fn iterating_and_stepping_take_turns() {
+    let (model, entry) = from_rest(Parameters::default(), 0.0);
+    let horizon = entry.instant.after_periods(20, 1);
+    let legs: Vec<_> = model.trajectory(entry).until(horizon).collect();
+    let mut run = model.trajectory(entry).until(horizon);
+    for (k, leg) in legs.iter().enumerate() {
+        let mut other = run.clone();
+        let (duration, last) = match run.step().unwrap() {
+            Step::Switch { duration, .. } => (duration, false),
+            Step::Last(last) => (last.duration_two_word(), true),
+        };
+        let same = other.next().unwrap();
+        assert_eq!((duration, same.duration_two_word()), (leg.duration_two_word(), duration));
+        assert_eq!(same.exit(), leg.exit());
+        assert_eq!(last, k + 1 == legs.len());
+        // Either may go on.
+        if k % 3 == 0 {
+            run = other;
+        }
+    }
+    assert!(run.step().is_none() && run.next().is_none() && run.step().is_none());
+}

@@ -59,22 +59,27 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
         (h3 > 0.0 && hop > 0.0 && hop * self.fastest_rate() < 0.7).then_some(hop)
     }
 
-    /// Where the gap that a run begins with closes, if soon, by its first four derivatives. Strides might pass
-    /// over a short contact, and to find that out costs more than all of the search.
+    /// Where the gap that a run begins with closes, if soon, by its value and three derivatives. Strides might
+    /// pass over a short contact, and to find that out costs more than all of the search.
     pub fn first_closing(&self) -> Option<f64> {
+        /// Against the rates of the harmonic and of the spring.
         const SOON: f64 = 0.7;
+        const SETTLED: f64 = 0.1;
         if self.surface.is_some() {
             return None;
         }
-        let [h, h1, h2, h3] = self.entry().guard.orders;
-        let mut time = first_root(h, h1, h2)?;
-        for _ in 0..3 {
-            let value = h + time * (h1 + time * (0.5 * h2 + time * (h3 * (1.0 / 6.0))));
-            time -= value / (h1 + time * (h2 + time * (0.5 * h3)));
-        }
         let Constants { omega, rate, .. } = *self.constants.borrow();
         let fastest = if self.entry.q == 0.0 { omega } else { omega.max(rate) };
-        (time > 0.0 && time * fastest < SOON).then_some(time)
+        let [h, h1, h2, h3] = self.entry().guard.orders;
+        let mut time = first_root(h, h1, h2).filter(|it| it * fastest < SOON)?;
+        let mut change = 0.0;
+        for _ in 0..3 {
+            let value = h + time * (h1 + time * (0.5 * h2 + time * (h3 * (1.0 / 6.0))));
+            change = value / (h1 + time * (h2 + time * (0.5 * h3)));
+            time -= change;
+        }
+        let closes = time > 0.0 && time * fastest < SOON && change.abs() < SETTLED * time;
+        closes.then_some(time)
     }
 }
 
@@ -234,5 +239,31 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
             lasting: -at.state.q,
             room: slack(at, at),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::Flow;
+    use crate::parameters::Parameters;
+
+    #[test]
+    fn a_gap_that_closes_soon_is_guessed_where_it_closes() {
+        let constants =
+            Constants::new(&Parameters { xi: 0.25, omega: 0.15, ..Parameters::default() });
+        let angle = EntryAngle { radians: 1.0, sin: 1.0_f64.sin(), cos: 1.0_f64.cos() };
+        for (p, y, q) in [(0.0, 0.0, 0.0), (-0.5, 1.0, 0.0), (0.1, 0.2, 0.1), (-1.0, 2.0, -0.9)] {
+            let flight = NoContact { constants, entry: State { p, y, q }, angle, surface: None };
+            let time = flight.first_closing().unwrap_or(f64::NAN);
+            // The fourth derivative is left out.
+            let [h, slope, ..] = flight.at(time).guard.orders;
+            let fourth = constants.a * constants.omega2 + q.abs() * constants.rate.powi(4);
+            let room = fourth * time.powi(4) / 24.0 + 1e-3 * slope * time;
+            assert!(h.abs() <= room && slope > 0.0, "{p} {y} {q}: {time} {h} {slope}");
+        }
+        let far = State { p: -100.0, y: 1.0, q: 0.0 };
+        let flight = NoContact { constants, entry: far, angle, surface: None };
+        assert_eq!(flight.first_closing(), None);
     }
 }

@@ -58,7 +58,8 @@ pub enum Found {
 ///
 /// Mostly the first guess, which may have been made already, leads to the root, and one certificate says
 /// that it is the first. What comes next waits for the root but not for the certificate: it is begun before
-/// that, so that the processor works on both. If the certificate fails, `next` is told the right one after.
+/// that, so that the processor works on both. If the certificate fails, `next` is told the right one after; if
+/// none counts, what it was told counts for nothing.
 #[inline]
 pub fn first_crossing_and<G: Guarded>(
     (phase, strides): (&G, &Strides),

@@ -48,6 +48,9 @@ pub enum Bound {
     NeverAfter(f64),
 }
 
+/// Smaller slopes have no square.
+const SQUARABLE: f64 = 1e-150;
+
 /// Room for rounding in statements about the parabola, relative to its terms.
 const ROOM: f64 = 8.0 * f64::EPSILON;
 
@@ -84,6 +87,7 @@ impl Trend {
         let size = self.offset.abs() + (self.slope * from).abs() + 2.0 * bent * from * from;
         let value = value + ROOM * (size + self.amplitude);
         let rising = rising + ROOM * self.slope.abs();
+        let rising = if rising > 0.0 { rising.max(SQUARABLE) } else { rising };
         let curvature = curvature + 4.0 * ROOM * bent;
         if value < 0.0 {
             let opens = first_root(value, rising, curvature);
