@@ -7,7 +7,7 @@
 
 use anyhow::{Context, Result};
 use comfy_table::{CellAlignment, Table, presets};
-use percuss_validation::bench::lead::Shortfall;
+use percuss_validation::bench::lead::{Shortfall, times};
 use percuss_validation::number::{brief, shortest};
 use serde_json::Value;
 
@@ -108,7 +108,7 @@ fn cells(bench: &Value, case: &str) -> Option<[String; 11]> {
         shortest(number(next, "tolerance")),
         format!("{:.0}", number(next, "ns_per_period")),
         brief(number(next, "state_error_max")),
-        format!("{:.0}", ratio(next)),
+        times(ratio(next)),
     ])
 }
 
@@ -116,7 +116,8 @@ fn cells(bench: &Value, case: &str) -> Option<[String; 11]> {
 fn shortfall<'a>(bench: &'a Value, entry: &'a Value) -> Option<Shortfall<'a>> {
     let case = entry["case"].as_str()?;
     let next = least_behind(bench, case)?;
-    let a_switch = entry["periods"].as_f64()? / entry["switches"].as_f64()?;
+    let switches = entry["switches"].as_f64().filter(|it| *it > 0.0)?;
+    let a_switch = entry["periods"].as_f64()? / switches;
     let it = Shortfall {
         case,
         engine: next["engine"].as_str()?,

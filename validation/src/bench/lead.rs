@@ -7,6 +7,12 @@ use std::fmt;
 /// How many times as long the least slow engine is to take, on every case.
 pub const ASKED: f64 = 100.0;
 
+/// A ratio in whole numbers, of which it is at least so many.
+#[must_use]
+pub fn times(ratio: f64) -> String {
+    format!("{:.0}", ratio.floor())
+}
+
 /// By how much an engine on a case is slower than the exact solver, and how much less accurate.
 #[derive(Clone, Debug)]
 pub struct Lead<'a> {
@@ -38,9 +44,9 @@ impl fmt::Display for Lead<'_> {
         let accuracy = if self.most_accurate { "errs less" } else { "does not err less" };
         write!(
             out,
-            "{case}: adaptive engines at their best take at least {:.0} times as long \
+            "{case}: adaptive engines at their best take at least {} times as long \
              ({engine} {tolerance}); exact {accuracy}",
-            self.ratio
+            times(self.ratio)
         )
     }
 }
@@ -70,6 +76,9 @@ impl<'a> Shortfall<'a> {
         let entry = bench.cases.iter().find(|it| it.case == case)?;
         let own = |row: &&Row| row.case == case && row.engine == "exact";
         let exact = bench.results.iter().find(own)?.ns_per_period?;
+        if entry.switches == 0 {
+            return None;
+        }
         let a_switch = entry.periods / entry.switches as f64;
         let it = Self {
             case,
@@ -106,22 +115,72 @@ impl fmt::Display for Shortfall<'_> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::report::{CaseEntry, Floor};
     use super::*;
+    use crate::build::Build;
+
+    const CASE: &str = "fast";
+
+    fn row(engine: &'static str, ns_per_period: f64, ratio: f64, error: f64) -> Row {
+        Row {
+            case: CASE.to_owned(),
+            engine,
+            tolerance: (engine != "exact").then_some(1e-12),
+            step: None,
+            ns_per_period: Some(ns_per_period),
+            state_error_max: Some(error),
+            event_time_error_max: Some(error),
+            ratio_to_exact: Some(ratio),
+            rhs_per_period: Some(400.0),
+            most_accurate: true,
+            adaptive: engine != "exact",
+            why: None,
+        }
+    }
+
+    /// Two switches a period.
+    fn bench(ratio: f64, switches: usize) -> Bench {
+        let exact = row("exact", 320.0, 1.0, 1e-15);
+        let engine = row("an-engine", 320.0 * ratio, ratio, 1e-12);
+        Bench {
+            build: Build::this(),
+            rounds: 1,
+            cases: vec![CaseEntry {
+                case: CASE.to_owned(),
+                regime: String::new(),
+                periods: 10.0,
+                switches,
+            }],
+            results: vec![exact, engine, row("another", 1e9, 1e6, 1e-9)],
+            floor: Floor { chained_ns: 40.0, independent_ns: 20.0 },
+            switches: Vec::new(),
+            length: Vec::new(),
+            damping: Vec::new(),
+        }
+    }
 
     #[test]
     fn what_is_missing_is_said_in_units_of_a_switch() {
-        let shortfall = Shortfall {
-            case: "fast",
-            engine: "an-engine",
-            ratio: 50.0,
-            exact: 160.0,
-            floor: 40.0,
-            right_hand_sides: 200.0,
-        };
+        let bench = bench(50.0, 20);
         assert_eq!(
-            shortfall.to_string(),
-            "fast: 100 times would be a switch in 80 ns or 2.0 floors, not 160 or 4.0; \
-             an-engine takes 200 right-hand sides for one, of 40 ns each"
+            Shortfall::of(&bench, CASE).map(|it| it.to_string()).as_deref(),
+            Some(
+                "fast: 100 times would be a switch in 80 ns or 2.0 floors, not 160 or 4.0; \
+                 an-engine takes 200 right-hand sides for one, of 40 ns each"
+            )
         );
+    }
+
+    #[test]
+    fn a_lead_is_enough_or_not_in_what_is_said_of_it_as_well() {
+        for (ratio, said, enough) in
+            [(99.9, "at least 99 times", false), (100.0, "100 times", true)]
+        {
+            let bench = bench(ratio, 20);
+            let line = lead(&bench, CASE).map(|it| it.to_string()).unwrap_or_default();
+            assert!(line.contains(said) && line.contains("an-engine 1e-12"), "{line}");
+            assert_eq!(Shortfall::of(&bench, CASE).is_none(), enough);
+        }
+        assert_eq!(Shortfall::of(&bench(50.0, 0), CASE), None);
     }
 }
