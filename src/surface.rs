@@ -39,7 +39,14 @@ pub(crate) fn onset(
     }
     state.p = state.q + g;
     let onset = if f < 0.0 {
-        Onset::Separation { h_rate: f * rate }
+        let h_rate = f * rate;
+        if h_rate == 0.0 {
+            // Of a force without a speed nothing is known but that it is at the threshold.
+            state.q = -damper;
+            state.p = state.q + g;
+            return (state, on_threshold(constants, &state, 0.0, force));
+        }
+        Onset::Separation { h_rate }
     } else if f < 1.0 {
         Onset::Contact { offset: f, reference: 0.0 }
     } else {
@@ -107,6 +114,18 @@ mod tests {
     use super::*;
     use crate::parameters::Parameters;
     use crate::two_word::TwoWord;
+
+    /// Its speed f/(2 xi) is zero in f64: a separation under a force that pushes back would never have ended.
+    #[test]
+    fn a_force_without_a_speed_is_on_the_threshold() {
+        let constants = Constants::new(&Parameters { xi: 1e4, ..Parameters::default() });
+        let y = -1.112_536_929_256e-312;
+        let state = State { p: 0.02, y, q: f64::MIN_POSITIVE };
+        let (_, pushed) = onset(&constants, state, None, [0.1, 0.0, 0.0]);
+        assert_eq!(pushed, Onset::Contact { offset: 0.0, reference: 0.0 });
+        let (_, pulled) = onset(&constants, state, None, [-0.1, 0.0, 0.0]);
+        assert_eq!(pulled, Onset::Separation { h_rate: 0.0 });
+    }
 
     /// A start in mid-slip at 1/(2 xi) = 5000: (f - 1)/(2 xi) was wrong by thousands of eps.
     #[test]
