@@ -45,7 +45,7 @@ pub enum Endless {
 pub enum Exit {
     /// By a switch; the next phase begins so.
     Switch(Entry),
-    /// Not before the horizon; without one, not before a forcing angle of 1e21 has passed.
+    /// Not before the horizon; without one, not before a forcing angle of 1e30 has passed.
     Horizon,
     /// Never: proved.
     Endless(Endless),

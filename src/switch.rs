@@ -53,7 +53,7 @@ pub(crate) struct Passed {
 
 /// The forcing angle by which a phase is cut that has no horizon: in two words nothing is known of the angle
 /// much later, and squares of times would overflow.
-const FURTHEST: f64 = 1e21;
+const FURTHEST: f64 = 1e30;
 
 /// What a phase's end leads to.
 trait Landing: Guarded {

@@ -14,7 +14,7 @@ use crate::two_word::TwoWord;
 /// computed from where it was guessed, and what is guessed depends on the phase before.
 ///
 /// It ends after a phase that reaches the horizon or never ends; without a horizon and as long as
-/// switches come it goes on for ever. A phase is cut after a forcing angle of 1e21 where nothing else ends it:
+/// switches come it goes on for ever. A phase is cut after a forcing angle of 1e30 where nothing else ends it:
 /// two words do not know the angle much later.
 #[derive(Clone, Debug)]
 pub struct Trajectory {

@@ -81,7 +81,7 @@ fn a_phase_that_outlasts_all_angles_is_cut() {
         let (model, entry) = drifting(-1.0, y);
         let leg = model.trajectory(entry).next().unwrap();
         assert!(matches!(leg.exit(), Exit::Horizon), "{y:e}: {leg:?}");
-        assert_eq!(leg.duration(), 1e21 / model.parameters().omega);
+        assert_eq!(leg.duration(), 1e30 / model.parameters().omega);
     }
 }
 
