@@ -76,8 +76,9 @@ fn the_readmes_bench_is_of_todays_cases() {
     let lines: Vec<_> = block.lines().collect();
     assert!(lines[0].starts_with("percuss ") && lines[0].contains(" at "), "{}", lines[0]);
     assert!(lines[1].starts_with("floor: "), "{}", lines[1]);
-    let cases: Vec<_> =
-        lines[3..].iter().filter_map(|line| line.split_whitespace().next()).collect();
+    // Below a blank line are those whose lead is too little.
+    let table = lines[3..].iter().take_while(|line| !line.is_empty());
+    let cases: Vec<_> = table.filter_map(|line| line.split_whitespace().next()).collect();
     assert_eq!(cases, percuss_validation::bench::cases::USUAL);
 }
 
