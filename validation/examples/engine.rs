@@ -8,7 +8,7 @@ use percuss_validation::engine::{
     Accuracy, Declaration, Engine, Equations, Event, Failure, Limits, Location, Oscillator,
     Outcome, Stepping, Task, Work, exact, shortest_time,
 };
-use percuss_validation::report::{Evidence, Report, table};
+use percuss_validation::report::{Evidence, Report, screen};
 use percuss_validation::suite::{Suite, prepare, run};
 use percuss_validation::truth::Library;
 
@@ -119,7 +119,7 @@ pub fn scored() -> anyhow::Result<String> {
     let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
     let report = Report::new(Suite::Quick, &declarations, &rows);
     let evidence = Evidence::gather(&cases, &rows, &[], true);
-    Ok(table(&report, &evidence))
+    Ok(screen(&report, &evidence, true))
 }
 
 fn main() -> anyhow::Result<()> {

@@ -6,7 +6,7 @@
 use crate::case::{Bound, Quantity};
 use crate::engine::{Accuracy, Limits, Wrong};
 use crate::number::brief;
-use crate::score::{Checked, Subject, Verdict, judge};
+use crate::score::{Checked, Expected, Subject, Verdict, judge};
 use crate::suite::{Extent, Prepared};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -62,7 +62,7 @@ impl Gate {
             | Quantity::StateConstant
             | Quantity::ValidPeriods => Self::StateErrors,
             Quantity::ValidGain => Self::ValidHorizon,
-            Quantity::RestartError => Self::Restart,
+            Quantity::RestartError | Quantity::RestartsFailed => Self::Restart,
             Quantity::AttractorDistance => Self::Attractor,
         }
     }
@@ -156,7 +156,8 @@ fn held(
     let limits = Limits::default();
     let extent = |_| Extent::of_wrong(&prepared.case);
     let measured = prepared.measured(wrong.engine, Accuracy::Exact, unit, &limits, extent);
-    let (measures, ..) = measured.ok()?;
+    let (measures, outcome, _) = measured.ok()?;
     let bounds: Vec<_> = prepared.case.bounds.iter().chain(defaults).collect();
-    Some(judge(&subject, Ok((&measures, prepared.is_whole(unit))), &bounds, &[]).bounds)
+    let expected = Expected { bounds: &bounds, shortcomings: &[] };
+    Some(judge(&subject, &prepared.as_run(&measures, &outcome), &expected).bounds)
 }

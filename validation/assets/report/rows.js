@@ -3,7 +3,7 @@
 
 const columns = data.columns;
 const count = data.cases.length ? (columns.case ?? []).length : 0;
-const verdictOf = (i) => (columns.verdict[i] === "expected" || columns.expected[i] ? "known" : columns.verdict[i]);
+const verdictOf = (i) => (columns.verdict[i]);
 const fineness = (i) => columns.tolerance?.[i] ?? columns.step?.[i] ?? 0;
 const value = (name) => (i) => columns[name]?.[i] ?? null;
 
@@ -12,7 +12,7 @@ const SHOWN = [
   ["case", "case", "the problem that is run", value("case")],
   ["engine", "engine", "the integrator", value("engine")],
   ["setting", "setting", "relative and absolute tolerance, or h = fixed step", fineness, value("setting")],
-  ["verdict", "verdict", "pass: within all bounds; known: passes because a stated shortcoming shows as stated", (i) => ["error", "fail", "known", "pass", "unavailable"].indexOf(verdictOf(i)), verdictOf],
+  ["verdict", "verdict", "pass: within all bounds; known: passes because a stated shortcoming shows as stated", (i) => ["error", "fail", "known", "undecidable", "not-scored", "pass", "not-run", "unavailable"].indexOf(verdictOf(i)), verdictOf],
   ["found", "found", "switches found, of those that the truth has up to the scored horizon", (i) => (columns.events_matched?.[i] ?? -1) - (columns.events_expected?.[i] ?? 0), (i) => (columns.events_expected?.[i] == null ? "–" : `${columns.events_matched[i]}/${columns.events_expected[i]}`)],
   ["events_spurious", "invented", "switches that the truth does not have", value("events_spurious")],
   ["event_time_error.max", "time error", "largest error of a switch's time", value("event_time_error.max")],
@@ -63,7 +63,7 @@ function ordered(rows) {
 
 function details(i) {
   const bounds = data.bounds[i].map(([what, limit, measured, verdict, why]) =>
-    element("tr", {}, element("td", {}, data.texts[what]), element("td", { class: "number" }, brief(measured)), element("td", { class: "number" }, brief(limit)), element("td", {}, element("span", { class: `pill ${data.texts[verdict] === "expected" ? "known" : data.texts[verdict]}` }, data.texts[verdict] === "expected" ? "known" : data.texts[verdict])), element("td", { class: "why" }, data.texts[why])));
+    element("tr", {}, element("td", {}, data.texts[what]), element("td", { class: "number" }, brief(measured)), element("td", { class: "number" }, brief(limit)), element("td", {}, element("span", { class: `pill ${data.texts[verdict]}` }, data.texts[verdict])), element("td", { class: "why" }, data.texts[why])));
   const rest = Object.keys(columns).filter((key) => !["case", "engine", "setting", "verdict", "why", "expected", "status"].includes(key) && columns[key][i] !== null);
   const note = data.cases.find((it) => it.name === columns.case[i]);
   const parts = [];

@@ -31,11 +31,33 @@ pub enum Quantity {
     /// Error after one passage through contact from states on the attractor, over
     /// unit x (1 + |value|) x growth.
     RestartError,
+    /// Restarts that gave no result.
+    RestartsFailed,
     /// The largest distance of the section from the reference's, over its calibrated limit.
     AttractorDistance,
 }
 
 impl Quantity {
+    /// The quantity in words, as reasons name it.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::EventsMissed => "events missed",
+            Self::EventsSpurious => "spurious events",
+            Self::PhaseWord => "phase word",
+            Self::EventTimeError => "event time error",
+            Self::StateError => "state error",
+            Self::DriftError => "drift error",
+            Self::EventConstant => "event constant",
+            Self::StateConstant => "state constant",
+            Self::ValidPeriods => "valid periods",
+            Self::ValidGain => "valid gain",
+            Self::RestartError => "restart error",
+            Self::RestartsFailed => "restarts failed",
+            Self::AttractorDistance => "attractor distance",
+        }
+    }
+
     /// Whether a bound on it is a lower limit.
     #[must_use]
     pub const fn is_to_be_large(self) -> bool {
@@ -64,8 +86,6 @@ pub struct Bound {
     pub engine: Regex,
     /// The tolerances or steps it is for; all where none is given.
     pub at: Vec<Accuracy>,
-    /// It is for engines whose unit of error is at least this.
-    pub coarser_than: f64,
     /// What is bounded.
     pub quantity: Quantity,
     /// Which figure of it.
@@ -78,7 +98,7 @@ pub struct Bound {
     pub why: String,
 }
 
-/// What is known not to work, so that it is neither a failure nor forgotten.
+/// A shortcoming of an engine that is known: the one quantity of a row that it excuses.
 #[derive(Clone, Debug)]
 pub struct Shortcoming {
     /// Cases it is for, where it does not stand in one.
@@ -87,17 +107,23 @@ pub struct Shortcoming {
     pub engine: Regex,
     /// The tolerances or steps it is for; all where none is given.
     pub at: Vec<Accuracy>,
-    /// What shows it; `None`: the engine fails.
-    pub shows: Option<(Quantity, Statistic, f64)>,
+    /// The quantity that is out of bounds.
+    pub quantity: Quantity,
+    /// Which figure of it.
+    pub statistic: Statistic,
+    /// The figure is at least this, or the shortcoming no longer shows.
+    pub at_least: f64,
+    /// The figure is at most this, or it is worse than what is known.
+    pub at_most: f64,
     /// The reason.
     pub why: String,
 }
 
 impl Bound {
-    /// Whether the bound is for this engine when it is as accurate as this, with this unit of error.
+    /// Whether the bound is for this engine when it is as accurate as this.
     #[must_use]
-    pub fn is_for(&self, engine: &str, accuracy: Accuracy, unit: f64) -> bool {
-        unit >= self.coarser_than && applies(&self.engine, &self.at, engine, accuracy)
+    pub fn is_for(&self, engine: &str, accuracy: Accuracy) -> bool {
+        applies(&self.engine, &self.at, engine, accuracy)
     }
 }
 

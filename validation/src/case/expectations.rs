@@ -9,10 +9,8 @@ use toml::Spanned;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct DefaultsFile {
+struct BoundsFile {
     bounds: Vec<Spanned<BoundTable>>,
-    #[serde(default)]
-    shortcomings: Vec<Spanned<ShortcomingTable>>,
 }
 
 /// What is expected of engines on every case, after what the case says itself.
@@ -38,8 +36,6 @@ pub(super) struct BoundTable {
     engine: String,
     tolerance: Option<Several>,
     step: Option<Several>,
-    #[serde(default)]
-    coarser_than: f64,
     quantity: Quantity,
     statistic: Statistic,
     limit: f64,
@@ -55,21 +51,18 @@ pub(super) struct ShortcomingTable {
     engine: String,
     tolerance: Option<Several>,
     step: Option<Several>,
-    #[serde(default)]
-    fails: bool,
-    quantity: Option<Quantity>,
+    quantity: Quantity,
     statistic: Option<Statistic>,
-    at_least: Option<f64>,
+    at_least: f64,
+    at_most: f64,
     why: String,
 }
 
-/// Reads what is expected on every case.
-pub(super) fn read_defaults(file: &str, text: &str) -> Result<Defaults, FileError> {
+/// Reads the bounds of every case.
+pub(super) fn read_bounds(file: &str, text: &str) -> Result<Vec<Bound>, FileError> {
     let source = Source { file, text };
-    let wire: DefaultsFile = source.parse()?;
-    let bounds = wire.bounds.into_iter().map(|it| source.bound(it)).collect::<Result<_, _>>()?;
-    let shortcomings = wire.shortcomings.into_iter().map(|it| source.shortcoming(it));
-    Ok(Defaults { bounds, shortcomings: shortcomings.collect::<Result<_, _>>()? })
+    let wire: BoundsFile = source.parse()?;
+    wire.bounds.into_iter().map(|it| source.bound(it)).collect()
 }
 
 /// The tolerances and steps that are named.
@@ -93,7 +86,6 @@ impl Source<'_> {
         Ok(Bound {
             engine,
             at: accuracies(table.tolerance, table.step),
-            coarser_than: table.coarser_than,
             quantity: table.quantity,
             statistic: table.statistic,
             limit: table.limit,
@@ -109,22 +101,27 @@ impl Source<'_> {
         let table = item.get_ref();
         let engine = self.regex(&item, "engine", &table.engine)?;
         let case = table.case.as_ref().map(|it| self.regex(&item, "case", it)).transpose()?;
-        let statistic = table.statistic.unwrap_or(Statistic::Value);
-        let shows = match (table.fails, table.quantity, table.at_least) {
-            (true, None, None) => None,
-            (false, Some(quantity), Some(at_least)) if !at_least.is_nan() => {
-                Some((quantity, statistic, at_least))
-            }
-            _ => {
-                let what = "shortcoming: either fails = true or quantity and at_least are accepted";
-                return Err(self.error(&item, what));
-            }
-        };
-        let ShortcomingTable { tolerance, step, why, .. } = item.into_inner();
-        Ok(Shortcoming { case, engine, at: accuracies(tolerance, step), shows, why })
+        let (at_least, at_most) = (table.at_least, table.at_most);
+        // Written so that a NaN is refused.
+        let ordered = at_least <= at_most;
+        if !ordered {
+            let what = format!(
+                "at_least = {at_least:?} and at_most = {at_most:?} are not accepted: a floor and a \
+                 ceiling above it"
+            );
+            return Err(self.error(&item, &what));
+        }
+        let ShortcomingTable { tolerance, step, quantity, statistic, why, .. } = item.into_inner();
+        let (at, statistic) = (accuracies(tolerance, step), statistic.unwrap_or(Statistic::Value));
+        Ok(Shortcoming { case, engine, at, quantity, statistic, at_least, at_most, why })
     }
 
-    fn regex<T>(&self, item: &Spanned<T>, of: &str, pattern: &str) -> Result<Regex, FileError> {
+    pub(super) fn regex<T>(
+        &self,
+        item: &Spanned<T>,
+        of: &str,
+        pattern: &str,
+    ) -> Result<Regex, FileError> {
         Regex::new(&format!("^(?:{pattern})$")).map_err(|_| {
             self.error(item, &format!("{of} {pattern:?} is not accepted: a regular expression"))
         })

@@ -1,14 +1,16 @@
 //! Where cases come from: inside the binary, or a folder.
 
 use super::Case;
-use super::expectations::{Defaults, read_defaults};
+use super::expectations::{Defaults, read_bounds};
+use super::known::read_shortcomings;
 use super::located::FileError;
 use super::wire::parse_case;
 use include_dir::{Dir, include_dir};
 use std::path::{Path, PathBuf};
 
 static CASES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/cases");
-const DEFAULTS: &str = include_str!("../../bounds.toml");
+const BOUNDS: &str = include_str!("../../bounds.toml");
+const SHORTCOMINGS: &str = include_str!("../../shortcomings.toml");
 
 /// The cases inside the binary, by name.
 ///
@@ -78,12 +80,22 @@ fn ordered(mut cases: Vec<Case>) -> Result<Vec<Case>, FileError> {
     }
 }
 
-/// What is expected on every case, after what the case says itself.
+/// What is expected on every case inside the binary, after what the case says itself.
 ///
 /// # Errors
 /// [`FileError`]; a test shows that there is none.
 pub fn defaults() -> Result<Defaults, FileError> {
-    read_defaults("bounds.toml", DEFAULTS)
+    let bounds = read_bounds("bounds.toml", BOUNDS)?;
+    Ok(Defaults { bounds, shortcomings: read_shortcomings("shortcomings.toml", SHORTCOMINGS)? })
+}
+
+/// What is expected on a case of a user's own: the bounds alone, because the shortcomings that are
+/// known were seen on the cases inside the binary.
+///
+/// # Errors
+/// [`FileError`]; a test shows that there is none.
+pub fn defaults_of_own_cases() -> Result<Defaults, FileError> {
+    Ok(Defaults { bounds: read_bounds("bounds.toml", BOUNDS)?, ..Defaults::default() })
 }
 
 #[cfg(test)]

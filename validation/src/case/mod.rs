@@ -2,6 +2,7 @@
 
 mod bound;
 mod expectations;
+mod known;
 mod library;
 mod located;
 mod probed;
@@ -10,7 +11,7 @@ mod wire;
 
 pub use bound::{Bound, Quantity, Shortcoming, Statistic};
 pub use expectations::Defaults;
-pub use library::{defaults, embedded, from_directory};
+pub use library::{defaults, defaults_of_own_cases, embedded, from_directory};
 pub use located::{FileError, Origins};
 pub use probed::Probed;
 pub use problem::{Given, Problem};

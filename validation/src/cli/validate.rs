@@ -5,11 +5,13 @@ use super::{DONE, OUT_OF_BOUNDS, parse, reports, work};
 use crate::case::{self, Case};
 use crate::engine::{self, Engine, Wrong, hush_contained_panics};
 use crate::power::{self, Finding};
-use crate::report::{Baseline, Evidence, Report, table};
-use crate::suite::{self, Prepared, Scored, Status, Suite};
+use crate::report::{
+    Baseline, Compared, Evidence, Place, RankingFormat, Report, Summary, ranking_text, screen,
+};
+use crate::suite::{self, Prepared, Suite};
 use crate::truth::Library;
 use anyhow::{Context, Result, anyhow, bail};
-use clap::Args;
+use clap::{Args, ValueEnum};
 use regex::Regex;
 use std::path::{Path, PathBuf};
 
@@ -31,9 +33,18 @@ pub(super) struct Arguments {
     /// An engine that is not installed is a failure
     #[arg(long)]
     require: bool,
-    /// Fails on accuracy that is worse than in this report
+    /// Fails where anything is worse than in this report, or gone
     #[arg(long, value_name = "report.json")]
     baseline: Option<PathBuf>,
+    /// A row of the baseline that was not made is no failure
+    #[arg(long, requires = "baseline")]
+    allow_missing: bool,
+    /// Prints every row above the summary, as is done for at most three cases
+    #[arg(long)]
+    rows: bool,
+    /// Format of the summary on stdout
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
     /// Reads the cases from this folder instead of those inside the binary
     #[arg(long, value_name = "DIR")]
     cases: Option<PathBuf>,
@@ -41,6 +52,22 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR")]
     reference: Option<PathBuf>,
 }
+
+/// The summary's formats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people: the ranking, where each engine fails, and the number of rows of each class
+    Table,
+    /// A Markdown table, for a wiki or a comment
+    Markdown,
+    /// Comma-separated values
+    Csv,
+    /// The ranking and the number of rows of each class
+    Json,
+}
+
+/// With at most this many cases the rows are printed too.
+const FEW_CASES: usize = 3;
 
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let baseline = arguments.baseline.as_deref().map(read_baseline).transpose()?;
@@ -54,7 +81,10 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
             )
         })?;
     }
-    let defaults = case::defaults()?;
+    let defaults = match arguments.cases {
+        Some(_) => case::defaults_of_own_cases()?,
+        None => case::defaults()?,
+    };
     hush_contained_panics();
     let pool = work::pool(threads)?;
     let wrong = wrong_engines(arguments);
@@ -64,6 +94,10 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     );
     let rows =
         pool.install(|| suite::run(&cases, &engines, arguments.suite, &defaults, &|| bar.inc(1)));
+    let asked = suite::size(cases.len(), &engines, arguments.suite);
+    if rows.len() != asked {
+        bail!("{} rows were made where {asked} were asked for", rows.len());
+    }
     let examine = |it: &Wrong| {
         let finding = power::examine(it, &cases, power::AS_EXACT, &defaults.bounds);
         bar.inc(1);
@@ -71,9 +105,15 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     };
     let findings: Vec<_> = pool.install(|| wrong.iter().map(examine).collect());
     bar.finish_and_clear();
-    let evidence = Evidence::gather(&cases, &rows, &findings, arguments.cases.is_none());
-    let code = finish(arguments, &engines, &rows, &evidence, baseline.as_ref())?;
-    Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code })
+    let mut evidence = Evidence::gather(&cases, &rows, &findings, arguments.cases.is_none());
+    let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
+    let report = Report::new(arguments.suite, &declarations, &rows);
+    evidence.worse = match &baseline {
+        Some(baseline) => worse(arguments, baseline, &report)?,
+        None => Vec::new(),
+    };
+    write(arguments, &report, &evidence, cases.len())?;
+    Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code(arguments, &report, &evidence) })
 }
 
 /// Engines that are wrong on purpose, for the power of the gates; none where something else is asked.
@@ -90,30 +130,49 @@ fn unnoticed(findings: &[Finding]) -> bool {
     !missed.is_empty()
 }
 
-fn finish(
-    arguments: &Arguments,
-    engines: &[&'static dyn Engine],
-    rows: &[Scored],
-    evidence: &Evidence,
-    baseline: Option<&Baseline>,
-) -> Result<u8> {
-    let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
-    let report = Report::new(arguments.suite, &declarations, rows);
-    if let Some(folder) = &arguments.out {
-        reports::write(&report, evidence, folder)?;
+/// What is worse than in the baseline, or gone.
+fn worse(arguments: &Arguments, baseline: &Baseline, report: &Report) -> Result<Vec<String>> {
+    let accepts = |patterns: &[Regex], name: &str| {
+        patterns.is_empty() || patterns.iter().any(|it| it.is_match(name))
+    };
+    let asked = |it: &Place<'_>| {
+        accepts(&arguments.engine, it.engine)
+            && accepts(&arguments.case, it.case)
+            && arguments.suite.makes(it.tolerance, it.step)
+    };
+    let Compared { mut worse, gone, common } = baseline.compare(report, asked);
+    if common == 0 {
+        bail!("--baseline: no row in common with this run; accepted is a report of the same rows");
     }
-    reports::annotate(&report, evidence, arguments.require);
-    let shown =
-        Destination::Stdout.write(|out| Ok(out.write_all(table(&report, evidence).as_bytes())?));
+    if !arguments.allow_missing {
+        worse.extend(gone.iter().map(|it| format!("{it}: gone, --allow-missing accepts that")));
+    }
+    Ok(worse)
+}
+
+/// Files, annotations and the summary.
+fn write(arguments: &Arguments, report: &Report, evidence: &Evidence, cases: usize) -> Result<()> {
+    if let Some(folder) = &arguments.out {
+        reports::write(report, evidence, folder)?;
+    }
+    reports::annotate(report, evidence, arguments.require);
+    let with_rows = arguments.rows || cases <= FEW_CASES;
+    let text = match arguments.format {
+        Format::Table => screen(report, evidence, with_rows),
+        Format::Markdown => ranking_text(report, RankingFormat::Markdown)?,
+        Format::Csv => ranking_text(report, RankingFormat::Csv)?,
+        Format::Json => ranking_text(report, RankingFormat::Json)?,
+    };
+    let shown = Destination::Stdout.write(|out| Ok(out.write_all(text.as_bytes())?));
     // A reader that leaves early does not turn a failure into a success.
-    shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
-    let summary = report.summary;
-    let absent = |row: &Scored| matches!(row.status, Status::Unavailable);
-    let worse = baseline.map(|it| it.worse(&report)).unwrap_or_default();
-    worse.iter().for_each(|line| eprintln!("worse than the baseline: {line}"));
-    let lacking = arguments.require && rows.iter().any(absent);
-    let out_of_bounds = summary.fail + summary.error > 0 || lacking || !worse.is_empty();
-    Ok(if out_of_bounds { OUT_OF_BOUNDS } else { DONE })
+    shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })
+}
+
+fn code(arguments: &Arguments, report: &Report, evidence: &Evidence) -> u8 {
+    let Summary { fail, error, unavailable, .. } = report.summary;
+    let lacking = arguments.require && unavailable > 0;
+    let out_of_bounds = fail + error > 0 || lacking || !evidence.worse.is_empty();
+    if out_of_bounds { OUT_OF_BOUNDS } else { DONE }
 }
 
 fn read_baseline(path: &Path) -> Result<Baseline> {

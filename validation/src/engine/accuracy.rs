@@ -16,12 +16,6 @@ pub enum Stepping {
         /// The order.
         order: i32,
     },
-    /// By a tolerance, but switches are located no better than this, and what follows a switch is no
-    /// better than the switch.
-    Located {
-        /// Error of a switch's time.
-        floor: f64,
-    },
     /// By a step, for a method of this order.
     Fixed {
         /// The order.
@@ -86,7 +80,6 @@ impl Stepping {
             (Self::PerStep { order }, Accuracy::Tolerance(tolerance)) => {
                 tolerance.powf(f64::from(order) / f64::from(order + 1))
             }
-            (Self::Located { floor }, Accuracy::Tolerance(tolerance)) => tolerance.max(floor),
             (_, Accuracy::Tolerance(tolerance)) => tolerance,
             (Self::Fixed { order }, Accuracy::Step(step)) => {
                 step.powi(order) / (1..=order + 1).map(f64::from).product::<f64>()
@@ -115,8 +108,6 @@ mod tests {
         assert_eq!(Stepping::Adaptive.unit(Accuracy::Tolerance(1e-6)), 1e-6);
         let unit = Stepping::PerStep { order: 2 }.unit(Accuracy::Tolerance(1e-6));
         assert!((unit / 1e-4 - 1.0).abs() < 1e-12);
-        let located = Stepping::Located { floor: 1e-4 };
-        assert_eq!(located.unit(Accuracy::Tolerance(1e-9)), 1e-4);
         let unit = Stepping::Fixed { order: 4 }.unit(Accuracy::Step(0.5));
         assert_eq!(unit, 0.0625 / 120.0);
     }

@@ -5,6 +5,7 @@
 //! the way an expert user of its library would; what that took stands in its module.
 
 mod accuracy;
+mod answer;
 mod cubic;
 mod differential_equations;
 mod diffsol;
@@ -25,11 +26,13 @@ mod sampler;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
+pub use answer::answer;
 pub use field::{Equations, GUARDS, Oscillator};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use order::claimed_order;
 pub use registry::{all, exact, select};
+pub(crate) use wrong::Closed;
 pub use wrong::{CONTROL, Wrong, wrong};
 
 use crate::case::{Case, Horizon, Problem};

@@ -2,7 +2,6 @@
 //!
 //! The service shows a handful of annotations a step and drops the rest, so there is one a case.
 
-use super::csv::word;
 use super::{Evidence, Report, Row};
 use crate::score::Verdict;
 
@@ -18,7 +17,7 @@ pub fn annotations(report: &Report, evidence: &Evidence, require: bool) -> Vec<S
     let wanted = |row: &&Row| match row.verdict {
         Verdict::Fail | Verdict::Error => true,
         Verdict::Unavailable => require,
-        Verdict::Pass | Verdict::Expected => false,
+        _ => false,
     };
     let of_case = |rows: &[Row]| {
         let bad: Vec<&Row> = rows.iter().filter(wanted).collect();
@@ -26,7 +25,15 @@ pub fn annotations(report: &Report, evidence: &Evidence, require: bool) -> Vec<S
         let file = evidence.cases.iter().find(|note| note.name == *case).map(|note| &note.file);
         Some(line(case, file.map(String::as_str), &bad))
     };
-    report.results.chunk_by(|a, b| a.case == b.case).filter_map(of_case).collect()
+    let cases = report.results.chunk_by(|a, b| a.case == b.case).filter_map(of_case);
+    cases.chain(worse(&evidence.worse)).collect()
+}
+
+/// One line for all that got worse than in the baseline.
+fn worse(worse: &[String]) -> Option<String> {
+    let count = worse.len();
+    let title = property(&format!("{count} figures are worse than in the baseline"));
+    (count > 0).then(|| format!("::error title={title}::{}", message(&worse.join("\n"))))
 }
 
 fn line(case: &str, file: Option<&str>, bad: &[&Row]) -> String {
@@ -35,7 +42,7 @@ fn line(case: &str, file: Option<&str>, bad: &[&Row]) -> String {
     let title = property(&format!("{case}: {} {rows} out of bounds", bad.len()));
     let reasons: Vec<_> = bad
         .iter()
-        .map(|row| format!("{}: {}: {}", word(row.verdict), row.who(), row.why))
+        .map(|row| format!("{}: {}: {}", row.verdict.as_str(), row.who(), row.why))
         .collect();
     format!("::error {file}title={title}::{}", message(&reasons.join("\n")))
 }

@@ -30,6 +30,30 @@ struct Largest {
     max: Option<f64>,
 }
 
+/// A row's place in a report.
+#[derive(Clone, Copy, Debug)]
+pub struct Place<'a> {
+    /// The case.
+    pub case: &'a str,
+    /// The engine.
+    pub engine: &'a str,
+    /// The tolerance, where it has one.
+    pub tolerance: Option<f64>,
+    /// The step, where it has one.
+    pub step: Option<f64>,
+}
+
+/// What a comparison with a baseline says, a line each.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Compared {
+    /// Rows that got worse, each with how.
+    pub worse: Vec<String>,
+    /// Rows of the baseline that were asked for and not made.
+    pub gone: Vec<String>,
+    /// Rows that both reports have.
+    pub common: usize,
+}
+
 /// Errors may grow by this factor: another processor or compiler rounds differently, and a step that
 /// is accepted here is refused there. A method that loses an order, or an adapter a digit, is beyond it.
 const FACTOR: f64 = 2.0;
@@ -50,43 +74,62 @@ impl Baseline {
         }
     }
 
-    /// Every way in which a report is worse, a line each; rows that are in one of them only do not
-    /// count.
+    /// Holds a report against this one; `asked` says whether a row of the baseline was asked for.
     #[must_use]
-    pub fn worse(&self, report: &Report) -> Vec<String> {
-        let mut lines = Vec::new();
-        for row in &report.results {
-            let same = |it: &&Earlier| {
-                it.case == row.case
-                    && it.engine == row.engine
-                    && it.tolerance == row.tolerance
-                    && it.step == row.step
-            };
-            if let Some(earlier) = self.results.iter().find(same) {
-                let who = format!("{} {} {}", row.case, row.engine, row.setting());
-                lines.extend(earlier.against(row).into_iter().map(|it| format!("{who}: {it}")));
+    pub fn compare(&self, report: &Report, asked: impl Fn(&Place<'_>) -> bool) -> Compared {
+        let mut compared = Compared::default();
+        for earlier in &self.results {
+            let who = earlier.who();
+            match report.results.iter().find(|row| earlier.is(row)) {
+                Some(row) => {
+                    compared.common += 1;
+                    let lines = earlier.against(row).into_iter();
+                    compared.worse.extend(lines.map(|it| format!("{who}: {it}")));
+                }
+                None if asked(&earlier.place()) => compared.gone.push(who),
+                None => {}
             }
         }
-        lines
+        compared
     }
 }
 
 impl Earlier {
+    fn place(&self) -> Place<'_> {
+        let Self { case, engine, tolerance, step, .. } = self;
+        Place { case, engine, tolerance: *tolerance, step: *step }
+    }
+
+    fn who(&self) -> String {
+        let setting = super::setting::setting(self.tolerance, self.step);
+        format!("{} {}", self.case, super::setting::who(&self.engine, &setting))
+    }
+
+    fn is(&self, row: &Row) -> bool {
+        self.case == row.case
+            && self.engine == row.engine
+            && self.tolerance == row.tolerance
+            && self.step == row.step
+    }
+
     fn against(&self, row: &Row) -> Vec<String> {
         let mut worse = Vec::new();
+        let now = row.verdict.as_str();
+        let lost = self.verdict == "pass" && now != "pass";
         let failing = |verdict: &str| matches!(verdict, "fail" | "error");
-        if failing(super::csv::word(row.verdict)) && !failing(&self.verdict) {
-            worse.push(format!("{}, was {}", super::csv::word(row.verdict), self.verdict));
+        let newly = failing(now) && now != self.verdict;
+        if lost || newly {
+            worse.push(format!("{now}, was {}", self.verdict));
         }
         let counts = [
             ("missed", row.events_missed, self.events_missed),
-            ("invented", row.events_spurious, self.events_spurious),
+            ("spurious", row.events_spurious, self.events_spurious),
         ];
         for (what, now, then) in counts {
             if let (Some(now), Some(then)) = (now, then)
                 && now > then
             {
-                worse.push(format!("{now} switches {what}, {then} before"));
+                worse.push(format!("{now} events {what}, {then} before"));
             }
         }
         let errors = [

@@ -3,13 +3,13 @@
 use super::row::{Distance, ValidHorizons};
 use super::{Evidence, Exporter, Report, Row};
 use crate::number::shortest;
-use crate::score::{Spread, Verdict};
+use crate::score::Spread;
 use std::collections::BTreeMap;
 use std::io::{self, Write};
 
 pub(super) struct Csv;
 
-const COLUMNS: [&str; 39] = [
+const COLUMNS: [&str; 38] = [
     "case",
     "engine",
     "tolerance",
@@ -47,7 +47,6 @@ const COLUMNS: [&str; 39] = [
     "steps",
     "wall_ns",
     "verdict",
-    "expected",
     "why",
 ];
 
@@ -80,7 +79,7 @@ fn spread(spread: &Spread) -> [String; 3] {
     [spread.median, spread.q99, spread.max].map(shortest)
 }
 
-fn fields(row: &Row) -> [String; 39] {
+fn fields(row: &Row) -> [String; 38] {
     let [time_median, time_q99, time_max] = spread(&row.event_time_error);
     let [state_median, state_q99, state_max] = spread(&row.state_error);
     let restart = row.restart.map(|it| spread(&it.error)).unwrap_or_default();
@@ -125,19 +124,7 @@ fn fields(row: &Row) -> [String; 39] {
         optional(row.linear_solves),
         optional(row.steps),
         optional(row.wall_ns),
-        word(row.verdict).to_owned(),
-        row.expected.to_string(),
+        row.verdict.as_str().to_owned(),
         row.why.clone(),
     ]
-}
-
-/// The verdict as in `report.json`.
-pub(super) const fn word(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Pass => "pass",
-        Verdict::Expected => "expected",
-        Verdict::Fail => "fail",
-        Verdict::Error => "error",
-        Verdict::Unavailable => "unavailable",
-    }
 }

@@ -20,6 +20,8 @@ pub struct Evidence {
     pub sections: Vec<SectionPair>,
     /// Deliberately wrong engines, and what noticed them.
     pub faults: Vec<Fault>,
+    /// What got worse than in the baseline, a line each.
+    pub worse: Vec<String>,
 }
 
 /// What a case says of itself.

@@ -2,18 +2,21 @@
 
 use super::setting::setting;
 use super::{Evidence, Report};
+use crate::score::Verdict;
 use std::collections::BTreeMap;
 
 /// What became of one touch or miss.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Seen {
-    /// All switches there are, and no other.
+    /// All events there are, and no other.
     Right,
-    /// Switches were missed.
+    /// Events were missed.
     Missed,
-    /// Switches were invented.
+    /// Events were invented.
     Invented,
-    /// The run had no result.
+    /// Events of the graze differ, which the method's bounds leave undecided.
+    Either,
+    /// The run had no result, or nothing of it is scored.
     Nothing,
 }
 
@@ -100,8 +103,10 @@ fn of_rows(report: &Report, evidence: &Evidence) -> Vec<Entry> {
         evidence.cases.iter().filter_map(|note| Some((note.name.as_str(), note.margin?))).collect();
     let entry = |row: &super::Row| {
         let margin = *margins.get(row.case.as_str())?;
-        let seen = match (row.events_missed, row.events_spurious) {
-            (Some(missed), Some(spurious)) => seen(missed, spurious),
+        let seen = match (row.verdict, row.events_missed, row.events_spurious) {
+            (Verdict::NotScored, ..) => Seen::Nothing,
+            (Verdict::Undecidable, ..) => Seen::Either,
+            (_, Some(missed), Some(spurious)) => seen(missed, spurious),
             _ => Seen::Nothing,
         };
         let fineness = row.tolerance.or(row.step).unwrap_or(0.0);

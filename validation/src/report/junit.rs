@@ -13,10 +13,13 @@ impl Exporter for Junit {
         "junit.xml"
     }
 
-    fn write(&self, report: &Report, _: &Evidence, out: &mut dyn Write) -> io::Result<()> {
+    fn write(&self, report: &Report, evidence: &Evidence, out: &mut dyn Write) -> io::Result<()> {
         let mut whole = quick_junit::Report::new("percuss validate");
         for rows in report.results.chunk_by(|a, b| a.case == b.case) {
             whole.add_test_suite(suite(rows));
+        }
+        if !evidence.worse.is_empty() {
+            whole.add_test_suite(baseline(&evidence.worse));
         }
         whole.serialize(out).map_err(io::Error::other)
     }
@@ -29,20 +32,36 @@ fn suite(rows: &[Row]) -> TestSuite {
     suite
 }
 
+/// A failing test for each line of what got worse than in the baseline.
+fn baseline(worse: &[String]) -> TestSuite {
+    let mut suite = TestSuite::new("baseline");
+    let test = |line: &String| {
+        let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
+        status.set_message(line.as_str()).set_type("worse");
+        let mut test = TestCase::new(line.as_str(), status);
+        test.set_classname("baseline");
+        test
+    };
+    suite.add_test_cases(worse.iter().map(test));
+    suite
+}
+
 fn test(row: &Row) -> TestCase {
     let mut status = match row.verdict {
-        Verdict::Pass | Verdict::Expected => TestCaseStatus::success(),
+        Verdict::Pass | Verdict::Known | Verdict::Undecidable => TestCaseStatus::success(),
         Verdict::Fail => TestCaseStatus::non_success(NonSuccessKind::Failure),
         Verdict::Error => TestCaseStatus::non_success(NonSuccessKind::Error),
-        Verdict::Unavailable => TestCaseStatus::skipped(),
+        Verdict::NotScored | Verdict::NotRun | Verdict::Unavailable => TestCaseStatus::skipped(),
     };
-    if !matches!(row.verdict, Verdict::Pass | Verdict::Expected) {
-        status.set_message(row.why.as_str()).set_type(super::csv::word(row.verdict));
+    let word = row.verdict.as_str();
+    let succeeds = matches!(status, TestCaseStatus::Success { .. });
+    if !succeeds {
+        status.set_message(row.why.as_str()).set_type(word);
     }
     let mut test = TestCase::new(row.who(), status);
     test.set_classname(row.case.as_str()).set_time(wall(row));
-    if row.expected {
-        test.set_system_out(format!("known shortcoming, shows as stated: {}", row.why));
+    if succeeds && row.verdict != Verdict::Pass {
+        test.set_system_out(format!("{word}: {}", row.why));
     }
     test
 }

@@ -13,18 +13,23 @@ mod json;
 mod junit;
 mod orders;
 mod pictures;
+mod ranking;
+mod ranking_formats;
 mod row;
+mod screen;
 mod setting;
 mod summary;
 mod table;
 
 pub use annotations::{annotations, under_the_service};
-pub use baseline::Baseline;
+pub use baseline::{Baseline, Compared, Place};
 pub use evidence::{CaseNote, ErrorGrowth, Evidence, Fault, Graze, RestartHistogram, SectionPair};
 pub use orders::{Order, orders};
 pub use pictures::{Picture, pictures};
+pub use ranking::{COMPARED_AT, Ranked, Units};
+pub use ranking_formats::{RankingFormat, ranking_text};
 pub use row::{EngineEntry, Report, Row, Summary, ValidHorizons};
-pub use table::table;
+pub use screen::{WIDTH, screen};
 
 use std::io::{self, Write};
 

@@ -1,5 +1,6 @@
 //! What a report holds: the keys of `report.json`.
 
+use super::ranking::{Ranked, ranking};
 use crate::build::Build;
 use crate::engine::Declaration;
 use crate::score::attractor::Comparison;
@@ -20,6 +21,8 @@ pub struct Report {
     pub engines: Vec<EngineEntry>,
     /// A row for each case, engine and tolerance.
     pub results: Vec<Row>,
+    /// The engines by how many of all events they find; exact ones come first, as the reference.
+    pub ranking: Vec<Ranked>,
     /// How many rows came to which verdict.
     pub summary: Summary,
 }
@@ -39,13 +42,22 @@ pub struct EngineEntry {
 
 /// How many rows came to which verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub struct Summary {
-    /// Within bounds, or as a known shortcoming has it.
+    /// Every bound that applies was measured and holds.
     pub pass: usize,
+    /// Out of bounds as a stated shortcoming has it.
+    pub known: usize,
+    /// Different in events of a graze alone that the method's bounds leave undecided.
+    pub undecidable: usize,
+    /// Too little of the run could be scored.
+    pub not_scored: usize,
     /// Out of bounds.
     pub fail: usize,
     /// Without a result.
     pub error: usize,
+    /// Beyond the suite's budget.
+    pub not_run: usize,
     /// Not installed.
     pub unavailable: usize,
 }
@@ -90,7 +102,6 @@ pub struct Row {
     pub wall_ns: Option<u64>,
     pub bounds: Vec<Checked>,
     pub verdict: Verdict,
-    pub expected: bool,
     pub why: String,
 }
 
@@ -137,6 +148,7 @@ impl Report {
             suite,
             engines: engines.iter().map(EngineEntry::of).collect(),
             summary: Summary::of(&results),
+            ranking: ranking(rows, &results),
             results,
         }
     }
@@ -165,12 +177,18 @@ impl EngineEntry {
 }
 
 impl Summary {
-    fn of(rows: &[Row]) -> Self {
+    /// Counts the rows of each class.
+    #[must_use]
+    pub fn of(rows: &[Row]) -> Self {
         let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
         Self {
             pass: count(Verdict::Pass),
+            known: count(Verdict::Known),
+            undecidable: count(Verdict::Undecidable),
+            not_scored: count(Verdict::NotScored),
             fail: count(Verdict::Fail),
             error: count(Verdict::Error),
+            not_run: count(Verdict::NotRun),
             unavailable: count(Verdict::Unavailable),
         }
     }
@@ -201,6 +219,12 @@ fn by_name(comparison: &Comparison) -> BTreeMap<&'static str, Distance> {
 }
 
 impl Row {
+    /// Whether the engine was run at all.
+    #[must_use]
+    pub fn was_run(&self) -> bool {
+        !matches!(self.verdict, Verdict::Unavailable | Verdict::NotRun)
+    }
+
     fn of(scored: &Scored) -> Self {
         let empty = Self::empty(scored);
         let Status::Ok(measures, outcome) = &scored.status else { return empty };
@@ -208,8 +232,8 @@ impl Row {
             horizon_periods: measures.horizon_periods,
             events_expected: Some(measures.expected),
             events_matched: Some(measures.matched),
-            events_missed: Some(measures.expected - measures.matched),
-            events_spurious: Some(measures.spurious),
+            events_missed: Some(measures.mismatch.missed.len()),
+            events_spurious: Some(measures.mismatch.spurious.len()),
             phase_word_ok: Some(measures.phase_word_ok),
             event_time_error: measures.event_time,
             state_error: measures.state,
@@ -242,7 +266,8 @@ impl Row {
             status: match &scored.status {
                 Status::Ok(..) => "ok",
                 Status::Failed(_) => "failed",
-                Status::Unavailable | Status::NotRun => "unavailable",
+                Status::NotRun => "not-run",
+                Status::Unavailable => "unavailable",
             },
             horizon_periods: f64::NAN,
             events_expected: None,
@@ -266,7 +291,6 @@ impl Row {
             wall_ns: None,
             bounds: scored.judgement.bounds.clone(),
             verdict: scored.judgement.verdict,
-            expected: scored.judgement.expected,
             why: scored.judgement.why.clone(),
         }
     }

@@ -7,13 +7,8 @@ use serde::Serialize;
 /// One engine over all cases.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EngineSummary {
-    /// Rows within bounds; of those, rows that pass as a known shortcoming; rows out of bounds,
-    /// without a result, and not run.
-    pub pass: usize,
-    pub known: usize,
-    pub fail: usize,
-    pub error: usize,
-    pub unavailable: usize,
+    /// How many rows came to each class, in the order of [`Verdict::ALL`].
+    counts: [usize; 8],
     /// From coarse to fine.
     pub settings: Vec<SettingSummary>,
 }
@@ -35,10 +30,16 @@ pub(super) struct SettingSummary {
     pub ns: f64,
 }
 
+impl EngineSummary {
+    /// How many rows came to a class.
+    pub fn count(&self, verdict: Verdict) -> usize {
+        Verdict::ALL.iter().position(|it| *it == verdict).map_or(0, |place| self.counts[place])
+    }
+}
+
 impl SettingSummary {
     fn of(rows: &[&Row]) -> Self {
-        let ran: Vec<&Row> =
-            rows.iter().copied().filter(|row| row.verdict != Verdict::Unavailable).collect();
+        let ran: Vec<&Row> = rows.iter().copied().filter(|row| row.was_run()).collect();
         let sum = |count: fn(&Row) -> Option<usize>| ran.iter().filter_map(|row| count(row)).sum();
         let error = |figure: fn(&Row) -> f64| {
             let of = |row: &&Row| if row.status == "ok" { figure(row) } else { f64::INFINITY };
@@ -74,19 +75,11 @@ pub(super) fn engines(report: &Report) -> Vec<EngineSummary> {
 
 fn one(report: &Report, engine: &str) -> EngineSummary {
     let mut rows: Vec<&Row> = report.results.iter().filter(|row| row.engine == engine).collect();
-    let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
-    let counted = EngineSummary {
-        pass: count(Verdict::Pass) + count(Verdict::Expected),
-        known: rows.iter().filter(|row| row.expected).count(),
-        fail: count(Verdict::Fail),
-        error: count(Verdict::Error),
-        unavailable: count(Verdict::Unavailable),
-        settings: Vec::new(),
-    };
+    let counts = Verdict::ALL.map(|it| rows.iter().filter(|row| row.verdict == it).count());
     let fineness = |row: &Row| row.tolerance.or(row.step).unwrap_or(0.0);
     rows.sort_by(|a, b| fineness(b).total_cmp(&fineness(a)));
     let same = |a: &&Row, b: &&Row| a.setting() == b.setting();
-    EngineSummary { settings: rows.chunk_by(same).map(SettingSummary::of).collect(), ..counted }
+    EngineSummary { counts, settings: rows.chunk_by(same).map(SettingSummary::of).collect() }
 }
 
 /// A share that reads 100 % only where it is.

@@ -1,86 +1,13 @@
-//! The table for people.
+//! The rows of a report as a table, and the reasons of those that are out of bounds.
 
-use super::csv::word;
-use super::{Evidence, Order, Report, Row, orders};
+use super::Row;
+use super::screen::wrapped;
 use crate::number::brief;
 use crate::score::Verdict;
 use comfy_table::{CellAlignment, Table, presets};
-use std::collections::BTreeMap;
 
-/// The rows as a table, the failing ones with their reasons below, what the rows say together, and the
-/// summary.
-#[must_use]
-pub fn table(report: &Report, evidence: &Evidence) -> String {
-    let mut text = rows(&report.results);
-    for row in report.results.iter().filter(|row| is_to_be_explained(row)) {
-        text.push_str(&format!(
-            "{}: {} {} {}: {}\n",
-            word(row.verdict),
-            row.case,
-            row.engine,
-            setting(row),
-            row.why
-        ));
-    }
-    text.push_str(&not_run(&report.results));
-    for order in orders(&report.results).iter().filter(|order| order.falls_short()) {
-        let Order { engine, claimed, found, cases } = order;
-        text.push_str(&format!(
-            "order: {engine} converges at {found:.1}, claims {claimed} (median over {cases} cases)\n"
-        ));
-    }
-    text.push_str(&valid_horizons(&report.results));
-    if !evidence.faults.is_empty() {
-        let caught = evidence.faults.iter().filter(|it| it.gates.iter().any(|gate| gate.1));
-        let (caught, all) = (caught.count(), evidence.faults.len());
-        text.push_str(&format!("power: {caught} of {all} wrong engines are caught\n"));
-    }
-    let summary = &report.summary;
-    let expected = report.results.iter().filter(|row| row.expected).count();
-    text.push_str(&format!(
-        "{} pass ({expected} of them as known shortcomings have it), {} fail, {} error, {} unavailable\n",
-        summary.pass, summary.fail, summary.error, summary.unavailable
-    ));
-    text
-}
-
-/// How long the exact solver stays right in chaos; the report has the integrators' horizons too.
-fn valid_horizons(rows: &[Row]) -> String {
-    let line = |row: &Row| {
-        let it = row.valid_horizon.filter(|_| row.engine.starts_with("exact"))?;
-        let (median, q01, predicted) = (it.median, it.q01, it.predicted_median);
-        Some(format!(
-            "valid horizon: {} on {} stays right for {median} periods (median of {} runs, 99 % for {q01}; \
-             its growth predicts {predicted})\n",
-            row.engine, row.case, it.runs
-        ))
-    };
-    rows.iter().filter_map(line).collect()
-}
-
-/// Rows that the budget left out are told together.
-fn is_to_be_explained(row: &Row) -> bool {
-    !matches!(row.verdict, Verdict::Pass) && !is_not_run(row)
-}
-
-fn is_not_run(row: &Row) -> bool {
-    row.verdict == Verdict::Unavailable && row.why.starts_with("not run")
-}
-
-fn not_run(rows: &[Row]) -> String {
-    let mut counts: BTreeMap<(&str, String), usize> = BTreeMap::new();
-    for row in rows.iter().filter(|row| is_not_run(row)) {
-        *counts.entry((row.engine, setting(row))).or_default() += 1;
-    }
-    let line = |((engine, setting), count): ((&str, String), usize)| {
-        format!(
-            "not run: {engine} {setting} on {count} cases, beyond the budget of right-hand sides\n"
-        )
-    };
-    counts.into_iter().map(line).collect()
-}
-
-fn rows(rows: &[Row]) -> String {
+/// Every row, one line each.
+pub(super) fn row_table(rows: &[Row]) -> String {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING);
     table.set_header([
@@ -88,9 +15,9 @@ fn rows(rows: &[Row]) -> String {
         "engine",
         "tol",
         "scored",
-        "switches",
+        "events",
         "missed",
-        "invented",
+        "spurious",
         "time err",
         "state err",
         "drift err",
@@ -113,10 +40,20 @@ fn rows(rows: &[Row]) -> String {
     lines.join("\n") + "\n"
 }
 
+/// The reasons of rows without a result and of rows whose failure nothing excuses.
+pub(super) fn reasons(rows: &[Row]) -> String {
+    let bad =
+        |row: &&Row| matches!(row.verdict, Verdict::Fail | Verdict::Error | Verdict::Unavailable);
+    let line = |row: &Row| {
+        let (verdict, case, engine) = (row.verdict.as_str(), &row.case, row.engine);
+        wrapped(&format!("{verdict}: {case} {engine} {}: {}", setting(row), row.why))
+    };
+    rows.iter().filter(bad).map(line).collect()
+}
+
 fn cells(case: &str, row: &Row) -> [String; 12] {
     let count = |count: Option<usize>| count.map_or("-".to_owned(), |count| count.to_string());
     let figure = |value: f64| if value.is_nan() { "-".to_owned() } else { brief(value) };
-    let verdict = if row.expected { "known" } else { word(row.verdict) };
     [
         case.to_owned(),
         row.engine.to_owned(),
@@ -133,7 +70,7 @@ fn cells(case: &str, row: &Row) -> [String; 12] {
         figure(row.state_error.max),
         figure(row.drift_error),
         row.rhs_evaluations.map_or("-".to_owned(), |count| count.to_string()),
-        verdict.to_owned(),
+        row.verdict.as_str().to_owned(),
     ]
 }
 

@@ -3,6 +3,7 @@
 use super::SCORED_ERROR;
 use super::growth::Growth;
 use super::matching::{Matching, WINDOW};
+use super::mismatch::{Excused, Mismatch};
 use super::probed::Probed;
 use super::statistics::Spread;
 use crate::case::{Quantity, Statistic};
@@ -16,12 +17,16 @@ use percuss::two_word::TwoWord;
 pub struct Measures {
     /// The scored horizon, in forcing periods.
     pub horizon_periods: f64,
-    /// The truth's switches before it.
+    /// Whether that is the case's whole horizon.
+    pub whole: bool,
+    /// The truth's events on the case's whole horizon.
+    pub total: usize,
+    /// The truth's events before the scored horizon.
     pub expected: usize,
     /// Those that the engine has.
     pub matched: usize,
-    /// The engine's switches that the truth does not have.
-    pub spurious: usize,
+    /// Which events the engine and the truth do not share.
+    pub mismatch: Mismatch,
     /// Whether the phases follow each other as in the truth.
     pub phase_word_ok: bool,
     /// Errors of matched switches' times.
@@ -34,9 +39,11 @@ pub struct Measures {
     pub drift_by_times: f64,
     /// Forcing periods until the state's error passes [`SCORED_ERROR`].
     pub valid_periods: f64,
-    /// Largest error of a matched switch in units of error x (1 + |value|) x growth x switches.
+    /// Error of each matched event's time in units of error x (1 + |value|) x growth x events.
+    pub event_time_units: Vec<f64>,
+    /// Largest error of a matched event's time or state in these units; NaN where none is matched.
     pub event_constant: f64,
-    /// The same of the sample.
+    /// Largest error of the sample's states in these units; NaN where no sample is scored.
     pub state_constant: f64,
     /// What was asked beyond the run itself.
     pub probed: Probed,
@@ -52,8 +59,8 @@ impl Measures {
             Statistic::Max | Statistic::Value => spread.max,
         };
         match quantity {
-            Quantity::EventsMissed => (self.expected - self.matched) as f64,
-            Quantity::EventsSpurious => self.spurious as f64,
+            Quantity::EventsMissed => self.mismatch.missed.len() as f64,
+            Quantity::EventsSpurious => self.mismatch.spurious.len() as f64,
             Quantity::PhaseWord => f64::from(u8::from(!self.phase_word_ok)),
             Quantity::EventTimeError => of(&self.event_time),
             Quantity::StateError => of(&self.state),
@@ -67,22 +74,44 @@ impl Measures {
             Quantity::RestartError => {
                 self.probed.restart.as_ref().map_or(f64::NAN, |it| of(&it.units))
             }
+            Quantity::RestartsFailed => {
+                self.probed.restart.as_ref().map_or(f64::NAN, |it| it.failed as f64)
+            }
             Quantity::AttractorDistance => self.probed.share(),
         }
     }
 
-    /// Whether there is nothing to measure: no switch or no sample before the scored horizon.
+    /// Whether a bound on a quantity applies: not where the truth has no event to measure it at, nor
+    /// where the suite did not ask for the probe that measures it.
     #[must_use]
-    pub fn is_empty_of(&self, quantity: Quantity, whole_run: bool) -> bool {
+    pub fn concerns(&self, quantity: Quantity) -> bool {
         match quantity {
-            Quantity::EventTimeError | Quantity::EventConstant => self.expected == 0,
-            Quantity::StateError => self.horizon_periods == 0.0,
-            Quantity::DriftError => !whole_run,
-            Quantity::ValidGain => self.probed.horizons.is_none(),
-            Quantity::RestartError => !self.probed.restarted(),
-            Quantity::AttractorDistance => self.probed.attractor.is_none(),
+            Quantity::EventTimeError | Quantity::EventConstant => self.total > 0,
+            Quantity::ValidGain => self.probed.horizons.is_some(),
+            Quantity::RestartError => self.probed.restarted(),
+            Quantity::RestartsFailed => self.probed.restart.is_some(),
+            Quantity::AttractorDistance => self.probed.attractor.is_some(),
+            _ => true,
+        }
+    }
+
+    /// Whether nothing was measured of a quantity because the scored horizon ends before there is
+    /// anything to measure.
+    #[must_use]
+    pub fn lacks(&self, quantity: Quantity) -> bool {
+        match quantity {
+            Quantity::EventTimeError | Quantity::EventConstant => self.matched == 0,
+            Quantity::StateError | Quantity::StateConstant => self.horizon_periods == 0.0,
+            Quantity::DriftError => !self.whole,
             _ => false,
         }
+    }
+
+    /// Whether enough was scored for a row to pass: a twentieth of the truth's events, or the whole
+    /// horizon where it has none.
+    #[must_use]
+    pub fn is_scored(&self) -> bool {
+        if self.total == 0 { self.whole } else { 20 * self.expected >= self.total }
     }
 }
 
@@ -108,14 +137,15 @@ pub fn measure(
     let expected = prefix(rows, |row| row.elapsed.value() <= horizon).len();
     let counted = prefix(found, |event| event.elapsed <= horizon).len();
     let pairs: Vec<_> = matching.pairs.iter().copied().filter(|(i, _)| *i < expected).collect();
-    let partnered = matching.pairs.iter().filter(|(_, j)| *j < counted).count();
+    let mismatch = Mismatch::of(&matching, expected, counted);
     let state_errors = sample_errors(truth, outcome);
     Measures {
         horizon_periods: horizon / period,
+        whole,
+        total: truth.switches.len(),
         expected,
         matched: pairs.len(),
-        spurious: counted - partnered,
-        phase_word_ok: same_word(&rows[..expected], found),
+        phase_word_ok: mismatch.same_word(rows, found, &Excused::default()),
         event_time: Spread::of(
             pairs.iter().map(|(i, j)| time_error(&rows[*i], &found[*j])).collect(),
         ),
@@ -124,8 +154,13 @@ pub fn measure(
         drift: if whole { off(truth.end.state[3], outcome.end[3]) } else { f64::NAN },
         drift_by_times: if whole { drift_by_times(task, rows, found, &pairs) } else { f64::NAN },
         valid_periods: valid_periods(task, truth, &state_errors, period),
+        event_time_units: pairs
+            .iter()
+            .map(|(i, j)| time_units(&rows[*i], &found[*j], growth.switches[*i][0], unit, *i))
+            .collect(),
         event_constant: event_constant(rows, found, &pairs, growth, unit),
         state_constant: state_constant(truth, outcome, growth, scored, unit),
+        mismatch,
         probed: Probed::default(),
     }
 }
@@ -133,11 +168,6 @@ pub fn measure(
 fn prefix<T>(items: &[T], keep: impl Fn(&T) -> bool) -> &[T] {
     let count = items.iter().position(|item| !keep(item)).unwrap_or(items.len());
     &items[..count]
-}
-
-fn same_word(rows: &[Row], found: &[Event]) -> bool {
-    found.len() >= rows.len()
-        && rows.iter().zip(found).all(|(row, event)| row.phase == Some(event.phase))
 }
 
 fn off(truth: TwoWord, value: f64) -> f64 {
@@ -182,6 +212,12 @@ fn valid_periods(task: &Task, truth: &Truth, errors: &[f64], period: f64) -> f64
     span / period
 }
 
+/// The error of an event's time in units of error x (1 + |value|) x growth x events so far.
+fn time_units(row: &Row, event: &Event, growth: f64, unit: f64, n: usize) -> f64 {
+    let scale = (1.0 + row.elapsed.value().abs()) * growth * unit * (n + 1) as f64;
+    time_error(row, event) / scale
+}
+
 fn event_constant(
     rows: &[Row],
     found: &[Event],
@@ -189,6 +225,9 @@ fn event_constant(
     growth: &Growth,
     unit: f64,
 ) -> f64 {
+    if pairs.is_empty() {
+        return f64::NAN;
+    }
     worst(pairs.iter().map(|(i, j)| {
         let (row, event) = (&rows[*i], &found[*j]);
         let time =
@@ -206,9 +245,14 @@ fn state_constant(
     scored: usize,
     unit: f64,
 ) -> f64 {
-    let samples = truth.samples.iter().zip(&outcome.samples).zip(&growth.samples).take(scored);
+    // The start is given and measures nothing.
+    if scored <= 1 {
+        return f64::NAN;
+    }
     let mut switches = 0;
-    worst(samples.map(|((row, state), growth)| {
+    worst((0..scored).map(|n| {
+        let (row, growth) = (&truth.samples[n], &growth.samples[n]);
+        let state = outcome.samples.get(n).copied().unwrap_or([f64::NAN; 4]);
         let passed = |switch: &&Row| switch.elapsed.minus(row.elapsed).value() <= 0.0;
         switches += truth.switches[switches..].iter().take_while(passed).count();
         let largest = worst((0..4).map(|k| relative(row.state[k], state[k]) / growth[k]));

@@ -4,26 +4,31 @@
 //! unit of error alone ([`Growth`]): a miss before it counts, nothing after it does.
 
 pub mod attractor;
+mod graze;
 mod growth;
 mod histogram;
 mod horizon;
 mod matching;
 mod measure;
+mod mismatch;
 mod order;
 mod probed;
 mod restart;
+mod shortcoming;
 mod starts;
 mod statistics;
 mod verdict;
 
+pub use graze::{Graze, grazes};
 pub use growth::{Growth, SCORED_ERROR, SCORED_FACTOR};
 pub use histogram::Histogram;
 pub use horizon::{HorizonTest, Horizons, ValidHorizon};
 pub use matching::{Matching, WINDOW};
 pub use measure::{Measures, measure, sample_errors};
+pub use mismatch::{Excused, Mismatch};
 pub use order::order;
 pub use probed::Probed;
 pub use restart::{MOST_PERIODS, Restart, RestartError, RestartRun, RestartTest};
 pub use starts::{far_apart, on_attractor};
 pub use statistics::Spread;
-pub use verdict::{Checked, Judgement, Subject, Verdict, judge};
+pub use verdict::{Checked, Expected, Judgement, Run, Subject, Verdict, judge};

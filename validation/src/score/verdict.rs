@@ -1,25 +1,67 @@
-//! Bounds held against measures.
+//! The verdict on a row: bounds held against measures, with what grazes and known shortcomings excuse.
+//!
+//! A row has one class, the first that applies of: unavailable, not-run, error, fail, known,
+//! undecidable, not-scored, pass.
 
+use super::graze::Graze;
 use super::measure::Measures;
+use super::mismatch::Excused;
+use super::shortcoming::{Answer, answer};
 use crate::case::{Bound, Quantity, Shortcoming, Statistic};
-use crate::engine::Accuracy;
+use crate::engine::{Accuracy, Outcome};
 use crate::number::brief;
+use crate::truth::Truth;
 use serde::Serialize;
 
-/// What became of a bound or of a row.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
+/// The class of a row or of a bound, from the first that applies to the last.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Verdict {
-    /// Within bounds.
-    Pass,
-    /// Out of bounds, as a known shortcoming has it.
-    Expected,
-    /// Out of bounds.
-    Fail,
-    /// The engine gave no result.
-    Error,
     /// The engine is not installed.
     Unavailable,
+    /// The run was beyond the suite's budget.
+    NotRun,
+    /// The engine gave no result.
+    Error,
+    /// A bound failed.
+    Fail,
+    /// A bound failed as a stated shortcoming of the engine has it.
+    Known,
+    /// Events of a graze differ that the method's bounds leave undecided.
+    Undecidable,
+    /// Too little could be measured at this setting to say anything.
+    NotScored,
+    /// Every bound that applies was measured and holds.
+    Pass,
+}
+
+impl Verdict {
+    /// All classes, in the order in which they apply.
+    pub const ALL: [Self; 8] = [
+        Self::Unavailable,
+        Self::NotRun,
+        Self::Error,
+        Self::Fail,
+        Self::Known,
+        Self::Undecidable,
+        Self::NotScored,
+        Self::Pass,
+    ];
+
+    /// Its word in every table, file and page.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Unavailable => "unavailable",
+            Self::NotRun => "not-run",
+            Self::Error => "error",
+            Self::Fail => "fail",
+            Self::Known => "known",
+            Self::Undecidable => "undecidable",
+            Self::NotScored => "not-scored",
+            Self::Pass => "pass",
+        }
+    }
 }
 
 /// A bound with the figure it was held against.
@@ -31,7 +73,7 @@ pub struct Checked {
     pub statistic: Statistic,
     /// The limit.
     pub limit: f64,
-    /// What was measured.
+    /// What was measured, without the events that a graze excuses; NaN where nothing was.
     pub value: f64,
     /// Whether it is within.
     pub verdict: Verdict,
@@ -42,9 +84,8 @@ pub struct Checked {
 impl Checked {
     /// The figure beside its limit, and why that is the limit.
     fn reason(&self) -> String {
-        let quantity = serde_json::to_string(&self.quantity).unwrap_or_default();
-        let quantity = quantity.trim_matches('"').replace('_', " ");
         let against = if self.quantity.is_to_be_large() { "at least" } else { "at most" };
+        let quantity = self.quantity.words();
         format!("{quantity} {} ({against} {}: {})", brief(self.value), brief(self.limit), self.why)
     }
 }
@@ -52,14 +93,20 @@ impl Checked {
 /// The verdict on a row.
 #[derive(Clone, Debug)]
 pub struct Judgement {
-    /// Each bound.
+    /// Each bound that applies.
     pub bounds: Vec<Checked>,
-    /// The row's own verdict.
+    /// The row's class.
     pub verdict: Verdict,
-    /// Whether it passed because a known shortcoming showed as stated.
-    pub expected: bool,
     /// The reason, where there is one to give.
     pub why: String,
+}
+
+impl Judgement {
+    /// A verdict on a row that has no measures.
+    #[must_use]
+    pub const fn without_result(verdict: Verdict, why: String) -> Self {
+        Self { bounds: Vec::new(), verdict, why }
+    }
 }
 
 /// What is judged.
@@ -75,102 +122,161 @@ pub struct Subject<'a> {
     pub unit: f64,
 }
 
-/// Judges a run: `measures`, or the reason why there are none.
-///
-/// Bounds are taken in order, the first for a quantity and statistic counts.
+/// What is expected of a subject.
+#[derive(Clone, Copy)]
+pub struct Expected<'a> {
+    /// Bounds in order: the first for a quantity and statistic counts.
+    pub bounds: &'a [&'a Bound],
+    /// Known shortcomings.
+    pub shortcomings: &'a [&'a Shortcoming],
+}
+
+/// A run that has a result, with what tells whether its events are decidable.
+#[derive(Clone, Copy)]
+pub struct Run<'a> {
+    /// What was measured.
+    pub measures: &'a Measures,
+    /// The engine's answer.
+    pub outcome: &'a Outcome,
+    /// The truth it was measured against.
+    pub truth: &'a Truth,
+    /// The truth's grazes.
+    pub grazes: &'a [Graze],
+    /// Events further apart than this, in units of time, are not the same.
+    pub window: f64,
+}
+
+/// Judges a run.
 #[must_use]
-pub fn judge(
-    subject: &Subject<'_>,
-    measures: Result<(&Measures, bool), &str>,
-    bounds: &[&Bound],
-    shortcomings: &[&Shortcoming],
-) -> Judgement {
-    let Subject { case, engine, accuracy, .. } = *subject;
-    let of = |it: &&&Shortcoming| it.is_for(case, engine, accuracy);
-    let known: Vec<_> = shortcomings.iter().filter(of).copied().collect();
-    match measures {
-        Err(reason) => failed(reason, &known),
-        Ok((measures, whole_run)) => {
-            let mut checked = check(subject, measures, whole_run, bounds);
-            let (verdict, expected, mut why) = settle(&mut checked, measures, &known);
-            if why.is_empty() && measures.horizon_periods == 0.0 {
-                why = NOTHING_SCORED.to_owned();
-            }
-            Judgement { bounds: checked, verdict, expected, why }
+pub fn judge(subject: &Subject<'_>, run: &Run<'_>, expected: &Expected<'_>) -> Judgement {
+    let excused = excused(subject, run, expected.bounds);
+    let mut checked = check(subject, run, &excused, expected.bounds);
+    let of = |it: &&&Shortcoming| it.is_for(subject.case, subject.engine, subject.accuracy);
+    let known: Vec<_> = expected.shortcomings.iter().filter(of).copied().collect();
+    let answers = known.iter().map(|it| answer(it, run, &excused, &mut checked));
+    let mut reasons = Reasons::default();
+    for answer in answers {
+        match answer {
+            Answer::Shows(why) => reasons.known.push(why),
+            Answer::OutOfDate(why) => reasons.failed.push(why),
+        }
+    }
+    let failed = checked.iter().filter(|it| it.verdict == Verdict::Fail);
+    reasons.failed.extend(failed.map(Checked::reason));
+    let (verdict, why) = reasons.settle(run, &checked, &excused);
+    Judgement { bounds: checked, verdict, why }
+}
+
+/// Reasons for the classes that speak of bounds.
+#[derive(Default)]
+struct Reasons {
+    failed: Vec<String>,
+    known: Vec<String>,
+}
+
+impl Reasons {
+    fn settle(self, run: &Run<'_>, checked: &[Checked], excused: &Excused) -> (Verdict, String) {
+        let unmeasured = checked.iter().find(|it| it.verdict == Verdict::NotScored);
+        if !self.failed.is_empty() {
+            (Verdict::Fail, self.failed.join("; "))
+        } else if !self.known.is_empty() {
+            (Verdict::Known, self.known.join("; "))
+        } else if !excused.grazes.is_empty() {
+            (Verdict::Undecidable, undecidable(excused))
+        } else if !run.measures.is_scored() {
+            (Verdict::NotScored, little_scored(run.measures))
+        } else if let Some(it) = unmeasured {
+            (Verdict::NotScored, format!("nothing measures its {}", it.quantity.words()))
+        } else {
+            (Verdict::Pass, String::new())
         }
     }
 }
 
-/// What is said of a run that no bound can say anything about.
-const NOTHING_SCORED: &str =
-    "nothing is scored: one unit of this setting's error is beyond 1e-3 from the start";
-
-fn failed(reason: &str, known: &[&Shortcoming]) -> Judgement {
-    let (verdict, expected, why) = match known.iter().find(|it| it.shows.is_none()) {
-        Some(it) => (Verdict::Pass, true, format!("{reason} ({})", it.why)),
-        None => (Verdict::Error, false, reason.to_owned()),
+fn undecidable(excused: &Excused) -> String {
+    let graze = |(elapsed, margin): &(f64, f64)| {
+        format!(
+            "the graze {} after the start has a margin of {}, within the error allowed: either answer \
+             is right",
+            brief(*elapsed),
+            brief(*margin)
+        )
     };
-    Judgement { bounds: Vec::new(), verdict, expected, why }
+    excused.grazes.iter().map(graze).collect::<Vec<_>>().join("; ")
+}
+
+fn little_scored(measures: &Measures) -> String {
+    format!(
+        "{} of {} events are scored: beyond, one unit of this setting's error has grown past 1e-3",
+        measures.expected, measures.total
+    )
+}
+
+/// The grazes that the engine's own bound on its error leaves undecided.
+fn excused(subject: &Subject<'_>, run: &Run<'_>, bounds: &[&Bound]) -> Excused {
+    let constant = bounds.iter().find(|it| {
+        it.quantity == Quantity::EventConstant
+            && it.statistic == Statistic::Max
+            && it.is_for(subject.engine, subject.accuracy)
+    });
+    let Some(constant) = constant else { return Excused::default() };
+    let allowed = constant.limit * subject.unit;
+    let Run { measures, outcome, grazes, window, .. } = *run;
+    measures.mismatch.excused(grazes, &outcome.events, window, allowed)
 }
 
 fn check(
     subject: &Subject<'_>,
-    measures: &Measures,
-    whole_run: bool,
+    run: &Run<'_>,
+    excused: &Excused,
     bounds: &[&Bound],
 ) -> Vec<Checked> {
     let mut checked: Vec<Checked> = Vec::new();
-    for bound in
-        bounds.iter().filter(|it| it.is_for(subject.engine, subject.accuracy, subject.unit))
-    {
-        let seen = |it: &Checked| it.quantity == bound.quantity && it.statistic == bound.statistic;
-        if checked.iter().any(seen) || measures.is_empty_of(bound.quantity, whole_run) {
+    for bound in bounds.iter().filter(|it| it.is_for(subject.engine, subject.accuracy)) {
+        let Bound { quantity, statistic, ref why, .. } = **bound;
+        let seen = |it: &Checked| it.quantity == quantity && it.statistic == statistic;
+        if checked.iter().any(seen) || !run.measures.concerns(quantity) {
             continue;
         }
-        let scale = if bound.times_tolerance { subject.unit } else { 1.0 };
-        let limit = bound.limit * scale;
-        let value = measures.figure(bound.quantity, bound.statistic);
-        // Written so that a NaN is out of bounds.
-        let within = if bound.quantity.is_to_be_large() { value >= limit } else { value <= limit };
-        let verdict = if within { Verdict::Pass } else { Verdict::Fail };
-        let Bound { quantity, statistic, why, .. } = (*bound).clone();
-        checked.push(Checked { quantity, statistic, limit, value, verdict, why });
+        let limit = bound.limit * if bound.times_tolerance { subject.unit } else { 1.0 };
+        // What grazes excuse is left out; the row's own counts keep it.
+        let value = run.decidable(quantity, statistic, excused);
+        // A NaN is out of bounds.
+        let within =
+            |value: f64| if quantity.is_to_be_large() { value >= limit } else { value <= limit };
+        let verdict = if within(run.measures.figure(quantity, statistic)) {
+            Verdict::Pass
+        } else if within(value) {
+            Verdict::Undecidable
+        } else if run.measures.lacks(quantity) {
+            Verdict::NotScored
+        } else {
+            Verdict::Fail
+        };
+        checked.push(Checked { quantity, statistic, limit, value, verdict, why: why.clone() });
     }
     checked
 }
 
-/// The row's verdict; bounds that fail as a shortcoming has it become expected.
-fn settle(
-    checked: &mut [Checked],
-    measures: &Measures,
-    known: &[&Shortcoming],
-) -> (Verdict, bool, String) {
-    for it in known {
-        let shows = it.shows.is_some_and(|(quantity, statistic, at_least)| {
-            let value = measures.figure(quantity, statistic);
-            value.is_nan() || value >= at_least
-        });
-        if !shows {
-            return (
-                Verdict::Fail,
-                false,
-                format!("the data are out of date: no longer shows: {}", it.why),
-            );
+impl Run<'_> {
+    /// A figure once the events that grazes excuse are left out.
+    pub(super) fn decidable(
+        &self,
+        quantity: Quantity,
+        statistic: Statistic,
+        excused: &Excused,
+    ) -> f64 {
+        let all = self.measures.figure(quantity, statistic);
+        match quantity {
+            Quantity::EventsMissed => all - excused.missed.len() as f64,
+            Quantity::EventsSpurious => all - excused.spurious.len() as f64,
+            Quantity::PhaseWord => {
+                let Self { measures, outcome, truth, .. } = self;
+                let mismatch = &measures.mismatch;
+                let same = mismatch.same_word(&truth.switches, &outcome.events, excused);
+                f64::from(u8::from(!same))
+            }
+            _ => all,
         }
     }
-    if !checked.iter().any(|it| it.verdict == Verdict::Fail) {
-        return match known.first() {
-            Some(it) => (Verdict::Pass, true, it.why.clone()),
-            None => (Verdict::Pass, false, String::new()),
-        };
-    }
-    let Some(it) = known.first() else {
-        let failing = checked.iter().filter(|it| it.verdict == Verdict::Fail);
-        let reasons: Vec<_> = failing.map(Checked::reason).collect();
-        return (Verdict::Fail, false, reasons.join("; "));
-    };
-    for bound in checked.iter_mut().filter(|bound| bound.verdict == Verdict::Fail) {
-        bound.verdict = Verdict::Expected;
-    }
-    (Verdict::Pass, true, it.why.clone())
 }

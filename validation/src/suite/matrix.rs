@@ -3,10 +3,13 @@
 use super::probes::{Extent, Probes};
 use super::scope::Suite;
 use crate::case::{Case, Defaults, FileError};
-use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Task, contain};
+use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Task, answer};
 use crate::number::brief;
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
-use crate::score::{Growth, Judgement, Measures, Subject, Verdict, judge, measure};
+use crate::score::{
+    Expected, Graze, Growth, Judgement, Measures, Run, Subject, Verdict, WINDOW, grazes, judge,
+    measure,
+};
 use crate::truth::{Library, Truth};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
@@ -19,6 +22,8 @@ pub struct Prepared {
     pub truth: Truth,
     /// How errors grow along it.
     pub growth: Growth,
+    /// Where its guards come close to a threshold.
+    pub grazes: Vec<Graze>,
     task: Task,
     probes: Probes,
 }
@@ -47,6 +52,8 @@ pub struct Scored {
     pub accuracy: Accuracy,
     /// Its unit of error.
     pub unit: f64,
+    /// The truth's events on the case's horizon.
+    pub events: usize,
     /// How it ended.
     pub status: Status,
     /// Wall time.
@@ -81,8 +88,9 @@ fn prepare_one(
     let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
     let task = Task::of(&case, problem, grid);
     let growth = Growth::along(&truth, &case.parameters, task.forcing_angle);
+    let grazes = grazes(&task, &truth, &growth);
     let probes = Probes::new(&case, &problem, suite, limits)?;
-    Ok(Prepared { case, truth, growth, task, probes })
+    Ok(Prepared { case, truth, growth, grazes, task, probes })
 }
 
 impl Prepared {
@@ -100,7 +108,7 @@ impl Prepared {
         extent: impl FnOnce(f64) -> Extent,
     ) -> Result<(Measures, Outcome, Duration), Failure> {
         let began = Instant::now();
-        let outcome = contain(|| engine.run(&self.task, accuracy, limits))?;
+        let outcome = answer(engine, &self.task, accuracy, limits)?;
         let wall = began.elapsed();
         let mut measures = measure(&self.task, &self.truth, &self.growth, &outcome, unit);
         let periods = self.task.span / self.task.problem.model.period();
@@ -109,10 +117,11 @@ impl Prepared {
         Ok((measures, outcome, wall))
     }
 
-    /// Whether the whole run is scored for this unit of error.
+    /// A measured run as it is judged.
     #[must_use]
-    pub fn is_whole(&self, unit: f64) -> bool {
-        self.growth.scored_samples(unit) == self.truth.samples.len()
+    pub fn as_run<'a>(&'a self, measures: &'a Measures, outcome: &'a Outcome) -> Run<'a> {
+        let window = WINDOW * self.task.problem.model.period();
+        Run { measures, outcome, truth: &self.truth, grazes: &self.grazes, window }
     }
 
     /// The same-attractor test, where the case has one.
@@ -172,40 +181,37 @@ fn one(
         engine: declaration.name,
         accuracy,
         unit,
+        events: prepared.truth.switches.len(),
         status,
         wall,
         judgement,
     };
-    let not_run = |reason: String| {
-        let verdict = Verdict::Unavailable;
-        Judgement { bounds: Vec::new(), verdict, expected: false, why: reason }
+    let without = |status, verdict, why: String| {
+        row(status, Duration::ZERO, Judgement::without_result(verdict, why))
     };
     if let Err(reason) = engine.available() {
-        return row(Status::Unavailable, Duration::ZERO, not_run(reason));
+        return without(Status::Unavailable, Verdict::Unavailable, reason);
     }
     let (least, budget) = (engine.least_work(task, accuracy), suite.budget());
     if least > budget {
-        let reason = format!(
-            "not run: {} right-hand sides at the least, the budget is {}",
-            brief(least),
-            brief(budget)
-        );
-        return row(Status::NotRun, Duration::ZERO, not_run(reason));
+        let reason =
+            format!("at least {} right-hand sides, the budget is {}", brief(least), brief(budget));
+        return without(Status::NotRun, Verdict::NotRun, reason);
     }
     let subject = Subject { case: &case.name, engine: declaration.name, accuracy, unit };
     let bounds: Vec<_> = case.bounds.iter().chain(&defaults.bounds).collect();
     let shortcomings: Vec<_> = case.shortcomings.iter().chain(&defaults.shortcomings).collect();
-    let judged = |measures| judge(&subject, measures, &bounds, &shortcomings);
+    let expected = Expected { bounds: &bounds, shortcomings: &shortcomings };
     let asked = (accuracy, unit);
     let extent = |work| prepared.probes.extent(suite, case, declaration.name, asked, work);
     match prepared.measured(engine, accuracy, unit, &suite.limits(), extent) {
         Ok((measures, outcome, wall)) => {
-            let judgement = judged(Ok((&measures, prepared.is_whole(unit))));
+            let judgement = judge(&subject, &prepared.as_run(&measures, &outcome), &expected);
             row(Status::Ok(Box::new(measures), outcome), wall, judgement)
         }
         Err(failure) => {
-            let judgement = judged(Err(&failure.0));
-            row(Status::Failed(failure), Duration::ZERO, judgement)
+            let reason = failure.0.clone();
+            without(Status::Failed(failure), Verdict::Error, reason)
         }
     }
 }

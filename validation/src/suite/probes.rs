@@ -3,7 +3,7 @@
 
 use super::scope::Suite;
 use crate::case::{Case, FileError, Problem};
-use crate::engine::{Accuracy, Engine, Limits, contain};
+use crate::engine::{Accuracy, Engine, Limits, answer, contain};
 use crate::score::attractor::{AttractorTest, Calibrated};
 use crate::score::{HorizonTest, Probed, RestartTest};
 
@@ -70,7 +70,7 @@ impl Probes {
         limits: &Limits,
         extent: Extent,
     ) -> Probed {
-        let run = |task: &_| contain(|| engine.run(task, accuracy, limits));
+        let run = |task: &_| answer(engine, task, accuracy, limits);
         let restarts = self.restart.as_ref().filter(|_| extent.restarts > 0);
         let restart = restarts.map(|test| test.score_first(extent.restarts, unit, run));
         let asked = self.horizons.as_ref().filter(|_| extent.horizons > 0);

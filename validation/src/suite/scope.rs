@@ -34,6 +34,18 @@ impl Suite {
         }
     }
 
+    /// Whether a row with this tolerance or step is one that the suite makes.
+    #[must_use]
+    pub fn makes(self, tolerance: Option<f64>, step: Option<f64>) -> bool {
+        let asked = match (tolerance, step) {
+            (Some(tolerance), _) => Accuracy::Tolerance(tolerance),
+            (None, Some(step)) => Accuracy::Step(step),
+            (None, None) => Accuracy::Exact,
+        };
+        let kinds = [Stepping::Exact, Stepping::Adaptive, Stepping::Fixed { order: 1 }];
+        kinds.into_iter().any(|it| self.accuracies(it).contains(&asked))
+    }
+
     /// Right-hand sides beyond which a row is not run, where that is known beforehand.
     #[must_use]
     pub fn budget(self) -> f64 {

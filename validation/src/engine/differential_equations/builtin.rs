@@ -20,9 +20,6 @@ use differential_equations::ode::solve_ode;
 use differential_equations::solout::{CrossingDirection, Event, EventConfig, EventSolout, Solout};
 use differential_equations::solution::Solution;
 
-/// The built-in location stops at times that are off by 3e-5 to 1e-4, whatever the tolerance.
-const LOCATED: f64 = 1e-4;
-
 /// `rkv655e` with the library's events.
 pub(in super::super) struct BuiltIn;
 
@@ -35,7 +32,7 @@ impl Engine for BuiltIn {
             method: "Verner 6(5), built-in events",
             events: Location::Library,
             dense_output: true,
-            stepping: Stepping::Located { floor: LOCATED },
+            stepping: Stepping::Adaptive,
         }
     }
 

@@ -49,7 +49,7 @@ impl<const N: usize> Engine for Dop853<N> {
             },
             events: Location::Harness,
             dense_output: false,
-            stepping: if N == 4 { Stepping::PerStep { order: 1 } } else { Stepping::Adaptive },
+            stepping: Stepping::Adaptive,
         }
     }
 

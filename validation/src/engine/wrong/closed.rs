@@ -9,7 +9,7 @@ use percuss::flow::progression::Progression;
 use percuss::{Constants, Parameters, Phase, State};
 
 /// A phase that began in a state at a forcing angle.
-pub(super) struct Closed {
+pub(crate) struct Closed {
     parameters: Parameters,
     begun: [f64; 4],
     angle: f64,
@@ -24,7 +24,7 @@ enum Form {
 }
 
 impl Closed {
-    pub(super) fn new(
+    pub(crate) fn new(
         parameters: &Parameters,
         phase: Phase,
         begun: [f64; 4],
@@ -56,7 +56,7 @@ impl Closed {
     }
 
     /// The state `d` later.
-    pub(super) fn at(&self, d: f64) -> [f64; 4] {
+    pub(crate) fn at(&self, d: f64) -> [f64; 4] {
         let point = match &self.form {
             Form::Flight(flight) => flight.at(d),
             Form::Contact(contact) => contact.at(d),

@@ -11,6 +11,7 @@ mod walk;
 
 use super::Engine;
 use altered::{Altered, Change};
+pub(crate) use closed::Closed;
 use walk::{Fault, Walk};
 
 /// A wrong engine and what is wrong with it.

@@ -61,7 +61,7 @@ impl Exporter for Html {
             engines: view::engines(report, &summaries, &looks),
             failures,
             more_failures,
-            known: report.results.iter().filter(|row| row.expected).count(),
+            known: report.summary.known,
             cases: report.results.chunk_by(|a, b| a.case == b.case).count(),
             recall_columns: summaries.iter().map(|it| it.settings.len()).max().unwrap_or(0),
             grazing: view::grazing(report, evidence),

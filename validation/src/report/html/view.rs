@@ -1,6 +1,5 @@
 //! The parts of the page that need no script, as the template takes them.
 
-use super::super::csv::word;
 use super::super::grazing::{Grazing, Seen, Touches};
 use super::super::summary::{EngineSummary, SettingSummary, percent};
 use super::super::{Evidence, Report};
@@ -92,27 +91,18 @@ fn count(value: f64) -> String {
 }
 
 fn verdict(summary: &EngineSummary) -> (&'static str, String) {
-    let EngineSummary { pass, known, fail, error, unavailable, .. } = *summary;
-    if error > 0 {
-        ("error", format!("{} without a result", error))
-    } else if fail > 0 {
-        ("fail", format!("{fail} out of bounds"))
-    } else if pass == 0 && unavailable > 0 {
-        ("unavailable", "not run".to_owned())
-    } else if known > 0 {
-        ("known", format!("within bounds, {known} known"))
-    } else {
-        ("pass", "within bounds".to_owned())
+    let count = |verdict| summary.count(verdict);
+    let worst = Verdict::ALL.into_iter().find(|it| count(*it) > 0);
+    match worst.unwrap_or(Verdict::NotScored) {
+        Verdict::Pass => ("pass", "every row passes".to_owned()),
+        other => (other.as_str(), format!("{} {}", count(other), other.as_str())),
     }
 }
 
 fn counts(summary: &EngineSummary) -> String {
-    let EngineSummary { pass, fail, error, unavailable, .. } = *summary;
-    let mut text = format!("{pass} of {} rows pass", pass + fail + error + unavailable);
-    if unavailable > 0 {
-        let _ = write!(text, ", {unavailable} not run");
-    }
-    text
+    let classes = Verdict::ALL.into_iter().rev().map(|it| (it, summary.count(it)));
+    let shown = classes.filter(|it| it.1 > 0);
+    shown.map(|(it, count)| format!("{count} {}", it.as_str())).collect::<Vec<_>>().join(", ")
 }
 
 fn recall(summary: &SettingSummary) -> RecallCell {
@@ -125,9 +115,9 @@ fn recall(summary: &SettingSummary) -> RecallCell {
         _ if spurious > 0 || failed > 0 => 3,
         _ => 4,
     };
-    let mut note = format!("{matched} of {expected} switches found");
+    let mut note = format!("{matched} of {expected} events found");
     if spurious > 0 {
-        let _ = write!(note, ", {spurious} invented");
+        let _ = write!(note, ", {spurious} spurious");
     }
     if failed > 0 {
         let _ = write!(note, ", {failed} runs without a result");
@@ -153,7 +143,7 @@ pub(super) fn failures(report: &Report) -> (Vec<Failure>, usize) {
         report.results.iter().filter(|it| matches!(it.verdict, Verdict::Fail | Verdict::Error));
     let all: Vec<_> = bad
         .map(|row| Failure {
-            verdict: word(row.verdict),
+            verdict: row.verdict.as_str(),
             case: row.case.clone(),
             who: row.who(),
             why: row.why.clone(),
@@ -180,9 +170,10 @@ pub(super) fn grazing(report: &Report, evidence: &Evidence) -> GrazingTable {
     let cell = |(setting, seen): (String, Seen)| {
         let (class, glyph, words) = match seen {
             Seen::Right => ("right", "\u{25cf}", "right"),
-            Seen::Missed => ("missed", "\u{25cb}", "missed switches"),
-            Seen::Invented => ("invented", "\u{00d7}", "invented switches"),
-            Seen::Nothing => ("nothing", "\u{2013}", "no result"),
+            Seen::Missed => ("missed", "\u{25cb}", "missed events"),
+            Seen::Invented => ("invented", "\u{00d7}", "spurious events"),
+            Seen::Either => ("either", "\u{25d0}", "undecidable: either answer is right"),
+            Seen::Nothing => ("nothing", "\u{2013}", "no result, or nothing scored"),
         };
         let of = if setting.is_empty() { String::new() } else { format!("{setting}: ") };
         SeenCell { class, glyph, title: format!("{of}{words}") }

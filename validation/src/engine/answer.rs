@@ -1,0 +1,87 @@
+//! An engine's answer, checked for completeness before anything is measured of it.
+
+use super::{Accuracy, Engine, Failure, Limits, Outcome, Task, contain};
+
+/// Runs an engine, contains its panics and checks that its answer is complete.
+///
+/// # Errors
+/// The run's failure, or what its answer lacks.
+pub fn answer(
+    engine: &dyn Engine,
+    task: &Task,
+    accuracy: Accuracy,
+    limits: &Limits,
+) -> Result<Outcome, Failure> {
+    let outcome = contain(|| engine.run(task, accuracy, limits))?;
+    complete(&outcome, task)?;
+    Ok(outcome)
+}
+
+/// Checks that there is a sample for each instant asked for, and that events follow each other.
+fn complete(outcome: &Outcome, task: &Task) -> Result<(), Failure> {
+    let (given, asked) = (outcome.samples.len(), task.grid.count);
+    if given != asked {
+        return Err(Failure::new(format!("gave {given} samples where {asked} were asked for")));
+    }
+    let mut before = 0.0;
+    for (n, event) in outcome.events.iter().enumerate() {
+        // Written so that a NaN is refused.
+        let follows = event.elapsed >= before && event.elapsed.is_finite();
+        if !follows {
+            let time = event.elapsed;
+            return Err(Failure::new(format!("event {n} is at {time:?}, not after {before:?}")));
+        }
+        before = event.elapsed;
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::{Case, Given, embedded};
+    use crate::engine::{Event, Grid, exact};
+    use percuss::Phase;
+
+    const COUNT: usize = 100;
+
+    fn task() -> Task {
+        let case = embedded().unwrap_or_default().into_iter().find(|it| it.name == "small-b");
+        let Some(case) = case else { unreachable!("small-b is embedded") };
+        let Case { parameters, start, .. } = case;
+        let given = Given { parameters, start, ..Given::default() };
+        let Ok(problem) = given.check() else { unreachable!("small-b is checked") };
+        Task::of(&case, problem, Grid { per_period: 8, count: COUNT })
+    }
+
+    fn whole(task: &Task) -> Outcome {
+        let outcome = answer(exact(), task, Accuracy::Exact, &Limits::default());
+        outcome.unwrap_or_default()
+    }
+
+    #[test]
+    fn missing_and_surplus_samples_are_refused() {
+        let task = task();
+        let mut outcome = whole(&task);
+        assert_eq!(complete(&outcome, &task), Ok(()));
+        outcome.samples.push([0.0; 4]);
+        let refused = |outcome: &Outcome| complete(outcome, &task).map_err(|it| it.0);
+        let said = |count| Err(format!("gave {count} samples where {COUNT} were asked for"));
+        assert_eq!(refused(&outcome), said(COUNT + 1));
+        outcome.samples.truncate(2);
+        assert_eq!(refused(&outcome), said(2));
+    }
+
+    #[test]
+    fn events_out_of_order_or_without_a_time_are_refused() {
+        let task = task();
+        let outcome = whole(&task);
+        let late = outcome.events.last().map_or(0.0, |it| it.elapsed);
+        for elapsed in [f64::NAN, f64::INFINITY, 0.5 * late] {
+            let event = Event { phase: Phase::Contact, elapsed, state: [0.0; 4] };
+            let events = [outcome.events.as_slice(), &[event]].concat();
+            let odd = Outcome { events, ..outcome.clone() };
+            assert!(complete(&odd, &task).is_err(), "{elapsed}");
+        }
+    }
+}

@@ -1,0 +1,53 @@
+use super::*;
+use crate::case::{Given, embedded};
+use crate::engine::Grid;
+use crate::truth::Library;
+
+fn of_case(name: &str) -> Vec<Graze> {
+    let case = embedded().unwrap_or_default().into_iter().find(|it| it.name == name);
+    let Some(case) = case else { unreachable!("{name} is embedded") };
+    let truth = Library::embedded().and_then(|library| library.truth(&case));
+    let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
+    let (Ok(truth), Ok(problem)) = (truth, given.check()) else { unreachable!("{name} is valid") };
+    let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
+    let task = Task::of(&case, problem, grid);
+    let growth = Growth::along(&truth, &case.parameters, task.forcing_angle);
+    grazes(&task, &truth, &growth)
+}
+
+/// What the margins of the case files and the margins found may differ by: the files' seven digits,
+/// and the rounding of displacements of up to 1.
+fn agrees(found: f64, stated: f64) -> bool {
+    (found - stated).abs() <= 1e-6 * stated.abs() + 4.0 * f64::EPSILON
+}
+
+#[test]
+fn stated_margins_are_found_from_both_sides() {
+    for exponent in [3, 6, 9, 12] {
+        let size: f64 = format!("1e-{exponent}").parse().unwrap_or(f64::NAN);
+        let touch = of_case(&format!("graze-overlap-1e-{exponent}"));
+        let touch = touch.iter().find(|it| agrees(it.margin, size));
+        assert!(touch.is_some_and(|it| it.events == (0..2)), "1e-{exponent}: {touch:?}");
+        let miss = of_case(&format!("graze-miss-1e-{exponent}"));
+        let miss = miss.iter().find(|it| agrees(it.margin, -size));
+        assert!(miss.is_some_and(|it| it.events.is_empty()), "-1e-{exponent}: {miss:?}");
+    }
+}
+
+#[test]
+fn the_double_zero_after_a_separation_is_no_graze() {
+    for name in ["table1-from-rest", "fig7a-period-4", "stiff-xi-0-03"] {
+        let found = of_case(name);
+        let tiny = |it: &&Graze| it.margin.abs() < 1e-9;
+        assert_eq!(found.iter().find(tiny), None, "{name}");
+    }
+}
+
+#[test]
+fn only_what_is_allowed_anyway_is_undecidable() {
+    let graze =
+        Graze { elapsed: 1.0, margin: -1e-6, growth: 2.0, events: 3..3, phase: Phase::Contact };
+    assert!(graze.is_undecidable(5e-7));
+    assert!(!graze.is_undecidable(4.9e-7));
+    assert!(!graze.is_undecidable(f64::NAN));
+}

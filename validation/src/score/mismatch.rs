@@ -1,0 +1,169 @@
+//! The events that an engine and the truth do not share, and those of them that a graze excuses.
+
+use super::graze::Graze;
+use super::matching::Matching;
+use crate::engine::Event;
+use crate::truth::Row;
+
+/// Missed and spurious events up to the scored horizon.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Mismatch {
+    /// Indices of the truth's events that the engine does not have.
+    pub missed: Vec<usize>,
+    /// Indices of the engine's events that the truth does not have.
+    pub spurious: Vec<usize>,
+    /// How many of the truth's events are before the scored horizon.
+    expected: usize,
+    /// Indices of the engine's events that are before it, or matched to one that is.
+    counted: Vec<usize>,
+}
+
+/// The part of a mismatch that grazes excuse.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Excused {
+    /// Indices of missed events.
+    pub missed: Vec<usize>,
+    /// Indices of spurious events.
+    pub spurious: Vec<usize>,
+    /// The grazes that excuse them, as (time since the start, margin).
+    pub grazes: Vec<(f64, f64)>,
+}
+
+impl Mismatch {
+    /// What a matching leaves over of the first `expected` of the truth's events and of the first
+    /// `counted` of the engine's.
+    #[must_use]
+    pub fn of(matching: &Matching, expected: usize, counted: usize) -> Self {
+        let partner = |j: usize| matching.pairs.iter().find(|(_, own)| *own == j).map(|it| it.0);
+        let found = |i: &usize| matching.pairs.iter().any(|(truth, _)| truth == i);
+        // An event just past the horizon may be the partner of one just before it.
+        let last = matching.pairs.iter().filter(|(i, _)| *i < expected).map(|(_, j)| j + 1).max();
+        let own = (0..counted.max(last.unwrap_or(0))).filter(|j| match partner(*j) {
+            Some(i) => i < expected,
+            None => *j < counted,
+        });
+        Self {
+            missed: (0..expected).filter(|i| !found(i)).collect(),
+            spurious: (0..counted).filter(|j| partner(*j).is_none()).collect(),
+            expected,
+            counted: own.collect(),
+        }
+    }
+
+    /// Whether the phases follow each other alike once what is excused is left out.
+    #[must_use]
+    pub fn same_word(&self, rows: &[Row], found: &[Event], excused: &Excused) -> bool {
+        let truth = (0..self.expected).filter(|i| !excused.missed.contains(i));
+        let own = self.counted.iter().filter(|j| !excused.spurious.contains(j));
+        truth.map(|i| rows[i].phase).eq(own.map(|j| Some(found[*j].phase)))
+    }
+
+    /// What the grazes excuse that an engine which may err by `allowed` units need not decide: all
+    /// events of a touch together, or a pair of spurious ones within `window` of a near miss that
+    /// leaves the phase and comes back to it.
+    #[must_use]
+    pub fn excused(&self, grazes: &[Graze], found: &[Event], window: f64, allowed: f64) -> Excused {
+        let mut excused = Excused::default();
+        for graze in grazes.iter().filter(|it| it.is_undecidable(allowed)) {
+            let missed: Vec<_> = graze.events.clone().filter(|i| self.missed.contains(i)).collect();
+            let touch = graze.events.len() == 2 && missed.len() == 2;
+            let pair = if graze.events.is_empty() {
+                self.spurious_pair(graze, found, window, &excused)
+            } else {
+                None
+            };
+            if touch || pair.is_some() {
+                excused.grazes.push((graze.elapsed, graze.margin));
+            }
+            excused.missed.extend(missed.into_iter().filter(|_| touch));
+            excused.spurious.extend(pair.into_iter().flatten());
+        }
+        excused
+    }
+
+    /// Two spurious events in a row near a near miss: out of its phase and back into it.
+    fn spurious_pair(
+        &self,
+        graze: &Graze,
+        found: &[Event],
+        window: f64,
+        excused: &Excused,
+    ) -> Option<[usize; 2]> {
+        let near = |j: usize| (found[j].elapsed - graze.elapsed).abs() <= window;
+        let free = |j: usize| near(j) && !excused.spurious.contains(&j);
+        let pair = self.spurious.windows(2).find(|pair| {
+            pair[1] == pair[0] + 1
+                && pair.iter().all(|j| free(*j))
+                && found[pair[0]].phase != graze.phase
+                && found[pair[1]].phase == graze.phase
+        })?;
+        Some([pair[0], pair[1]])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use percuss::Phase::{self, Contact, NoContact};
+    use percuss::two_word::TwoWord;
+
+    const WINDOW: f64 = 0.1;
+
+    fn row((elapsed, phase): (f64, Phase)) -> Row {
+        Row { phase: Some(phase), elapsed: TwoWord::new(elapsed), state: [TwoWord::ZERO; 4] }
+    }
+
+    fn event((elapsed, phase): (f64, Phase)) -> Event {
+        Event { phase, elapsed, state: [0.0; 4] }
+    }
+
+    fn graze(elapsed: f64, margin: f64, events: std::ops::Range<usize>) -> Graze {
+        Graze { elapsed, margin, growth: 1.0, events, phase: NoContact }
+    }
+
+    fn mismatch(truth: &[(f64, Phase)], own: &[(f64, Phase)]) -> (Mismatch, Vec<Row>, Vec<Event>) {
+        let rows: Vec<_> = truth.iter().copied().map(row).collect();
+        let found: Vec<_> = own.iter().copied().map(event).collect();
+        let matching = Matching::of(&rows, &found, WINDOW);
+        (Mismatch::of(&matching, rows.len(), found.len()), rows, found)
+    }
+
+    #[test]
+    fn events_invented_at_the_end_and_in_the_middle_are_spurious() {
+        let truth = [(1.0, Contact), (2.0, NoContact)];
+        let end = [(1.0, Contact), (2.0, NoContact), (3.0, Contact), (3.1, NoContact)];
+        let (found, rows, own) = mismatch(&truth, &end);
+        assert_eq!((found.missed.len(), found.spurious.clone()), (0, vec![2, 3]));
+        assert!(!found.same_word(&rows, &own, &Excused::default()));
+        let middle = [(1.0, Contact), (1.3, NoContact), (1.6, Contact), (2.0, NoContact)];
+        let (found, ..) = mismatch(&truth, &middle);
+        assert_eq!(found.spurious, [1, 2]);
+    }
+
+    #[test]
+    fn a_touch_within_what_is_allowed_is_excused_whole_and_alone() {
+        let truth = [(1.0, Contact), (1.01, NoContact), (2.0, Contact), (3.0, NoContact)];
+        let (found, rows, own) = mismatch(&truth, &truth[2..]);
+        let grazes = [graze(1.005, 1e-6, 0..2)];
+        let excused = found.excused(&grazes, &own, WINDOW, 1e-6);
+        assert_eq!(excused.missed, [0, 1]);
+        assert!(found.same_word(&rows, &own, &excused));
+        assert_eq!(found.excused(&grazes, &own, WINDOW, 0.9e-6), Excused::default());
+        // Half of a touch is no answer.
+        let (half, _, own) = mismatch(&truth, &truth[1..]);
+        assert_eq!(half.excused(&grazes, &own, WINDOW, 1.0), Excused::default());
+        // Another miss is not the graze's.
+        let (other, _, own) = mismatch(&truth, &truth[3..]);
+        assert_eq!(other.excused(&grazes, &own, WINDOW, 1.0).missed, [0, 1]);
+        assert_eq!(other.missed, [0, 1, 2]);
+    }
+
+    #[test]
+    fn a_pair_invented_at_a_near_miss_is_excused_once() {
+        let own = [(1.0, Contact), (1.01, NoContact), (1.02, Contact), (1.03, NoContact)];
+        let (found, _, own) = mismatch(&[], &own);
+        let grazes = [graze(1.0, -1e-6, 0..0)];
+        assert_eq!(found.excused(&grazes, &own, WINDOW, 1e-6).spurious, [0, 1]);
+        assert_eq!(found.excused(&[graze(2.0, -1e-6, 0..0)], &own, WINDOW, 1.0).spurious, [0; 0]);
+    }
+}
