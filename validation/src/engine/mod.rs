@@ -23,6 +23,7 @@ mod original;
 mod pins;
 mod registry;
 mod sampler;
+mod walk;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};

@@ -1,6 +1,8 @@
 //! The library's methods, each with its tolerances and limits.
 
+use super::LONGEST_STEP;
 use crate::engine::Stepping;
+use crate::engine::walk::longest_step;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{
     BackwardDifferentiationFormula, DiagonallyImplicitRungeKutta, ExplicitRungeKutta,
@@ -55,6 +57,14 @@ pub(in super::super) trait Method {
         longest: f64,
         first: f64,
     ) -> impl OrdinaryNumericalMethod<f64, [f64; 4]> + Interpolation<f64, [f64; 4]>;
+
+    /// The longest step, for a forcing period.
+    fn longest_step(period: f64) -> f64 {
+        match Self::INSIDE {
+            Inside::Again => longest_step(period),
+            Inside::Interpolant | Inside::Cubic => LONGEST_STEP * period,
+        }
+    }
 
     /// Linear systems solved in a run with a first step of ours.
     fn solves(evals: &Evals) -> usize {

@@ -5,15 +5,20 @@
 //! - Each phase is begun by a fresh method, because limits of steps and of rejections count over a
 //!   method's life.
 //! - Tolerances are vectors, one for each co-ordinate.
-//! - Steps are at most an eighth of a forcing period, so that no step hides a whole phase; limits of
-//!   steps and rejections are raised, the meter's is the one that counts.
+//! - Steps are at most an eighth of a forcing period, so that no step hides a whole phase, and, where
+//!   a method is walked, an eighth of a turn of the elastic contact. Limits of steps and rejections
+//!   are raised: the meter's limit is the one that counts.
 //! - Newton iterations are held to what rounding of the displacements allows where the library's
 //!   default is a constant, and to its own rule where it has one.
-//! - The interpolants of the Verner methods are as good as their steps and are used. That of `dop853`
-//!   has the factors of its higher terms in the wrong order, that of `bdf` uses differences which have
-//!   been rescaled to the next step already, and those of `radau5` and `kvaerno745` are cubic. There a
-//!   state inside a step is had by the method again from the step's beginning, in `bdf` from Hermite's
-//!   cubic ([`method::Inside`]).
+//! - The interpolants of the Verner methods are as good as their steps and are used. The one of
+//!   `dop853` has the factors of its higher terms in the wrong order, the one of `bdf` uses
+//!   differences that were rescaled to the next step already, and those of `radau5` and `kvaerno745`
+//!   are cubic. For these three Runge-Kutta methods the harness integrates again from the beginning
+//!   of a step to get a state inside it; for `bdf` it takes Hermite's cubic ([`method::Inside`]).
+//! - Methods that integrate again inside a step are walked (`engine/walk.rs`), like the methods of
+//!   ode_solvers: guards are evaluated at the ends of steps, and inside only where the ends show a
+//!   crossing or a peak. Evaluating them at eight instants of every step cost `dop853` five times the
+//!   right-hand sides and found no further event.
 //! - `radau5` gets a ladder of steps ([`method`]): the library reuses a factorisation that belongs to
 //!   another step, which without it spoils a step here and there by thousands of tolerances.
 //! - Linear solves are the library's own count: Radau IIA solves a real and a complex system in each
@@ -82,7 +87,7 @@ impl<M: Method, E: Equations> Engine for Stepped<M, E> {
         let tolerance = accuracy.wanted_tolerance()?;
         let meter = Meter::new(limits);
         let equations = E::of(&task.parameters, task.forcing_angle);
-        let longest = LONGEST_STEP * task.problem.model.period();
+        let longest = M::longest_step(task.problem.model.period());
         // The library begins its multistep method, at order 1, with steps below rounding.
         let first =
             if M::MULTISTEP { tolerance.sqrt() * shortest_time(&task.parameters) } else { 0.0 };

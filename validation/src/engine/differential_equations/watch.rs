@@ -8,6 +8,7 @@ use crate::engine::joining::{Ended, Moment};
 use crate::engine::location::{Crossing, Search};
 use crate::engine::meter::Failure;
 use crate::engine::sampler::Sampler;
+use crate::engine::walk::Walk;
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::ode::{ODE, solve_ode};
@@ -18,13 +19,21 @@ use std::marker::PhantomData;
 /// Searches each step for the end of the phase, and takes samples on the way.
 pub(super) struct Watch<'a, M, E> {
     field: Field<'a, E>,
-    search: Search<'a, E>,
+    looks: Looks<'a, E>,
     tolerance: f64,
     span: f64,
     sampler: &'a mut Sampler,
     last: [f64; 4],
     ended: Option<Result<Ended, Failure>>,
     method: PhantomData<M>,
+}
+
+/// Where inside a step the guards are looked at.
+enum Looks<'a, E> {
+    /// At instants inside it: its interpolant costs nothing.
+    Inside(Search<'a, E>),
+    /// At its ends, and inside only where these show something.
+    Ends(Walk<'a, E>),
 }
 
 impl<'a, M: Method, E: Equations> Watch<'a, M, E> {
@@ -35,8 +44,12 @@ impl<'a, M: Method, E: Equations> Watch<'a, M, E> {
         sampler: &'a mut Sampler,
     ) -> Self {
         let search = Search::new(field.equations, from, field.meter);
+        let looks = match M::INSIDE {
+            Inside::Again => Looks::Ends(Walk::new(search, from)),
+            Inside::Interpolant | Inside::Cubic => Looks::Inside(search),
+        };
         let (last, ended, method) = (from.state, None, PhantomData);
-        Self { field, search, tolerance, span, sampler, last, ended, method }
+        Self { field, looks, tolerance, span, sampler, last, ended, method }
     }
 
     /// How the stretch ended, once the library has come back.
@@ -50,12 +63,18 @@ impl<'a, M: Method, E: Equations> Watch<'a, M, E> {
     fn step(
         &mut self,
         begin: f64,
-        end: f64,
+        right: Point,
         state_at: &mut dyn FnMut(f64) -> Result<[f64; 4], Failure>,
     ) -> Result<Option<Ended>, Failure> {
         self.field.meter.steps(1);
-        let Some(Crossing { t, guard }) = self.search.step(begin, end, state_at)? else {
-            self.sampler.take(end, state_at)?;
+        let search = match &mut self.looks {
+            Looks::Inside(search) => search,
+            Looks::Ends(walk) => {
+                return walk.advance(right, self.sampler, |_, _, t| state_at(t));
+            }
+        };
+        let Some(Crossing { t, guard }) = search.step(begin, right.0, state_at)? else {
+            self.sampler.take(right.0, state_at)?;
             return Ok(None);
         };
         self.sampler.take(t, &mut *state_at)?;
@@ -96,7 +115,7 @@ impl<M: Method, E: Equations> Solout<f64, [f64; 4]> for Watch<'_, M, E> {
                 })
                 .at(t)),
         };
-        match self.step(begin, end, &mut state_at).transpose() {
+        match self.step(begin, (end, *state), &mut state_at).transpose() {
             None => ControlFlag::Continue,
             ended => {
                 self.ended = ended;

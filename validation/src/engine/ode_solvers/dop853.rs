@@ -9,18 +9,17 @@
 //! - Steps are at most an eighth of a turn of the elastic contact too: guards are looked at at their
 //!   ends, where their rates show a peak inside.
 
-use super::walk::walk;
-use super::{Field, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, packed, plain};
+use super::{Field, LIBRARY, NEVER_STIFF, STEPS, packed, plain};
 use crate::engine::cubic::Point;
 use crate::engine::field::{Equations, Oscillator};
 use crate::engine::joining::{Ended, Moment, join};
 use crate::engine::location::Search;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
+use crate::engine::walk::{longest_step, walk};
 use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins};
 use ::ode_solvers::OutputType;
 use percuss::Phase;
-use std::f64::consts::TAU;
 
 const STAGES: f64 = 12.0;
 /// The least multiple in [`Engine::least_work`].
@@ -80,7 +79,7 @@ struct Run<'a, const N: usize> {
 impl<const N: usize> Run<'_, N> {
     fn stretch(&self, from: &Moment, sampler: &mut Sampler) -> Result<Ended, Failure> {
         let period = self.task.problem.model.period();
-        let longest = LONGEST_STEP * period.min(TAU);
+        let longest = longest_step(period);
         let until = (from.t + period.min(MOST_STEPS * longest)).min(self.task.span);
         let mut points = self.integrate(from.phase, (from.t, from.state), until, longest, 0.0)?;
         if let Some(last) = points.last_mut().filter(|last| last.0 > until - TINY * longest) {
@@ -89,14 +88,14 @@ impl<const N: usize> Run<'_, N> {
         }
         let search = Search::new(self.equations, from, self.meter);
         let inside = |left: &Point, t: f64| self.again(from.phase, left, t);
-        walk(&search, from, points, sampler, |left, _, t| inside(left, t))
+        walk(search, from, points, sampler, |left, _, t| inside(left, t))
     }
 
     /// The state at `t` by another integration from a point before it, in one step if that will do.
     fn again(&self, phase: Phase, left: &Point, t: f64) -> Result<[f64; 4], Failure> {
         let (begin, state) = *left;
         let length = t - begin;
-        if length <= TINY * LONGEST_STEP * self.task.problem.model.period().min(TAU) {
+        if length <= TINY * longest_step(self.task.problem.model.period()) {
             let mut rates = [0.0; 4];
             self.equations.derivatives(phase, begin, &state, &mut rates);
             self.meter.rhs(&rates);

@@ -12,7 +12,6 @@
 mod dop853;
 mod dopri5;
 mod rk4;
-mod walk;
 
 use super::field::{Equations, Oscillator};
 use super::meter::Meter;

@@ -7,7 +7,6 @@
 //!
 //! [`shortest_time`]: crate::engine::shortest_time
 
-use super::walk::walk;
 use super::{Field, LIBRARY, packed, plain};
 use crate::engine::cubic::Cubic;
 use crate::engine::field::{Equations, Oscillator};
@@ -15,6 +14,7 @@ use crate::engine::joining::{Ended, Moment, join};
 use crate::engine::location::Search;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
+use crate::engine::walk::walk;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins, shortest_time,
 };
@@ -85,7 +85,7 @@ impl Run<'_> {
         let time = |k: usize| from.t + length * (k as f64 / count);
         let points = solver.y_out().iter().enumerate().skip(1).map(|(k, u)| (time(k), plain(u)));
         let mut cubic: Option<Cubic> = None;
-        walk(&search, from, points, sampler, |left, right, t| {
+        walk(search, from, points, sampler, |left, right, t| {
             let known = cubic.take().filter(|known| known.begins_at(left.0));
             let here = known.unwrap_or_else(|| {
                 let ends = [*left, *right];
