@@ -50,7 +50,8 @@ fn begun<S: OdeSolverState<Vect>>(
 pub(in super::super) struct Bdf;
 /// Trapezoidal rule, then second-order backward differentiation.
 pub(in super::super) struct TrBdf2;
-/// Diagonally implicit, with an explicit first stage.
+/// Diagonally implicit, with an explicit first stage. The solution that is continued with is of order 3:
+/// it meets the conditions up to that order and none of order 4, which the embedded one meets.
 pub(in super::super) struct Esdirk34;
 /// Tsitouras's pair.
 pub(in super::super) struct Tsit45;
@@ -89,9 +90,9 @@ impl Method for TrBdf2 {
 
 impl Method for Esdirk34 {
     const NAME: &'static str = "diffsol-esdirk34";
-    const DESCRIPTION: &'static str = "ESDIRK 4(3)";
+    const DESCRIPTION: &'static str = "ESDIRK 3(4), order 3";
     const STEPPING: Stepping = Stepping::PerStep { order: 3 };
-    const ORDER: usize = 4;
+    const ORDER: usize = 3;
     const ONE_STEP: bool = true;
     const SOLVES_AN_ESTIMATE: usize = 1;
 
