@@ -33,6 +33,9 @@ pub struct Printed {
     pub value: Option<f64>,
     /// Half a unit of its last printed digit.
     pub within: Option<f64>,
+    /// Whether the paper calls it approximate.
+    #[serde(default)]
+    pub approximate: bool,
     /// Periods of the periodic attractors, in forcing periods.
     #[serde(default)]
     pub periods: Vec<u32>,
@@ -49,6 +52,36 @@ pub struct Paper {
     /// Table 1.
     pub table1: Vec<PrintedRow>,
     claims: BTreeMap<String, Printed>,
+}
+
+/// Rounding of the printed value's own binary form, relative to it.
+const BINARY: f64 = 4.0 * f64::EPSILON;
+
+impl Printed {
+    /// Whether a value is the printed one to its last digit.
+    #[must_use]
+    pub fn prints(&self, value: f64) -> bool {
+        self.value.zip(self.within).is_some_and(|(paper, within)| (value - paper).abs() <= within)
+    }
+
+    /// Whether a value agrees with the printed one: it is that to its last digit or, where the paper
+    /// calls its value approximate, its digits are at most one unit of the last one away. The paper
+    /// rounds some numbers and cuts others (Table 1 does both), so that this has to hold for the
+    /// rounded as for the cut value.
+    #[must_use]
+    pub fn agrees(&self, value: f64) -> bool {
+        let near = |paper: f64, half: f64| {
+            let (unit, rounding) = (2.0 * half, BINARY * paper.abs());
+            let units = (value - paper) / unit;
+            let room = rounding / unit;
+            // Cut, a value up to one unit below keeps the digits of one unit less; rounded, one up to
+            // one and a half units above keeps those of one unit more.
+            -1.0 - room <= units && units < 1.5 + room
+        };
+        self.prints(value)
+            || self.approximate
+                && self.value.zip(self.within).is_some_and(|(paper, half)| near(paper, half))
+    }
 }
 
 /// The unit of the last digit in Table 1.
@@ -94,4 +127,43 @@ pub fn chaotic_model() -> Parameters {
 #[must_use]
 pub fn attractors_model(omega: f64) -> Parameters {
     Parameters { omega, xi: 0.1, ..Parameters::default() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn printed(approximate: bool) -> Printed {
+        Printed {
+            says: String::new(),
+            value: Some(1.571),
+            within: Some(0.0005),
+            approximate,
+            periods: Vec::new(),
+            chaotic: None,
+            attractors: None,
+        }
+    }
+
+    #[test]
+    fn an_approximate_value_has_room_of_one_unit_however_its_digits_were_made() {
+        for (value, prints, agrees) in [
+            (1.571, true, true),
+            (1.5714, true, true),
+            // 1.572 rounded and cut
+            (1.5721, false, true),
+            (1.5724, false, true),
+            // 1.573 rounded
+            (1.5726, false, false),
+            // 1.570 rounded and cut
+            (1.5700, false, true),
+            // 1.570 rounded, but 1.569 cut
+            (1.5699997, false, false),
+            (f64::NAN, false, false),
+        ] {
+            assert_eq!(printed(false).prints(value), prints, "{value}");
+            assert_eq!(printed(false).agrees(value), prints, "{value}");
+            assert_eq!(printed(true).agrees(value), agrees, "{value}");
+        }
+    }
 }
