@@ -4,7 +4,7 @@
 //! hand, held against the exact solver's bounds, and must fail at least one.
 
 use crate::case::{Bound, Quantity};
-use crate::engine::{Accuracy, Limits, Wrong};
+use crate::engine::{Accuracy, Limits, SOUND, Wrong, faulty, wrong};
 use crate::number::brief;
 use crate::score::{Checked, Expected, Subject, Verdict, judge};
 use crate::suite::{Extent, Prepared};
@@ -82,8 +82,8 @@ pub struct Trip {
 /// What was found about a wrong engine.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// Its name.
-    pub engine: &'static str,
+    /// Its name, with its tolerance where it has one.
+    pub engine: String,
     /// What is wrong with it.
     pub fault: &'static str,
     /// The gates.
@@ -115,13 +115,53 @@ pub struct Standard {
 pub const AS_EXACT: Standard =
     Standard { engine: "exact", accuracy: Accuracy::Exact, unit: f64::EPSILON };
 
+/// The tolerances at which integrators with a fault are run.
+const FAULTY_AT: [f64; 2] = [1e-6, 1e-9];
+
+impl Standard {
+    /// As the integrator is held of which faulty ones are made, at each of their tolerances.
+    #[must_use]
+    pub fn of_faulty() -> [Self; 2] {
+        FAULTY_AT.map(|tolerance| Self {
+            engine: SOUND,
+            accuracy: Accuracy::Tolerance(tolerance),
+            unit: tolerance,
+        })
+    }
+
+    /// A wrong engine's name, with the tolerance where there is one.
+    fn who(&self, name: &str) -> String {
+        match self.accuracy.tolerance() {
+            Some(tolerance) => format!("{name} {tolerance:e}"),
+            None => name.to_owned(),
+        }
+    }
+
+    /// How much is asked of a wrong engine.
+    fn extent(&self, case: &crate::case::Case) -> Extent {
+        if self.accuracy == Accuracy::Exact {
+            Extent::of_wrong(case)
+        } else {
+            Extent::of_faulty(case)
+        }
+    }
+}
+
+/// Every engine that is wrong on purpose, with what it is held to.
+#[must_use]
+pub fn all() -> Vec<(Wrong, Standard)> {
+    let integrators = Standard::of_faulty().into_iter();
+    let integrators = integrators.flat_map(|held| faulty().iter().map(move |it| (*it, held)));
+    wrong().iter().map(|it| (*it, AS_EXACT)).chain(integrators).collect()
+}
+
 /// Runs a wrong engine on all cases.
 #[must_use]
 pub fn examine(wrong: &Wrong, cases: &[Prepared], standard: Standard, bounds: &[Bound]) -> Finding {
     let outcomes: Vec<_> =
         cases.par_iter().map(|case| held(wrong, case, standard, bounds)).collect();
     let mut finding = Finding {
-        engine: wrong.engine.declaration().name,
+        engine: standard.who(wrong.engine.declaration().name),
         fault: wrong.fault,
         gates: Gate::ALL.into_iter().map(|gate| (gate, Trip::default())).collect(),
         without_result: 0,
@@ -154,8 +194,8 @@ fn held(
     let Standard { engine, accuracy, unit } = standard;
     let subject = Subject { case: &prepared.case.name, engine, accuracy, unit };
     let limits = Limits::default();
-    let extent = |_| Extent::of_wrong(&prepared.case);
-    let measured = prepared.measured(wrong.engine, Accuracy::Exact, unit, &limits, extent);
+    let extent = |_| standard.extent(&prepared.case);
+    let measured = prepared.measured(wrong.engine, accuracy, unit, &limits, extent);
     let (measures, outcome, _) = measured.ok()?;
     let bounds: Vec<_> = prepared.case.bounds.iter().chain(defaults).collect();
     let expected = Expected { bounds: &bounds, shortcomings: &[] };

@@ -4,7 +4,7 @@ use super::output::{Destination, reader_left};
 use super::{DONE, OUT_OF_BOUNDS, parse, reports, work};
 use crate::case::{self, Case};
 use crate::engine::{self, Engine, Wrong, hush_contained_panics};
-use crate::power::{self, Finding};
+use crate::power::{self, Finding, Standard};
 use crate::report::{
     Baseline, Compared, Evidence, Place, RankingFormat, Report, Summary, ranking_text, screen,
 };
@@ -98,8 +98,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     if rows.len() != asked {
         bail!("{} rows were made where {asked} were asked for", rows.len());
     }
-    let examine = |it: &Wrong| {
-        let finding = power::examine(it, &cases, power::AS_EXACT, &defaults.bounds);
+    let examine = |(it, held): &(Wrong, Standard)| {
+        let finding = power::examine(it, &cases, *held, &defaults.bounds);
         bar.inc(1);
         finding
     };
@@ -117,10 +117,10 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
 }
 
 /// Engines that are wrong on purpose, for the power of the gates; none where something else is asked.
-fn wrong_engines(arguments: &Arguments) -> &'static [Wrong] {
+fn wrong_engines(arguments: &Arguments) -> Vec<(Wrong, Standard)> {
     let everything =
         arguments.engine.is_empty() && arguments.case.is_empty() && arguments.cases.is_none();
-    if everything { engine::wrong() } else { &[] }
+    if everything { power::all() } else { Vec::new() }
 }
 
 /// Whether a wrong engine passes every bound of all cases together; said on stderr.

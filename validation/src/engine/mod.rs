@@ -34,7 +34,7 @@ pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use order::claimed_order;
 pub use registry::{all, exact, select};
 pub(crate) use wrong::Closed;
-pub use wrong::{CONTROL, Wrong, wrong};
+pub use wrong::{CONTROL, FAULTY_CONTROL, SOUND, Wrong, faulty, wrong};
 
 use crate::case::{Case, Horizon, Problem};
 use percuss::two_word::TwoWord;

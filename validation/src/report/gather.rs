@@ -52,7 +52,7 @@ fn fault(finding: &Finding) -> Fault {
         (gate.name().to_owned(), trip.failed > 0, detail)
     };
     Fault {
-        engine: finding.engine.to_owned(),
+        engine: finding.engine.clone(),
         fault: finding.fault.to_owned(),
         gates: Gate::ALL.into_iter().map(gate).collect(),
     }

@@ -147,6 +147,15 @@ impl Extent {
     }
 }
 
+impl Extent {
+    /// What is asked of an integrator with a fault.
+    #[must_use]
+    pub fn of_faulty(case: &Case) -> Self {
+        let restarts = if case.probed.integrators { FEWEST } else { 0 };
+        Self { restarts, ..Self::default() }
+    }
+}
+
 /// Runs from which a valid horizon is taken: as many as a median needs to be good to a period or two.
 const HORIZONS: usize = 200;
 /// Those of a wrong engine, which is off by far more than that.

@@ -115,7 +115,8 @@ impl<const N: usize> Run<'_, N> {
         first: f64,
     ) -> Result<Vec<Point>, Failure> {
         let (begin, state) = from;
-        let field = Field { equations: self.equations, phase, meter: self.meter, from: state };
+        let field =
+            Field { equations: self.equations, phase, meter: self.meter, from: state, stale: None };
         let mut solver = ::ode_solvers::Dop853::from_param(
             field,
             begin,

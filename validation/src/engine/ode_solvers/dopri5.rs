@@ -11,6 +11,7 @@ use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins};
 use ::ode_solvers::continuous_output_model::ContinuousOutputModel;
 use ::ode_solvers::{OutputType, SVector};
+use percuss::Phase;
 use std::marker::PhantomData;
 
 /// ode_solvers' `Dopri5` on some equations.
@@ -42,7 +43,7 @@ impl<E: Equations> Engine for Dopri5<E> {
         let tolerance = accuracy.wanted_tolerance()?;
         let meter = Meter::new(limits);
         let equations = E::of(&task.parameters, task.forcing_angle);
-        let mut run = Run { task, tolerance, meter: &meter, equations, step: 0.0 };
+        let mut run = Run::new(task, tolerance, &meter, equations);
         join(task, &equations, &meter, |from, sampler| {
             let stretch = run.integrate(from)?;
             let crossing = run.first_crossing(from, &stretch)?;
@@ -58,40 +59,53 @@ impl<E: Equations> Engine for Dopri5<E> {
     }
 }
 
-type Output = ContinuousOutputModel<f64, SVector<f64, 4>>;
+pub(in crate::engine) type Output = ContinuousOutputModel<f64, SVector<f64, 4>>;
 
-struct Run<'a, E> {
+/// The library's method on one task.
+pub(in crate::engine) struct Run<'a, E> {
     task: &'a Task,
     tolerance: f64,
     meter: &'a Meter,
     equations: E,
     /// The step to begin the next stretch with; zero: the library chooses.
-    step: f64,
+    pub(in crate::engine) step: f64,
+    /// A phase whose derivative is taken at a stretch's begin instead of its own; a fault.
+    pub(in crate::engine) stale: Option<Phase>,
 }
 
 /// A stretch of one phase, with the ends of its steps.
-struct Stretch {
-    output: Output,
-    begin: f64,
-    ends: Vec<f64>,
-    end: [f64; 4],
+pub(in crate::engine) struct Stretch {
+    pub(in crate::engine) output: Output,
+    pub(in crate::engine) begin: f64,
+    pub(in crate::engine) ends: Vec<f64>,
+    pub(in crate::engine) end: [f64; 4],
 }
 
 impl Stretch {
-    fn last(&self) -> f64 {
+    pub(in crate::engine) fn last(&self) -> f64 {
         self.ends.last().copied().unwrap_or(self.begin)
     }
 }
 
-impl<E: Equations> Run<'_, E> {
+impl<'a, E: Equations> Run<'a, E> {
+    pub(in crate::engine) fn new(
+        task: &'a Task,
+        tolerance: f64,
+        meter: &'a Meter,
+        equations: E,
+    ) -> Self {
+        Self { task, tolerance, meter, equations, step: 0.0, stale: None }
+    }
+
     /// Integrates one phase for at most a forcing period, or to the first step's end outside it.
-    fn integrate(&mut self, from: &Moment) -> Result<Stretch, Failure> {
+    pub(in crate::engine) fn integrate(&mut self, from: &Moment) -> Result<Stretch, Failure> {
         let period = self.task.problem.model.period();
         let field = Field {
             equations: self.equations,
             phase: from.phase,
             meter: self.meter,
             from: from.state,
+            stale: self.stale.map(|phase| (from.t, phase)),
         };
         let until = (from.t + period).min(self.task.span);
         let longest = LONGEST_STEP * period;
@@ -124,7 +138,7 @@ impl<E: Equations> Run<'_, E> {
     }
 
     /// The first instant of a stretch at which a guard has risen to zero.
-    fn first_crossing(
+    pub(in crate::engine) fn first_crossing(
         &self,
         from: &Moment,
         stretch: &Stretch,
@@ -142,7 +156,7 @@ impl<E: Equations> Run<'_, E> {
     }
 }
 
-fn evaluate(output: &Output, t: f64) -> Result<[f64; 4], Failure> {
+pub(in crate::engine) fn evaluate(output: &Output, t: f64) -> Result<[f64; 4], Failure> {
     let state = output.evaluate(t);
     state.map(|u| plain(&u)).ok_or_else(|| Failure::new("its continuous output has a hole"))
 }

@@ -10,7 +10,7 @@
 //! [`Search`]: super::location::Search
 
 mod dop853;
-mod dopri5;
+pub(super) mod dopri5;
 mod rk4;
 
 use super::field::{Equations, Oscillator};
@@ -45,13 +45,17 @@ struct Field<'a, E> {
     meter: &'a Meter,
     /// Where it began: on the surface, and no way out of the phase.
     from: [f64; 4],
+    /// A time at which another phase's derivative is taken: the fault of a restart that keeps the old
+    /// one. No engine that is scored has it.
+    stale: Option<(f64, Phase)>,
 }
 
 impl<E: Equations, const N: usize> System<f64, SVector<f64, N>> for Field<'_, E> {
     fn system(&self, t: f64, u: &SVector<f64, N>, du: &mut SVector<f64, N>) {
         let clock = u.as_slice().get(4);
         let t = clock.copied().unwrap_or(t);
-        self.equations.derivatives(self.phase, t, u.as_slice(), du.as_mut_slice());
+        let phase = self.stale.filter(|stale| stale.0 == t).map_or(self.phase, |stale| stale.1);
+        self.equations.derivatives(phase, t, u.as_slice(), du.as_mut_slice());
         if let Some(rate) = du.as_mut_slice().get_mut(4) {
             *rate = 1.0;
         }

@@ -73,6 +73,7 @@ impl Run<'_> {
             phase: from.phase,
             meter: self.meter,
             from: from.state,
+            stale: None,
         };
         // The library makes it a whole number of steps, upwards: half a step short of the end is safe.
         let until = from.t + (count - 0.5) * step;

@@ -1,17 +1,21 @@
 //! Engines that are wrong on purpose, one fault each: what no fault trips is no gate.
 //!
+//! [`wrong`] are held to the exact solver's bounds, [`faulty`] to those of a good integrator.
+//!
 //! They never run beside the others; the power test runs them and asks which bounds notice. Three
 //! are the exact solver on something slightly different; the others are a plain solver that walks
 //! along the closed forms ([`walk`]), which without a fault stays within the bounds it is held to.
 
 mod altered;
 mod closed;
+mod integrator;
 mod printed;
 mod walk;
 
 use super::Engine;
 use altered::{Altered, Change};
 pub(crate) use closed::Closed;
+use integrator::{Faulty, Slip};
 use walk::{Fault, Walk};
 
 /// A wrong engine and what is wrong with it.
@@ -73,3 +77,39 @@ static WRONG: [Wrong; 9] = [
 pub fn wrong() -> &'static [Wrong] {
     &WRONG
 }
+
+/// The integrator of [`faulty`] without a fault: the control of its power test.
+pub static FAULTY_CONTROL: &dyn Engine = &Faulty { name: "dopri5-control", slip: Slip::None };
+
+/// How rarely an integrator drops an event.
+const SELDOM: u64 = 20;
+
+macro_rules! faulty {
+    ($name:literal, $slip:expr, $fault:literal) => {
+        Wrong { engine: &Faulty { name: $name, slip: $slip }, fault: $fault }
+    };
+}
+
+static FAULTY: [Wrong; 8] = [
+    faulty!("dopri5-drops", Slip::Dropped(SELDOM), "every twentieth event is not noticed"),
+    faulty!("dopri5-at-step-end", Slip::AtStepEnd, "an event is put at its step's end"),
+    faulty!("dopri5-sign-at-ends", Slip::SignAtEnds, "guards are looked at only at steps' ends"),
+    faulty!("dopri5-late", Slip::Late, "an event is found thirty tolerances late"),
+    faulty!(
+        "dopri5-old-derivative",
+        Slip::OldDerivative,
+        "a restart begins with the derivative of the phase before"
+    ),
+    faulty!("dopri5-any-direction", Slip::AnyDirection, "the direction of a guard is ignored"),
+    faulty!("dopri5-low-order", Slip::LowOrder, "the interpolant is of order 3 instead of 4"),
+    faulty!("dopri5-parameters", Slip::Parameters, "b and xi are larger by 1e-4 of themselves"),
+];
+
+/// Integrators with one fault each, held to the bounds of the engine without it, [`SOUND`].
+#[must_use]
+pub fn faulty() -> &'static [Wrong] {
+    &FAULTY
+}
+
+/// The engine whose bounds [`faulty`] integrators are held to.
+pub const SOUND: &str = "ode_solvers-dopri5";

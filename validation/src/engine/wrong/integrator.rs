@@ -1,0 +1,221 @@
+//! A good integrator with one fault: ode_solvers' `Dopri5` with our location, as it is scored, and
+//! the mistakes that users and libraries make around events.
+//!
+//! Without a fault it is the engine `ode_solvers-dopri5`, whose bounds it is held to.
+
+use super::super::cubic::{Cubic, Point};
+use super::super::field::{Equations, GUARDS, Oscillator};
+use super::super::joining::{Ended, Moment, join};
+use super::super::location::Crossing;
+use super::super::meter::{Failure, Limits, Meter};
+use super::super::ode_solvers::dopri5::{Run, Stretch, evaluate};
+use super::super::{Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins};
+use percuss::{Parameters, Phase};
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Slip {
+    None,
+    /// Every so many events one is not noticed.
+    Dropped(u64),
+    /// An event is put at the end of the step in which it lies.
+    AtStepEnd,
+    /// Guards are looked at only where steps end, for a rise through zero.
+    SignAtEnds,
+    /// An event is found thirty tolerances late.
+    Late,
+    /// A restart begins with the derivative of the phase before.
+    OldDerivative,
+    /// A guard that falls through zero counts as well.
+    AnyDirection,
+    /// Hermite's cubic in place of the method's own interpolant of order 4.
+    LowOrder,
+    /// b and xi are larger by 1e-4 of themselves.
+    Parameters,
+}
+
+/// How late a late event is, in tolerances.
+const LATE: f64 = 30.0;
+/// How far wrong parameters are off, relative to themselves.
+const OFF: f64 = 1e-4;
+/// Halvings that narrow a bracket down to rounding.
+const HALVINGS: u32 = 80;
+
+pub(super) struct Faulty {
+    pub(super) name: &'static str,
+    pub(super) slip: Slip,
+}
+
+impl Engine for Faulty {
+    fn declaration(&self) -> Declaration {
+        Declaration {
+            name: self.name,
+            library: "ode_solvers",
+            version: pins::version("ode_solvers"),
+            method: "Dormand-Prince 5(4), wrong on purpose",
+            events: Location::Harness,
+            dense_output: true,
+            stepping: Stepping::Adaptive,
+        }
+    }
+
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+        let tolerance = accuracy.wanted_tolerance()?;
+        let meter = Meter::new(limits);
+        let equations = Oscillator::of(&self.parameters(task), task.forcing_angle);
+        let mut run = Run::new(task, tolerance, &meter, equations);
+        let mut watch = Watch {
+            slip: self.slip,
+            equations,
+            tolerance,
+            events: task.events_before,
+            overlooking: false,
+            before: None,
+        };
+        join(task, &equations, &meter, |from, sampler| {
+            run.stale = watch.stale(from);
+            let stretch = run.integrate(from)?;
+            let sound = run.first_crossing(from, &stretch)?;
+            let Some(Crossing { t, guard }) = watch.notice(&stretch, from, sound)? else {
+                sampler.take(stretch.last(), |t| watch.state_at(&stretch, from.phase, t))?;
+                return Ok(Ended::Inside { t: stretch.last(), state: stretch.end });
+            };
+            sampler.take(t, |t| watch.state_at(&stretch, from.phase, t))?;
+            run.step = 0.0;
+            watch.before = Some(from.phase);
+            let state = watch.state_at(&stretch, from.phase, t)?;
+            Ok(Ended::Switch { t, guard, state })
+        })
+    }
+}
+
+impl Faulty {
+    fn parameters(&self, task: &Task) -> Parameters {
+        let Parameters { b, xi, .. } = task.parameters;
+        if self.slip != Slip::Parameters {
+            return task.parameters;
+        }
+        Parameters { b: (1.0 + OFF) * b, xi: (1.0 + OFF) * xi, ..task.parameters }
+    }
+}
+
+/// Finds events with the fault.
+struct Watch {
+    slip: Slip,
+    equations: Oscillator,
+    tolerance: f64,
+    /// Over the engine's whole life.
+    events: u64,
+    /// The phase goes on past an event that was not noticed.
+    overlooking: bool,
+    /// The phase before this one.
+    before: Option<Phase>,
+}
+
+impl Watch {
+    /// The phase whose derivative begins a stretch: that before the last event, if that is the fault.
+    fn stale(&self, from: &Moment) -> Option<Phase> {
+        self.before.filter(|_| self.slip == Slip::OldDerivative && from.t == from.began)
+    }
+
+    /// The crossing that this integrator notices in a stretch; `sound` is the right one.
+    fn notice(
+        &mut self,
+        stretch: &Stretch,
+        from: &Moment,
+        sound: Option<Crossing>,
+    ) -> Result<Option<Crossing>, Failure> {
+        let found = match self.slip {
+            Slip::SignAtEnds => self.by_sign(stretch, from.phase, false)?,
+            Slip::AnyDirection => self.by_sign(stretch, from.phase, true)?,
+            Slip::Dropped(_) if self.overlooking => self.by_sign(stretch, from.phase, false)?,
+            Slip::Dropped(every) => sound.filter(|_| !self.drops(every)),
+            Slip::AtStepEnd => sound.map(|it| Crossing { t: end_of_step(stretch, it.t), ..it }),
+            Slip::Late => sound.map(|it| self.late(stretch, it)),
+            _ => sound,
+        };
+        if found.is_some() {
+            self.overlooking = false;
+        }
+        Ok(found)
+    }
+
+    /// Counts an event; whether it is one that is not noticed.
+    fn drops(&mut self, every: u64) -> bool {
+        self.events += 1;
+        self.overlooking = self.events.is_multiple_of(every);
+        self.overlooking
+    }
+
+    fn late(&self, stretch: &Stretch, crossing: Crossing) -> Crossing {
+        let t = (crossing.t + LATE * self.tolerance).min(stretch.last());
+        Crossing { t, ..crossing }
+    }
+
+    /// The first change of sign from one step's end to the next.
+    fn by_sign(
+        &self,
+        stretch: &Stretch,
+        phase: Phase,
+        any_direction: bool,
+    ) -> Result<Option<Crossing>, Failure> {
+        let mut left = stretch.begin;
+        for right in stretch.ends.iter().copied().filter(|end| *end > stretch.begin) {
+            let [before, after] =
+                [self.guards(stretch, phase, left)?, self.guards(stretch, phase, right)?];
+            for guard in 0..GUARDS {
+                let rises = before[guard] < 0.0 && after[guard] >= 0.0;
+                let falls = before[guard] > 0.0 && after[guard] <= 0.0;
+                if rises || (any_direction && falls) {
+                    let t = self.bisect(stretch, phase, guard, (left, right))?;
+                    return Ok(Some(Crossing { t, guard }));
+                }
+            }
+            left = right;
+        }
+        Ok(None)
+    }
+
+    fn bisect(
+        &self,
+        stretch: &Stretch,
+        phase: Phase,
+        guard: usize,
+        (mut left, mut right): (f64, f64),
+    ) -> Result<f64, Failure> {
+        let side = self.guards(stretch, phase, left)?[guard] < 0.0;
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (left + right);
+            let same = (self.guards(stretch, phase, middle)?[guard] < 0.0) == side;
+            if same { left = middle } else { right = middle }
+        }
+        Ok(right)
+    }
+
+    fn guards(&self, stretch: &Stretch, phase: Phase, t: f64) -> Result<[f64; GUARDS], Failure> {
+        Ok(self.equations.guards(phase, &self.state_at(stretch, phase, t)?))
+    }
+
+    /// The state inside a stretch, by the interpolant that this integrator has.
+    fn state_at(&self, stretch: &Stretch, phase: Phase, t: f64) -> Result<[f64; 4], Failure> {
+        if self.slip != Slip::LowOrder {
+            return evaluate(&stretch.output, t);
+        }
+        let end = end_of_step(stretch, t);
+        let begin =
+            stretch.ends.iter().copied().filter(|it| *it < end).fold(stretch.begin, f64::max);
+        if end <= begin {
+            return evaluate(&stretch.output, t);
+        }
+        let point = |t: f64| -> Result<Point, Failure> { Ok((t, evaluate(&stretch.output, t)?)) };
+        let cubic = Cubic::between([point(begin)?, point(end)?], |(t, state), rates| {
+            self.equations.derivatives(phase, t, &state, rates);
+        });
+        Ok(cubic.at(t))
+    }
+}
+
+/// The end of the step in which a time lies.
+fn end_of_step(stretch: &Stretch, t: f64) -> f64 {
+    stretch.ends.iter().copied().find(|end| *end >= t).unwrap_or(t)
+}
