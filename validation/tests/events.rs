@@ -62,7 +62,8 @@ fn a_missed_touch_shows_what_the_root_finder_did_not_see() {
 #[test]
 fn a_spurious_touch_is_the_engine_s_own() {
     let all = pictures("graze-miss-1e-12", "ode_solvers-dopri5");
-    let picture = all.iter().find(|it| it.tolerance == Some(1e-6)).expect("it has a touch too many");
+    let picture =
+        all.iter().find(|it| it.tolerance == Some(1e-6)).expect("it has a touch too many");
     assert_eq!(picture.kind, Kind::Spurious);
     let close = &picture.views[picture.telling];
     assert!(close.truth.events.is_empty() && largest(close.truth.values.iter().copied()) < 0.0);

@@ -49,7 +49,7 @@ fn the_page_holds_every_row() {
     assert_eq!(lines, report.ranking.len());
     let place = |engine: &str| html.find(&format!("data-engine=\"{engine}\""));
     assert!(report.ranking.windows(2).all(|pair| place(pair[0].engine) < place(pair[1].engine)));
-    assert!(html.contains("2000 of 2300 of 2400") && !html.contains("NaN"));
+    assert!(html.contains("2\u{202f}000 of 2\u{202f}300 of 2\u{202f}400") && !html.contains("NaN"));
     assert!(html.len() < 2_000_000, "{}", html.len());
 }
 
@@ -75,7 +75,8 @@ fn sections_without_data_say_so() {
     let said = |html: &str| html.matches("class=\"empty\">Not run").count();
     assert_eq!(said(&written("report.html", &report(), &full)), 0);
     assert_eq!(said(&written("report.html", &report(), &empty)), 5);
-    let nothing = Report { results: Vec::new(), engines: Vec::new(), ranking: Vec::new(), ..report() };
+    let nothing =
+        Report { results: Vec::new(), engines: Vec::new(), ranking: Vec::new(), ..report() };
     assert!(written("report.html", &nothing, &empty).contains("No engine was run"));
 }
 

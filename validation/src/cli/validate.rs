@@ -6,8 +6,8 @@ use crate::case::{self, Case};
 use crate::engine::{self, Engine, Wrong, hush_contained_panics};
 use crate::power::{self, Finding};
 use crate::report::{
-    Baseline, Compared, Evidence, Place, RankingFormat, Report, Summary, event_pictures, ranking_text,
-    screen,
+    Baseline, Compared, Evidence, Place, RankingFormat, Report, Summary, event_pictures,
+    ranking_text, screen,
 };
 use crate::suite::{self, Prepared, Suite};
 use crate::truth::Library;
