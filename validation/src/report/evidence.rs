@@ -23,6 +23,8 @@ pub struct Evidence {
     pub faults: Vec<Fault>,
     /// What got worse than in the baseline, a line each.
     pub worse: Vec<String>,
+    /// Flags with their folders that a command needs to repeat a row on the same data.
+    pub folders: Vec<(&'static str, String)>,
     /// The first missed or spurious event of rows.
     pub events: Vec<EventPicture>,
 }

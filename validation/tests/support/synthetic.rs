@@ -328,5 +328,6 @@ pub fn evidence() -> Evidence {
         ],
         events: vec![event()],
         worse: vec![NASTY.to_owned()],
+        folders: Vec::new(),
     }
 }
