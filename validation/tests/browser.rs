@@ -37,6 +37,40 @@ frame.onload = () => {
   seen.largest = Number(page.querySelector("#rows-body > tr").children[column].textContent);
   page.querySelector("#rows-body > tr").click();
   seen.details = page.querySelectorAll("tr.details").length;
+  // Texts of a chart that lie on each other.
+  const overlapsIn = (svg) => {
+    const boxes = [...svg.querySelectorAll("text")].map((it) => [it.textContent, it.getBoundingClientRect()]);
+    return boxes.flatMap(([a, r], i) => boxes.slice(i + 1).filter(([, s]) => r.left < s.right - 1 && s.left < r.right - 1 && r.top < s.bottom - 3 && s.top < r.bottom - 3).map(([b]) => `${a} and ${b}`));
+  };
+  // A wrong event: its row opens, its close-up is changed, and the row is closed again.
+  set("filter-verdict", "fail");
+  const wrong = page.querySelector("#rows-body > tr.row:has(.off)");
+  wrong.click();
+  const event = page.querySelector(".event");
+  const scale = () => event.querySelector(".zoom:has(button)").textContent;
+  seen.scales = [scale()];
+  event.querySelectorAll(".zoom button")[1].click();
+  seen.scales.push(scale());
+  seen.event_marks = [...event.querySelectorAll(".chart svg")].map((it) => it.querySelectorAll(".wrong-event, .look, path").length);
+  seen.event_overlaps = [...event.querySelectorAll("svg")].flatMap(overlapsIn);
+  const table = page.querySelector("#results .scroll").getBoundingClientRect();
+  seen.event_wider_by = Math.max(0, event.getBoundingClientRect().right - table.right);
+  seen.command = page.querySelector(".command").textContent.trim();
+  seen.case = page.querySelectorAll(".repeat pre").length;
+  wrong.click();
+  page.getElementById("filter-clear").click();
+  // A table that stands in the page is sorted, and its links show rows.
+  const engines = page.querySelector("table.engines");
+  const first = () => engines.tBodies[0].rows[0].cells[0].textContent;
+  const by = (name) => [...engines.tHead.querySelectorAll("button")].find((it) => it.textContent === name).click();
+  by("engine");
+  seen.sorted = [first()];
+  by("engine");
+  seen.sorted.push(first());
+  const link = engines.querySelector("a[data-engine='exact']");
+  link.click();
+  seen.linked = rows();
+  page.getElementById("filter-clear").click();
   seen.charts = [...page.querySelectorAll("main .chart")].map((it) => it.querySelectorAll("svg path, svg rect").length);
   const curves = () => page.querySelectorAll("#work-time path").length;
   seen.curves = curves();
@@ -44,14 +78,7 @@ frame.onload = () => {
   seen.fewer_curves = curves();
   seen.painted = [...page.querySelectorAll("canvas")].map((it) => it.getContext("2d").getImageData(0, 0, it.width, it.height).data.some((v) => v > 0));
   seen.wider_by = page.documentElement.scrollWidth - page.documentElement.clientWidth;
-  // Texts of a chart that lie on each other.
-  seen.overlaps = [];
-  for (const svg of page.querySelectorAll("svg")) {
-    const boxes = [...svg.querySelectorAll("text")].map((it) => [it.textContent, it.getBoundingClientRect()]);
-    boxes.forEach(([a, r], i) => boxes.slice(i + 1).forEach(([b, s]) => {
-      if (r.left < s.right - 1 && s.left < r.right - 1 && r.top < s.bottom - 3 && s.top < r.bottom - 3) seen.overlaps.push(`${a} and ${b}`);
-    }));
-  }
+  seen.overlaps = [...page.querySelectorAll("svg")].flatMap(overlapsIn);
   // Blocks that lie on each other.
   const blocks = [...page.querySelectorAll("main section > *, header h1, header p, .tile, .controls > *")].map((it) => it.getBoundingClientRect()).filter((it) => it.width && it.height);
   seen.blocks = blocks.filter((r, i) => blocks.some((s, j) => j > i && r.left < s.right - 1 && s.left < r.right - 1 && r.top < s.bottom - 1 && s.top < r.bottom - 1 && !(r.left <= s.left && r.right >= s.right && r.top <= s.top && r.bottom >= s.bottom))).length;
@@ -115,5 +142,15 @@ fn filters_work_nothing_overlaps_and_nothing_is_loaded() {
         assert_eq!(marks("painted"), [true; 4]);
         assert_eq!((&seen["wider_by"], &seen["blocks"]), (&0.into(), &0.into()), "{width}: {seen}");
         assert!(marks("overlaps").is_empty(), "{width}: {seen}");
+        assert_eq!(marks("scales"), ["close-up 1 of 2widercloser", "close-up 2 of 2widercloser"]);
+        assert_eq!(marks("event_marks").len(), 2, "{seen}");
+        assert!(marks("event_marks").iter().all(|it| it.as_u64() > Some(3)), "{seen}");
+        assert!(marks("event_overlaps").is_empty(), "{width}: {seen}");
+        assert_eq!((&seen["event_wider_by"], &seen["case"]), (&0.into(), &1.into()), "{seen}");
+        let command = "percuss validate -c '^periodic-00$' -e '^diffsol-bdf$' --suite quick --rows";
+        assert_eq!(seen["command"], command);
+        let sorted = marks("sorted");
+        assert!(sorted[0].as_str() < sorted[1].as_str(), "{seen}");
+        assert_eq!(seen["linked"], exact);
     }
 }

@@ -5,6 +5,7 @@
 mod support;
 
 use percuss_validation::report::{Evidence, Report, exporters, pictures};
+use percuss_validation::score::Verdict;
 use serde_json::Value;
 use std::path::Path;
 use support::synthetic::{NASTY, evidence, report};
@@ -40,8 +41,15 @@ fn the_page_holds_every_row() {
         assert_eq!(column("setting")[i], row.setting());
         assert_eq!(column("why")[i], row.why);
     }
+    let wrong = data["events"][0]["row"].as_u64().map(|row| &report.results[row as usize]);
+    assert!(wrong.is_some_and(|row| row.events_missed == Some(9) && row.verdict == Verdict::Fail));
     let summary = report.summary;
     assert!(html.contains(&format!("{} rows are out of bounds", summary.fail + summary.error)));
+    let lines = html.matches("<td data-sort=").count();
+    assert_eq!(lines, report.ranking.len());
+    let place = |engine: &str| html.find(&format!("data-engine=\"{engine}\""));
+    assert!(report.ranking.windows(2).all(|pair| place(pair[0].engine) < place(pair[1].engine)));
+    assert!(html.contains("2\u{202f}000 of 2\u{202f}300 of 2\u{202f}400") && !html.contains("NaN"));
     assert!(html.len() < 2_000_000, "{}", html.len());
 }
 
@@ -67,7 +75,8 @@ fn sections_without_data_say_so() {
     let said = |html: &str| html.matches("class=\"empty\">Not run").count();
     assert_eq!(said(&written("report.html", &report(), &full)), 0);
     assert_eq!(said(&written("report.html", &report(), &empty)), 5);
-    let nothing = Report { results: Vec::new(), engines: Vec::new(), ..report() };
+    let nothing =
+        Report { results: Vec::new(), engines: Vec::new(), ranking: Vec::new(), ..report() };
     assert!(written("report.html", &nothing, &empty).contains("No engine was run"));
 }
 
@@ -78,6 +87,24 @@ fn every_format_takes_every_number() {
             written(exporter.file_name(), &report(), &evidence);
         }
     }
+}
+
+/// Wrong events are drawn one by one where at most three cases are chosen.
+#[test]
+fn wrong_events_of_few_cases_are_drawn() {
+    let drawn = |keep: &[&str]| {
+        let whole = report();
+        let kept = whole.results.iter().filter(|row| keep.contains(&row.case.as_str()));
+        let some = Report { results: kept.cloned().collect(), ..report() };
+        let all = pictures(&some, &evidence()).expect("drawn");
+        let names = all.into_iter().map(|(name, _)| name).filter(|it| it.starts_with("events/"));
+        names.collect::<Vec<_>>()
+    };
+    let name = "events/periodic-00__diffsol-bdf__1e-12";
+    let both = [format!("{name}.png"), format!("{name}.svg")];
+    let four = ["periodic-00", "periodic-01", "periodic-02", "periodic-03"];
+    assert_eq!(drawn(&four[..3]), both);
+    assert!(drawn(&four).is_empty());
 }
 
 #[test]

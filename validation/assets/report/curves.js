@@ -48,7 +48,9 @@ function workPrecision() {
 
 const distinct = (values) => [...new Set(values)];
 const withSetting = (it) => it.engine + (it.tolerance === null ? "" : ` ${it.tolerance.toExponential().replace("e+", "e")}`);
-const DASHES = ["none", "7 3", "2 3", "9 3 2 3"];
+// The finer a tolerance, the more of its line is drawn; without one it is whole.
+const DASHES = ["1.5 4", "10 4 2 4", "8 3"];
+const dashOf = (tolerance, all) => (tolerance === null ? "none" : DASHES[all.indexOf(tolerance) % DASHES.length]);
 
 function errorGrowth() {
   const choice = document.getElementById("growth-case");
@@ -57,16 +59,17 @@ function errorGrowth() {
   const draw = () => {
     const here = data.growth.filter((it) => it.case === choice.value);
     const series = [];
+    const tolerances = distinct(here.map((it) => it.tolerance).filter((it) => it !== null)).sort((a, b) => b - a);
     for (const name of distinct(here.map((it) => it.engine))) {
-      here.filter((it) => it.engine === name).sort((a, b) => b.tolerance - a.tolerance).forEach((it, k) => {
-        series.push({ name: withSetting(it), color: colour(name), dash: DASHES[k % DASHES.length], points: it.periods.map((t, i) => [t, it.error[i]]).filter((p) => p[1] > 0) });
+      here.filter((it) => it.engine === name).sort((a, b) => b.tolerance - a.tolerance).forEach((it) => {
+        series.push({ name: withSetting(it), color: colour(name), dash: dashOf(it.tolerance, tolerances), points: it.periods.map((t, i) => [t, it.error[i]]).filter((p) => p[1] > 0) });
       });
     }
     // The truth's own growth stands once for each unit of error.
     const units = distinct(here.map((it) => it.tolerance));
     for (const unit of units) {
       const it = here.find((other) => other.tolerance === unit);
-      series.push({ name: `growth of the truth x ${unit === null ? "eps" : unit.toExponential()}`, color: "var(--muted)", width: 1.2, points: it.periods.map((t, i) => [t, it.truth_growth[i]]).filter((p) => p[1] > 0) });
+      series.push({ name: `growth of the truth × ${unit === null ? "eps" : unit.toExponential().replace("e+", "e")}`, color: "var(--muted)", width: 1.2, points: it.periods.map((t, i) => [t, it.truth_growth[i]]).filter((p) => p[1] > 0) });
     }
     const known = here.find((it) => it.lambda_per_period !== null && it.periods.length > 1);
     if (known) {
@@ -79,8 +82,8 @@ function errorGrowth() {
     // The grey lines are one thing in the key.
     const key = series.filter((s, i) => s.color !== "var(--muted)" || i === series.findIndex((other) => other.color === s.color));
     document.getElementById("growth-legend").replaceChildren(...key.map((s) => {
-      const sample = drawn("svg", { width: 26, height: 10, "aria-hidden": "true" });
-      sample.append(drawn("path", { d: "M1,5H25", style: `stroke:${s.color}`, "stroke-width": 2.2, "stroke-dasharray": s.dash ?? "none" }));
+      const sample = drawn("svg", { width: 40, height: 10, "aria-hidden": "true" });
+      sample.append(drawn("path", { d: "M1,5H39", style: `stroke:${s.color}`, "stroke-width": 2.2, "stroke-dasharray": s.dash ?? "none" }));
       return element("span", {}, sample, s.color === "var(--muted)" ? "growth of the truth × unit of error" : s.name);
     }));
     document.getElementById("growth-note").textContent = known ? `λ = ${brief(known.lambda_per_period)} per forcing period.` : "";
@@ -118,7 +121,7 @@ function strips(rows, width) {
       svg.append(bar);
     });
   });
-  svg.append(drawn("text", { x: label + w / 2, y: height - 4, "text-anchor": "middle", class: "axis" }, `error in units of ${rows[0].unit}`));
+  svg.append(drawn("text", { x: label + w / 2, y: height - 4, "text-anchor": "middle", class: "axis" }, `error in units of ${rows[0].unit.replaceAll(" x ", " × ")}`));
   return svg;
 }
 

@@ -12,10 +12,10 @@ const SHOWN = [
   ["case", "case", "the problem that is run", value("case")],
   ["engine", "engine", "the integrator", value("engine")],
   ["setting", "setting", "relative and absolute tolerance, or h = fixed step", fineness, value("setting")],
-  ["verdict", "verdict", "pass: within all bounds; known: passes because a stated shortcoming shows as stated", (i) => ["error", "fail", "known", "undecidable", "not-scored", "pass", "not-run", "unavailable"].indexOf(verdictOf(i)), verdictOf],
-  ["found", "found", "switches found, of those that the truth has up to the scored horizon", (i) => (columns.events_matched?.[i] ?? -1) - (columns.events_expected?.[i] ?? 0), (i) => (columns.events_expected?.[i] == null ? "–" : `${columns.events_matched[i]}/${columns.events_expected[i]}`)],
-  ["events_spurious", "invented", "switches that the truth does not have", value("events_spurious")],
-  ["event_time_error.max", "time error", "largest error of a switch's time", value("event_time_error.max")],
+  ["verdict", "verdict", "the first that applies of unavailable, not-run, error, fail, known, undecidable, not-scored, pass", (i) => ["error", "fail", "known", "undecidable", "not-scored", "pass", "not-run", "unavailable"].indexOf(verdictOf(i)), verdictOf],
+  ["found", "found", "events found, of those that the truth has up to the scored horizon", (i) => (columns.events_matched?.[i] ?? -1) - (columns.events_expected?.[i] ?? 0), (i) => (columns.events_expected?.[i] == null ? "–" : `${columns.events_matched[i]}/${columns.events_expected[i]}`)],
+  ["events_spurious", "spurious", "events that the truth does not have", value("events_spurious")],
+  ["event_time_error.max", "time error", "largest error of an event's time", value("event_time_error.max")],
   ["state_error.max", "state error", "largest of |dp|, |dy|, |dq| on the fixed sample", value("state_error.max")],
   ["drift_error", "drift error", "|dv| at the end of the case", value("drift_error")],
   ["valid_periods", "valid", "forcing periods until the state's error passes 1e-3", value("valid_periods")],
@@ -64,15 +64,44 @@ function ordered(rows) {
 function details(i) {
   const bounds = data.bounds[i].map(([what, limit, measured, verdict, why]) =>
     element("tr", {}, element("td", {}, data.texts[what]), element("td", { class: "number" }, brief(measured)), element("td", { class: "number" }, brief(limit)), element("td", {}, element("span", { class: `pill ${data.texts[verdict]}` }, data.texts[verdict])), element("td", { class: "why" }, data.texts[why])));
-  const rest = Object.keys(columns).filter((key) => !["case", "engine", "setting", "verdict", "why", "expected", "status"].includes(key) && columns[key][i] !== null);
+  const rest = Object.keys(columns).filter((key) => !["case", "engine", "setting", "verdict", "why", "expected", "status", "tolerance", "step"].includes(key) && columns[key][i] !== null);
   const note = data.cases.find((it) => it.name === columns.case[i]);
-  const parts = [];
-  if (columns.why[i]) parts.push(element("p", {}, columns.why[i]));
+  const [above, parts] = [[], []];
+  if (columns.why[i]) above.push(element("p", {}, columns.why[i]));
+  const picture = eventPicture(i);
+  if (picture) above.push(picture);
+  else if (columns.events_missed?.[i] > 0 || columns.events_spurious?.[i] > 0) above.push(element("p", { class: "muted" }, "This page has no picture of this row: the command below with --out DIR draws it."));
   if (note?.why) parts.push(element("p", { class: "muted" }, `About the case (${note.regime}): ${note.why}`));
-  if (bounds.length) parts.push(element("table", { class: "inner" }, element("thead", {}, element("tr", {}, ...["bound on", "measured", "limit", "", "why that limit"].map((it) => element("th", {}, it)))), element("tbody", {}, ...bounds)));
-  parts.push(element("p", { class: "muted" }, rest.map((key) => `${key.replaceAll("_", " ").replace(".", ", ")} ${brief(columns[key][i])}`).join(" · ")));
-  return element("tr", { class: "details" }, element("td", { colspan: SHOWN.length }, ...parts));
+  if (bounds.length) parts.push(element("div", { class: "wide" }, element("table", { class: "inner" }, element("thead", {}, element("tr", {}, ...["bound on", "measured", "limit", "", "why that limit"].map((it) => element("th", {}, it)))), element("tbody", {}, ...bounds))));
+  const figure = (key) => [element("dt", {}, inWords(key)), element("dd", {}, brief(columns[key][i]))];
+  parts.push(element("dl", { class: "figures" }, ...rest.flatMap(figure)));
+  const sides = element("div", { class: "sides" }, element("div", {}, ...parts), repeat(i, note));
+  const made = element("tr", { class: "details" }, element("td", { colspan: SHOWN.length }, element("div", {}, ...[...above, sides])));
+  made.show = () => picture?.show();
+  return made;
 }
+
+// The command that makes a row again, and the case as it is written.
+function repeat(i, note) {
+  const engine = data.engines.find((it) => it.name === columns.engine[i]);
+  // A line ends between the parts of a command, never inside one.
+  const words = ["percuss validate", `-c ${note?.pattern}`, `-e ${engine?.pattern}`, ...data.repeat.split(" --").map((it, k) => (k ? `--${it}` : it))];
+  const parts = [element("h4", {}, "Repeat this row"), element("pre", { class: "command" }, ...words.flatMap((it) => [element("span", {}, it), " "]))];
+  if (note?.toml) parts.push(element("h4", {}, "The case"), element("pre", {}, note.toml));
+  return element("div", { class: "repeat" }, ...parts);
+}
+
+// A figure's name for people.
+const WORDS = {
+  events_expected: "events of the truth", events_matched: "found", events_missed: "missed", events_spurious: "spurious",
+  event_time_error: "error of event times", state_error: "error of the state", drift_error: "error of the drift",
+  drift_error_by_event_times: "drift error that event times explain", horizon_periods: "scored horizon (forcing periods)",
+  phase_word_ok: "phases in the right order", valid_periods: "valid (forcing periods)", valid_horizon: "valid horizon",
+  predicted_median: "predicted median", q01: "1 % quantile", q99: "99 % quantile", max: "largest", with_impact: "with an impact",
+  order: "order of convergence", rhs_evaluations: "right-hand sides", jacobian_evaluations: "Jacobians", linear_solves: "linear solves",
+  wall_ns: "nanoseconds", restart: "restart test", distance: "distance of attractors",
+};
+const inWords = (key) => key.split(".").map((part) => WORDS[part] ?? part.replaceAll("_", " ")).join(", ");
 
 function rowOf(i) {
   const cells = SHOWN.map(([key, , , figure, text]) => {
@@ -87,7 +116,10 @@ function rowOf(i) {
     const open = row.getAttribute("aria-expanded") === "true";
     row.setAttribute("aria-expanded", String(!open));
     if (open) row.nextSibling.remove();
-    else row.after(details(i));
+    else {
+      row.after(details(i));
+      row.nextSibling.show();
+    }
   };
   row.addEventListener("click", toggle);
   row.addEventListener("keydown", (event) => {
@@ -127,6 +159,13 @@ function readAddress() {
   }
 }
 
+// Shows the rows that a link stands for.
+function filterBy(choices) {
+  for (const name of FILTERS) state[name] = field(name).value = choices[name] ?? "";
+  Object.assign(state, { sort: "", down: false, most: PAGE });
+  showRows();
+}
+
 function startRows() {
   fillChoices();
   // A link to a section is no filter.
@@ -139,9 +178,7 @@ function startRows() {
     });
   }
   document.getElementById("filter-clear").addEventListener("click", () => {
-    FILTERS.forEach((name) => (state[name] = field(name).value = ""));
-    Object.assign(state, { sort: "", down: false, most: PAGE });
-    showRows();
+    filterBy({});
   });
   document.getElementById("rows-more").addEventListener("click", () => {
     state.most = Infinity;
@@ -150,4 +187,11 @@ function startRows() {
   showRows();
 }
 
+// What a row holds stays as wide as what is seen of the table.
+const measureTable = () => {
+  document.getElementById("results").style.setProperty("--seen", `${document.querySelector("#results .scroll").clientWidth}px`);
+  redrawAll();
+};
+window.addEventListener("resize", measureTable);
+measureTable();
 if (count) startRows();

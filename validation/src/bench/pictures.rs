@@ -4,7 +4,7 @@ use super::report::{Bench, Damped, Row};
 use crate::bench::history::{History, Record};
 use crate::engine;
 use crate::picture::{
-    Axis, Curve, Curves, DrawError, INK, Marker, Scale, basin_colours, looks, png, svg,
+    Axis, Curve, Curves, DrawError, INK, Marker, Scale, Stroke, basin_colours, looks, png, svg,
 };
 use crate::report::Picture;
 
@@ -64,7 +64,7 @@ fn length(bench: &Bench) -> Curves {
             .map(|it| (it.periods as f64, last.ns_per_period * it.periods as f64 / 1e3))
     });
     let line = Curve {
-        dashed: true,
+        stroke: Stroke::Dashed,
         marker: None,
         width: 1.5,
         ..curve("in proportion", proportional.into_iter().flatten().collect())
@@ -142,7 +142,7 @@ pub fn history(history: &History) -> Curves {
         colour: basin_colours(i).1,
         marker: Some(MARKERS[i % MARKERS.len()]),
         width: 2.0,
-        dashed: false,
+        stroke: Stroke::Solid,
         points: points(bench),
     };
     let last = versions.last().map(|it| it.commit.as_deref().unwrap_or(&it.percuss).chars());
@@ -169,7 +169,7 @@ fn curve(engine: &str, points: Vec<(f64, f64)>) -> Curve {
         colour: look.map_or(INK, |look| look.light),
         marker: Some(look.map_or(Marker::Circle, |look| look.marker)),
         width: 2.5,
-        dashed: false,
+        stroke: Stroke::Solid,
         points,
     }
 }

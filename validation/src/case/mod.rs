@@ -35,6 +35,8 @@ pub struct Case {
     pub name: String,
     /// The file it stands in; beginning with `cases/` where that is inside the binary.
     pub file: String,
+    /// The text of that file.
+    pub text: String,
     /// The regime it stands for.
     pub regime: String,
     /// Why it is here.

@@ -181,6 +181,7 @@ pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
     Ok(Case {
         name: name.into_inner(),
         file: source.file.to_owned(),
+        text: source.text.to_owned(),
         regime: wire.case.regime,
         why: wire.case.why,
         margin,

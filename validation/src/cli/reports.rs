@@ -13,7 +13,12 @@ pub(super) fn write(report: &Report, evidence: &Evidence, folder: &Path) -> Resu
         write_whole(&path, |out| Ok(exporter.write(report, evidence, out)?)).context("--out")?;
     }
     for (name, bytes) in pictures(report, evidence)? {
-        write_whole(&folder.join(name), |out| Ok(out.write_all(&bytes)?)).context("--out")?;
+        let path = folder.join(name);
+        if let Some(parent) = path.parent() {
+            std::fs::create_dir_all(parent)
+                .with_context(|| format!("--out: {} cannot be made", parent.display()))?;
+        }
+        write_whole(&path, |out| Ok(out.write_all(&bytes)?)).context("--out")?;
     }
     Ok(())
 }

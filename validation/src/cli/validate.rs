@@ -6,7 +6,8 @@ use crate::case::{self, Case};
 use crate::engine::{self, Engine, Wrong, hush_contained_panics};
 use crate::power::{self, Finding, Standard};
 use crate::report::{
-    Baseline, Compared, Evidence, Place, RankingFormat, Report, Summary, ranking_text, screen,
+    Baseline, Compared, Evidence, Place, RankingFormat, Report, Summary, event_pictures,
+    ranking_text, screen,
 };
 use crate::suite::{self, Prepared, Suite};
 use crate::truth::Library;
@@ -106,6 +107,10 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let findings: Vec<_> = pool.install(|| wrong.iter().map(examine).collect());
     bar.finish_and_clear();
     let mut evidence = Evidence::gather(&cases, &rows, &findings, arguments.cases.is_none());
+    evidence.folders = folders(arguments);
+    if arguments.out.is_some() {
+        evidence.events = pool.install(|| event_pictures(&cases, &rows, arguments.suite));
+    }
     let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
     let report = Report::new(arguments.suite, &declarations, &rows);
     evidence.worse = match &baseline {
@@ -114,6 +119,15 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     };
     write(arguments, &report, &evidence, cases.len())?;
     Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code(arguments, &report, &evidence) })
+}
+
+/// The folders that data were read from, with their flags.
+fn folders(arguments: &Arguments) -> Vec<(&'static str, String)> {
+    let given = [("--cases", &arguments.cases), ("--reference", &arguments.reference)];
+    let shown = |(flag, folder): (&'static str, &Option<PathBuf>)| {
+        Some((flag, folder.as_ref()?.display().to_string()))
+    };
+    given.into_iter().filter_map(shown).collect()
 }
 
 /// Engines that are wrong on purpose, for the power of the gates; none where something else is asked.

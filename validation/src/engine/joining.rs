@@ -38,15 +38,17 @@ pub(super) fn join<E: Equations>(
     mut stretch: impl FnMut(&Moment, &mut Sampler) -> Result<Ended, Failure>,
 ) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
+    task.watched.iter().for_each(|watched| meter.watch(watched));
     let mut sampler = Sampler::new(task.sample_times());
     let mut now =
         Moment { t: 0.0, began: 0.0, phase: task.phase, state: equations.of_bounded(&task.state) };
     sampler.take(0.0, |_| Ok::<_, Failure>(now.state))?;
-    while task.span - now.t > SHORTEST * task.span {
+    while task.span - now.t > SHORTEST * task.span && !meter.has_seen_enough(now.t) {
         now = match stretch(&now, &mut sampler)? {
             Ended::Inside { t, state } => Moment { t, state, ..now },
             Ended::Switch { t, guard, state } => {
                 meter.events(outcome.events.len())?;
+                meter.phase_ended(t);
                 let (phase, state) = equations.switch(now.phase, guard, &state);
                 let bounded = equations.bounded(&state);
                 outcome.events.push(Event { phase, elapsed: t, state: bounded });
@@ -58,5 +60,6 @@ pub(super) fn join<E: Equations>(
     let samples = sampler.finish(now.state);
     outcome.samples = samples.iter().map(|state| equations.bounded(state)).collect();
     outcome.work = meter.work();
+    meter.hand_over(&mut outcome);
     Ok(outcome)
 }

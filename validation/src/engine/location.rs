@@ -65,12 +65,13 @@ impl<'a, E: Equations> Search<'a, E> {
         end: f64,
         state_at: &mut StateAt<'_>,
     ) -> Result<Option<Crossing>, Failure> {
+        self.meter.stepped(end);
         let width = (end - begin) / f64::from(INTERIOR);
         let mut left = self.look_at(begin, state_at)?;
         for i in 1..=INTERIOR {
             let t = if i == INTERIOR { end } else { begin + width * f64::from(i) };
             let right = self.look_at(t, state_at)?;
-            if let Some(found) = self.between(&left, &right, state_at)? {
+            if let Some(found) = self.within(&left, &right, state_at)? {
                 return Ok(Some(found));
             }
             left = right;
@@ -78,8 +79,19 @@ impl<'a, E: Equations> Search<'a, E> {
         Ok(None)
     }
 
-    /// The first crossing between two looks.
+    /// The first crossing in a step of which only the ends are looked at.
     pub(super) fn between(
+        &self,
+        left: &Look,
+        right: &Look,
+        state_at: &mut StateAt<'_>,
+    ) -> Result<Option<Crossing>, Failure> {
+        self.meter.stepped(right.t);
+        self.within(left, right, state_at)
+    }
+
+    /// The first crossing between two looks.
+    fn within(
         &self,
         left: &Look,
         right: &Look,
@@ -97,8 +109,8 @@ impl<'a, E: Equations> Search<'a, E> {
 
     /// The guards of a known state.
     pub(super) fn look(&self, t: f64, state: &[f64; 4]) -> Look {
-        self.meter.call();
         let mut guards = self.equations.guards(self.phase, state);
+        self.meter.guards(t, self.phase, &guards);
         if t == self.began {
             // A phase begins on a surface, but for the rounding of its displacements. Separation
             // begins on a double zero, and a gap of some roundings that seems to close is none.

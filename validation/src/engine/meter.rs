@@ -3,8 +3,11 @@
 //! A hung thread cannot be killed, so the limits are enforced where the library calls back, in the
 //! right-hand side and in the guards: they unwind to [`contain`].
 
-use super::Work;
-use std::cell::Cell;
+use super::field::GUARDS;
+use super::trace::{Look, Recorder, Watched};
+use super::{Outcome, Work};
+use percuss::Phase;
+use std::cell::{Cell, OnceCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::{Duration, Instant};
 
@@ -46,6 +49,7 @@ pub(super) struct Meter {
     jacobians: Cell<u64>,
     solves: Cell<u64>,
     steps: Cell<u64>,
+    recorder: OnceCell<Recorder>,
 }
 
 /// How often the clock is looked at, in calls.
@@ -62,6 +66,7 @@ impl Meter {
             jacobians: zero(),
             solves: zero(),
             steps: zero(),
+            recorder: OnceCell::new(),
         }
     }
 
@@ -119,6 +124,55 @@ impl Meter {
     /// Counts steps that were accepted.
     pub(super) fn steps(&self, count: u64) {
         self.steps.set(self.steps.get() + count);
+    }
+
+    /// Records from now on what a task wants to be seen.
+    pub(super) fn watch(&self, watched: &Watched) {
+        self.recorder.get_or_init(|| Recorder::new(watched));
+    }
+
+    /// Counts an evaluation of a phase's guards, and records it where that is wanted.
+    pub(super) fn guards(&self, t: f64, phase: Phase, guards: &[f64; GUARDS]) {
+        self.call();
+        if let Some(recorder) = self.recorder.get() {
+            for (guard, value) in guards.iter().copied().enumerate() {
+                recorder.look(Look { t, phase, guard, value });
+            }
+        }
+    }
+
+    /// Counts an evaluation of one guard, and records it where that is wanted.
+    pub(super) fn guard(&self, look: Look) {
+        self.call();
+        if let Some(recorder) = self.recorder.get() {
+            recorder.look(look);
+        }
+    }
+
+    /// Records the end of an accepted step where that is wanted; [`Self::steps`] counts it.
+    pub(super) fn stepped(&self, end: f64) {
+        if let Some(recorder) = self.recorder.get() {
+            recorder.step(end);
+        }
+    }
+
+    /// Records that a phase has ended at `t`, inside the last step.
+    pub(super) fn phase_ended(&self, t: f64) {
+        if let Some(recorder) = self.recorder.get() {
+            recorder.back_to(t);
+        }
+    }
+
+    /// Whether a run that is only watched has come far enough.
+    pub(super) fn has_seen_enough(&self, t: f64) -> bool {
+        self.recorder.get().is_some_and(|recorder| recorder.is_over(t))
+    }
+
+    /// Hands over what was recorded.
+    pub(super) fn hand_over(&self, outcome: &mut Outcome) {
+        if let Some(recorder) = self.recorder.get() {
+            recorder.hand_over(outcome);
+        }
     }
 
     /// What was counted.

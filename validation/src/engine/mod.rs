@@ -23,7 +23,10 @@ mod original;
 mod pins;
 mod registry;
 mod sampler;
+mod trace;
 mod walk;
+#[cfg(test)]
+mod watching;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
@@ -33,6 +36,7 @@ pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use order::claimed_order;
 pub use registry::{all, exact, select};
+pub use trace::{Look, Trace, Watched};
 pub(crate) use wrong::Closed;
 pub use wrong::{CONTROL, FAULTY_CONTROL, SOUND, Wrong, faulty, wrong};
 
@@ -102,6 +106,8 @@ pub struct Task {
     pub grid: Grid,
     /// Events in the engine's life before this run: a fault may strike every hundredth.
     pub events_before: u64,
+    /// What is recorded beside the result; such a run ends when that is done.
+    pub watched: Option<Watched>,
 }
 
 /// A switch as an engine found it: the phase that begins, and the state at that instant.
@@ -139,6 +145,8 @@ pub struct Outcome {
     pub end: [f64; 4],
     /// What it cost.
     pub work: Work,
+    /// What was recorded of it, where the task asks for that and the engine can.
+    pub trace: Option<Trace>,
 }
 
 /// Something that can run a task.
@@ -192,12 +200,16 @@ impl Task {
             span: horizon.since(&entry.instant, parameters.omega).value(),
             grid,
             events_before: 0,
+            watched: None,
         }
     }
 
-    /// The grid's instants as times since the start.
+    /// The grid's instants, or those that are watched, as times since the start.
     #[must_use]
     pub fn sample_times(&self) -> Vec<f64> {
+        if let Some(watched) = &self.watched {
+            return watched.instants.iter().map(|time| time.min(self.span)).collect();
+        }
         let start = self.problem.entry.instant;
         let instant = |k: usize| start.after_periods(k as u64, u64::from(self.grid.per_period));
         let since = |k: usize| instant(k).since(&start, self.parameters.omega).value();

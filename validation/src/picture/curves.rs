@@ -1,7 +1,8 @@
 //! Curves with markers in one panel, their key beside it.
 
 use super::frame::{Axis, Panel, Ruler};
-use super::pen::{Pen, Side};
+use super::pen::{At, Pen, Side};
+use super::sheet::Stroke;
 use super::{DrawError, Drawing, Marker, palette};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -20,8 +21,8 @@ pub struct Curve {
     pub marker: Option<Marker>,
     /// The line's width in pixels.
     pub width: f64,
-    /// Whether the line is broken.
-    pub dashed: bool,
+    /// How the line is broken.
+    pub stroke: Stroke,
     /// Its points; those that are not finite are left out.
     pub points: Vec<(f64, f64)>,
 }
@@ -86,13 +87,7 @@ impl Curve {
     fn draw<B: DrawingBackend>(&self, pen: &Pen<'_, B>, panel: &Panel) -> Result<(), DrawError> {
         let places = self.points.iter().filter(|it| finite(it)).filter_map(|it| panel.at(*it));
         let places: Vec<_> = places.collect();
-        if self.dashed {
-            for (i, pair) in places.windows(2).enumerate() {
-                self.dashes(pen, pair[0], pair[1], i % 2 == 0)?;
-            }
-        } else {
-            pen.trace(&places, self.width, self.colour)?;
-        }
+        self.line(pen, &places)?;
         match self.marker {
             Some(marker) => {
                 places.iter().try_for_each(|at| pen.marker(marker, *at, 6.0, self.colour))
@@ -101,24 +96,9 @@ impl Curve {
         }
     }
 
-    /// A stretch broken into dashes, or every other one of short stretches.
-    fn dashes<B: DrawingBackend>(
-        &self,
-        pen: &Pen<'_, B>,
-        from: (f64, f64),
-        to: (f64, f64),
-        odd: bool,
-    ) -> Result<(), DrawError> {
-        const DASH: f64 = 8.0;
-        let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-        let count = (dx.hypot(dy) / (2.0 * DASH)).floor().min(1000.0);
-        if count < 1.0 {
-            return if odd { pen.line(from, to, self.width, self.colour) } else { Ok(()) };
-        }
-        let along = |share: f64| (from.0 + share * dx, from.1 + share * dy);
-        (0..count as u32).map(f64::from).try_for_each(|k| {
-            pen.line(along(k / count), along((k + 0.5) / count), self.width, self.colour)
-        })
+    fn line<B: DrawingBackend>(&self, pen: &Pen<'_, B>, places: &[At]) -> Result<(), DrawError> {
+        let stretches = self.stroke.cut(places);
+        stretches.iter().try_for_each(|stretch| pen.trace(stretch, self.width, self.colour))
     }
 
     fn key<B: DrawingBackend>(
@@ -127,13 +107,9 @@ impl Curve {
         (x, y): (f64, f64),
         size: f64,
     ) -> Result<(), DrawError> {
-        if self.dashed {
-            self.dashes(pen, (x, y), (x + 34.0, y), true)?;
-        } else {
-            pen.line((x, y), (x + 34.0, y), self.width, self.colour)?;
-        }
+        self.line(pen, &[(x, y), (x + 38.0, y)])?;
         if let Some(marker) = self.marker {
-            pen.marker(marker, (x + 17.0, y), 6.0, self.colour)?;
+            pen.marker(marker, (x + 19.0, y), 6.0, self.colour)?;
         }
         pen.text(&self.name, (x + 44.0, y), size, Side::Left, palette::INK)
     }

@@ -2,6 +2,7 @@
 //!
 //! Any part may be empty; the report then says that it was not run.
 
+use super::EventPicture;
 use crate::case::Case;
 use serde::Serialize;
 
@@ -22,6 +23,10 @@ pub struct Evidence {
     pub faults: Vec<Fault>,
     /// What got worse than in the baseline, a line each.
     pub worse: Vec<String>,
+    /// Flags with their folders that a command needs to repeat a row on the same data.
+    pub folders: Vec<(&'static str, String)>,
+    /// The first missed or spurious event of rows.
+    pub events: Vec<EventPicture>,
 }
 
 /// What a case says of itself.
@@ -31,6 +36,8 @@ pub struct CaseNote {
     pub name: String,
     /// The file it stands in, as seen from the repository's root for cases inside the binary.
     pub file: String,
+    /// The text of that file.
+    pub toml: String,
     /// The regime it stands for.
     pub regime: String,
     /// Why it is here.
@@ -128,6 +135,7 @@ impl CaseNote {
         Self {
             name: case.name.clone(),
             file: format!("{folder}{}", case.file),
+            toml: case.text.clone(),
             regime: case.regime.clone(),
             why: case.why.clone(),
             margin: case.margin,

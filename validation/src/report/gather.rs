@@ -89,13 +89,33 @@ fn restarts(row: &Scored, measures: &Measures) -> Option<RestartHistogram> {
     })
 }
 
+/// What a distance of two sections is called where people read it.
+fn in_words(name: &str) -> String {
+    let (kind, of) = match name {
+        "drift" => return "mean drift".to_owned(),
+        "lyapunov" => return "Lyapunov exponent".to_owned(),
+        "phase_words" => return "frequencies of phase words".to_owned(),
+        _ => name.split_once('_').unwrap_or((name, "")),
+    };
+    let kind = match kind {
+        "ks" => "Kolmogorov-Smirnov distance",
+        "wasserstein" => "Wasserstein distance",
+        other => other,
+    };
+    match of.split_once('_') {
+        Some((of, "step")) => format!("{kind}, difference of successive {of}"),
+        Some((of, "sum")) => format!("{kind}, sum of successive {of}"),
+        _ => format!("{kind}, {of}"),
+    }
+}
+
 /// An integrator's section beside the exact solver's.
 fn sections(prepared: &Prepared, row: &Scored, measures: &Measures) -> Option<SectionPair> {
     let AttractorTest { reference, calibrated } = prepared.attractor()?;
     let Comparison { points, distances } = measures.probed.attractor.as_ref()?.as_ref().ok()?;
     row.accuracy.tolerance()?;
     let shown = calibrated.plan.periods as usize;
-    let named = distances.iter().map(|(name, value, limit)| ((*name).to_owned(), *value, *limit));
+    let named = distances.iter().map(|(name, value, limit)| (in_words(name), *value, *limit));
     Some(SectionPair {
         omega: prepared.case.parameters.omega,
         xi: prepared.case.parameters.xi,
@@ -104,4 +124,19 @@ fn sections(prepared: &Prepared, row: &Scored, measures: &Measures) -> Option<Se
         direct_engine: row.engine.to_owned(),
         distances: named.collect(),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::in_words;
+
+    #[test]
+    fn distances_have_names() {
+        assert_eq!(in_words("ks_p"), "Kolmogorov-Smirnov distance, p");
+        assert_eq!(
+            in_words("wasserstein_q_step"),
+            "Wasserstein distance, difference of successive q"
+        );
+        assert_eq!(in_words("phase_words"), "frequencies of phase words");
+    }
 }

@@ -5,9 +5,11 @@
 mod annotations;
 mod baseline;
 mod csv;
+mod event;
 mod evidence;
 mod gather;
 mod grazing;
+mod growth;
 mod html;
 mod json;
 mod junit;
@@ -23,6 +25,7 @@ mod table;
 
 pub use annotations::{annotations, under_the_service};
 pub use baseline::{Baseline, Compared, Place};
+pub use event::{Course, EventPicture, Kind, Mark, View, event_pictures};
 pub use evidence::{CaseNote, ErrorGrowth, Evidence, Fault, Graze, RestartHistogram, SectionPair};
 pub use orders::{Order, orders};
 pub use pictures::{Picture, pictures};

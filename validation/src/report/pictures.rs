@@ -3,11 +3,11 @@
 use super::grazing::{Grazing, Seen};
 use super::setting::{setting, who};
 use super::summary::{self, EngineSummary, SettingSummary};
-use super::{ErrorGrowth, Evidence, Report, RestartHistogram, SectionPair};
+use super::{Evidence, Report, RestartHistogram, SectionPair};
 use crate::number::brief;
 use crate::picture::{
-    self, Axis, Curve, Curves, DrawError, Drawing, Layer, Look, Marker, Plot, Scale, Sheet, Strip,
-    Strips, Tile, Tiles, Tint, looks, png, svg,
+    self, Axis, Curve, Curves, DrawError, Drawing, Encounter, Layer, Look, Marker, Plot, Scale,
+    Sheet, Strip, Strips, Stroke, Tile, Tiles, Tint, looks, png, svg,
 };
 use percuss::Phase;
 use plotters::style::RGBColor;
@@ -15,8 +15,9 @@ use rayon::prelude::*;
 
 /// Two clouds of more points together are no SVG.
 const MOST_SVG_POINTS: usize = 6000;
-const GREY: RGBColor = RGBColor(150, 150, 150);
-const INK: RGBColor = RGBColor(20, 20, 20);
+/// Of at most so many cases wrong events are drawn one by one.
+const FEW_CASES: usize = 3;
+pub(super) const GREY: RGBColor = RGBColor(150, 150, 150);
 
 /// A picture's file name and bytes.
 pub type Picture = (String, Vec<u8>);
@@ -33,7 +34,7 @@ pub fn pictures(report: &Report, evidence: &Evidence) -> Result<Vec<Picture>, Dr
         (format!("work-precision-{name}"), curves)
     };
     let mut curves = vec![
-        work("event-time", "error of switches' times", |it| it.time_error),
+        work("event-time", "error of event times", |it| it.time_error),
         work("state", "error of the state", |it| it.state_error),
     ];
     curves.extend(
@@ -49,13 +50,26 @@ pub fn pictures(report: &Report, evidence: &Evidence) -> Result<Vec<Picture>, Dr
         .flat_map(|(case, runs)| palette.restarts(case, &runs))
         .collect();
     let clouds: Vec<_> = evidence.sections.iter().enumerate().map(attractors).collect();
+    let events: Vec<_> = events(report, evidence, &palette).collect();
     let drawn = [
+        drawn(&events, |_| true)?,
         drawn(&curves, |_| true)?,
         drawn(&tiles, |_| true)?,
         drawn(&strips, |_| true)?,
         drawn(&clouds, |it| it.points() <= MOST_SVG_POINTS)?,
     ];
     Ok(drawn.into_iter().flatten().collect())
+}
+
+/// A picture of each wrong event, where few cases are chosen: of all there would be too many.
+fn events<'a>(
+    report: &Report,
+    evidence: &'a Evidence,
+    palette: &'a Palette,
+) -> impl Iterator<Item = (String, Encounter)> + 'a {
+    let cases = report.results.chunk_by(|a, b| a.case == b.case).count();
+    let shown = evidence.events.iter().filter(move |_| cases <= FEW_CASES);
+    shown.map(|it| (it.file_name(), it.encounter(palette.colour(&it.engine))))
 }
 
 fn drawn<D: Drawing + Sync>(
@@ -85,7 +99,7 @@ fn by_case<T>(all: &[T], case: fn(&T) -> &String) -> impl Iterator<Item = (&str,
 }
 
 /// Engines' looks by name.
-struct Palette {
+pub(super) struct Palette {
     looks: Vec<(String, Look)>,
 }
 
@@ -104,7 +118,7 @@ impl Palette {
         Self { looks: looks.map(|((name, _), look)| ((*name).to_owned(), look)).collect() }
     }
 
-    fn colour(&self, engine: &str) -> RGBColor {
+    pub(super) fn colour(&self, engine: &str) -> RGBColor {
         self.look(engine).map_or(GREY, |look| look.light)
     }
 
@@ -129,7 +143,7 @@ impl Palette {
             colour: self.colour(engine.name),
             marker: Some(self.look(engine.name).map_or(Marker::Circle, |look| look.marker)),
             width: 2.5,
-            dashed: false,
+            stroke: Stroke::Solid,
             // On a logarithmic axis there is no work of nothing.
             points: summary
                 .settings
@@ -144,40 +158,6 @@ impl Palette {
             x: logarithmic("right-hand sides (exact: closed-form evaluations)"),
             y: logarithmic(label),
             curves: report.engines.iter().zip(summaries).map(curve).collect(),
-        }
-    }
-
-    fn growth(&self, case: &str, runs: &[&ErrorGrowth]) -> Curves {
-        let points = |run: &ErrorGrowth, errors: &[f64]| {
-            let points = run.periods.iter().copied().zip(errors.iter().copied());
-            points.filter(|point| point.1 > 0.0).collect::<Vec<_>>()
-        };
-        let truth = |run: &&ErrorGrowth| Curve {
-            name: String::new(),
-            colour: GREY,
-            marker: None,
-            width: 1.5,
-            dashed: false,
-            points: points(run, &run.truth_growth),
-        };
-        let error = |run: &&ErrorGrowth| Curve {
-            name: who(&run.engine, &setting(run.tolerance, None)),
-            colour: self.colour(&run.engine),
-            width: 2.0,
-            points: points(run, &run.error),
-            ..truth(run)
-        };
-        let mut curves: Vec<Curve> = runs.iter().map(truth).collect();
-        if let Some(first) = curves.first_mut() {
-            first.name = "growth of the truth".to_owned();
-        }
-        curves.extend(runs.iter().map(error));
-        curves.extend(exponential(runs));
-        Curves {
-            title: format!("Error growth in chaos: {case}"),
-            x: Axis { label: "forcing periods".to_owned(), scale: Scale::Linear },
-            y: Axis { label: "error of the state".to_owned(), scale: Scale::Logarithmic },
-            curves,
         }
     }
 
@@ -209,23 +189,6 @@ impl Palette {
     }
 }
 
-/// The line exp(lambda t) from the smallest error there is, as far as it says anything.
-fn exponential(runs: &[&ErrorGrowth]) -> Option<Curve> {
-    let lambda = runs.iter().find_map(|run| run.lambda_per_period)?;
-    let errors = runs.iter().flat_map(|run| &run.error).copied();
-    let floor = errors.filter(|error| *error > 0.0 && error.is_finite()).min_by(f64::total_cmp)?;
-    let end = runs.iter().flat_map(|run| &run.periods).copied().fold(0.0, f64::max);
-    let last = end.min((1.0 / floor).ln().max(0.0) / lambda.max(1e-9));
-    Some(Curve {
-        name: format!("exp(\u{3bb}t), \u{3bb} = {lambda:.3}"),
-        colour: INK,
-        marker: None,
-        width: 2.0,
-        dashed: true,
-        points: vec![(0.0, floor), (last, floor * (lambda * last).exp())],
-    })
-}
-
 fn recall(report: &Report, summaries: &[EngineSummary]) -> Tiles {
     let tile = |it: &SettingSummary| {
         let tint = match it.recall() {
@@ -243,8 +206,8 @@ fn recall(report: &Report, summaries: &[EngineSummary]) -> Tiles {
         (engine.name.to_owned(), summary.settings.iter().map(tile).collect())
     };
     Tiles {
-        title: "Recall: switches found of those that there are".to_owned(),
-        note: "settings from coarse to fine; blue: some invented, or runs without a result"
+        title: "Recall: events found of those that there are".to_owned(),
+        note: "settings from coarse to fine; blue: some spurious, or runs without a result"
             .to_owned(),
         columns: Vec::new(),
         rows: report.engines.iter().zip(summaries).map(row).collect(),
@@ -274,7 +237,7 @@ fn touches(grazing: Grazing) -> Tiles {
     Tiles {
         title: "Grazing: how far the mass stays short of the slider (\u{2212}) or reaches beyond it (+)"
             .to_owned(),
-        note: "settings from coarse to fine; \u{25cf} right, \u{25cb} missed, \u{d7} invented, \u{2013} no result"
+        note: "settings from coarse to fine; \u{25cf} right, \u{25cb} missed, \u{d7} spurious, \u{25d0} undecidable, \u{2013} no result"
             .to_owned(),
         columns: grazing.margins.into_iter().map(|(_, label)| label).collect(),
         rows: grazing.lines.into_iter().map(row).collect(),

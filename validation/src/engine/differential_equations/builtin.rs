@@ -13,6 +13,7 @@ use crate::engine::field::{Equations, GUARDS, Oscillator};
 use crate::engine::joining::{Ended, Moment, join};
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
+use crate::engine::trace::Look;
 use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins};
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
@@ -64,9 +65,11 @@ impl Event<f64, [f64; 4]> for Guard<'_> {
         EventConfig::new(CrossingDirection::Positive, Some(1))
     }
 
-    fn event(&self, _: f64, u: &[f64; 4]) -> f64 {
-        self.field.meter.call();
-        self.field.equations.guards(self.field.phase, u)[self.guard]
+    fn event(&self, t: f64, u: &[f64; 4]) -> f64 {
+        let Field { equations, phase, meter } = self.field;
+        let value = equations.guards(phase, u)[self.guard];
+        meter.guard(Look { t, phase, guard: self.guard, value });
+        value
     }
 }
 
@@ -119,6 +122,7 @@ impl Solout<f64, [f64; 4]> for Watch<'_> {
             return ControlFlag::Continue;
         }
         self.meter.steps(1);
+        self.meter.stepped(end);
         let until = first.map_or(end, |(t, ..)| t);
         let state_at = |t: f64| interpolator.interpolate(t).map_err(|error| reason(&error));
         let taken = self.sampler.take(until, state_at);

@@ -81,9 +81,10 @@ impl<M: Method> Engine for Diffsol<M> {
             )
             .init(|_, _, u| u.copy_from_slice(&task.state), task.state.len())
             .root(
-                |u, _, _, guards| {
-                    guards.copy_from_slice(&oscillator.guards(phase.get(), u));
-                    meter.call();
+                |u, _, t, guards| {
+                    let values = oscillator.guards(phase.get(), u);
+                    meter.guards(t, phase.get(), &values);
+                    guards.copy_from_slice(&values);
                 },
                 GUARDS,
             )

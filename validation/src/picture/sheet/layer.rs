@@ -29,6 +29,15 @@ impl Stroke {
             Self::Dotted => &[2.0, 4.0],
         }
     }
+
+    /// What is drawn of a line, in pixels.
+    pub(in super::super) fn cut(self, line: &[At]) -> Vec<Vec<At>> {
+        match self.pattern() {
+            _ if line.len() < 2 => Vec::new(),
+            [] => vec![line.to_vec()],
+            pattern => broken(line, pattern),
+        }
+    }
 }
 
 /// Cells of equal size over a window, coloured by label.
@@ -136,12 +145,9 @@ impl Layer {
     ) -> Result<(), DrawError> {
         match self {
             Self::Line { points, colour, width, stroke } => {
-                stretches(points, panel).iter().try_for_each(|stretch| match stroke.pattern() {
-                    [] => pen.trace(stretch, *width, *colour),
-                    pattern => broken(stretch, pattern)
-                        .iter()
-                        .try_for_each(|dash| pen.trace(dash, *width, *colour)),
-                })
+                let stretches = stretches(points, panel);
+                let dashes = stretches.iter().flat_map(|stretch| stroke.cut(stretch));
+                dashes.into_iter().try_for_each(|dash| pen.trace(&dash, *width, *colour))
             }
             Self::Dots { points, colour, size } => {
                 points.iter().filter_map(|[x, y]| panel.at((*x, *y))).try_for_each(|at| {
@@ -177,16 +183,15 @@ impl Layer {
 impl KeyEntry {
     fn draw<B: DrawingBackend>(&self, pen: &Pen<'_, B>, at: At) -> Result<(), DrawError> {
         let line = [at, (at.0 + 40.0, at.1)];
-        match self.stroke.map(Stroke::pattern) {
+        match self.stroke {
             None => {
                 let middle = at.0 + 28.0;
                 let corners = ((middle - 4.0, at.1 - 4.0), (middle + 4.0, at.1 + 4.0));
                 pen.fill(corners.0, corners.1, self.colour)?;
             }
-            Some([]) => pen.trace(&line, 2.0, self.colour)?,
-            Some(pattern) => broken(&line, pattern)
-                .iter()
-                .try_for_each(|dash| pen.trace(dash, 2.0, self.colour))?,
+            Some(stroke) => {
+                stroke.cut(&line).iter().try_for_each(|dash| pen.trace(dash, 2.0, self.colour))?
+            }
         }
         pen.text(&self.name, (at.0 + 48.0, at.1), TEXT, Side::Left, palette::INK)
     }

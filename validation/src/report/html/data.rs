@@ -1,7 +1,8 @@
 //! The data inside the page: the rows as columns, and the curves. Rounded; `report.json` has all digits.
 
 use super::super::summary::EngineSummary;
-use super::super::{Evidence, Report, Row};
+use super::super::{EventPicture, Evidence, Report, Row};
+use super::command;
 use crate::picture::Look;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -21,6 +22,7 @@ pub(super) fn json(
         json!({
             "name": engine.name,
             "library": engine.library,
+            "pattern": command::pattern(engine.name),
             "marker": looks.get(i).map(|look| look.marker),
             "settings": engines.get(i).map(|it| rounded(json!(it.settings))),
         })
@@ -34,6 +36,8 @@ pub(super) fn json(
         "growth": rounded(json!(evidence.growth)),
         "restarts": rounded(json!(evidence.restarts)),
         "sections": evidence.sections.iter().map(section).collect::<Vec<_>>(),
+        "events": evidence.events.iter().filter_map(|it| event(report, it)).collect::<Vec<_>>(),
+        "repeat": command::rest(report.suite, &evidence.folders),
     });
     inside_a_script(&data.to_string())
 }
@@ -51,6 +55,8 @@ fn cases(report: &Report, evidence: &Evidence) -> Vec<Value> {
             "name": row.case,
             "regime": note.map(|note| &note.regime),
             "why": note.map(|note| &note.why),
+            "toml": note.map(|note| &note.toml),
+            "pattern": command::pattern(&row.case),
         })
     };
     names.map(note).collect()
@@ -112,19 +118,55 @@ impl Texts {
     }
 }
 
+/// The picture of an event with the number of its row.
+fn event(report: &Report, picture: &EventPicture) -> Option<Value> {
+    let is_its = |row: &Row| {
+        (row.case.as_str(), row.engine) == (&picture.case, &picture.engine)
+            && (row.tolerance, row.step) == (picture.tolerance, picture.step)
+    };
+    let row = report.results.iter().position(is_its)?;
+    let mut value = rounded(json!(picture));
+    value["row"] = json!(row);
+    // About this time the others are told: it keeps its digits.
+    value["centre"] = json!(picture.centre);
+    Some(value)
+}
+
 /// Quantity and statistic, limit, value, verdict, why.
 fn bounds(row: &Row, texts: &mut Texts) -> Vec<Value> {
     let word = |value: Value| value.as_str().unwrap_or_default().replace('_', " ");
     let mut bound = |it: &crate::score::Checked| {
+        let quantity = in_words(&word(json!(it.quantity))).to_owned();
         let what = match word(json!(it.statistic)).as_str() {
-            "value" => word(json!(it.quantity)),
-            statistic => format!("{}, {statistic}", word(json!(it.quantity))),
+            "value" => quantity,
+            "max" => format!("{quantity}, largest"),
+            "q99" => format!("{quantity}, 99 % quantile"),
+            statistic => format!("{quantity}, {statistic}"),
         };
         let verdict = texts.number(&word(json!(it.verdict)));
         let [limit, value] = [it.limit, it.value].map(|number| rounded(json!(number)));
         json!([texts.number(&what), limit, value, verdict, texts.number(&it.why)])
     };
     row.bounds.iter().map(&mut bound).collect()
+}
+
+/// What a quantity is called where its key does not say it.
+fn in_words(quantity: &str) -> &str {
+    match quantity {
+        "events spurious" => "spurious events",
+        "events missed" => "missed events",
+        "phase word" => "phases in the wrong order",
+        "event time error" => "error of event times",
+        "state error" => "error of the state",
+        "drift error" => "error of the drift",
+        "event constant" => "error at events, in its unit",
+        "state constant" => "error at samples, in its unit",
+        "valid periods" => "forcing periods that are right",
+        "valid gain" => "gain of the valid horizon",
+        "restart error" => "error after a restart",
+        "attractor distance" => "distance of attractors, of its limit",
+        other => other,
+    }
 }
 
 fn section(pair: &super::super::SectionPair) -> Value {

@@ -5,8 +5,10 @@
 //! The charts are SVG of our own: each engine has abscissas of its own, which charting libraries
 //! with one shared column do not take, and SVG follows the colour scheme and prints.
 
+mod command;
 mod data;
 mod horizons;
+mod ranking;
 mod view;
 
 use super::{Evidence, Exporter, Report, summary};
@@ -20,7 +22,9 @@ const STYLE: &str = include_str!("../../../assets/report/report.css");
 const SCRIPTS: &str = concat!(
     include_str!("../../../assets/report/format.js"),
     include_str!("../../../assets/report/chart.js"),
+    include_str!("../../../assets/report/events.js"),
     include_str!("../../../assets/report/rows.js"),
+    include_str!("../../../assets/report/tables.js"),
     include_str!("../../../assets/report/curves.js"),
     include_str!("../../../assets/report/clouds.js"),
 );
@@ -33,7 +37,7 @@ struct Page<'a> {
     engines: Vec<view::EngineLine>,
     failures: Vec<view::Failure>,
     more_failures: usize,
-    known: usize,
+    ranking: Vec<ranking::RankedLine>,
     cases: usize,
     recall_columns: usize,
     grazing: view::GrazingTable,
@@ -61,7 +65,7 @@ impl Exporter for Html {
             engines: view::engines(report, &summaries, &looks),
             failures,
             more_failures,
-            known: report.summary.known,
+            ranking: ranking::ranked(report, &looks),
             cases: report.results.chunk_by(|a, b| a.case == b.case).count(),
             recall_columns: summaries.iter().map(|it| it.settings.len()).max().unwrap_or(0),
             grazing: view::grazing(report, evidence),

@@ -34,7 +34,7 @@ pub(super) struct RecallCell {
     pub setting: String,
     pub text: String,
     pub note: String,
-    /// From 0, nothing found, to 4, everything found and nothing invented.
+    /// From 0, nothing found, to 4, everything found and nothing spurious.
     pub level: u8,
 }
 
@@ -81,7 +81,7 @@ fn shown(value: f64) -> String {
 }
 
 /// A count with thin groups of three.
-fn count(value: f64) -> String {
+pub(super) fn count(value: f64) -> String {
     if !value.is_finite() {
         return "\u{2013}".to_owned();
     }
@@ -238,7 +238,7 @@ pub(super) fn colours(looks: &[Look]) -> String {
     format!(":root{{{light}}}@media screen and (prefers-color-scheme:dark){{:root{{{dark}}}}}")
 }
 
-fn glyph(marker: Marker) -> &'static str {
+pub(super) fn glyph(marker: Marker) -> &'static str {
     match marker {
         Marker::Circle => "\u{25cf}",
         Marker::Square => "\u{25a0}",

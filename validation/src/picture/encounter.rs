@@ -1,0 +1,289 @@
+//! A guard against time around one event, as it truly is and as an engine had it, in a wide panel
+//! and a close one. Steps, evaluations of the guard and events are marks, phases bands above.
+
+use super::frame::{Panel, Ruler, Scale, power_of_ten};
+use super::pen::{At, Pen, Side};
+use super::{DrawError, Drawing, Marker, palette};
+use percuss::Phase;
+use plotters::coord::Shift;
+use plotters::prelude::*;
+
+/// A picture of an event.
+#[derive(Clone, Debug)]
+pub struct Encounter {
+    /// Whose event it is.
+    pub title: String,
+    /// What is wrong with it.
+    pub subtitle: String,
+    /// The engine's name.
+    pub engine: String,
+    /// The engine's colour.
+    pub colour: RGBColor,
+    /// What is drawn against time.
+    pub guard: String,
+    /// The time from which times are counted.
+    pub centre: f64,
+    /// From the wide one to the close one.
+    pub stretches: Vec<Stretch>,
+}
+
+/// A stretch of time.
+#[derive(Clone, Debug)]
+pub struct Stretch {
+    /// Where it begins.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// The truth.
+    pub truth: Trail,
+    /// The engine.
+    pub engine: Trail,
+    /// Ends of the engine's steps.
+    pub steps: Vec<f64>,
+    /// Where its root finder evaluated the guard, and what it found.
+    pub looks: Vec<[f64; 2]>,
+}
+
+/// A run through a stretch.
+#[derive(Clone, Debug)]
+pub struct Trail {
+    /// Values of the guard, evenly spread over the stretch.
+    pub values: Vec<f64>,
+    /// The phase that holds where the stretch begins.
+    pub phase: Phase,
+    /// When each later phase begins, which it is, and whether both runs have that event.
+    pub events: Vec<(f64, Phase, bool)>,
+}
+
+const SIZE: (u32, u32) = (1500, 700);
+const WIDE: f64 = 1500.0;
+const TEXT: f64 = 19.0;
+const TOP: f64 = 164.0;
+const BOTTOM: f64 = 550.0;
+const BAND: f64 = 24.0;
+/// An event that only one of the two has; no engine is yellow.
+const WRONG: RGBColor = RGBColor(255, 217, 47);
+const TRUTH: RGBColor = RGBColor(160, 164, 170);
+
+impl Drawing for Encounter {
+    fn size(&self) -> (u32, u32) {
+        SIZE
+    }
+
+    fn draw<B: DrawingBackend>(
+        &self,
+        area: &DrawingArea<B, Shift>,
+        scale: u32,
+    ) -> Result<(), DrawError> {
+        let pen = Pen { area, scale };
+        pen.paper()?;
+        pen.text(&self.title, (24.0, 30.0), TEXT + 5.0, Side::Left, palette::INK)?;
+        pen.text(&self.subtitle, (24.0, 64.0), TEXT, Side::Left, palette::INK)?;
+        let width = WIDE / self.stretches.len().max(1) as f64;
+        for (i, stretch) in self.stretches.iter().enumerate() {
+            let left = width * i as f64;
+            self.stretch(&pen, stretch, (left + 132.0, left + width - 26.0))?;
+        }
+        self.key(&pen)
+    }
+}
+
+impl Encounter {
+    fn stretch<B: DrawingBackend>(
+        &self,
+        pen: &Pen<'_, B>,
+        it: &Stretch,
+        (left, right): (f64, f64),
+    ) -> Result<(), DrawError> {
+        let times = Factor::of([it.from, it.to].into_iter());
+        let values = Factor::of(it.shown());
+        let (from, to) = (times.scaled(it.from), times.scaled(it.to));
+        let vertical = Ruler::over(Scale::Linear, it.shown().map(|v| values.scaled(v)));
+        let Some(y) = vertical.filter(|_| from < to) else { return Ok(()) };
+        let x = Ruler::between(from, to);
+        let panel = Panel { from: (left, TOP), to: (right, BOTTOM), x, y };
+        let below = times.named(&format!("time \u{2212} {:.7}", self.centre));
+        panel.draw(pen, &below, &values.named(&self.guard))?;
+        let at = |t: f64, v: f64| panel.at((times.scaled(t), values.scaled(v)));
+        let guide = [panel.place((0.0, 0.0)).0, panel.place((0.0, 0.0)).1];
+        pen.line((left, guide[1]), (right, guide[1]), 1.4, palette::INK)?;
+        pen.line((guide[0], TOP), (guide[0], BOTTOM), 1.0, palette::INK)?;
+        let place = |t: f64| panel.place((times.scaled(t), 0.0)).0.clamp(left, right);
+        for (trail, name, top) in [(&it.truth, "truth", 96.0), (&it.engine, "engine", 126.0)] {
+            trail.band(pen, place, (left, right, top))?;
+            pen.text(name, (left - 10.0, top + BAND / 2.0), TEXT, Side::Right, palette::INK)?;
+        }
+        let curve = |trail: &Trail| -> Vec<At> {
+            trail.places(it.from, it.to).filter_map(|(t, v)| at(t, v)).collect()
+        };
+        pen.trace(&curve(&it.truth), 6.0, TRUTH)?;
+        pen.trace(&curve(&it.engine), 2.4, self.colour)?;
+        let ends = it.steps.iter().filter_map(|t| at(*t, it.engine.along(it.from, it.to, *t)?));
+        ends.into_iter().try_for_each(|at| pen.marker(Marker::Circle, at, 5.0, self.colour))?;
+        let looks = it.looks.iter().filter_map(|[t, v]| at(*t, *v));
+        looks.into_iter().try_for_each(|at| hollow(pen, at, self.colour))?;
+        self.events(pen, it, |t| at(t, 0.0))
+    }
+
+    fn events<B: DrawingBackend>(
+        &self,
+        pen: &Pen<'_, B>,
+        it: &Stretch,
+        at: impl Fn(f64) -> Option<At>,
+    ) -> Result<(), DrawError> {
+        for (t, _, matched) in &it.truth.events {
+            let Some(at) = at(*t) else { continue };
+            if *matched {
+                pen.marker(Marker::Circle, at, 4.5, palette::INK)?;
+            } else {
+                wrong(pen, at, false)?;
+            }
+        }
+        for (t, _, matched) in &it.engine.events {
+            let Some(at) = at(*t) else { continue };
+            if *matched {
+                pen.marker(Marker::Triangle, (at.0, at.1 + 12.0), 6.0, self.colour)?;
+            } else {
+                wrong(pen, at, true)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn key<B: DrawingBackend>(&self, pen: &Pen<'_, B>) -> Result<(), DrawError> {
+        let y = 664.0;
+        let ink = palette::INK;
+        let words = [
+            ("truth", 110.0),
+            (self.engine.as_str(), 64.0 + 9.9 * self.engine.chars().count() as f64),
+            ("step", 96.0),
+            ("root finder's look", 212.0),
+            ("true event", 140.0),
+            ("engine's event", 188.0),
+            ("missed", 110.0),
+            ("spurious", 0.0),
+        ];
+        let mut x = 24.0;
+        for (i, (word, wide)) in words.into_iter().enumerate() {
+            let (from, to, middle) = ((x, y), (x + 30.0, y), (x + 18.0, y));
+            match i {
+                0 => pen.line(from, to, 6.0, TRUTH)?,
+                1 => pen.line(from, to, 2.4, self.colour)?,
+                2 => pen.marker(Marker::Circle, middle, 5.0, self.colour)?,
+                3 => hollow(pen, middle, self.colour)?,
+                4 => pen.marker(Marker::Circle, middle, 4.5, ink)?,
+                5 => pen.marker(Marker::Triangle, middle, 6.0, self.colour)?,
+                _ => wrong(pen, middle, i > 6)?,
+            }
+            pen.text(word, (x + 38.0, y), TEXT - 1.0, Side::Left, ink)?;
+            x += wide;
+        }
+        Ok(())
+    }
+}
+
+impl Stretch {
+    /// All values that the vertical axis has to show, the event's zero among them.
+    fn shown(&self) -> impl Iterator<Item = f64> + '_ {
+        let looks = self.looks.iter().map(|look| look[1]);
+        let curves = self.truth.values.iter().chain(&self.engine.values).copied();
+        curves.chain(looks).chain([0.0])
+    }
+}
+
+impl Trail {
+    fn places(&self, from: f64, to: f64) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let pieces = self.values.len().saturating_sub(1).max(1) as f64;
+        let place = move |(k, v): (usize, &f64)| (from + (to - from) * (k as f64 / pieces), *v);
+        self.values.iter().enumerate().map(place)
+    }
+
+    /// The value between those that are known.
+    fn along(&self, from: f64, to: f64, t: f64) -> Option<f64> {
+        let last = self.values.len().checked_sub(1).filter(|last| *last > 0)?;
+        let place = (t - from) / (to - from) * last as f64;
+        let k = (place.max(0.0) as usize).min(last - 1);
+        let (left, right) = (self.values[k], self.values[k + 1]);
+        Some(left + (place - k as f64) * (right - left))
+    }
+
+    /// Phases one after the other, named where there is room.
+    fn band<B: DrawingBackend>(
+        &self,
+        pen: &Pen<'_, B>,
+        place: impl Fn(f64) -> f64,
+        (left, right, top): (f64, f64, f64),
+    ) -> Result<(), DrawError> {
+        let starts = self.events.iter().map(|(t, phase, _)| (place(*t), *phase));
+        let starts: Vec<_> = std::iter::once((left, self.phase)).chain(starts).collect();
+        for (i, (from, phase)) in starts.iter().enumerate() {
+            let to = starts.get(i + 1).map_or(right, |next| next.0);
+            let to = to.max(from + 1.0).min(right);
+            pen.fill((*from, top), (to, top + BAND), palette::phase(*phase))?;
+            let name = phase.token().replace('-', " ");
+            if to - from > 11.0 * name.len() as f64 {
+                let colour = if *phase == Phase::Contact { palette::INK } else { WHITE };
+                let middle = ((from + to) / 2.0, top + BAND / 2.0);
+                pen.text(&name, middle, TEXT - 2.0, Side::Middle, colour)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A power of ten by which an axis counts, so that its labels stay short.
+struct Factor(i32);
+
+impl Factor {
+    fn of(values: impl Iterator<Item = f64>) -> Self {
+        let largest = values.map(f64::abs).filter(|v| v.is_finite()).fold(0.0, f64::max);
+        let exponent = if largest > 0.0 { largest.log10().floor() as i32 } else { 0 };
+        Self(if (-1..=3).contains(&exponent) { 0 } else { exponent })
+    }
+
+    fn scaled(&self, value: f64) -> f64 {
+        value / 10.0_f64.powi(self.0)
+    }
+
+    fn named(&self, label: &str) -> String {
+        match self.0 {
+            0 => label.to_owned(),
+            exponent => format!("{label}, in {}", power_of_ten(exponent.into())),
+        }
+    }
+}
+
+/// A disc, with a cross where the engine alone has the event.
+fn wrong<B: DrawingBackend>(pen: &Pen<'_, B>, at: At, spurious: bool) -> Result<(), DrawError> {
+    pen.marker(Marker::Circle, at, 9.0, palette::INK)?;
+    pen.marker(Marker::Circle, at, 7.4, WRONG)?;
+    if spurious { pen.marker(Marker::Cross, at, 4.6, palette::INK) } else { Ok(()) }
+}
+
+fn hollow<B: DrawingBackend>(pen: &Pen<'_, B>, at: At, colour: RGBColor) -> Result<(), DrawError> {
+    const HALF: f64 = 6.0;
+    let corner = |(x, y): At| (at.0 + HALF * x, at.1 + HALF * y);
+    let corners = [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)].map(corner);
+    corners.windows(2).try_for_each(|pair| pen.line(pair[0], pair[1], 1.6, colour))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_step_stands_on_the_curve() {
+        let trail =
+            Trail { values: vec![0.0, 1.0, 4.0], phase: Phase::Contact, events: Vec::new() };
+        assert_eq!(trail.along(2.0, 4.0, 3.5), Some(2.5));
+        assert_eq!(trail.along(2.0, 4.0, 4.0), Some(4.0));
+        let none = Trail { values: Vec::new(), ..trail };
+        assert_eq!(none.along(0.0, 1.0, 0.5), None);
+    }
+
+    #[test]
+    fn axes_count_in_powers_of_ten_where_that_is_shorter() {
+        assert_eq!(Factor::of([-3e-7, 1e-7].into_iter()).named("gap"), "gap, in 10⁻⁷");
+        assert_eq!(Factor::of([0.5, f64::NAN].into_iter()).named("gap"), "gap");
+    }
+}

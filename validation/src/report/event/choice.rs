@@ -1,0 +1,80 @@
+//! Which rows get a picture of their first wrong event.
+
+use super::EventPicture;
+use super::course::picture;
+use super::mismatch::Mismatch;
+use crate::case::{Case, Given};
+use crate::engine::{self, Engine, Grid, Limits, Task};
+use crate::score::Verdict;
+use crate::suite::{Prepared, Scored, Status, Suite};
+use crate::truth::Truth;
+use rayon::prelude::*;
+
+/// Rows that get a picture: a page stays quick, and so does the run, with that many.
+const MOST_PICTURES: usize = 60;
+/// A run that took more right-hand sides is not made again for a picture.
+const MOST_WORK: u64 = 10_000_000;
+
+/// A row that has something to show.
+struct Candidate<'a> {
+    row: &'a Scored,
+    prepared: &'a Prepared,
+    engine: &'static dyn Engine,
+    task: Task,
+    mismatch: Mismatch,
+    mean_step: f64,
+}
+
+/// Pictures of rows with a missed or a spurious event, or with a displaced one and out of bounds;
+/// of more rows than can be shown those out of bounds come first, then a row a case in turn.
+#[must_use]
+pub fn event_pictures(cases: &[Prepared], rows: &[Scored], suite: Suite) -> Vec<EventPicture> {
+    let candidates: Vec<_> = rows.par_iter().filter_map(|row| candidate(cases, row)).collect();
+    let limits = suite.limits();
+    let chosen = chosen(candidates).into_par_iter().with_max_len(1);
+    chosen.filter_map(|it| it.picture(&limits)).collect()
+}
+
+/// As many as can be shown, in the order of the rows.
+fn chosen(candidates: Vec<Candidate<'_>>) -> Vec<Candidate<'_>> {
+    let key = |i: &usize| {
+        let row = candidates[*i].row;
+        let before = candidates[..*i].iter().filter(|it| it.row.case == row.case).count();
+        (row.judgement.verdict != Verdict::Fail, before, *i)
+    };
+    let mut order: Vec<usize> = (0..candidates.len()).collect();
+    order.sort_by_cached_key(key);
+    order.truncate(MOST_PICTURES);
+    let all = candidates.into_iter().enumerate();
+    all.filter(|(i, _)| order.contains(i)).map(|(_, it)| it).collect()
+}
+
+impl Candidate<'_> {
+    fn picture(&self, limits: &Limits) -> Option<EventPicture> {
+        let Self { row, prepared, engine, task, mismatch, mean_step } = self;
+        picture(prepared, task, row, mismatch, (*engine, *mean_step, limits))
+    }
+}
+
+fn candidate<'a>(cases: &'a [Prepared], row: &'a Scored) -> Option<Candidate<'a>> {
+    let Status::Ok(measures, outcome) = &row.status else { return None };
+    let mismatch = &measures.mismatch;
+    let wrong = !(mismatch.missed.is_empty() && mismatch.spurious.is_empty());
+    let affordable = outcome.work.rhs_evaluations <= MOST_WORK;
+    if !affordable || !(wrong || row.judgement.verdict == Verdict::Fail) {
+        return None;
+    }
+    let prepared = cases.iter().find(|it| it.case.name == row.case)?;
+    let engine = *engine::all().iter().find(|it| it.declaration().name == row.engine)?;
+    let task = task(&prepared.case)?;
+    let mismatch = Mismatch::first(prepared, &task, row)?;
+    let mean_step = task.span / outcome.work.steps.max(1) as f64;
+    Some(Candidate { row, prepared, engine, task, mismatch, mean_step })
+}
+
+/// The run of a case, without samples.
+fn task(case: &Case) -> Option<Task> {
+    let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
+    let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 };
+    Some(Task::of(case, given.check().ok()?, grid))
+}

@@ -1,0 +1,174 @@
+//! Truth and engine through the views of one wrong event.
+
+use super::guarded::Guarded;
+use super::mismatch::Mismatch;
+use super::scales::Scales;
+use super::{Course, EventPicture, Mark, View};
+use crate::engine::{Engine, Limits, Outcome, Task, Trace, Watched, contain};
+use crate::suite::{Prepared, Scored};
+use crate::truth::{Replay, Truth};
+use percuss::Phase;
+use percuss::two_word::TwoWord;
+
+/// Of steps, and of looks at the guard, that are nearer to each other than this share of a view,
+/// one is shown: their marks would lie on each other.
+const APART: f64 = 1.0 / 120.0;
+/// The engine's error hides the truth's shape where it is larger than this share of the truth's
+/// range.
+const HIDDEN: f64 = 0.6;
+
+/// Runs a row again and watches it around its first wrong event.
+pub(super) fn picture(
+    prepared: &Prepared,
+    task: &Task,
+    row: &Scored,
+    it: &Mismatch,
+    (engine, mean_step, limits): (&dyn Engine, f64, &Limits),
+) -> Option<EventPicture> {
+    let period = task.problem.model.period();
+    let scales = Scales::around(it, mean_step, period, task.span);
+    let mut instants: Vec<f64> = scales.spans.iter().copied().flat_map(Scales::instants).collect();
+    instants.sort_by(f64::total_cmp);
+    instants.dedup();
+    let truth = truth_at(task, it.guarded, &instants)?;
+    let watched = Watched { window: scales.window(), instants: instants.clone() };
+    let task = Task { watched: Some(watched), ..task.clone() };
+    let outcome = contain(|| engine.run(&task, row.accuracy, limits)).ok()?;
+    let engine = engine_at(&task, it.guarded, &outcome);
+    let scene = Scene { prepared, task: &task, it, instants, truth, engine, outcome };
+    let views: Vec<View> = scales.spans.iter().map(|span| scene.view(*span)).collect();
+    Some(EventPicture {
+        case: row.case.clone(),
+        engine: row.engine.to_owned(),
+        tolerance: row.accuracy.tolerance(),
+        step: row.accuracy.step(),
+        kind: it.kind,
+        title: it.title(period),
+        guard: it.guarded.label(),
+        centre: it.at,
+        telling: telling(&views),
+        views,
+    })
+}
+
+/// The true values, by the run made again in 106 bits.
+fn truth_at(task: &Task, guarded: Guarded, instants: &[f64]) -> Option<Vec<f64>> {
+    let Task { parameters, problem, horizon, .. } = task;
+    let start = problem.entry.instant;
+    let mut values = Vec::with_capacity(instants.len());
+    for passage in Replay::new(parameters, &problem.entry, *horizon) {
+        let passage = passage.ok()?;
+        while let Some(t) = instants.get(values.len()) {
+            let instant = start.after(TwoWord::new(*t), parameters.omega);
+            if passage.ends_by(&instant) {
+                break;
+            }
+            let [p, y, q, _] = passage.at(&instant);
+            values.push(guarded.of_truth(parameters, [p, y, q]));
+        }
+        if values.len() == instants.len() {
+            return Some(values);
+        }
+    }
+    None
+}
+
+/// The engine's values, where it records.
+fn engine_at(task: &Task, guarded: Guarded, outcome: &Outcome) -> Vec<f64> {
+    let states = outcome.samples.iter().filter(|_| outcome.trace.is_some());
+    states.map(|state| guarded.of_state(&task.parameters, state)).collect()
+}
+
+/// What the views are cut from.
+struct Scene<'a> {
+    prepared: &'a Prepared,
+    task: &'a Task,
+    it: &'a Mismatch,
+    instants: Vec<f64>,
+    truth: Vec<f64>,
+    engine: Vec<f64>,
+    outcome: Outcome,
+}
+
+impl Scene<'_> {
+    fn view(&self, span: [f64; 2]) -> View {
+        let [from, to] = span;
+        let since = |t: f64| t - self.it.at;
+        let inside = |t: &f64| from <= *t && *t <= to;
+        let trace = self.outcome.trace.as_ref();
+        let steps = trace.map_or(&[][..], |trace| &trace.steps).iter().copied().filter(inside);
+        let mut steps: Vec<f64> = steps.map(since).collect();
+        steps.dedup_by(|next, kept| *next - *kept < APART * (to - from));
+        View {
+            from: since(from),
+            to: since(to),
+            truth: self.course(span, self.truth_events(), &self.truth),
+            engine: self.course(span, self.engine_events(), &self.engine),
+            steps,
+            looks: trace.map_or_else(Vec::new, |trace| self.looks(trace, span)),
+        }
+    }
+
+    fn truth_events(&self) -> Vec<(f64, Phase, bool)> {
+        let Truth { switches, .. } = &self.prepared.truth;
+        let is_known = |i: usize| self.it.pairs.iter().any(|pair| pair.0 == i);
+        let mark = |(i, row): (usize, &crate::truth::Row)| {
+            Some((row.elapsed.value(), row.phase?, is_known(i)))
+        };
+        switches.iter().enumerate().filter_map(mark).collect()
+    }
+
+    fn engine_events(&self) -> Vec<(f64, Phase, bool)> {
+        let is_known = |j: usize| self.it.pairs.iter().any(|pair| pair.1 == j);
+        let events = self.outcome.events.iter().enumerate();
+        events.map(|(j, event)| (event.elapsed, event.phase, is_known(j))).collect()
+    }
+
+    fn course(
+        &self,
+        [from, to]: [f64; 2],
+        events: Vec<(f64, Phase, bool)>,
+        values: &[f64],
+    ) -> Course {
+        let before = events.iter().take_while(|event| event.0 < from).last();
+        let phase = before.map_or(self.task.phase, |event| event.1);
+        let inside = events.iter().filter(|event| from <= event.0 && event.0 <= to);
+        let mark = |(t, phase, matched): &(f64, Phase, bool)| Mark {
+            t: t - self.it.at,
+            phase: *phase,
+            matched: *matched,
+        };
+        let place = |t: f64| self.instants.partition_point(|it| *it < t);
+        let known = |t: f64| values.get(place(t)).copied();
+        Course {
+            phase,
+            events: inside.map(mark).collect(),
+            values: Scales::instants([from, to]).filter_map(known).collect(),
+        }
+    }
+
+    fn looks(&self, trace: &Trace, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
+        let of = |look: &crate::engine::Look| Some([look.t, self.it.guarded.of_look(look)?]);
+        let inside = |look: &[f64; 2]| from <= look[0] && look[0] <= to;
+        let mut looks: Vec<_> = trace.looks.iter().filter_map(of).filter(inside).collect();
+        looks.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        looks.dedup_by(|next, kept| next[0] - kept[0] < APART * (to - from));
+        looks.iter().map(|[t, value]| [t - self.it.at, *value]).collect()
+    }
+}
+
+/// The closest view in which the truth's shape shows beside the engine's error.
+fn telling(views: &[View]) -> usize {
+    let shows = |view: &View| {
+        let range = |values: &[f64]| {
+            let (low, high) = values
+                .iter()
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+            high - low
+        };
+        let pairs = view.truth.values.iter().zip(&view.engine.values);
+        let apart = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        apart <= HIDDEN * range(&view.truth.values)
+    };
+    views.iter().rposition(shows).unwrap_or(0).max(usize::from(views.len() > 1))
+}

@@ -1,0 +1,82 @@
+//! The stretches of time that are shown: from some steps of the engine down to the event itself.
+
+use super::mismatch::Mismatch;
+
+/// Instants of a view at which both curves are known.
+pub(super) const INSTANTS: usize = 121;
+
+/// Half the widest view: so many steps of the engine, as far as that is between these shares of a
+/// forcing period.
+const STEPS: f64 = 8.0;
+const LEAST: f64 = 0.02;
+const MOST: f64 = 0.25;
+
+/// Half the closest view, in distances from the event to what it is confused with.
+const AROUND: f64 = 2.5;
+/// A distance of more than this share of half the widest view needs no closer one.
+const FAR: f64 = 0.25;
+/// A view is at most so much wider than the next one.
+const ZOOM: f64 = 8.0;
+/// Half a view is at least so many roundings of the time it stands at.
+const ROUNDINGS: f64 = 2048.0 * f64::EPSILON;
+
+/// From and to of each view, times since the start, from the widest to the closest.
+pub(super) struct Scales {
+    pub(super) spans: Vec<[f64; 2]>,
+    centre: f64,
+}
+
+impl Scales {
+    /// Around a wrong event, for an engine with this mean step, in a run as long as `span`.
+    pub(super) fn around(it: &Mismatch, mean_step: f64, period: f64, span: f64) -> Self {
+        let widest = (STEPS * mean_step).clamp(LEAST * period, MOST * period);
+        let centre = it.at;
+        let closest = (AROUND * it.reach).max(ROUNDINGS * (1.0 + centre));
+        let halves = halves(widest, closest);
+        let view = |half: f64| [(centre - half).max(0.0), (centre + half).min(span)];
+        Self { spans: halves.into_iter().map(view).collect(), centre }
+    }
+
+    /// From and to of all views together.
+    pub(super) fn window(&self) -> [f64; 2] {
+        self.spans.first().copied().unwrap_or([self.centre; 2])
+    }
+
+    /// The instants of a view.
+    pub(super) fn instants([from, to]: [f64; 2]) -> impl Iterator<Item = f64> {
+        let share = |k: usize| k as f64 / (INSTANTS - 1) as f64;
+        (0..INSTANTS)
+            .map(move |k| if k + 1 == INSTANTS { to } else { from + (to - from) * share(k) })
+    }
+}
+
+/// Halves of the views, each as much wider than the next.
+fn halves(widest: f64, closest: f64) -> Vec<f64> {
+    if closest > FAR * widest {
+        return vec![widest];
+    }
+    let count = ((widest / closest).ln() / ZOOM.ln()).ceil();
+    let ratio = (closest / widest).powf(1.0 / count);
+    (0..=count as i32).map(|k| widest * ratio.powi(k)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn views_close_in_by_at_most_the_zoom() {
+        let halves = halves(1.0, 1e-6);
+        assert_eq!(halves.len(), 8);
+        assert!(halves.windows(2).all(|pair| pair[0] / pair[1] <= ZOOM * (1.0 + 1e-9)));
+        assert!((halves[0] - 1.0).abs() < 1e-12 && (halves[7] / 1e-6 - 1.0).abs() < 1e-9);
+        assert_eq!(super::halves(1.0, f64::INFINITY), [1.0]);
+    }
+
+    #[test]
+    fn a_view_reaches_from_end_to_end() {
+        let instants: Vec<f64> = Scales::instants([1.0, 1.3]).collect();
+        assert_eq!((instants.len(), instants[0], instants[INSTANTS - 1]), (INSTANTS, 1.0, 1.3));
+        assert!(instants.is_sorted());
+    }
+}

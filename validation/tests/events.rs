@@ -1,0 +1,82 @@
+//! Pictures of missed and spurious events, made from runs as `validate` makes them.
+
+#![allow(clippy::expect_used, reason = "a panic is a failed test")]
+
+mod exact;
+
+use percuss::Phase;
+use percuss_validation::case::defaults;
+use percuss_validation::engine::select;
+use percuss_validation::report::{EventPicture, Kind, View, event_pictures};
+use percuss_validation::suite::{self, Suite};
+use percuss_validation::truth::Library;
+use regex::Regex;
+
+fn pictures(case: &str, engine: &str) -> Vec<EventPicture> {
+    let library = Library::embedded().expect("the tables are read");
+    let cases = vec![exact::case(case)];
+    let cases = suite::prepare(cases, &library, Suite::Quick).expect("prepared");
+    let engine = Regex::new(&format!("^{engine}$")).expect("a pattern");
+    let engines = select(&[engine]).expect("an engine");
+    let defaults = defaults().expect("bounds");
+    let rows = suite::run(&cases, &engines, Suite::Quick, &defaults, &|| ());
+    event_pictures(&cases, &rows, Suite::Quick)
+}
+
+/// The value at the instant next to `t`.
+fn at(view: &View, values: &[f64], t: f64) -> f64 {
+    let share = (t - view.from) / (view.to - view.from);
+    values[(share * (values.len() - 1) as f64).round() as usize]
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(f64::NEG_INFINITY, f64::max)
+}
+
+/// diffsol's root finder looks at the ends of steps only: its own solution rises above the surface
+/// between two of them, and no look sees it.
+#[test]
+fn a_missed_touch_shows_what_the_root_finder_did_not_see() {
+    let all = pictures("graze-overlap-1e-9", "diffsol-bdf");
+    let picture = all.iter().find(|it| it.tolerance == Some(1e-9)).expect("it misses the touch");
+    assert_eq!((picture.kind, picture.guard), (Kind::Missed, "gap p \u{2212} q \u{2212} g"));
+    assert!((picture.centre - 0.706_756).abs() < 1e-6, "{}", picture.centre);
+    for view in &picture.views {
+        assert!(view.truth.events.iter().any(|it| it.t.abs() < 1e-15 && !it.matched));
+        assert!(largest(view.looks.iter().map(|look| look[1])) < 0.0);
+        assert!(largest(view.truth.values.iter().copied()) < 1e-15);
+    }
+    let close = &picture.views[picture.telling];
+    assert_eq!((close.truth.phase, close.engine.events.len()), (Phase::NoContact, 0));
+    let ends: Vec<_> = close.truth.events.iter().map(|it| (it.phase, it.matched)).collect();
+    assert_eq!(ends, [(Phase::Contact, false), (Phase::NoContact, false)]);
+    // In contact the gap is closed; the margin of 1e-9 is how far it would have opened beyond.
+    let within = at(close, &close.truth.values, close.truth.events[1].t / 2.0);
+    assert!(within.abs() < 1e-15, "{within}");
+    let risen = largest(close.engine.values.iter().copied());
+    assert!(risen > 1e-9 && risen < 1e-8, "{risen}");
+    let wide = &picture.views[0];
+    assert!(wide.steps.len() > 3, "{:?}", wide.steps);
+}
+
+#[test]
+fn a_spurious_touch_is_the_engine_s_own() {
+    let all = pictures("graze-miss-1e-12", "ode_solvers-dopri5");
+    let picture =
+        all.iter().find(|it| it.tolerance == Some(1e-6)).expect("it has a touch too many");
+    assert_eq!(picture.kind, Kind::Spurious);
+    let close = &picture.views[picture.telling];
+    assert!(close.truth.events.is_empty() && largest(close.truth.values.iter().copied()) < 0.0);
+    let events: Vec<_> = close.engine.events.iter().map(|it| (it.phase, it.matched)).collect();
+    assert_eq!(events, [(Phase::Contact, false), (Phase::NoContact, false)]);
+    let (touch, end) = (close.engine.events[0].t, close.engine.events[1].t);
+    assert!(touch.abs() < 1e-12 && end > 0.0);
+    let inside = at(close, &close.engine.values, 0.5 * (touch + end));
+    assert!(inside.abs() < 1e-12, "{inside}");
+    assert!(largest(close.looks.iter().map(|look| look[1])) > 0.0);
+}
+
+#[test]
+fn a_row_without_a_wrong_event_has_no_picture() {
+    assert!(pictures("graze-overlap-1e-9", "exact").is_empty());
+}
