@@ -29,7 +29,7 @@ pub use field::{Equations, GUARDS, Oscillator};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use order::claimed_order;
-pub use registry::{all, exact, select};
+pub use registry::{add, all, exact, select};
 pub use wrong::{CONTROL, Wrong, wrong};
 
 use crate::case::{Case, Horizon, Problem};
