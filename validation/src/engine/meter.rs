@@ -4,6 +4,7 @@
 //! right-hand side and in the guards: they unwind to [`contain`].
 
 use super::Work;
+use super::alone::Told;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::{Duration, Instant};
@@ -46,6 +47,8 @@ pub(super) struct Meter {
     jacobians: Cell<u64>,
     solves: Cell<u64>,
     steps: Cell<u64>,
+    /// Where this run's events lie, if it is made without the harness's own part.
+    told: Option<Told>,
 }
 
 /// How often the clock is looked at, in calls.
@@ -62,11 +65,20 @@ impl Meter {
             jacobians: zero(),
             solves: zero(),
             steps: zero(),
+            told: Told::here(),
         }
+    }
+
+    /// Where this run's events lie, if it is made without the harness's own part ([`super::alone`]).
+    pub(super) fn told(&self) -> Option<&Told> {
+        self.told.as_ref()
     }
 
     /// Counts a right-hand side whose value is `derivatives`.
     pub(super) fn rhs(&self, derivatives: &[f64]) {
+        if self.told.is_some() {
+            return;
+        }
         self.rhs.set(self.rhs.get() + 1);
         // Some libraries loop for ever on a NaN.
         if derivatives.iter().any(|derivative| !derivative.is_finite()) {
@@ -77,12 +89,18 @@ impl Meter {
 
     /// Counts a Jacobian product.
     pub(super) fn jacobian(&self) {
+        if self.told.is_some() {
+            return;
+        }
         self.jacobians.set(self.jacobians.get() + 1);
         self.call();
     }
 
     /// Counts any call.
     pub(super) fn call(&self) {
+        if self.told.is_some() {
+            return;
+        }
         let calls = self.calls.get() + 1;
         self.calls.set(calls);
         if calls > self.limits.calls {

@@ -5,6 +5,7 @@
 //! the way an expert user of its library would; what that took stands in its module.
 
 mod accuracy;
+mod alone;
 mod cubic;
 mod differential_equations;
 mod diffsol;
@@ -25,6 +26,7 @@ mod sampler;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
+pub use alone::Script;
 pub use field::{Equations, GUARDS, Oscillator};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
