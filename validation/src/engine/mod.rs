@@ -5,6 +5,7 @@
 //! the way an expert user of its library would; what that took stands in its module.
 
 mod accuracy;
+mod alone;
 mod answer;
 mod cubic;
 mod differential_equations;
@@ -30,12 +31,13 @@ mod watching;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
+pub use alone::Script;
 pub use answer::answer;
 pub use field::{Equations, GUARDS, Oscillator};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use order::claimed_order;
-pub use registry::{all, exact, select};
+pub use registry::{add, all, exact, select};
 pub use trace::{Look, Trace, Watched};
 pub(crate) use wrong::Closed;
 pub use wrong::{CONTROL, FAULTY_CONTROL, SOUND, Wrong, faulty, wrong};
