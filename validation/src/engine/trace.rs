@@ -101,9 +101,9 @@ mod tests {
     #[test]
     fn only_what_lies_in_the_window_and_is_a_guard_is_kept() {
         let recorder = Recorder::new(&Watched { window: [1.0, 2.0], instants: Vec::new() });
-        [0.5, 1.0, 2.0, 2.5].map(|t| recorder.step(t));
+        [0.5, 1.0, 2.0, 2.5].into_iter().for_each(|t| recorder.step(t));
         let look = |t, guard| Look { t, phase: Phase::NoContact, guard, value: -0.25 };
-        [look(1.5, 1), look(1.5, 0), look(3.0, 0)].map(|it| recorder.look(it));
+        [look(1.5, 1), look(1.5, 0), look(3.0, 0)].into_iter().for_each(|it| recorder.look(it));
         let mut outcome = Outcome::default();
         recorder.hand_over(&mut outcome);
         let expected = Trace { steps: vec![1.0, 2.0], looks: vec![look(1.5, 0)] };
@@ -113,9 +113,9 @@ mod tests {
     #[test]
     fn a_step_in_which_a_phase_ends_is_taken_back() {
         let recorder = Recorder::new(&Watched { window: [0.0, 9.0], instants: Vec::new() });
-        [1.0, 2.0].map(|t| recorder.step(t));
+        [1.0, 2.0].into_iter().for_each(|t| recorder.step(t));
         recorder.back_to(1.5);
-        [1.75, 4.0, 3.0].map(|t| recorder.step(t));
+        [1.75, 4.0, 3.0].into_iter().for_each(|t| recorder.step(t));
         assert_eq!(recorder.trace.take().steps, [1.0, 1.75, 3.0]);
     }
 
