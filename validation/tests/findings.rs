@@ -1,4 +1,4 @@
-//! docs/FINDINGS.md: its commands choose rows that exist, and its programs are what it says of them.
+//! docs/FINDINGS.md: its commands choose rows that exist, and its programs are as it describes.
 
 #![allow(
     clippy::expect_used,

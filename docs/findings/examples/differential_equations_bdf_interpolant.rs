@@ -1,5 +1,5 @@
-//! differential-equations 0.7.0: the interpolant of `bdf` is worse than its steps by orders of magnitude:
-//! it is evaluated with differences that were rescaled to the next step already.
+//! differential-equations 0.7.0: the interpolant of `bdf` is worse than its steps by orders of
+//! magnitude: it is evaluated with differences that were rescaled to the next step already.
 
 use differential_equations::prelude::*;
 
@@ -26,6 +26,7 @@ fn main() {
         let run = IVP::ode(&Decay, 0.0, 5.0, [1.0]).dense(QUARTERS).method(method).solve();
         let run = run.expect("it succeeds");
         let (ends, inside) = (largest(&run, true), largest(&run, false));
-        println!("tolerance {tolerance:.0e}: error at ends of steps {ends:.1e}, inside them {inside:.1e}");
+        print!("tolerance {tolerance:.0e}: ");
+        println!("error at ends of steps {ends:.1e}, inside them {inside:.1e}");
     }
 }

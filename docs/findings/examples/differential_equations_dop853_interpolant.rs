@@ -1,5 +1,5 @@
-//! differential-equations 0.7.0: the interpolant of `dop853` is worse than its steps, because the factors
-//! s and 1 - s of its higher terms are exchanged.
+//! differential-equations 0.7.0: the interpolant of `dop853` is worse than its steps, because the
+//! factors s and 1 - s of its higher terms are exchanged.
 
 use differential_equations::prelude::*;
 
@@ -26,6 +26,7 @@ fn main() {
         let run = IVP::ode(&Decay, 0.0, 5.0, [1.0]).dense(QUARTERS).method(method).solve();
         let run = run.expect("it succeeds");
         let (ends, inside) = (largest(&run, true), largest(&run, false));
-        println!("tolerance {tolerance:.0e}: error at ends of steps {ends:.1e}, inside them {inside:.1e}");
+        print!("tolerance {tolerance:.0e}: ");
+        println!("error at ends of steps {ends:.1e}, inside them {inside:.1e}");
     }
 }

@@ -1,5 +1,5 @@
-//! differential-equations 0.7.0: the built-in location of an event on a convex guard ends far from the
-//! root, whatever the tolerance: its Brent-Dekker iteration forgets the other end of the bracket.
+//! differential-equations 0.7.0: the built-in location of an event on a convex guard ends far from
+//! the root, whatever the tolerance: its Brent-Dekker iteration loses the other end of the bracket.
 
 use differential_equations::prelude::*;
 
@@ -33,6 +33,7 @@ fn main() {
             (run.expect("it succeeds").t.last().expect("an event") - level.ln()).abs()
         });
         off.sort_by(f64::total_cmp);
-        println!("tolerance {tolerance:.0e}: time off by {:.1e} (median), {:.1e} (worst)", off[4], off[8]);
+        print!("tolerance {tolerance:.0e}: ");
+        println!("time off by {:.1e} (median), {:.1e} (worst)", off[4], off[8]);
     }
 }

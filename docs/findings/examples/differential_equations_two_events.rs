@@ -1,5 +1,5 @@
-//! differential-equations 0.7.0: of two events inside one step that both end the run, the one that was
-//! added first ends it, not the one that comes first.
+//! differential-equations 0.7.0: of two events inside one step that both end the run, the one that
+//! was added first ends it, not the one that comes first.
 
 use differential_equations::prelude::*;
 
@@ -28,7 +28,8 @@ fn main() {
     let (two, three) = (Level(2.0), Level(3.0));
     let run = |first: &Level, second: &Level| {
         let method = ExplicitRungeKutta::rkv655e().h0(10.0).rtol(1e-9).atol(1e-9);
-        let run = IVP::ode(&Line, 0.0, 10.0, [0.0]).event(first).event(second).method(method).solve();
+        let run = IVP::ode(&Line, 0.0, 10.0, [0.0]).event(first).event(second);
+        let run = run.method(method).solve();
         let end = *run.expect("it succeeds").t.last().expect("an event");
         println!("added y = {} and then y = {}: the run ends at t = {end:.6}", first.0, second.0);
     };

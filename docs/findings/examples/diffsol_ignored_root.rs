@@ -1,5 +1,5 @@
-//! diffsol 0.18.0: a program that goes on with `step` after a root, without touching the state, passes
-//! the stop time, and `step` panics there.
+//! diffsol 0.18.0: a program that goes on with `step` after a root, without touching the state,
+//! passes the stop time, and `step` panics there.
 
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeSolverMethod, OdeSolverStopReason};
 

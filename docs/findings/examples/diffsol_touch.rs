@@ -1,5 +1,5 @@
-//! diffsol 0.18.0: roots that come in pairs inside one step are passed over, because the root finder
-//! compares signs at the ends of steps. y = sin t exceeds 0.999 for 0.089 in every turn.
+//! diffsol 0.18.0: roots that come in pairs inside one step are passed over, because the root
+//! finder compares signs at the ends of steps. y = sin t exceeds 0.999 for 0.089 in every turn.
 
 use diffsol::{NalgebraMat, OdeBuilder, OdeSolverMethod, OdeSolverStopReason};
 

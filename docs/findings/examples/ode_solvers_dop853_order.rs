@@ -1,5 +1,5 @@
-//! ode_solvers 0.6.2: `Dop853`, of order 8, converges at order 1 where the right-hand side depends on
-//! time, because its node c12 is 0 and should be 1. With time as a second state it is of order 8.
+//! ode_solvers 0.6.2: `Dop853`, of order 8, converges at order 1 where the right-hand side depends
+//! on time: its node c12 is 0 and should be 1. With time as a second state its order is 8.
 
 use ode_solvers::{Dop853, OutputType, SVector, System};
 
