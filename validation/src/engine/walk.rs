@@ -1,9 +1,9 @@
 //! A walk along the ends of steps, for methods whose states inside a step are expensive: they come
 //! from a second integration, or from an interpolant that costs right-hand sides.
 //!
-//! A method is watched alike whatever library it comes from, so that differences between its rows are
-//! the libraries' own. Steps are at most an eighth of a forcing period and of a turn of the elastic
-//! contact ([`longest_step`]), so that the rates at both ends of a step show a peak inside it.
+//! A method is watched alike whatever library it comes from, so that differences between its rows
+//! are the libraries' own. Steps are at most an eighth of a forcing period and of a turn of the
+//! elastic contact ([`longest_step`]), so that the rates at both ends of a step show a peak inside.
 
 use super::cubic::Point;
 use super::field::Equations;
@@ -89,20 +89,20 @@ mod tests {
     use crate::case::Given;
     use percuss::Start;
 
-    /// Ten forcing periods of the default model from rest.
+    /// Eight forcing periods of the default model from rest: an error of 1e-6 stays below 1e-3.
     fn run(name: &str, tolerance: f64) -> Option<Outcome> {
         let given = Given { start: Start::default(), ..Given::default() };
         let problem = given.check().ok()?;
-        let horizon = problem.entry.instant.after_periods(10, 1);
-        let grid = Grid { per_period: 4, count: 41 };
+        let horizon = problem.entry.instant.after_periods(8, 1);
+        let grid = Grid { per_period: 4, count: 33 };
         let task = Task::until(given.parameters, problem, horizon, grid);
         let engine: &dyn Engine = *all().iter().find(|it| it.declaration().name == name)?;
         engine.run(&task, Accuracy::Tolerance(tolerance), &Limits::default()).ok()
     }
 
-    /// Over all cases one library takes 1.23 to 1.24 times the right-hand sides of the other, because
-    /// one starts anew at every forcing period and their step controls differ. Evaluating guards
-    /// inside every step made it 4.5 to 6.7 times.
+    /// Over 47 cases at 1e-6, 1e-9 and 1e-12 one library takes 1.05 to 1.44 times the right-hand
+    /// sides of the other, because their step controls differ. Evaluating guards inside every step
+    /// made it 4.5 to 6.7 times in the mean.
     const SAME_WORK: f64 = 2.0;
 
     #[test]
@@ -112,7 +112,7 @@ mod tests {
                 .map(|name| run(name, tolerance).unwrap_or_default());
             let phases =
                 |it: &Outcome| it.events.iter().map(|event| event.phase).collect::<Vec<_>>();
-            assert!(one.events.len() >= 8 && phases(&one) == phases(&other));
+            assert!(one.events.len() >= 6 && phases(&one) == phases(&other));
             let [one, other] = [one, other].map(|it| it.work.rhs_evaluations as f64);
             assert!(one.max(other) <= SAME_WORK * one.min(other), "{tolerance}: {one}, {other}");
         }

@@ -64,9 +64,9 @@ impl Printed {
         self.value.zip(self.within).is_some_and(|(paper, within)| (value - paper).abs() <= within)
     }
 
-    /// Whether a value agrees with the printed one: it is that to its last digit or, where the paper
-    /// calls its value approximate, its digits are at most one unit of the last one away. The paper
-    /// rounds some numbers and cuts others (Table 1 does both), so that this has to hold for the
+    /// Whether a value agrees with the printed one: it equals that to its last digit or, where the
+    /// paper calls its value approximate, its digits are at most one unit of the last one away. The
+    /// paper rounds some numbers and cuts others (Table 1 does both), so this has to hold for the
     /// rounded as for the cut value.
     #[must_use]
     pub fn agrees(&self, value: f64) -> bool {
@@ -74,8 +74,8 @@ impl Printed {
             let (unit, rounding) = (2.0 * half, BINARY * paper.abs());
             let units = (value - paper) / unit;
             let room = rounding / unit;
-            // Cut, a value up to one unit below keeps the digits of one unit less; rounded, one up to
-            // one and a half units above keeps those of one unit more.
+            // A value of at least one unit less keeps, when it is cut, the digits of one unit less;
+            // one of up to one and a half units more is rounded to one unit more.
             -1.0 - room <= units && units < 1.5 + room
         };
         self.prints(value)
