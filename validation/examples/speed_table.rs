@@ -116,15 +116,14 @@ fn cells(bench: &Value, case: &str) -> Option<[String; 11]> {
 fn shortfall<'a>(bench: &'a Value, entry: &'a Value) -> Option<Shortfall<'a>> {
     let case = entry["case"].as_str()?;
     let next = least_behind(bench, case)?;
-    let switches = entry["switches"].as_f64().filter(|it| *it > 0.0)?;
-    let a_switch = entry["periods"].as_f64()? / switches;
     let it = Shortfall {
         case,
         engine: next["engine"].as_str()?,
         ratio: ratio(next),
-        exact: exact(bench, case)?["ns_per_period"].as_f64()? * a_switch,
+        exact: exact(bench, case)?["ns_per_period"].as_f64()?,
+        right_hand_sides: next["rhs_per_period"].as_f64()?,
+        a_switch: entry["periods"].as_f64()? / entry["switches"].as_f64()?,
         floor: bench["floor"]["chained_ns"].as_f64()?,
-        right_hand_sides: next["rhs_per_period"].as_f64()? * a_switch,
     };
     Some(it).filter(Shortfall::is_one)
 }

@@ -1,7 +1,6 @@
 //! How far the exact solver is ahead of the engines, and what more it would take where that is too little.
 
 use super::report::{Bench, Row};
-use crate::number::shortest;
 use std::fmt;
 
 /// How many times as long the least slow engine is to take, on every case.
@@ -39,19 +38,19 @@ pub fn lead<'a>(bench: &'a Bench, case: &str) -> Option<Lead<'a>> {
 
 impl fmt::Display for Lead<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Row { case, engine, tolerance, .. } = self.next;
-        let tolerance = tolerance.map(shortest).unwrap_or_default();
+        let Row { case, engine, .. } = self.next;
+        let setting = self.next.setting();
         let accuracy = if self.most_accurate { "errs less" } else { "does not err less" };
         write!(
             out,
             "{case}: adaptive engines at their best take at least {} times as long \
-             ({engine} {tolerance}); exact {accuracy}",
+             ({engine} {setting}); exact {accuracy}",
             times(self.ratio)
         )
     }
 }
 
-/// A lead that is too little, by what a switch takes.
+/// A lead that may be too little, by what a switch takes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shortfall<'a> {
     /// The case.
@@ -60,12 +59,14 @@ pub struct Shortfall<'a> {
     pub engine: &'a str,
     /// How many times as long it takes.
     pub ratio: f64,
-    /// What a switch takes the exact solver in a run of the case, ns.
+    /// What the exact solver takes in a run of the case, ns a period.
     pub exact: f64,
+    /// Right-hand sides the engine takes a period.
+    pub right_hand_sides: f64,
+    /// Periods of the run for each of its switches.
+    pub a_switch: f64,
     /// One evaluation at the least, ns.
     pub floor: f64,
-    /// Right-hand sides the engine takes for a switch.
-    pub right_hand_sides: f64,
 }
 
 impl<'a> Shortfall<'a> {
@@ -75,32 +76,29 @@ impl<'a> Shortfall<'a> {
         let Lead { next, ratio, .. } = lead(bench, case)?;
         let entry = bench.cases.iter().find(|it| it.case == case)?;
         let own = |row: &&Row| row.case == case && row.engine == "exact";
-        let exact = bench.results.iter().find(own)?.ns_per_period?;
-        if entry.switches == 0 {
-            return None;
-        }
-        let a_switch = entry.periods / entry.switches as f64;
         let it = Self {
             case,
             engine: next.engine,
             ratio,
-            exact: exact * a_switch,
+            exact: bench.results.iter().find(own)?.ns_per_period?,
+            right_hand_sides: next.rhs_per_period?,
+            a_switch: entry.periods / entry.switches as f64,
             floor: bench.floor.chained_ns,
-            right_hand_sides: next.rhs_per_period? * a_switch,
         };
         Some(it).filter(Self::is_one)
     }
 
-    /// Whether the lead is less than [`ASKED`].
+    /// Whether the lead is less than [`ASKED`], in a run that has switches.
     #[must_use]
     pub fn is_one(&self) -> bool {
-        self.ratio < ASKED
+        self.ratio < ASKED && self.a_switch.is_finite()
     }
 }
 
 impl fmt::Display for Shortfall<'_> {
     fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { case, engine, ratio, exact, floor, right_hand_sides } = *self;
+        let Self { case, engine, ratio, a_switch, floor, .. } = *self;
+        let (exact, right_hand_sides) = (self.exact * a_switch, self.right_hand_sides * a_switch);
         let asked = exact * ratio / ASKED;
         write!(
             out,

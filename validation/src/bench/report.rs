@@ -8,6 +8,7 @@ use super::length::Length;
 use super::rounds::Series;
 use crate::build::Build;
 use crate::engine::Stepping;
+use crate::number::shortest;
 use serde::Serialize;
 
 /// A whole bench.
@@ -61,6 +62,18 @@ pub struct Row {
     pub adaptive: bool,
     /// Why there is no time.
     pub why: Option<String>,
+}
+
+impl Row {
+    /// The tolerance or the step, as tables show it.
+    #[must_use]
+    pub fn setting(&self) -> String {
+        match (self.tolerance, self.step) {
+            (Some(tolerance), _) => shortest(tolerance),
+            (_, Some(step)) => format!("h {step}"),
+            _ => "-".to_owned(),
+        }
+    }
 }
 
 /// The floor, ns an evaluation.

@@ -49,7 +49,7 @@ fn reasons(bench: &Bench) -> String {
     let last = bench.cases.iter().flat_map(|entry| best(bench, &entry.case));
     let reason = |row: &Row| {
         let why = row.why.as_ref()?;
-        Some(format!("no time: {} {} {}: {why}\n", row.case, row.engine, setting(row)))
+        Some(format!("no time: {} {} {}: {why}\n", row.case, row.engine, row.setting()))
     };
     last.filter_map(reason).collect()
 }
@@ -69,7 +69,7 @@ fn cells(case: &str, row: &Row) -> [String; 8] {
     [
         case.to_owned(),
         row.engine.to_owned(),
-        setting(row),
+        row.setting(),
         figure(row.ns_per_period, |it| format!("{it:.0}")),
         figure(row.state_error_max, brief),
         figure(row.event_time_error_max, brief),
@@ -80,14 +80,6 @@ fn cells(case: &str, row: &Row) -> [String; 8] {
 
 fn ratio(value: f64) -> String {
     if value < 10.0 { format!("{value:.2}") } else { format!("{value:.0}") }
-}
-
-fn setting(row: &Row) -> String {
-    match (row.tolerance, row.step) {
-        (Some(tolerance), _) => crate::number::shortest(tolerance),
-        (_, Some(step)) => format!("h {step}"),
-        _ => "-".to_owned(),
-    }
 }
 
 fn switches(bench: &Bench) -> String {
