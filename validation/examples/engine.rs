@@ -1,16 +1,13 @@
-//! Heun's method with fixed steps, scored on its switches as the engines of the suite are.
+//! Heun's method with fixed steps: an engine in a crate of its own, scored and reported by the whole program.
 //!
-//! `cargo run --release -p percuss-validation --example engine`
+//! `cargo run --release -p percuss-validation --example engine -- validate -e '^(exact|heun)$'`
 
 use percuss::Phase;
-use percuss_validation::case::{defaults, embedded};
 use percuss_validation::engine::{
     Accuracy, Declaration, Engine, Equations, Event, Failure, Limits, Location, Oscillator,
-    Outcome, Stepping, Task, Work, exact, shortest_time,
+    Outcome, Stepping, Task, Work, shortest_time,
 };
-use percuss_validation::report::{Evidence, Report, screen};
-use percuss_validation::suite::{Suite, prepare, run};
-use percuss_validation::truth::Library;
+use std::process::ExitCode;
 
 /// Heun's method: a step of Euler, then one by the trapezoidal rule.
 struct Heun;
@@ -108,21 +105,7 @@ impl Walk {
     }
 }
 
-/// The method beside the exact solver on two cases, held to the bounds of every engine.
-pub fn scored() -> anyhow::Result<String> {
-    const CASES: [&str; 2] = ["impact-into-progression", "stiff-xi-0-3"];
-    let chosen =
-        embedded()?.into_iter().filter(|case| CASES.contains(&case.name.as_str())).collect();
-    let cases = prepare(chosen, &Library::embedded()?, Suite::Quick)?;
-    let engines: [&'static dyn Engine; 2] = [exact(), &Heun];
-    let rows = run(&cases, &engines, Suite::Quick, &defaults()?, &|| ());
-    let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
-    let report = Report::new(Suite::Quick, &declarations, &rows);
-    let evidence = Evidence::gather(&cases, &rows, &[], true);
-    Ok(screen(&report, &evidence, true))
-}
-
-fn main() -> anyhow::Result<()> {
-    print!("{}", scored()?);
-    Ok(())
+/// The whole command line of percuss, with this engine beside its own.
+pub fn main() -> ExitCode {
+    percuss_validation::cli::run_with(&[&Heun], std::env::args_os())
 }

@@ -4,10 +4,6 @@
 
 mod support;
 
-#[path = "../examples/engine.rs"]
-#[allow(dead_code, reason = "its main only prints")]
-mod engine;
-
 use std::path::{Path, PathBuf};
 use support::{percuss, text};
 
@@ -104,12 +100,12 @@ fn the_tables_of_a_case_are_made_as_is_said() {
     }
 }
 
+/// What its command prints is compared in the test `own_engine`, which runs it as a program of its own.
 #[test]
 fn adding_an_engine() {
     let section = section("Add an engine");
     assert_eq!(block(&section, "rust"), read("validation/examples/engine.rs"));
     let commands = console(&section);
-    let [(command, shown)] = &commands[..] else { panic!("one command: {commands:?}") };
-    assert_eq!(command, "cargo run --release -p percuss-validation --example engine");
-    agree(&engine::scored().expect("it is scored"), shown);
+    let [(command, _)] = &commands[..] else { panic!("one command: {commands:?}") };
+    assert!(command.starts_with("cargo run --release -p percuss-validation --example engine -- "));
 }

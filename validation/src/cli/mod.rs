@@ -18,6 +18,7 @@ mod simulate;
 mod validate;
 mod work;
 
+use crate::engine::{self, Engine};
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
@@ -56,6 +57,20 @@ enum Verb {
     Bench(bench::Arguments),
     Orbit(Box<orbits::find::Arguments>),
     Continue(Box<orbits::follow::Arguments>),
+}
+
+/// Runs the command line with engines of another crate beside those of this one, and says how it went.
+pub fn run_with(
+    own: &[&'static dyn Engine],
+    arguments: impl IntoIterator<Item = OsString>,
+) -> ExitCode {
+    match engine::add(own) {
+        Ok(()) => run(arguments),
+        Err(failure) => {
+            say(&failure.to_string());
+            ExitCode::from(REFUSED)
+        }
+    }
 }
 
 /// Runs the command line and says how it went.

@@ -35,7 +35,7 @@ pub use field::{Equations, GUARDS, Oscillator};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use order::claimed_order;
-pub use registry::{all, exact, select};
+pub use registry::{add, all, exact, select};
 pub use trace::{Look, Trace, Watched};
 pub(crate) use wrong::Closed;
 pub use wrong::{CONTROL, FAULTY_CONTROL, SOUND, Wrong, faulty, wrong};

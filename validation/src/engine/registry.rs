@@ -3,6 +3,7 @@
 use super::exact::Exact;
 use super::{Engine, Failure, differential_equations, diffsol, ode_solvers};
 use regex::Regex;
+use std::sync::OnceLock;
 
 static ENGINES: [&dyn Engine; 18] = [
     &Exact,
@@ -25,10 +26,34 @@ static ENGINES: [&dyn Engine; 18] = [
     &differential_equations::BDF,
 ];
 
+/// The engines of this program, with those that were added.
+static EVERY: OnceLock<Vec<&'static dyn Engine>> = OnceLock::new();
+
 /// Every engine, the exact solver first.
 #[must_use]
 pub fn all() -> &'static [&'static dyn Engine] {
-    &ENGINES
+    EVERY.get_or_init(|| ENGINES.to_vec())
+}
+
+/// Adds engines of another crate to those of this program, until it ends.
+///
+/// # Errors
+/// A name that is taken or begins with `exact`, which marks the reference; or engines that are added after
+/// any was asked for.
+pub fn add(own: &[&'static dyn Engine]) -> Result<(), Failure> {
+    let mut every = ENGINES.to_vec();
+    for engine in own {
+        let name = engine.declaration().name;
+        if name.starts_with("exact") || every.iter().any(|it| it.declaration().name == name) {
+            return Err(Failure::new(format!(
+                "an engine cannot be called {name:?}: accepted is a name of its own that does not begin with exact"
+            )));
+        }
+        every.push(*engine);
+    }
+    EVERY
+        .set(every)
+        .map_err(|_| Failure::new("engines can be added once, before any engine is asked for"))
 }
 
 /// The exact solver.

@@ -1,0 +1,137 @@
+//! The example of an engine in a crate of its own: what its author gets from the whole program.
+//!
+//! This test is a program of its own as well. Called with a verb it is the example, whose output is then
+//! that of a process and can be read.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
+
+#[path = "../examples/engine.rs"]
+mod engine;
+
+use percuss_validation::engine as engines;
+use serde_json::Value;
+use std::path::Path;
+use std::process::{Command, ExitCode, Output};
+
+fn main() -> ExitCode {
+    match std::env::args().nth(1).as_deref() {
+        Some("validate" | "engines" | "bench") => return engine::main(),
+        // A test runner asks what tests there are.
+        Some("--list") => return ExitCode::SUCCESS,
+        _ => {}
+    }
+    names_that_mislead_are_refused();
+    the_report_is_whole();
+    it_is_an_engine_of_every_verb();
+    its_accuracy_is_held_to_a_baseline();
+    the_pages_show_what_it_does();
+    ExitCode::SUCCESS
+}
+
+fn example(arguments: &[&str]) -> Output {
+    let program = std::env::current_exe().expect("this test");
+    Command::new(program).args(arguments).output().expect("it runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+const CHOSEN: [&str; 5] = ["validate", "-e", "^(exact|heun)$", "-c", "^impact-into-progression$"];
+
+fn scored(out: &Path, more: &[&str]) -> (Option<i32>, String) {
+    let out = out.display().to_string();
+    let output = example(&[&CHOSEN[..], &["--out", &out], more].concat());
+    (output.status.code(), text(&output.stdout) + &text(&output.stderr))
+}
+
+fn read(file: &Path) -> String {
+    std::fs::read_to_string(file).unwrap_or_else(|error| panic!("{}: {error}", file.display()))
+}
+
+/// Table, HTML, JSON, CSV and JUnit hold the engine's rows.
+fn the_report_is_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let (code, said) = scored(folder.path(), &[]);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(said.contains("heun"), "{said}");
+    for name in ["report.html", "errors.csv", "junit.xml"] {
+        assert!(read(&folder.path().join(name)).contains("heun"), "{name}");
+    }
+    let report: Value =
+        serde_json::from_str(&read(&folder.path().join("report.json"))).expect("JSON");
+    let engines = report["engines"].as_array().expect("engines");
+    assert!(
+        engines.iter().any(|it| it["name"] == "heun" && it["version"] == "1.0.0"),
+        "{engines:?}"
+    );
+    let rows = report["results"].as_array().expect("rows");
+    let own: Vec<_> = rows.iter().filter(|row| row["engine"] == "heun").collect();
+    assert!(own.len() > 1 && own.iter().all(|row| row["status"] == "ok"), "{own:?}");
+}
+
+fn it_is_an_engine_of_every_verb() {
+    let listed = text(&example(&["engines", "--format", "csv"]).stdout);
+    assert!(listed.lines().any(|line| line.starts_with("heun,an example,1.0.0,")), "{listed}");
+    assert_eq!(listed.lines().count(), 2 + engines::all().len());
+    let raced = example(&["bench", "-e", "^heun$", "-c", "^impact-into", "--rounds", "1"]);
+    assert!(text(&raced.stdout).contains("heun"), "{}", text(&raced.stderr));
+}
+
+/// A baseline in which the engine was ten times as accurate.
+fn its_accuracy_is_held_to_a_baseline() {
+    let folder = tempfile::tempdir().expect("a folder");
+    scored(folder.path(), &[]);
+    let file = folder.path().join("report.json");
+    let mut report: Value = serde_json::from_str(&read(&file)).expect("JSON");
+    let baseline = folder.path().join("baseline.json");
+    let path = baseline.display().to_string();
+    std::fs::write(&baseline, report.to_string()).expect("written");
+    let (code, said) = scored(folder.path(), &["--baseline", &path]);
+    assert_eq!(code, Some(0), "{said}");
+    let rows = report["results"].as_array_mut().expect("rows");
+    for row in rows.iter_mut().filter(|row| row["engine"] == "heun") {
+        for statistic in ["median", "q99", "max"] {
+            let error = &mut row["state_error"][statistic];
+            *error = error.as_f64().map_or(Value::Null, |it| Value::from(0.1 * it));
+        }
+    }
+    std::fs::write(&baseline, report.to_string()).expect("written");
+    let (code, said) = scored(folder.path(), &["--baseline", &path]);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("heun"), "{said}");
+}
+
+fn names_that_mislead_are_refused() {
+    // This process has not asked for any engine yet, so that only the names can be at fault.
+    let refused = engines::add(&[engines::exact()]).expect_err("the reference is there already");
+    assert!(refused.0.contains("\"exact\""), "{refused}");
+    assert_eq!(engines::add(&[]), Ok(()));
+    let late = engines::add(&[]).expect_err("once only");
+    assert!(late.0.contains("before any engine"), "{late}");
+}
+
+/// The transcript of CONTRIBUTING.md, and the code of docs/AUTHORS.md.
+fn the_pages_show_what_it_does() {
+    const COMMAND: &str = "$ cargo run --release -p percuss-validation --example engine -- ";
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+    let page = read(&root.join("CONTRIBUTING.md"));
+    let (before, rest) = page.split_once(COMMAND).expect("a transcript");
+    let (arguments, rest) = rest.split_once('\n').expect("its command ends");
+    let (shown, after) = rest.split_once("```").expect("it ends");
+    let words: Vec<_> = arguments.split(' ').map(|it| it.trim_matches('\'')).collect();
+    let output = example(&words);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let printed = text(&output.stdout);
+    if std::env::var_os("PERCUSS_SPLICE").is_some() {
+        let page = format!("{before}{COMMAND}{arguments}\n{printed}```{after}");
+        std::fs::write(root.join("CONTRIBUTING.md"), page).expect("CONTRIBUTING.md is written");
+    } else if cfg!(all(target_arch = "x86_64", target_os = "linux")) {
+        // The last digits of an error are those of one platform's sine.
+        assert_eq!(printed, shown, "PERCUSS_SPLICE=1 cargo test --test own_engine");
+    }
+    let page = read(&root.join("docs/AUTHORS.md"));
+    let (_, code) = page.split_once("```rust\n").expect("code");
+    let (code, _) = code.split_once("```").expect("it ends");
+    assert!(read(&root.join("validation/examples/engine.rs")).contains(code), "{code}");
+}
