@@ -1,18 +1,18 @@
 //! Which program this is, and where it runs.
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What every report and every file of a bench begins with.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Build {
     /// The format's number.
     pub schema: u32,
     /// The program's version.
-    pub percuss: &'static str,
+    pub percuss: String,
     /// The commit it was built from, where that is known.
-    pub commit: Option<&'static str>,
+    pub commit: Option<String>,
     /// The compiler.
-    pub rustc: &'static str,
+    pub rustc: String,
     /// The processor that runs it.
     pub cpu: String,
 }
@@ -24,9 +24,9 @@ impl Build {
         let commit = env!("PERCUSS_COMMIT");
         Self {
             schema: 1,
-            percuss: env!("CARGO_PKG_VERSION"),
-            commit: (!commit.is_empty()).then_some(commit),
-            rustc: env!("PERCUSS_RUSTC"),
+            percuss: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: (!commit.is_empty()).then(|| commit.to_owned()),
+            rustc: env!("PERCUSS_RUSTC").to_owned(),
             cpu: cpu(),
         }
     }

@@ -184,8 +184,32 @@ fn bench() {
     assert_eq!(exact[0]["tolerance"], Value::Null);
     // A decade of tolerance a row; one of them is its most accurate.
     let ladder = of("impact-into-progression", "ode_solvers-dopri5");
-    assert_eq!(ladder.len(), 8);
+    assert_eq!(ladder.len(), 10);
     assert_eq!(ladder.iter().filter(|row| row["most_accurate"] == true).count(), 1);
+    // The same work-precision curve on every row of an engine; the exact solver is its own unit at any error.
+    for key in ["ratio_at_1e-6", "ratio_at_1e-9"] {
+        assert!(ladder.iter().all(|row| row[key] == ladder[0][key]), "{key}");
+        assert_eq!(exact[0][key], 1.0);
+    }
+    // Dearer at a smaller error, and at most what the settings around it take.
+    let ratio = |key: &str| ladder[0][key].as_f64().expect("its curve reaches it");
+    assert!(ratio("ratio_at_1e-6") <= ratio("ratio_at_1e-9"));
+    let accurate = ladder.iter().filter(|row| row["state_error_max"].as_f64() <= Some(1e-9));
+    let least = accurate.filter_map(|row| row["ratio_to_exact"].as_f64()).reduce(f64::min);
+    assert!(Some(ratio("ratio_at_1e-9")) <= least);
+    // What the harness adds can be told of every engine that is right somewhere; its search for events is
+    // most of what it adds.
+    let share = |row: &Value| row["harness_share"].as_f64();
+    assert!(
+        rows.iter().filter(|row| row["ns_per_period"].is_number()).all(|it| share(it).is_some())
+    );
+    // One time of an event: that of the run.
+    let event = bench["events"][0].clone();
+    let (entry, number) = (&bench["cases"][0], |it: &Value| it.as_f64().expect("a number"));
+    assert_eq!(event["case"], entry["case"]);
+    let ns =
+        number(&exact[0]["ns_per_period"]) * number(&entry["periods"]) / number(&entry["events"]);
+    assert_eq!(number(&event["ns_per_event"]), ns);
     // What is wrong, or dearer than a second, has no time and says why.
     for row in &rows {
         let timed = row["ns_per_period"].is_number();

@@ -29,6 +29,10 @@ pub struct Timed {
     pub work: Work,
     /// The best time of each round, ns a forcing period.
     pub series: Series,
+    /// What share of the time is the harness's own: one less the median over the rounds of that round's
+    /// quotient, the engine's part alone ([`super::alone`]) over the whole run. Timing leaves a share that is
+    /// next to nothing within a per cent or two of zero, on either side.
+    pub harness_share: Option<f64>,
 }
 
 /// Races all contestants at all their settings.
@@ -50,31 +54,46 @@ pub fn contest_at(
     rounds: usize,
     done: &dyn Fn(),
 ) -> Vec<Finisher> {
-    let mut heats: Vec<Result<Box<dyn Heat + '_>, Failure>> = Vec::new();
+    let mut entries: Vec<Result<Entry<'_>, Failure>> = Vec::new();
     for (contestant, setting) in asked {
-        heats.push(qualified(*contestant, course, *setting));
+        entries.push(qualified(*contestant, course, *setting));
         done();
     }
-    let mut racers: Vec<&mut dyn Racer> =
-        heats.iter_mut().flatten().map(|heat| &mut **heat as &mut dyn Racer).collect();
+    let mut racers: Vec<&mut dyn Racer> = Vec::new();
+    for Entry { heat, alone } in entries.iter_mut().flatten() {
+        racers.push(&mut **heat);
+        if let Some(alone) = alone {
+            racers.push(&mut **alone);
+        }
+    }
     // Those that are out take no time; their share of the work is done.
-    (0..rounds * (asked.len() - racers.len())).for_each(|_| done());
+    (0..rounds * (2 * asked.len() - racers.len())).for_each(|_| done());
     let mut raced = race(&mut racers, rounds, PACE, done).into_iter();
-    let mut result = |heat: Result<Box<dyn Heat + '_>, Failure>| {
-        let heat = heat?;
-        let series = raced.next().unwrap_or_else(|| Err(Failure::new("not raced")))?;
+    let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced")));
+    let mut result = |entry: Result<Entry<'_>, Failure>| {
+        let Entry { heat, alone } = entry?;
+        let (whole, alone) = (next(), alone.map(|_| next()));
+        let whole = whole?;
+        let share = alone.and_then(Result::ok).map(|alone| 1.0 - alone.ratio_to(&whole));
         let scale = 1.0 / (heat.runs() * course.periods());
-        let series = Series(series.0.into_iter().map(|time| time * scale).collect());
-        Ok(Timed { score: heat.score()?, work: heat.work(), series })
+        let series = Series(whole.0.into_iter().map(|time| time * scale).collect());
+        let harness_share = share.filter(|it| it.is_finite());
+        Ok(Timed { score: heat.score()?, work: heat.work(), series, harness_share })
     };
-    let finisher = |((contestant, setting), heat): (&(&dyn Contestant, Accuracy), _)| Finisher {
+    let finisher = |((contestant, setting), entry): (&(&dyn Contestant, Accuracy), _)| Finisher {
         name: contestant.name(),
         library: contestant.library(),
         stepping: contestant.stepping(),
         setting: *setting,
-        result: result(heat),
+        result: result(entry),
     };
-    asked.iter().zip(heats).map(finisher).collect()
+    asked.iter().zip(entries).map(finisher).collect()
+}
+
+/// A contestant at a setting, and right after it its part alone where that can be timed.
+struct Entry<'a> {
+    heat: Box<dyn Heat + 'a>,
+    alone: Option<Box<dyn Racer + 'a>>,
 }
 
 /// Those whose answer is right are raced.
@@ -82,18 +101,18 @@ fn qualified<'a>(
     contestant: &'a dyn Contestant,
     course: &'a Course,
     setting: Accuracy,
-) -> Result<Box<dyn Heat + 'a>, Failure> {
+) -> Result<Entry<'a>, Failure> {
     let mut heat = contestant.enter(course, setting)?;
     heat.call()?;
     heat.score()?;
-    Ok(heat)
+    Ok(Entry { heat, alone: contestant.alone(course, setting)? })
 }
 
 /// How much work a contest is, for progress.
 #[must_use]
 pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
     let settings: usize = contestants.iter().map(|it| ladder(it.stepping()).len()).sum();
-    (settings * (rounds + 1)) as u64
+    (settings * (2 * rounds + 1)) as u64
 }
 
 /// The exact solver's row, which all others are held against.

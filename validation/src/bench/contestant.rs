@@ -4,6 +4,7 @@
 //! ([`super::lanes`]), implements [`Contestant`] in a file of its own and is named in
 //! [`super::registry`].
 
+use super::alone::alone;
 use super::course::{Course, Score};
 use super::rounds::Racer;
 use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Stepping, Work, contain};
@@ -32,6 +33,18 @@ pub trait Contestant: Sync {
         course: &'a Course,
         setting: Accuracy,
     ) -> Result<Box<dyn Heat + 'a>, Failure>;
+
+    /// Its part of a run without the harness's; nothing where that cannot be told apart.
+    ///
+    /// # Errors
+    /// Why it does not run there, or is not the same run then.
+    fn alone<'a>(
+        &'a self,
+        _course: &'a Course,
+        _setting: Accuracy,
+    ) -> Result<Option<Box<dyn Racer + 'a>>, Failure> {
+        Ok(None)
+    }
 }
 
 /// A contestant on a course. What is timed is its `call`.
@@ -74,6 +87,18 @@ impl Contestant for Entered {
     ) -> Result<Box<dyn Heat + 'a>, Failure> {
         enter(self.0, course, setting)
     }
+
+    fn alone<'a>(
+        &'a self,
+        course: &'a Course,
+        setting: Accuracy,
+    ) -> Result<Option<Box<dyn Racer + 'a>>, Failure> {
+        alone(self.0, course, setting, limits())
+    }
+}
+
+fn limits() -> Limits {
+    Limits { calls: BUDGET, ..Limits::default() }
 }
 
 /// An engine made ready for a course.
@@ -105,9 +130,8 @@ struct EngineHeat<'a> {
 
 impl Racer for EngineHeat<'_> {
     fn call(&mut self) -> Result<(), Failure> {
-        let limits = Limits { calls: BUDGET, ..Limits::default() };
         let Self { engine, course, setting, .. } = self;
-        self.answer = contain(|| engine.run(&course.task, *setting, &limits))?;
+        self.answer = contain(|| engine.run(&course.task, *setting, &limits()))?;
         Ok(())
     }
 
@@ -126,10 +150,11 @@ impl Heat for EngineHeat<'_> {
     }
 }
 
-/// What a contestant is asked for: every decade of tolerance down to where rounding rules, or halved steps.
+/// What a contestant is asked for: every decade of tolerance from where events are first found right down to
+/// where rounding rules, or halved steps.
 #[must_use]
 pub fn ladder(stepping: Stepping) -> Vec<Accuracy> {
-    const TOLERANCES: [f64; 8] = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13];
+    const TOLERANCES: [f64; 10] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13];
     match stepping {
         Stepping::Exact => vec![Accuracy::Exact],
         Stepping::Fixed { .. } => (2..=6).map(|k| Accuracy::Step(0.5_f64.powi(k))).collect(),

@@ -67,9 +67,9 @@ impl Record {
         let Figures { evaluations_per_switch, state_error_max, .. } = figures;
         Self {
             schema,
-            percuss: percuss.to_owned(),
-            commit: commit.map(str::to_owned),
-            rustc: rustc.to_owned(),
+            percuss,
+            commit,
+            rustc,
             target_cpu: TARGET_CPU.to_owned(),
             cpu,
             bench: bench.to_owned(),

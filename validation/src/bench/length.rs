@@ -20,7 +20,7 @@ const LEAST: f64 = 2e7;
 const CLOSED: f64 = 1e-12;
 
 /// One length.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 #[allow(missing_docs, reason = "the keys of bench.json, explained in its schema")]
 pub struct Length {
     pub periods: u64,

@@ -1,10 +1,11 @@
 //! Speed: every engine against the exact solver in interleaved rounds, each answer checked against the
-//! truth; what a switch costs against the floor; versions against each other.
+//! truth; what an event costs against the floor; versions against each other.
 //!
 //! A time means something only beside another that was taken in the same rounds ([`rounds`]), of an answer
 //! that was right ([`course`]). Who is timed is a [`contestant`]; what versions are compared by, a
 //! [`workload`].
 
+pub mod alone;
 pub mod cases;
 pub mod clock;
 pub mod compare;
@@ -12,7 +13,9 @@ pub mod contest;
 pub mod contestant;
 pub mod course;
 pub mod damping;
+pub mod equal_accuracy;
 pub mod floor;
+mod grid;
 pub mod history;
 pub mod instructions;
 pub mod lanes;
@@ -22,9 +25,11 @@ mod pictures;
 pub mod registry;
 pub mod report;
 pub mod rounds;
+mod summary;
 pub mod table;
 pub mod workload;
 
 pub use pictures::{history as history_picture, pictures};
 pub use report::Bench;
+pub use summary::summary;
 pub use table::table;

@@ -40,7 +40,8 @@ fn work_precision(bench: &Bench, case: &str) -> Curves {
     let rows: Vec<&Row> = bench.results.iter().filter(|row| row.case == case).collect();
     let point = |row: &&Row| Some((row.ns_per_period?, row.state_error_max?));
     let curves = rows.chunk_by(|a, b| a.engine == b.engine);
-    let curves = curves.filter_map(|own| Some((own.first()?.engine, own.iter().filter_map(point))));
+    let curves =
+        curves.filter_map(|own| Some((own.first()?.engine.as_str(), own.iter().filter_map(point))));
     let curves = curves.map(|(engine, points)| curve(engine, points.collect()));
     Curves {
         title: format!("Work-precision: {case}"),
@@ -89,8 +90,8 @@ fn length(bench: &Bench) -> Curves {
 fn damping(bench: &Bench) -> Curves {
     let mut names: Vec<&str> = Vec::new();
     for row in &bench.damping {
-        if !names.contains(&row.engine) {
-            names.push(row.engine);
+        if !names.contains(&row.engine.as_str()) {
+            names.push(&row.engine);
         }
     }
     let point = |row: &Damped| Some((row.xi, row.ns_per_period?));

@@ -3,16 +3,17 @@
 use super::contest::{Finisher, exact, most_accurate};
 use super::course::Course;
 use super::damping::Rung;
+use super::equal_accuracy::{Corner, time_at};
 use super::floor::Floors;
+use super::lead::{Basis, LOOSE, TIGHT};
 use super::length::Length;
-use super::rounds::Series;
 use crate::build::Build;
 use crate::engine::Stepping;
 use crate::number::shortest;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A whole bench.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Bench {
     /// The format's number, and what was run where.
     #[serde(flatten)]
@@ -25,8 +26,8 @@ pub struct Bench {
     pub results: Vec<Row>,
     /// What one evaluation costs at the least.
     pub floor: Floor,
-    /// What the exact solver takes a switch.
-    pub switches: Vec<Switch>,
+    /// What the exact solver takes for an event of each case's run.
+    pub events: Vec<EventCost>,
     /// Cost against length; empty where only some cases were asked for.
     pub length: Vec<Length>,
     /// Cost against xi; empty alike.
@@ -34,27 +35,43 @@ pub struct Bench {
 }
 
 /// A course.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
 pub struct CaseEntry {
     pub case: String,
     pub regime: String,
     pub periods: f64,
-    pub switches: usize,
+    pub events: usize,
+}
+
+impl CaseEntry {
+    /// A figure of a forcing period as one of an event; nothing for a run without events.
+    #[must_use]
+    pub fn per_event(&self, per_period: f64) -> Option<f64> {
+        (self.events > 0).then(|| per_period * self.periods / self.events as f64)
+    }
 }
 
 /// One contestant at one setting on one case. What there is not is null.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are those of the command line's contract")]
 pub struct Row {
     pub case: String,
-    pub engine: &'static str,
+    pub engine: String,
     pub tolerance: Option<f64>,
     pub step: Option<f64>,
     pub ns_per_period: Option<f64>,
     pub state_error_max: Option<f64>,
     pub event_time_error_max: Option<f64>,
     pub ratio_to_exact: Option<f64>,
+    /// The same at errors of at most 1e-6, read off this engine's work-precision curve on this case.
+    #[serde(rename = "ratio_at_1e-6")]
+    pub ratio_at_1e_6: Option<f64>,
+    /// The same at errors of at most 1e-9.
+    #[serde(rename = "ratio_at_1e-9")]
+    pub ratio_at_1e_9: Option<f64>,
+    /// Share of the time that is the harness's own ([`super::alone`]).
+    pub harness_share: Option<f64>,
     pub rhs_per_period: Option<f64>,
     /// Whether this is the setting at which this engine errs least here.
     pub most_accurate: bool,
@@ -74,35 +91,74 @@ impl Row {
             _ => "-".to_owned(),
         }
     }
+
+    /// How many times as long as the exact solver its engine takes on this basis.
+    #[must_use]
+    pub fn ratio(&self, basis: Basis) -> Option<f64> {
+        match basis {
+            Basis::MostAccurate => self.ratio_to_exact,
+            Basis::Tight => self.ratio_at_1e_9,
+            Basis::Loose => self.ratio_at_1e_6,
+        }
+    }
+
+    /// Whether this setting is as accurate as the basis asks.
+    #[must_use]
+    pub fn meets(&self, basis: Basis) -> bool {
+        let errs_at_most = |most| self.state_error_max.is_some_and(|error| error <= most);
+        match basis {
+            Basis::MostAccurate => self.most_accurate,
+            Basis::Tight => errs_at_most(TIGHT),
+            Basis::Loose => errs_at_most(LOOSE),
+        }
+    }
 }
 
 /// The floor, ns an evaluation.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
 pub struct Floor {
     pub chained_ns: f64,
     pub independent_ns: f64,
 }
 
-/// What a switch costs.
-#[derive(Clone, Debug, Serialize)]
+/// What the exact solver takes for an event of a case's run, everything that is timed divided by its events.
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
-pub struct Switch {
+pub struct EventCost {
     pub case: String,
-    pub evaluations_per_switch: Option<f64>,
-    pub ns_per_switch: Option<f64>,
-    /// In units of the chained floor, then of the independent one.
-    pub floors_per_switch: Option<f64>,
-    pub independent_floors_per_switch: Option<f64>,
+    pub evaluations_per_event: Option<f64>,
+    pub ns_per_event: Option<f64>,
+    /// In units of the floor of dependent evaluations, then of independent ones.
+    pub floors_per_event: Option<f64>,
+    pub independent_floors_per_event: Option<f64>,
     pub why: Option<String>,
 }
 
+impl EventCost {
+    /// The cost by the exact solver's row on a case.
+    #[must_use]
+    pub fn of(case: &CaseEntry, exact: Option<&Row>, floor: Floor) -> Self {
+        let per_event = |it: Option<f64>| it.and_then(|it| case.per_event(it));
+        let ns = per_event(exact.and_then(|row| row.ns_per_period));
+        let without = (case.events == 0).then(|| "the run has no event".to_owned());
+        Self {
+            case: case.case.clone(),
+            evaluations_per_event: per_event(exact.and_then(|row| row.rhs_per_period)),
+            ns_per_event: ns,
+            floors_per_event: ns.map(|it| it / floor.chained_ns),
+            independent_floors_per_event: ns.map(|it| it / floor.independent_ns),
+            why: exact.and_then(|row| row.why.clone()).or(without),
+        }
+    }
+}
+
 /// A contestant at one xi.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
 pub struct Damped {
     pub xi: f64,
-    pub engine: &'static str,
+    pub engine: String,
     pub tolerance: Option<f64>,
     pub ns_per_period: Option<f64>,
     pub state_error_max: Option<f64>,
@@ -113,7 +169,7 @@ pub struct Damped {
 pub struct Measured<'a> {
     /// The courses and who ran on each.
     pub contests: &'a [(&'a Course, Vec<Finisher>)],
-    /// The floor and the switches, one a course.
+    /// The floor.
     pub floors: &'a Floors,
     /// The lengths.
     pub length: Vec<Length>,
@@ -126,17 +182,19 @@ impl Bench {
     #[must_use]
     pub fn new(rounds: usize, measured: Measured<'_>) -> Self {
         let Measured { contests, floors, length, damping } = measured;
-        let courses = contests.iter().map(|(course, _)| *course);
+        let cases: Vec<_> = contests.iter().map(|(course, _)| entry(course)).collect();
+        let results: Vec<_> = contests.iter().flat_map(|(course, all)| rows(course, all)).collect();
+        let floor =
+            Floor { chained_ns: floors.chained.best(), independent_ns: floors.independent.best() };
+        let exact = |case: &str| results.iter().find(|it| it.case == case && it.engine == "exact");
+        let cost = |it: &CaseEntry| EventCost::of(it, exact(&it.case), floor);
         Self {
             build: Build::this(),
             rounds,
-            cases: courses.clone().map(entry).collect(),
-            results: contests.iter().flat_map(|(course, all)| rows(course, all)).collect(),
-            floor: Floor {
-                chained_ns: floors.chained.best(),
-                independent_ns: floors.independent.best(),
-            },
-            switches: courses.enumerate().map(|(i, it)| switch(it, floors, i)).collect(),
+            events: cases.iter().map(cost).collect(),
+            cases,
+            results,
+            floor,
             length,
             damping: damping.iter().flat_map(damped).collect(),
         }
@@ -148,7 +206,7 @@ fn entry(course: &Course) -> CaseEntry {
         case: course.name.clone(),
         regime: course.regime.clone(),
         periods: course.periods(),
-        switches: course.truth.switches.len(),
+        events: course.truth.switches.len(),
     }
 }
 
@@ -159,13 +217,16 @@ fn rows(course: &Course, finishers: &[Finisher]) -> Vec<Row> {
         let best = most_accurate(finishers, it.name).is_some_and(|best| std::ptr::eq(best, it));
         Row {
             case: course.name.clone(),
-            engine: it.name,
+            engine: it.name.to_owned(),
             tolerance: it.setting.tolerance(),
             step: it.setting.step(),
             ns_per_period: timed.map(|it| it.series.typical()),
             state_error_max: timed.map(|it| it.score.state_error),
             event_time_error_max: timed.map(|it| it.score.event_time_error),
             ratio_to_exact: timed.map(|it| it.series.ratio_to(&unit)).filter(|it| it.is_finite()),
+            ratio_at_1e_6: None,
+            ratio_at_1e_9: None,
+            harness_share: timed.and_then(|it| it.harness_share),
             rhs_per_period: timed
                 .map(|it| it.work.rhs_evaluations)
                 .filter(|it| *it > 0)
@@ -175,22 +236,22 @@ fn rows(course: &Course, finishers: &[Finisher]) -> Vec<Row> {
             why: it.result.as_ref().err().map(ToString::to_string),
         }
     };
-    finishers.iter().map(row).collect()
+    at_equal_accuracy(finishers.iter().map(row).collect())
 }
 
-fn switch(course: &Course, floors: &Floors, i: usize) -> Switch {
-    let cost = floors.switches.get(i).and_then(|it| it.as_ref().ok());
-    let failed = floors.switches.get(i).and_then(|it| it.as_ref().err());
-    // Least times: a neighbour on the same core slows a switch down, and the chained floor hardly.
-    let in_units_of = |floor: &Series| cost.map(|it| it.series.best() / floor.best());
-    Switch {
-        case: course.name.clone(),
-        evaluations_per_switch: cost.map(|it| it.evaluations),
-        ns_per_switch: cost.map(|it| it.series.best()),
-        floors_per_switch: in_units_of(&floors.chained),
-        independent_floors_per_switch: in_units_of(&floors.independent),
-        why: failed.map(ToString::to_string),
+/// Reads each engine's work-precision curve at [`LOOSE`] and [`TIGHT`]. Its times are ratios to the exact solver's, so that
+/// what the machine did otherwise in a round is out of them already.
+fn at_equal_accuracy(mut rows: Vec<Row>) -> Vec<Row> {
+    for own in rows.chunk_by_mut(|a, b| a.engine == b.engine) {
+        let corner =
+            |row: &Row| Some(Corner { error: row.state_error_max?, time: row.ratio_to_exact? });
+        let curve: Vec<_> = own.iter().map(corner).collect();
+        for row in own {
+            row.ratio_at_1e_6 = time_at(&curve, LOOSE);
+            row.ratio_at_1e_9 = time_at(&curve, TIGHT);
+        }
     }
+    rows
 }
 
 fn damped(rung: &Rung) -> Vec<Damped> {
@@ -198,7 +259,7 @@ fn damped(rung: &Rung) -> Vec<Damped> {
         let timed = it.result.as_ref().ok();
         Damped {
             xi: rung.xi,
-            engine: it.name,
+            engine: it.name.to_owned(),
             tolerance: it.setting.tolerance(),
             ns_per_period: timed.map(|it| it.series.typical()),
             state_error_max: timed.map(|it| it.score.state_error),

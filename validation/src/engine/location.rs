@@ -6,7 +6,7 @@
 //! interval is seen wherever the dense output shows it. Rates come from the equations of motion. The
 //! crossing itself is then narrowed down to the last bit.
 
-use super::field::{Equations, GUARDS};
+use super::field::{Equations, GUARDS, NO_GUARD};
 use super::joining::Moment;
 use super::meter::{Failure, Meter};
 use percuss::Phase;
@@ -65,6 +65,9 @@ impl<'a, E: Equations> Search<'a, E> {
         end: f64,
         state_at: &mut StateAt<'_>,
     ) -> Result<Option<Crossing>, Failure> {
+        if let Some(told) = self.meter.told() {
+            return Ok(told.up_to(end));
+        }
         self.meter.stepped(end);
         let width = (end - begin) / f64::from(INTERIOR);
         let mut left = self.look_at(begin, state_at)?;
@@ -86,6 +89,9 @@ impl<'a, E: Equations> Search<'a, E> {
         right: &Look,
         state_at: &mut StateAt<'_>,
     ) -> Result<Option<Crossing>, Failure> {
+        if let Some(told) = self.meter.told() {
+            return Ok(told.up_to(right.t));
+        }
         self.meter.stepped(right.t);
         self.within(left, right, state_at)
     }
@@ -109,6 +115,9 @@ impl<'a, E: Equations> Search<'a, E> {
 
     /// The guards of a known state.
     pub(super) fn look(&self, t: f64, state: &[f64; 4]) -> Look {
+        if self.meter.told().is_some() {
+            return Look { t, guards: [NO_GUARD; GUARDS], rates: [0.0; GUARDS] };
+        }
         let mut guards = self.equations.guards(self.phase, state);
         self.meter.guards(t, self.phase, &guards);
         if t == self.began {

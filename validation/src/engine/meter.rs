@@ -3,6 +3,7 @@
 //! A hung thread cannot be killed, so the limits are enforced where the library calls back, in the
 //! right-hand side and in the guards: they unwind to [`contain`].
 
+use super::alone::Told;
 use super::field::GUARDS;
 use super::trace::{Look, Recorder, Watched};
 use super::{Outcome, Work};
@@ -50,6 +51,8 @@ pub(super) struct Meter {
     solves: Cell<u64>,
     steps: Cell<u64>,
     recorder: OnceCell<Recorder>,
+    /// Where this run's events lie, if it is made without the harness's own part.
+    told: Option<Told>,
 }
 
 /// How often the clock is looked at, in calls.
@@ -67,11 +70,20 @@ impl Meter {
             solves: zero(),
             steps: zero(),
             recorder: OnceCell::new(),
+            told: Told::here(),
         }
+    }
+
+    /// Where this run's events lie, if it is made without the harness's own part ([`super::alone`]).
+    pub(super) fn told(&self) -> Option<&Told> {
+        self.told.as_ref()
     }
 
     /// Counts a right-hand side whose value is `derivatives`.
     pub(super) fn rhs(&self, derivatives: &[f64]) {
+        if self.told.is_some() {
+            return;
+        }
         self.rhs.set(self.rhs.get() + 1);
         // Some libraries loop for ever on a NaN.
         if derivatives.iter().any(|derivative| !derivative.is_finite()) {
@@ -82,12 +94,18 @@ impl Meter {
 
     /// Counts a Jacobian product.
     pub(super) fn jacobian(&self) {
+        if self.told.is_some() {
+            return;
+        }
         self.jacobians.set(self.jacobians.get() + 1);
         self.call();
     }
 
     /// Counts any call.
     pub(super) fn call(&self) {
+        if self.told.is_some() {
+            return;
+        }
         let calls = self.calls.get() + 1;
         self.calls.set(calls);
         if calls > self.limits.calls {

@@ -5,6 +5,7 @@
 //! the way an expert user of its library would; what that took stands in its module.
 
 mod accuracy;
+mod alone;
 mod answer;
 mod cubic;
 mod differential_equations;
@@ -30,6 +31,7 @@ mod watching;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
+pub use alone::Script;
 pub use answer::answer;
 pub use field::{Equations, GUARDS, Oscillator};
 pub use in_lanes::run_in_lanes;

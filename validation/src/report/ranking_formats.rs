@@ -103,7 +103,7 @@ struct Whole<'a> {
 fn json(report: &Report) -> io::Result<String> {
     let whole = Whole {
         schema: report.build.schema,
-        percuss: report.build.percuss,
+        percuss: &report.build.percuss,
         suite: report.suite,
         ranking: &report.ranking,
         summary: report.summary,

@@ -11,7 +11,7 @@ use crate::bench::contest::{self, Finisher, contest};
 use crate::bench::contestant::Contestant;
 use crate::bench::course::Course;
 use crate::bench::report::Measured;
-use crate::bench::{Bench, cases, damping, floor, length, pictures, registry, table, workload};
+use crate::bench::{Bench, cases, damping, floor, length, pictures, registry, table};
 use crate::case::{self, Case};
 use crate::engine::{Stepping, hush_contained_panics};
 use crate::truth::Library;
@@ -95,8 +95,7 @@ fn measured(
     let done = || bar.inc(1);
     // First, while the process holds nothing: its peak is then the run's own.
     let length = if whole { length::lengths(arguments.long, &done)? } else { Vec::new() };
-    let workloads = workload::all(courses);
-    let floors = floor::floors(&workloads, FLOOR_ROUNDS * rounds, &done)?;
+    let floors = floor::floors(&[], FLOOR_ROUNDS * rounds, &done)?;
     let contests: Vec<(&Course, Vec<Finisher>)> =
         courses.iter().map(|it| (it, contest(it, contestants, rounds, &done))).collect();
     let damping = if whole { damping::ladder(contestants, rounds, &done)? } else { Vec::new() };
@@ -105,7 +104,7 @@ fn measured(
     Ok(Bench::new(rounds, measured))
 }
 
-/// The floor and the switches take milliseconds a round.
+/// The floor takes milliseconds a round.
 const FLOOR_ROUNDS: usize = 5;
 
 fn bar(
@@ -115,8 +114,8 @@ fn bar(
     whole: bool,
 ) -> ProgressBar {
     let rounds = usize::from(arguments.rounds);
-    let mut size = courses as u64 * contest::size(contestants, rounds)
-        + floor::size(courses, FLOOR_ROUNDS * rounds);
+    let mut size =
+        courses as u64 * contest::size(contestants, rounds) + floor::size(0, FLOOR_ROUNDS * rounds);
     if whole {
         size += length::size(arguments.long) + damping::size(contestants, rounds);
     }

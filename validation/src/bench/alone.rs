@@ -1,0 +1,104 @@
+//! The part of an engine's run that is not the harness's: the same run, told where its events lie.
+//!
+//! What is left out is the harness's search for events, with the states inside a step that the search asks
+//! the library for, and the counts, checks and limits at every call. What stays is the library's stepping
+//! (with its own search for events, if the engine uses that), the right-hand sides, Jacobians and guards that
+//! the library calls, and the joining of phases at events. For the exact solver the table of events is left
+//! out. The answer has to be the same to the last bit.
+
+use super::course::Course;
+use super::rounds::Racer;
+use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Script, contain, exact};
+use percuss::Step;
+use std::hint::black_box;
+
+/// Rounds in which the run alone is timed: its share is known to a per cent after three.
+const ROUNDS: usize = 3;
+
+/// The library's part of an engine's run on a course; nothing for an engine of which nothing is left out.
+///
+/// # Errors
+/// Why the engine does not run there.
+pub fn alone<'a>(
+    engine: &'a dyn Engine,
+    course: &'a Course,
+    setting: Accuracy,
+    limits: Limits,
+) -> Result<Option<Box<dyn Racer + 'a>>, Failure> {
+    let answer = contain(|| engine.run(&course.task, setting, &limits))?;
+    if engine.declaration().name == exact().declaration().name {
+        return Ok(Some(Box::new(Stepped { course, end: answer.end, last: answer.end })));
+    }
+    let script = Script::of(course.task.phase, &answer.events);
+    let last = answer.clone();
+    let mut told = Told { engine, course, setting, limits, script, answer, last };
+    told.call()?;
+    told.check()?;
+    Ok(if told.script.was_read() { Some(Box::new(told)) } else { None })
+}
+
+/// An integrator's run that is told its events.
+struct Told<'a> {
+    engine: &'a dyn Engine,
+    course: &'a Course,
+    setting: Accuracy,
+    limits: Limits,
+    script: Script,
+    answer: Outcome,
+    last: Outcome,
+}
+
+impl Racer for Told<'_> {
+    fn call(&mut self) -> Result<(), Failure> {
+        let Self { engine, course, setting, limits, .. } = self;
+        let run = || contain(|| engine.run(&course.task, *setting, limits));
+        self.last = self.script.follow(run)?;
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), Failure> {
+        let same = self.last.events == self.answer.events && self.last.end == self.answer.end;
+        if same { Ok(()) } else { Err(Failure::new("not the same run when told its events")) }
+    }
+
+    fn rounds(&self) -> usize {
+        ROUNDS
+    }
+}
+
+/// The exact solver's steps to the horizon, without a table.
+struct Stepped<'a> {
+    course: &'a Course,
+    end: [f64; 4],
+    last: [f64; 4],
+}
+
+impl Racer for Stepped<'_> {
+    fn call(&mut self) -> Result<(), Failure> {
+        let task = &self.course.task;
+        let entry = black_box(task.problem.entry);
+        let mut run = task.problem.model.trajectory(entry).until(task.horizon);
+        while let Some(step) = run.step() {
+            match step {
+                Step::Switch { next, .. } => {
+                    black_box(next);
+                }
+                Step::Last(leg) => {
+                    let end = leg.at_instant(&task.horizon);
+                    self.last = [end.state.p, end.state.y, end.state.q, end.v];
+                    return Ok(());
+                }
+            }
+        }
+        Err(Failure::new("a run without end"))
+    }
+
+    fn check(&mut self) -> Result<(), Failure> {
+        let same = self.last == self.end;
+        if same { Ok(()) } else { Err(Failure::new("not the same run without its table")) }
+    }
+
+    fn rounds(&self) -> usize {
+        ROUNDS
+    }
+}

@@ -1,0 +1,93 @@
+//! What a bench says in brief: the cost of an event, and the closest competitor on each case.
+
+use super::grid::{plain, shown};
+use super::lead::{BASES, Shortfall, errs_least, lead, times};
+use super::report::{Bench, Row};
+use crate::number::brief;
+
+/// The exact solver's cost on each case, and its closest competitors at their most accurate and at equal
+/// accuracy. README.md holds it.
+#[must_use]
+pub fn summary(bench: &Bench) -> String {
+    let floor = bench.floor;
+    let mut text = format!(
+        "floor: {:.1} ns per evaluation (one sine, cosine and exponential), dependent-chain latency; \
+         {:.1} ns independent\n",
+        floor.chained_ns, floor.independent_ns
+    );
+    text.push_str(&events(bench));
+    text.push('\n');
+    text.push_str(&competitors(bench));
+    text.push_str(&least_error(bench));
+    let short = bench.cases.iter().filter_map(|it| Shortfall::of(bench, &it.case));
+    let short: Vec<_> = short.map(|it| format!("{it}\n")).collect();
+    if short.is_empty() { text } else { text + "\n" + &short.concat() }
+}
+
+/// What the exact solver takes for an event of each case.
+fn events(bench: &Bench) -> String {
+    let mut table = plain([
+        "exact",
+        "events",
+        "ns/event",
+        "floors",
+        "evaluations/event",
+        "ns/period",
+        "state err",
+        "harness",
+    ]);
+    for (case, it) in bench.cases.iter().zip(&bench.events) {
+        let own = bench.results.iter().find(|row| row.case == it.case && row.engine == "exact");
+        let of = |get: fn(&Row) -> Option<f64>| own.and_then(get);
+        table.add_row([
+            it.case.clone(),
+            case.events.to_string(),
+            figure(it.ns_per_event, |it| format!("{it:.0}")),
+            figure(it.floors_per_event, |it| format!("{it:.1}")),
+            figure(it.evaluations_per_event, |it| format!("{it:.2}")),
+            figure(of(|row| row.ns_per_period), |it| format!("{it:.0}")),
+            figure(of(|row| row.state_error_max), brief),
+            figure(of(|row| row.harness_share), share),
+        ]);
+    }
+    shown(table, 1)
+}
+
+/// The closest competitor on each case, on each basis.
+fn competitors(bench: &Bench) -> String {
+    let mut table = plain(["case", "state err", "closest competitor", "times exact", "harness"]);
+    for case in bench.cases.iter().map(|it| it.case.as_str()) {
+        for (k, basis) in BASES.into_iter().enumerate() {
+            let Some(it) = lead(bench, case, basis) else { continue };
+            table.add_row([
+                if k == 0 { case.to_owned() } else { String::new() },
+                it.accuracy(),
+                it.next.engine.clone(),
+                times(it.ratio),
+                figure(it.next.harness_share, share),
+            ]);
+        }
+    }
+    shown(table, 3)
+}
+
+/// On which cases the exact solver errs least.
+fn least_error(bench: &Bench) -> String {
+    let cases = bench.cases.iter().map(|it| it.case.as_str());
+    let beaten: Vec<_> = cases.filter(|case| !errs_least(bench, case)).collect();
+    if beaten.is_empty() {
+        "exact errs less than every adaptive engine at any tolerance, on every case\n".to_owned()
+    } else {
+        format!("an adaptive engine errs less than exact on: {}\n", beaten.join(", "))
+    }
+}
+
+/// A figure, or a dash where there is none.
+pub(super) fn figure(value: Option<f64>, show: impl Fn(f64) -> String) -> String {
+    value.filter(|it| it.is_finite()).map_or("-".to_owned(), show)
+}
+
+/// A share in whole per cent.
+pub(super) fn share(value: f64) -> String {
+    format!("{}%", (100.0 * value).round() + 0.0)
+}
