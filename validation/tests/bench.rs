@@ -6,11 +6,12 @@
 mod exact;
 mod support;
 
+use percuss_validation::bench::alone::alone;
 use percuss_validation::bench::cases::USUAL;
 use percuss_validation::bench::contest::{contest_at, most_accurate};
-use percuss_validation::bench::contestant::{Contestant, Entered};
+use percuss_validation::bench::contestant::{Contestant, Entered, ladder};
 use percuss_validation::bench::course::Course;
-use percuss_validation::engine::{Accuracy, CONTROL, Engine, all, wrong};
+use percuss_validation::engine::{Accuracy, CONTROL, Engine, Limits, Location, Script, all, wrong};
 use percuss_validation::truth::Library;
 use std::path::{Path, PathBuf};
 use support::{refused, run, stdout, text};
@@ -60,6 +61,40 @@ fn the_usual_cases_are_there_and_the_exact_solver_is_right_on_them() {
         assert!(timed.score.state_error < 1e-10, "{name}: {:?}", timed.score);
         assert_eq!(timed.work.steps, course.truth.switches.len() as u64 + 1);
     }
+}
+
+/// The share of the harness is measured on this run: its answer has to be that of the whole run.
+#[test]
+fn an_engine_that_is_told_its_events_makes_the_same_run() {
+    let course = course("impact-into-progression");
+    for engine in all() {
+        let settings = ladder(engine.declaration().stepping);
+        let setting = settings[2.min(settings.len() - 1)];
+        let told = alone(*engine, &course, setting, Limits::default()).expect("the same run");
+        let mut told = told.expect("something is left out");
+        let name = engine.declaration().name;
+        assert_eq!(told.call().and_then(|()| told.check()), Ok(()), "{name}");
+    }
+    // An engine that the harness does not meter is not thought to be free of the harness.
+    let unmetered = alone(CONTROL, &course, Accuracy::Exact, Limits::default());
+    assert!(unmetered.is_ok_and(|it| it.is_none()));
+}
+
+/// The search is left out indeed: told of no event, an engine whose events the harness finds has none.
+#[test]
+fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
+    let course = course("impact-into-progression");
+    let none = Script::of(course.task.phase, &[]);
+    let limits = Limits::default();
+    let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
+    for engine in integrators {
+        let accuracy = ladder(engine.declaration().stepping)[2];
+        let found = none.follow(|| engine.run(&course.task, accuracy, &limits));
+        let (name, by) = (engine.declaration().name, engine.declaration().events);
+        let found = found.map(|it| it.events.len()).unwrap_or_default();
+        assert_eq!(found == 0, by == Location::Harness, "{name}: {found} events");
+    }
+    assert!(none.was_read());
 }
 
 fn binary() -> String {
