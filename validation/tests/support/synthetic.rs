@@ -172,9 +172,9 @@ pub fn report() -> Report {
     Report {
         build: Build {
             schema: 1,
-            percuss: "0.1.0",
+            percuss: "0.1.0".to_owned(),
             commit: None,
-            rustc: "rustc",
+            rustc: "rustc".to_owned(),
             cpu: "a <processor>".to_owned(),
         },
         suite: Suite::Quick,
