@@ -1,5 +1,5 @@
-//! `bench`: a wrong answer has no time, versions are held against each other, and what is given wrongly is
-//! refused.
+//! `bench`: a wrong answer has no time, versions are held against each other, and what is given
+//! wrongly is refused.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
 
@@ -25,8 +25,8 @@ fn exact_solver() -> &'static dyn Engine {
     all()[0]
 }
 
-/// Faults that a run of a few dozen switches shows; a dropped hundredth or a digit lost after 1e8 cycles
-/// need longer ones.
+/// Faults that a run of a few dozen switches shows; a dropped hundredth or a digit lost after 1e8
+/// cycles need longer ones.
 const SHOWN: [&str; 5] = ["wrong-omega", "wrong-xi", "wrong-drift", "wrong-arctan", "wrong-impact"];
 
 #[test]
@@ -80,7 +80,8 @@ fn an_engine_that_is_told_its_events_makes_the_same_run() {
     assert!(unmetered.is_ok_and(|it| it.is_none()));
 }
 
-/// The search is left out indeed: told of no event, an engine whose events the harness finds has none.
+/// The search is left out indeed: told of no event, an engine whose events the harness finds has
+/// none.
 #[test]
 fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
     let course = course("impact-into-progression");

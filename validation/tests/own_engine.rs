@@ -1,7 +1,7 @@
 //! The example of an engine in a crate of its own: what its author gets from the whole program.
 //!
-//! This test is a program of its own as well. Called with a verb it is the example, whose output is then
-//! that of a process and can be read.
+//! This test is a program of its own as well. Called with a verb it is the example, whose output is
+//! then that of a process and can be read.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
 

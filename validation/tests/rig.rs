@@ -1,4 +1,5 @@
-//! The commands of docs/RIG.md, run as they stand there, and the numbers that the page takes from them.
+//! The commands of docs/RIG.md, run as they stand there, and the numbers that the page takes from
+//! them.
 
 #![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
 

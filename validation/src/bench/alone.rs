@@ -1,10 +1,10 @@
 //! The part of an engine's run that is not the harness's: the same run, told where its events lie.
 //!
-//! What is left out is the harness's search for events, with the states inside a step that the search asks
-//! the library for, and the counts, checks and limits at every call. What stays is the library's stepping
-//! (with its own search for events, if the engine uses that), the right-hand sides, Jacobians and guards that
-//! the library calls, and the joining of phases at events. For the exact solver the table of events is left
-//! out. The answer has to be the same to the last bit.
+//! What is left out is the harness's search for events, with the states inside a step that the
+//! search asks the library for, and the counts, checks and limits at every call. What stays is the
+//! library's stepping (with its own search for events, if the engine uses that), the right-hand
+//! sides, Jacobians and guards that the library calls, and the joining of phases at events. For the
+//! exact solver the table of events is left out. The answer has to be the same to the last bit.
 
 use super::course::Course;
 use super::rounds::Racer;
@@ -12,10 +12,11 @@ use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Script, contain,
 use percuss::Step;
 use std::hint::black_box;
 
-/// Rounds in which the run alone is timed: its share is known to a per cent after three.
+/// Rounds in which the run alone is timed: as many as a long call takes part in.
 const ROUNDS: usize = 3;
 
-/// The library's part of an engine's run on a course; nothing for an engine of which nothing is left out.
+/// The library's part of an engine's run on a course; nothing for an engine of which nothing is
+/// left out.
 ///
 /// # Errors
 /// Why the engine does not run there.

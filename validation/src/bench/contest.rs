@@ -29,9 +29,9 @@ pub struct Timed {
     pub work: Work,
     /// The best time of each round, ns a forcing period.
     pub series: Series,
-    /// What share of the time is the harness's own: one less the median over the rounds of that round's
-    /// quotient, the engine's part alone ([`super::alone`]) over the whole run. Timing leaves a share that is
-    /// next to nothing within a per cent or two of zero, on either side.
+    /// What share of the time is the harness's own: one less the median over the rounds of that
+    /// round's quotient, the engine's part alone ([`super::alone`]) over the whole run. A share
+    /// that is next to nothing may come out below zero.
     pub harness_share: Option<f64>,
 }
 

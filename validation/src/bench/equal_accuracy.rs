@@ -1,10 +1,10 @@
 //! Times at equal accuracy, read off a work-precision curve.
 //!
-//! An engine's settings, from loose to tight, are the corners of its curve of time against error. Between
-//! two neighbouring settings whose answers are both right, the logarithm of the time is linear in the
-//! logarithm of the error. The time at errors of at most E is the least time on the curve where the error
-//! is at most E. A curve is never extended: one that stays above E has no such time, and one whose loosest
-//! setting errs less than E already has that setting's own.
+//! An engine's settings, from loose to tight, are the corners of its curve of time against error.
+//! Between two neighbouring settings whose answers are both right, the logarithm of the time is
+//! linear in the logarithm of the error. The time at errors of at most E is the least time on the
+//! curve where the error is at most E. A curve is never extended: one that stays above E has no
+//! such time, and one whose loosest setting errs less than E already has that setting's own.
 
 /// What a right answer errs, and its time in any unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,8 +15,8 @@ pub struct Corner {
     pub time: f64,
 }
 
-/// The least time on a curve where the error is at most `error`; a setting without a right answer is `None`
-/// and breaks the curve.
+/// The least time on a curve where the error is at most `error`; a setting without a right answer
+/// is `None` and breaks the curve.
 #[must_use]
 pub fn time_at(curve: &[Option<Corner>], error: f64) -> Option<f64> {
     let corners = curve.iter().flatten().filter(|it| it.error <= error).map(|it| it.time);

@@ -1,4 +1,5 @@
-//! How far the exact solver is ahead of its closest competitor, at its most accurate and at equal accuracy.
+//! How far the exact solver is ahead of its closest competitor, at its most accurate and at equal
+//! accuracy.
 
 use super::report::{Bench, EventCost, Row};
 use crate::number::{brief, shortest};
@@ -37,8 +38,8 @@ pub const BASES: [Basis; 3] = [Basis::MostAccurate, Basis::Tight, Basis::Loose];
 pub struct Lead<'a> {
     /// What the engines are compared at.
     pub basis: Basis,
-    /// The adaptive engine that takes least: its most accurate setting, or its fastest setting whose error is
-    /// at most that of the basis.
+    /// The adaptive engine that takes least: its most accurate setting, or its fastest setting
+    /// whose error is at most that of the basis.
     pub next: &'a Row,
     /// How many times as long it takes.
     pub ratio: f64,
@@ -58,7 +59,8 @@ impl Lead<'_> {
     }
 }
 
-/// The exact solver's lead on a case; nothing where no adaptive engine is as accurate as the basis asks.
+/// The exact solver's lead on a case; nothing where no adaptive engine is as accurate as the basis
+/// asks.
 #[must_use]
 pub fn lead<'a>(bench: &'a Bench, case: &str, basis: Basis) -> Option<Lead<'a>> {
     let rows = bench.results.iter().filter(|row| row.case == case && row.adaptive);
@@ -99,8 +101,8 @@ pub struct Shortfall<'a> {
 }
 
 impl<'a> Shortfall<'a> {
-    /// What is missing on a case to a lead of [`ASKED`]; nothing where the lead is large enough, or the run
-    /// has no event.
+    /// What is missing on a case to a lead of [`ASKED`]; nothing where the lead is large enough, or
+    /// the run has no event.
     #[must_use]
     pub fn of(bench: &'a Bench, case: &'a str) -> Option<Self> {
         let Lead { next, ratio, .. } = lead(bench, case, Basis::MostAccurate)?;

@@ -64,7 +64,8 @@ pub struct Row {
     pub state_error_max: Option<f64>,
     pub event_time_error_max: Option<f64>,
     pub ratio_to_exact: Option<f64>,
-    /// The same at errors of at most 1e-6, read off this engine's work-precision curve on this case.
+    /// The same at errors of at most 1e-6, read off this engine's work-precision curve on this
+    /// case.
     #[serde(rename = "ratio_at_1e-6")]
     pub ratio_at_1e_6: Option<f64>,
     /// The same at errors of at most 1e-9.
@@ -122,7 +123,8 @@ pub struct Floor {
     pub independent_ns: f64,
 }
 
-/// What the exact solver takes for an event of a case's run, everything that is timed divided by its events.
+/// What the exact solver takes for an event of a case's run, everything that is timed divided by
+/// its events.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
 pub struct EventCost {
@@ -239,8 +241,8 @@ fn rows(course: &Course, finishers: &[Finisher]) -> Vec<Row> {
     at_equal_accuracy(finishers.iter().map(row).collect())
 }
 
-/// Reads each engine's work-precision curve at [`LOOSE`] and [`TIGHT`]. Its times are ratios to the exact solver's, so that
-/// what the machine did otherwise in a round is out of them already.
+/// Reads each engine's work-precision curve at [`LOOSE`] and [`TIGHT`]. Its times are ratios to the
+/// exact solver's, so that what the machine did otherwise in a round is out of them already.
 fn at_equal_accuracy(mut rows: Vec<Row>) -> Vec<Row> {
     for own in rows.chunk_by_mut(|a, b| a.engine == b.engine) {
         let corner =

@@ -5,8 +5,8 @@ use super::lead::{BASES, Shortfall, errs_least, lead, times};
 use super::report::{Bench, Row};
 use crate::number::brief;
 
-/// The exact solver's cost on each case, and its closest competitors at their most accurate and at equal
-/// accuracy. README.md holds it.
+/// The exact solver's cost on each case, and its closest competitors at their most accurate and at
+/// equal accuracy. README.md holds it.
 #[must_use]
 pub fn summary(bench: &Bench) -> String {
     let floor = bench.floor;

@@ -5,8 +5,8 @@ use super::report::{Bench, Row};
 use super::summary::{figure, share, summary};
 use crate::number::brief;
 
-/// Each engine at its most accurate setting, cost against length, what an event costs, and how far the
-/// exact solver is ahead.
+/// Each engine at its most accurate setting, cost against length, what an event costs, and how far
+/// the exact solver is ahead.
 #[must_use]
 pub fn table(bench: &Bench) -> String {
     [engines(bench), lengths(bench), summary(bench)].concat()

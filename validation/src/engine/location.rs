@@ -65,6 +65,9 @@ impl<'a, E: Equations> Search<'a, E> {
         end: f64,
         state_at: &mut StateAt<'_>,
     ) -> Result<Option<Crossing>, Failure> {
+        if let Some(told) = self.meter.told() {
+            return Ok(told.up_to(end));
+        }
         self.meter.stepped(end);
         if let Some(told) = self.meter.told() {
             return Ok(told.up_to(end));
@@ -89,6 +92,9 @@ impl<'a, E: Equations> Search<'a, E> {
         right: &Look,
         state_at: &mut StateAt<'_>,
     ) -> Result<Option<Crossing>, Failure> {
+        if let Some(told) = self.meter.told() {
+            return Ok(told.up_to(right.t));
+        }
         self.meter.stepped(right.t);
         if let Some(told) = self.meter.told() {
             return Ok(told.up_to(right.t));

@@ -38,8 +38,8 @@ pub fn all() -> &'static [&'static dyn Engine] {
 /// Adds engines of another crate to those of this program, until it ends.
 ///
 /// # Errors
-/// A name that is taken or begins with `exact`, which marks the reference; or engines that are added after
-/// any was asked for.
+/// A name that is taken or begins with `exact`, which marks the reference; or engines that are
+/// added after any was asked for.
 pub fn add(own: &[&'static dyn Engine]) -> Result<(), Failure> {
     let mut every = ENGINES.to_vec();
     for engine in own {
