@@ -35,6 +35,7 @@ pub mod number;
 mod parameters;
 mod phase;
 pub mod remainders;
+mod stages;
 mod start;
 mod state;
 mod surface;

@@ -82,7 +82,7 @@ pub fn first_crossing<G: Bending>(
     };
     let first = counters.evaluations;
     while counters.evaluations - first < limit {
-        let room = slack(&entry, &point);
+        let room = slack(phase, &entry, &point);
         let bend = phase.bend(&point);
         let [value, slope, ..] = point.guard.orders;
         let arrived =
@@ -127,6 +127,7 @@ fn arrival(point: &Point<f64>, corridor: &Corridor) -> Root {
         let residual = over + step * (slope + step * (0.5 * bend + step * third / 6.0));
         step -= residual / (slope + step * (bend + step * 0.5 * third));
     }
-    let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step);
+    // A crossing follows the start, also where its slope is that of a threefold zero there.
+    let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step.max(-point.elapsed));
     Root { point: Point { elapsed, ..*point }, low, side: Side::high(rises) }
 }
