@@ -27,6 +27,7 @@ mod exponential;
 pub mod flow;
 mod growth;
 mod instant;
+mod judgement;
 #[cfg(feature = "lanes")]
 pub mod lanes;
 mod leg;
@@ -50,6 +51,7 @@ pub use entry::Entry;
 pub use error::InputError;
 pub use growth::{Growth, GrowthRecorder};
 pub use instant::Instant;
+pub use judgement::{Effort, Judgement};
 pub use leg::{Endless, Exit, Leg, Sample};
 pub use model::Model;
 pub use parameters::{Parameter, Parameters};

@@ -7,7 +7,7 @@
 //! goes on from there.
 
 use crate::constants::Constants;
-use crate::crossing::limit::WITHOUT_HORIZON;
+use crate::crossing::limit::Limit;
 use crate::crossing::search::{Found, first_crossing};
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::Point;
@@ -41,13 +41,13 @@ pub(crate) fn search_in_stages<'a>(
         let (_, angle) = model.instant_after(instant, since);
         contact.taken_up(stage, angle)
     };
-    let before = counters.evaluations;
+    let limit = Limit::new(model.strides(), counters);
     let mut since = TwoWord::new(first);
     let mut contact = taken_up(contact, first, since);
     loop {
         let elapsed = since.value();
         let ended = |found| Staged { contact, found, root: None };
-        if counters.evaluations - before > WITHOUT_HORIZON {
+        if limit.is_passed(elapsed, counters) {
             return ended(Found::Undecided(elapsed));
         }
         match first_crossing(&contact, model.strides(), horizon - elapsed, counters) {

@@ -79,15 +79,14 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         if self.constants.borrow().b < 0.5 { 0.0 } else { 1.0 }
     }
 
-    /// Whether what is left of the contact decides how it ends: in its steady state the trial force comes to
-    /// a threshold, or passes it, by much less than what dies out before.
+    /// Whether what is left of the contact decides how it ends: its steady state lies around a threshold
+    /// within much less than what dies out before.
     fn dies_out_next_to_a_threshold(&self) -> bool {
-        /// A steady state further from the threshold has nine digits left when the rest has died out.
+        /// A steady state of more than this has nine digits left when the rest has died out.
         const NEXT: f64 = 1e-6;
         let Constants { b, two_xi, steady, .. } = *self.constants.borrow();
         let free = (self.offset + (self.reference - b)).abs() + (two_xi + 1.0) * self.entry.y.abs();
-        let margin = ((b - self.nearest_threshold()).abs() - steady.amplitude).abs();
-        margin < NEXT * free
+        (b - self.nearest_threshold()).abs() + steady.amplitude < NEXT * free
     }
 
     /// The parts of the trial force, from their split.

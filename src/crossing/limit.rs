@@ -19,15 +19,12 @@ pub const GRANTED: u64 = 4096;
 /// pieces with as many evaluations again: 64 leave a factor of thirty.
 pub const PER_RADIAN: f64 = 64.0;
 
-/// Evaluations that a search without a horizon may take in all: a second or so.
-pub const WITHOUT_HORIZON: u64 = 1 << 20;
+/// Evaluations that the search of one phase may take in all, however long the phase: a second or so.
+pub const MOST: u64 = 1 << 20;
 
 /// Evaluations by which a search may pass its limit: those of one bracketed root, which are not
 /// interrupted.
 pub const LAST_ROOT: u64 = 1200;
-
-/// Forcing angles from which on a horizon is none: a thousand times the longest that is accepted.
-const NO_HORIZON: f64 = 1e13;
 
 /// The work that is left to one search.
 #[derive(Clone, Copy, Debug)]
@@ -36,17 +33,13 @@ pub struct Limit {
     begun: u64,
     /// Radians of the forcing and units of time that pass in a unit of time.
     pace: f64,
-    /// Evaluations that it may take in all.
-    most: u64,
 }
 
 impl Limit {
     /// The limit of a search that begins now.
     #[must_use]
-    pub fn new(strides: &Strides, horizon: f64, counters: &Counters) -> Self {
-        let omega = TAU / strides.turning.period;
-        let most = if omega * horizon < NO_HORIZON { u64::MAX } else { WITHOUT_HORIZON };
-        Self { begun: counters.evaluations, pace: 1.0 + omega, most }
+    pub fn new(strides: &Strides, counters: &Counters) -> Self {
+        Self { begun: counters.evaluations, pace: 1.0 + TAU / strides.turning.period }
     }
 
     /// Whether the search has taken more than is granted to one that has proved the phase to be clear
@@ -56,6 +49,6 @@ impl Limit {
         let spent = counters.evaluations - self.begun;
         // Written so that a NaN has passed it.
         let honest = spent as f64 <= GRANTED as f64 + PER_RADIAN * self.pace * elapsed;
-        spent > GRANTED && (!honest || spent > self.most)
+        spent > GRANTED && (!honest || spent > MOST)
     }
 }

@@ -124,7 +124,7 @@ fn search<G: Guarded>(
     horizon: f64,
     counters: &mut Counters,
 ) -> Crossing {
-    let limit = Limit::new(strides, horizon, counters);
+    let limit = Limit::new(strides, counters);
     let stage = phase.stage();
     let (horizon, over) = match stage < horizon {
         true => (stage, Crossing::Stage(stage)),

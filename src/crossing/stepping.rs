@@ -107,7 +107,7 @@ pub fn first_crossing<G: Bending>(
 }
 
 /// The smallest r > 0 with excess + slope r + bend r^2/2 = 0, for excess <= 0.
-fn safe_step(excess: f64, slope: f64, bend: f64) -> f64 {
+pub(crate) fn safe_step(excess: f64, slope: f64, bend: f64) -> f64 {
     if excess == f64::NEG_INFINITY {
         return f64::INFINITY;
     }
