@@ -26,19 +26,19 @@ const DECIDED: u64 = 600;
 
 #[test]
 fn what_dies_out_from_one_side_rests_for_ever() {
-    for xi in [1.0, 1.0 + 1e-9, 1.2, 1.459, 3.0, 7.3] {
+    for xi in [1.0_f64, 1.0 + 1e-9, 1.2, 1.459, 3.0, 7.3] {
         for b in [0.0, 5e-324, 1e-127, 1e-40, 1e-17] {
             // f' = -2 xi (f - b) + y, and the part that dies out last is positive.
-            let (leg, counters) = dying_out(xi, b, 0.12, 0.1);
+            let (leg, counters) = dying_out(xi, b, 0.12, 0.3);
             assert_eq!(*leg.exit(), Exit::Endless(Endless::RestsForEver), "{xi} {b:e} {leg:?}");
-            assert!(counters.evaluations <= 4, "{xi} {b:e} {counters:?}");
+            assert!(counters.evaluations <= 40, "{xi} {b:e} {counters:?}");
         }
     }
 }
 
 #[test]
 fn what_dies_out_towards_a_pull_separates_when_nothing_else_is_left() {
-    for xi in [1.1, 1.2, 1.459, 3.0, 7.3] {
+    for xi in [1.1_f64, 1.2, 1.459, 3.0, 7.3] {
         let fast = xi + ((xi - 1.0) * (xi + 1.0)).sqrt();
         let slow = 1.0 / fast;
         for exponent in [17, 25, 40, 60, 90, 127] {
@@ -63,9 +63,9 @@ fn what_dies_out_towards_a_pull_separates_when_nothing_else_is_left() {
 #[test]
 fn next_to_the_upper_threshold_it_is_decided_alike() {
     // One unit in the last place below 1 and above: f comes from below.
-    let (leg, _) = dying_out(1.2, 1.0 - f64::EPSILON / 2.0, 0.9, 0.1);
+    let (leg, _) = dying_out(1.2, 1.0 - f64::EPSILON / 2.0, 0.9, -0.1);
     assert_eq!(*leg.exit(), Exit::Endless(Endless::RestsForEver));
-    let (leg, counters) = dying_out(1.2, 1.0 + f64::EPSILON, 0.9, 0.1);
+    let (leg, counters) = dying_out(1.2, 1.0 + f64::EPSILON, 0.9, -0.1);
     assert!(matches!(leg.exit(), Exit::Switch(next) if next.phase() == Phase::Progression));
     assert!(counters.evaluations <= DECIDED, "{counters:?}");
 }
@@ -88,8 +88,10 @@ fn a_search_that_passes_its_limit_leaves_the_phase_undecidable() {
     let (leg, counters) = first(parameters, &start);
     assert_eq!(*leg.exit(), Exit::Undecidable);
     assert!((MOST..=MOST + GRANTED + LAST_ROOT).contains(&counters.evaluations), "{counters:?}");
-    // What is proved of it goes far, and no further than the work.
-    assert!(leg.duration() > 1e5 && leg.duration() < 4.0 * MOST as f64, "{}", leg.duration());
+    // What is proved of it goes far, but not until the two amplitudes together fit inside: 0.28 of the free
+    // one has then become 0.22.
+    let fits = (0.28_f64 / 0.22).ln() / 1e-8;
+    assert!(leg.duration() > 1e5 && leg.duration() < fits, "{}", leg.duration());
     let model = Model::new(parameters).unwrap();
     let entry = model.start(&start).unwrap();
     let mut run = model.trajectory(entry);

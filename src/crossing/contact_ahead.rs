@@ -61,8 +61,9 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         if !(above || below) {
             return false;
         }
-        let energy = split.free[0].hypot(split.free[1]);
-        let (up, down) = if above { (energy, 0.0) } else { (0.0, energy) };
+        // On its way back it does not turn again.
+        let far = if x * rate <= 0.0 { x.abs() } else { x.hypot(rate) };
+        let (up, down) = if above { (far, 0.0) } else { (0.0, far) };
         let room = |far: f64| 4.0 * f64::EPSILON * (b.abs() + split.amplitude + far);
         b + split.amplitude + up <= 1.0 + room(up) && b - split.amplitude - down >= -room(down)
     }
