@@ -33,6 +33,10 @@ pub struct Constants<T> {
     pub omega2: T,
     /// The eighth power of 1/(2 xi).
     pub rate8: T,
+    /// What products that underflow may take from a guard. Each loses at most the last digit of the smallest
+    /// normal number, 5e-324, and is multiplied after that by a, or by a/omega^2, at the most; by a state of up
+    /// to 1e9, or near resonance by up to 5e13, which the 4e15 between that digit and that number leave room for.
+    pub underflow: T,
     /// 1/omega
     pub per_omega: T,
     /// 1/omega^2
@@ -78,6 +82,7 @@ impl<T: Number> Constants<T> {
             a_over_omega2: a / omega2,
             omega2,
             rate8: rate4 * rate4,
+            underflow: T::exact(f64::MIN_POSITIVE) * (T::one() + a + a / omega2),
             per_omega: T::one() / omega,
             per_omega2: T::one() / omega2,
             omega6: omega2 * omega4,
@@ -87,6 +92,20 @@ impl<T: Number> Constants<T> {
             forced_eighth: steady.amplitude * (omega4 * omega4),
             steady,
         }
+    }
+}
+
+impl Constants<f64> {
+    /// The rates at which the two parts of a free oscillation in contact die out, where it does not turn:
+    /// the slower one, and the faster one. Both are xi below critical damping.
+    #[must_use]
+    pub fn decays(&self) -> (f64, f64) {
+        let xi = self.xi;
+        if xi < 1.0 {
+            return (xi, xi);
+        }
+        let fast = xi + ((xi - 1.0) * (xi + 1.0)).sqrt();
+        (1.0 / fast, fast)
     }
 }
 

@@ -42,6 +42,7 @@ pub enum Endless {
 
 /// How a phase ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub enum Exit {
     /// By a switch; the next phase begins so.
     Switch(Entry),
@@ -49,6 +50,9 @@ pub enum Exit {
     Horizon,
     /// Never: proved.
     Endless(Endless),
+    /// Not decided: the search has taken more work than its limit ([`crate::crossing::limit`]) because rounding
+    /// hides what the phase does. It is proved to last for [`Leg::duration`]; nothing is known of what follows.
+    Undecidable,
 }
 
 /// One phase of a run.
@@ -82,6 +86,7 @@ impl Leg {
             End::Switch => Exit::Switch(*next),
             End::Horizon => Exit::Horizon,
             End::Endless(why) => Exit::Endless(why),
+            End::Undecidable => Exit::Undecidable,
         };
         Self { entry, exit, duration: passed.duration, angle, constants: *model.constants() }
     }
@@ -113,7 +118,8 @@ impl Leg {
         self.entry.phase()
     }
 
-    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless.
+    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless, as far as it is
+    /// proved if it is undecidable.
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.duration.value()
@@ -237,8 +243,14 @@ impl Leg {
         };
         crossing.map(|crossing| match crossing {
             Crossing::At(root) => root.elapsed().value(),
-            Crossing::Horizon | Crossing::Never => f64::INFINITY,
+            _ => f64::INFINITY,
         })
+    }
+
+    /// Whether the phase is undecidable and the instant lies behind what is proved of it.
+    #[must_use]
+    pub fn is_undecided_at(&self, instant: &Instant) -> bool {
+        self.exit == Exit::Undecidable && self.elapsed_at(instant) > self.duration()
     }
 
     /// Whether the phase is over by then.

@@ -82,7 +82,6 @@ impl Model {
     }
 
     /// phi within one turn, in two words.
-    #[cfg(feature = "lanes")]
     pub(crate) const fn phi(&self) -> TwoWord {
         self.phi
     }

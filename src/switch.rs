@@ -16,6 +16,7 @@ use crate::flow::progression::Progression;
 use crate::instant::Instant;
 use crate::leg::Endless;
 use crate::model::{Model, Motion};
+use crate::stages::{Staged, search_in_stages};
 use crate::state::State;
 use crate::surface;
 use crate::two_word::TwoWord;
@@ -40,6 +41,8 @@ pub(crate) enum End {
     Horizon,
     /// Never: proved.
     Endless(Endless),
+    /// Not decided within the limit of work ([`crate::crossing::limit`]).
+    Undecidable,
 }
 
 /// A phase that may have come to its end.
@@ -47,13 +50,17 @@ pub(crate) enum End {
 pub(crate) struct Passed {
     /// How it ends.
     pub end: End,
-    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless.
+    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless, as far as it is
+    /// proved if it is undecidable.
     pub duration: TwoWord,
 }
 
 /// The forcing angle by which a phase is cut that has no horizon: in two words nothing is known of the angle
 /// much later, and squares of times would overflow.
 const FURTHEST: f64 = 1e30;
+
+/// How far a search looks beyond its horizon, radians of the forcing.
+const BEYOND: f64 = 0.1;
 
 /// What a phase's end leads to.
 trait Landing: Guarded {
@@ -62,6 +69,17 @@ trait Landing: Guarded {
 
     /// State and onset of the next phase, with what is known imposed.
     fn land(&self, root: &Root) -> (State, Onset);
+
+    /// Searches on from where a stage has ended ([`Guarded::stage`]); only a contact has stages.
+    fn in_stages(
+        &self,
+        _: &Model,
+        _: (&Begun, &mut Begun),
+        (from, _): (f64, f64),
+        _: &mut Counters,
+    ) -> Found {
+        Found::Undecided(from)
+    }
 }
 
 /// Finds how a phase ends; if by a switch, `next` becomes the one that follows, else it holds nothing of use.
@@ -92,28 +110,79 @@ fn pass_by<P: Landing>(
     let instant = &begun.entry.instant;
     // The horizon in two words is computed only where it matters. It is looked beyond by more than guesses
     // err, so that a switch next to it is found as without it; its instant decides.
-    const BEYOND: f64 = 0.1;
+    let beyond = BEYOND / omega;
     let (certain, limit) = horizon.map_or((f64::INFINITY, FURTHEST / omega), |h| {
         let (certain, limit) = h.since_roughly(instant, omega);
-        (certain, limit + BEYOND / omega)
+        (certain - beyond, limit + beyond)
     });
     let land = |root: &Root| *next = begun.after(model, phase, root);
     let found = first_crossing_and((phase, model.strides()), begun.guess, limit, counters, land);
+    match found {
+        Found::At(elapsed) if elapsed.high <= certain => {
+            counters.switches += 1;
+            Passed { end: End::Switch, duration: elapsed }
+        }
+        _ => pass_late(phase, model, (begun, next), (horizon, limit, found), counters),
+    }
+}
+
+/// Next to a horizon, and where no switch was found as yet.
+#[cold]
+#[inline(never)]
+fn pass_late<P: Landing>(
+    phase: &P,
+    model: &Model,
+    (begun, next): (&Begun, &mut Begun),
+    (horizon, limit, found): (Option<&Instant>, f64, Found),
+    counters: &mut Counters,
+) -> Passed {
+    let (omega, instant) = (model.parameters().omega, &begun.entry.instant);
     let left = || horizon.map_or(FURTHEST / omega, |h| h.since(instant, omega).value());
     let ended = |end, duration| Passed { end, duration: TwoWord::new(duration) };
+    let found = match found {
+        Found::Stage(from) => phase.in_stages(model, (begun, next), (from, limit), counters),
+        found => found,
+    };
     match found {
         Found::At(elapsed) => {
-            if elapsed.high > certain && horizon.is_some_and(|it| next.entry.instant > *it) {
+            let elapsed = horizon.map_or(elapsed, |_| {
+                found_without_horizon(phase, model, (begun, next), counters).unwrap_or(elapsed)
+            });
+            if horizon.is_some_and(|it| next.entry.instant > *it) {
                 return ended(End::Horizon, left());
             }
             counters.switches += 1;
             Passed { end: End::Switch, duration: elapsed }
         }
-        Found::Never if certain > 0.0 || left() > 0.0 => {
-            ended(End::Endless(P::NONE), f64::INFINITY)
-        }
-        Found::Never | Found::Horizon => ended(End::Horizon, left()),
+        Found::Never if left() > 0.0 => ended(End::Endless(P::NONE), f64::INFINITY),
+        Found::Undecided(elapsed) if elapsed < left() => ended(End::Undecidable, elapsed),
+        _ => ended(End::Horizon, left()),
     }
+}
+
+/// The switch next to a horizon as it is found without one: a search that looks no further may come to it by
+/// another way, and so to other last digits.
+fn found_without_horizon<P: Landing>(
+    phase: &P,
+    model: &Model,
+    (begun, next): (&Begun, &mut Begun),
+    counters: &mut Counters,
+) -> Option<TwoWord> {
+    let mut again = *begun;
+    let land = |root: &Root| again = begun.after(model, phase, root);
+    let mut counted = Counters::default();
+    let limit = FURTHEST / model.parameters().omega;
+    let strides = model.strides();
+    let found = match first_crossing_and((phase, strides), begun.guess, limit, &mut counted, land) {
+        Found::Stage(from) => {
+            phase.in_stages(model, (begun, &mut again), (from, limit), &mut counted)
+        }
+        found => found,
+    };
+    counters.evaluations += counted.evaluations;
+    let Found::At(elapsed) = found else { return None };
+    *next = again;
+    Some(elapsed)
 }
 
 impl Begun {
@@ -194,6 +263,21 @@ impl Landing for Contact<f64, &Constants<f64>> {
         };
         let q = threshold - self.constants.two_xi * y;
         (State { p: q + self.constants.g, y, q }, onset)
+    }
+
+    fn in_stages(
+        &self,
+        model: &Model,
+        (begun, next): (&Begun, &mut Begun),
+        span: (f64, f64),
+        counters: &mut Counters,
+    ) -> Found {
+        let Staged { contact, found, root } =
+            search_in_stages(model, self, &begun.entry.instant, span, counters);
+        if let Some(root) = root {
+            *next = begun.after(model, &contact, &root);
+        }
+        found
     }
 }
 

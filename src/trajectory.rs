@@ -13,7 +13,7 @@ use crate::two_word::TwoWord;
 /// A run taken up at one of its phases goes on as it did to within rounding, not to the last bit: a root is
 /// computed from where it was guessed, and what is guessed depends on the phase before.
 ///
-/// It ends after a phase that reaches the horizon or never ends; without a horizon and as long as
+/// It ends after a phase that reaches the horizon, never ends or is undecidable; without a horizon and as long as
 /// switches come it goes on for ever. A phase is cut after a forcing angle of 1e30 where nothing else ends it:
 /// two words do not know the angle much later.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ pub enum Step<'a> {
         /// How the next phase begins.
         next: &'a Entry,
     },
-    /// It is the run's last: cut by the horizon, or endless.
+    /// It is the run's last: cut by the horizon, endless, or undecidable.
     Last(Box<Leg>),
 }
 
@@ -79,7 +79,7 @@ impl Trajectory {
         let (begun, next) = self.last_and_next();
         Some(match passed.end {
             End::Switch => Step::Switch { duration: passed.duration, next: &next.entry },
-            End::Horizon | End::Endless(_) => {
+            End::Horizon | End::Endless(_) | End::Undecidable => {
                 Step::Last(Box::new(Leg::passed(&self.model, begun, &passed, &next.entry)))
             }
         })

@@ -108,3 +108,68 @@ fn iterating_and_stepping_take_turns() {
     }
     assert!(run.step().is_none() && run.next().is_none() && run.step().is_none());
 }
+
+/// Models of every kind of damping and forcing, from a fixed sequence of numbers.
+fn models() -> impl Iterator<Item = (Parameters, Start)> {
+    let mut seed = 0x2545_f491_4f6c_dd1d_u64;
+    let mut unit = move || {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    std::iter::repeat_with(move || {
+        let xi = (-6.0 + 8.0 * unit()).exp();
+        let omega = (-2.5 + 4.5 * unit()).exp();
+        let (a, b, g) = (2.0 * unit(), 0.02 + unit(), 0.3 * unit());
+        let q = unit();
+        let p = q + g - if unit() < 0.5 { 0.0 } else { unit() };
+        let start =
+            Start { p, y: 2.0 * unit() - 1.0, q: Some(q), tau: 10.0 * unit(), ..Start::default() };
+        (Parameters { a, b, xi, omega, g, ..Parameters::default() }, start)
+    })
+}
+
+/// A switch exactly at the horizon counts, wherever the run is taken up: the horizon must not lead the search
+/// to other last digits.
+#[test]
+fn a_switch_exactly_at_the_horizon_is_never_lost() {
+    let mut segments = 0;
+    for (parameters, start) in models().take(400) {
+        let model = Model::new(parameters).unwrap();
+        let Ok(entry) = model.start(&start) else { continue };
+        for leg in model.trajectory(entry).take(30) {
+            // The phase taken up alone, and the run from its start.
+            let Some(alone) = model.trajectory(*leg.entry()).next() else { break };
+            let Exit::Switch(next) = *alone.exit() else { break };
+            let cut = model.trajectory(*leg.entry()).until(next.instant).next().unwrap();
+            assert_eq!(cut.exit(), alone.exit(), "{parameters:?} {start:?} {:?}", leg.entry());
+            assert_eq!(cut.duration_two_word(), alone.duration_two_word());
+            segments += 1;
+        }
+        let run: Vec<_> = model.trajectory(entry).take(12).collect();
+        for (k, leg) in run.iter().enumerate() {
+            let Exit::Switch(next) = *leg.exit() else { break };
+            let mut cut = model.trajectory(entry).until(next.instant).skip(k);
+            assert_eq!(cut.next().unwrap().exit(), leg.exit(), "{parameters:?} {start:?} {k}");
+            segments += 1;
+        }
+    }
+    println!("{segments} segments");
+    assert!(segments > 8000);
+}
+
+/// The next number after the switch's angle is late enough, and the one before it is not.
+#[test]
+fn one_unit_before_a_switch_the_horizon_comes_first() {
+    let (model, entry) = from_rest(Parameters::default(), 0.0);
+    let omega = model.parameters().omega;
+    for leg in model.trajectory(entry).take(40) {
+        let alone = model.trajectory(*leg.entry()).next().unwrap();
+        let duration = alone.duration_two_word();
+        let sooner = TwoWord { high: duration.high, low: duration.low - 1e-15 * duration.high };
+        let horizon = leg.entry().instant.after(sooner, omega);
+        let cut = model.trajectory(*leg.entry()).until(horizon).next().unwrap();
+        assert_eq!(*cut.exit(), Exit::Horizon, "{leg:?}");
+    }
+}

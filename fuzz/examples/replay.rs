@@ -1,9 +1,9 @@
 //! Prints the case in each file named (a libFuzzer artifact) and what the check says; without names,
-//! checks a million random cases and prints one of each kind of fault.
+//! checks a million random cases (`RUNS`, from the draws of `SEED`) and prints one of each kind of fault.
 
-use percuss_fuzz::{Case, check};
+use percuss_fuzz::{Case, Tally, check, check_counted};
 use std::collections::BTreeMap;
-use std::panic::catch_unwind;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant};
 
@@ -24,7 +24,9 @@ fn main() {
 }
 
 fn random() {
-    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * number("SEED").unwrap_or(0) + 1);
+    let mut tally = Tally::default();
     let mut faults = BTreeMap::<String, (u64, String)>::new();
     let mut slowest = (0.0, String::new());
     std::panic::set_hook(Box::new(|_| {}));
@@ -41,8 +43,11 @@ fn random() {
             }
         }
     });
-    let runs = std::env::var("RUNS").ok().and_then(|runs| runs.parse().ok()).unwrap_or(1_000_000);
-    for _ in 0..runs {
+    let runs = number("RUNS").unwrap_or(1_000_000);
+    for run in 0..runs {
+        if run > 0 && run % 100_000 == 0 {
+            println!("{run} cases, {} kinds of fault, {tally:?}", faults.len());
+        }
         let bytes: Vec<u8> = (0..160)
             .map(|_| {
                 seed ^= seed << 13;
@@ -56,7 +61,8 @@ fn random() {
         if let Ok(mut current) = current.lock() {
             *current = (before, case.clone());
         }
-        let verdict = catch_unwind(|| check(&case)).unwrap_or_else(|_| Err("panic".to_owned()));
+        let verdict = catch_unwind(AssertUnwindSafe(|| check_counted(&case, &mut tally)))
+            .unwrap_or_else(|_| Err("panic".to_owned()));
         let spent = before.elapsed().as_secs_f64();
         if spent > slowest.0 {
             slowest = (spent, format!("{case:?}"));
@@ -76,5 +82,6 @@ fn random() {
     for (kind, (count, first)) in faults {
         println!("{count} x {kind}\n  {first}");
     }
+    println!("{runs} cases, {tally:?}");
     println!("slowest: {} s {}", slowest.0, slowest.1);
 }

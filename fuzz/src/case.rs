@@ -9,6 +9,20 @@ pub struct Case {
     pub start: Start,
     /// Length of the run in forcing periods, before it is cut to what the check allows.
     pub periods: f64,
+    /// What the case is drawn from.
+    pub family: Family,
+}
+
+/// What a case is drawn from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Family {
+    /// Every accepted model, from every start.
+    Any,
+    /// Contacts that die out next to a threshold: damping from critical on, next to no force, and a slider
+    /// that is pulled. Such a contact is decided by what is left of it.
+    DyingOut,
+    /// Forces so small that their products underflow, and starts at rest, late.
+    Underflowing,
 }
 
 struct Bytes<'a>(&'a [u8]);
@@ -110,18 +124,75 @@ const LIMIT: f64 = 1e9;
 impl Case {
     pub fn decode(bytes: &[u8]) -> Self {
         let mut bytes = Bytes(bytes);
-        let parameters = Parameters {
-            a: bytes.size(),
-            b: bytes.signed(),
-            xi: bytes.positive(1e-8, 1e4),
-            omega: bytes.positive(1e-6, 1e6),
-            g: bytes.size(),
-            phi: bytes.late(),
-        };
-        let start = start(&mut bytes, &parameters);
-        let periods = bytes.log_uniform(1e-3, 64.0);
-        Self { parameters, start, periods }
+        match bytes.byte() % 8 {
+            0 | 1 => dying_out(&mut bytes),
+            2 => underflowing(&mut bytes),
+            _ => any(&mut bytes),
+        }
     }
+}
+
+fn any(bytes: &mut Bytes) -> Case {
+    let parameters = Parameters {
+        a: bytes.size(),
+        b: bytes.signed(),
+        xi: bytes.positive(1e-8, 1e4),
+        omega: bytes.positive(1e-6, 1e6),
+        g: bytes.size(),
+        phi: bytes.late(),
+    };
+    let start = start(bytes, &parameters);
+    let periods = bytes.log_uniform(1e-3, 64.0);
+    Case { parameters, start, periods, family: Family::Any }
+}
+
+fn dying_out(bytes: &mut Bytes) -> Case {
+    let a = match bytes.byte() % 4 {
+        0 => bytes.log_uniform(1e-127, 1e-12),
+        _ => 0.0,
+    };
+    let size = bytes.log_uniform(1e-127, 1e-17);
+    let b = if bytes.byte() % 2 == 0 { size } else { -size };
+    // One in four near the other threshold.
+    let b = if bytes.byte() % 4 == 0 { 1.0 + b } else { b };
+    let xi = match bytes.byte() % 8 {
+        0 => 1.0,
+        1 => 1.0 - bytes.log_uniform(1e-15, 0.5),
+        _ => bytes.log_uniform(1.0, 8.0),
+    };
+    let parameters =
+        Parameters { a, b, xi, omega: bytes.log_uniform(0.1, 10.0), g: 0.02, phi: 0.0 };
+    let q = match bytes.byte() % 8 {
+        0 => 2.0 * bytes.unit(),
+        _ => -4.0 * bytes.unit(),
+    };
+    let force = match bytes.byte() % 8 {
+        0 => 4.0 * bytes.unit(),
+        _ => bytes.unit(),
+    };
+    let y = (force - q) / (2.0 * xi);
+    let gap = if bytes.byte() % 4 == 0 { bytes.unit() } else { 0.0 };
+    let start = Start { p: q + 0.02 - gap, y, q: Some(q), ..Start::default() };
+    let periods = bytes.log_uniform(0.1, 64.0);
+    Case { parameters, start, periods, family: Family::DyingOut }
+}
+
+fn underflowing(bytes: &mut Bytes) -> Case {
+    let a = bytes.log_uniform(1e-300, 1e-270);
+    let b = if bytes.byte() % 2 == 0 { 0.0 } else { a * (2.0 * bytes.unit() - 1.0) };
+    let parameters = Parameters {
+        a,
+        b,
+        xi: bytes.positive(1e-8, 1e4),
+        omega: bytes.positive(1e-6, 1e6),
+        g: if bytes.byte() % 2 == 0 { 0.0 } else { 0.02 },
+        phi: if bytes.byte() % 2 == 0 { 0.0 } else { std::f64::consts::TAU * bytes.unit() },
+    };
+    let phase = bytes.phase();
+    let cycle = if bytes.byte() % 2 == 0 { 1 << 53 } else { 0 };
+    let start = Start { p: parameters.g, q: Some(0.0), cycle, phase, ..Start::default() };
+    let periods = bytes.log_uniform(1e-4, 1.0);
+    Case { parameters, start, periods, family: Family::Underflowing }
 }
 
 fn start(bytes: &mut Bytes, parameters: &Parameters) -> Start {

@@ -1,7 +1,9 @@
 //! What every run must satisfy, whatever the input.
 
-use crate::Case;
-use percuss::{Exit, Leg, Model, Parameters, Phase, State};
+use crate::double_double::{DoubleDouble, UNIT};
+use crate::{Case, Family};
+use percuss::crossing::limit::{GRANTED, LAST_ROOT, MOST, PER_RADIAN};
+use percuss::{Effort, Exit, Judgement, Leg, Model, Parameters, Phase, State};
 
 /// Phases followed in one run.
 const LEGS: usize = 20;
@@ -13,25 +15,60 @@ const LONGEST: f64 = 200.0;
 /// closed forms claim 10 eps for a phase of at most one forcing period, and a switch adds as much.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// What the search itself grants to products that underflow.
+/// What products that underflow may lose of a state: the smallest normal number times a/omega^2 <= 1e21.
 const UNDERFLOW: f64 = 1e-285;
 
-/// Evaluations a phase may take, whatever its length: a crossing bracketed by bisection from the
-/// length of the phase down to one unit in the last place takes 60 at most (1100 where the left end
-/// is zero), a near graze divided down to that size the same on both sides of each of two thresholds.
-const FIXED: f64 = 1500.0;
+/// Phases of a case that are decided again in 106 bits, where any are.
+const JUDGED: usize = 6;
 
-/// Evaluations a phase may take for each forcing period it covers and each unit of natural time:
-/// a certificate of degree eight reaches about a radian of the fastest harmonic, two where it is far
-/// from the threshold, and halving finds such pieces with at most as many evaluations again; 64 a
-/// period leave a factor of five.
-const PER_PERIOD: f64 = 64.0;
+/// Evaluations of the judge for one phase.
+const JUDGE_EVALUATIONS: usize = 2000;
+
+/// One case in so many of those drawn from everything is judged.
+const ONE_IN: u64 = 16;
+
+/// What a switch may be off in units of what rounding of the guard moves it by: the search allows itself as
+/// much again, and the guards of the two arithmetics differ by some roundings of the parameters' products.
+const WIDTHS: f64 = 8.0;
+
+/// What was met.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Tally {
+    /// Phases passed.
+    pub phases: u64,
+    /// Phases asked of 106 bits,
+    pub judged: u64,
+    /// and those of them that 106 bits decide.
+    pub decided: u64,
+    /// Phases that 106 bits decide otherwise, but whose touch f64 has counted as undecidable.
+    pub touches: u64,
+    /// Phases that end as undecidable.
+    pub undecidable: u64,
+    /// The most evaluations that a phase has taken.
+    pub most_evaluations: u64,
+}
+
+macro_rules! ensure {
+    ($holds:expr, $($text:tt)*) => {
+        if !$holds {
+            return Err(format!($($text)*));
+        }
+    };
+}
 
 /// Runs a case; an error says what is wrong.
 ///
 /// # Errors
 /// The first check that failed. A refused input is no error.
 pub fn check(case: &Case) -> Result<(), String> {
+    check_counted(case, &mut Tally::default())
+}
+
+/// The same, with what was met.
+///
+/// # Errors
+/// The first check that failed.
+pub fn check_counted(case: &Case, tally: &mut Tally) -> Result<(), String> {
     let model = Model::new(case.parameters).map_err(|error| format!("not in range: {error}"))?;
     let Ok(entry) = model.start(&case.start) else { return Ok(()) };
     // A phase without events costs up to a few evaluations a forcing period and, in contact, a
@@ -42,15 +79,64 @@ pub fn check(case: &Case) -> Result<(), String> {
     let horizon = entry.instant.after_periods(whole as u64 * 1_000_000 + rest as u64, 1_000_000);
     let mut trajectory = model.trajectory(entry).until(horizon);
     let mut history = History::new(&case.parameters);
-    let mut spent = 0;
+    let mut before = trajectory.counters();
+    let sampled = case.parameters.a.to_bits() ^ case.start.p.to_bits() ^ case.start.y.to_bits();
+    let judged = case.family != Family::Any || sampled % ONE_IN == 0;
     for number in 0..LEGS {
         let Some(leg) = trajectory.next() else { break };
-        let total = trajectory.counters().evaluations;
-        history
-            .leg(&model, &leg, total - spent, periods)
-            .map_err(|fault| format!("leg {number} ({}): {fault}", leg.phase()))?;
-        spent = total;
+        let counters = trajectory.counters();
+        let evaluations = counters.evaluations - before.evaluations;
+        let named = |fault| format!("leg {number} ({}): {fault}", leg.phase());
+        tally.phases += 1;
+        tally.most_evaluations = tally.most_evaluations.max(evaluations);
+        history.leg(&model, &leg, evaluations, periods).map_err(named)?;
+        let undecidable = *leg.exit() == Exit::Undecidable;
+        tally.undecidable += u64::from(undecidable);
+        if undecidable || judged && number < JUDGED {
+            let touched = counters.undecidable > before.undecidable;
+            let left = leg.elapsed_at(&horizon);
+            judge(&model, &leg, left, touched, tally).map_err(named)?;
+        }
+        before = counters;
     }
+    Ok(())
+}
+
+/// Holds a phase to what 106 bits decide.
+fn judge(
+    model: &Model,
+    leg: &Leg,
+    left: f64,
+    touched: bool,
+    tally: &mut Tally,
+) -> Result<(), String> {
+    let lasts = leg.duration();
+    let horizon = match leg.exit() {
+        Exit::Switch(_) => lasts + 1e-3 * lasts + 1e-9,
+        _ => left,
+    };
+    let effort = Effort { horizon, evaluations: JUDGE_EVALUATIONS, unit: UNIT };
+    let judgement = leg.judged_in::<DoubleDouble>(model, &effort);
+    tally.judged += 1;
+    let alike = match (leg.exit(), judgement) {
+        (_, Judgement::Undecided) => return Ok(()),
+        (Exit::Switch(next), Judgement::Crossing { elapsed, rises, width }) => {
+            let side =
+                leg.phase() != Phase::Contact || rises == (next.phase() == Phase::Progression);
+            side && (elapsed - lasts).abs() <= WIDTHS * width
+        }
+        (Exit::Switch(_) | Exit::Undecidable, _) => false,
+        (_, Judgement::Clear) => true,
+        // The horizon may fall into what rounding moves the switch by.
+        (_, Judgement::Crossing { elapsed, width, .. }) => elapsed > left - WIDTHS * width,
+    };
+    tally.decided += 1;
+    if !alike && touched {
+        tally.touches += 1;
+        return Ok(());
+    }
+    let exit = leg.exit();
+    ensure!(alike, "in 106 bits {judgement:?}, in f64 {lasts:e}, {exit:?}, {:?}", leg.entry());
     Ok(())
 }
 
@@ -65,14 +151,6 @@ struct History {
     q_room: f64,
     /// The largest terms of y's closed forms so far.
     speed: f64,
-}
-
-macro_rules! ensure {
-    ($holds:expr, $($text:tt)*) => {
-        if !$holds {
-            return Err(format!($($text)*));
-        }
-    };
 }
 
 impl History {
@@ -94,8 +172,13 @@ impl History {
         let angle = entry.instant.angle();
         ensure!((0.0..=std::f64::consts::TAU).contains(&angle), "angle {angle:e}");
 
-        let honest = FIXED + PER_PERIOD * (periods + periods * model.period());
-        ensure!((evaluations as f64) < honest, "{evaluations} evaluations, {honest} are honest");
+        // The limit of the search, up to where the phase ends or is cut; a switch next to the horizon is
+        // looked for twice.
+        let omega = model.parameters().omega;
+        let clear = duration.min(periods * model.period()) + 0.2 / omega;
+        let granted = (GRANTED as f64 + PER_RADIAN * (1.0 + omega) * clear).min(MOST as f64);
+        let limit = 2.0 * (granted + LAST_ROOT as f64);
+        ensure!((evaluations as f64) <= limit, "{evaluations} evaluations, the limit is {limit}");
 
         self.stuck = if duration > 0.0 { 0 } else { self.stuck + 1 };
         ensure!(self.stuck < 3, "phases without length follow each other");

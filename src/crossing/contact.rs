@@ -74,6 +74,21 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             + split.amplitude * self.constants.borrow().omega * self.constants.borrow().omega
     }
 
+    /// The threshold that is nearer to the static force.
+    pub(crate) fn nearest_threshold(&self) -> f64 {
+        if self.constants.borrow().b < 0.5 { 0.0 } else { 1.0 }
+    }
+
+    /// Whether what is left of the contact decides how it ends: its steady state lies around a threshold
+    /// within much less than what dies out before.
+    fn dies_out_next_to_a_threshold(&self) -> bool {
+        /// A steady state of more than this has nine digits left when the rest has died out.
+        const NEXT: f64 = 1e-6;
+        let Constants { b, two_xi, steady, .. } = *self.constants.borrow();
+        let free = (self.offset + (self.reference - b)).abs() + (two_xi + 1.0) * self.entry.y.abs();
+        (b - self.nearest_threshold()).abs() + steady.amplitude < NEXT * free
+    }
+
     /// The parts of the trial force, from their split.
     pub(super) fn parts(&self, at: &Point<f64>, split: &Split) -> Parts {
         let [free, free_rate, ..] = split.free;
@@ -137,7 +152,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         ends: Ends,
     ) -> Verdict {
         let corridor = self.corridor();
-        let slack = slack(left, right);
+        let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
         let split = self.split(left);
         let free = self.free_eighth(left, &split);
@@ -157,6 +172,20 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
             return if inside { Verdict::Inside } else { verdict };
         }
         self.certify_long(strides, (left, &split, free), right, ends)
+    }
+
+    fn stage(&self) -> f64 {
+        /// Over so many decay times the trial force loses three to four of its sixteen digits.
+        const DECAY_TIMES: f64 = 8.0;
+        if self.dies_out_next_to_a_threshold() {
+            DECAY_TIMES / self.constants.borrow().decays().0
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn underflow(&self) -> f64 {
+        self.constants.borrow().underflow
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
@@ -245,7 +274,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         /// Under stronger damping the free part's derivatives would multiply its rounding.
         const MILD: f64 = 4.0;
         let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
-        let slack = slack(left, right);
+        let slack = slack(self, left, right);
         let [x, x1, x2, x3] = split.free;
         let length = right.elapsed - left.elapsed;
         if two_xi < MILD {

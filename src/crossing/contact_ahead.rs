@@ -22,7 +22,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             Ok(time) => return Outlook::Root(time),
             Err(time) => Outlook::Onward(time.min(limit)),
         };
-        if self.rests(&split) {
+        if self.rests(&split) || self.rests_on_one_side(left, &split) {
             return Outlook::ClearFrom(left.elapsed);
         }
         match self.calm(left, &split) {
@@ -38,6 +38,34 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         let reach = split.amplitude + split.free[0].hypot(split.free[1]);
         let room = 4.0 * f64::EPSILON * (b.abs() + reach);
         b + reach <= 1.0 + room && b - reach >= -room
+    }
+
+    /// The same from critical damping on, where what dies out keeps its sign: for x = f - b less the forced
+    /// part, u = x' + fast x obeys u' = -slow u; where x and u are positive they stay so, because x' < 0
+    /// would need x > 0. Then the trial force stays on one side of its steady state.
+    fn rests_on_one_side(&self, left: &Point<f64>, split: &Split) -> bool {
+        const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+        let Constants { a, b, xi, two_xi, omega, .. } = *self.constants.borrow();
+        if xi < 1.0 {
+            return false;
+        }
+        let (_, fast) = self.constants.borrow().decays();
+        let [x, rate, ..] = split.free;
+        let guard = left.guard;
+        let level = (b - self.reference).abs();
+        let terms = guard.largest_term + guard.orders[0].abs() + level + a + split.amplitude;
+        let rates = two_xi * terms + left.state.y.abs() + omega * split.amplitude;
+        let (sure, sure_rate) = (ROUNDINGS * terms, ROUNDINGS * rates);
+        let above = x > sure && fast * x + rate > sure_rate;
+        let below = x < -sure && fast * x + rate < -sure_rate;
+        if !(above || below) {
+            return false;
+        }
+        // On its way back it does not turn again.
+        let far = if x * rate <= 0.0 { x.abs() } else { x.hypot(rate) };
+        let (up, down) = if above { (far, 0.0) } else { (0.0, far) };
+        let room = |far: f64| 4.0 * f64::EPSILON * (b.abs() + split.amplitude + far);
+        b + split.amplitude + up <= 1.0 + room(up) && b - split.amplitude - down >= -room(down)
     }
 
     /// A time for which f certainly stays inside, by one of two slow changes.

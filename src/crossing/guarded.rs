@@ -44,6 +44,15 @@ pub trait Guarded: Flow<f64> {
     /// Where to divide a piece that could not be certified.
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64;
 
+    /// Until when the closed form of this phase serves to find its end. A later search has to take the motion
+    /// up again, because the guard then lies closer to its threshold than its terms round.
+    fn stage(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Rounding room for products that underflow ([`crate::Constants::underflow`]).
+    fn underflow(&self) -> f64;
+
     /// The guard's Taylor series at an evaluation.
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N>;
 
@@ -75,12 +84,8 @@ pub trait Guarded: Flow<f64> {
 /// Four eps times the largest term: three roundings in the guard, one in the coefficients.
 pub const SLACK: f64 = 4.0 * f64::EPSILON;
 
-/// Products that underflow lose up to the smallest normal number, 2e-308, and are then multiplied by
-/// a/omega^2 <= 1e21 at most.
-const UNDERFLOW: f64 = 1e-285;
-
 /// Rounding room of a piece: the guard's terms and those of its coefficients, and what underflows.
 #[inline]
-pub fn slack(left: &Point<f64>, right: &Point<f64>) -> f64 {
-    SLACK * left.guard.largest_term.max(right.guard.largest_term) + UNDERFLOW
+pub fn slack<G: Guarded>(phase: &G, left: &Point<f64>, right: &Point<f64>) -> f64 {
+    SLACK * left.guard.largest_term.max(right.guard.largest_term) + phase.underflow()
 }

@@ -20,6 +20,9 @@
 //! into the guard. A guard that comes closer to its threshold than that, without passing it by more,
 //! is undecidable in f64; it is counted and taken as a touch, which is no switch.
 //!
+//! The work of a search has a [`limit`] that grows with the time that is proved to be clear; a search that
+//! passes it leaves the phase undecided.
+//!
 //! [`stepping`] is the same question answered in the plainest way, by one-sided steps with a bound on
 //! the curvature. It is several times dearer and serves as the judge in the tests.
 
@@ -27,6 +30,7 @@ pub mod certificate;
 pub mod contact;
 mod contact_ahead;
 pub mod guarded;
+pub mod limit;
 pub mod no_contact;
 pub mod progression;
 pub mod root;
@@ -50,6 +54,11 @@ pub enum Crossing {
     Horizon,
     /// It never does.
     Never,
+    /// It does not until this elapsed time, after which rounding no longer knows the guard well: the motion
+    /// is to be taken up again there ([`guarded::Guarded::stage`]).
+    Stage(f64),
+    /// It does not until this elapsed time, and the search has taken more work than its [`limit`].
+    Undecided(f64),
 }
 
 /// A certified first crossing.

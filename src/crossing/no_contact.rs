@@ -147,7 +147,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         if whole && stays_below(self, strides, right) {
             return Verdict::Inside;
         }
-        let slack = slack(left, right);
+        let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
         let Constants { omega, rate, rate8, a, omega6, .. } = *self.constants.borrow();
         if length * rate <= PULLING && length * omega <= SHORT {
@@ -165,6 +165,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         }
         let end = |at: &Point<f64>| End { orders: at.guard.orders, parts: self.parts(at) };
         Walk::new(&self.shape(), strides).verdict(end(left), end(right), ends)
+    }
+
+    fn underflow(&self) -> f64 {
+        self.constants.borrow().underflow
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
@@ -237,7 +241,7 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
             bow: at.force[0] - b,
             quarter: at.force[1] / omega,
             lasting: -at.state.q,
-            room: slack(at, at),
+            room: slack(self, at, at),
         }
     }
 }

@@ -97,7 +97,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         if left.elapsed == 0.0 && ends.right && self.stops_once(right) {
             return Verdict::Inside;
         }
-        let slack = slack(left, right);
+        let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
         let Constants { omega, rate, rate8, a, omega6, .. } = *self.constants.borrow();
         if length * rate <= PUSHING && length * omega <= SHORT {
@@ -118,6 +118,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
             parts: self.parts(at),
         };
         Walk::new(&self.shape(), strides).verdict(end(left), end(right), ends)
+    }
+
+    fn underflow(&self) -> f64 {
+        self.constants.borrow().underflow
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
@@ -208,7 +212,7 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
             bow: -at.force[1],
             quarter: omega * (at.force[0] - b),
             lasting: at.slider_velocity,
-            room: slack(at, at),
+            room: slack(self, at, at),
         }
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::crossing::certificate::{Ends, Verdict};
 use crate::crossing::guarded::{Guarded, Outlook, slack};
+use crate::crossing::limit::Limit;
 use crate::crossing::root::{bracketed, evaluate_again, follow, middle};
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::Point;
@@ -52,6 +53,10 @@ pub enum Found {
     Horizon,
     /// None ever: proved.
     Never,
+    /// None until this time, when the motion is to be taken up again ([`Guarded::stage`]).
+    Stage(f64),
+    /// None until this time, and no decision within the [`Limit`].
+    Undecided(f64),
 }
 
 /// The same where `next` is told the crossing.
@@ -102,6 +107,8 @@ pub fn first_crossing_and<G: Guarded>(
         }
         Crossing::Horizon => Found::Horizon,
         Crossing::Never => Found::Never,
+        Crossing::Stage(elapsed) => Found::Stage(elapsed),
+        Crossing::Undecided(elapsed) => Found::Undecided(elapsed),
     }
 }
 
@@ -117,14 +124,23 @@ fn search<G: Guarded>(
     horizon: f64,
     counters: &mut Counters,
 ) -> Crossing {
+    let limit = Limit::new(strides, counters);
+    let stage = phase.stage();
+    let (horizon, over) = match stage < horizon {
+        true => (stage, Crossing::Stage(stage)),
+        false => (horizon, Crossing::Horizon),
+    };
     let mut ends = phase.imposed();
     let mut stride = STRIDE / phase.fastest_rate();
     loop {
+        if limit.is_passed(left.elapsed, counters) {
+            return Crossing::Undecided(left.elapsed);
+        }
         let target = match onwards(outlook, left.elapsed, &mut stride) {
             Outlook::ClearFrom(time) if time <= left.elapsed => return Crossing::Never,
             Outlook::ClearUntil(time) => {
                 if time >= horizon {
-                    return Crossing::Horizon;
+                    return over;
                 }
                 let point = evaluate_again(phase, time, counters);
                 let target = inside_or_root(phase, &left, Target::Point(point), counters);
@@ -158,15 +174,16 @@ fn search<G: Guarded>(
             Outlook::Root(time) | Outlook::Onward(time) | Outlook::ClearFrom(time) => {
                 let time = time.min(horizon);
                 if !time.is_finite() {
-                    return Crossing::Horizon;
+                    return over;
                 }
                 Target::Point(evaluate_again(phase, time, counters))
             }
         };
-        match settle((phase, strides), left, ends, target, counters) {
-            Target::Root(root) if root.elapsed().high <= horizon => return Crossing::At(root),
-            Target::Point(point) if point.elapsed < horizon => left = point,
-            _ => return Crossing::Horizon,
+        match settle((phase, strides), left, ends, target, (&limit, counters)) {
+            Ok(Target::Root(root)) if root.elapsed().high <= horizon => return Crossing::At(root),
+            Ok(Target::Point(point)) if point.elapsed < horizon => left = point,
+            Ok(_) => return over,
+            Err(elapsed) => return Crossing::Undecided(elapsed),
         }
         ends = Ends::FREE;
         outlook = phase.outlook(strides, &left, horizon);
@@ -203,21 +220,22 @@ fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
     }
 }
 
-/// Certifies everything from `left` to `target`, or to the earlier crossing that turns up.
+/// Certifies everything from `left` to `target`, or to the earlier crossing that turns up; an error says how
+/// far it came within the limit.
 #[inline]
 fn settle<G: Guarded>(
     (phase, strides): (&G, &Strides),
     left: Point<f64>,
     mut ends: Ends,
     target: Target,
-    counters: &mut Counters,
-) -> Target {
+    (limit, counters): (&Limit, &mut Counters),
+) -> Result<Target, f64> {
     let target = inside_or_root(phase, &left, target, counters);
     ends.right = target.is_root();
     if phase.certify(strides, &left, target.point(), ends) == Verdict::Inside {
-        return target;
+        return Ok(target);
     }
-    divide((phase, strides), left, ends, target, counters)
+    divide((phase, strides), left, ends, target, (limit, counters))
 }
 
 /// The piecewise way, where one certificate does not reach from `left` to `target`.
@@ -227,10 +245,13 @@ fn divide<G: Guarded>(
     mut left: Point<f64>,
     mut ends: Ends,
     target: Target,
-    counters: &mut Counters,
-) -> Target {
+    (limit, counters): (&Limit, &mut Counters),
+) -> Result<Target, f64> {
     let mut pending = vec![target];
     while let Some(target) = pending.last().copied() {
+        if limit.is_passed(left.elapsed, counters) {
+            return Err(left.elapsed);
+        }
         let right = target.point();
         ends.right = target.is_root();
         let mut verdict = phase.certify(strides, &left, right, ends);
@@ -256,10 +277,10 @@ fn divide<G: Guarded>(
         ends = Ends::FREE;
         pending.pop();
         if pending.is_empty() {
-            return target;
+            return Ok(target);
         }
     }
-    Target::Point(left)
+    Ok(Target::Point(left))
 }
 
 /// Whether most of a piece's rounding room comes from what dies out in it: then a touch may be decided
@@ -287,7 +308,7 @@ fn inside_or_root<G: Guarded>(
     counters: &mut Counters,
 ) -> Target {
     let Target::Point(point) = target else { return target };
-    if phase.corridor().excess(point.guard.orders[0]) > slack(left, &point) {
+    if phase.corridor().excess(point.guard.orders[0]) > slack(phase, left, &point) {
         Target::Root(bracketed(phase, left, &point, counters))
     } else {
         target

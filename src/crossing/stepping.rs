@@ -82,7 +82,7 @@ pub fn first_crossing<G: Bending>(
     };
     let first = counters.evaluations;
     while counters.evaluations - first < limit {
-        let room = slack(&entry, &point);
+        let room = slack(phase, &entry, &point);
         let bend = phase.bend(&point);
         let [value, slope, ..] = point.guard.orders;
         let arrived =
@@ -107,7 +107,7 @@ pub fn first_crossing<G: Bending>(
 }
 
 /// The smallest r > 0 with excess + slope r + bend r^2/2 = 0, for excess <= 0.
-fn safe_step(excess: f64, slope: f64, bend: f64) -> f64 {
+pub(crate) fn safe_step(excess: f64, slope: f64, bend: f64) -> f64 {
     if excess == f64::NEG_INFINITY {
         return f64::INFINITY;
     }
@@ -127,6 +127,7 @@ fn arrival(point: &Point<f64>, corridor: &Corridor) -> Root {
         let residual = over + step * (slope + step * (0.5 * bend + step * third / 6.0));
         step -= residual / (slope + step * (bend + step * 0.5 * third));
     }
-    let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step);
+    // A crossing follows the start, also where its slope is that of a threefold zero there.
+    let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step.max(-point.elapsed));
     Root { point: Point { elapsed, ..*point }, low, side: Side::high(rises) }
 }

@@ -66,7 +66,7 @@ impl Bound {
         let terms = q + root.state.q + a_over_omega2 * TAU + speeds * root.elapsed;
         Self {
             offset: (q + a_over_omega2 * flight.angle.cos - at_start)
-                + (terms * ROOM + slack(root, root)),
+                + (terms * ROOM + slack(flight, root, root)),
             slope,
             curvature: b,
             amplitude: a_over_omega2,

@@ -147,6 +147,9 @@ impl Run {
                 self.touched = true;
             }
         }
+        if *leg.exit() == Exit::Undecidable {
+            self.marks.clear();
+        }
         self.last = Some(*leg);
     }
 

@@ -10,7 +10,8 @@ use std::ops::ControlFlow;
 
 /// The strobes of one motion from some instant on: one pass over its phases, in constant memory.
 ///
-/// It has no end of its own, and a motion whose phase never ends is followed all the same.
+/// It has no end of its own but an undecidable phase ([`Exit::Undecidable`]), and a motion whose phase never
+/// ends is followed all the same.
 #[derive(Clone, Debug)]
 pub struct Section {
     trajectory: Trajectory,
@@ -39,7 +40,7 @@ impl Section {
     pub fn endless(&self) -> Option<Endless> {
         match self.leg.as_ref()?.exit() {
             Exit::Endless(endless) => Some(*endless),
-            Exit::Switch(_) | Exit::Horizon => None,
+            Exit::Switch(_) | Exit::Horizon | Exit::Undecidable => None,
         }
     }
 }
@@ -51,7 +52,11 @@ impl Iterator for Section {
         while self.leg.as_ref()?.ends_by(&self.next) {
             self.leg = self.trajectory.next();
         }
-        let strobe = self.leg.as_ref()?.entry_at(&self.next);
+        let leg = self.leg.as_ref()?;
+        if leg.is_undecided_at(&self.next) {
+            return None;
+        }
+        let strobe = leg.entry_at(&self.next);
         self.next = self.next.after_periods(1, 1);
         Some(strobe)
     }

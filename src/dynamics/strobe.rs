@@ -88,6 +88,8 @@ impl StrobeMap {
             passage.phases.push(leg.phase());
             let step = match leg.exit() {
                 Exit::Switch(_) => product(&leg.saltation(), &leg.variation(leg.duration())),
+                // Nothing is known of the image: nothing converges on it.
+                Exit::Undecidable => [[f64::NAN; 5]; 5],
                 _ => {
                     passage.image = leg.entry_at(&end);
                     leg.variation(leg.elapsed_at(&end))

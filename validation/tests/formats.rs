@@ -31,7 +31,28 @@ fn simulate() {
         let value = json(&stdout(&arguments));
         assert_valid("simulate.schema.json", &value);
         assert_eq!(value["percuss"], env!("CARGO_PKG_VERSION"));
+        assert_eq!(value.get("undecidable"), None);
     }
+}
+
+/// A mass thrown up to where the gap closes to nothing, exactly: half of it by a speed of 1 against a force of 1.
+#[test]
+fn simulate_counts_touches_that_rounding_does_not_decide() {
+    let touch = "simulate --until 3 --a 0 --b=-1 --g 0 --p=-0.5 --y 1 --q 0 --format json";
+    for more in ["", " --samples 4"] {
+        let line = format!("{touch}{more}");
+        let output = support::run(&line.split(' ').collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(0));
+        let value = json(&support::text(&output.stdout));
+        assert_valid("simulate.schema.json", &value);
+        let count = value["undecidable"].as_u64().expect("a number");
+        assert!(count > 0);
+        let said = support::text(&output.stderr);
+        assert!(said.contains(&format!("percuss: {count} touch")), "{said}");
+    }
+    // A little lower it passes below.
+    let line = touch.replace("-0.5", "-0.5000001");
+    assert_eq!(json(&stdout(&line.split(' ').collect::<Vec<_>>())).get("undecidable"), None);
 }
 
 #[test]

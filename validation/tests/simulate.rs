@@ -154,6 +154,63 @@ fn endless_regimes_end_at_the_horizon_and_say_so() {
     }
 }
 
+/// Contacts that die out next to a threshold, as they were found to run for ever.
+#[test]
+fn contacts_that_die_out_are_decided() {
+    let cases = [
+        ("--b 1e-40 --xi 1.2 --p=-0.1 --y 0.1 --q=-0.12", "rests on the slider for ever"),
+        ("--b 1e-17 --xi 1.459 --p=-3.069 --y 1 --q=-3.05", "rests on the slider for ever"),
+        ("--b=-1e-40 --xi 1.2 --p=-0.1 --y 0.1 --q=-0.12", "after tau = 164.87"),
+    ];
+    for (flags, wanted) in cases {
+        let lengths = ["--until 1", "--until 2000", "--events 10", "--events 10 --max-periods 7"];
+        for length in lengths {
+            let line = format!("simulate {length} --a 0 {flags}");
+            let output = run(&line.split(' ').collect::<Vec<_>>());
+            let said = text(&output.stderr);
+            assert_eq!(output.status.code(), Some(0), "{line}: {said}");
+            let late = wanted.starts_with("after");
+            let short = length == "--until 1" || length.contains("--max-periods");
+            assert!(said.contains(wanted) || (late && short), "{line}: {said}");
+        }
+    }
+}
+
+/// Free and forced oscillation in step, which nothing but following them shows to stay inside.
+const IN_STEP: &str =
+    "--a 0.84 --b 0.5 --xi 1e-8 --omega 2 --phi 1.5707963267948966 --p 0.8 --y 0.56 --q 0.78";
+
+#[test]
+fn a_phase_that_is_not_decided_ends_the_run() {
+    for length in [
+        "--periods 1000000000",
+        "--periods 1000000000 --samples 1",
+        "--events 1 --max-periods 1000000000",
+    ] {
+        let line = format!("simulate {length} {IN_STEP}");
+        let output = run(&line.split(' ').collect::<Vec<_>>());
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{line}: {said}");
+        assert_eq!(said.lines().count(), 1, "{line}: {said}");
+        assert!(said.contains("undecidable"), "{line}: {said}");
+        let out = text(&output.stdout);
+        let rows: Vec<_> = out.lines().filter(|row| row.contains(",undecidable,")).collect();
+        assert_eq!(rows.len(), 1, "{line}");
+        assert_eq!(out.lines().last(), Some(rows[0]));
+        // It is a row of numbers like the others.
+        assert!(
+            rows[0]
+                .split(',')
+                .filter(|cell| *cell != "undecidable")
+                .all(|cell| cell.parse::<f64>().is_ok_and(f64::is_finite))
+        );
+    }
+    let line = format!("simulate --periods 1000 {IN_STEP}");
+    let output = run(&line.split(' ').collect::<Vec<_>>());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stdout).lines().last().is_some_and(|row| row.contains(",end,")));
+}
+
 #[test]
 fn events_stop_early_after_so_many_periods() {
     let output = run(&["simulate", "--events", "1000", "--max-periods", "10"]);

@@ -52,9 +52,12 @@ impl<'a, W: Watcher> Course<'a, W> {
         let leg = Leg::new(self.model, &begun, &mut next_begun, horizon, &mut Counters::default());
         let endless = match leg.exit() {
             Exit::Endless(endless) => Some(*endless),
-            Exit::Switch(_) | Exit::Horizon => None,
+            Exit::Switch(_) | Exit::Horizon | Exit::Undecidable => None,
         };
         while !leg.ends_by(&self.due) {
+            if leg.is_undecided_at(&self.due) {
+                return ControlFlow::Break(());
+            }
             self.see(&leg.entry_at(&self.due), endless)?;
         }
         if let Exit::Switch(next) = leg.exit() {

@@ -25,7 +25,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Sees the strobes of one motion.
 pub trait Watcher {
     /// The next strobe, and why the phase that it lies in has no end, where that is proved. A motion has no
-    /// end of its own: it is followed until this breaks.
+    /// end of its own: it is followed until this breaks, or into an undecidable phase.
     fn see(&mut self, strobe: &Entry, endless: Option<Endless>) -> ControlFlow<()>;
 
     /// A phase begins, by a switch; what was due before it has been seen.

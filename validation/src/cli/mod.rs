@@ -84,7 +84,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 fn dispatch(arguments: &Arguments) -> u8 {
     let result = match &arguments.verb {
-        Verb::Simulate(simulate) => simulate::run(simulate).map(|()| DONE),
+        Verb::Simulate(simulate) => {
+            simulate::run(simulate).map(|decided| if decided { DONE } else { OUT_OF_BOUNDS })
+        }
         Verb::Poincare(poincare) => poincare::run(poincare).map(|()| DONE),
         Verb::Lyapunov(lyapunov) => lyapunov::run(lyapunov).map(|()| DONE),
         Verb::Bifurcation(it) => bifurcation::run(it, arguments.threads).map(|()| DONE),

@@ -29,6 +29,9 @@ impl Engine for Exact {
             let (duration, phase, state) = match passed(task, &mut run, &mut outcome.samples) {
                 Some(Passed::Switch { duration, phase, state }) => (duration, phase, state),
                 Some(Passed::Last(leg)) => {
+                    if leg.is_undecided_at(&task.horizon) {
+                        return Err(Failure::new("rounding hides how a phase ends"));
+                    }
                     outcome.end = state_of(&leg.at_instant(&task.horizon));
                     break;
                 }
@@ -80,7 +83,7 @@ fn passed(task: &Task, run: &mut Trajectory, samples: &mut Vec<[f64; 4]>) -> Opt
     sample(task, &leg, samples);
     Some(match leg.exit() {
         Exit::Switch(next) => Passed::by_switch(leg.duration_two_word(), next),
-        Exit::Horizon | Exit::Endless(_) => Passed::Last(Box::new(leg)),
+        _ => Passed::Last(Box::new(leg)),
     })
 }
 

@@ -84,8 +84,8 @@ impl Motion {
         let pieces = legs.iter().map(|leg| {
             let since = leg.entry().instant.since(&begins, omega).value();
             let lasts = match leg.exit() {
-                Exit::Switch(_) => leg.duration(),
-                Exit::Horizon | Exit::Endless(_) => last.since(&leg.entry().instant, omega).value(),
+                Exit::Switch(_) | Exit::Undecidable => leg.duration(),
+                _ => last.since(&leg.entry().instant, omega).value(),
             };
             Piece::of(leg, begins.tau(omega) + since, lasts, POINTS * lasts / span)
         });

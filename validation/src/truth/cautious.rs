@@ -64,6 +64,10 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
         self.0.divide(left, right)
     }
 
+    fn underflow(&self) -> f64 {
+        self.0.underflow()
+    }
+
     fn short_reach(&self) -> f64 {
         self.0.short_reach()
     }

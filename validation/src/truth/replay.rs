@@ -116,6 +116,7 @@ impl Replay {
         let passage = |next| Ok(Passage { begin, next, omega });
         match crossing(&self.forms.rounded(&begin.motion), &self.forms.strides, limit) {
             (_, false) => Err("the margin of a graze"),
+            (Crossing::Stage(_) | Crossing::Undecided(_), _) => Err("the end of a phase"),
             (Crossing::Horizon | Crossing::Never, _) => passage(None),
             (Crossing::At(root), _) => {
                 let at = refine(&begin.motion, &root).ok_or("a switch time")?;

@@ -1,6 +1,6 @@
 //! A run as JSON, written row by row: a long run costs no memory.
 
-use super::plan::Plan;
+use super::plan::{Ending, Plan};
 use super::rows::{Row, Sink};
 use crate::cli::model::ParametersJson;
 use anyhow::Result;
@@ -96,7 +96,11 @@ impl Sink for Json<'_> {
         }
     }
 
-    fn finish(&mut self) -> Result<()> {
-        Ok(writeln!(self.out, "]}}")?)
+    fn finish(&mut self, ending: &Ending) -> Result<()> {
+        write!(self.out, "]")?;
+        if ending.touches > 0 {
+            write!(self.out, ",\"undecidable\":{}", ending.touches)?;
+        }
+        Ok(writeln!(self.out, "}}")?)
     }
 }

@@ -11,7 +11,7 @@ use super::{parse, say};
 use crate::picture;
 use anyhow::Result;
 use clap::{ArgGroup, Args, ValueEnum};
-use plan::Plan;
+use plan::{Ending, Plan};
 use std::io::Write;
 
 /// Run the exact solver from one start
@@ -48,12 +48,13 @@ enum Format {
     Svg,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<()> {
+/// Makes the run; whether it was decided to its end.
+pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     let format = arguments.output.format(Format::Csv)?;
     let problem = arguments.model.problem()?;
     let plan = Plan::new(problem, arguments)?;
     let destination = arguments.output.destination();
-    let mut ending = None;
+    let mut ending = Ending::default();
     destination.write(|out| {
         ending = match format {
             Format::Csv => write_rows(&plan, arguments.samples, &mut csv::Csv(out))?,
@@ -62,28 +63,22 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         };
         Ok(())
     })?;
-    if let Some(line) = ending {
-        say(&line);
-    }
-    Ok(())
+    ending.lines().for_each(|line| say(&line));
+    Ok(!ending.undecided)
 }
 
 /// Writes the run's rows; what has to be said about its end.
-fn write_rows(
-    plan: &Plan,
-    samples: Option<u32>,
-    sink: &mut dyn rows::Sink,
-) -> Result<Option<String>> {
+fn write_rows(plan: &Plan, samples: Option<u32>, sink: &mut dyn rows::Sink) -> Result<Ending> {
     sink.begin(plan, samples.is_some())?;
     let ending = match samples {
         Some(per_period) => rows::samples(plan, per_period, sink)?,
         None => rows::switches(plan, sink)?,
     };
-    sink.finish()?;
+    sink.finish(&ending)?;
     Ok(ending)
 }
 
-fn draw(plan: &Plan, format: Format, out: &mut dyn Write) -> Result<Option<String>> {
+fn draw(plan: &Plan, format: Format, out: &mut dyn Write) -> Result<Ending> {
     let (legs, ending) = plan.legs_for_picture()?;
     let motion = picture::Motion::of(&plan.problem, &legs, &plan.last_instant(&legs));
     let bytes = match format {

@@ -5,7 +5,7 @@ use crate::case::Problem;
 use crate::cli::endless::words;
 use crate::cli::parse::MAX_PERIODS;
 use anyhow::{Result, bail};
-use percuss::{Endless, Exit, Instant, Leg};
+use percuss::{Endless, Exit, Instant, Leg, Trajectory};
 
 /// A picture of more forcing periods than this shows nothing.
 const MAX_PICTURE_PERIODS: f64 = 5000.0;
@@ -37,24 +37,41 @@ impl Plan {
     }
 
     /// The run's phases, the last one ending with the run; none where no switch is wanted.
-    pub(super) fn legs(&self) -> impl Iterator<Item = Leg> {
-        let wanted = self.events;
+    pub(super) fn legs(&self) -> Legs {
         let run = self.problem.model.trajectory(self.problem.entry).until(self.horizon);
-        let mut switches = 0;
-        let mut ended = wanted == Some(0);
-        run.take_while(move |leg| {
-            if ended {
-                return false;
-            }
-            switches += u64::from(matches!(leg.exit(), Exit::Switch(_)));
-            ended = wanted == Some(switches);
-            true
-        })
+        Legs { run, wanted: self.events, switches: 0 }
     }
 
-    /// What to say of a run whose last phase is `last` after `switches` switches.
-    pub(super) fn ending(&self, last: Option<&Leg>, switches: u64) -> Option<String> {
-        let last = last?;
+    /// What to say of a run whose last phase is `last` after the phases of `legs`.
+    pub(super) fn ending(&self, last: Option<&Leg>, legs: &Legs) -> Ending {
+        let undecided = last.filter(|leg| *leg.exit() == Exit::Undecidable);
+        let how = match undecided {
+            Some(leg) => Some(self.undecided(leg)),
+            None => last.and_then(|last| self.how_it_ends(last, legs.switches)),
+        };
+        Ending { how, touches: legs.touches(), undecided: undecided.is_some() }
+    }
+
+    fn undecided(&self, last: &Leg) -> String {
+        format!(
+            "undecidable: rounding hides how the phase {} ends that begins at tau = {:?}, it is \
+             followed to tau = {:?}",
+            last.phase(),
+            last.entry().instant.tau(self.omega()),
+            self.end_of(last).tau(self.omega())
+        )
+    }
+
+    /// Where the last of a run's phases is cut: by the horizon, or where it is no longer decided.
+    pub(super) fn end_of(&self, last: &Leg) -> Instant {
+        if *last.exit() == Exit::Undecidable {
+            last.entry().instant.after(last.duration_two_word(), self.omega())
+        } else {
+            self.horizon
+        }
+    }
+
+    fn how_it_ends(&self, last: &Leg, switches: u64) -> Option<String> {
         let found = self.endless(last).map(|endless| {
             let since = last.entry().instant.tau(self.omega());
             format!("{} after tau = {since:?}", words(endless))
@@ -77,21 +94,21 @@ impl Plan {
     fn endless(&self, last: &Leg) -> Option<Endless> {
         match last.exit() {
             Exit::Endless(endless) => Some(*endless),
-            Exit::Switch(_) => None,
             Exit::Horizon => {
                 let whole = self.problem.model.trajectory(*last.entry()).next()?;
                 if let Exit::Endless(endless) = whole.exit() { Some(*endless) } else { None }
             }
+            _ => None,
         }
     }
 
     /// All phases at once, for a picture.
-    pub(super) fn legs_for_picture(&self) -> Result<(Vec<Leg>, Option<String>)> {
+    pub(super) fn legs_for_picture(&self) -> Result<(Vec<Leg>, Ending)> {
         let start = self.problem.entry.instant;
         let longest = MAX_PICTURE_PERIODS * self.problem.model.period();
         let mut legs: Vec<Leg> = Vec::new();
-        let mut switches = 0;
-        for leg in self.legs() {
+        let mut run = self.legs();
+        for leg in run.by_ref() {
             let begins = leg.entry().instant.since(&start, self.omega()).value();
             let ends_late =
                 self.events.is_none() && self.horizon.since(&start, self.omega()).value() > longest;
@@ -100,15 +117,17 @@ impl Plan {
                     "--output: a picture of more than {MAX_PICTURE_PERIODS} forcing periods is not accepted"
                 );
             }
-            switches += u64::from(matches!(leg.exit(), Exit::Switch(_)));
             legs.push(leg);
         }
-        let ending = self.ending(legs.last(), switches);
+        let ending = self.ending(legs.last(), &run);
         Ok((legs, ending))
     }
 
     /// Where the last of these phases ends.
     pub(super) fn last_instant(&self, legs: &[Leg]) -> Instant {
+        if let Some(last) = legs.last().filter(|leg| *leg.exit() == Exit::Undecidable) {
+            return self.end_of(last);
+        }
         match (self.events, legs.last().map(|leg| (leg.entry(), leg.exit()))) {
             (_, Some((_, Exit::Switch(next)))) => next.instant,
             // Switches were wanted and none came: the last phase is shown for a few periods.
@@ -116,6 +135,58 @@ impl Plan {
             (Some(_), None) => self.problem.entry.instant,
             (None, _) => self.horizon,
         }
+    }
+}
+
+/// A run's phases up to the switch that ends it.
+pub(super) struct Legs {
+    run: Trajectory,
+    wanted: Option<u64>,
+    switches: u64,
+}
+
+impl Legs {
+    /// Touches so far that rounding does not decide.
+    fn touches(&self) -> u64 {
+        self.run.counters().undecidable
+    }
+}
+
+impl Iterator for Legs {
+    type Item = Leg;
+
+    fn next(&mut self) -> Option<Leg> {
+        if self.wanted == Some(self.switches) {
+            return None;
+        }
+        let leg = self.run.next()?;
+        self.switches += u64::from(matches!(leg.exit(), Exit::Switch(_)));
+        Some(leg)
+    }
+}
+
+/// What has to be said about a run's end.
+#[derive(Debug, Default)]
+pub(super) struct Ending {
+    /// How it ends, where that is not what was asked for.
+    how: Option<String>,
+    /// Touches that rounding does not decide.
+    pub(super) touches: u64,
+    /// Whether its last phase is undecidable.
+    pub(super) undecided: bool,
+}
+
+impl Ending {
+    /// The lines that say so.
+    pub(super) fn lines(&self) -> impl Iterator<Item = String> {
+        let touches = match self.touches {
+            0 => None,
+            1 => Some("1 touch lies within rounding of its threshold: counted as no switch".into()),
+            n => Some(format!(
+                "{n} touches lie within rounding of their thresholds: counted as no switches"
+            )),
+        };
+        touches.into_iter().chain(self.how.clone())
     }
 }
 

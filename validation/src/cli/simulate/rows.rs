@@ -1,6 +1,6 @@
 //! The rows of a run: the state at which each phase begins, or samples.
 
-use super::plan::Plan;
+use super::plan::{Ending, Plan};
 use anyhow::Result;
 use percuss::{Exit, Instant, Leg, Sample};
 
@@ -21,23 +21,25 @@ pub(super) struct Row {
 pub(super) trait Sink {
     fn begin(&mut self, plan: &Plan, samples: bool) -> Result<()>;
     fn row(&mut self, plan: &Plan, row: &Row) -> Result<()>;
-    fn finish(&mut self) -> Result<()>;
+    fn finish(&mut self, ending: &Ending) -> Result<()>;
 }
 
 fn state(sample: &Sample) -> [f64; 4] {
     [sample.state.p, sample.state.y, sample.state.q, sample.v]
 }
 
-/// Row 0 is the start, then each switch, and the horizon if that is what ends the run.
-pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<Option<String>> {
+/// Row 0 is the start, then each switch, and the horizon if that is what ends the run, or where it is no
+/// longer decided.
+pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<Ending> {
     let mut index = 0;
     let mut last = None;
     let mut entry = plan.problem.entry;
-    for leg in std::iter::once(None).chain(plan.legs().map(Some)) {
+    let mut legs = plan.legs();
+    for leg in std::iter::once(None).chain(legs.by_ref().map(Some)) {
         match leg.as_ref().map(Leg::exit) {
             None => {}
             Some(Exit::Switch(next)) => (index, entry) = (index + 1, *next),
-            Some(Exit::Horizon | Exit::Endless(_)) => {
+            Some(_) => {
                 last = leg;
                 break;
             }
@@ -54,45 +56,58 @@ pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<Option<String
             },
         )?;
     }
-    if let (Some(last), None) = (&last, plan.events) {
-        let state = state(&last.at_instant(&plan.horizon));
+    let ending = plan.ending(last.as_ref(), &legs);
+    if let Some(last) = last
+        && (plan.events.is_none() || ending.undecided)
+    {
+        let instant = plan.end_of(&last);
+        let state = state(&last.at_instant(&instant));
         sink.row(
             plan,
             &Row {
                 index: index + 1,
-                phase: "end",
-                instant: plan.horizon,
+                phase: if ending.undecided { UNDECIDABLE } else { "end" },
+                instant,
                 state,
                 co_ordinates: None,
             },
         )?;
     }
-    Ok(plan.ending(last.as_ref(), index))
+    Ok(ending)
 }
 
-/// Rows at start + k 2 pi/(K omega), the horizon included.
-pub(super) fn samples(plan: &Plan, per_period: u32, sink: &mut dyn Sink) -> Result<Option<String>> {
+/// Rows at start + k 2 pi/(K omega), the horizon included; a last one where the run is no longer decided.
+pub(super) fn samples(plan: &Plan, per_period: u32, sink: &mut dyn Sink) -> Result<Ending> {
     let start = plan.problem.entry.instant;
     let mut k = 0;
-    let mut switches = 0;
     let mut last = None;
-    for leg in plan.legs() {
-        switches += u64::from(matches!(leg.exit(), Exit::Switch(_)));
+    let mut legs = plan.legs();
+    for leg in legs.by_ref() {
         loop {
             let instant = start.after_periods(k, u64::from(per_period));
-            if instant > plan.horizon || leg.ends_by(&instant) {
+            let over = instant > plan.horizon || leg.is_undecided_at(&instant);
+            if over || leg.ends_by(&instant) {
                 break;
             }
-            let state = state(&leg.at_instant(&instant));
-            let [p, _, q, v] = state;
-            let co_ordinates = Some([p + v, q + v]);
-            sink.row(
-                plan,
-                &Row { index: k, phase: leg.phase().token(), instant, state, co_ordinates },
-            )?;
+            sink.row(plan, &sample(k, leg.phase().token(), &leg, instant))?;
             k += 1;
         }
         last = Some(leg);
     }
-    Ok(plan.ending(last.as_ref(), switches))
+    let ending = plan.ending(last.as_ref(), &legs);
+    if let Some(last) = last
+        && ending.undecided
+    {
+        sink.row(plan, &sample(k, UNDECIDABLE, &last, plan.end_of(&last)))?;
+    }
+    Ok(ending)
+}
+
+/// The phase of a row at which the run is no longer decided.
+const UNDECIDABLE: &str = "undecidable";
+
+fn sample(index: u64, phase: &'static str, leg: &Leg, instant: Instant) -> Row {
+    let state = state(&leg.at_instant(&instant));
+    let [p, _, q, v] = state;
+    Row { index, phase, instant, state, co_ordinates: Some([p + v, q + v]) }
 }
