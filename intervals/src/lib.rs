@@ -1,0 +1,11 @@
+//! The switches of the f64 solver, proved again in interval arithmetic: see docs/ROUNDING.md.
+
+pub mod ball;
+mod end;
+pub mod frame;
+pub mod functions;
+pub mod guard;
+mod hull;
+pub mod proof;
+pub mod regimes;
+pub mod tally;
