@@ -52,7 +52,7 @@ pub(crate) fn onset(
         match slipping(constants, &state) {
             // What is known of f and the state are rounded apart: where the state does not slip, f is
             // within rounding of the threshold.
-            Onset::Progression { drift_rate, .. } if !(drift_rate > 0.0) => {
+            Onset::Progression { drift_rate, .. } if drift_rate <= 0.0 => {
                 state.q = 1.0 - damper;
                 state.p = state.q + g;
                 return (state, on_threshold(constants, &state, 1.0, force));
