@@ -95,8 +95,10 @@ impl Leg {
         &self.constants
     }
 
-    /// The closed form.
-    pub(crate) fn motion(&self) -> Motion<'_> {
+    /// The closed form from which the end of the phase was found, with all that is known exactly at its
+    /// entry.
+    #[must_use]
+    pub fn motion(&self) -> Motion<'_> {
         Motion::new(&self.constants, &self.entry, self.angle)
     }
 

@@ -3,7 +3,8 @@
 //!
 //! A mass driven by a cos(omega tau + phi) + b strikes a weightless visco-elastic slider that sticks
 //! by dry friction. In each of three phases the motion is known in closed form; this crate joins the
-//! phases at their switches, every one of which it proves to be the first.
+//! phases at their switches, every one of which it proves to be the first, within the rounding model of
+//! the repository's docs/ROUNDING.md.
 //!
 //! ```
 //! use percuss::{Model, Parameters, Start};
@@ -53,7 +54,7 @@ pub use growth::{Growth, GrowthRecorder};
 pub use instant::Instant;
 pub use judgement::{Effort, Judgement};
 pub use leg::{Endless, Exit, Leg, Sample};
-pub use model::Model;
+pub use model::{Model, Motion};
 pub use parameters::{Parameter, Parameters};
 pub use phase::{Phase, UnknownPhase};
 pub use start::Start;

@@ -24,9 +24,12 @@ pub struct Model {
 
 /// The closed form of one phase, with the constants of its model.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Motion<'a> {
+pub enum Motion<'a> {
+    /// The mass flies.
     NoContact(NoContact<f64, &'a Constants<f64>>),
+    /// The mass moves with the slider's top, and the slider's bottom sticks.
     Contact(Contact<f64, &'a Constants<f64>>),
+    /// The mass moves with the slider's top, and the slider's bottom slips.
     Progression(Progression<f64, &'a Constants<f64>>),
 }
 

@@ -25,8 +25,7 @@ pub(crate) fn onset(
     let Constants { two_xi, g, rate, .. } = *constants;
     let (damper, spring) = (two_xi * state.y, state.q);
     let largest = damper.abs().max(spring.abs());
-    let known = f;
-    let f = known.unwrap_or(damper + spring);
+    let f = f.unwrap_or(damper + spring);
     if f.abs() <= FOUR_ULPS * largest {
         state.q = -damper;
         state.p = state.q + g;
@@ -50,18 +49,24 @@ pub(crate) fn onset(
     } else if f < 1.0 {
         Onset::Contact { offset: f, reference: 0.0 }
     } else {
-        match known {
-            Some(f) => {
-                Onset::Progression { drift_rate: (f - 1.0) * rate, closing: (1.0 - state.q) * rate }
+        match slipping(constants, &state) {
+            // What is known of f and the state are rounded apart: where the state does not slip, f is
+            // within rounding of the threshold.
+            Onset::Progression { drift_rate, .. } if drift_rate <= 0.0 => {
+                state.q = 1.0 - damper;
+                state.p = state.q + g;
+                return (state, on_threshold(constants, &state, 1.0, force));
             }
-            None => slipping(constants, &state),
+            onset => onset,
         }
     };
     (state, onset)
 }
 
 /// A progression under way. Its drift velocity is y - q' and not (f - 1)/(2 xi), which would carry
-/// 1/(2 xi) times the rounding of f: 1 - q is exact where the slider is nearly compressed.
+/// 1/(2 xi) times the rounding of f: 1 - q is exact where the slider is nearly compressed. It must be
+/// that of the state after an impact too, although f is known by itself there: the closed form goes by
+/// the drift velocity at first and by y later, and would jump where it changes over.
 pub(crate) fn slipping(constants: &Constants<f64>, state: &State) -> Onset {
     let closing = (1.0 - state.q) * constants.rate;
     Onset::Progression { drift_rate: state.y - closing, closing }

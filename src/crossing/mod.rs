@@ -18,7 +18,8 @@
 //!
 //! Rounding enters through one number a piece, `slack`: a few eps times the largest term that went
 //! into the guard. A guard that comes closer to its threshold than that, without passing it by more,
-//! is undecidable in f64; it is counted and taken as a touch, which is no switch.
+//! is undecidable in f64; it is counted and taken as a touch, which is no switch. What the slack covers is
+//! listed in docs/ROUNDING.md, and checked there in interval arithmetic.
 //!
 //! The work of a search has a [`limit`] that grows with the time that is proved to be clear; a search that
 //! passes it leaves the phase undecided.

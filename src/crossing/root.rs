@@ -1,6 +1,6 @@
 //! From a guess or a bracket to a root, with a closed-form evaluation a step and a series at the end.
 
-use crate::crossing::guarded::{Guarded, SLACK};
+use crate::crossing::guarded::{Guarded, SLACK, slack};
 use crate::crossing::series::{SHORT_TERMS, Series, TERMS};
 use crate::crossing::{Counters, Root, Side};
 use crate::flow::Point;
@@ -130,11 +130,15 @@ fn polished_by<G: Guarded, const N: usize>(
         let (value, slope) = series.value_and_slope(step);
         let change = (threshold - value) / slope;
         step += change;
-        let gain = change * (series.bend(step) + 0.5 * change * series.0[3]);
+        let bend = series.bend(step);
+        let gain = change * (bend + 0.5 * change * series.0[3]);
         let settled = gain.abs() <= SETTLED * slope.abs();
         // Next to a graze rounding keeps the time from settling any further.
         let hidden = (value - threshold).abs() <= SLACK * point.guard.largest_term;
         if settled || (attempt == ATTEMPTS && hidden) {
+            if !passes((value - threshold, slope, bend), rises, slack(point, point)) {
+                return None;
+            }
             let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step);
             let end = phase.continued(point, step, series, (threshold, slope + gain));
             let end = Point { elapsed, ..end };
@@ -151,6 +155,14 @@ fn polished_by<G: Guarded, const N: usize>(
 fn leaves(point: &Point<f64>, rises: bool) -> bool {
     let slope = point.guard.orders[1];
     if rises { slope > 0.0 } else { slope < 0.0 }
+}
+
+/// Whether a guard that turns back next to its threshold goes beyond it by more than rounding. A crest
+/// within that may as well be no crossing: it is a touch, at which Newton's method may settle anywhere.
+#[inline(always)]
+fn passes((over, slope, bend): (f64, f64, f64), rises: bool, slack: f64) -> bool {
+    let outward = if rises { 1.0 } else { -1.0 };
+    slope * slope > 2.0 * (bend * outward) * (over * outward - slack)
 }
 
 /// Follows a guess to a root beyond `left`, where the guard leaves its corridor; or gives the last

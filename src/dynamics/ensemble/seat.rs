@@ -7,7 +7,7 @@ use crate::instant::Instant;
 use crate::lanes::{Begin, Column, End, Shape, Stage};
 use crate::model::Model;
 use crate::state::State;
-use crate::surface::FOUR_ULPS;
+use crate::surface::{self, FOUR_ULPS};
 use crate::two_word::TwoWord;
 use std::ops::ControlFlow;
 
@@ -160,11 +160,11 @@ impl<'a, W: Watcher> Seat<'a, W> {
                 (1.0 - constants.two_xi * y, onset, drift)
             }
             Stage::Flight | Stage::FlightAgain | Stage::FlightStrobe => {
-                let (f, q, rate) = (end.guard[lane], end.q[lane], constants.rate);
+                let (f, q) = (end.guard[lane], end.q[lane]);
                 let onset = if f < 1.0 {
                     Onset::Contact { offset: f, reference: 0.0 }
                 } else {
-                    Onset::Progression { drift_rate: (f - 1.0) * rate, closing: (1.0 - q) * rate }
+                    surface::slipping(constants, &State { p: q + constants.g, y, q })
                 };
                 (q, onset, drift)
             }

@@ -1,0 +1,210 @@
+//! Switches of the solver examined one by one, and counted.
+
+use crate::ball::Ball;
+use crate::frame::Frame;
+use crate::guard::Guard;
+use crate::proof::{Claim, GRANTED, Verdict, examine};
+use crate::regimes::{Chance, Regime, Run};
+use percuss::crossing::guarded::{Guarded, slack};
+use percuss::{Exit, Leg, Model, Motion, Phase};
+
+/// Examples kept of a regime's switches that were not proved.
+const MOST_EXAMPLES: usize = 20;
+
+/// What became of the switches of a regime.
+#[derive(Clone, Debug, Default)]
+pub struct Tally {
+    /// Switches examined.
+    pub switches: u64,
+    /// Proved.
+    pub confirmed: u64,
+    /// Counted as undecidable by the solver itself, and not refuted.
+    pub undecidable: u64,
+    /// Neither proved nor refuted.
+    pub open: u64,
+    /// Refuted.
+    pub contradicted: u64,
+    /// Phases without a switch.
+    pub endless: u64,
+    /// The largest distance of a proved switch's guard from its threshold, in units of the slack.
+    pub residual: f64,
+    /// The largest error of a guard inside its phase, in units of eps times its largest term.
+    pub rounding: f64,
+    /// The first switches that were not proved, in words.
+    pub examples: Vec<String>,
+}
+
+/// A switch as the solver found it.
+pub struct Found<'a> {
+    /// The phase that it ends.
+    pub leg: &'a Leg,
+    /// What is claimed.
+    pub claim: Claim,
+}
+
+impl<'a> Found<'a> {
+    /// The claim of a phase that ends by a switch.
+    #[must_use]
+    pub fn new(leg: &'a Leg) -> Option<Self> {
+        let Exit::Switch(next) = leg.exit() else { return None };
+        let duration = leg.duration_two_word();
+        let rises = match leg.phase() {
+            Phase::NoContact => true,
+            Phase::Contact => next.phase() == Phase::Progression,
+            Phase::Progression => false,
+        };
+        let claim = |corridor, slack| Claim { duration, corridor, rises, slack };
+        let claim = match leg.motion() {
+            Motion::NoContact(it) => claim(it.corridor(), room(&it, duration.high)),
+            Motion::Contact(it) => claim(it.corridor(), room(&it, duration.high)),
+            Motion::Progression(it) => claim(it.corridor(), room(&it, duration.high)),
+        };
+        Some(Self { leg, claim })
+    }
+
+    /// The exact guard.
+    #[must_use]
+    pub fn guard(&self, frame: &Frame) -> Guard {
+        Guard::new(frame, &self.leg.motion(), &self.leg.entry().instant)
+    }
+
+    /// The error of the f64 guard at a share of the phase, in units of eps times its largest term.
+    fn rounding(&self, guard: &Guard, share: f64) -> f64 {
+        let elapsed = share * self.claim.duration.high;
+        let jet = match self.leg.motion() {
+            Motion::NoContact(it) => evaluated(&it, elapsed),
+            Motion::Contact(it) => evaluated(&it, elapsed),
+            Motion::Progression(it) => evaluated(&it, elapsed),
+        };
+        let exact = guard.at(Ball::exact(elapsed)).whole[0];
+        let error = (exact - Ball::exact(jet[0])).size() - exact.upper() + exact.lower();
+        error / (f64::EPSILON * jet[1] + 1e-285)
+    }
+}
+
+/// The solver's own rounding room for its proof of the whole phase.
+fn room<G: Guarded>(phase: &G, end: f64) -> f64 {
+    slack(&phase.entry(), &phase.at(end))
+}
+
+/// A guard and its largest term.
+fn evaluated<G: Guarded>(phase: &G, elapsed: f64) -> [f64; 2] {
+    let jet = phase.at(elapsed).guard;
+    [jet.orders[0], jet.largest_term]
+}
+
+impl Tally {
+    /// So many switches of a regime.
+    #[must_use]
+    pub fn of(regime: &Regime, switches: u64, chance: &mut Chance) -> Self {
+        let mut tally = Self::default();
+        while tally.switches < switches {
+            for run in (regime.draw)(chance) {
+                tally.follow(&run, regime.phases, switches, chance);
+            }
+        }
+        tally
+    }
+
+    /// Follows a run; one that the library refuses counts for nothing.
+    fn follow(&mut self, run: &Run, phases: usize, switches: u64, chance: &mut Chance) {
+        let Ok(model) = Model::new(run.0) else { return };
+        let Ok(entry) = model.start(&run.1) else { return };
+        let frame = Frame::new(model.parameters());
+        let horizon = entry.instant.after_periods(100_000, 1);
+        let mut trajectory = model.trajectory(entry).until(horizon);
+        for number in 0..phases {
+            let before = trajectory.counters().undecidable;
+            let Some(leg) = trajectory.next() else { return };
+            let flagged = trajectory.counters().undecidable > before;
+            let Some(found) = Found::new(&leg) else {
+                self.endless += 1;
+                return;
+            };
+            if self.switches >= switches {
+                return;
+            }
+            if let Some(verdict) = self.count(&found, &frame, flagged, chance.unit())
+                && self.examples.len() < MOST_EXAMPLES
+            {
+                self.examples
+                    .push(format!("phase {number} of {run:?}: {verdict:?}, {:?}", found.claim));
+            }
+        }
+    }
+
+    /// Counts a switch; a verdict that is to be looked at comes back.
+    fn count(
+        &mut self,
+        found: &Found<'_>,
+        frame: &Frame,
+        flagged: bool,
+        share: f64,
+    ) -> Option<Verdict> {
+        let guard = found.guard(frame);
+        let verdict = examine(&guard, &found.claim);
+        self.switches += 1;
+        self.rounding = self.rounding.max(found.rounding(&guard, share));
+        match verdict {
+            Verdict::Confirmed { residual } if !flagged => {
+                self.confirmed += 1;
+                self.residual = self.residual.max(residual);
+                None
+            }
+            Verdict::Confirmed { .. } | Verdict::Open { .. } if flagged => {
+                self.undecidable += 1;
+                None
+            }
+            Verdict::Earlier { excess, .. } if flagged && excess <= GRANTED => {
+                self.undecidable += 1;
+                None
+            }
+            Verdict::Absent { .. } if flagged => {
+                self.undecidable += 1;
+                None
+            }
+            Verdict::Open { .. } => {
+                self.open += 1;
+                Some(verdict)
+            }
+            _ => {
+                self.contradicted += 1;
+                Some(verdict)
+            }
+        }
+    }
+
+    /// Adds another regime's counts.
+    pub fn add(&mut self, other: &Self) {
+        self.switches += other.switches;
+        self.confirmed += other.confirmed;
+        self.undecidable += other.undecidable;
+        self.open += other.open;
+        self.contradicted += other.contradicted;
+        self.endless += other.endless;
+        self.residual = self.residual.max(other.residual);
+        self.rounding = self.rounding.max(other.rounding);
+    }
+
+    /// Whether nothing is contradicted, and of what the solver decided one in ten thousand is open
+    /// at most.
+    #[must_use]
+    pub const fn holds(&self) -> bool {
+        self.contradicted == 0 && self.open * 10_000 <= self.switches - self.undecidable
+    }
+
+    /// The counts as a row below [`HEADER`].
+    #[must_use]
+    pub fn row(&self, name: &str) -> String {
+        let Self { switches, confirmed, undecidable, open, contradicted, .. } = self;
+        let Self { residual, rounding, .. } = self;
+        format!(
+            "{name:<32} {switches:>9} {confirmed:>9} {undecidable:>11} {open:>13} \
+             {contradicted:>12} {residual:>8.2} {rounding:>8.2}"
+        )
+    }
+}
+
+/// What stands over the rows.
+pub const HEADER: &str = "regime                            switches confirmed undecidable \
+                          not confirmed contradicted residual rounding";
