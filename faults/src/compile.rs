@@ -168,6 +168,8 @@ fn cargo(scratch: &Path, arguments: &[&str]) -> Result<Vec<Value>> {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .args(arguments)
         .args(["--message-format", "json"])
+        // The copy would build over what was built of the repository itself: both have the same names.
+        .env("CARGO_TARGET_DIR", "../build")
         .current_dir(scratch)
         .stderr(Stdio::inherit())
         .output()

@@ -3,9 +3,8 @@
 use crate::compile::Program;
 use anyhow::{Context, Result};
 use std::io::{BufRead, BufReader};
-use std::os::unix::process::CommandExt;
+use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::process::{Child, Command, Stdio};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::time::{Duration, Instant};
 
 /// What became of a test program.
@@ -21,39 +20,37 @@ pub enum Outcome {
     TimedOut,
 }
 
+/// The signals by which a limit of the processor's time ends a program: SIGKILL and SIGXCPU.
+const KILLED: i32 = 9;
+const TIME_IS_UP: i32 = 24;
+
 /// Memory that a test program may address, in KiB: a fault may make a run collect phases without end.
 const MEMORY: &str = "16000000";
 
-/// Runs the program with this fault; 0 is none.
-pub fn run(program: &Program, fault: u32, limit: Option<Duration>) -> Result<Outcome> {
+/// Runs the program with this fault; 0 is none. It may take so many seconds of the processor's time, which does
+/// not depend on what else the machine does.
+pub fn run(program: &Program, fault: u32, limit: Option<u64>) -> Result<Outcome> {
     let started = Instant::now();
-    let mut child = start(program, fault)?;
-    let lines = lines_of(&mut child)?;
-    let outcome = loop {
-        let left = limit.map_or(Duration::MAX, |limit| limit.saturating_sub(started.elapsed()));
-        // Durations near the largest overflow a deadline.
-        match lines.recv_timeout(left.min(Duration::from_secs(86_400))) {
-            Ok(line) => {
-                if let Some(test) = failed_test(&line) {
-                    break Some(Outcome::Failed(test));
-                }
-            }
-            Err(RecvTimeoutError::Timeout) => break Some(Outcome::TimedOut),
-            Err(RecvTimeoutError::Disconnected) => break None,
-        }
-    };
-    if let Some(outcome) = outcome {
+    let mut child = start(program, fault, limit)?;
+    let output = child.stdout.take().context("no output")?;
+    let mut lines = BufReader::new(output).lines().map_while(Result::ok);
+    if let Some(test) = lines.find_map(|line| failed_test(&line)) {
         stop(&mut child)?;
-        return Ok(outcome);
+        return Ok(Outcome::Failed(test));
     }
     let status = child.wait()?;
-    Ok(if status.success() { Outcome::Passed(started.elapsed()) } else { Outcome::Crashed })
+    Ok(match status.signal() {
+        _ if status.success() => Outcome::Passed(started.elapsed()),
+        Some(KILLED | TIME_IS_UP) => Outcome::TimedOut,
+        _ => Outcome::Crashed,
+    })
 }
 
-fn start(program: &Program, fault: u32) -> Result<Child> {
+fn start(program: &Program, fault: u32, limit: Option<u64>) -> Result<Child> {
+    let time = limit.map_or("unlimited".to_owned(), |seconds| seconds.to_string());
     Command::new("sh")
         .arg("-c")
-        .arg(format!("ulimit -v {MEMORY}; exec \"$0\" \"$@\""))
+        .arg(format!("ulimit -v {MEMORY}; ulimit -t {time}; exec \"$0\" \"$@\""))
         .arg(&program.path)
         .env("PERCUSS_FAULT", fault.to_string())
         .env("CARGO_MANIFEST_DIR", &program.folder)
@@ -68,19 +65,6 @@ fn start(program: &Program, fault: u32) -> Result<Child> {
         .process_group(0)
         .spawn()
         .with_context(|| program.path.display().to_string())
-}
-
-fn lines_of(child: &mut Child) -> Result<Receiver<String>> {
-    let (sender, receiver) = channel();
-    let output = child.stdout.take().context("no output")?;
-    std::thread::spawn(move || {
-        for line in BufReader::new(output).lines().map_while(Result::ok) {
-            if sender.send(line).is_err() {
-                break;
-            }
-        }
-    });
-    Ok(receiver)
 }
 
 fn failed_test(line: &str) -> Option<String> {

@@ -18,13 +18,14 @@ pub struct Plan {
     pub skip: Vec<String>,
 }
 
-/// Time that a test program may take beside its multiple: starting it takes some on a busy machine.
-const AT_LEAST: Duration = Duration::from_secs(20);
+/// Seconds that a test program may take beside its multiple, however short it is.
+const AT_LEAST: f64 = 20.0;
 
 /// A test program and how long it may take.
 struct Timed {
     program: Program,
-    limit: Duration,
+    /// Seconds of the processor's time.
+    limit: u64,
 }
 
 /// Tries all of these faults and writes the table, a line as soon as it is known.
@@ -88,7 +89,7 @@ fn timed(scratch: &Path, package: &str, plan: &Plan) -> Result<Vec<Timed>> {
     timed.sort_by_key(|(took, _)| *took);
     let with_limit = |(took, program): (Duration, Program)| Timed {
         program,
-        limit: took.mul_f64(plan.patience) + AT_LEAST,
+        limit: (took.as_secs_f64() * plan.patience + AT_LEAST) as u64,
     };
     Ok(timed.into_iter().map(with_limit).collect())
 }
