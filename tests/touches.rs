@@ -1,4 +1,4 @@
-//! Touches that f64 cannot decide: each is counted once, and the run goes on as after a touch.
+//! Touches that f64 cannot decide: each is counted, and the run goes on as after a touch.
 //!
 //! Each guard is planted so that its crest lies a known distance from the threshold, in units of the rounding
 //! room that the solver allows itself: four eps times the largest sum of the guard's terms.
@@ -11,7 +11,7 @@ mod random;
 
 use percuss::{Model, Parameters, Phase, Start};
 use random::Draw;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 const EPS: f64 = f64::EPSILON;
 
@@ -42,13 +42,23 @@ fn parabola(scale: i32, speed: i32, above: f64) -> First {
     first(parameters, Start { p, y, q: Some(0.0), ..Start::default() }, 1 << 20)
 }
 
+/// Four eps of 2 g are eight units. Inside, both pieces that meet at the crest count a touch. Outside, the crest is
+/// a switch, whatever the piece before it counts. Below, the hull of a piece is wider than its guard: how far it
+/// counts is not said.
 #[test]
 fn parabolas_are_decided_outside_the_rounding_room_and_counted_inside() {
     for (scale, speed) in [(0, 0), (-6, -4), (5, 0), (10, 5), (-12, -3)] {
-        for above in -64..=64 {
+        let counts = |above: i32| {
             let First { undecidable, switches, phase } = parabola(scale, speed, f64::from(above));
-            println!("{scale} {speed} {above} {undecidable} {switches}");
             assert_eq!(phase, Phase::NoContact);
+            (undecidable, switches)
+        };
+        for above in -8..=0 {
+            assert_eq!(counts(above), (2, 0), "{scale} {speed} {above}");
+        }
+        for above in 9..=64 {
+            assert_eq!(counts(above).1, 1, "{scale} {speed} {above}");
+            assert_eq!(counts(-above - 32), (0, 0), "{scale} {speed} {}", -above - 32);
         }
     }
 }
@@ -72,13 +82,11 @@ fn swing(draw: &mut Draw, top: bool) -> First {
 fn swings_of_the_trial_force_that_touch_a_threshold_are_counted() {
     let mut draw = Draw(41);
     for top in [false, true] {
-        let mut counts = std::collections::BTreeMap::new();
         for _ in 0..TOUCHES {
             let First { undecidable, switches, phase } = swing(&mut draw, top);
             assert_eq!(phase, Phase::Contact);
-            *counts.entry((undecidable, switches)).or_insert(0) += 1;
+            assert!(undecidable > 0 && switches == 0, "{undecidable} {switches}");
         }
-        println!("{top} {counts:?}");
     }
 }
 
@@ -93,13 +101,11 @@ fn slip(draw: &mut Draw) -> First {
 #[test]
 fn progressions_that_touch_rest_are_counted() {
     let mut draw = Draw(42);
-    let mut counts = std::collections::BTreeMap::new();
     for _ in 0..TOUCHES {
         let First { undecidable, switches, phase } = slip(&mut draw);
         assert_eq!(phase, Phase::Progression);
-        *counts.entry((undecidable, switches)).or_insert(0) += 1;
+        assert!(undecidable > 0 && switches == 0, "{undecidable} {switches}");
     }
-    println!("{counts:?}");
 }
 
 /// A flight under a cos(omega tau + phi) - c from rest that grazes.
@@ -108,18 +114,15 @@ fn flight(draw: &mut Draw) -> First {
     // p = p0 + y d + (a/omega^2) (1 - cos(omega d)): at y = 0 its crests, 2 a/omega^2 high, touch.
     let rise = 2.0 * (a / (omega * omega));
     let parameters = Parameters { a, b: 0.0, xi: 0.2, omega, g: rise, phi: 0.0 };
-    let _ = FRAC_PI_2;
     first(parameters, Start { p: 0.0, y: 0.0, q: Some(0.0), ..Start::default() }, 1)
 }
 
 #[test]
 fn flights_that_graze_are_counted() {
     let mut draw = Draw(43);
-    let mut counts = std::collections::BTreeMap::new();
     for _ in 0..TOUCHES {
         let First { undecidable, switches, phase } = flight(&mut draw);
         assert_eq!(phase, Phase::NoContact);
-        *counts.entry((undecidable, switches)).or_insert(0) += 1;
+        assert!(undecidable > 0 && switches == 0, "{undecidable} {switches}");
     }
-    println!("{counts:?}");
 }
