@@ -118,3 +118,51 @@ impl<'a> Watch<'a> {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::dynamics::attractor::{Attractor, Kind};
+
+    /// An attractor of period 1 in the origin, with a ball of radius 1 as its trap.
+    fn origin() -> Known {
+        let attractor = Attractor {
+            kind: Kind::Periodic,
+            orbit: None,
+            points: vec![[0.0; 3]],
+            drift_per_period: 0.0,
+            lyapunov_per_period: -1.0,
+            lyapunov_error: 0.0,
+        };
+        Known { attractor, evidence: Evidence::Traps(vec![Trap::ball([0.0; 3], 1.0)]) }
+    }
+
+    /// After how many strobes at these distances a motion is recognised.
+    fn recognised_after(distances: &[f64]) -> Option<usize> {
+        let known = [origin()];
+        let mut watch = Watch::new(&known);
+        let mut see = |(n, x): (usize, &f64)| watch.see(n as u64, &[*x, 0.0, 0.0]);
+        distances.iter().enumerate().position(|it| see(it).is_some())
+    }
+
+    #[test]
+    fn three_turns_that_bring_a_motion_closer_are_needed() {
+        assert_eq!(recognised_after(&[0.9, 0.8, 0.7, 0.6]), Some(3));
+        assert_eq!(recognised_after(&[2.0, 0.9, 0.8, 0.7, 0.6]), Some(4));
+        assert_eq!(recognised_after(&[0.9, 0.8, 0.7]), None);
+    }
+
+    #[test]
+    fn a_turn_away_begins_the_count_again() {
+        assert_eq!(recognised_after(&[0.5, 0.4, 0.3, 0.6, 0.5, 0.4]), None);
+        assert_eq!(recognised_after(&[0.5, 0.4, 0.3, 0.6, 0.5, 0.4, 0.3]), Some(6));
+        assert_eq!(recognised_after(&[0.5, 0.5, 0.5, 0.5, 0.5, 0.5]), None);
+        assert_eq!(recognised_after(&[0.5, 0.4, 2.0, 0.3, 0.2, 0.1]), None);
+    }
+
+    #[test]
+    fn a_motion_at_rest_on_the_orbit_need_not_come_closer() {
+        assert_eq!(recognised_after(&[1e-7, 2e-7, 1e-7, 2e-7]), Some(3));
+        assert_eq!(recognised_after(&[1e-7, 2e-5, 3e-5, 4e-5]), None);
+    }
+}

@@ -52,6 +52,12 @@ impl Trap {
             .collect()
     }
 
+    /// A ball, for tests of what is done with a trap.
+    #[cfg(test)]
+    pub const fn ball(centre: Point, radius: f64) -> Self {
+        Self { centre, metric: IDENTITY, radius, slider: None }
+    }
+
     fn around(map: &StrobeMap, centre: Point, period: u64) -> Option<Self> {
         let entry = map.entry(centre).ok()?;
         let turn = map.passage(&entry, period).free_jacobian();

@@ -1,0 +1,84 @@
+//! A fault: where it is and what it changes.
+
+use std::fmt;
+use std::ops::Range;
+
+/// A fault that can be chosen at run time.
+#[derive(Clone, Debug)]
+pub struct Fault {
+    /// Its number, from 1 in the order of the sources.
+    pub number: u32,
+    /// The file it is in, relative to the root of the repository.
+    pub file: String,
+    /// The line it is in, from 1.
+    pub line: usize,
+    /// What kind of change it is.
+    pub operator: Operator,
+    /// The text without it.
+    pub original: String,
+    /// The text with it.
+    pub replacement: String,
+}
+
+impl Fault {
+    /// Whether it is in the harness, not in the solver.
+    pub fn is_in_validation(&self) -> bool {
+        self.file.starts_with("validation/")
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { number, file, line, operator, original, replacement } = self;
+        let name = operator.name();
+        write!(f, "{number:5} {file}:{line} {name}: {original} -> {replacement}")
+    }
+}
+
+/// Kinds of faults.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Operator {
+    /// A comparison becomes another one.
+    Comparison,
+    /// An arithmetic operator becomes its opposite.
+    Arithmetic,
+    /// A sign or an absolute value is dropped.
+    Sign,
+    /// A constant becomes another number.
+    Constant,
+    /// A condition is negated.
+    Condition,
+    /// And becomes or, or becomes and.
+    Logic,
+    /// A function returns at once.
+    Return,
+    /// The smaller or larger of two numbers becomes the first of them.
+    Bound,
+}
+
+impl Operator {
+    /// The name in the table.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Comparison => "comparison",
+            Self::Arithmetic => "arithmetic",
+            Self::Sign => "sign",
+            Self::Constant => "constant",
+            Self::Condition => "condition",
+            Self::Logic => "logic",
+            Self::Return => "return",
+            Self::Bound => "bound",
+        }
+    }
+}
+
+/// A change of the text at one place, before faults have numbers.
+#[derive(Clone, Debug)]
+pub struct Change {
+    /// The bytes that are replaced: none where statements are put in front of a function's body.
+    pub place: Range<usize>,
+    /// What kind of change it is.
+    pub operator: Operator,
+    /// The new text of the place.
+    pub replacement: String,
+}
