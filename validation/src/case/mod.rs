@@ -1,5 +1,6 @@
 //! Cases are data: a model, a start, a horizon, and what is expected of each engine.
 
+mod accepted;
 mod bound;
 mod expectations;
 mod library;
@@ -8,6 +9,7 @@ mod probed;
 mod problem;
 mod wire;
 
+pub use accepted::accepted;
 pub use bound::{Bound, Quantity, Shortcoming, Statistic};
 pub use expectations::Defaults;
 pub use library::{defaults, embedded, from_directory};

@@ -3,9 +3,14 @@
 use super::Arguments;
 use crate::case::Problem;
 use crate::cli::endless::words;
-use crate::cli::parse::MAX_PERIODS;
+use crate::cli::parse::{MAX_PERIODS, Typed};
+use crate::cli::progress::Progress;
+use crate::cli::work::Bar;
 use anyhow::{Result, bail};
 use percuss::{Endless, Exit, Instant, Leg};
+
+/// Forcing periods after which a run that counts switches stops, where `--max-periods` is not given.
+const USUAL_MAX_PERIODS: u64 = 1_000_000;
 
 /// A picture of more forcing periods than this shows nothing.
 const MAX_PICTURE_PERIODS: f64 = 5000.0;
@@ -18,18 +23,22 @@ pub(super) struct Plan {
     /// It ends after so many switches, if that is sooner.
     pub(super) events: Option<u64>,
     max_periods: u64,
+    pub(super) progress: Progress,
 }
 
 impl Plan {
-    pub(super) fn new(problem: Problem, arguments: &Arguments) -> Result<Self> {
+    pub(super) fn new(problem: Problem, arguments: &Arguments, bar: Option<Bar>) -> Result<Self> {
         let start = problem.entry.instant;
         let periods = |count| start.after_periods(count, 1);
-        let horizon = match (arguments.periods, arguments.until) {
+        let max_periods = arguments.max_periods.unwrap_or(USUAL_MAX_PERIODS);
+        let horizon = match (arguments.periods, &arguments.until) {
             (Some(count), _) => periods(count),
             (None, Some(tau)) => until(&problem, tau)?,
-            (None, None) => periods(arguments.max_periods),
+            (None, None) => periods(max_periods),
         };
-        Ok(Self { problem, horizon, events: arguments.events, max_periods: arguments.max_periods })
+        let omega = problem.model.parameters().omega;
+        let progress = Progress::new(bar, omega, start, &horizon);
+        Ok(Self { problem, horizon, events: arguments.events, max_periods, progress })
     }
 
     pub(super) fn omega(&self) -> f64 {
@@ -48,6 +57,8 @@ impl Plan {
             }
             switches += u64::from(matches!(leg.exit(), Exit::Switch(_)));
             ended = wanted == Some(switches);
+            let share = wanted.map_or(0.0, |wanted| switches as f64 / wanted as f64);
+            self.progress.at_least(&leg.entry().instant, share);
             true
         })
     }
@@ -97,7 +108,7 @@ impl Plan {
                 self.events.is_none() && self.horizon.since(&start, self.omega()).value() > longest;
             if begins > longest || ends_late {
                 bail!(
-                    "--output: a picture of more than {MAX_PICTURE_PERIODS} forcing periods is not accepted"
+                    "a picture of more than {MAX_PICTURE_PERIODS} forcing periods is not accepted: --output or --format of csv or json is, or a shorter run"
                 );
             }
             switches += u64::from(matches!(leg.exit(), Exit::Switch(_)));
@@ -120,7 +131,8 @@ impl Plan {
 }
 
 /// The horizon that `--until` states.
-fn until(problem: &Problem, tau: f64) -> Result<Instant> {
+fn until(problem: &Problem, stated: &Typed<f64>) -> Result<Instant> {
+    let tau = stated.value;
     let omega = problem.model.parameters().omega;
     let start = problem.entry.instant;
     // Beyond this omega tau is no longer reduced exactly.
@@ -132,6 +144,6 @@ fn until(problem: &Problem, tau: f64) -> Result<Instant> {
     }
     let begins = start.tau(omega);
     bail!(
-        "--until {tau:?} is not accepted: at or after the start, {begins:?}, and at most {MAX_PERIODS} forcing periods later"
+        "--until {stated} is not accepted: at or after the start, {begins:?}, and at most {MAX_PERIODS} forcing periods later"
     )
 }

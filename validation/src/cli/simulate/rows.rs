@@ -83,6 +83,7 @@ pub(super) fn samples(plan: &Plan, per_period: u32, sink: &mut dyn Sink) -> Resu
             if instant > plan.horizon || leg.ends_by(&instant) {
                 break;
             }
+            plan.progress.at(&instant);
             let state = state(&leg.at_instant(&instant));
             let [p, _, q, v] = state;
             let co_ordinates = Some([p + v, q + v]);
