@@ -304,7 +304,7 @@ fn wrong_types_in_files() {
     for (content, wanted) in problem {
         std::fs::write(&path, content).expect("written");
         let shown = path.display().to_string();
-        refused(&["simulate", "--periods", "1", "--problem", &shown], &["--problem", wanted]);
+        refused(&["simulate", "--periods", "1", "--problem", &shown], &[wanted]);
     }
 }
 

@@ -30,7 +30,7 @@ impl Destination {
         let folder = folder_of(path);
         if path.as_os_str().is_empty() || path.is_dir() {
             bail!(
-                "--output {shown} is not accepted: a folder is no file; accepted is a file's path"
+                "--output {shown} cannot be written: it is a folder; accepted is a file's path"
             );
         }
         if !folder.is_dir() {
