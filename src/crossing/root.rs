@@ -136,7 +136,7 @@ fn polished_by<G: Guarded, const N: usize>(
         // Next to a graze rounding keeps the time from settling any further.
         let hidden = (value - threshold).abs() <= SLACK * point.guard.largest_term;
         if settled || (attempt == ATTEMPTS && hidden) {
-            if !passes((value - threshold, slope, bend), rises, slack(point, point)) {
+            if !passes((value - threshold, slope, bend), rises, slack(phase, point, point)) {
                 return None;
             }
             let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step);

@@ -70,12 +70,25 @@ impl Spectrum {
     /// Where a phase that never ends is reached they are those of that phase, which are known.
     #[must_use]
     pub fn of(model: &Model, from: Entry, transient: u64, periods: u64) -> Self {
+        Self::told(model, from, transient, periods, &mut |_| ())
+    }
+
+    /// [`Spectrum::of`], but `seen` is told of every phase that has been followed.
+    #[must_use]
+    pub fn told(
+        model: &Model,
+        from: Entry,
+        transient: u64,
+        periods: u64,
+        seen: &mut dyn FnMut(&Leg),
+    ) -> Self {
         let periods = periods.max(1);
         let mut run = Run::new(model, from, transient, periods);
         let begin = from.instant.after_periods(transient, 1);
         let end = begin.after_periods(periods, 1);
         for leg in model.trajectory(from).until(end) {
             run.pass(&leg);
+            seen(&leg);
         }
         run.spectrum(model)
     }

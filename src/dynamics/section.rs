@@ -10,29 +10,23 @@ use std::ops::ControlFlow;
 
 /// The strobes of one motion from some instant on: one pass over its phases, in constant memory.
 ///
-/// It has no end of its own but an undecidable phase ([`Exit::Undecidable`]), and a motion whose phase never
-/// ends is followed all the same.
+/// It has no end of its own but an undecidable phase ([`Exit::Undecidable`]), and a motion whose phase
+/// never ends is followed all the same. The phases come from a trajectory, or from an adaptor of one.
 #[derive(Clone, Debug)]
-pub struct Section {
-    trajectory: Trajectory,
+pub struct Section<I = Trajectory> {
+    trajectory: I,
     leg: Option<Leg>,
     next: Instant,
 }
 
-impl Section {
+impl<I: Iterator<Item = Leg>> Section<I> {
     /// The strobes of a run from `first` on, which is not before its start.
     ///
     /// Phases that a horizon cuts are continued beyond it.
     #[must_use]
-    pub fn along(mut trajectory: Trajectory, first: Instant) -> Self {
+    pub fn along(mut trajectory: I, first: Instant) -> Self {
         let leg = trajectory.next();
         Self { trajectory, leg, next: first }
-    }
-
-    /// Why the phase that begins, or goes on, at `entry` has no end, where that is proved.
-    #[must_use]
-    pub fn endless_at(model: &Model, entry: &Entry) -> Option<Endless> {
-        Self::along(model.trajectory(*entry), entry.instant).endless()
     }
 
     /// Why the phase that the motion is in has no end, where that is proved.
@@ -45,7 +39,15 @@ impl Section {
     }
 }
 
-impl Iterator for Section {
+impl Section {
+    /// Why the phase that begins, or goes on, at `entry` has no end, where that is proved.
+    #[must_use]
+    pub fn endless_at(model: &Model, entry: &Entry) -> Option<Endless> {
+        Self::along(model.trajectory(*entry), entry.instant).endless()
+    }
+}
+
+impl<I: Iterator<Item = Leg>> Iterator for Section<I> {
     type Item = Entry;
 
     fn next(&mut self) -> Option<Entry> {

@@ -96,7 +96,7 @@ fn lengths_of_a_run() {
             &["--until", "is not accepted", "at or after the start"],
         );
     }
-    refused(&["simulate", "--until", "5", "--tau", "5.001"], &["--until 5.0", "5.001"]);
+    refused(&["simulate", "--until", "5", "--tau", "5.001"], &["--until 5 is", "5.001"]);
     for value in ["0", "-1", "1.5", "x", "4294967296"] {
         refused(
             &["simulate", "--periods", "1", &format!("--samples={value}")],
@@ -237,8 +237,16 @@ fn verbs_and_flags_that_do_not_exist() {
 
 #[test]
 fn selections_that_match_nothing() {
-    refused(&["validate", "-e", "sundials"], &["--engine", "sundials", "diffsol-bdf"]);
-    refused(&["validate", "-c", "no-such-case"], &["--case", "no-such-case"]);
+    refused(&["validate", "-e", "sundials"], &["--engine sundials", "percuss engines"]);
+    refused(&["validate", "-e", "difsol-bdf"], &["--engine difsol-bdf", "nearest", "diffsol-bdf"]);
+    refused(&["validate", "-c", "no-such-case"], &["--case no-such-case", "percuss cases"]);
+    refused(&["validate", "-c", "^grase-miss"], &["--case ^grase-miss", "graze-miss-1e-3"]);
+    refused(&["bench", "-c", "tabel1"], &["--case tabel1", "table1-from-rest"]);
+    refused(&["bench", "-e", "dopri9"], &["--engine dopri9", "ode_solvers-dopri5"]);
+    refused(
+        &["reproduce", "--out", "x", "--only", "figur-7"],
+        &["--only figur-7", "nearest", "figure-7"],
+    );
     refused(&["validate", "-e", "("], &["--engine", "(", "regular expression"]);
     refused(&["validate", "-c", "["], &["--case", "[", "regular expression"]);
     refused(&["validate", "--suite", "slow"], &["--suite", "slow", "quick, full"]);

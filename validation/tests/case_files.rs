@@ -27,7 +27,7 @@ fn fields_that_are_wrong() {
         ("periods = ", "periods = -", &["small-b.toml:", "periods = -60"]),
         ("periods = 60", "periods = 1000000001", &["periods = 1000000001"]),
         ("periods = 60", "until = -1.0", &["until = -1.0", "at or after the start"]),
-        ("periods = 60", "until = nan", &["until = NaN"]),
+        ("periods = 60", "until = nan", &["until = nan"]),
         ("periods = 60", "periods = 60\nuntil = 3.0", &["exactly one of periods and until"]),
         ("periods = 60", "", &["exactly one of periods and until"]),
         ("[horizon]", "[horizons]", &["horizons"]),
@@ -106,7 +106,7 @@ fn a_margin_is_a_number() {
         let stated = format!("[case]\nmargin = {margin}");
         changed(folder.path(), |text| text.replacen("[case]", &stated, 1))
     };
-    refused(&["validate", "--cases", &with("nan")], &["small-b.toml:2:", "margin = NaN"]);
+    refused(&["validate", "--cases", &with("nan")], &["small-b.toml:2:", "margin = nan"]);
     refused(&["validate", "--cases", &with("\"wide\"")], &["small-b.toml:2:"]);
     let cases = with("-1e-3");
     assert_eq!(run(&["validate", "--cases", &cases, "-e", "^exact$"]).status.code(), Some(0));

@@ -218,7 +218,7 @@ fn what_is_not_accepted_is_one_line() {
         (["attractors", "--grid", "4x4", "--window", "0,nan,0,1"].to_vec(), "rising"),
         (
             ["attractors", "--grid", "4x4", "--window", "0,1,0,1", "--transient", "0"].to_vec(),
-            "1..",
+            "1 to 10000000",
         ),
         (survey("attractors", &["--xi", "0"]), "--xi"),
         (poincare(&["--section", "nan"]), "--section"),

@@ -86,6 +86,50 @@ fn engines() {
 }
 
 #[test]
+fn cases() {
+    let value = json(&stdout(&["cases", "--format", "json"]));
+    assert_valid("cases.schema.json", &value);
+    let all = percuss_validation::case::embedded().expect("the cases are read");
+    let listed = value["cases"].as_array().cloned().unwrap_or_default();
+    let names: Vec<_> = listed.iter().map(|it| it["name"].as_str().unwrap_or_default()).collect();
+    assert_eq!(names, all.iter().map(|it| it.name.as_str()).collect::<Vec<_>>());
+    let of = |name: &str| listed.iter().find(|it| it["name"] == name).cloned().expect("listed");
+    // Table 1 of the paper is 79 switches up to tau = 1268 at omega = 0.1.
+    let table1 = of("table1-from-rest");
+    assert_eq!(table1["events"], 79);
+    let periods = table1["periods"].as_f64().expect("a number");
+    assert!((periods - 1268.0 * 0.1 / std::f64::consts::TAU).abs() < 1e-12, "{periods}");
+    assert_eq!(table1["table"], "reference_data/events/table1-from-rest.csv");
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for case in &listed {
+        let table = case["table"].as_str().expect("a name");
+        let rows = std::fs::read_to_string(root.join(table)).expect("the table is there");
+        let rows = rows.lines().filter(|line| !line.starts_with('#')).count();
+        // The header, the start and the end are no events.
+        assert_eq!(case["events"].as_u64(), Some(rows as u64 - 3), "{}", case["name"]);
+    }
+    let csv = stdout(&["cases"]);
+    assert!(csv.starts_with("name,regime,system,events,periods,table,why\n"), "{csv}");
+    assert_eq!(csv::Reader::from_reader(csv.as_bytes()).records().count(), listed.len());
+}
+
+#[test]
+fn a_case_without_a_table_is_listed() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case =
+        "[case]\nname = \"mine\"\nregime = \"chaos\"\nwhy = \"a test\"\n[horizon]\nperiods = 3\n";
+    std::fs::write(folder.path().join("mine.toml"), case).expect("written");
+    let cases = folder.path().display().to_string();
+    let value = json(&stdout(&["cases", "--cases", &cases, "--format", "json"]));
+    assert_valid("cases.schema.json", &value);
+    let run = support::rows(&stdout(&["simulate", "--periods", "3"]));
+    // Neither the start nor the end is an event.
+    assert_eq!(value["cases"][0]["events"].as_u64(), Some(run.len() as u64 - 2));
+    assert_eq!(value["cases"][0]["table"], "");
+    assert_eq!(value["cases"][0]["periods"], 3.0);
+}
+
+#[test]
 fn lyapunov() {
     for more in [&["--omega", "1.4"][..], &["--b", "-0.1"], &["--b", "1.5"], &["--periods", "1"]] {
         let usual = ["lyapunov", "--transient", "20", "--periods", "40"];
@@ -107,8 +151,17 @@ fn attractors() {
     let regimes =
         [&["--xi", "0.1", "--omega", "1.6"][..], &["--omega", "0.1"], &["--b=-0.1"], &["--b=1.5"]];
     for more in regimes {
-        let value = json(&stdout(&[&usual[..], more].concat()));
+        let text = stdout(&[&usual[..], more].concat());
+        let value = json(&text);
         assert_valid("attractors.schema.json", &value);
+        // One line a point.
+        let points = value["attractors"].as_array().expect("a list").iter();
+        let points: usize = points.map(|it| it["points"].as_array().map_or(0, Vec::len)).sum();
+        let is_point = |line: &&str| {
+            let line = line.trim().trim_end_matches(',');
+            line.starts_with('[') && line.ends_with(']') && line.matches(", ").count() == 2
+        };
+        assert!(text.lines().filter(is_point).count() >= points, "{text}");
         let shares = value["attractors"].as_array().expect("a list").iter();
         let shares: f64 = shares.map(|it| it["fraction"].as_f64().expect("a share")).sum();
         let all = shares + value["unresolved"].as_f64().expect("a share");

@@ -24,14 +24,14 @@ pub struct Defaults {
 
 /// One or several.
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "accepted is a number or a list of numbers")]
 enum Several {
     One(f64),
     Many(Vec<f64>),
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table, [[bounds]]")]
 pub(super) struct BoundTable {
     engine: String,
     tolerance: Option<Several>,
@@ -45,7 +45,7 @@ pub(super) struct BoundTable {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table, [[shortcomings]]")]
 pub(super) struct ShortcomingTable {
     case: Option<String>,
     engine: String,

@@ -1,5 +1,6 @@
 //! Cases are data: a model, a start, a horizon, and what is expected of each engine.
 
+mod accepted;
 mod bound;
 mod expectations;
 mod known;
@@ -9,6 +10,7 @@ mod probed;
 mod problem;
 mod wire;
 
+pub use accepted::accepted;
 pub use bound::{Bound, Quantity, Shortcoming, Statistic};
 pub use expectations::Defaults;
 pub use library::{defaults, defaults_of_own_cases, embedded, from_directory};

@@ -19,7 +19,7 @@ pub struct Probed {
 }
 
 #[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table, [probes]")]
 pub(super) struct ProbesTable {
     #[serde(default)]
     integrators: bool,
@@ -30,10 +30,9 @@ impl Source<'_> {
     pub(super) fn probed(&self, table: &ProbesTable) -> Result<Probed, FileError> {
         let accepted = |it: &Spanned<i64>| {
             let periods = u32::try_from(*it.get_ref()).ok();
-            periods.filter(|_| (1..=LONGEST).contains(it.get_ref())).ok_or_else(|| {
-                let value = it.get_ref();
-                self.error(it, &format!("valid_within = {value} is not accepted: 1 to {LONGEST}"))
-            })
+            periods
+                .filter(|_| (1..=LONGEST).contains(it.get_ref()))
+                .ok_or_else(|| self.refused("valid_within", it))
         };
         let valid_within = table.valid_within.as_ref().map(accepted).transpose()?;
         Ok(Probed { integrators: table.integrators, valid_within })

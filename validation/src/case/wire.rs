@@ -15,7 +15,7 @@ use toml::Spanned;
 const MAX_PERIODS: i64 = 1_000_000_000;
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "the tables of a case")]
 struct CaseFile {
     case: CaseTable,
     #[serde(default)]
@@ -33,7 +33,7 @@ struct CaseFile {
 
 /// A problem file; a harness case serves as one, and its other tables are left alone.
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "the tables of a problem")]
 struct ProblemFile {
     #[serde(default)]
     parameters: ParameterTable,
@@ -52,7 +52,7 @@ struct ProblemFile {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table, [case]")]
 struct CaseTable {
     name: Spanned<String>,
     regime: String,
@@ -61,7 +61,7 @@ struct CaseTable {
 }
 
 #[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table, [parameters]")]
 struct ParameterTable {
     a: Option<Spanned<f64>>,
     b: Option<Spanned<f64>>,
@@ -72,7 +72,7 @@ struct ParameterTable {
 }
 
 #[derive(Default, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table, [start]")]
 struct StartTable {
     tau: Option<Spanned<f64>>,
     p: Option<Spanned<f64>>,
@@ -84,7 +84,7 @@ struct StartTable {
 }
 
 #[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "a table, [horizon]")]
 struct HorizonTable {
     periods: Option<Spanned<i64>>,
     until: Option<Spanned<f64>>,
@@ -132,21 +132,23 @@ impl Source<'_> {
         let mut q_given = false;
         for (name, number, target) in numbers {
             if let Some(number) = number {
-                given.origins.set(name, format!("{}: {name} =", self.place(&number)));
+                let place = format!("{}: {name} =", self.place(&number));
+                given.origins.set(name, place, self.typed(&number));
                 *target = number.into_inner();
                 q_given |= name == "q";
             }
         }
         state.q = q.filter(|_| q_given);
         if let Some(cycle) = start.cycle {
-            given.origins.set("cycle", format!("{}: cycle =", self.place(&cycle)));
+            let place = format!("{}: cycle =", self.place(&cycle));
+            given.origins.set("cycle", place, self.typed(&cycle));
             state.cycle = cycle.into_inner();
         }
         if let Some(phase) = start.phase {
-            given.origins.set("phase", format!("{}: phase =", self.place(&phase)));
+            let place = format!("{}: phase =", self.place(&phase));
+            given.origins.set("phase", place, self.typed(&phase));
             let parsed: Result<Phase, _> = phase.get_ref().parse();
-            state.phase =
-                Some(parsed.map_err(|error| self.error(&phase, &format!("phase {error}")))?);
+            state.phase = Some(parsed.map_err(|_| self.refused("phase", &phase))?);
         }
         Ok(given)
     }
@@ -173,8 +175,7 @@ pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
     }
     let margin = match &wire.case.margin {
         Some(margin) if !margin.get_ref().is_finite() => {
-            let what = format!("margin = {:?} is not accepted: a finite number", margin.get_ref());
-            return Err(source.error(margin, &what));
+            return Err(source.refused("margin", margin));
         }
         margin => margin.as_ref().map(|margin| *margin.get_ref()),
     };
@@ -215,10 +216,7 @@ impl Source<'_> {
                 let count = *periods.get_ref();
                 match u32::try_from(count) {
                     Ok(periods) if count <= MAX_PERIODS => Ok(Horizon::Periods(periods)),
-                    _ => Err(self.error(
-                        periods,
-                        &format!("periods = {count} is not accepted: 0 to 1000000000"),
-                    )),
+                    _ => Err(self.refused("periods", periods)),
                 }
             }
             (None, Some(until)) => {
@@ -227,12 +225,7 @@ impl Source<'_> {
                     let span = Instant::at(omega, tau, 0).since(start, omega).value();
                     span >= 0.0 && span <= MAX_PERIODS as f64 * period
                 };
-                let what = "at or after the start, at most 1000000000 periods later";
-                if reachable {
-                    Ok(Horizon::Until(tau))
-                } else {
-                    Err(self.error(until, &format!("until = {tau:?} is not accepted: {what}")))
-                }
+                if reachable { Ok(Horizon::Until(tau)) } else { Err(self.refused("until", until)) }
             }
             _ => Err(self.error(table, "horizon: exactly one of periods and until is accepted")),
         }

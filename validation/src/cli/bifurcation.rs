@@ -3,7 +3,8 @@
 use super::endless::words;
 use super::format::OutputFlags;
 use super::model::ModelFlags;
-use super::{parse, say, work};
+use super::parse::{self, MAX_PERIODS, Typed};
+use super::{note, work};
 use crate::number::shortest;
 use crate::picture::{self, Layer, Plot, Sheet};
 use anyhow::{Result, anyhow, bail};
@@ -19,19 +20,19 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NAME", value_parser = parse::parameter)]
     parameter: Parameter,
     /// Its first value
-    #[arg(long, value_name = "X", value_parser = parse::number, allow_hyphen_values = true)]
-    from: f64,
+    #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
+    from: Typed<f64>,
     /// Its last value
-    #[arg(long, value_name = "X", value_parser = parse::number, allow_hyphen_values = true)]
-    to: f64,
+    #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
+    to: Typed<f64>,
     /// Number of values, both ends included
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=1_000_000))]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, 1_000_000), allow_hyphen_values = true)]
     steps: u32,
     /// Forcing periods that are left out at each value
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
     transient: u64,
     /// Points at each value, one a forcing period, at least 1
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, MAX_PERIODS), allow_hyphen_values = true)]
     periods: u32,
     /// Starts each value from the last state of the one before (the default)
     #[arg(long, conflicts_with = "reset")]
@@ -79,9 +80,9 @@ fn diagram(arguments: &Arguments) -> Result<Diagram> {
     let problem = arguments.model.problem()?;
     let parameters = *problem.model.parameters();
     let parameter = arguments.parameter;
-    for (flag, value) in [("--from", arguments.from), ("--to", arguments.to)] {
+    for (flag, value) in [("--from", &arguments.from), ("--to", &arguments.to)] {
         if let Err(InputError::OutOfRange { accepted, .. }) =
-            parameter.set(parameters, value).check()
+            parameter.set(parameters, value.value).check()
         {
             bail!("{flag} {value} is not accepted: {accepted}");
         }
@@ -91,8 +92,8 @@ fn diagram(arguments: &Arguments) -> Result<Diagram> {
         parameters,
         start: problem.start,
         parameter,
-        from: arguments.from,
-        to: arguments.to,
+        from: arguments.from.value,
+        to: arguments.to.value,
         steps: arguments.steps,
         transient: arguments.transient,
         periods: arguments.periods,
@@ -157,6 +158,9 @@ fn tell_endless(steps: &[Step]) {
     let ended: Vec<_> = steps.iter().filter_map(|step| step.endless).collect();
     if let Some(first) = ended.first() {
         let values = format!("{} of {} values", ended.len(), steps.len());
-        say(&format!("at {values} the run ends in a phase without end (first: {})", words(*first)));
+        note(&format!(
+            "at {values} the run ends in a phase without end (first: {})",
+            words(*first)
+        ));
     }
 }

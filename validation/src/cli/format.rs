@@ -17,9 +17,12 @@ pub(super) struct OutputFlags<F: ValueEnum + Send + Sync + 'static> {
 }
 
 impl<F: ValueEnum + PartialEq + Send + Sync + 'static> OutputFlags<F> {
-    /// The format that --output and --format agree on, or else `usual`.
+    /// The format that --output and --format agree on, or else `usual`; refuses a path that cannot be
+    /// written.
     pub(super) fn format(&self, usual: F) -> Result<F> {
-        chosen(self.output.as_deref(), self.format.clone(), usual)
+        let format = chosen(self.output.as_deref(), self.format.clone(), usual)?;
+        self.destination().check()?;
+        Ok(format)
     }
 
     pub(super) fn destination(&self) -> Destination {
@@ -36,10 +39,11 @@ pub(super) fn chosen<F: ValueEnum + PartialEq>(
     let extension = output.and_then(Path::extension).and_then(|extension| extension.to_str());
     let known = extension.and_then(|extension| F::from_str(extension, true).ok());
     match (known, stated, extension) {
-        (Some(known), Some(stated), Some(extension)) if known != stated => {
+        (Some(known), Some(stated), _) if known != stated => {
             bail!(
-                "--format {} contradicts the extension of --output, {extension}: accepted is one of them",
-                name(&stated)
+                "--format {} contradicts --output {}: accepted is one format",
+                name(&stated),
+                output.unwrap_or(Path::new("")).display()
             )
         }
         (Some(format), ..) | (None, Some(format), _) => Ok(format),
@@ -48,7 +52,8 @@ pub(super) fn chosen<F: ValueEnum + PartialEq>(
         {
             let accepted: Vec<_> = F::value_variants().iter().map(name).collect();
             bail!(
-                "--output: extension {extension} is not accepted: {}, or --format",
+                "--output {}: extension {extension} is not accepted: {}, or --format",
+                output.unwrap_or(Path::new("")).display(),
                 accepted.join(", ")
             )
         }

@@ -1,27 +1,30 @@
 //! `lyapunov`: the exponents of one motion.
 
 use super::endless::notice;
+use super::format::OutputFlags;
 use super::model::{ModelFlags, ParametersJson};
-use super::output::Destination;
-use super::{say, work};
+use super::orbits::Format;
+use super::parse::{self, MAX_PERIODS};
+use super::progress::Progress;
+use super::{note, work};
+use crate::case::Problem;
 use anyhow::Result;
 use clap::Args;
+use percuss::Leg;
 use percuss::dynamics::lyapunov::{BATCHES, Spectrum};
 use serde::Serialize;
-use std::path::PathBuf;
 
 /// Lyapunov exponents with saltation
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Forcing periods that are left out
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
     transient: u64,
     /// Forcing periods over which the exponents are taken, at least 1
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(1, MAX_PERIODS), allow_hyphen_values = true)]
     periods: u64,
-    /// Where the JSON goes, - is stdout
-    #[arg(long, value_name = "PATH")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputFlags<Format>,
     #[command(flatten)]
     model: ModelFlags,
 }
@@ -39,11 +42,10 @@ struct Json {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
+    arguments.output.format(Format::Json)?;
     let problem = arguments.model.problem()?;
     work::check_horizon(arguments.transient, arguments.periods)?;
-    let life = work::sign_of_life("following errors");
-    let found = Spectrum::of(&problem.model, problem.entry, arguments.transient, arguments.periods);
-    life.finish_and_clear();
+    let found = spectrum(arguments, &problem);
     let json = Json {
         schema: 1,
         percuss: env!("CARGO_PKG_VERSION"),
@@ -54,9 +56,19 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         contraction_per_period: found.contraction_per_period,
         drift_per_period: found.drift_per_period,
     };
-    Destination::new(arguments.output.as_deref()).json(&json)?;
+    arguments.output.destination().json(&json)?;
     if let Some(endless) = found.endless {
-        say(&notice(endless));
+        note(&notice(endless));
     }
     Ok(())
+}
+
+fn spectrum(arguments: &Arguments, problem: &Problem) -> Spectrum {
+    let Arguments { transient, periods, .. } = *arguments;
+    let Problem { model, entry, .. } = problem;
+    let end = entry.instant.after_periods(transient + periods, 1);
+    let bar = Some(work::share_bar());
+    let progress = Progress::new(bar, model.parameters().omega, entry.instant, &end);
+    let mut seen = |leg: &Leg| progress.at(&leg.entry().instant);
+    Spectrum::told(model, *entry, transient, periods, &mut seen)
 }

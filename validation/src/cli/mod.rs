@@ -1,29 +1,38 @@
-//! The command line, a file a verb. What it promises is in the project's CONTRACT.
+//! The command line, a file a verb. What it promises is in docs/COMMAND_LINE.md.
 
 mod basins;
 mod bench;
 mod bifurcation;
+mod cases;
+mod compact;
+mod completions;
 mod endless;
 mod engines;
 mod format;
+mod list;
 mod lyapunov;
+mod man;
 mod model;
+mod names;
 mod orbits;
 mod output;
 mod parse;
 mod poincare;
+mod progress;
 mod reports;
 mod reproduce;
 mod simulate;
+mod terminal;
+mod unfinished;
 mod validate;
 mod work;
 
 use crate::engine::{self, Engine};
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{ColorChoice, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
-use std::io::{self, Write};
 use std::process::ExitCode;
+use terminal::{is_quiet, note, say};
 
 /// Done, and within bounds.
 const DONE: u8 = 0;
@@ -39,8 +48,14 @@ struct Arguments {
     #[command(subcommand)]
     verb: Verb,
     /// Threads to use (default: all); results are the same for every number
-    #[arg(long, global = true, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    #[arg(long, global = true, value_name = "N", value_parser = parse::whole::<u16>(1, 65535), allow_hyphen_values = true)]
     threads: Option<u16>,
+    /// Says nothing but errors: no notes, no progress
+    #[arg(long, global = true)]
+    quiet: bool,
+    /// Colours of help and messages; auto is where stderr or stdout is a terminal and NO_COLOR is not set
+    #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorChoice::Auto)]
+    color: ColorChoice,
 }
 
 #[derive(Subcommand)]
@@ -57,6 +72,15 @@ enum Verb {
     Bench(bench::Arguments),
     Orbit(Box<orbits::find::Arguments>),
     Continue(Box<orbits::follow::Arguments>),
+    Cases(cases::Arguments),
+    Completions(completions::Arguments),
+    Man(man::Arguments),
+}
+
+/// The command line with all its verbs and flags.
+#[must_use]
+pub fn command() -> Command {
+    Arguments::command()
 }
 
 /// Runs the command line with engines of another crate beside those of this one, and says how it went.
@@ -75,8 +99,15 @@ pub fn run_with(
 
 /// Runs the command line and says how it went.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let code = match Arguments::try_parse_from(arguments) {
-        Ok(arguments) => dispatch(&arguments),
+    let words: Vec<OsString> = arguments.into_iter().collect();
+    let color = terminal::stated_color(&words);
+    terminal::configure(false, color);
+    let parsed = command().color(color).try_get_matches_from(words);
+    let code = match parsed.and_then(|it| Arguments::from_arg_matches(&it)) {
+        Ok(arguments) => {
+            terminal::configure(arguments.quiet, arguments.color);
+            dispatch(&arguments)
+        }
         Err(error) => usage(&error),
     };
     ExitCode::from(code)
@@ -98,6 +129,9 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Bench(bench) => bench::run(bench),
         Verb::Orbit(orbit) => orbits::find::run(orbit),
         Verb::Continue(branch) => orbits::follow::run(branch),
+        Verb::Cases(cases) => cases::run(cases).map(|()| DONE),
+        Verb::Completions(completions) => completions::run(completions).map(|()| DONE),
+        Verb::Man(man) => man::run(man).map(|()| DONE),
     };
     match result {
         Ok(code) => code,
@@ -111,16 +145,8 @@ fn dispatch(arguments: &Arguments) -> u8 {
 
 /// The verbs' names.
 fn verbs() -> String {
-    let command = <Arguments as clap::CommandFactory>::command();
-    let names: Vec<_> = command.get_subcommands().map(|it| it.get_name().to_owned()).collect();
+    let names: Vec<_> = command().get_subcommands().map(|it| it.get_name().to_owned()).collect();
     names.join(", ")
-}
-
-/// One line on stderr.
-fn say(line: &str) {
-    let line = line.split_whitespace().collect::<Vec<_>>().join(" ");
-    // Where stderr is closed there is no one to tell.
-    let _ = writeln!(io::stderr(), "percuss: {line}");
 }
 
 /// What clap objects to, in one line; help and version are no objections.

@@ -1,6 +1,7 @@
 //! Model and start: the flags that all verbs of the dynamics share.
 
-use super::parse;
+use super::note;
+use super::parse::{self, Typed};
 use crate::case::{Given, Problem, read_problem};
 use anyhow::{Result, anyhow};
 use clap::Args;
@@ -13,41 +14,41 @@ use std::path::PathBuf;
 #[command(next_help_heading = "Model and start")]
 pub(super) struct ModelFlags {
     /// Amplitude of the harmonic force [default: 0.3]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    a: Option<f64>,
+    #[arg(long, value_parser = parse::named("a"), allow_hyphen_values = true)]
+    a: Option<Typed<f64>>,
     /// Static force [default: 0.1]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    b: Option<f64>,
+    #[arg(long, value_parser = parse::named("b"), allow_hyphen_values = true)]
+    b: Option<Typed<f64>>,
     /// Damping ratio of the slider [default: 0.01]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    xi: Option<f64>,
+    #[arg(long, value_parser = parse::named("xi"), allow_hyphen_values = true)]
+    xi: Option<Typed<f64>>,
     /// Frequency of the harmonic force [default: 1.4]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    omega: Option<f64>,
+    #[arg(long, value_parser = parse::named("omega"), allow_hyphen_values = true)]
+    omega: Option<Typed<f64>>,
     /// Gap [default: 0.02]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    g: Option<f64>,
+    #[arg(long, value_parser = parse::named("g"), allow_hyphen_values = true)]
+    g: Option<Typed<f64>>,
     /// Phase of the harmonic force, radians [default: 1.5707963267948966]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    phi: Option<f64>,
+    #[arg(long, value_parser = parse::named("phi"), allow_hyphen_values = true)]
+    phi: Option<Typed<f64>>,
     /// Time of the start [default: 0]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    tau: Option<f64>,
+    #[arg(long, value_parser = parse::named("tau"), allow_hyphen_values = true)]
+    tau: Option<Typed<f64>>,
     /// Forcing periods from --tau to the start [default: 0]
     #[arg(long, value_parser = parse::cycle, allow_hyphen_values = true)]
-    cycle: Option<i64>,
+    cycle: Option<Typed<i64>>,
     /// Displacement of the mass [default: 0]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    p: Option<f64>,
+    #[arg(long, value_parser = parse::named("p"), allow_hyphen_values = true)]
+    p: Option<Typed<f64>>,
     /// Velocity of the mass [default: 0]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    y: Option<f64>,
+    #[arg(long, value_parser = parse::named("y"), allow_hyphen_values = true)]
+    y: Option<Typed<f64>>,
     /// Displacement of the slider's top [default: 0, or p - g where p >= g]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    q: Option<f64>,
+    #[arg(long, value_parser = parse::named("q"), allow_hyphen_values = true)]
+    q: Option<Typed<f64>>,
     /// Drift [default: 0]
-    #[arg(long, value_parser = parse::number, allow_hyphen_values = true)]
-    v: Option<f64>,
+    #[arg(long, value_parser = parse::named("v"), allow_hyphen_values = true)]
+    v: Option<Typed<f64>>,
     /// The start's phase, for states copied from rounded tables
     #[arg(long, value_name = "TOKEN", value_parser = parse::phase, allow_hyphen_values = true)]
     phase: Option<Phase>,
@@ -75,12 +76,14 @@ impl ModelFlags {
     /// states is set to that.
     pub(super) fn guess(
         &self,
-        stated: Option<(Parameter, &'static str, f64)>,
+        stated: Option<(Parameter, &'static str, &Typed<f64>)>,
     ) -> Result<(Problem, bool)> {
         let mut given = self.given()?;
         if let Some((parameter, flag, value)) = stated {
-            given.origins.set(parameter.name(), flag.to_owned());
-            given.parameters = parameter.set(given.parameters, value);
+            // The value that is replaced has to be one, too.
+            given.parameters.check().map_err(|error| anyhow!(given.origins.explain(&error)))?;
+            given.origins.set(parameter.name(), flag.to_owned(), &value.text);
+            given.parameters = parameter.set(given.parameters, value.value);
         }
         let is_given = ["p", "y", "q", "phase"].iter().any(|name| given.origins.is_set(name));
         Ok((given.check().map_err(|line| anyhow!(line))?, is_given))
@@ -89,34 +92,47 @@ impl ModelFlags {
     fn override_in(&self, given: &mut Given) {
         let (model, start) = (&mut given.parameters, &mut given.start);
         let numbers = [
-            ("a", "--a", self.a, &mut model.a),
-            ("b", "--b", self.b, &mut model.b),
-            ("xi", "--xi", self.xi, &mut model.xi),
-            ("omega", "--omega", self.omega, &mut model.omega),
-            ("g", "--g", self.g, &mut model.g),
-            ("phi", "--phi", self.phi, &mut model.phi),
-            ("tau", "--tau", self.tau, &mut start.tau),
-            ("p", "--p", self.p, &mut start.p),
-            ("y", "--y", self.y, &mut start.y),
-            ("v", "--v", self.v, &mut start.v),
+            ("a", "--a", &self.a, &mut model.a),
+            ("b", "--b", &self.b, &mut model.b),
+            ("xi", "--xi", &self.xi, &mut model.xi),
+            ("omega", "--omega", &self.omega, &mut model.omega),
+            ("g", "--g", &self.g, &mut model.g),
+            ("phi", "--phi", &self.phi, &mut model.phi),
+            ("tau", "--tau", &self.tau, &mut start.tau),
+            ("p", "--p", &self.p, &mut start.p),
+            ("y", "--y", &self.y, &mut start.y),
+            ("v", "--v", &self.v, &mut start.v),
         ];
         for (name, flag, value, target) in numbers {
-            if let Some(value) = value {
-                given.origins.set(name, flag.to_owned());
-                *target = value;
+            if let Some(Typed { value, text }) = value {
+                given.origins.set(name, flag.to_owned(), text);
+                *target = *value;
             }
         }
-        if self.q.is_some() {
-            given.origins.set("q", "--q".to_owned());
-            start.q = self.q;
+        if let Some(Typed { value, text }) = &self.q {
+            given.origins.set("q", "--q".to_owned(), text);
+            start.q = Some(*value);
         }
-        if let Some(cycle) = self.cycle {
-            given.origins.set("cycle", "--cycle".to_owned());
-            start.cycle = cycle;
+        if let Some(Typed { value, text }) = &self.cycle {
+            given.origins.set("cycle", "--cycle".to_owned(), text);
+            start.cycle = *value;
         }
-        if self.phase.is_some() {
-            given.origins.set("phase", "--phase".to_owned());
-            start.phase = self.phase;
+        if let Some(phase) = self.phase {
+            given.origins.set("phase", "--phase".to_owned(), phase.token());
+            start.phase = Some(phase);
+        }
+    }
+
+    /// Says which flags of the start a grid of starts takes the place of.
+    pub(super) fn note_replaced_by_grid(&self) {
+        let given = [
+            ("--p", self.p.is_some()),
+            ("--y", self.y.is_some()),
+            ("--v", self.v.is_some()),
+            ("--phase", self.phase.is_some()),
+        ];
+        for (flag, _) in given.iter().filter(|it| it.1) {
+            note(&format!("{flag} is not used: starts are the centres of the grid's cells"));
         }
     }
 }

@@ -1,9 +1,11 @@
 //! Where results go: stdout, or a file that is there whole or not at all.
 
-use anyhow::Result;
+use super::compact;
+use super::unfinished::Unfinished;
+use anyhow::{Context, Result, anyhow, bail};
 use serde::Serialize;
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// stdout, or a file.
@@ -21,6 +23,28 @@ impl Destination {
         }
     }
 
+    /// Refuses a file that cannot be made, before the work that would be lost.
+    pub(super) fn check(&self) -> Result<()> {
+        let Self::File(path) = self else { return Ok(()) };
+        let shown = path.display();
+        let folder = folder_of(path);
+        if path.as_os_str().is_empty() || path.is_dir() {
+            bail!("--output {shown} cannot be written: it is a folder; accepted is a file's path");
+        }
+        if !folder.is_dir() {
+            let folder = folder.display();
+            bail!(
+                "--output {shown} cannot be written: there is no folder {folder}; accepted is a path in a folder that exists"
+            );
+        }
+        Ok(())
+    }
+
+    /// Whether what is written is seen on a terminal.
+    pub(super) fn is_terminal(&self) -> bool {
+        matches!(self, Self::Stdout) && io::stdout().is_terminal()
+    }
+
     /// Writes by `write`, whole or not at all where it is a file.
     pub(super) fn write(&self, write: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
         match self {
@@ -29,14 +53,14 @@ impl Destination {
                 let written = write(&mut out).and_then(|()| Ok(out.flush()?));
                 written.map_err(|error| unwritable("stdout", error))
             }
-            Self::File(path) => write_whole(path, write),
+            Self::File(path) => write_whole(path, write).context("--output"),
         }
     }
 
-    /// Writes a value as JSON, on lines of its own.
+    /// Writes a value as JSON, a list of plain values on one line.
     pub(super) fn json(&self, value: &impl Serialize) -> Result<()> {
         self.write(|out| {
-            serde_json::to_writer_pretty(&mut *out, value).map_err(io::Error::from)?;
+            compact::write(value, &mut *out).map_err(io::Error::from)?;
             Ok(writeln!(out)?)
         })
     }
@@ -73,8 +97,6 @@ fn write_or_replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<()
         write(&mut out)?;
         return Ok(out.flush()?);
     }
-    let folder =
-        target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     builder.prefix(".percuss-").suffix(".tmp");
     #[cfg(unix)]
@@ -84,9 +106,21 @@ fn write_or_replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<()
         let mode = fs::metadata(&target).map_or(0o666, |metadata| metadata.permissions().mode());
         builder.permissions(fs::Permissions::from_mode(mode));
     }
-    let mut out = BufWriter::new(builder.tempfile_in(folder)?);
+    let mut out = BufWriter::new(Unfinished::new(&builder, folder_of(&target))?);
     write(&mut out)?;
     let file = out.into_inner().map_err(|error| error.into_error())?;
-    file.persist(&target).map_err(|error| error.error)?;
-    Ok(())
+    Ok(file.finish(&target)?)
+}
+
+/// The folder that a file is in.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// Makes a folder for several files.
+pub(super) fn make_folder(folder: &Path) -> Result<()> {
+    fs::create_dir_all(folder).map_err(|error| {
+        let folder = folder.display();
+        anyhow!("--out {folder} cannot be made ({error}); accepted is a writable folder")
+    })
 }

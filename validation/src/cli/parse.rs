@@ -1,18 +1,69 @@
 //! Values of flags, with errors that say what is accepted.
 
+use crate::case::accepted;
 use percuss::dynamics::attractor::Window;
 use percuss::{Parameter, Phase};
 use regex::Regex;
+use std::fmt;
 
 /// The longest horizon, in forcing periods.
 pub(super) const MAX_PERIODS: u64 = 1_000_000_000;
 
+/// The longest transient of a grid's starts, in forcing periods: with its extensions fifteen times that.
+pub(super) const MAX_TRANSIENT: u64 = 10_000_000;
+
 /// Most cells of a grid of starts.
 const MAX_CELLS: u64 = 1 << 24;
 
-/// A number; its range is checked where its meaning is known.
-pub(super) fn number(text: &str) -> Result<f64, String> {
-    text.parse().map_err(|_| "accepted is a number".to_owned())
+/// A value and the text that it was read from, which errors repeat.
+#[derive(Clone, Debug)]
+pub(super) struct Typed<T> {
+    pub(super) value: T,
+    pub(super) text: String,
+}
+
+impl<T> fmt::Display for Typed<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.text)
+    }
+}
+
+/// A number; its range is checked where its meaning is known, and stated here where it has a name.
+pub(super) fn named(name: &'static str) -> impl Fn(&str) -> Result<Typed<f64>, String> + Clone {
+    move |text| {
+        let value = text.parse().map_err(|_| match accepted(name) {
+            Some(range) => format!("accepted is a number, {range}"),
+            None => "accepted is a number".to_owned(),
+        })?;
+        Ok(Typed { value, text: text.to_owned() })
+    }
+}
+
+/// An end of an interval of a parameter.
+pub(super) fn end(text: &str) -> Result<Typed<f64>, String> {
+    let value = text.parse();
+    let value =
+        value.map_err(|_| "accepted is a number, in the range of --parameter".to_owned())?;
+    Ok(Typed { value, text: text.to_owned() })
+}
+
+/// A time.
+pub(super) fn time(text: &str) -> Result<Typed<f64>, String> {
+    let value = text.parse();
+    let value = value.map_err(|_| "accepted is a number, at or after the start".to_owned())?;
+    Ok(Typed { value, text: text.to_owned() })
+}
+
+/// An integer from `least` to `most`.
+pub(super) fn whole<T: TryFrom<u64>>(
+    least: u64,
+    most: u64,
+) -> impl Fn(&str) -> Result<T, String> + Clone {
+    move |text| {
+        let number = text.parse().ok().filter(|it| (least..=most).contains(it));
+        let number = number.and_then(|it| T::try_from(it).ok());
+        number.ok_or_else(|| format!("accepted is an integer, {least} to {most}"))
+    }
 }
 
 /// An angle, in radians.
@@ -22,8 +73,10 @@ pub(super) fn angle(text: &str) -> Result<f64, String> {
 }
 
 /// A cycle's number.
-pub(super) fn cycle(text: &str) -> Result<i64, String> {
-    text.parse().map_err(|_| "accepted is an integer, -2^53 to 2^53".to_owned())
+pub(super) fn cycle(text: &str) -> Result<Typed<i64>, String> {
+    let value = text.parse().ok();
+    let value = value.ok_or_else(|| "accepted is an integer, -2^53 to 2^53".to_owned())?;
+    Ok(Typed { value, text: text.to_owned() })
 }
 
 /// A phase's token.

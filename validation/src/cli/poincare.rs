@@ -3,25 +3,28 @@
 use super::endless::notice;
 use super::format::OutputFlags;
 use super::model::ModelFlags;
-use super::{parse, say, work};
+use super::note;
+use super::parse::{self, MAX_PERIODS};
+use super::progress::Progress;
+use super::work::{self, Bar};
 use crate::case::Problem;
 use crate::number::shortest;
 use crate::picture::{self, Layer, Plot, Sheet};
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use npyz::WriterBuilder;
-use percuss::Entry;
-use percuss::dynamics::section::{Section, section};
+use percuss::dynamics::section::Section;
+use percuss::{Entry, Instant};
 use std::io::Write;
 
 /// Stroboscopic section of one motion
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Forcing periods that are left out
-    #[arg(long, value_name = "M")]
+    #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
     transient: u64,
     /// Points, one a forcing period, at least 1
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(1, MAX_PERIODS), allow_hyphen_values = true)]
     periods: u64,
     /// Forcing angle omega tau mod 2 pi of the section, radians, --phi not included
     #[arg(long, value_name = "ANGLE", default_value_t = 0.0, value_parser = parse::angle, allow_hyphen_values = true)]
@@ -52,29 +55,53 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
             arguments.periods
         );
     }
-    let bar = work::bar(arguments.periods, "points");
+    let destination = arguments.output.destination();
+    let bar = work::run_bar(destination.is_terminal());
+    let course = Course::new(arguments, &problem);
+    let progress = course.progress(bar);
     let mut last = problem.entry;
-    let strobes = section(
-        &problem.model,
-        problem.entry,
-        arguments.section,
-        arguments.transient,
-        arguments.periods,
-    )
-    .inspect(|strobe| {
-        last = *strobe;
-        bar.inc(1);
-    });
-    arguments.output.destination().write(|out| match format {
+    let strobes = course.strobes(&progress).inspect(|strobe| last = *strobe);
+    destination.write(|out| match format {
         Format::Csv => write_csv(strobes, out),
         Format::Npy => write_npy(strobes, arguments.periods, out),
         Format::Png => draw(strobes, &problem, arguments, out),
     })?;
-    bar.finish_and_clear();
+    drop(progress);
     if let Some(endless) = Section::endless_at(&problem.model, &last) {
-        say(&notice(endless));
+        note(&notice(endless));
     }
     Ok(())
+}
+
+/// A motion and the part of it that is shown.
+struct Course<'a> {
+    problem: &'a Problem,
+    first: Instant,
+    end: Instant,
+    count: u64,
+}
+
+impl<'a> Course<'a> {
+    fn new(arguments: &Arguments, problem: &'a Problem) -> Self {
+        let start = problem.entry.instant;
+        let first = start.after_periods(arguments.transient, 1).first_at_angle(arguments.section);
+        let count = arguments.periods;
+        Self { problem, first, end: first.after_periods(count, 1), count }
+    }
+
+    /// Progress through the periods that are left out and those that are shown.
+    fn progress(&self, bar: Option<Bar>) -> Progress {
+        let omega = self.problem.model.parameters().omega;
+        Progress::new(bar, omega, self.problem.entry.instant, &self.end)
+    }
+
+    fn strobes<'s>(&'s self, progress: &'s Progress) -> impl Iterator<Item = Entry> + 's {
+        let Problem { model, entry, .. } = self.problem;
+        let legs = model.trajectory(*entry).until(self.end);
+        let legs = legs.inspect(|leg| progress.at(&leg.entry().instant));
+        let strobes = (0..self.count).zip(Section::along(legs, self.first));
+        strobes.map(|(_, strobe)| strobe).inspect(|strobe| progress.at(&strobe.instant))
+    }
 }
 
 fn row(strobe: &Entry) -> [f64; 4] {

@@ -1,5 +1,6 @@
 //! `validate`: every engine on every case against the truth.
 
+use super::names::{CASES, ENGINES};
 use super::output::{Destination, reader_left};
 use super::{DONE, OUT_OF_BOUNDS, parse, reports, work};
 use crate::case::{self, Case};
@@ -199,10 +200,7 @@ fn read_baseline(path: &Path) -> Result<Baseline> {
 
 fn chosen_engines(patterns: &[Regex]) -> Result<Vec<&'static dyn Engine>> {
     let engines = engine::select(patterns)?;
-    if engines.is_empty() {
-        let names: Vec<_> = engine::all().iter().map(|engine| engine.declaration().name).collect();
-        bail!("--engine {} matches no engine: accepted are {}", shown(patterns), names.join(", "));
-    }
+    ENGINES.check(patterns, engine::all().iter().map(|it| it.declaration().name))?;
     Ok(engines)
 }
 
@@ -211,13 +209,11 @@ fn prepared_cases(arguments: &Arguments) -> Result<Vec<Prepared>> {
         Some(folder) => case::from_directory(folder).context("--cases")?,
         None => case::embedded()?,
     };
+    CASES.check(&arguments.case, all.iter().map(|it| it.name.as_str()))?;
     let wanted = |case: &Case| {
         arguments.case.is_empty() || arguments.case.iter().any(|it| it.is_match(&case.name))
     };
     let cases: Vec<_> = all.into_iter().filter(wanted).collect();
-    if cases.is_empty() {
-        bail!("--case {} matches no case", shown(&arguments.case));
-    }
     let library = match &arguments.reference {
         Some(folder) => Library::from_directory(folder).context("--reference")?,
         // Cases of a user's own may come before their tables.
@@ -231,8 +227,4 @@ fn prepared_cases(arguments: &Arguments) -> Result<Vec<Prepared>> {
         );
     }
     Ok(suite::prepare(cases, &library, arguments.suite)?)
-}
-
-fn shown(patterns: &[Regex]) -> String {
-    patterns.iter().map(Regex::as_str).collect::<Vec<_>>().join(" ")
 }

@@ -1,8 +1,12 @@
 //! Long work: its length, its threads and its progress.
 
+use super::is_quiet;
 use super::parse::MAX_PERIODS;
 use anyhow::{Context, Result, bail};
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use std::io::{self, IsTerminal};
+use std::sync::Mutex;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 /// A run of both together has an accepted length.
@@ -23,32 +27,86 @@ pub(super) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool> {
     pool.context("--threads: the threads cannot be started")
 }
 
-/// A bar on stderr; nothing where that is no terminal.
-pub(super) fn bar(length: u64, unit: &str) -> ProgressBar {
-    let style = format!("{{bar:40}} {{pos}}/{{len}} {unit}, {{eta}} to go");
-    styled(ProgressBar::new(length), &style)
+/// Work that is done sooner shows no progress.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Progress on stderr with the time to go: of work that takes long, where stderr is a terminal and
+/// `--quiet` was not given.
+pub(super) struct Bar {
+    bar: ProgressBar,
+    /// Ends the wait for [`PATIENCE`].
+    waiting: Mutex<Option<Sender<()>>>,
 }
+
+impl Bar {
+    fn new(bar: ProgressBar, style: &str) -> Self {
+        let bar = match ProgressStyle::with_template(style) {
+            Ok(style) => bar.with_style(style),
+            Err(_) => bar,
+        };
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+        let wanted = io::stderr().is_terminal() && !is_quiet();
+        let waiting = Mutex::new(wanted.then(|| shown_later(bar.clone())));
+        Self { bar, waiting }
+    }
+
+    /// So much more is done.
+    pub(super) fn inc(&self, count: u64) {
+        self.bar.inc(count);
+    }
+
+    /// There is more to do than was said.
+    pub(super) fn inc_length(&self, count: u64) {
+        self.bar.inc_length(count);
+    }
+
+    /// This share of it is done, 0 to 1.
+    pub(super) fn show_share(&self, share: f64) {
+        self.bar.set_position((share * SHARES) as u64);
+    }
+
+    /// Takes it off the terminal.
+    pub(super) fn finish_and_clear(&self) {
+        drop(self.waiting.lock().map(|mut waiting| waiting.take()));
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.finish_and_clear();
+    }
+}
+
+/// Shows a bar after a while, unless what is returned is dropped before.
+fn shown_later(bar: ProgressBar) -> Sender<()> {
+    let (waiting, done) = channel();
+    std::thread::spawn(move || {
+        if done.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+            bar.set_draw_target(ProgressDrawTarget::stderr());
+            // Moves while a long step is under way.
+            bar.enable_steady_tick(Duration::from_millis(200));
+        }
+    });
+    waiting
+}
+
+/// A bar of so many units.
+pub(super) fn bar(length: u64, unit: &str) -> Bar {
+    let style = format!("{{bar:40}} {{pos}}/{{len}} {unit}, {{eta}} to go");
+    Bar::new(ProgressBar::new(length), &style)
+}
+
+/// Steps of a bar for a share.
+const SHARES: f64 = 1000.0;
 
 /// A bar for a share of 0 to 1.
-pub(super) fn share_bar() -> ProgressBar {
-    styled(ProgressBar::new(1000), "{bar:40} {percent} %, {eta} to go")
+pub(super) fn share_bar() -> Bar {
+    Bar::new(ProgressBar::new(SHARES as u64), "{bar:40} {percent} %, {eta} to go")
 }
 
-/// Where that bar stands.
-pub(super) fn show_share(bar: &ProgressBar, share: f64) {
-    bar.set_position((share * 1000.0) as u64);
-}
-
-/// A sign of life for work that does not tell how far it is.
-pub(super) fn sign_of_life(what: &str) -> ProgressBar {
-    styled(ProgressBar::new_spinner(), &format!("{{spinner}} {what}, {{elapsed}}"))
-}
-
-fn styled(bar: ProgressBar, style: &str) -> ProgressBar {
-    // Moves while a long step is under way.
-    bar.enable_steady_tick(Duration::from_millis(200));
-    match ProgressStyle::with_template(style) {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
+/// A bar for a run of one motion, from its start to its horizon; none where its rows appear on the
+/// terminal themselves.
+pub(super) fn run_bar(rows_are_seen: bool) -> Option<Bar> {
+    (!rows_are_seen).then(share_bar)
 }

@@ -71,6 +71,12 @@ impl Library {
         self.replays && !["events", "samples"].into_iter().any(listed)
     }
 
+    /// The file of a case's event table; `None` where its truth is a run made again.
+    #[must_use]
+    pub fn table(&self, case: &Case) -> Option<String> {
+        (!self.is_replayed(case)).then(|| self.full_name(&format!("events/{}.csv", case.name)))
+    }
+
     /// What is true of a case.
     ///
     /// # Errors

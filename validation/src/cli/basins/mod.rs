@@ -3,10 +3,13 @@
 mod draw;
 mod json;
 mod npz;
+mod table;
 
+use super::format::{self, OutputFlags};
 use super::model::ModelFlags;
 use super::output::Destination;
-use super::{format, parse, work};
+use super::parse::{self, MAX_TRANSIENT};
+use super::work;
 use crate::case::Problem;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
@@ -19,11 +22,19 @@ use std::path::PathBuf;
 pub(super) struct AttractorArguments {
     #[command(flatten)]
     grid: GridFlags,
-    /// Where the JSON goes, - is stdout
-    #[arg(long, value_name = "PATH")]
-    output: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputFlags<Shown>,
     #[command(flatten)]
     model: ModelFlags,
+}
+
+/// What attractors are written as; a table where a person reads it on a terminal, JSON elsewhere.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Shown {
+    Json,
+    /// A line an attractor, for people
+    #[value(alias = "txt")]
+    Table,
 }
 
 /// Basins of attraction: which start of a grid reaches which attractor
@@ -34,9 +45,9 @@ pub(super) struct BasinArguments {
     /// Where the labels go; its extension (npz, png) is its format
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
-    /// Format where --output has no extension
+    /// npz or png where --output has no extension; table or json for the attractors on stdout
     #[arg(long, value_enum)]
-    format: Option<Format>,
+    format: Vec<BasinFormat>,
     #[command(flatten)]
     model: ModelFlags,
 }
@@ -52,19 +63,43 @@ struct GridFlags {
     window: Window,
     /// Forcing periods that a start is followed before it is examined; doubled up to three times where
     /// that does not settle it, and cut short as soon as it does
-    #[arg(long, value_name = "M", value_parser = clap::value_parser!(u64).range(1..=MAX_TRANSIENT))]
+    #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(1, MAX_TRANSIENT), allow_hyphen_values = true)]
     transient: u64,
 }
 
 /// What labels are written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Format {
+enum Labels {
     Npz,
     Png,
 }
 
-/// The longest transient, in forcing periods: with its extensions fifteen times that.
-const MAX_TRANSIENT: u64 = 10_000_000;
+/// What `basins --format` takes: one of the labels' formats, one of the attractors', or both.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum BasinFormat {
+    Npz,
+    Png,
+    Json,
+    Table,
+}
+
+impl BasinFormat {
+    const fn of_labels(self) -> Option<Labels> {
+        match self {
+            Self::Npz => Some(Labels::Npz),
+            Self::Png => Some(Labels::Png),
+            Self::Json | Self::Table => None,
+        }
+    }
+
+    const fn of_attractors(self) -> Option<Shown> {
+        match self {
+            Self::Json => Some(Shown::Json),
+            Self::Table => Some(Shown::Table),
+            Self::Npz | Self::Png => None,
+        }
+    }
+}
 
 /// A surveyed grid.
 struct Survey {
@@ -74,8 +109,10 @@ struct Survey {
 }
 
 pub(super) fn attractors(arguments: &AttractorArguments, threads: Option<u16>) -> Result<()> {
+    let destination = arguments.output.destination();
+    let shown = arguments.output.format(usual(&destination))?;
     let survey = arguments.grid.survey(&arguments.model, threads)?;
-    Destination::new(arguments.output.as_deref()).json(&json::Json::of(&survey))
+    show(&survey, shown, &destination)
 }
 
 pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result<()> {
@@ -84,23 +121,52 @@ pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result
     };
     if output.as_os_str() == "-" {
         bail!(
-            "--output - is not accepted: stdout is for the JSON; accepted is a file that ends in .npz or .png"
+            "--output - is not accepted: stdout is for the attractors; accepted is a file that ends in .npz or .png"
         );
     }
-    let format = format::chosen(Some(output), arguments.format, Format::Npz)?;
+    let labels = only(&arguments.format, BasinFormat::of_labels)?;
+    let shown = only(&arguments.format, BasinFormat::of_attractors)?;
+    let labels = format::chosen(Some(output), labels, Labels::Npz)?;
+    let file = Destination::new(Some(output));
+    file.check()?;
     let survey = arguments.grid.survey(&arguments.model, threads)?;
-    let json = json::Json::of(&survey);
-    let bytes = match format {
-        Format::Npz => npz::bytes(&survey, &json)?,
-        Format::Png => draw::bytes(&survey)?,
+    let bytes = match labels {
+        Labels::Npz => npz::bytes(&survey, &json::Json::of(&survey))?,
+        Labels::Png => draw::bytes(&survey)?,
     };
-    Destination::new(Some(output)).write(|out| Ok(out.write_all(&bytes)?))?;
-    Destination::Stdout.json(&json)
+    file.write(|out| Ok(out.write_all(&bytes)?))?;
+    show(&survey, shown.unwrap_or(usual(&Destination::Stdout)), &Destination::Stdout)
+}
+
+/// A table for whoever reads it on a terminal.
+fn usual(destination: &Destination) -> Shown {
+    if destination.is_terminal() { Shown::Table } else { Shown::Json }
+}
+
+/// The one format of a kind that was given, if any.
+fn only<F>(given: &[BasinFormat], kind: impl Fn(BasinFormat) -> Option<F>) -> Result<Option<F>> {
+    let mut of_kind = given.iter().filter_map(|it| kind(*it));
+    let first = of_kind.next();
+    if of_kind.next().is_some() {
+        bail!("--format is given twice: accepted are one of npz, png and one of json, table");
+    }
+    Ok(first)
+}
+
+fn show(survey: &Survey, shown: Shown, destination: &Destination) -> Result<()> {
+    match shown {
+        Shown::Json => destination.json(&json::Json::of(survey)),
+        Shown::Table => {
+            let text = table::text(&survey.basins);
+            destination.write(|out| Ok(out.write_all(text.as_bytes())?))
+        }
+    }
 }
 
 impl GridFlags {
     fn survey(&self, model: &ModelFlags, threads: Option<u16>) -> Result<Survey> {
         let problem = model.problem()?;
+        model.note_replaced_by_grid();
         let map = StrobeMap::new(problem.model, problem.entry.instant);
         let grid = Grid {
             window: self.window,

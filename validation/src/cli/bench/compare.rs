@@ -1,11 +1,13 @@
 //! `bench compare OLD NEW`: two binaries, or two recorded versions.
 
 use super::output::{Destination, reader_left};
-use super::{DONE, OUT_OF_BOUNDS, shown, work};
+use super::{DONE, OUT_OF_BOUNDS, work};
 use crate::bench::compare::binaries::{Common, LIVES, Pair, Quotient, common, quotients};
 use crate::bench::compare::recorded::changes;
 use crate::bench::compare::verdict::{Verdict, is_doubtful};
 use crate::bench::history::{self, History, Record};
+use crate::cli::names::{Selection, nearest};
+use crate::cli::note;
 use crate::cli::parse;
 use crate::number::shortest;
 use anyhow::{Result, anyhow, bail};
@@ -25,11 +27,11 @@ pub(in super::super) struct Arguments {
     /// Only workloads whose name matches; several are alternatives
     #[arg(short, long = "bench", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
     bench: Vec<Regex>,
-    /// The history, for recorded versions
-    #[arg(long, value_name = "FILE", default_value = history::FILE)]
-    history: PathBuf,
+    /// The history, for recorded versions [default: benches/history.jsonl]
+    #[arg(long, value_name = "FILE")]
+    history: Option<PathBuf>,
     /// Slows NEW down on purpose by this share, 0 to 1: whether a regression would be noticed
-    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share)]
+    #[arg(long, value_name = "SHARE", default_value_t = 0.0, value_parser = share, allow_hyphen_values = true)]
     slowdown: f64,
 }
 
@@ -41,9 +43,15 @@ fn share(text: &str) -> Result<f64, String> {
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let [old, new] = [&arguments.old, &arguments.new].map(|side| binary(side));
     let (lines, verdicts) = match (old, new) {
+        (Some(_), Some(_)) if arguments.history.is_some() => {
+            bail!("--history has no effect on two binaries: accepted is it with recorded versions")
+        }
         (Some(old), Some(new)) => against(arguments, &old, &new)?,
         (None, None) if arguments.slowdown > 0.0 => {
-            bail!("--slowdown is for two binaries: a recorded version runs no more")
+            let share = arguments.slowdown;
+            bail!(
+                "--slowdown {share} has no effect on recorded versions: accepted are two binaries"
+            )
         }
         (None, None) => recorded(arguments)?,
         (old, _) => {
@@ -70,7 +78,7 @@ type Said = (Vec<String>, Vec<Verdict>);
 fn against(arguments: &Arguments, old: &Path, new: &Path) -> Result<Said> {
     let pair = Pair { old, new, burden: arguments.slowdown };
     let Common { shared, lost, versions } = common(&pair)?;
-    lost.iter().for_each(|bench| eprintln!("{bench}: only in {}", arguments.old));
+    lost.iter().for_each(|bench| note(&format!("{bench}: only in {}", arguments.old)));
     let benches = chosen(arguments, shared.into_iter())?;
     let bar = work::bar(u64::from(LIVES) * benches.len() as u64, "turns");
     let first = quotients(&pair, &benches, &|| bar.inc(1))?;
@@ -94,9 +102,9 @@ fn against(arguments: &Arguments, old: &Path, new: &Path) -> Result<Said> {
 }
 
 fn recorded(arguments: &Arguments) -> Result<Said> {
-    let history = History::read(&arguments.history).map_err(|what| anyhow!("--history {what}"))?;
-    let [old, new] =
-        [&arguments.old, &arguments.new].map(|side| version(arguments, &history, side));
+    let file = arguments.history.as_deref().unwrap_or(Path::new(history::FILE));
+    let history = History::read(file).map_err(|what| anyhow!("--history {what}"))?;
+    let [old, new] = [&arguments.old, &arguments.new].map(|side| version(file, &history, side));
     let (old, new) = (old?, new?);
     let both = old.iter().filter(|it| new.iter().any(|other| other.bench == it.bench));
     let benches = chosen(arguments, both.map(|it| it.bench.clone()))?;
@@ -108,7 +116,7 @@ fn recorded(arguments: &Arguments) -> Result<Said> {
     for bench in &benches {
         let Some((old, new)) = side(&old, bench).zip(side(&new, bench)) else { continue };
         if old.cpu != new.cpu {
-            eprintln!("{bench}: recorded on {} and on {}", old.cpu, new.cpu);
+            note(&format!("{bench}: recorded on {} and on {}", old.cpu, new.cpu));
         }
         for it in changes(&old, &new) {
             let [before, after] = it.figures.map(shortest);
@@ -120,16 +128,18 @@ fn recorded(arguments: &Arguments) -> Result<Said> {
     Ok((lines, verdicts))
 }
 
-fn version<'a>(arguments: &Arguments, history: &'a History, side: &str) -> Result<Vec<&'a Record>> {
+fn version<'a>(file: &Path, history: &'a History, side: &str) -> Result<Vec<&'a Record>> {
     let found = history.version(side);
     if found.is_empty() {
-        let known = match history.versions() {
-            names if names.is_empty() => "none is recorded".to_owned(),
-            names => names.join(", "),
+        let names = history.versions();
+        let known = match nearest(side, names.iter().map(String::as_str)) {
+            _ if names.is_empty() => "none is recorded".to_owned(),
+            near if near.is_empty() => names.join(", "),
+            near => format!("the nearest are {}", near.join(", ")),
         };
         bail!(
             "{side} is neither a file nor a version of {}: accepted are built binaries or recorded versions ({known})",
-            arguments.history.display()
+            file.display()
         );
     }
     Ok(found)
@@ -140,10 +150,12 @@ fn chosen(arguments: &Arguments, benches: impl Iterator<Item = String>) -> Resul
         arguments.bench.is_empty() || arguments.bench.iter().any(|it| it.is_match(name))
     };
     let all: Vec<String> = benches.collect();
+    let listed = format!("accepted are {}", all.join(", "));
+    let selection = Selection { flag: "--bench", what: "workload of both", listed: &listed };
+    selection.check(&arguments.bench, all.iter().map(String::as_str))?;
     let chosen: Vec<String> = all.iter().filter(|it| wanted(it)).cloned().collect();
     if chosen.is_empty() {
-        let asked = shown(&arguments.bench);
-        bail!("--bench {asked} matches no workload of both: accepted are {}", all.join(", "));
+        bail!("{} and {} have no workload in common", arguments.old, arguments.new);
     }
     Ok(chosen)
 }

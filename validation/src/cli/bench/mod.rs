@@ -5,7 +5,8 @@ mod history;
 mod record;
 mod worker;
 
-use super::output::{Destination, reader_left, write_whole};
+use super::names::{CASES, Selection};
+use super::output::{Destination, make_folder, reader_left, write_whole};
 use super::{DONE, OUT_OF_BOUNDS, format, output, parse, work};
 use crate::bench::contest::{self, Finisher, contest};
 use crate::bench::contestant::Contestant;
@@ -15,9 +16,8 @@ use crate::bench::{Bench, cases, damping, floor, length, pictures, registry, tab
 use crate::case::{self, Case};
 use crate::engine::{Stepping, hush_contained_panics};
 use crate::truth::Library;
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
-use indicatif::ProgressBar;
 use regex::Regex;
 use std::path::{Path, PathBuf};
 
@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Interleaved rounds
-    #[arg(long, value_name = "N", default_value_t = 5, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = parse::whole::<u16>(1, 1000), allow_hyphen_values = true)]
     rounds: u16,
     /// Runs of 1e7 and 1e8 forcing periods too
     #[arg(long)]
@@ -65,6 +65,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
 }
 
 fn race(arguments: &Arguments) -> Result<u8> {
+    if arguments.long && !arguments.case.is_empty() {
+        bail!("--long has no effect with --case: long runs are of no case");
+    }
     let all = registry::all();
     let contestants = chosen_engines(&all, &arguments.engine)?;
     let courses = courses(&chosen_cases(&arguments.case)?)?;
@@ -112,7 +115,7 @@ fn bar(
     contestants: &[&dyn Contestant],
     courses: usize,
     whole: bool,
-) -> ProgressBar {
+) -> work::Bar {
     let rounds = usize::from(arguments.rounds);
     let mut size =
         courses as u64 * contest::size(contestants, rounds) + floor::size(0, FLOOR_ROUNDS * rounds);
@@ -130,16 +133,16 @@ fn chosen_engines<'a>(
     let matches = |it: &dyn Contestant| {
         patterns.is_empty() || patterns.iter().any(|pattern| pattern.is_match(it.name()))
     };
-    if !all.iter().any(|it| matches(it.as_ref())) {
-        let names: Vec<_> = all.iter().map(|it| it.name()).collect();
-        bail!("--engine {} matches no engine: accepted are {}", shown(patterns), names.join(", "));
-    }
+    let listed = "percuss engines lists those of validate, and exact-lanes is one of bench";
+    let selection = Selection { flag: "--engine", what: "engine", listed };
+    selection.check(patterns, all.iter().map(|it| it.name()))?;
     let is_unit = |it: &dyn Contestant| it.name() == "exact" && it.stepping() == Stepping::Exact;
     Ok(all.iter().map(AsRef::as_ref).filter(|it| is_unit(*it) || matches(*it)).collect())
 }
 
 fn chosen_cases(patterns: &[Regex]) -> Result<Vec<Case>> {
     let all = case::embedded()?;
+    CASES.check(patterns, all.iter().map(|it| it.name.as_str()))?;
     let wanted = |case: &Case| {
         if patterns.is_empty() {
             cases::USUAL.contains(&case.name.as_str())
@@ -148,9 +151,6 @@ fn chosen_cases(patterns: &[Regex]) -> Result<Vec<Case>> {
         }
     };
     let mut chosen: Vec<Case> = all.into_iter().filter(wanted).collect();
-    if chosen.is_empty() {
-        bail!("--case {} matches no case: percuss validate has their names", shown(patterns));
-    }
     let place = |case: &Case| cases::USUAL.iter().position(|it| *it == case.name);
     chosen.sort_by_key(|case| place(case).unwrap_or(usize::MAX));
     Ok(chosen)
@@ -166,21 +166,10 @@ fn courses(cases: &[Case]) -> Result<Vec<Course>> {
     Ok(cases.iter().map(|case| Course::of(case, &library)).collect::<Result<_, _>>()?)
 }
 
-fn make_folder(folder: &Path) -> Result<()> {
-    std::fs::create_dir_all(folder).map_err(|error| {
-        let folder = folder.display();
-        anyhow!("--out {folder} cannot be made ({error}); accepted is a writable folder")
-    })
-}
-
 fn write(bench: &Bench, folder: &Path) -> Result<()> {
     Destination::new(Some(&folder.join("bench.json"))).json(bench).context("--out")?;
     for (name, bytes) in pictures(bench)? {
         write_whole(&folder.join(name), |out| Ok(out.write_all(&bytes)?)).context("--out")?;
     }
     Ok(())
-}
-
-fn shown(patterns: &[Regex]) -> String {
-    patterns.iter().map(Regex::as_str).collect::<Vec<_>>().join(" ")
 }

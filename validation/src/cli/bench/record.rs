@@ -1,7 +1,7 @@
 //! `bench record`: lines of this version, appended to the history.
 
 use super::output::{Destination, reader_left, write_whole};
-use super::{cases_by_default, courses, work};
+use super::{cases_by_default, courses, parse, work};
 use crate::bench::contestant::enter;
 use crate::bench::course::Course;
 use crate::bench::floor::{self, Floors};
@@ -20,7 +20,7 @@ pub(in super::super) struct Arguments {
     #[arg(long, value_name = "FILE", default_value = history::FILE)]
     history: PathBuf,
     /// Interleaved rounds, twice
-    #[arg(long, value_name = "N", default_value_t = 150, value_parser = clap::value_parser!(u16).range(1..=1000))]
+    #[arg(long, value_name = "N", default_value_t = 150, value_parser = parse::whole::<u16>(1, 1000), allow_hyphen_values = true)]
     rounds: u16,
     /// Counts instructions too; valgrind has to be installed
     #[arg(long)]

@@ -4,7 +4,7 @@ use super::json::Found;
 use super::{Format, period};
 use crate::cli::format::OutputFlags;
 use crate::cli::model::ModelFlags;
-use crate::cli::{DONE, OUT_OF_BOUNDS, say, work};
+use crate::cli::{DONE, OUT_OF_BOUNDS, note, say, work};
 use anyhow::Result;
 use clap::Args;
 use percuss::dynamics::orbit::{Orbit, scan};
@@ -46,12 +46,12 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
 /// The preferred orbit of a scan; how many others there are is said.
 pub(super) fn scanned(map: &StrobeMap, period: u32) -> Result<Orbit, (f64, String)> {
     let bar = work::share_bar();
-    let found = scan(map, period, &mut |share| work::show_share(&bar, share));
+    let found = scan(map, period, &mut |share| bar.show_share(share));
     bar.finish_and_clear();
     let whole = found.iter().filter(|it| it.period() == period);
     let (count, stable) = (whole.clone().count(), whole.filter(|it| it.is_stable()).count());
     if count > 1 {
-        say(&format!(
+        note(&format!(
             "a scan found {count} orbits of period {period}, {stable} of them stable; this is one: --p, --y and --q near another select that"
         ));
     }

@@ -6,12 +6,13 @@ use super::{Format, period};
 use crate::case::Problem;
 use crate::cli::format::OutputFlags;
 use crate::cli::model::ModelFlags;
-use crate::cli::{DONE, OUT_OF_BOUNDS, parse, say, work};
+use crate::cli::parse::{self, Typed};
+use crate::cli::{DONE, OUT_OF_BOUNDS, say, work};
 use anyhow::{Result, anyhow};
 use clap::Args;
-use percuss::Parameter;
 use percuss::dynamics::continuation::{Branch, Criticality, Doubling, Ending, Family, Kind};
 use percuss::dynamics::strobe::StrobeMap;
+use percuss::{InputError, Parameter};
 
 /// Follow a periodic orbit, stable or not, in a parameter, and locate its bifurcations
 #[derive(Args)]
@@ -20,11 +21,11 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAME", value_parser = parse::parameter)]
     parameter: Parameter,
     /// Its first value
-    #[arg(long, value_name = "X", value_parser = parse::number, allow_hyphen_values = true)]
-    from: f64,
+    #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
+    from: Typed<f64>,
     /// Its last value
-    #[arg(long, value_name = "X", value_parser = parse::number, allow_hyphen_values = true)]
-    to: f64,
+    #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
+    to: Typed<f64>,
     /// Forcing periods of the orbit
     #[arg(long, value_name = "K", value_parser = period, allow_hyphen_values = true)]
     period: u32,
@@ -38,11 +39,13 @@ pub(crate) struct Arguments {
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
-    let Arguments { parameter, from, to, .. } = *arguments;
+    let Arguments {
+        parameter, from: Typed { value: from, .. }, to: Typed { value: to, .. }, ..
+    } = *arguments;
     arguments.output.format(Format::Json)?;
-    let (problem, guessed) = arguments.model.guess(Some((parameter, "--from", from)))?;
+    let (problem, guessed) = arguments.model.guess(Some((parameter, "--from", &arguments.from)))?;
     let family = Family::new(*problem.model.parameters(), parameter, problem.entry.instant);
-    family.map(to).map_err(|error| anyhow!("--to: {error}"))?;
+    family.map(to).map_err(|error| refused_end(&arguments.to, &error))?;
     let branch = branch(arguments, &problem, guessed, &family);
     let doubled = match &branch {
         Ok(branch) if arguments.doubled => Some(doubled(branch, &family, from, to)),
@@ -69,6 +72,14 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     Ok(if complete { DONE } else { OUT_OF_BOUNDS })
 }
 
+/// What is said of a value of --to that the model does not accept.
+fn refused_end(to: &Typed<f64>, error: &InputError) -> anyhow::Error {
+    match error {
+        InputError::OutOfRange { accepted, .. } => anyhow!("--to {to} is not accepted: {accepted}"),
+        error => anyhow!("--to {to}: {error}"),
+    }
+}
+
 fn branch(
     arguments: &Arguments,
     problem: &Problem,
@@ -83,9 +94,9 @@ fn branch(
         orbit.points[0]
     };
     let bar = work::share_bar();
-    let told = &mut |share| work::show_share(&bar, share);
-    let Arguments { period, from, to, .. } = *arguments;
-    let branch = Branch::follow(family, guess, period, from, to, told);
+    let told = &mut |share| bar.show_share(share);
+    let Arguments { period, from, to, .. } = arguments;
+    let branch = Branch::follow(family, guess, *period, from.value, to.value, told);
     bar.finish_and_clear();
     branch.map_err(|none| none.to_string())
 }
@@ -96,7 +107,7 @@ fn doubled(branch: &Branch, family: &Family, from: f64, to: f64) -> Option<Doubl
     let own = |it: &&_| is_flip_of(it, period);
     let flip = branch.bifurcations.iter().find(own)?;
     let bar = work::share_bar();
-    let doubling = Doubling::of(family, flip, from, to, &mut |share| work::show_share(&bar, share));
+    let doubling = Doubling::of(family, flip, from, to, &mut |share| bar.show_share(share));
     bar.finish_and_clear();
     let Doubling { criticality, branch } = doubling?;
     let complete = matches!(branch.ending, Ending::Reached | Ending::Left);

@@ -3,12 +3,13 @@
 mod claims;
 mod store;
 
-use super::output::{Destination, reader_left, write_whole};
+use super::names::nearest;
+use super::output::{Destination, make_folder, reader_left, write_whole};
 use super::{DONE, OUT_OF_BOUNDS, say, work};
 use crate::engine::{Failure, hush_contained_panics};
 use crate::reproduce::paper::Paper;
 use crate::reproduce::{Claim, Findings, Item, Size, Work, items};
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, bail};
 use clap::Args;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -20,26 +21,29 @@ pub(super) struct Arguments {
     /// Only these claims or items; several are alternatives
     #[arg(long, value_name = "ID")]
     only: Vec<String>,
-    /// How large the grids are: minutes, or basins of 1000 x 1000 starts
-    #[arg(long, value_enum, default_value_t = Size::Default)]
-    size: Size,
+    /// How large the grids of figure-7 are: minutes, or basins of 1000 x 1000 starts [default: default]
+    #[arg(long, value_enum)]
+    size: Option<Size>,
     /// Pictures, their data and claims.json go into this folder; interrupted work is taken up again there
     #[arg(long, value_name = "DIR", required = true)]
     out: PathBuf,
 }
 
+/// The item whose grids have two sizes.
+const SIZED: &str = "figure-7";
+
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let chosen = chosen(&arguments.only)?;
-    std::fs::create_dir_all(&arguments.out).map_err(|error| {
-        let folder = arguments.out.display();
-        anyhow!("--out {folder} cannot be made ({error}); accepted is a writable folder")
-    })?;
-    let store = Store::open(&arguments.out, arguments.size)?;
+    if arguments.size.is_some() && !chosen.iter().any(|item| item.id == SIZED) {
+        bail!("--size has no effect on what --only names: accepted is it with {SIZED}");
+    }
+    let size = arguments.size.unwrap_or(Size::Default);
+    make_folder(&arguments.out)?;
+    let store = Store::open(&arguments.out, size)?;
     let pool = work::pool(threads)?;
     hush_contained_panics();
     let bar = work::bar(chosen.iter().map(|item| u64::from(item.parts)).sum(), "parts");
-    let task =
-        Work { paper: Paper::read()?, size: arguments.size, step: &|| bar.inc(1), parts: &store };
+    let task = Work { paper: Paper::read()?, size, step: &|| bar.inc(1), parts: &store };
     let done: Vec<Result<Vec<Claim>, Failure>> =
         pool.install(|| chosen.par_iter().map(|item| settle(item, &task, &store)).collect());
     bar.finish_and_clear();
@@ -99,7 +103,12 @@ fn chosen(only: &[String]) -> Result<Vec<&'static Item>> {
         if !items().iter().any(|item| item.answers_to(id)) {
             let names = items().iter().flat_map(|it| std::iter::once(&it.id).chain(it.claims));
             let names: Vec<_> = names.copied().collect();
-            bail!("--only {id} names no claim and no item: accepted are {}", names.join(", "));
+            let near = match nearest(id, names.iter().copied()) {
+                near if near.is_empty() => String::new(),
+                near => format!("the nearest names are {}; ", near.join(", ")),
+            };
+            let all = names.join(", ");
+            bail!("--only {id} names no claim and no item: {near}accepted are {all}");
         }
     }
     let chosen = |item: &&Item| only.is_empty() || only.iter().any(|id| item.answers_to(id));

@@ -7,9 +7,10 @@ mod rows;
 
 use super::format::OutputFlags;
 use super::model::ModelFlags;
-use super::{parse, say};
+use super::parse::{self, MAX_PERIODS, Typed};
+use super::{note, work};
 use crate::picture;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
 use plan::{Ending, Plan};
 use std::io::Write;
@@ -19,20 +20,20 @@ use std::io::Write;
 #[command(group(ArgGroup::new("length").required(true).args(["events", "periods", "until"])))]
 pub(super) struct Arguments {
     /// Ends after this many switches
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, u64::MAX), allow_hyphen_values = true)]
     events: Option<u64>,
     /// Ends after this many forcing periods, at most 1000000000
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=parse::MAX_PERIODS))]
+    #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
     periods: Option<u64>,
     /// Ends at this time, at or after the start
-    #[arg(long, value_name = "TAU", value_parser = parse::number, allow_hyphen_values = true)]
-    until: Option<f64>,
+    #[arg(long, value_name = "TAU", value_parser = parse::time, allow_hyphen_values = true)]
+    until: Option<Typed<f64>>,
     /// Rows K times a forcing period instead of at each switch
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "K", value_parser = parse::whole::<u32>(1, 4_294_967_295), allow_hyphen_values = true)]
     samples: Option<u32>,
-    /// With --events: stops early after this many forcing periods
-    #[arg(long, value_name = "M", default_value_t = 1_000_000, value_parser = clap::value_parser!(u64).range(1..=parse::MAX_PERIODS))]
-    max_periods: u64,
+    /// With --events: stops early after this many forcing periods [default: 1000000]
+    #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(1, MAX_PERIODS), allow_hyphen_values = true)]
+    max_periods: Option<u64>,
     #[command(flatten)]
     output: OutputFlags<Format>,
     #[command(flatten)]
@@ -51,9 +52,10 @@ enum Format {
 /// Makes the run; whether it was decided to its end.
 pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     let format = arguments.output.format(Format::Csv)?;
-    let problem = arguments.model.problem()?;
-    let plan = Plan::new(problem, arguments)?;
+    check_effect(arguments, format)?;
     let destination = arguments.output.destination();
+    let bar = work::run_bar(destination.is_terminal());
+    let plan = Plan::new(arguments.model.problem()?, arguments, bar)?;
     let mut ending = Ending::default();
     destination.write(|out| {
         ending = match format {
@@ -63,8 +65,20 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
         };
         Ok(())
     })?;
-    ending.lines().for_each(|line| say(&line));
+    drop(plan);
+    ending.lines().for_each(|line| note(&line));
     Ok(!ending.undecided)
+}
+
+/// Refuses flags that the run takes no notice of.
+fn check_effect(arguments: &Arguments, format: Format) -> Result<()> {
+    if let (Some(most), None) = (arguments.max_periods, arguments.events) {
+        bail!("--max-periods {most} has no effect here: accepted is it with --events");
+    }
+    if let (Some(rows), Format::Png | Format::Svg) = (arguments.samples, format) {
+        bail!("--samples {rows} has no effect on a picture: accepted is it with csv and json");
+    }
+    Ok(())
 }
 
 /// Writes the run's rows; what has to be said about its end.

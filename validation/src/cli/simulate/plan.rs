@@ -3,9 +3,14 @@
 use super::Arguments;
 use crate::case::Problem;
 use crate::cli::endless::words;
-use crate::cli::parse::MAX_PERIODS;
+use crate::cli::parse::{MAX_PERIODS, Typed};
+use crate::cli::progress::Progress;
+use crate::cli::work::Bar;
 use anyhow::{Result, bail};
 use percuss::{Endless, Exit, Instant, Leg, Trajectory};
+
+/// Forcing periods after which a run that counts switches stops, where `--max-periods` is not given.
+const USUAL_MAX_PERIODS: u64 = 1_000_000;
 
 /// A picture of more forcing periods than this shows nothing.
 const MAX_PICTURE_PERIODS: f64 = 5000.0;
@@ -18,18 +23,22 @@ pub(super) struct Plan {
     /// It ends after so many switches, if that is sooner.
     pub(super) events: Option<u64>,
     max_periods: u64,
+    pub(super) progress: Progress,
 }
 
 impl Plan {
-    pub(super) fn new(problem: Problem, arguments: &Arguments) -> Result<Self> {
+    pub(super) fn new(problem: Problem, arguments: &Arguments, bar: Option<Bar>) -> Result<Self> {
         let start = problem.entry.instant;
         let periods = |count| start.after_periods(count, 1);
-        let horizon = match (arguments.periods, arguments.until) {
+        let max_periods = arguments.max_periods.unwrap_or(USUAL_MAX_PERIODS);
+        let horizon = match (arguments.periods, &arguments.until) {
             (Some(count), _) => periods(count),
             (None, Some(tau)) => until(&problem, tau)?,
-            (None, None) => periods(arguments.max_periods),
+            (None, None) => periods(max_periods),
         };
-        Ok(Self { problem, horizon, events: arguments.events, max_periods: arguments.max_periods })
+        let omega = problem.model.parameters().omega;
+        let progress = Progress::new(bar, omega, start, &horizon);
+        Ok(Self { problem, horizon, events: arguments.events, max_periods, progress })
     }
 
     pub(super) fn omega(&self) -> f64 {
@@ -37,13 +46,13 @@ impl Plan {
     }
 
     /// The run's phases, the last one ending with the run; none where no switch is wanted.
-    pub(super) fn legs(&self) -> Legs {
+    pub(super) fn legs(&self) -> Legs<'_> {
         let run = self.problem.model.trajectory(self.problem.entry).until(self.horizon);
-        Legs { run, wanted: self.events, switches: 0 }
+        Legs { run, wanted: self.events, switches: 0, progress: &self.progress }
     }
 
     /// What to say of a run whose last phase is `last` after the phases of `legs`.
-    pub(super) fn ending(&self, last: Option<&Leg>, legs: &Legs) -> Ending {
+    pub(super) fn ending(&self, last: Option<&Leg>, legs: &Legs<'_>) -> Ending {
         let undecided = last.filter(|leg| *leg.exit() == Exit::Undecidable);
         let how = match undecided {
             Some(leg) => Some(self.undecided(leg)),
@@ -114,7 +123,7 @@ impl Plan {
                 self.events.is_none() && self.horizon.since(&start, self.omega()).value() > longest;
             if begins > longest || ends_late {
                 bail!(
-                    "--output: a picture of more than {MAX_PICTURE_PERIODS} forcing periods is not accepted"
+                    "a picture of more than {MAX_PICTURE_PERIODS} forcing periods is not accepted: --output or --format of csv or json is, or a shorter run"
                 );
             }
             legs.push(leg);
@@ -139,20 +148,21 @@ impl Plan {
 }
 
 /// A run's phases up to the switch that ends it.
-pub(super) struct Legs {
+pub(super) struct Legs<'a> {
     run: Trajectory,
     wanted: Option<u64>,
     switches: u64,
+    progress: &'a Progress,
 }
 
-impl Legs {
+impl Legs<'_> {
     /// Touches so far that rounding does not decide.
     fn touches(&self) -> u64 {
         self.run.counters().undecidable
     }
 }
 
-impl Iterator for Legs {
+impl Iterator for Legs<'_> {
     type Item = Leg;
 
     fn next(&mut self) -> Option<Leg> {
@@ -161,6 +171,8 @@ impl Iterator for Legs {
         }
         let leg = self.run.next()?;
         self.switches += u64::from(matches!(leg.exit(), Exit::Switch(_)));
+        let share = self.wanted.map_or(0.0, |wanted| self.switches as f64 / wanted as f64);
+        self.progress.at_least(&leg.entry().instant, share);
         Some(leg)
     }
 }
@@ -191,7 +203,8 @@ impl Ending {
 }
 
 /// The horizon that `--until` states.
-fn until(problem: &Problem, tau: f64) -> Result<Instant> {
+fn until(problem: &Problem, stated: &Typed<f64>) -> Result<Instant> {
+    let tau = stated.value;
     let omega = problem.model.parameters().omega;
     let start = problem.entry.instant;
     // Beyond this omega tau is no longer reduced exactly.
@@ -203,6 +216,6 @@ fn until(problem: &Problem, tau: f64) -> Result<Instant> {
     }
     let begins = start.tau(omega);
     bail!(
-        "--until {tau:?} is not accepted: at or after the start, {begins:?}, and at most {MAX_PERIODS} forcing periods later"
+        "--until {stated} is not accepted: at or after the start, {begins:?}, and at most {MAX_PERIODS} forcing periods later"
     )
 }

@@ -89,6 +89,7 @@ pub(super) fn samples(plan: &Plan, per_period: u32, sink: &mut dyn Sink) -> Resu
             if over || leg.ends_by(&instant) {
                 break;
             }
+            plan.progress.at(&instant);
             sink.row(plan, &sample(k, leg.phase().token(), &leg, instant))?;
             k += 1;
         }

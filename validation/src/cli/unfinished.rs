@@ -1,0 +1,99 @@
+//! Files under their temporary names: gone when they fail, and when the process is interrupted.
+
+use std::collections::BTreeSet;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::{Builder, NamedTempFile};
+
+/// The temporary names that are in use.
+static NAMES: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
+
+fn names() -> MutexGuard<'static, BTreeSet<PathBuf>> {
+    // A set of paths is as good after a panic as before it.
+    NAMES.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// A file that has not its own name yet.
+pub(super) struct Unfinished {
+    // Removed from the disk before its name is forgotten: fields are dropped in this order.
+    file: NamedTempFile,
+    name: Name,
+}
+
+struct Name(PathBuf);
+
+impl Drop for Name {
+    fn drop(&mut self) {
+        names().remove(&self.0);
+    }
+}
+
+impl Unfinished {
+    /// Makes one in a folder.
+    pub(super) fn new(builder: &Builder, folder: &Path) -> io::Result<Self> {
+        signals::watch();
+        // Known from the moment it exists.
+        let mut names = names();
+        let file = builder.tempfile_in(folder)?;
+        let path = file.path().to_owned();
+        names.insert(path.clone());
+        Ok(Self { file, name: Name(path) })
+    }
+
+    /// Gives it its own name.
+    pub(super) fn finish(self, target: &Path) -> io::Result<()> {
+        let Self { file, name } = self;
+        // An interruption comes before this or after it.
+        let names = names();
+        let kept = file.persist(target).map(drop).map_err(|error| error.error);
+        drop(names);
+        drop(name);
+        kept
+    }
+}
+
+impl Write for Unfinished {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}
+
+#[cfg(unix)]
+mod signals {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+    use signal_hook::iterator::Signals;
+    use std::sync::Once;
+
+    static WATCHED: Once = Once::new();
+
+    /// From the first file on, SIGINT and SIGTERM remove what is unfinished and end the process with
+    /// exit code 128 + signal, as a shell reports it. Until then they do what they do by default.
+    pub(super) fn watch() {
+        WATCHED.call_once(|| {
+            // Where signals cannot be watched an interruption leaves its file, as it would without this.
+            if let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) {
+                std::thread::spawn(move || signals.forever().next().map(end));
+            }
+        });
+    }
+
+    fn end(signal: i32) {
+        // Held until the process is gone: no file is begun or finished any more.
+        let names = super::names();
+        for name in names.iter() {
+            let _ = std::fs::remove_file(name);
+        }
+        std::process::exit(128 + signal);
+    }
+}
+
+#[cfg(not(unix))]
+mod signals {
+    /// Other systems have no such signals.
+    pub(super) fn watch() {}
+}

@@ -1,0 +1,348 @@
+//! Every flag of every verb with odd values: exit 2, and one line that names the flag, the value as
+//! typed and what is accepted. Flags that would have no effect are refused too.
+
+#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
+
+mod support;
+
+use clap::Command;
+use percuss_validation::cli::command;
+use support::{refused, run, text};
+
+/// Each verb with flags that make it complete; a flag under test takes the place of its own pair.
+const VERBS: [(&str, &[(&str, &str)]); 18] = [
+    ("simulate", &[("--periods", "1")]),
+    ("poincare", &[("--transient", "1"), ("--periods", "1")]),
+    ("lyapunov", &[("--transient", "1"), ("--periods", "1")]),
+    (
+        "bifurcation",
+        &[
+            ("--parameter", "b"),
+            ("--from", "0.1"),
+            ("--to", "0.2"),
+            ("--steps", "2"),
+            ("--transient", "1"),
+            ("--periods", "1"),
+        ],
+    ),
+    ("attractors", &[("--grid", "1x1"), ("--window", "-1,1,-1,1"), ("--transient", "1")]),
+    (
+        "basins",
+        &[
+            ("--grid", "1x1"),
+            ("--window", "-1,1,-1,1"),
+            ("--transient", "1"),
+            ("--output", "a.npz"),
+        ],
+    ),
+    ("orbit", &[("--period", "1")]),
+    ("continue", &[("--parameter", "b"), ("--from", "0.1"), ("--to", "0.2"), ("--period", "1")]),
+    ("validate", &[]),
+    ("engines", &[]),
+    ("cases", &[]),
+    ("reproduce", &[("--out", "/proc/nowhere")]),
+    ("bench", &[]),
+    ("bench record", &[]),
+    ("bench history", &[]),
+    ("bench compare", &[("OLD", "0.0.1"), ("NEW", "0.0.2")]),
+    ("completions", &[("SHELL", "bash")]),
+    ("man", &[("--out", "/proc/nowhere")]),
+];
+
+const INTEGERS: &[&str] = &["-5", "1e300", "1.5", "nan", "x", "", "18446744073709551616"];
+const NUMBERS: &[&str] = &["nan", "inf", "-inf", "1e400", "-1e300", "1,5", "x", ""];
+const WORDS: &[&str] = &["", "x", "-5", "1e300"];
+const MISSING_FOLDER: &[&str] = &["/no/such/folder/file.json"];
+
+/// The verbs that a row is for (all where empty), a flag, values that are refused, and what the line
+/// says is accepted.
+type Row = (&'static [&'static str], &'static str, &'static [&'static str], &'static str);
+
+const ROWS: &[Row] = &[
+    (&[], "--threads", INTEGERS, "1 to 65535"),
+    (&[], "--threads", &["0", "65536"], "1 to 65535"),
+    (&[], "--color", WORDS, "auto, always, never"),
+    (&[], "--a", NUMBERS, "0 <= a <= 1e9"),
+    (&[], "--a", &["-0.5"], "0 <= a <= 1e9"),
+    (&[], "--b", NUMBERS, "-1e9 <= b <= 1e9"),
+    (&[], "--xi", NUMBERS, "1e-8 <= xi <= 1e4"),
+    (&[], "--xi", &["0", "00.0"], "1e-8 <= xi <= 1e4"),
+    (&[], "--omega", NUMBERS, "1e-6 <= omega <= 1e6"),
+    (&[], "--g", NUMBERS, "0 <= g <= 1e9"),
+    (&[], "--phi", NUMBERS, "-1e15 <= phi <= 1e15"),
+    (&[], "--tau", NUMBERS, "-1e15 <= tau <= 1e15"),
+    (&[], "--p", NUMBERS, "-1e9 to 1e9"),
+    (&[], "--y", NUMBERS, "-1e9 to 1e9"),
+    (&[], "--q", NUMBERS, "-1e9 to 1e9"),
+    (&[], "--v", NUMBERS, "-1e9 to 1e9"),
+    (&[], "--cycle", INTEGERS_BUT_NEGATIVE, "-2^53"),
+    (&[], "--cycle", &["9007199254740993", "-9007199254740993"], "-2^53 <= cycle <= 2^53"),
+    (&[], "--phase", WORDS, "no-contact, contact, progression"),
+    (&[], "--problem", &["/no/such.toml", "/"], "accepted is a readable file"),
+    (&["simulate"], "--periods", INTEGERS, "0 to 1000000000"),
+    (&["simulate"], "--events", INTEGERS, "an integer, 0 to"),
+    (&["simulate"], "--until", NUMBERS, "at or after the start"),
+    (&["simulate"], "--samples", INTEGERS, "1 to 4294967295"),
+    (&["simulate"], "--max-periods", INTEGERS, "1 to 1000000000"),
+    (&["poincare", "lyapunov"], "--periods", INTEGERS, "1 to 1000000000"),
+    (&["bifurcation"], "--periods", INTEGERS, "1 to 1000000000"),
+    (&["poincare", "lyapunov", "bifurcation"], "--transient", INTEGERS, "0 to 1000000000"),
+    (&["attractors", "basins"], "--transient", INTEGERS, "1 to 10000000"),
+    (&["attractors", "basins"], "--grid", &["", "x", "-5x5", "5", "1e3x1e3"], "NXxNY"),
+    (&["attractors", "basins"], "--window", &["", "1,2", "1,0,0,1", "nan,1,0,1"], "pmin,pmax"),
+    (&["poincare"], "--section", NUMBERS, "-1e15 to 1e15"),
+    (&["bifurcation"], "--steps", INTEGERS, "1 to 1000000"),
+    (&["bifurcation", "continue"], "--parameter", WORDS, "a, b, xi, omega, g, phi"),
+    (&["bifurcation", "continue"], "--from", NUMBERS, "accepted"),
+    (&["bifurcation", "continue"], "--to", NUMBERS, "accepted"),
+    (&["orbit", "continue"], "--period", INTEGERS, "1 to 10000"),
+    (&[], "--format", WORDS, "possible values"),
+    (&["validate"], "--suite", WORDS, "quick, full"),
+    (&["reproduce"], "--size", WORDS, "default, full"),
+    (&["reproduce"], "--only", WORDS, "accepted are"),
+    (&["bench", "bench record"], "--rounds", INTEGERS, "1 to 1000"),
+    (&["bench compare"], "--slowdown", NUMBERS, "0 to 1"),
+    (&["validate", "bench"], "--engine", &["(", "qqqqq"], "--engine"),
+    (&["validate", "bench"], "--case", &["(", "qqqqq"], "--case"),
+    (&["bench compare"], "--bench", &["("], "regular expression"),
+    (&["bench record", "bench history", "bench compare"], "--history", &["/"], "--history"),
+    (&["validate", "cases"], "--cases", &["/no/such"], "accepted is a folder of cases"),
+    (&["validate"], "--reference", &["/no/such"], "accepted is"),
+    (&["validate"], "--baseline", &["/no/such.json"], "accepted is"),
+    (&["validate", "bench", "reproduce", "man"], "--out", &["/proc/nowhere"], "accepted is"),
+    (&["basins"], "--output", &["/no/such/folder/file.npz"], "a folder that exists"),
+    (
+        &["bench history", "poincare"],
+        "--output",
+        &["/no/such/folder/file.png"],
+        "a folder that exists",
+    ),
+    (&["bifurcation"], "--output", &["/no/such/folder/file.csv"], "a folder that exists"),
+    (&[], "--output", MISSING_FOLDER, "a folder that exists"),
+    (&["completions"], "SHELL", &["", "x", "1e300"], "bash"),
+];
+
+/// Of a cycle's number, which may be negative.
+const INTEGERS_BUT_NEGATIVE: &[&str] = &["1e300", "1.5", "nan", "x", "", "18446744073709551616"];
+
+/// The rows of a flag of a verb: its own, or else those of all verbs.
+fn rows(verb: &str, flag: &str) -> Vec<&'static Row> {
+    let of = |own: bool| {
+        let fits = move |row: &&Row| {
+            row.1 == flag && if own { row.0.contains(&verb) } else { row.0.is_empty() }
+        };
+        ROWS.iter().filter(fits).collect::<Vec<_>>()
+    };
+    let own = of(true);
+    if own.is_empty() { of(false) } else { own }
+}
+
+/// A run of a verb with one flag set to a value, and what else it needs.
+fn arguments(verb: &str, flag: &str, value: &str) -> Vec<String> {
+    let known = VERBS.iter().find(|it| it.0 == verb);
+    let Some((_, usual)) = known else { panic!("{verb} is not in the table") };
+    let mut words: Vec<String> = verb.split(' ').map(str::to_owned).collect();
+    let one_of = |name: &str| ["--periods", "--events", "--until"].contains(&name);
+    for (name, usual) in usual.iter() {
+        let replaced = verb == "simulate" && one_of(name) && one_of(flag);
+        if *name != flag && !replaced && !name.starts_with("--") {
+            words.push((*usual).to_owned());
+        } else if *name != flag && !replaced {
+            words.push(format!("{name}={usual}"));
+        }
+    }
+    words.push(if flag.starts_with("--") { format!("{flag}={value}") } else { value.to_owned() });
+    words
+}
+
+/// The verbs with their flags that take a value, those of all verbs included.
+fn flags(command: &Command, verb: &str, found: &mut Vec<(String, String)>) {
+    for inner in command.get_subcommands().filter(|it| it.get_name() != "help") {
+        let name = format!("{verb} {}", inner.get_name()).trim().to_owned();
+        flags(inner, &name, found);
+        if VERBS.iter().any(|it| it.0 == name) || !inner.has_subcommands() {
+            let takes = inner.get_arguments().filter(|it| it.get_action().takes_values());
+            let flag = |it: &clap::Arg| it.get_long().map(|long| format!("--{long}"));
+            found.extend(takes.filter_map(|it| flag(it).map(|flag| (name.clone(), flag))));
+        }
+    }
+}
+
+#[test]
+fn odd_values_of_every_flag() {
+    let mut command = command();
+    command.build();
+    let mut found = Vec::new();
+    flags(&command, "", &mut found);
+    // It answers a protocol of its own and takes no flags but those of all verbs.
+    found.retain(|(verb, _)| verb != "bench worker");
+    found.push(("completions".to_owned(), "SHELL".to_owned()));
+    assert!(found.len() > 150, "{}", found.len());
+    for (verb, flag) in &found {
+        let rows = rows(verb, flag);
+        assert!(!rows.is_empty(), "{verb} {flag} is not in the table");
+        for (_, _, values, accepted) in rows {
+            for value in *values {
+                let words = arguments(verb, flag, value);
+                let words: Vec<&str> = words.iter().map(String::as_str).collect();
+                let name = if flag == "SHELL" { "SHELL" } else { flag };
+                refused(&words, &[name, value, accepted]);
+            }
+        }
+    }
+}
+
+/// A value that begins with a minus is the flag's, whether an equals sign or a space comes before it.
+#[test]
+fn negative_values_belong_to_their_flags() {
+    for words in [
+        &["simulate", "--periods", "-5"][..],
+        &["simulate", "--events", "-5"],
+        &["simulate", "--periods", "1", "--samples", "-5"],
+        &["poincare", "--transient", "-5", "--periods", "1"],
+        &["lyapunov", "--periods", "-5", "--transient", "1"],
+        &["attractors", "--grid", "1x1", "--window", "0,1,0,1", "--transient", "-5"],
+        &["bench", "--rounds", "-5"],
+        &["engines", "--threads", "-5"],
+    ] {
+        let flag = words[words.iter().position(|it| *it == "-5").expect("there") - 1];
+        refused(words, &[flag, "'-5'", "accepted is an integer"]);
+    }
+}
+
+#[test]
+fn flags_without_effect() {
+    let grid = ["--grid", "1x1", "--window", "-1,1,-1,1", "--transient", "1"];
+    let interval = ["--parameter", "b", "--from", "0.1", "--to", "0.2", "--steps", "2"];
+    let diagram =
+        [&["bifurcation"], &interval[..], &["--transient", "1", "--periods", "1"]].concat();
+    let basins = [&["basins"], &grid[..]].concat();
+    let binary = assert_cmd::cargo::cargo_bin("percuss").display().to_string();
+    let rows: Vec<(Vec<&str>, &[&str])> = vec![
+        (
+            vec!["simulate", "--periods", "1", "--max-periods", "7"],
+            &["--max-periods 7", "--events"],
+        ),
+        (vec!["simulate", "--until", "1", "--max-periods", "7"], &["--max-periods 7", "--events"]),
+        (
+            vec!["simulate", "--periods", "1", "--samples", "4", "--format", "png"],
+            &["--samples 4", "picture"],
+        ),
+        (
+            vec!["simulate", "--periods", "1", "--samples", "4", "--format", "svg"],
+            &["--samples 4", "picture"],
+        ),
+        ([&diagram[..], &["--carry", "--reset"]].concat(), &["--carry", "--reset"]),
+        (
+            [&basins[..], &["--output", "a.npz", "--format", "png"]].concat(),
+            &["--format png", "a.npz"],
+        ),
+        (
+            [&basins[..], &["--output", "a", "--format", "png", "--format", "npz"]].concat(),
+            &["--format", "one of npz, png"],
+        ),
+        (
+            [&["attractors"], &grid[..], &["--output", "a.json", "--format", "table"]].concat(),
+            &["--format table", "a.json"],
+        ),
+        (vec!["bench", "--long", "-c", "never-stops"], &["--long", "--case"]),
+        (
+            vec!["bench", "compare", &binary, &binary, "--history", "h.jsonl"],
+            &["--history", "two binaries"],
+        ),
+        (
+            vec!["bench", "compare", "0.0.1", "0.0.2", "--slowdown", "0.5"],
+            &["--slowdown 0.5", "two binaries"],
+        ),
+        (
+            vec!["reproduce", "--out", "x", "--only", "table-1", "--size", "full"],
+            &["--size", "figure-7"],
+        ),
+        (vec!["bench", "--rounds", "2", "record"], &["record"]),
+    ];
+    for (words, wanted) in rows {
+        refused(&words, wanted);
+    }
+}
+
+/// The start's flags are those of all verbs; a grid of starts takes their place, which is said.
+#[test]
+fn starts_that_a_grid_replaces() {
+    let grid = ["attractors", "--grid", "1x1", "--window", "-1,1,-1,1", "--transient", "1"];
+    let output = run(&[&grid[..], &["--p", "0.1", "--v", "3"]].concat());
+    let said = text(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    assert!(said.contains("--p is not used") && said.contains("--v is not used"), "{said}");
+    assert_eq!(said.lines().count(), 2, "{said}");
+}
+
+/// Wrong types in a problem or a case: the line, the key, the value as typed, and what is accepted.
+#[test]
+fn wrong_types_in_files() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let problem = [
+        (
+            "[parameters]\nxi = \"thin\"",
+            ":2: xi = \"thin\" is not accepted: a number, 1e-8 <= xi <= 1e4",
+        ),
+        ("[parameters]\na = [0.3]", ":2: a = [0.3] is not accepted: a number, 0 <= a <= 1e9"),
+        ("[parameters]\nb = true", ":2: b = true is not accepted: a number, -1e9 <= b <= 1e9"),
+        ("[start]\n\np = 1979-05-27", ":3: p = 1979-05-27 is not accepted: a number, -1e9 to 1e9"),
+        ("[start]\ncycle = 1.5", ":2: cycle = 1.5 is not accepted: an integer, -2^53 to 2^53"),
+        (
+            "[start]\ncycle = 9007199254740993",
+            ":2: cycle = 9007199254740993 is not accepted: -2^53",
+        ),
+        ("[start]\nphase = 3", ":2: phase = 3 is not accepted: \"no-contact\", \"contact\""),
+        ("[start]\nphase = \"flight\"", ":2: phase = \"flight\" is not accepted: \"no-contact\""),
+        ("parameters = 3", ":1: parameters = 3 is not accepted: a table, [parameters]"),
+        ("start = \"rest\"", ":1: start = \"rest\" is not accepted: a table, [start]"),
+        ("start = { p = \"x\" }", ":1: p = \"x\" is not accepted: a number, -1e9 to 1e9"),
+        ("[parameters]\nxi = 0.00_0", ":2: xi = 0.00_0 is not accepted: 1e-8 <= xi <= 1e4"),
+    ];
+    let path = folder.path().join("problem.toml");
+    for (content, wanted) in problem {
+        std::fs::write(&path, content).expect("written");
+        let shown = path.display().to_string();
+        refused(&["simulate", "--periods", "1", "--problem", &shown], &[wanted]);
+    }
+}
+
+#[test]
+fn wrong_types_in_cases() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("cases/small-b.toml");
+    let whole = std::fs::read_to_string(file).expect("read");
+    let bound = "[[bounds]]\nengine = \"x\"\ntolerance = 1e-6\nquantity = \"state_error\"\nstatistic = \"max\"\nlimit = 1\nwhy = \"-\"\n";
+    let rows = [
+        ("name = \"small-b\"", "name = 3", "name = 3 is not accepted: a string"),
+        ("periods = 60", "periods = 60.5", "periods = 60.5 is not accepted: an integer, 0 to"),
+        (
+            "periods = 60",
+            "periods = \"all\"",
+            "periods = \"all\" is not accepted: an integer, 0 to",
+        ),
+        (
+            "periods = 60",
+            "until = \"end\"",
+            "until = \"end\" is not accepted: a number, at or after",
+        ),
+        (
+            "[case]",
+            "[case]\nmargin = \"wide\"",
+            "margin = \"wide\" is not accepted: a finite number",
+        ),
+        ("tolerance = 1e-6", "tolerance = \"fine\"", "a number or a list of numbers"),
+        ("limit = 1", "limit = \"low\"", "limit = \"low\" is not accepted: a number"),
+        ("engine = \"x\"", "engine = [1]", "engine = [1] is not accepted: a string"),
+        ("[[bounds]]", "[bounds]", "a list"),
+    ];
+    for (from, to, wanted) in rows {
+        let text = format!("{whole}{bound}");
+        assert!(text.contains(from), "{from}");
+        std::fs::write(folder.path().join("small-b.toml"), text.replacen(from, to, 1))
+            .expect("written");
+        let cases = folder.path().display().to_string();
+        refused(&["validate", "--cases", &cases], &["--cases", "small-b.toml:", wanted]);
+    }
+}
