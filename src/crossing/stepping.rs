@@ -112,7 +112,8 @@ pub(crate) fn safe_step(excess: f64, slope: f64, bend: f64) -> f64 {
         return f64::INFINITY;
     }
     let excess = excess.min(0.0);
-    let root = (slope * slope - 2.0 * bend * excess).sqrt();
+    // The squares of forces of 1e-200 are no numbers.
+    let root = slope.hypot((2.0 * bend).sqrt() * (-excess).sqrt());
     if slope > 0.0 { -2.0 * excess / (slope + root) } else { (root - slope) / bend }
 }
 
