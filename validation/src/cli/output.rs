@@ -29,9 +29,7 @@ impl Destination {
         let shown = path.display();
         let folder = folder_of(path);
         if path.as_os_str().is_empty() || path.is_dir() {
-            bail!(
-                "--output {shown} cannot be written: it is a folder; accepted is a file's path"
-            );
+            bail!("--output {shown} cannot be written: it is a folder; accepted is a file's path");
         }
         if !folder.is_dir() {
             let folder = folder.display();
