@@ -42,7 +42,10 @@ fn flags(command: &Command) -> BTreeSet<String> {
 /// The words of a text that are flags.
 fn named_flags(text: &str) -> BTreeSet<String> {
     let part = |c: char| !(c.is_ascii_alphanumeric() || c == '-');
-    let is_flag = |word: &&str| word.starts_with("--") && word.len() > 2;
+    let is_flag = |word: &&str| {
+        word.strip_prefix("--")
+            .is_some_and(|name| name.starts_with(|c: char| c.is_ascii_lowercase()))
+    };
     text.split(part).filter(is_flag).map(str::to_owned).collect()
 }
 
