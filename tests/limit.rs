@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a panic is a failed test")]
 
+use percuss::crossing::guarded::SLACK;
 use percuss::crossing::limit::{GRANTED, LAST_ROOT, MOST};
 use percuss::{Counters, Endless, Exit, Leg, Model, Parameters, Phase, Start};
 
@@ -50,9 +51,11 @@ fn what_dies_out_towards_a_pull_separates_when_nothing_else_is_left() {
             let s = (rate + fast * f) / (fast - slow);
             let expected = (s / pull).ln() / slow;
             assert!(matches!(leg.exit(), Exit::Switch(next) if next.phase() == Phase::NoContact));
-            // Within a stage of eight decay times what is left shrinks by e^8 against its rounding; the exponents'
-            // own rounding comes on top.
-            let room = f64::EPSILON * (16.0 * 8.0_f64.exp() + 64.0 * slow * expected) / slow;
+            // A stage of eight decay times hands on the guard's rounding room, SLACK of its largest term
+            // 2 xi y with y = fast f, while f shrinks by e^8. The exponents' own rounding comes on top.
+            let stages = (slow * expected / 8.0).ceil();
+            let handed_on = SLACK * 2.0 * xi * fast * 8.0_f64.exp() * stages;
+            let room = handed_on / slow + f64::EPSILON * 64.0 * expected;
             let off = (leg.duration() - expected).abs();
             assert!(off <= room, "{xi} {pull:e}: {} for {expected}", leg.duration());
             assert!(counters.evaluations <= DECIDED, "{xi} {pull:e}: {counters:?}");

@@ -4,7 +4,7 @@
 
 use percuss::{Model, Parameters, Start};
 use percuss_validation::case::{Case, defaults, embedded};
-use percuss_validation::engine::{Accuracy, CONTROL, Wrong, wrong};
+use percuss_validation::engine::{Accuracy, CONTROL, FAULTY_CONTROL, Wrong, faulty, wrong};
 use percuss_validation::power::{AS_EXACT, Finding, Gate, Standard, examine};
 use percuss_validation::suite::{Prepared, Suite, prepare};
 use percuss_validation::truth::Library;
@@ -98,3 +98,30 @@ fn the_control_passes_where_the_faults_do_not() {
 
 /// The exact solver's bounds, restarts included, with room for what steps and bisection lose.
 const AS_LARGE: Standard = Standard { engine: "exact", accuracy: Accuracy::Exact, unit: 1e-9 };
+
+/// Cases with every kind of event, one of which restarts.
+const INTEGRATED: [&str; 5] = [
+    "table1-from-rest",
+    "impact-into-progression",
+    "graze-overlap-1e-3",
+    "stiff-xi-0-3",
+    "fig7a-period-4",
+];
+
+#[test]
+fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
+    let library = Library::embedded().expect("the tables are read");
+    let cases = embedded().expect("the cases are read").into_iter();
+    let chosen = cases.filter(|case| INTEGRATED.contains(&case.name.as_str())).collect();
+    let cases = prepare(chosen, &library, Suite::Quick).expect("the cases are made ready");
+    for standard in Standard::of_faulty() {
+        for finding in findings(faulty(), &cases, standard) {
+            let caught = finding.gates.values().any(|trip| trip.failed > 0);
+            assert!(caught, "{}: {}", finding.engine, finding.fault);
+        }
+        let control = Wrong { engine: FAULTY_CONTROL, fault: "none" };
+        for finding in findings(&[control], &cases, standard) {
+            assert!(!finding.caught(), "{} {:?}", finding.engine, finding.gates);
+        }
+    }
+}

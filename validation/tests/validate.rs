@@ -58,7 +58,7 @@ fn a_row_beyond_the_budget_is_not_run() {
     let output = run(&arguments);
     let table = text(&output.stdout);
     assert_eq!(output.status.code(), Some(0), "{table}");
-    assert!(table.contains("not run: ") && table.contains("3 unavailable"), "{table}");
+    assert!(table.contains("not run: ") && table.contains("3 not-run"), "{table}");
 }
 
 /// `small-b` with more said about it.
@@ -83,22 +83,33 @@ fn a_bound_that_is_passed_is_exit_1() {
     );
 }
 
+/// A stated shortcoming of dopri5 on a bound that it fails.
+fn with_shortcoming(quantity: &str, at_least: &str, at_most: &str) -> (Option<i32>, String) {
+    validate_with(&format!(
+        "[[shortcomings]]\nengine = \"ode_solvers-dopri5\"\ntolerance = 1e-9\nquantity = \"{quantity}\"\n\
+         statistic = \"max\"\nat_least = {at_least}\nat_most = {at_most}\nwhy = \"test\"\n\
+         [[bounds]]\nengine = \"ode_solvers-dopri5\"\ntolerance = 1e-9\nquantity = \"state_error\"\n\
+         statistic = \"max\"\nlimit = 1e-12\nwhy = \"test\"\n"
+    ))
+}
+
 #[test]
-fn a_shortcoming_that_shows_is_expected_and_one_that_does_not_is_out_of_date() {
-    let shortcoming = |at_least: &str| {
-        format!(
-            "[[shortcomings]]\nengine = \"ode_solvers-dopri5\"\ntolerance = 1e-9\nquantity = \"state_error\"\n\
-             statistic = \"max\"\nat_least = {at_least}\nwhy = \"test\"\n\
-             [[bounds]]\nengine = \"ode_solvers-dopri5\"\ntolerance = 1e-9\nquantity = \"state_error\"\n\
-             statistic = \"max\"\nlimit = 1e-12\nwhy = \"test\"\n"
-        )
-    };
-    let (code, table) = validate_with(&shortcoming("1e-12"));
+fn a_shortcoming_is_known_between_its_floor_and_its_ceiling_alone() {
+    let (code, table) = with_shortcoming("state_error", "1e-12", "1e-3");
     assert_eq!(code, Some(0), "{table}");
-    assert!(table.contains("1 of them as known shortcomings"), "{table}");
-    let (code, table) = validate_with(&shortcoming("1.0"));
+    assert!(table.contains(" 1 known, 0 fail"), "{table}");
+    for (at_least, at_most) in [("1e-2", "1.0"), ("1e-13", "1.1e-12")] {
+        let (code, table) = with_shortcoming("state_error", at_least, at_most);
+        assert_eq!(code, Some(1), "{table}");
+        assert!(table.contains("the data are out of date"), "{table}");
+    }
+}
+
+#[test]
+fn a_shortcoming_excuses_no_other_quantity() {
+    let (code, table) = with_shortcoming("event_time_error", "1e-15", "1.0");
     assert_eq!(code, Some(1), "{table}");
-    assert!(table.contains("the data are out of date"), "{table}");
+    assert!(table.contains("state error") && table.contains(" 1 fail"), "{table}");
 }
 
 #[test]
@@ -111,9 +122,11 @@ fn a_report_is_no_worse_than_itself_and_worse_than_a_better_one() {
     let report = folder.path().join("report.json");
     let against = |path: &Path| {
         let output = run(&[&chosen[..], &["--baseline", &path.display().to_string()]].concat());
-        (output.status.code(), text(&output.stderr))
+        (output.status.code(), text(&output.stdout), text(&output.stderr))
     };
-    assert_eq!(against(&report), (Some(0), String::new()));
+    let (code, said, _) = against(&report);
+    assert_eq!(code, Some(0), "{said}");
+    assert!(!said.contains("baseline"), "{said}");
 
     let mut better: serde_json::Value =
         serde_json::from_str(&fs::read_to_string(&report).expect("read")).expect("JSON");
@@ -124,8 +137,103 @@ fn a_report_is_no_worse_than_itself_and_worse_than_a_better_one() {
     }
     let path = folder.path().join("better.json");
     fs::write(&path, better.to_string()).expect("written");
-    let (code, said) = against(&path);
+    let (code, said, _) = against(&path);
     assert_eq!(code, Some(1), "{said}");
     assert!(said.contains("worse than the baseline: small-b ode_solvers-dopri5"), "{said}");
-    assert!(!said.contains("small-b exact"), "{said}");
+    assert!(!said.contains("baseline: small-b exact"), "{said}");
+}
+
+/// A report of two rows of one case, and what a baseline with changed rows makes of it.
+fn against_changed(
+    change: impl Fn(&mut Vec<serde_json::Value>),
+    more: &[&str],
+) -> (Option<i32>, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let chosen = ["validate", "-c", "^small-b$", "-e", "exact|dopri5$"];
+    run(&[&chosen[..], &["--out", &out]].concat());
+    let report = fs::read_to_string(folder.path().join("report.json")).expect("read");
+    let mut earlier: serde_json::Value = serde_json::from_str(&report).expect("JSON");
+    change(earlier["results"].as_array_mut().expect("rows"));
+    let path = folder.path().join("earlier.json").display().to_string();
+    fs::write(&path, earlier.to_string()).expect("written");
+    let output = run(&[&chosen[..], &["--baseline", &path], more].concat());
+    (output.status.code(), text(&output.stdout) + &text(&output.stderr))
+}
+
+#[test]
+fn an_error_over_twice_as_large_and_one_more_miss_are_worse() {
+    let scaled = |factor: f64| {
+        move |rows: &mut Vec<serde_json::Value>| {
+            for row in rows.iter_mut().filter(|row| row["engine"] != "exact") {
+                let error = row["state_error"]["max"].as_f64().expect("a number");
+                row["state_error"]["max"] = (error / factor).into();
+            }
+        }
+    };
+    assert_eq!(against_changed(scaled(1.9), &[]).0, Some(0));
+    assert_eq!(against_changed(scaled(2.1), &[]).0, Some(1));
+    let failed_before = |rows: &mut Vec<serde_json::Value>| rows[0]["verdict"] = "error".into();
+    assert_eq!(against_changed(failed_before, &[]).0, Some(0));
+}
+
+#[test]
+fn a_row_that_is_gone_is_named_unless_that_is_allowed() {
+    let more = |rows: &mut Vec<serde_json::Value>| {
+        let mut row = rows[1].clone();
+        row["engine"] = "ode_solvers-gone-dopri5".into();
+        rows.push(row);
+    };
+    let (code, said) = against_changed(more, &[]);
+    assert_eq!(code, Some(1), "{said}");
+    assert!(said.contains("ode_solvers-gone-dopri5") && said.contains("--allow-missing"), "{said}");
+    assert_eq!(against_changed(more, &["--allow-missing"]).0, Some(0));
+    // Another case was not asked for.
+    let other = |rows: &mut Vec<serde_json::Value>| {
+        let mut row = rows[1].clone();
+        row["case"] = "no-gap".into();
+        rows.push(row);
+    };
+    assert_eq!(against_changed(other, &[]).0, Some(0));
+    let (code, said) = against_changed(|rows| rows.clear(), &[]);
+    assert_eq!(code, Some(2), "{said}");
+    assert!(said.contains("no row in common"), "{said}");
+}
+
+/// A run without a result is an error, and an error is exit 1.
+#[test]
+fn a_row_without_a_result_is_exit_1() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let case = "[case]\nname = \"stiff\"\nregime = \"test\"\nwhy = \"stiffer than any explicit method\"\n\
+                [parameters]\nxi = 1e-8\n[start]\nq = 0.5\n[horizon]\nperiods = 1\n";
+    fs::write(folder.path().join("stiff.toml"), case).expect("written");
+    let folder = folder.path().display().to_string();
+    let output = run(&["validate", "--cases", &folder, "-e", "^ode_solvers-dopri5$"]);
+    let table = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(1), "{table}");
+    assert!(table.contains("3 error") && table.contains("error: stiff"), "{table}");
+}
+
+#[test]
+fn every_line_of_the_summary_fits_a_hundred_columns() {
+    let output = run(&["validate", "-c", "^(small-b|no-gap|resonance|stiff-xi-0-3)$"]);
+    let said = text(&output.stdout);
+    let widest = said.lines().map(|line| line.chars().count()).max();
+    assert!(widest.is_some_and(|widest| widest <= 100), "{said}");
+    assert!(said.contains("found/checked/all") && !said.contains("state err"), "{said}");
+    let few = stdout(&["validate", "-c", "^small-b$", "-e", "exact"]);
+    assert!(few.contains("state err"), "{few}");
+}
+
+#[test]
+fn the_summary_has_other_formats() {
+    let chosen = ["validate", "-c", "^small-b$", "-e", "exact|dopri5$", "--format"];
+    let markdown = stdout(&[&chosen[..], &["markdown"]].concat());
+    assert!(markdown.starts_with("| # | engine |"), "{markdown}");
+    let csv = stdout(&[&chosen[..], &["csv"]].concat());
+    assert_eq!(csv.lines().count(), 3, "{csv}");
+    let json = stdout(&[&chosen[..], &["json"]].concat());
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    assert_eq!(json["ranking"][0]["engine"], "exact");
+    assert_eq!(json["summary"]["pass"], 4);
 }
