@@ -5,7 +5,6 @@
 
 #![allow(clippy::unwrap_used, reason = "a panic is a failed test")]
 
-#[allow(dead_code, reason = "each test uses its own part")]
 #[path = "support/random.rs"]
 mod random;
 

@@ -192,7 +192,7 @@ fn what_cannot_be_compared_is_refused() {
 
 #[test]
 fn what_matches_nothing_is_refused() {
-    refused(&["bench", "-e", "sundials"], &["--engine", "sundials", "diffsol-bdf"]);
+    refused(&["bench", "-e", "sundials"], &["--engine", "sundials", "percuss engines"]);
     refused(&["bench", "-c", "no-such-case"], &["--case", "no-such-case"]);
     refused(&["bench", "-e", "("], &["--engine", "(", "regular expression"]);
     for rounds in ["0", "-1", "1.5", "1001", "x"] {

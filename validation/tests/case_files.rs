@@ -22,7 +22,7 @@ fn changed(folder: &Path, change: impl Fn(String) -> String) -> String {
 #[test]
 fn fields_that_are_wrong() {
     let folder = tempfile::tempdir().expect("a folder");
-    let wrong: [(&str, &str, &[&str]); 12] = [
+    let wrong: [(&str, &str, &[&str]); 13] = [
         ("xi = ", "xi = -", &["small-b.toml:", "xi =", "1e-8 <= xi"]),
         ("periods = ", "periods = -", &["small-b.toml:", "periods = -60"]),
         ("periods = 60", "periods = 1000000001", &["periods = 1000000001"]),
@@ -41,7 +41,12 @@ fn fields_that_are_wrong() {
         (
             "[horizon]",
             "[[shortcomings]]\nengine = \"x\"\nwhy = \"-\"\n[horizon]",
-            &["shortcoming", "fails = true"],
+            &["shortcomings", "quantity"],
+        ),
+        (
+            "[horizon]",
+            "[[shortcomings]]\nengine = \"x\"\nquantity = \"state_error\"\nat_least = 2\nat_most = 1\nwhy = \"-\"\n[horizon]",
+            &["at_least = 2.0 and at_most = 1.0 are not accepted", "a floor and"],
         ),
     ];
     for (from, to, wanted) in wrong {

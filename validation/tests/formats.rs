@@ -52,7 +52,9 @@ fn simulate_counts_touches_that_rounding_does_not_decide() {
     }
     // A little lower it passes below.
     let line = touch.replace("-0.5", "-0.5000001");
-    assert_eq!(json(&stdout(&line.split(' ').collect::<Vec<_>>())).get("undecidable"), None);
+    let output = support::run(&line.split(' ').collect::<Vec<_>>());
+    assert_eq!(json(&support::text(&output.stdout)).get("undecidable"), None);
+    assert!(!support::text(&output.stderr).contains("touch"));
 }
 
 #[test]
@@ -167,6 +169,12 @@ fn attractors() {
         let all = shares + value["unresolved"].as_f64().expect("a share");
         assert!((all - 1.0).abs() < 1e-12, "{all}");
     }
+}
+
+#[test]
+fn ranking() {
+    let text = stdout(&["validate", "-c", "^no-gap$", "-e", "exact|dopri5$", "--format", "json"]);
+    assert_valid("ranking.schema.json", &json(&text));
 }
 
 #[test]

@@ -100,12 +100,13 @@ fn the_control_passes_where_the_faults_do_not() {
 const AS_LARGE: Standard = Standard { engine: "exact", accuracy: Accuracy::Exact, unit: 1e-9 };
 
 /// Cases with every kind of event, one of which restarts.
-const INTEGRATED: [&str; 5] = [
-    "table1-from-rest",
-    "impact-into-progression",
+const INTEGRATED: [&str; 6] = [
+    "chaos-from-rest",
+    "critical-xi-1",
+    "fast-forcing",
     "graze-overlap-1e-3",
-    "stiff-xi-0-3",
-    "fig7a-period-4",
+    "graze-overlap-1e-6",
+    "impact-into-progression",
 ];
 
 #[test]

@@ -32,11 +32,11 @@ pub(super) fn is_quiet() -> bool {
 /// The value of `--color` before the flags are parsed: help and objections of the parser follow it too.
 pub(super) fn stated_color(arguments: &[OsString]) -> ColorChoice {
     let texts: Vec<_> = arguments.iter().map(|it| it.to_string_lossy()).collect();
-    let values = texts.iter().enumerate().filter_map(|(i, text)| match text.as_ref() {
+    let mut values = texts.iter().enumerate().filter_map(|(i, text)| match text.as_ref() {
         "--color" => texts.get(i + 1).map(AsRef::as_ref),
         text => text.strip_prefix("--color="),
     });
-    values.last().and_then(|value| value.parse().ok()).unwrap_or(ColorChoice::Auto)
+    values.next_back().and_then(|value| value.parse().ok()).unwrap_or(ColorChoice::Auto)
 }
 
 /// One line on stderr about an error, or about why the exit code is not 0.
