@@ -1,9 +1,9 @@
 //! Measures the limits of the same-attractor test and prints `attractors.toml`.
 //!
-//! `cargo run --release --example calibrate > attractors.toml` in this package.
+//! `cargo run --release -p percuss-validation --example calibrate > validation/attractors.toml`
 
 use percuss_validation::case::embedded;
-use percuss_validation::score::attractor::{Plan, calibrate};
+use percuss_validation::score::attractor::{NULL_RUNS, Plan, calibrate};
 
 /// Chaotic cases with one attractor each that every start near theirs reaches.
 const CASES: [&str; 3] = ["chaos-from-rest", "fig7a-chaos", "fig7d-chaos"];
@@ -11,14 +11,20 @@ const PLAN: Plan = Plan { transient: 200, periods: 2000, reference_periods: 20_0
 
 fn main() -> anyhow::Result<()> {
     println!(
-        "# Limits of the same-attractor test: measured, see src/score/attractor/limits.rs for how."
+        "# Limits of the same-attractor test: measured, see src/score/attractor/calibration.rs for how.\n\
+         # Made by `cargo run --release -p percuss-validation --example calibrate`.\n\
+         # Level: one more run of the exact solver exceeds any limit of its case with a probability of\n\
+         # 1 in {}, because no distance of {NULL_RUNS} runs a case exceeds its limit.",
+        NULL_RUNS + 1
     );
-    println!("# Made by `cargo run --release --example calibrate`.");
     for case in embedded()?.into_iter().filter(|case| CASES.contains(&case.name.as_str())) {
-        let calibrated = calibrate(&case, PLAN)?;
+        let found = calibrate(&case, PLAN, NULL_RUNS)?;
         println!(
-            "\n[[attractors]]\n{}",
-            toml::to_string(&calibrated)?
+            "\n# The largest of {NULL_RUNS} runs: {}, {:.2} standard deviations above its mean.\n\
+             [[attractors]]\n{}",
+            found.farthest,
+            found.z,
+            toml::to_string(&found.calibrated)?
                 .replace("[plan]", "[attractors.plan]")
                 .replace("[limits]", "[attractors.limits]")
         );

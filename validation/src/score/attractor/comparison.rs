@@ -1,7 +1,8 @@
 //! An engine's section held against the reference and its limits.
 
 use super::distance::{Distances, distances};
-use super::limits::{Calibrated, reference, section};
+use super::limits::Calibrated;
+use super::runs::{reference, section};
 use super::section::Section;
 use crate::case::Case;
 use crate::engine::{Accuracy, Engine, Failure, Limits};
@@ -57,11 +58,21 @@ impl AttractorTest {
         limits: &Limits,
     ) -> Result<Comparison, Failure> {
         let plan = &self.calibrated.plan;
-        let run = section(engine, case.parameters, case.start, plan, accuracy, limits)?;
+        let run = section(engine, case, plan, accuracy, limits)?;
         let found: Distances = distances(&run, &self.reference);
-        let limit = |name: &str| self.calibrated.limits.get(name).copied().unwrap_or(f64::NAN);
-        let distances = found.into_iter().map(|(name, value)| (name, value, limit(name)));
+        let distances = found.into_iter().map(|(name, value)| (name, value, self.limit(name)));
         let points = run.points.iter().map(|[p, y, _]| [*p, *y]).collect();
         Ok(Comparison { distances: distances.collect(), points })
+    }
+
+    /// The limit of a distance; NaN, which nothing is within, where the file has none.
+    fn limit(&self, name: &str) -> f64 {
+        self.calibrated.limits.get(name).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The distances that are not within their limits.
+    pub(super) fn beyond(&self, found: &Distances) -> Vec<&'static str> {
+        let within = |(name, value): &(&&'static str, &f64)| **value <= self.limit(name);
+        found.iter().filter(|it| !within(it)).map(|(name, _)| *name).collect()
     }
 }

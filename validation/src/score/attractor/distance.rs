@@ -1,14 +1,15 @@
-//! Distances between two sections.
+//! Distances between two sections, and of a section from the exact map.
 
-use super::section::Section;
+use super::section::{SERIES, Section};
 use crate::score::SCORED_ERROR;
+use crate::score::statistics::Spread;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The distances by name.
 pub type Distances = BTreeMap<&'static str, f64>;
 
-/// Names of what is measured, by what its unit is.
-pub const STATISTICS: [&str; 17] = [
+/// Names of what is measured: distances from the reference section, then from the exact map.
+pub const STATISTICS: [&str; 19] = [
     "wasserstein_p",
     "wasserstein_y",
     "wasserstein_q",
@@ -26,18 +27,30 @@ pub const STATISTICS: [&str; 17] = [
     "phase_words",
     "lyapunov",
     "drift",
+    MAP_ERROR_MEDIAN,
+    MAP_ERROR_SHARE,
 ];
 
-/// Number of series that both one-dimensional distances are taken of.
-const SERIES: usize = 7;
+/// The median of a section's one-period errors.
+const MAP_ERROR_MEDIAN: &str = "map_error_median";
+/// The share of periods whose error exceeds [`SCORED_ERROR`].
+const MAP_ERROR_SHARE: &str = "map_error_share";
+
+/// Whether a distance is one from the reference section, which sampling alone makes larger than zero;
+/// the others are distances from the exact map, which rounding alone makes so.
+#[must_use]
+pub fn is_sampled(name: &str) -> bool {
+    ![MAP_ERROR_MEDIAN, MAP_ERROR_SHARE].contains(&name)
+}
 
 /// All distances: Wasserstein and Kolmogorov-Smirnov of p, y and q and of the sums and differences
 /// of successive p and y (their delay pairs, along the diagonals), total variation of the phase
-/// words, differences of exponent and drift per period.
+/// words, differences of exponent and drift per period; median and share of large values among the
+/// errors of single periods.
 #[must_use]
 pub fn distances(section: &Section, reference: &Section) -> Distances {
     let mut result = Distances::new();
-    let pairs = series(section).into_iter().zip(series(reference));
+    let pairs = section.sorted.iter().zip(&reference.sorted);
     for (k, (ours, theirs)) in pairs.enumerate() {
         let (wasserstein, ks) = one_dimensional(ours, theirs);
         result.insert(STATISTICS[k], wasserstein);
@@ -46,24 +59,17 @@ pub fn distances(section: &Section, reference: &Section) -> Distances {
     result.insert("phase_words", total_variation(&section.words, &reference.words));
     result.insert("lyapunov", (section.lyapunov - reference.lyapunov).abs());
     result.insert("drift", (section.drift - reference.drift).abs());
+    let errors = &section.map_errors;
+    let large = errors.iter().filter(|error| **error > SCORED_ERROR).count();
+    result.insert(MAP_ERROR_MEDIAN, Spread::of(errors.clone()).median);
+    result.insert(MAP_ERROR_SHARE, large as f64 / errors.len() as f64);
     result
 }
 
-fn series(section: &Section) -> [Vec<f64>; SERIES] {
-    let points = &section.points;
-    let of = |i: usize| points.iter().map(|point| point[i]).collect();
-    let pairs = |i: usize, sign: f64| {
-        points.windows(2).map(|pair| pair[1][i] + sign * pair[0][i]).collect()
-    };
-    [of(0), of(1), of(2), pairs(0, 1.0), pairs(0, -1.0), pairs(1, 1.0), pairs(1, -1.0)]
-}
-
-/// Wasserstein-1 and Kolmogorov-Smirnov distance of two samples: the integral and the largest value
-/// of the difference of their distribution functions.
-fn one_dimensional(mut a: Vec<f64>, mut b: Vec<f64>) -> (f64, f64) {
-    a.sort_by(f64::total_cmp);
-    b.sort_by(f64::total_cmp);
-    (area(&a, &b), exceeds(&a, &b).max(exceeds(&b, &a)))
+/// Wasserstein-1 and Kolmogorov-Smirnov distance of two samples in rising order: the integral and the
+/// largest value of the difference of their distribution functions.
+fn one_dimensional(a: &[f64], b: &[f64]) -> (f64, f64) {
+    (area(a, b), exceeds(a, b).max(exceeds(b, a)))
 }
 
 fn area(a: &[f64], b: &[f64]) -> f64 {
@@ -81,8 +87,8 @@ fn area(a: &[f64], b: &[f64]) -> f64 {
             let apart = (i as f64 / a.len() as f64 - j as f64 / b.len() as f64).abs();
             area += apart * (here - last);
         }
-        i += a[i..].partition_point(|x| *x <= here);
-        j += b[j..].partition_point(|y| *y <= here);
+        i += a[i..].iter().take_while(|x| **x <= here).count();
+        j += b[j..].iter().take_while(|y| **y <= here).count();
         last = here;
     }
     area
@@ -94,9 +100,9 @@ const EQUAL: f64 = SCORED_ERROR;
 
 /// The largest amount by which the distribution function of `a` exceeds that of `b` a little further on.
 fn exceeds(a: &[f64], b: &[f64]) -> f64 {
-    let mut largest = 0.0_f64;
+    let (mut largest, mut below) = (0.0_f64, 0);
     for (k, x) in a.iter().enumerate() {
-        let below = b.partition_point(|y| *y <= x + EQUAL);
+        below += b[below..].iter().take_while(|y| **y <= x + EQUAL).count();
         largest = largest.max((k + 1) as f64 / a.len() as f64 - below as f64 / b.len() as f64);
     }
     largest
@@ -115,8 +121,8 @@ mod tests {
     #[test]
     fn a_shift_is_its_own_wasserstein_distance() {
         let a: Vec<f64> = (0..100).map(f64::from).collect();
-        let b = a.iter().map(|x| x + 2.5).collect();
-        let (wasserstein, ks) = one_dimensional(a, b);
+        let b: Vec<f64> = a.iter().map(|x| x + 2.5).collect();
+        let (wasserstein, ks) = one_dimensional(&a, &b);
         approx::assert_relative_eq!(wasserstein, 2.5, max_relative = 1e-12);
         approx::assert_relative_eq!(ks, 0.03, max_relative = 1e-12);
     }
@@ -125,7 +131,7 @@ mod tests {
     fn samples_of_different_size_with_the_same_distribution_are_not_apart() {
         let a = vec![1.0, 2.0, 3.0];
         let b = vec![1.0, 1.0, 2.0, 2.0, 3.0, 3.0];
-        let (wasserstein, ks) = one_dimensional(a, b);
+        let (wasserstein, ks) = one_dimensional(&a, &b);
         assert!(wasserstein < 1e-15 && ks < 1e-15);
     }
 
@@ -133,7 +139,7 @@ mod tests {
     fn an_atom_that_moves_by_rounding_is_the_same_atom() {
         let a = vec![0.4; 100];
         let b: Vec<f64> = (0..100).map(|k| 0.4 + 1e-12 * f64::from(k)).collect();
-        let (wasserstein, ks) = one_dimensional(a, b);
+        let (wasserstein, ks) = one_dimensional(&a, &b);
         assert!(wasserstein < 1e-10 && ks == 0.0);
     }
 

@@ -4,13 +4,26 @@
 //! often, and how fast it drifts can. Distances are those between an engine's section and a longer
 //! reference section of the exact solver; their limits come from reference runs against that same
 //! reference, in batches of the engine's length, because successive strobes are not independent.
+//!
+//! Over one period errors hardly grow, chaos or not. So each strobe is also compared with the exact
+//! map's image of the engine's own strobe before it: this has no sampling noise, and notices a model
+//! that is slightly different where two thousand periods of statistics cannot.
+//! `docs/ATTRACTOR_TEST.md` has the measured rate of false alarms and the power.
 
+mod binomial;
+mod calibration;
 mod comparison;
 mod distance;
 mod limits;
+mod power;
+mod runs;
 mod section;
 
+pub use binomial::interval;
+pub use calibration::{Calibration, NULL_RUNS, calibrate};
 pub use comparison::{AttractorTest, Comparison};
-pub use distance::{Distances, STATISTICS, distances};
-pub use limits::{Calibrated, Plan, calibrate, calibrated};
+pub use distance::{Distances, STATISTICS, distances, is_sampled};
+pub use limits::{Calibrated, Plan, calibrated};
+pub use power::{Alarms, Changed};
+pub use runs::MOST_RUNS;
 pub use section::{Section, run_of};

@@ -1,9 +1,10 @@
-//! What a run visits: its stroboscopic section, phase words, drift and exponent.
+//! What a run visits: its stroboscopic section, phase words, drift and exponent; and how far its
+//! periods are from the exact map's.
 
 use crate::case::{Given, Problem};
 use crate::engine::{Event, Failure, Grid, Outcome, Task};
 use percuss::dynamics::linear::apply;
-use percuss::dynamics::strobe::StrobeMap;
+use percuss::dynamics::strobe::{Passage, StrobeMap};
 use percuss::{Parameters, Phase, Start};
 use std::collections::BTreeMap;
 
@@ -18,6 +19,11 @@ pub struct Section {
     pub drift: f64,
     /// Mean growth of a small error per forcing period, in the exact map's derivative along these points.
     pub lyapunov: f64,
+    /// How far each strobe is from the exact map's image of the strobe before it: the largest of the
+    /// differences in p, y and q, each divided by 1 + |value|. Infinite where that has no image.
+    pub map_errors: Vec<f64>,
+    /// The series whose distributions are compared, each in rising order.
+    pub(super) sorted: [Vec<f64>; SERIES],
 }
 
 /// The task of a long run: a state at every strobe, nothing in between.
@@ -31,11 +37,22 @@ pub fn run_of(parameters: Parameters, start: Start, periods: u32) -> Option<Task
 }
 
 impl Section {
-    /// Of a run of [`run_of`], without its first `transient` periods.
+    /// The section of a run of [`run_of`], without its first `transient` periods.
     ///
     /// # Errors
     /// A run that lacks samples or holds a number that is not finite.
     pub fn of(task: &Task, outcome: &Outcome, transient: u32) -> Result<Self, Failure> {
+        Self::judged(task, outcome, transient, &task.problem)
+    }
+
+    /// Like [`Section::of`], with the exact map of another problem: the one that the run should have
+    /// solved.
+    pub(super) fn judged(
+        task: &Task,
+        outcome: &Outcome,
+        transient: u32,
+        truth: &Problem,
+    ) -> Result<Self, Failure> {
         let states = outcome.samples.get(transient as usize..).unwrap_or_default();
         let finite = states.iter().flatten().all(|value| value.is_finite());
         if states.len() + transient as usize != task.grid.count || states.len() < 3 || !finite {
@@ -46,9 +63,25 @@ impl Section {
         let drift = (states[states.len() - 1][3] - states[0][3]) / periods;
         let period = task.problem.model.period();
         let words = words(&outcome.events, period, transient, points.len() - 1);
-        let lyapunov = lyapunov(task, &points);
-        Ok(Self { points, words, drift, lyapunov })
+        let (lyapunov, map_errors) = mapped(truth, &points);
+        let sorted = series(&points).map(|mut values| {
+            values.sort_by(f64::total_cmp);
+            values
+        });
+        Ok(Self { points, words, drift, lyapunov, map_errors, sorted })
     }
+}
+
+/// Number of series that both one-dimensional distances are taken of.
+pub(super) const SERIES: usize = 7;
+
+/// p, y and q at the strobes, and sums and differences of successive p and y.
+fn series(points: &[[f64; 3]]) -> [Vec<f64>; SERIES] {
+    let of = |i: usize| points.iter().map(|point| point[i]).collect();
+    let pairs = |i: usize, sign: f64| {
+        points.windows(2).map(|pair| pair[1][i] + sign * pair[0][i]).collect()
+    };
+    [of(0), of(1), of(2), pairs(0, 1.0), pairs(0, -1.0), pairs(1, 1.0), pairs(1, -1.0)]
 }
 
 /// Shares of the sequences of phases that begin within one period.
@@ -71,14 +104,22 @@ fn words(events: &[Event], period: f64, transient: u32, periods: usize) -> BTree
     shares
 }
 
-/// The largest exponent per period: the exact strobe map's derivative, point by point along the section.
-fn lyapunov(task: &Task, points: &[[f64; 3]]) -> f64 {
+/// The largest exponent per period, by the exact strobe map's derivative point by point along the
+/// section, and how far each point is from the map's image of the one before.
+fn mapped(truth: &Problem, points: &[[f64; 3]]) -> (f64, Vec<f64>) {
     let mut direction = [0.6, 0.48, 0.64];
     let (mut sum, mut counted) = (0.0, 0_u32);
-    let map = StrobeMap::new(task.problem.model, task.problem.entry.instant);
-    for &[p, y, q] in points {
-        let Ok(entry) = map.entry([p.min(q + task.parameters.g), y, q]) else { continue };
-        let image = apply(&map.passage(&entry, 1).jacobian(), &direction);
+    let mut errors = Vec::with_capacity(points.len());
+    let map = StrobeMap::new(truth.model, truth.entry.instant);
+    let g = truth.model.parameters().g;
+    for (k, &[p, y, q]) in points.iter().enumerate() {
+        let passage = map.entry([p.min(q + g), y, q]).map(|entry| map.passage(&entry, 1));
+        if let Some(next) = points.get(k + 1) {
+            let image = passage.as_ref().map(Passage::point);
+            errors.push(image.map_or(f64::INFINITY, |image| apart(next, &image)));
+        }
+        let Ok(passage) = passage else { continue };
+        let image = apply(&passage.jacobian(), &direction);
         let size = image.iter().map(|x| x * x).sum::<f64>().sqrt();
         if size > 0.0 && size.is_finite() {
             sum += size.ln();
@@ -86,5 +127,11 @@ fn lyapunov(task: &Task, points: &[[f64; 3]]) -> f64 {
             direction = image.map(|x| x / size);
         }
     }
-    sum / f64::from(counted)
+    (sum / f64::from(counted), errors)
+}
+
+/// The largest difference of two points' co-ordinates, each divided by 1 + |value|.
+fn apart(found: &[f64; 3], image: &[f64; 3]) -> f64 {
+    let differences = found.iter().zip(image).map(|(a, b)| (a - b).abs() / (1.0 + b.abs()));
+    differences.fold(0.0, f64::max)
 }

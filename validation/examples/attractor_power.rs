@@ -1,0 +1,182 @@
+//! Measures what the same-attractor test notices, and puts the figures and their picture into its page.
+//!
+//! `cargo run --release -p percuss-validation --example attractor_power -- docs/ATTRACTOR_TEST.md`
+//!
+//! Without a page it prints the blocks. The picture lies beside the page, as `attractor-power.png`.
+
+use anyhow::{Context, Result};
+use percuss_validation::case::{Case, embedded};
+use percuss_validation::number::brief;
+use percuss_validation::picture::{Axis, Curve, Curves, Marker, Scale, basin_colours, png};
+use percuss_validation::score::attractor::{
+    Alarms, AttractorTest, Calibrated, Changed, calibrated, interval,
+};
+use std::fmt::Write;
+use std::path::Path;
+
+/// Runs a case from which the rate of false alarms is taken: none of the calibration.
+const FRESH_RUNS: u32 = 2_000;
+/// Runs from which one share of the power curve is taken.
+const CHANGED_RUNS: u32 = 20;
+/// Changes, relative to the parameter; each with both signs.
+const SIZES: [f64; 8] = [1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2, 1e-1];
+
+const PICTURE: &str = "attractor-power.png";
+
+fn main() -> Result<()> {
+    let page = std::env::args().nth(1);
+    let cases = ready()?;
+    let power = power(&cases)?;
+    let blocks = [("false alarms", false_alarms(&cases)?), ("power", power_table(&power))];
+    let Some(page) = page else {
+        blocks.iter().for_each(|(name, text)| println!("{name}\n\n{text}"));
+        return Ok(());
+    };
+    let beside = Path::new(&page).with_file_name(PICTURE);
+    std::fs::write(&beside, png(&picture(&power))?)?;
+    let text = std::fs::read_to_string(&page).with_context(|| page.clone())?;
+    let filled = blocks.iter().try_fold(text, |text, (name, block)| fill(&text, name, block));
+    Ok(std::fs::write(&page, filled?)?)
+}
+
+/// Puts a block between its marks.
+fn fill(text: &str, name: &str, block: &str) -> Result<String> {
+    let (begin, end) = (format!("<!-- begin: {name} -->\n"), format!("<!-- end: {name} -->"));
+    let (before, rest) = text.split_once(&begin).with_context(|| format!("no block of {name}"))?;
+    let (_, after) = rest.split_once(&end).with_context(|| format!("{name} does not end"))?;
+    Ok(format!("{before}{begin}{block}{end}{after}"))
+}
+
+/// Every case that has limits, with its test.
+fn ready() -> Result<Vec<(Case, AttractorTest)>> {
+    let cases = embedded()?;
+    let of = |it: Calibrated| {
+        let case = cases.iter().find(|case| case.name == it.case).context("no such case")?;
+        Ok((case.clone(), AttractorTest::new(case, it)?))
+    };
+    calibrated()?.into_iter().map(of).collect()
+}
+
+fn percent(share: f64) -> String {
+    format!("{} %", brief(100.0 * share))
+}
+
+fn false_alarms(cases: &[(Case, AttractorTest)]) -> Result<String> {
+    let mut table = String::from(
+        "| case | fresh runs | false alarms | rate, with its exact 95 % interval | distances that alarmed |\n\
+         |---|---|---|---|---|\n",
+    );
+    for (case, test) in cases {
+        let found = test.false_alarms(case, FRESH_RUNS)?;
+        let [low, high] = interval(found.raised, found.runs).map(percent);
+        let names: Vec<_> = found.by.iter().map(|(name, n)| format!("`{name}` {n}")).collect();
+        let rate = percent(f64::from(found.raised) / f64::from(found.runs));
+        let (name, names) = (&case.name, names.join(", "));
+        writeln!(
+            table,
+            "| `{name}` | {} | {} | {rate} ({low} to {high}) | {names} |",
+            found.runs, found.raised
+        )?;
+    }
+    Ok(table)
+}
+
+/// The shares of one case, parameter and sign, along [`SIZES`].
+struct Ladder {
+    case: String,
+    changed: Changed,
+    sign: f64,
+    steps: Vec<Alarms>,
+}
+
+fn power(cases: &[(Case, AttractorTest)]) -> Result<Vec<Ladder>> {
+    let mut ladders = Vec::new();
+    for (case, test) in cases {
+        for (changed, sign) in Changed::ALL.into_iter().flat_map(|it| [(it, 1.0), (it, -1.0)]) {
+            let step =
+                |size: &f64| test.alarms_of_changed(case, changed, sign * size, CHANGED_RUNS);
+            let steps = SIZES.iter().map(step).collect::<Result<_, _>>()?;
+            ladders.push(Ladder { case: case.name.clone(), changed, sign, steps });
+        }
+    }
+    Ok(ladders)
+}
+
+fn power_table(power: &[Ladder]) -> String {
+    let mut table = String::from("| case | change |");
+    for size in SIZES {
+        write!(table, " {} |", percent(size)).ok();
+    }
+    table += " notices first |\n|---|---|";
+    table += &"---|".repeat(SIZES.len() + 1);
+    table.push('\n');
+    for ladder in power {
+        let sign = if ladder.sign > 0.0 { '+' } else { '-' };
+        write!(table, "| `{}` | {} {sign} |", ladder.case, ladder.changed.name()).ok();
+        for step in &ladder.steps {
+            write!(
+                table,
+                " {}/{} |",
+                hundredths(step.raised, step),
+                hundredths(step.sampled, step)
+            )
+            .ok();
+        }
+        writeln!(table, " {} |", first(ladder)).ok();
+    }
+    table
+}
+
+fn hundredths(count: u32, of: &Alarms) -> String {
+    format!("{:.0}", 100.0 * f64::from(count) / f64::from(of.runs.max(1)))
+}
+
+/// The distances that notice at the smallest change of which half of the runs are caught.
+fn first(ladder: &Ladder) -> String {
+    let caught =
+        |count: fn(&Alarms) -> u32| ladder.steps.iter().position(|it| 2 * count(it) >= it.runs);
+    let named = |at: Option<usize>, sampled: bool| {
+        let found = at.and_then(|at| Some((SIZES[at], ladder.steps[at].first(sampled)?.0)));
+        found.map_or("none".to_owned(), |(size, name)| format!("`{name}` at {}", percent(size)))
+    };
+    let all = named(caught(|it| it.raised), false);
+    let sampled = named(caught(|it| it.sampled), true);
+    if all == sampled { all } else { format!("{all}; of the section's: {sampled}") }
+}
+
+fn picture(power: &[Ladder]) -> Curves {
+    const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Triangle];
+    let mut curves = Vec::new();
+    let rising = power.iter().filter(|ladder| ladder.sign > 0.0);
+    for ladder in rising {
+        let place = Changed::ALL.iter().position(|it| *it == ladder.changed).unwrap_or(0);
+        let names = power.iter().filter(|it| it.sign > 0.0 && it.changed == ladder.changed);
+        let row = names.take_while(|it| it.case != ladder.case).count();
+        let points = |count: fn(&Alarms) -> u32| {
+            let share = |it: &Alarms| 100.0 * f64::from(count(it)) / f64::from(it.runs.max(1));
+            SIZES.into_iter().zip(ladder.steps.iter().map(share)).collect()
+        };
+        let curve = |name: String, dashed, points| Curve {
+            name,
+            colour: basin_colours(row).1,
+            marker: Some(MARKERS[place % MARKERS.len()]),
+            width: 2.0,
+            dashed,
+            points,
+        };
+        curves.push(curve(
+            format!("{}, {}", ladder.changed.name(), ladder.case),
+            false,
+            points(|it| it.raised),
+        ));
+        curves.push(curve(String::new(), true, points(|it| it.sampled)));
+    }
+    Curves {
+        title: "Runs caught by the same-attractor test: solid with the errors of single periods, \
+                dashed without"
+            .to_owned(),
+        x: Axis { label: "relative change (+)".to_owned(), scale: Scale::Logarithmic },
+        y: Axis { label: "runs caught, %".to_owned(), scale: Scale::Linear },
+        curves,
+    }
+}

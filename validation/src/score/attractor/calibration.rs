@@ -1,0 +1,130 @@
+//! Limits measured on runs of the exact solver, without an extrapolated tail.
+//!
+//! `cargo run --release --example calibrate` makes `attractors.toml` again. With m and s the mean and
+//! standard deviation over the runs against the reference, a limit is |m| + z s of the difference
+//! itself for exponent and drift, which are means over many periods and so nearly normal, and
+//! exp(m + z s) of the logarithms of the other distances, which are positive. m and s only make the
+//! distances comparable; the level is in z, the same for all distances of a case: the largest that any
+//! distance of any run takes. One more run, exchangeable with the N that were made, exceeds a largest
+//! value of N with a probability of 1/(N + 1), whatever the tails look like. That is the level of the
+//! whole family of distances of a row, and N = [`NULL_RUNS`] runs measure no lower one.
+
+use super::distance::{Distances, STATISTICS, distances};
+use super::limits::{Calibrated, Plan};
+use super::runs::{Kind, exact_section, reference};
+use super::section::Section;
+use crate::case::Case;
+use crate::engine::Failure;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Runs from which the limits of a case are taken.
+pub const NULL_RUNS: u32 = 20_000;
+
+/// Where reference runs agree exactly, as where nothing drifts, an integrator need not: a length below
+/// a tenth of the error up to which runs are scored, or this many periods, do not count.
+const SMALLEST: f64 = 1e-4;
+const ODD_PERIODS: f64 = 5.0;
+
+/// Limits, and how they were found.
+#[derive(Clone, Debug)]
+pub struct Calibration {
+    /// The limits.
+    pub calibrated: Calibrated,
+    /// The largest standardized distance of any run.
+    pub z: f64,
+    /// The name of that distance.
+    pub farthest: &'static str,
+}
+
+/// Measures the limits of a case on so many runs.
+///
+/// # Errors
+/// The solver's reason where it refuses a run.
+pub fn calibrate(case: &Case, plan: Plan, runs: u32) -> Result<Calibration, Failure> {
+    let reference = reference(case, &plan)?;
+    let null = |number| {
+        let run = exact_section(case, case.parameters, &plan, Kind::Calibration, number)?;
+        Ok(Null::of(&run, &reference))
+    };
+    let nulls: Result<Vec<Null>, Failure> = (0..runs).into_par_iter().map(null).collect();
+    let nulls = nulls?;
+    let scales = STATISTICS.map(|name| Scale::of(name, &plan, &nulls));
+    let all =
+        nulls.iter().flat_map(|null| scales.iter().map(|it| (it.standardized(null), it.name)));
+    let farthest = all.fold((0.0, ""), |most, it| if it.0 > most.0 { it } else { most });
+    let limits = scales.iter().map(|scale| (scale.name.to_owned(), scale.limit(farthest.0)));
+    let calibrated = Calibrated { case: case.name.clone(), plan, limits: limits.collect() };
+    Ok(Calibration { calibrated, z: farthest.0, farthest: farthest.1 })
+}
+
+/// One run against the reference.
+struct Null {
+    distances: Distances,
+    /// The two differences that have a sign, with it.
+    signed: BTreeMap<&'static str, f64>,
+}
+
+impl Null {
+    fn of(section: &Section, reference: &Section) -> Self {
+        let signed = BTreeMap::from([
+            ("lyapunov", section.lyapunov - reference.lyapunov),
+            ("drift", section.drift - reference.drift),
+        ]);
+        Self { distances: distances(section, reference), signed }
+    }
+
+    /// The value whose mean and deviation make a scale.
+    fn value(&self, name: &str) -> f64 {
+        self.signed.get(name).copied().unwrap_or_else(|| self.distances[name].ln())
+    }
+}
+
+/// What makes a distance comparable with the others.
+struct Scale {
+    name: &'static str,
+    is_signed: bool,
+    mean: f64,
+    deviation: f64,
+    floor: f64,
+}
+
+impl Scale {
+    fn of(name: &'static str, plan: &Plan, nulls: &[Null]) -> Self {
+        let is_signed = nulls.iter().any(|null| null.signed.contains_key(name));
+        let is_share = name.starts_with("ks") || name.ends_with("share") || name == "phase_words";
+        let floor = if is_share { ODD_PERIODS / f64::from(plan.periods) } else { SMALLEST };
+        let (mean, deviation) = moments(nulls.iter().map(|null| null.value(name)));
+        Self { name, is_signed, mean, deviation, floor }
+    }
+
+    /// How many deviations a run is above the mean; nothing where the floor forgives it.
+    fn standardized(&self, null: &Null) -> f64 {
+        if null.distances[self.name] <= self.floor {
+            return 0.0;
+        }
+        let value = null.value(self.name);
+        if self.is_signed {
+            (value.abs() - self.mean.abs()) / self.deviation
+        } else {
+            (value - self.mean) / self.deviation
+        }
+    }
+
+    fn limit(&self, z: f64) -> f64 {
+        let limit = if self.is_signed {
+            self.mean.abs() + z * self.deviation
+        } else {
+            (self.mean + z * self.deviation).exp()
+        };
+        // The logarithm of an exact zero has no mean: then the floor is the limit.
+        limit.max(self.floor)
+    }
+}
+
+fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
+    let count = values.clone().count() as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    let variance = values.map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    (mean, variance.sqrt())
+}
