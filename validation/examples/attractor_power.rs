@@ -7,7 +7,7 @@
 use anyhow::{Context, Result};
 use percuss_validation::case::{Case, embedded};
 use percuss_validation::number::brief;
-use percuss_validation::picture::{Axis, Curve, Curves, Marker, Scale, basin_colours, png};
+use percuss_validation::picture::{Axis, Curve, Curves, Marker, Scale, Stroke, basin_colours, png};
 use percuss_validation::score::attractor::{
     Alarms, AttractorTest, Calibrated, Changed, calibrated, interval,
 };
@@ -161,7 +161,7 @@ fn picture(power: &[Ladder]) -> Curves {
             colour: basin_colours(row).1,
             marker: Some(MARKERS[place % MARKERS.len()]),
             width: 2.0,
-            dashed,
+            stroke: if dashed { Stroke::Dashed } else { Stroke::Solid },
             points,
         };
         curves.push(curve(

@@ -151,7 +151,11 @@ pub struct Run<'a> {
 pub fn judge(subject: &Subject<'_>, run: &Run<'_>, expected: &Expected<'_>) -> Judgement {
     let excused = excused(subject, run, expected.bounds);
     let mut checked = check(subject, run, &excused, expected.bounds);
-    let of = |it: &&&Shortcoming| it.is_for(subject.case, subject.engine, subject.accuracy);
+    // A probe that the suite does not ask for can show no shortcoming.
+    let of = |it: &&&Shortcoming| {
+        it.is_for(subject.case, subject.engine, subject.accuracy)
+            && run.measures.concerns(it.quantity)
+    };
     let known: Vec<_> = expected.shortcomings.iter().filter(of).copied().collect();
     let answers = known.iter().map(|it| answer(it, run, &excused, &mut checked));
     let mut reasons = Reasons::default();
