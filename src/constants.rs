@@ -33,9 +33,10 @@ pub struct Constants<T> {
     pub omega2: T,
     /// The eighth power of 1/(2 xi).
     pub rate8: T,
-    /// What products that underflow may take from a guard. Each loses at most the last digit of the smallest
-    /// normal number, 5e-324, and is multiplied after that by a, or by a/omega^2, at the most; by a state of up
-    /// to 1e9, or near resonance by up to 5e13, which the 4e15 between that digit and that number leave room for.
+    /// What products that underflow may take from a guard. Each loses at most the last digit of the
+    /// smallest normal number, 5e-324, and is multiplied after that by a, or by a/omega^2, at the
+    /// most; by a state of up to 1e9, or near resonance by up to 5e13, which the 4e15 between that
+    /// digit and that number leave room for.
     pub underflow: T,
     /// 1/omega
     pub per_omega: T,
@@ -96,8 +97,8 @@ impl<T: Number> Constants<T> {
 }
 
 impl Constants<f64> {
-    /// The rates at which the two parts of a free oscillation in contact die out, where it does not turn:
-    /// the slower one, and the faster one. Both are xi below critical damping.
+    /// The rates at which the two parts of a free oscillation in contact die out, where it does not
+    /// turn: the slower one, and the faster one. Both are xi below critical damping.
     #[must_use]
     pub fn decays(&self) -> (f64, f64) {
         let xi = self.xi;

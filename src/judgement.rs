@@ -1,7 +1,8 @@
 //! How a phase ends by plain one-sided steps in any arithmetic: the judge of the search in f64.
 //!
-//! As in [`crate::crossing::stepping`] no step passes a crossing; here the arithmetic may be one of more
-//! digits, in which the phase begins with the same f64 values and is decided with its own rounding room.
+//! As in [`crate::crossing::stepping`] no step passes a crossing; here the arithmetic may be one of
+//! more digits, in which the phase begins with the same f64 values and is decided with its own
+//! rounding room.
 
 use crate::constants::Constants;
 use crate::crossing::stepping::safe_step;

@@ -50,8 +50,9 @@ pub enum Exit {
     Horizon,
     /// Never: proved.
     Endless(Endless),
-    /// Not decided: the search has taken more work than its limit ([`crate::crossing::limit`]) because rounding
-    /// hides what the phase does. It is proved to last for [`Leg::duration`]; nothing is known of what follows.
+    /// Not decided: the search has taken more work than its limit ([`crate::crossing::limit`])
+    /// because rounding hides what the phase does. It is proved to last for [`Leg::duration`];
+    /// nothing is known of what follows.
     Undecidable,
 }
 
@@ -95,8 +96,8 @@ impl Leg {
         &self.constants
     }
 
-    /// The closed form from which the end of the phase was found, with all that is known exactly at its
-    /// entry.
+    /// The closed form from which the end of the phase was found, with all that is known exactly at
+    /// its entry.
     #[must_use]
     pub fn motion(&self) -> Motion<'_> {
         Motion::new(&self.constants, &self.entry, self.angle)
@@ -120,8 +121,8 @@ impl Leg {
         self.entry.phase()
     }
 
-    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless, as far as it is
-    /// proved if it is undecidable.
+    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless, as far as
+    /// it is proved if it is undecidable.
     #[must_use]
     pub fn duration(&self) -> f64 {
         self.duration.value()

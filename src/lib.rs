@@ -1,10 +1,10 @@
 //! Exact solver for the visco-elastic impact oscillator with drift of Pavlovskaia and Wiercigroch,
 //! *Chaos, Solitons and Fractals* 19 (2004) 151-161.
 //!
-//! A mass driven by a cos(omega tau + phi) + b strikes a weightless visco-elastic slider that sticks
-//! by dry friction. In each of three phases the motion is known in closed form; this crate joins the
-//! phases at their switches, every one of which it proves to be the first, within the rounding model of
-//! the repository's docs/ROUNDING.md.
+//! A mass driven by a cos(omega tau + phi) + b strikes a weightless visco-elastic slider that
+//! sticks by dry friction. In each of three phases the motion is known in closed form; this crate
+//! joins the phases at their switches, every one of which it proves to be the first, within the
+//! rounding model of the repository's docs/ROUNDING.md.
 //!
 //! ```
 //! use percuss::{Model, Parameters, Start};

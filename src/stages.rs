@@ -1,10 +1,10 @@
 //! A contact that dies out next to a threshold, taken up again as it does.
 //!
-//! The closed form adds what has changed since the contact began to what was there: its rounding stays that
-//! of the state at entry, however little of it is left. Where the steady state reaches a threshold to within
-//! much less than that, the end of the contact is decided by the little that is left. So the search goes in
-//! stages: after a few decay times what is left is computed by itself, with all its digits, and the contact
-//! goes on from there.
+//! The closed form adds what has changed since the contact began to what was there: its rounding
+//! stays that of the state at entry, however little of it is left. Where the steady state reaches a
+//! threshold to within much less than that, the end of the contact is decided by the little that is
+//! left. So the search goes in stages: after a few decay times what is left is computed by itself,
+//! with all its digits, and the contact goes on from there.
 
 use crate::constants::Constants;
 use crate::crossing::limit::Limit;
@@ -70,8 +70,9 @@ pub(crate) fn search_in_stages<'a>(
 }
 
 impl Contact<f64, &Constants<f64>> {
-    /// The contact a time `d` after it began, as if it began then at the forcing angle `angle`, counted from
-    /// the threshold next to its steady state; nothing is added that is larger than what is left.
+    /// The contact a time `d` after it began, as if it began then at the forcing angle `angle`,
+    /// counted from the threshold next to its steady state; nothing is added that is larger than
+    /// what is left.
     fn taken_up(&self, d: f64, angle: EntryAngle<f64>) -> Self {
         let Constants { a, b, g, xi, two_xi, damping, forced, .. } = *self.constants;
         let harmonic = self.angle.harmonic(self.constants, d);
@@ -91,8 +92,8 @@ impl Contact<f64, &Constants<f64>> {
     }
 }
 
-/// What is left of the fundamental solutions of the free oscillation: C, S and S' without the one that
-/// [`crate::flow::damped`] takes from them.
+/// What is left of the fundamental solutions of the free oscillation: C, S and S' without the one
+/// that [`crate::flow::damped`] takes from them.
 struct Left {
     s: f64,
     c: f64,

@@ -50,8 +50,8 @@ pub(crate) fn onset(
         Onset::Contact { offset: f, reference: 0.0 }
     } else {
         match slipping(constants, &state) {
-            // What is known of f and the state are rounded apart: where the state does not slip, f is
-            // within rounding of the threshold.
+            // What is known of f and the state are rounded apart: where the state does not slip, f
+            // is within rounding of the threshold.
             Onset::Progression { drift_rate, .. } if drift_rate <= 0.0 => {
                 state.q = 1.0 - damper;
                 state.p = state.q + g;
@@ -64,9 +64,9 @@ pub(crate) fn onset(
 }
 
 /// A progression under way. Its drift velocity is y - q' and not (f - 1)/(2 xi), which would carry
-/// 1/(2 xi) times the rounding of f: 1 - q is exact where the slider is nearly compressed. It must be
-/// that of the state after an impact too, although f is known by itself there: the closed form goes by
-/// the drift velocity at first and by y later, and would jump where it changes over.
+/// 1/(2 xi) times the rounding of f: 1 - q is exact where the slider is nearly compressed. It must
+/// be that of the state after an impact too, although f is known by itself there: the closed form
+/// goes by the drift velocity at first and by y later, and would jump where it changes over.
 pub(crate) fn slipping(constants: &Constants<f64>, state: &State) -> Onset {
     let closing = (1.0 - state.q) * constants.rate;
     Onset::Progression { drift_rate: state.y - closing, closing }

@@ -50,8 +50,8 @@ pub(crate) enum End {
 pub(crate) struct Passed {
     /// How it ends.
     pub end: End,
-    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless, as far as it is
-    /// proved if it is undecidable.
+    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless, as far as
+    /// it is proved if it is undecidable.
     pub duration: TwoWord,
 }
 
@@ -160,8 +160,8 @@ fn pass_late<P: Landing>(
     }
 }
 
-/// The switch next to a horizon as it is found without one: a search that looks no further may come to it by
-/// another way, and so to other last digits.
+/// The switch next to a horizon as it is found without one: a search that looks no further may come
+/// to it by another way, and so to other last digits.
 fn found_without_horizon<P: Landing>(
     phase: &P,
     model: &Model,

@@ -13,9 +13,9 @@ use crate::two_word::TwoWord;
 /// A run taken up at one of its phases goes on as it did to within rounding, not to the last bit: a root is
 /// computed from where it was guessed, and what is guessed depends on the phase before.
 ///
-/// It ends after a phase that reaches the horizon, never ends or is undecidable; without a horizon and as long as
-/// switches come it goes on for ever. A phase is cut after a forcing angle of 1e30 where nothing else ends it:
-/// two words do not know the angle much later.
+/// It ends after a phase that reaches the horizon, never ends or is undecidable; without a horizon
+/// and as long as switches come it goes on for ever. A phase is cut after a forcing angle of 1e30
+/// where nothing else ends it: two words do not know the angle much later.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     model: Model,

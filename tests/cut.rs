@@ -130,7 +130,8 @@ fn models() -> impl Iterator<Item = (Parameters, Start)> {
     })
 }
 
-/// A switch exactly at the horizon counts: the horizon must not lead the search to other last digits.
+/// A switch exactly at the horizon counts: the horizon must not lead the search to other last
+/// digits.
 #[test]
 fn a_switch_exactly_at_the_horizon_is_never_lost() {
     let mut segments = 0;

@@ -297,8 +297,8 @@ proptest! {
 
 proptest! {
     #![proptest_config(config())]
-    /// Slow flights that last for several periods: the force pushes and pulls by turns, and the graze may come in
-    /// any of the stretches in which it pulls.
+    /// Slow flights that last for several periods: the force pushes and pulls by turns, and the
+    /// graze may come in any of the stretches in which it pulls.
     #[test]
     fn grazes_in_later_stretches_are_decided_as_the_scalar_solver_does(
         (omega, decade) in (0.7..2.0_f64, -2.0..1.0_f64),
@@ -316,8 +316,8 @@ proptest! {
     }
 }
 
-/// Flights of 1e4 to 1e7 radians: beyond 1e5 the sine of lanes is not asked, and a run in lanes has to give them
-/// to the scalar solver.
+/// Flights of 1e4 to 1e7 radians: beyond 1e5 the sine of lanes is not asked, and a run in lanes has
+/// to give them to the scalar solver.
 #[test]
 fn long_flights_are_those_of_the_scalar_solver() {
     let parameters = Parameters { a: 0.3, b: 0.0, omega: 50.0, ..Parameters::default() };

@@ -1,4 +1,5 @@
-//! The work of a search has a limit, and contacts that die out next to a threshold are decided within it.
+//! The work of a search has a limit, and contacts that die out next to a threshold are decided
+//! within it.
 
 #![allow(clippy::unwrap_used, reason = "a panic is a failed test")]
 
@@ -21,8 +22,8 @@ fn dying_out(xi: f64, b: f64, f: f64, y: f64) -> (Leg, Counters) {
     first(parameters, &start)
 }
 
-/// Evaluations that a decided contact may take: one stage of eight decay times takes up to four, and as many
-/// divisions; 40 stages lead from 1 to 1e-139.
+/// Evaluations that a decided contact may take: one stage of eight decay times takes up to four,
+/// and as many divisions; 40 stages lead from 1 to 1e-139.
 const DECIDED: u64 = 600;
 
 #[test]
@@ -51,8 +52,9 @@ fn what_dies_out_towards_a_pull_separates_when_nothing_else_is_left() {
             let s = (rate + fast * f) / (fast - slow);
             let expected = (s / pull).ln() / slow;
             assert!(matches!(leg.exit(), Exit::Switch(next) if next.phase() == Phase::NoContact));
-            // A stage of eight decay times hands on the guard's rounding room, SLACK of its largest term
-            // 2 xi y with y = fast f, while f shrinks by e^8. The exponents' own rounding comes on top.
+            // A stage of eight decay times hands on the guard's rounding room, SLACK of its largest
+            // term 2 xi y with y = fast f, while f shrinks by e^8. The exponents' own rounding
+            // comes on top.
             let stages = (slow * expected / 8.0).ceil();
             let handed_on = SLACK * 2.0 * xi * fast * 8.0_f64.exp() * stages;
             let room = handed_on / slow + f64::EPSILON * 64.0 * expected;
@@ -74,8 +76,8 @@ fn next_to_the_upper_threshold_it_is_decided_alike() {
     assert!(counters.evaluations <= DECIDED, "{counters:?}");
 }
 
-/// Free and forced oscillation in step, three to one, which together stay inside although their amplitudes
-/// do not, and die out within 1e8 units of time: nothing but following them shows it.
+/// Free and forced oscillation in step, three to one, which together stay inside although their
+/// amplitudes do not, and die out within 1e8 units of time: nothing but following them shows it.
 fn in_step() -> (Parameters, Start) {
     let (xi, omega, amplitude) = (1e-8, 2.0, 0.28);
     let parameters = Parameters { a: 3.0 * amplitude, b: 0.5, xi, omega, ..Parameters::default() };
@@ -92,8 +94,8 @@ fn a_search_that_passes_its_limit_leaves_the_phase_undecidable() {
     let (leg, counters) = first(parameters, &start);
     assert_eq!(*leg.exit(), Exit::Undecidable);
     assert!((MOST..=MOST + GRANTED + LAST_ROOT).contains(&counters.evaluations), "{counters:?}");
-    // What is proved of it goes far, but not until the two amplitudes together fit inside: 0.28 of the free
-    // one has then become 0.22.
+    // What is proved of it goes far, but not until the two amplitudes together fit inside: 0.28 of
+    // the free one has then become 0.22.
     let fits = (0.28_f64 / 0.22).ln() / 1e-8;
     assert!(leg.duration() > 1e5 && leg.duration() < fits, "{}", leg.duration());
     let model = Model::new(parameters).unwrap();
@@ -132,8 +134,8 @@ fn sections_end_where_a_run_is_undecidable() {
     assert!(Section::along(model.trajectory(entry), entry.instant).next().is_some());
 }
 
-/// Forces of 1e-284: the trial force touches zero once a free oscillation to within 6e-8 of its size, far above
-/// its rounding. A room for underflow that does not follow the force hides that.
+/// Forces of 1e-284: the trial force touches zero once a free oscillation to within 6e-8 of its
+/// size, far above its rounding. A room for underflow that does not follow the force hides that.
 #[test]
 fn touches_of_the_smallest_forces_are_decided() {
     let parameters = Parameters { a: 1.07e-284, b: 0.0, xi: 1e-8, omega: 1e-6, g: 0.0, phi: 0.0 };

@@ -1,9 +1,9 @@
-//! Starts at which the trial force is exactly at a threshold: the first of its derivatives that is not zero
-//! decides which phase begins.
+//! Starts at which the trial force is exactly at a threshold: the first of its derivatives that is
+//! not zero decides which phase begins.
 //!
-//! Each start is planted: the derivatives below a chosen one are zero to their rounding, and the chosen one has
-//! a chosen sign. The expected phase follows from that sign, and is confirmed by an integration of the
-//! equations of contact, which shares nothing with the solver.
+//! Each start is planted: the derivatives below a chosen one are zero to their rounding, and the
+//! chosen one has a chosen sign. The expected phase follows from that sign, and is confirmed by an
+//! integration of the equations of contact, which shares nothing with the solver.
 
 #![allow(
     dead_code,
@@ -26,8 +26,9 @@ use std::f64::consts::PI;
 /// Starts for every derivative, threshold and sign.
 const STARTS: usize = 200;
 
-/// The sizes of a deciding derivative, against the sum of its terms' sizes: from far above its rounding to all
-/// of it. The planted data and the forcing angle are rounded too, by less than a hundred units.
+/// The sizes of a deciding derivative, against the sum of its terms' sizes: from far above its
+/// rounding to all of it. The planted data and the forcing angle are rounded too, by less than a
+/// hundred units.
 const SIZES: [f64; 2] = [1e-13, 1.0];
 
 /// A start on a threshold.
@@ -71,9 +72,10 @@ impl Planted {
         assert_eq!(self.entry().1.phase(), self.expected(), "{self:?}");
     }
 
-    /// The trial force leaves the threshold to the side of the sign, and the solver's run with it, if the
-    /// derivative is large: after this share of the fastest time that is far above any rounding, and the next
-    /// derivative still does little. What rounding makes of the first moments, a hop of 1e-14, is over by then.
+    /// The trial force leaves the threshold to the side of the sign, and the solver's run with it,
+    /// if the derivative is large: after this share of the fastest time that is far above any
+    /// rounding, and the next derivative still does little. What rounding makes of the first
+    /// moments, a hop of 1e-14, is over by then.
     fn leaves_to_its_side(&self, share: f64) {
         let Parameters { xi, omega, .. } = self.parameters;
         let time = share / omega.max(1.0).max(2.0 * xi);
@@ -223,10 +225,12 @@ fn a_force_that_stays_on_its_threshold_is_a_contact() {
     }
 }
 
-/// A derivative counts from four units in the last place of its terms on. All numbers here are exact.
+/// A derivative counts from four units in the last place of its terms on. All numbers here are
+/// exact.
 #[test]
 fn a_derivative_below_four_units_of_its_terms_counts_as_zero() {
-    // f' = 2 xi (b - f) + y = y + 1 at xi = 1/2, b = 1, f = 0, with terms that add up to 2; f'' = b = 1.
+    // f' = 2 xi (b - f) + y = y + 1 at xi = 1/2, b = 1, f = 0, with terms that add up to 2; f'' = b
+    // = 1.
     for (units, expected) in [(-9.0, Phase::NoContact), (-7.0, Phase::Contact)] {
         let parameters = Parameters { a: 0.0, b: 1.0, xi: 0.5, omega: 1.0, g: 0.0, phi: 0.0 };
         let y = -1.0 + units * f64::EPSILON;
@@ -242,8 +246,9 @@ fn a_derivative_below_four_units_of_its_terms_counts_as_zero() {
     }
 }
 
-/// A force within four units in the last place of a threshold is on it, and one further away is not. All
-/// numbers here are exact; a force on the threshold falls below 0 and below 1, as b = -4 pulls.
+/// A force within four units in the last place of a threshold is on it, and one further away is
+/// not. All numbers here are exact; a force on the threshold falls below 0 and below 1, as b = -4
+/// pulls.
 #[test]
 fn a_force_within_four_units_of_a_threshold_is_on_it() {
     let parameters = Parameters { a: 0.0, b: -4.0, xi: 0.5, omega: 1.0, g: 0.0, phi: 0.0 };

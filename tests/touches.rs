@@ -1,7 +1,8 @@
 //! Touches that f64 cannot decide: each is counted, and the run goes on as after a touch.
 //!
-//! Each guard is planted so that its crest lies a known distance from the threshold, in units of the rounding
-//! room that the solver allows itself: four eps times the largest sum of the guard's terms.
+//! Each guard is planted so that its crest lies a known distance from the threshold, in units of
+//! the rounding room that the solver allows itself: four eps times the largest sum of the guard's
+//! terms.
 
 #![allow(clippy::unwrap_used, reason = "a panic is a failed test")]
 
@@ -17,7 +18,8 @@ const EPS: f64 = f64::EPSILON;
 /// Touches of each kind.
 const TOUCHES: u64 = 100;
 
-/// What the first phase of a run is and counts, and whether it ends by a switch within so many periods.
+/// What the first phase of a run is and counts, and whether it ends by a switch within so many
+/// periods.
 struct First {
     undecidable: u64,
     switches: u64,
@@ -32,8 +34,8 @@ fn first(parameters: Parameters, start: Start, periods: u64) -> First {
     First { undecidable: run.counters().undecidable, switches: run.counters().switches, phase }
 }
 
-/// A parabola from -g/2 with its crest at the gap plus `above`, in eps of g: with a = 0 and the slider at rest
-/// all numbers are exact. Its terms at the crest add up to 2 g.
+/// A parabola from -g/2 with its crest at the gap plus `above`, in eps of g: with a = 0 and the
+/// slider at rest all numbers are exact. Its terms at the crest add up to 2 g.
 fn parabola(scale: i32, speed: i32, above: f64) -> First {
     let (g, y) = (2.0_f64.powi(scale), 2.0_f64.powi(speed));
     let (p, b) = (0.5 * g * (1.0 + 2.0 * EPS * above), -y * y / g);
@@ -41,9 +43,9 @@ fn parabola(scale: i32, speed: i32, above: f64) -> First {
     first(parameters, Start { p, y, q: Some(0.0), ..Start::default() }, 1 << 20)
 }
 
-/// Four eps of 2 g are eight units. Inside, both pieces that meet at the crest count a touch. Outside, the crest is
-/// a switch, whatever the piece before it counts. Below, the hull of a piece is wider than its guard: how far it
-/// counts is not said.
+/// Four eps of 2 g are eight units. Inside, both pieces that meet at the crest count a touch.
+/// Outside, the crest is a switch, whatever the piece before it counts. Below, the hull of a piece
+/// is wider than its guard: how far it counts is not said.
 #[test]
 fn parabolas_are_decided_outside_the_rounding_room_and_counted_inside() {
     for (scale, speed) in [(0, 0), (-6, -4), (5, 0), (10, 5), (-12, -3)] {
@@ -62,7 +64,8 @@ fn parabolas_are_decided_outside_the_rounding_room_and_counted_inside() {
     }
 }
 
-/// A damped swing of the trial force from rest, whose first crest touches 1 or whose first trough touches 0.
+/// A damped swing of the trial force from rest, whose first crest touches 1 or whose first trough
+/// touches 0.
 ///
 /// f'' + 2 xi f' + f = b; from f' = 0 it swings to b + (b - f0) exp(-pi xi/nu).
 fn swing(draw: &mut Draw, top: bool) -> First {
@@ -89,7 +92,8 @@ fn swings_of_the_trial_force_that_touch_a_threshold_are_counted() {
     }
 }
 
-/// A progression whose drift velocity (a/omega) (1 + sin(omega d)) touches zero after three quarters of a period.
+/// A progression whose drift velocity (a/omega) (1 + sin(omega d)) touches zero after three
+/// quarters of a period.
 fn slip(draw: &mut Draw) -> First {
     let (a, omega) = (draw.decades(1e-2, 1e2), draw.decades(0.05, 20.0));
     let parameters = Parameters { a, b: 1.0, xi: 0.2, omega, g: 0.02, phi: 0.0 };

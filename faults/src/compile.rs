@@ -41,8 +41,8 @@ pub struct Program {
     pub folder: PathBuf,
 }
 
-/// Writes a sample of so many faults into the copy; faults that do not compile are replaced by the next ones
-/// of the same shuffled list.
+/// Writes a sample of so many faults into the copy; faults that do not compile are replaced by the
+/// next ones of the same shuffled list.
 pub fn sample_that_compiles(
     catalogue: &Catalogue,
     scratch: &Path,
@@ -51,7 +51,8 @@ pub fn sample_that_compiles(
 ) -> Result<Vec<Fault>> {
     let mut order: Vec<u32> = (1..=catalogue.faults.len() as u32).collect();
     fastrand::Rng::with_seed(seed).shuffle(&mut order);
-    // Types reject a few per cent, which are met at the first build rather than one build after the other.
+    // Types reject a few per cent, which are met at the first build rather than one build after the
+    // other.
     let spare = count / 10 + 1;
     loop {
         let drawn = &order[..order.len().min(count + spare)];
@@ -168,7 +169,8 @@ fn cargo(scratch: &Path, arguments: &[&str]) -> Result<Vec<Value>> {
     let output = Command::new(std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into()))
         .args(arguments)
         .args(["--message-format", "json"])
-        // The copy would build over what was built of the repository itself: both have the same names.
+        // The copy would build over what was built of the repository itself: both have the same
+        // names.
         .env("CARGO_TARGET_DIR", "../build")
         .current_dir(scratch)
         .stderr(Stdio::inherit())

@@ -24,11 +24,12 @@ pub enum Outcome {
 const KILLED: i32 = 9;
 const TIME_IS_UP: i32 = 24;
 
-/// Memory that a test program may address, in KiB: a fault may make a run collect phases without end.
+/// Memory that a test program may address, in KiB: a fault may make a run collect phases without
+/// end.
 const MEMORY: &str = "16000000";
 
-/// Runs the program with this fault; 0 is none. It may take so many seconds of the processor's time, which does
-/// not depend on what else the machine does.
+/// Runs the program with this fault; 0 is none. It may take so many seconds of the processor's
+/// time, which does not depend on what else the machine does.
 pub fn run(program: &Program, fault: u32, limit: Option<u64>) -> Result<Outcome> {
     let started = Instant::now();
     let mut child = start(program, fault, limit)?;

@@ -1,8 +1,9 @@
 //! Puts small faults into percuss, one at a time, and lists those that no test notices.
 //!
-//! The sources are copied, and a seeded sample of places in them is rewritten so that each place asks at run
-//! time whether its fault is the chosen one. So one build serves all faults: the tests are run once without a
-//! fault, which all must pass, and then with one fault after the other, until the first test fails.
+//! The sources are copied, and a seeded sample of places in them is rewritten so that each place
+//! asks at run time whether its fault is the chosen one. So one build serves all faults: the tests
+//! are run once without a fault, which all must pass, and then with one fault after the other,
+//! until the first test fails.
 
 mod catalogue;
 mod compile;
@@ -38,7 +39,8 @@ struct Arguments {
     /// Tries these faults only, of the sample that `--count` and `--seed` draw.
     #[arg(long, value_delimiter = ',')]
     only: Vec<u32>,
-    /// Asks the tests of the validation package about a fault in the solver that the solver's own tests pass.
+    /// Asks the tests of the validation package about a fault in the solver that the solver's own
+    /// tests pass.
     #[arg(long)]
     thorough: bool,
     /// Leaves out test programs of these names, such as slow ones at a first look.

@@ -1,7 +1,8 @@
 //! Finds the places of a file at which a fault can be put in.
 //!
-//! Left out are contexts in which nothing can be chosen at run time (constants, constant functions, lengths,
-//! patterns, types), test code, the insides of macros, and literal indices, whose faults all panic at once.
+//! Left out are contexts in which nothing can be chosen at run time (constants, constant functions,
+//! lengths, patterns, types), test code, the insides of macros, and literal indices, whose faults
+//! all panic at once.
 
 use crate::fault::{Change, Operator};
 use crate::operators::{bounds_its_argument, early_values, instead_of, instead_of_float};

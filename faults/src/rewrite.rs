@@ -23,9 +23,11 @@ pub struct Rewritten {
     pub places: Vec<(Range<usize>, Vec<u32>)>,
 }
 
-/// Rewrites a source with all of these edits, each of which acts only if its fault is the chosen one.
+/// Rewrites a source with all of these edits, each of which acts only if its fault is the chosen
+/// one.
 ///
-/// A place inside another place is rewritten in the original's branch only: one fault is active at a time.
+/// A place inside another place is rewritten in the original's branch only: one fault is active at
+/// a time.
 pub fn rewrite(source: &str, edits: &[Edit]) -> Rewritten {
     let mut nodes: BTreeMap<(usize, std::cmp::Reverse<usize>), Vec<&Edit>> = BTreeMap::new();
     for edit in edits {

@@ -10,8 +10,8 @@ pub fn root() -> Result<PathBuf> {
     Ok(root.to_owned())
 }
 
-/// Copies the files that git knows or would add. Files that are there already and equal are left alone, so
-/// that cargo builds no more than it must.
+/// Copies the files that git knows or would add. Files that are there already and equal are left
+/// alone, so that cargo builds no more than it must.
 pub fn copy(root: &Path, to: &Path) -> Result<()> {
     let list = Command::new("git")
         .args(["ls-files", "-z", "--cached", "--others", "--exclude-standard"])

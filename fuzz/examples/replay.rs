@@ -1,5 +1,6 @@
-//! Prints the case in each file named (a libFuzzer artifact) and what the check says; without names,
-//! checks a million random cases (`RUNS`, from the draws of `SEED`) and prints one of each kind of fault.
+//! Prints the case in each file named (a libFuzzer artifact) and what the check says; without
+//! names, checks a million random cases (`RUNS`, from the draws of `SEED`) and prints one of each
+//! kind of fault.
 
 use percuss_fuzz::{Case, Tally, check, check_counted};
 use std::collections::BTreeMap;

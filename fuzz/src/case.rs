@@ -18,8 +18,8 @@ pub struct Case {
 pub enum Family {
     /// Every accepted model, from every start.
     Any,
-    /// Contacts that die out next to a threshold: damping from critical on, next to no force, and a slider
-    /// that is pulled. Such a contact is decided by what is left of it.
+    /// Contacts that die out next to a threshold: damping from critical on, next to no force, and a
+    /// slider that is pulled. Such a contact is decided by what is left of it.
     DyingOut,
     /// Forces so small that their products underflow, and starts at rest, late.
     Underflowing,

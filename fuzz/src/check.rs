@@ -15,7 +15,8 @@ const LONGEST: f64 = 200.0;
 /// closed forms claim 10 eps for a phase of at most one forcing period, and a switch adds as much.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
-/// What products that underflow may lose of a state: the smallest normal number times a/omega^2 <= 1e21.
+/// What products that underflow may lose of a state: the smallest normal number times a/omega^2 <=
+/// 1e21.
 const UNDERFLOW: f64 = 1e-285;
 
 /// Phases of a case that are decided again in 106 bits, where any are.
@@ -27,8 +28,9 @@ const JUDGE_EVALUATIONS: usize = 2000;
 /// One case in so many of those drawn from everything is judged.
 const ONE_IN: u64 = 16;
 
-/// What a switch may be off in units of what rounding of the guard moves it by: the search allows itself as
-/// much again, and the guards of the two arithmetics differ by some roundings of the parameters' products.
+/// What a switch may be off in units of what rounding of the guard moves it by: the search allows
+/// itself as much again, and the guards of the two arithmetics differ by some roundings of the
+/// parameters' products.
 const WIDTHS: f64 = 8.0;
 
 /// What was met.
@@ -64,7 +66,7 @@ pub fn check(case: &Case) -> Result<(), String> {
     check_counted(case, &mut Tally::default())
 }
 
-/// The same, with what was met.
+/// Checks a case and returns what was met on the way.
 ///
 /// # Errors
 /// The first check that failed.
@@ -172,8 +174,8 @@ impl History {
         let angle = entry.instant.angle();
         ensure!((0.0..=std::f64::consts::TAU).contains(&angle), "angle {angle:e}");
 
-        // The limit of the search, up to where the phase ends or is cut; a switch next to the horizon is
-        // looked for twice.
+        // The limit of the search, up to where the phase ends or is cut; a switch next to the
+        // horizon is looked for twice.
         let omega = model.parameters().omega;
         let clear = duration.min(periods * model.period()) + 0.2 / omega;
         let granted = (GRANTED as f64 + PER_RADIAN * (1.0 + omega) * clear).min(MOST as f64);

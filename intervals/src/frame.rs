@@ -41,7 +41,7 @@ pub(crate) enum Damping {
 const FAR: f64 = 1.25;
 
 impl Frame {
-    /// Of these parameters, taken exactly.
+    /// Encloses the model's constants for these parameters, which are taken exactly.
     #[must_use]
     pub fn new(parameters: &Parameters) -> Self {
         let Parameters { a, b, xi, omega, g, phi } = *parameters;

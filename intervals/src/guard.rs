@@ -73,7 +73,7 @@ pub struct Expansion {
 }
 
 impl Guard {
-    /// Of a phase that begins at this instant.
+    /// Encloses the guard of a phase that begins at this instant.
     #[must_use]
     pub fn new(frame: &Frame, motion: &Motion<'_>, entry: &Instant) -> Self {
         let angle = Ball::words(entry.angle_two_word()) + frame.phi;

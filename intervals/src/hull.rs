@@ -11,7 +11,7 @@ pub(crate) struct Piecewise {
     pub reduced: bool,
     /// Between what the quick exponential lies that the terms leave out; zero where they do not.
     pub range: (f64, f64),
-    /// The same of its slope, in the unit of the slopes' coefficients.
+    /// Range of the polynomial's slope, in the unit of the slopes' coefficients.
     pub slope_range: (f64, f64),
 }
 
@@ -93,7 +93,7 @@ pub(crate) fn holds(terms: &[Ball], remainder: f64, bounds: &Between) -> bool {
     !sharp || holds_sharply(terms, remainder, bounds)
 }
 
-/// The same in two words.
+/// Decides in two words what one word leaves open.
 #[cold]
 fn holds_sharply(terms: &[Ball], remainder: f64, bounds: &Between) -> bool {
     let Between { low, high, zeros } = *bounds;
@@ -120,7 +120,7 @@ fn bernstein(terms: &[Ball]) -> [Ball; ORDERS + 1] {
     hull
 }
 
-/// The same in one word, each with how far members may be from it.
+/// Coefficients in one word, each with how far members may be from it.
 fn roughly(terms: &[Ball]) -> [(f64, f64); ORDERS + 1] {
     let mut row = [(0.0, 0.0); ORDERS + 1];
     for (place, term) in row.iter_mut().zip(terms) {

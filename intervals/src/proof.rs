@@ -226,7 +226,7 @@ impl Walk<'_> {
         reach: &Reach,
         zeros: [usize; 2],
     ) -> Piece {
-        /// Of the first length, where halving ends.
+        /// Share of the first length at which halving ends.
         const LEAST: f64 = 1e-9;
         let begin = wish.min(if reach.reduced { reach.longest } else { reach.in_full });
         let mut pieces = [

@@ -79,8 +79,8 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         if self.constants.borrow().b < 0.5 { 0.0 } else { 1.0 }
     }
 
-    /// Whether what is left of the contact decides how it ends: its steady state lies around a threshold
-    /// within much less than what dies out before.
+    /// Whether what is left of the contact decides how it ends: its steady state lies around a
+    /// threshold within much less than what dies out before.
     fn dies_out_next_to_a_threshold(&self) -> bool {
         /// A steady state of more than this has nine digits left when the rest has died out.
         const NEXT: f64 = 1e-6;

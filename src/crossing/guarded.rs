@@ -44,8 +44,9 @@ pub trait Guarded: Flow<f64> {
     /// Where to divide a piece that could not be certified.
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64;
 
-    /// Until when the closed form of this phase serves to find its end. A later search has to take the motion
-    /// up again, because the guard then lies closer to its threshold than its terms round.
+    /// Until when the closed form of this phase serves to find its end. A later search has to take
+    /// the motion up again, because the guard then lies closer to its threshold than its terms
+    /// round.
     fn stage(&self) -> f64 {
         f64::INFINITY
     }

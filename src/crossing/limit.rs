@@ -1,11 +1,11 @@
 //! How much work the search of one phase may take before the phase counts as undecidable.
 //!
-//! A phase whose end is decided far from its thresholds takes a few evaluations. Bisection to the last
-//! digit takes at most 1100 (from the smallest number to the largest), a near graze divided down to that
-//! size as many on both sides of each of two thresholds: these are granted at once. A phase without an
-//! event costs up to a few evaluations a period of the forcing and of the free oscillation: so much is
-//! granted for the time that is proved to be clear. A search that spends more than that makes no
-//! progress, and is ended.
+//! A phase whose end is decided far from its thresholds takes a few evaluations. Bisection to the
+//! last digit takes at most 1100 (from the smallest number to the largest), a near graze divided
+//! down to that size as many on both sides of each of two thresholds: these are granted at once. A
+//! phase without an event costs up to a few evaluations a period of the forcing and of the free
+//! oscillation: so much is granted for the time that is proved to be clear. A search that spends
+//! more than that makes no progress, and is ended.
 
 use crate::crossing::Counters;
 use crate::flow::stride::Strides;
@@ -14,12 +14,13 @@ use std::f64::consts::TAU;
 /// Evaluations that the search of one phase may take wherever it stands.
 pub const GRANTED: u64 = 4096;
 
-/// Evaluations granted for each radian of the forcing and each unit of time that are proved to be clear.
-/// A certificate of degree eight reaches about a radian of the fastest harmonic, and halving finds such
-/// pieces with as many evaluations again: 64 leave a factor of thirty.
+/// Evaluations granted for each radian of the forcing and each unit of time that are proved to be
+/// clear. A certificate of degree eight reaches about a radian of the fastest harmonic, and halving
+/// finds such pieces with as many evaluations again: 64 leave a factor of thirty.
 pub const PER_RADIAN: f64 = 64.0;
 
-/// Evaluations that the search of one phase may take in all, however long the phase: a second or so.
+/// Evaluations that the search of one phase may take in all, however long the phase: a second or
+/// so.
 pub const MOST: u64 = 1 << 20;
 
 /// Evaluations by which a search may pass its limit: those of one bracketed root, which are not
@@ -42,8 +43,8 @@ impl Limit {
         Self { begun: counters.evaluations, pace: 1.0 + TAU / strides.turning.period }
     }
 
-    /// Whether the search has taken more than is granted to one that has proved the phase to be clear
-    /// for a time `elapsed`.
+    /// Whether the search has taken more than is granted to one that has proved the phase to be
+    /// clear for a time `elapsed`.
     #[must_use]
     pub fn is_passed(&self, elapsed: f64, counters: &Counters) -> bool {
         let spent = counters.evaluations - self.begun;

@@ -17,12 +17,12 @@
 //! oscillation in contact).
 //!
 //! Rounding enters through one number a piece, `slack`: a few eps times the largest term that went
-//! into the guard. A guard that comes closer to its threshold than that, without passing it by more,
-//! is undecidable in f64; it is counted and taken as a touch, which is no switch. What the slack covers is
-//! listed in docs/ROUNDING.md, and checked there in interval arithmetic.
+//! into the guard. A guard that comes closer to its threshold than that, without passing it by
+//! more, is undecidable in f64; it is counted and taken as a touch, which is no switch. What the
+//! slack covers is listed in docs/ROUNDING.md, and checked there in interval arithmetic.
 //!
-//! The work of a search has a [`limit`] that grows with the time that is proved to be clear; a search that
-//! passes it leaves the phase undecided.
+//! The work of a search has a [`limit`] that grows with the time that is proved to be clear; a
+//! search that passes it leaves the phase undecided.
 //!
 //! [`stepping`] is the same question answered in the plainest way, by one-sided steps with a bound on
 //! the curvature. It is several times dearer and serves as the judge in the tests.
@@ -55,8 +55,8 @@ pub enum Crossing {
     Horizon,
     /// It never does.
     Never,
-    /// It does not until this elapsed time, after which rounding no longer knows the guard well: the motion
-    /// is to be taken up again there ([`guarded::Guarded::stage`]).
+    /// It does not until this elapsed time, after which rounding no longer knows the guard well:
+    /// the motion is to be taken up again there ([`guarded::Guarded::stage`]).
     Stage(f64),
     /// It does not until this elapsed time, and the search has taken more work than its [`limit`].
     Undecided(f64),

@@ -157,8 +157,9 @@ fn leaves(point: &Point<f64>, rises: bool) -> bool {
     if rises { slope > 0.0 } else { slope < 0.0 }
 }
 
-/// Whether a guard that turns back next to its threshold goes beyond it by more than rounding. A crest
-/// within that may as well be no crossing: it is a touch, at which Newton's method may settle anywhere.
+/// Whether a guard that turns back next to its threshold goes beyond it by more than rounding. A
+/// crest within that may as well be no crossing: it is a touch, at which Newton's method may settle
+/// anywhere.
 #[inline(always)]
 fn passes((over, slope, bend): (f64, f64, f64), rises: bool, slack: f64) -> bool {
     let outward = if rises { 1.0 } else { -1.0 };

@@ -220,8 +220,8 @@ fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
     }
 }
 
-/// Certifies everything from `left` to `target`, or to the earlier crossing that turns up; an error says how
-/// far it came within the limit.
+/// Certifies everything from `left` to `target`, or to the earlier crossing that turns up; an error
+/// says how far it came within the limit.
 #[inline]
 fn settle<G: Guarded>(
     (phase, strides): (&G, &Strides),

@@ -1,4 +1,5 @@
-//! Measures what the same-attractor test notices, and puts the figures and their picture into its page.
+//! Measures what the same-attractor test notices, and puts the figures and their picture into its
+//! page.
 //!
 //! `cargo run --release -p percuss-validation --example attractor_power -- docs/ATTRACTOR_TEST.md`
 //!

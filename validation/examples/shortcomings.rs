@@ -1,9 +1,9 @@
 //! Writes `shortcomings.toml` anew from a `report.json` of the full suite.
 //!
-//! `cargo run --release --example shortcomings -- REPORT...` prints the file: every bound that fails
-//! in one of the reports becomes a row of its engine's defect, with a floor and a ceiling around the
-//! figure that was measured. Reasons are people's: those of the present file are kept, a new defect
-//! gets an empty one, which the program refuses to read.
+//! `cargo run --release --example shortcomings -- REPORT...` prints the file: every bound that
+//! fails in one of the reports becomes a row of its engine's defect, with a floor and a ceiling
+//! around the figure that was measured. Reasons are people's: those of the present file are kept, a
+//! new defect gets an empty one, which the program refuses to read.
 
 use anyhow::{Context, Result, bail};
 use serde_json::Value;

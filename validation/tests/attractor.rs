@@ -39,8 +39,8 @@ fn fresh_runs_of_the_exact_solver_pass() {
     }
 }
 
-/// The errors of single periods notice one per cent in every parameter, in every run: on this case the
-/// detection threshold lies between 1e-4 and 1e-2 for each of them.
+/// The errors of single periods notice one per cent in every parameter, in every run: on this case
+/// the detection threshold lies between 1e-4 and 1e-2 for each of them.
 #[test]
 fn one_per_cent_is_caught() {
     for (case, test) in tests().filter(|(case, _)| case.name == "fig7a-chaos") {

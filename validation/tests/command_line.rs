@@ -1,5 +1,5 @@
-//! docs/COMMAND_LINE.md has a section for every verb and no other, names every flag and no other, and
-//! its examples print what they show.
+//! docs/COMMAND_LINE.md has a section for every verb and no other, names every flag and no other,
+//! and its examples print what they show.
 //!
 //! `PERCUSS_SPLICE=1 cargo test --test command_line` writes the examples' output anew. A line `...`
 //! stands for any number of lines; splicing keeps as many lines before and after it as there are.
@@ -160,8 +160,8 @@ fn spliced(transcript: &str, folder: &Path, code: i32) -> String {
     whole
 }
 
-/// Every example is run, in the page's order and in one folder; a block of TOML whose first line is the
-/// comment `# NAME` is written there. The last digits are those of one platform's sine.
+/// Every example is run, in the page's order and in one folder; a block of TOML whose first line is
+/// the comment `# NAME` is written there. The last digits are those of one platform's sine.
 #[test]
 fn examples_print_what_they_show() {
     let folder = tempfile::tempdir().expect("a folder");

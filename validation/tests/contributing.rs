@@ -100,7 +100,8 @@ fn the_tables_of_a_case_are_made_as_is_said() {
     }
 }
 
-/// What its command prints is compared in the test `own_engine`, which runs it as a program of its own.
+/// What its command prints is compared in the test `own_engine`, which runs it as a program of its
+/// own.
 #[test]
 fn adding_an_engine() {
     let section = section("Add an engine");

@@ -54,8 +54,8 @@ const NUMBERS: &[&str] = &["nan", "inf", "-inf", "1e400", "-1e300", "1,5", "x", 
 const WORDS: &[&str] = &["", "x", "-5", "1e300"];
 const MISSING_FOLDER: &[&str] = &["/no/such/folder/file.json"];
 
-/// The verbs that a row is for (all where empty), a flag, values that are refused, and what the line
-/// says is accepted.
+/// The verbs that a row is for (all where empty), a flag, values that are refused, and what the
+/// line says is accepted.
 type Row = (&'static [&'static str], &'static str, &'static [&'static str], &'static str);
 
 const ROWS: &[Row] = &[
@@ -122,7 +122,7 @@ const ROWS: &[Row] = &[
     (&["completions"], "SHELL", &["", "x", "1e300"], "bash"),
 ];
 
-/// Of a cycle's number, which may be negative.
+/// Odd values of a cycle's number, which may be negative.
 const INTEGERS_BUT_NEGATIVE: &[&str] = &["1e300", "1.5", "nan", "x", "", "18446744073709551616"];
 
 /// The rows of a flag of a verb: its own, or else those of all verbs.
@@ -192,7 +192,8 @@ fn odd_values_of_every_flag() {
     }
 }
 
-/// A value that begins with a minus is the flag's, whether an equals sign or a space comes before it.
+/// A value that begins with a minus is the flag's, whether an equals sign or a space comes before
+/// it.
 #[test]
 fn negative_values_belong_to_their_flags() {
     for words in [

@@ -35,7 +35,8 @@ fn simulate() {
     }
 }
 
-/// A mass thrown up to where the gap closes to nothing, exactly: half of it by a speed of 1 against a force of 1.
+/// A mass thrown up to where the gap closes to nothing, exactly: half of it by a speed of 1 against
+/// a force of 1.
 #[test]
 fn simulate_counts_touches_that_rounding_does_not_decide() {
     let touch = "simulate --until 3 --a 0 --b=-1 --g 0 --p=-0.5 --y 1 --q 0 --format json";
@@ -268,7 +269,8 @@ fn bench() {
     let ladder = of("impact-into-progression", "ode_solvers-dopri5");
     assert_eq!(ladder.len(), 10);
     assert_eq!(ladder.iter().filter(|row| row["most_accurate"] == true).count(), 1);
-    // The same work-precision curve on every row of an engine; the exact solver is its own unit at any error.
+    // The same work-precision curve on every row of an engine; the exact solver is its own unit at
+    // any error.
     for key in ["ratio_at_1e-6", "ratio_at_1e-9"] {
         assert!(ladder.iter().all(|row| row[key] == ladder[0][key]), "{key}");
         assert_eq!(exact[0][key], 1.0);
@@ -279,8 +281,8 @@ fn bench() {
     let accurate = ladder.iter().filter(|row| row["state_error_max"].as_f64() <= Some(1e-9));
     let least = accurate.filter_map(|row| row["ratio_to_exact"].as_f64()).reduce(f64::min);
     assert!(Some(ratio("ratio_at_1e-9")) <= least);
-    // What the harness adds can be told of every engine that is right somewhere; its search for events is
-    // most of what it adds.
+    // What the harness adds can be told of every engine that is right somewhere; its search for
+    // events is most of what it adds.
     let share = |row: &Value| row["harness_share"].as_f64();
     assert!(
         rows.iter().filter(|row| row["ns_per_period"].is_number()).all(|it| share(it).is_some())

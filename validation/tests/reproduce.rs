@@ -20,8 +20,9 @@ const REPRODUCED: &str = "reproduced";
 const DIFFERS: &str = "differs";
 const NOT_DETERMINED: &str = "not-determined";
 
-/// Every claim of the checklist with its verdict. A verdict changes here by hand only, with the reason in
-/// the commit: neither a changed program nor a regenerated page changes one without a word.
+/// Every claim of the checklist with its verdict. A verdict changes here by hand only, with the
+/// reason in the commit: neither a changed program nor a regenerated page changes one without a
+/// word.
 const VERDICTS: [(&str, &str); 35] = [
     ("fig2", REPRODUCED),
     ("table1", REPRODUCED),

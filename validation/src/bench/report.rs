@@ -64,11 +64,11 @@ pub struct Row {
     pub state_error_max: Option<f64>,
     pub event_time_error_max: Option<f64>,
     pub ratio_to_exact: Option<f64>,
-    /// The same at errors of at most 1e-6, read off this engine's work-precision curve on this
+    /// Ratio of times at errors of at most 1e-6, read off this engine's work-precision curve on this
     /// case.
     #[serde(rename = "ratio_at_1e-6")]
     pub ratio_at_1e_6: Option<f64>,
-    /// The same at errors of at most 1e-9.
+    /// Ratio of times at errors of at most 1e-9.
     #[serde(rename = "ratio_at_1e-9")]
     pub ratio_at_1e_9: Option<f64>,
     /// Share of the time that is the harness's own ([`super::alone`]).

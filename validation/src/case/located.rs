@@ -18,8 +18,8 @@ impl FileError {
         Self(format!("{file}: {}", one_line(&what.to_string())))
     }
 
-    /// What the TOML reader objects to, with its line; of a wrong type the key, the value as typed and
-    /// what is accepted.
+    /// What the TOML reader objects to, with its line; of a wrong type the key, the value as typed
+    /// and what is accepted.
     pub(crate) fn toml(file: &str, text: &str, error: &toml::de::Error) -> Self {
         let message = one_line(error.message());
         let Some(span) = error.span() else { return Self(format!("{file}: {message}")) };
@@ -124,7 +124,8 @@ impl Origins {
         self.0.contains_key(name)
     }
 
-    /// The error in one line that names the culprit's flag or file and line, and its value as typed.
+    /// The error in one line that names the culprit's flag or file and line, and its value as
+    /// typed.
     #[must_use]
     pub fn explain(&self, error: &InputError) -> String {
         match error {

@@ -76,7 +76,8 @@ impl Formatter for Lines {
         if self.open.pop() == Some(true) {
             return self.indented.end_array(out);
         }
-        // The library's formatter keeps count of the indentation; its line break is not wanted here.
+        // The library's formatter keeps count of the indentation; its line break is not wanted
+        // here.
         self.indented.end_array(&mut io::sink())?;
         out.write_all(b"]")
     }

@@ -17,8 +17,8 @@ pub(super) struct OutputFlags<F: ValueEnum + Send + Sync + 'static> {
 }
 
 impl<F: ValueEnum + PartialEq + Send + Sync + 'static> OutputFlags<F> {
-    /// The format that --output and --format agree on, or else `usual`; refuses a path that cannot be
-    /// written.
+    /// The format that --output and --format agree on, or else `usual`; refuses a path that cannot
+    /// be written.
     pub(super) fn format(&self, usual: F) -> Result<F> {
         let format = chosen(self.output.as_deref(), self.format.clone(), usual)?;
         self.destination().check()?;

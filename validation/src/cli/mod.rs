@@ -53,7 +53,8 @@ struct Arguments {
     /// Says nothing but errors: no notes, no progress
     #[arg(long, global = true)]
     quiet: bool,
-    /// Colours of help and messages; auto is where stderr or stdout is a terminal and NO_COLOR is not set
+    /// Colours of help and messages; auto is where stderr or stdout is a terminal and NO_COLOR is
+    /// not set
     #[arg(long, global = true, value_name = "WHEN", value_enum, default_value_t = ColorChoice::Auto)]
     color: ColorChoice,
 }
@@ -83,7 +84,8 @@ pub fn command() -> Command {
     Arguments::command()
 }
 
-/// Runs the command line with engines of another crate beside those of this one, and says how it went.
+/// Runs the command line with engines of another crate beside those of this one, and says how it
+/// went.
 pub fn run_with(
     own: &[&'static dyn Engine],
     arguments: impl IntoIterator<Item = OsString>,

@@ -9,7 +9,8 @@ use std::fmt;
 /// The longest horizon, in forcing periods.
 pub(super) const MAX_PERIODS: u64 = 1_000_000_000;
 
-/// The longest transient of a grid's starts, in forcing periods: with its extensions fifteen times that.
+/// The longest transient of a grid's starts, in forcing periods: with its extensions fifteen times
+/// that.
 pub(super) const MAX_TRANSIENT: u64 = 10_000_000;
 
 /// Most cells of a grid of starts.

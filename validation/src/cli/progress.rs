@@ -17,7 +17,7 @@ pub(super) struct Progress {
 }
 
 impl Progress {
-    /// Of a run from `start` to `horizon`.
+    /// Creates the progress of a run from `start` to `horizon`.
     pub(super) fn new(bar: Option<Bar>, omega: f64, start: Instant, horizon: &Instant) -> Self {
         let span = horizon.since(&start, omega).value();
         Self { bar, calls: Cell::new(0), omega, start, span }

@@ -29,7 +29,8 @@ pub(super) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// The value of `--color` before the flags are parsed: help and objections of the parser follow it too.
+/// The value of `--color` before the flags are parsed: help and objections of the parser follow it
+/// too.
 pub(super) fn stated_color(arguments: &[OsString]) -> ColorChoice {
     let texts: Vec<_> = arguments.iter().map(|it| it.to_string_lossy()).collect();
     let mut values = texts.iter().enumerate().filter_map(|(i, text)| match text.as_ref() {

@@ -71,11 +71,13 @@ mod signals {
 
     static WATCHED: Once = Once::new();
 
-    /// From the first file on, SIGINT and SIGTERM remove what is unfinished and end the process with
-    /// exit code 128 + signal, as a shell reports it. Until then they do what they do by default.
+    /// From the first file on, SIGINT and SIGTERM remove what is unfinished and end the process
+    /// with exit code 128 + signal, as a shell reports it. Until then they do what they do by
+    /// default.
     pub(super) fn watch() {
         WATCHED.call_once(|| {
-            // Where signals cannot be watched an interruption leaves its file, as it would without this.
+            // Where signals cannot be watched an interruption leaves its file, as it would without
+            // this.
             if let Ok(mut signals) = Signals::new([SIGINT, SIGTERM]) {
                 std::thread::spawn(move || signals.forever().next().map(end));
             }

@@ -74,7 +74,8 @@ impl Meter {
         }
     }
 
-    /// Where this run's events lie, if it is made without the harness's own part ([`super::alone`]).
+    /// Where this run's events lie, if it is made without the harness's own part
+    /// ([`super::alone`]).
     pub(super) fn told(&self) -> Option<&Told> {
         self.told.as_ref()
     }

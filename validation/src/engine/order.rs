@@ -6,8 +6,8 @@
 pub fn claimed_order(engine: &str) -> Option<u32> {
     let order = match engine {
         "diffsol-tr_bdf2" => 2,
-        // Its library: "a third order ESDIRK method"; the 4 of its name is the order of the solution
-        // that only estimates the error.
+        // Its library: "a third order ESDIRK method"; the 4 of its name is the order of the
+        // solution that only estimates the error.
         "diffsol-esdirk34" => 3,
         "ode_solvers-rk4" => 4,
         "diffsol-tsit45"

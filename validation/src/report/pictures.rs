@@ -15,7 +15,7 @@ use rayon::prelude::*;
 
 /// Two clouds of more points together are no SVG.
 const MOST_SVG_POINTS: usize = 6000;
-/// Of at most so many cases wrong events are drawn one by one.
+/// Wrong events are drawn one by one where at most this many cases are chosen.
 const FEW_CASES: usize = 3;
 pub(super) const GREY: RGBColor = RGBColor(150, 150, 150);
 

@@ -1,9 +1,9 @@
 //! The engines in order: which one finds the truth's events, and at what cost.
 //!
-//! The rule: by (events found - spurious events) as a share of all events of all cases and settings,
-//! where events that were not run or not scored count as not found; of equals the one that needs fewer
-//! right-hand sides an event at an error of 1e-6 comes first. Exact engines stand above, as the
-//! reference.
+//! The rule: by (events found - spurious events) as a share of all events of all cases and
+//! settings, where events that were not run or not scored count as not found; of equals the one
+//! that needs fewer right-hand sides an event at an error of 1e-6 comes first. Exact engines stand
+//! above, as the reference.
 
 use super::Row;
 use crate::score::{Spread, Verdict};

@@ -1,4 +1,5 @@
-//! The first screen of `validate`: which integrator can be trusted with events, and where each fails.
+//! The first screen of `validate`: which integrator can be trusted with events, and where each
+//! fails.
 //!
 //! Every line fits [`WIDTH`] columns.
 

@@ -62,7 +62,8 @@ fn said(met: &Bifurcation) -> String {
     format!("{kind} of period {period} at omega = {value:.10} +- {error:.0e}")
 }
 
-/// Between our value and the nearest one that the paper's digits allow, where it is not one of these.
+/// Between our value and the nearest one that the paper's digits allow, where it is not one of
+/// these.
 fn between(printed: &Printed, value: f64) -> Option<f64> {
     let (paper, within) = (printed.value?, printed.within.filter(|_| !printed.prints(value))?);
     let edge = if value < paper { paper - within } else { paper + within };

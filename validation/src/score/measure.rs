@@ -81,8 +81,8 @@ impl Measures {
         }
     }
 
-    /// Whether a bound on a quantity applies: not where the truth has no event to measure it at, nor
-    /// where the suite did not ask for the probe that measures it.
+    /// Whether a bound on a quantity applies: not where the truth has no event to measure it at,
+    /// nor where the suite did not ask for the probe that measures it.
     #[must_use]
     pub fn concerns(&self, quantity: Quantity) -> bool {
         match quantity {

@@ -15,8 +15,8 @@ pub(super) enum Answer {
 
 /// Holds a shortcoming against a row; a bound that fails as stated becomes known.
 ///
-/// It shows if the bound on its quantity fails with a figure between its floor and its ceiling. What
-/// was not measured shows nothing.
+/// It shows if the bound on its quantity fails with a figure between its floor and its ceiling.
+/// What was not measured shows nothing.
 pub(super) fn answer(
     known: &Shortcoming,
     run: &Run<'_>,

@@ -1,4 +1,5 @@
-//! The verdict on a row: bounds held against measures, with what grazes and known shortcomings excuse.
+//! The verdict on a row: bounds held against measures, with what grazes and known shortcomings
+//! excuse.
 //!
 //! A row has one class, the first that applies of: unavailable, not-run, error, fail, known,
 //! undecidable, not-scored, pass.

@@ -21,7 +21,8 @@ pub(super) struct Arguments {
     /// Only these claims or items; several are alternatives
     #[arg(long, value_name = "ID")]
     only: Vec<String>,
-    /// How large the grids of figure-7 are: minutes, or basins of 1000 x 1000 starts [default: default]
+    /// How large the grids of figure-7 are: minutes, or basins of 1000 x 1000 starts [default:
+    /// default]
     #[arg(long, value_enum)]
     size: Option<Size>,
     /// Pictures, their data and claims.json go into this folder; interrupted work is taken up again there

@@ -9,7 +9,8 @@ use crate::cli::work::Bar;
 use anyhow::{Result, bail};
 use percuss::{Endless, Exit, Instant, Leg, Trajectory};
 
-/// Forcing periods after which a run that counts switches stops, where `--max-periods` is not given.
+/// Forcing periods after which a run that counts switches stops, where `--max-periods` is not
+/// given.
 const USUAL_MAX_PERIODS: u64 = 1_000_000;
 
 /// A picture of more forcing periods than this shows nothing.

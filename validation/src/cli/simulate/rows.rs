@@ -28,8 +28,8 @@ fn state(sample: &Sample) -> [f64; 4] {
     [sample.state.p, sample.state.y, sample.state.q, sample.v]
 }
 
-/// Row 0 is the start, then each switch, and the horizon if that is what ends the run, or where it is no
-/// longer decided.
+/// Row 0 is the start, then each switch, and the horizon if that is what ends the run, or where it
+/// is no longer decided.
 pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<Ending> {
     let mut index = 0;
     let mut last = None;
@@ -76,7 +76,8 @@ pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<Ending> {
     Ok(ending)
 }
 
-/// Rows at start + k 2 pi/(K omega), the horizon included; a last one where the run is no longer decided.
+/// Rows at start + k 2 pi/(K omega), the horizon included; a last one where the run is no longer
+/// decided.
 pub(super) fn samples(plan: &Plan, per_period: u32, sink: &mut dyn Sink) -> Result<Ending> {
     let start = plan.problem.entry.instant;
     let mut k = 0;

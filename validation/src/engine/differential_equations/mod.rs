@@ -5,9 +5,9 @@
 //! - Each phase is begun by a fresh method, because limits of steps and of rejections count over a
 //!   method's life.
 //! - Tolerances are vectors, one for each co-ordinate.
-//! - Steps are at most an eighth of a forcing period, so that no step hides a whole phase, and, where
-//!   a method is walked, an eighth of a turn of the elastic contact. Limits of steps and rejections
-//!   are raised: the meter's limit is the one that counts.
+//! - Steps are at most an eighth of a forcing period, so that no step hides a whole phase, and,
+//!   where a method is walked, an eighth of a turn of the elastic contact. Limits of steps and
+//!   rejections are raised: the meter's limit is the one that counts.
 //! - Newton iterations are held to what rounding of the displacements allows where the library's
 //!   default is a constant, and to its own rule where it has one.
 //! - The interpolants of the Verner methods are as good as their steps and are used. The one of

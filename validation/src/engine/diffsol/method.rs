@@ -50,8 +50,9 @@ fn begun<S: OdeSolverState<Vect>>(
 pub(in super::super) struct Bdf;
 /// Trapezoidal rule, then second-order backward differentiation.
 pub(in super::super) struct TrBdf2;
-/// Diagonally implicit, with an explicit first stage. The solution that is continued with is of order 3:
-/// it meets the conditions up to that order and none of order 4, which the embedded one meets.
+/// Diagonally implicit, with an explicit first stage. The solution that is continued with is of
+/// order 3: it meets the conditions up to that order and none of order 4, which the embedded one
+/// meets.
 pub(in super::super) struct Esdirk34;
 /// Tsitouras's pair.
 pub(in super::super) struct Tsit45;

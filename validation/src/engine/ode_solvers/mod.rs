@@ -45,8 +45,8 @@ struct Field<'a, E> {
     meter: &'a Meter,
     /// Where it began: on the surface, and no way out of the phase.
     from: [f64; 4],
-    /// A time at which another phase's derivative is taken: the fault of a restart that keeps the old
-    /// one. No engine that is scored has it.
+    /// A time at which another phase's derivative is taken: the fault of a restart that keeps the
+    /// old one. No engine that is scored has it.
     stale: Option<(f64, Phase)>,
 }
 

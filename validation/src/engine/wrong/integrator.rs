@@ -113,7 +113,8 @@ struct Watch {
 }
 
 impl Watch {
-    /// The phase whose derivative begins a stretch: that before the last event, if that is the fault.
+    /// The phase whose derivative begins a stretch: that before the last event, if that is the
+    /// fault.
     fn stale(&self, from: &Moment) -> Option<Phase> {
         self.before.filter(|_| self.slip == Slip::OldDerivative && from.t == from.began)
     }

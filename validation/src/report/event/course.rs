@@ -10,8 +10,7 @@ use crate::truth::{Replay, Truth};
 use percuss::Phase;
 use percuss::two_word::TwoWord;
 
-/// Of steps, and of looks at the guard, that are nearer to each other than this share of a view,
-/// one is shown: their marks would lie on each other.
+/// Marks of steps and looks nearer to each other than this share of a view are shown as one.
 const APART: f64 = 1.0 / 120.0;
 /// The engine's error hides the truth's shape where it is larger than this share of the truth's
 /// range.

@@ -12,8 +12,8 @@ use percuss::Phase;
 /// The zoom: where the slider is met, compressed and left.
 const ZOOM: Window = [(-0.1, 1.15), (-2.0, 6.2)];
 
-/// Rounding of y in progression, in units of eps and of the largest y: it is a sum of four terms, none
-/// larger than twice that, and zero where the phase ends.
+/// Rounding of y in progression, in units of eps and of the largest y: it is a sum of four terms,
+/// none larger than twice that, and zero where the phase ends.
 const ROUNDINGS: f64 = 8.0;
 
 pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<Claim, Failure> {

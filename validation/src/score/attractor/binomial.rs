@@ -1,7 +1,7 @@
 //! The exact interval of a share (Clopper and Pearson 1934).
 
-/// The shares that so many hits in so many runs leave possible at 95 %: outside, as many hits or more,
-/// or as few or fewer, have a probability below 2.5 %.
+/// The shares that so many hits in so many runs leave possible at 95 %: outside, as many hits or
+/// more, or as few or fewer, have a probability below 2.5 %.
 #[must_use]
 pub fn interval(hits: u32, runs: u32) -> [f64; 2] {
     const TAIL: f64 = 0.025;

@@ -1,13 +1,14 @@
 //! Limits measured on runs of the exact solver, without an extrapolated tail.
 //!
-//! `cargo run --release --example calibrate` makes `attractors.toml` again. With m and s the mean and
-//! standard deviation over the runs against the reference, a limit is |m| + z s of the difference
-//! itself for exponent and drift, which are means over many periods and so nearly normal, and
-//! exp(m + z s) of the logarithms of the other distances, which are positive. m and s only make the
-//! distances comparable; the level is in z, the same for all distances of a case: the largest that any
-//! distance of any run takes. One more run, exchangeable with the N that were made, exceeds a largest
-//! value of N with a probability of 1/(N + 1), whatever the tails look like. That is the level of the
-//! whole family of distances of a row, and N = [`NULL_RUNS`] runs measure no lower one.
+//! `cargo run --release --example calibrate` makes `attractors.toml` again. With m and s the mean
+//! and standard deviation over the runs against the reference, a limit is |m| + z s of the
+//! difference itself for exponent and drift, which are means over many periods and so nearly
+//! normal, and exp(m + z s) of the logarithms of the other distances, which are positive. m and s
+//! only make the distances comparable; the level is in z, the same for all distances of a case: the
+//! largest that any distance of any run takes. One more run, exchangeable with the N that were
+//! made, exceeds a largest value of N with a probability of 1/(N + 1), whatever the tails look
+//! like. That is the level of the whole family of distances of a row, and N = [`NULL_RUNS`] runs
+//! measure no lower one.
 
 use super::distance::{Distances, STATISTICS, distances};
 use super::limits::{Calibrated, Plan};
@@ -21,8 +22,8 @@ use std::collections::BTreeMap;
 /// Runs from which the limits of a case are taken.
 pub const NULL_RUNS: u32 = 20_000;
 
-/// Where reference runs agree exactly, as where nothing drifts, an integrator need not: a length below
-/// a tenth of the error up to which runs are scored, or this many periods, do not count.
+/// Where reference runs agree exactly, as where nothing drifts, an integrator need not: a length
+/// below a tenth of the error up to which runs are scored, or this many periods, do not count.
 const SMALLEST: f64 = 1e-4;
 const ODD_PERIODS: f64 = 5.0;
 

@@ -36,8 +36,8 @@ const MAP_ERROR_MEDIAN: &str = "map_error_median";
 /// The share of periods whose error exceeds [`SCORED_ERROR`].
 const MAP_ERROR_SHARE: &str = "map_error_share";
 
-/// Whether a distance is one from the reference section, which sampling alone makes larger than zero;
-/// the others are distances from the exact map, which rounding alone makes so.
+/// Whether a distance is one from the reference section, which sampling alone makes larger than
+/// zero; the others are distances from the exact map, which rounding alone makes so.
 #[must_use]
 pub fn is_sampled(name: &str) -> bool {
     ![MAP_ERROR_MEDIAN, MAP_ERROR_SHARE].contains(&name)
@@ -66,8 +66,8 @@ pub fn distances(section: &Section, reference: &Section) -> Distances {
     result
 }
 
-/// Wasserstein-1 and Kolmogorov-Smirnov distance of two samples in rising order: the integral and the
-/// largest value of the difference of their distribution functions.
+/// Wasserstein-1 and Kolmogorov-Smirnov distance of two samples in rising order: the integral and
+/// the largest value of the difference of their distribution functions.
 fn one_dimensional(a: &[f64], b: &[f64]) -> (f64, f64) {
     (area(a, b), exceeds(a, b).max(exceeds(b, a)))
 }

@@ -6,8 +6,8 @@
 //! reference, in batches of the engine's length, because successive strobes are not independent.
 //!
 //! Over one period errors hardly grow, chaos or not. So each strobe is also compared with the exact
-//! map's image of the engine's own strobe before it: this has no sampling noise, and notices a model
-//! that is slightly different where two thousand periods of statistics cannot.
+//! map's image of the engine's own strobe before it: this has no sampling noise, and notices a
+//! model that is slightly different where two thousand periods of statistics cannot.
 //! `docs/ATTRACTOR_TEST.md` has the measured rate of false alarms and the power.
 
 mod binomial;

@@ -54,8 +54,8 @@ pub struct Alarms {
     pub runs: u32,
     /// Runs with a distance beyond its limit.
     pub raised: u32,
-    /// Runs with a distance from the reference section beyond its limit; the errors of single periods
-    /// are left out.
+    /// Runs with a distance from the reference section beyond its limit; the errors of single
+    /// periods are left out.
     pub sampled: u32,
     /// Runs in which each distance was beyond its limit, by name.
     pub by: BTreeMap<&'static str, u32>,

@@ -31,7 +31,8 @@ impl Kind {
 /// The most runs of one kind.
 pub const MOST_RUNS: u32 = 1_000_000;
 
-/// The distance of neighbouring starts in p. Within the transient, two hundred periods at exponents of
+/// The distance of neighbouring starts in p. Within the transient, two hundred periods at exponents
+/// of
 /// 0.2 and more, it grows e^40 times and more: each start is another stretch of the same chaos.
 const STRIDE: f64 = 1e-9;
 

@@ -19,8 +19,9 @@ pub struct Section {
     pub drift: f64,
     /// Mean growth of a small error per forcing period, in the exact map's derivative along these points.
     pub lyapunov: f64,
-    /// How far each strobe is from the exact map's image of the strobe before it: the largest of the
-    /// differences in p, y and q, each divided by 1 + |value|. Infinite where that has no image.
+    /// How far each strobe is from the exact map's image of the strobe before it: the largest of
+    /// the differences in p, y and q, each divided by 1 + |value|. Infinite where that has no
+    /// image.
     pub map_errors: Vec<f64>,
     /// The series whose distributions are compared, each in rising order.
     pub(super) sorted: [Vec<f64>; SERIES],
@@ -45,8 +46,8 @@ impl Section {
         Self::judged(task, outcome, transient, &task.problem)
     }
 
-    /// Like [`Section::of`], with the exact map of another problem: the one that the run should have
-    /// solved.
+    /// Like [`Section::of`], with the exact map of another problem: the one that the run should
+    /// have solved.
     pub(super) fn judged(
         task: &Task,
         outcome: &Outcome,
