@@ -1,5 +1,4 @@
-//! Heun's method with fixed steps: an engine in a crate of its own, scored and reported by the
-//! whole program.
+//! Heun's method with fixed steps: an engine in a crate of its own, scored and reported by the whole program.
 //!
 //! `cargo run --release -p percuss-validation --example engine -- validate -e '^(exact|heun)$'`
 
