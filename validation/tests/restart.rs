@@ -158,3 +158,21 @@ fn a_failure_is_no_number() {
     assert_eq!((failing.failed, failing.with_impact), (20, 20));
     assert!(failing.units.max.is_nan() && failing.absolute.median.is_nan());
 }
+
+/// A restart that is right but for its drift is off: the drift is scored with p, y and q.
+#[test]
+fn an_error_of_the_drift_alone_is_seen() {
+    const OFF: f64 = 1e-11;
+    let cases = embedded().expect("the cases are read");
+    let case = cases.iter().find(|case| case.name == "table1-from-rest").expect("the case");
+    let test = RestartTest::new(&exact::problem(case), 20);
+    let drifted = |task: &Task| {
+        let mut outcome = exact::run(task)?;
+        outcome.end[3] += OFF;
+        Ok(outcome)
+    };
+    let restart = test.score(f64::EPSILON, drifted);
+    assert!(restart.with_impact > 0);
+    assert!(restart.units.median > LARGEST, "{}", restart.units.median);
+    assert_eq!((restart.failed, restart.wrong_words), (0, 0));
+}
