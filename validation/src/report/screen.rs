@@ -54,7 +54,8 @@ fn plain(header: &[&str], right_from: usize) -> Table {
     table
 }
 
-fn text(table: &Table) -> String {
+/// A table's lines without the blanks at their ends.
+pub(super) fn text(table: &Table) -> String {
     let lines: Vec<_> = table.to_string().lines().map(|line| line.trim_end().to_owned()).collect();
     lines.join("\n") + "\n"
 }

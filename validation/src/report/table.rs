@@ -1,7 +1,7 @@
 //! The rows of a report as a table, and the reasons of those that are out of bounds.
 
 use super::Row;
-use super::screen::wrapped;
+use super::screen::{text, wrapped};
 use crate::number::brief;
 use crate::score::Verdict;
 use comfy_table::{CellAlignment, Table, presets};
@@ -36,8 +36,7 @@ pub(super) fn row_table(rows: &[Row]) -> String {
     for column in table.column_iter_mut() {
         column.set_padding((0, 2));
     }
-    let lines: Vec<_> = table.to_string().lines().map(|line| line.trim_end().to_owned()).collect();
-    lines.join("\n") + "\n"
+    text(&table)
 }
 
 /// The reasons of rows without a result and of rows whose failure nothing excuses.
