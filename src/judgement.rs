@@ -108,8 +108,7 @@ impl Leg {
 
 /// A bound of the free part's second derivative from `at` on, by its energy.
 fn free_bend<T: Number>(contact: &Contact<T>, at: &Point<T>) -> f64 {
-    let b = contact.constants.b;
-    let forced = contact.constants.steady.orders([at.force[0] - b, at.force[1], at.force[2]]);
+    let forced = contact.constants.steady.orders(at.force);
     let [_, _, second, third] = at.guard.orders;
     (second - forced[2]).to_f64().hypot((third - forced[3]).to_f64())
 }

@@ -159,7 +159,7 @@ impl Leg {
 
     /// The right-hand sides of Eqs. (11) to (13): rates of p, y, q and v.
     pub(crate) fn field(&self, point: &Point<f64>) -> [f64; 4] {
-        let [force, ..] = point.force;
+        let force = self.constants.b + point.force[0];
         let [guard, ..] = point.guard.orders;
         let slider = point.slider_velocity;
         match self.motion() {

@@ -111,8 +111,14 @@ impl Model {
     /// The external force a cos(omega tau + phi) + b and its first two derivatives.
     #[must_use]
     pub fn force(&self, instant: &Instant) -> [f64; 3] {
+        let [harmonic, rate, rate2] = self.harmonic_force(instant);
+        [self.parameters.b + harmonic, rate, rate2]
+    }
+
+    /// a cos(omega tau + phi) at an instant, with its first two derivatives.
+    pub(crate) fn harmonic_force(&self, instant: &Instant) -> [f64; 3] {
         let EntryAngle { sin, cos, .. } = self.forcing_angle(instant);
-        let Parameters { a, b, omega, .. } = self.parameters;
-        [b + a * cos, -(a * omega * sin), -(a * omega * omega * cos)]
+        let Parameters { a, omega, .. } = self.parameters;
+        [a * cos, -(a * omega * sin), -(a * omega * omega * cos)]
     }
 }

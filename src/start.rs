@@ -68,7 +68,7 @@ impl Model {
         let scale = state.p.abs().max(state.q.abs()).max(g);
         let limit = state.q + g;
         if (state.p - limit).abs() <= FOUR_ULPS * scale {
-            return Ok(surface::onset(self.constants(), state, None, self.force(instant)));
+            return Ok(surface::onset(self.constants(), state, None, self.harmonic_force(instant)));
         }
         if state.p > limit {
             return Err(InputError::Penetrates { p: state.p, limit });
@@ -96,7 +96,7 @@ impl Model {
                 }
                 state.q = -(two_xi * state.y);
                 state.p = state.q + g;
-                surface::on_threshold(self.constants(), &state, 0.0, self.force(instant))
+                surface::on_threshold(self.constants(), &state, 0.0, self.harmonic_force(instant))
             }
             Phase::Contact => {
                 state.p = state.q + g;
@@ -105,7 +105,12 @@ impl Model {
                     state.y = (settled - state.q) / two_xi;
                 }
                 if settled == 0.0 || settled == 1.0 {
-                    surface::on_threshold(self.constants(), &state, settled, self.force(instant))
+                    surface::on_threshold(
+                        self.constants(),
+                        &state,
+                        settled,
+                        self.harmonic_force(instant),
+                    )
                 } else {
                     Onset::Contact { offset: settled, reference: 0.0 }
                 }
@@ -114,7 +119,12 @@ impl Model {
                 state.p = state.q + g;
                 if force <= 1.0 {
                     state.y = (1.0 - state.q) * self.constants().rate;
-                    surface::on_threshold(self.constants(), &state, 1.0, self.force(instant))
+                    surface::on_threshold(
+                        self.constants(),
+                        &state,
+                        1.0,
+                        self.harmonic_force(instant),
+                    )
                 } else {
                     surface::slipping(self.constants(), &state)
                 }

@@ -13,7 +13,7 @@ pub(crate) const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
 
 /// The state with its force imposed where it lies on a threshold, and the phase that begins.
 ///
-/// `force` is the external force with its first two derivatives; `f` is the trial force if it is
+/// `force` is the harmonic force with its first two derivatives; `f` is the trial force if it is
 /// known better than as 2 xi y + q.
 #[inline(always)]
 pub(crate) fn onset(
@@ -103,7 +103,7 @@ fn at_one(direction: f64, y: f64) -> Onset {
 /// The first derivative of the trial force, on a threshold, that is not zero within its rounding.
 fn ladder(constants: &Constants<f64>, y: f64, f: f64, force: [f64; 3]) -> f64 {
     let Constants { a, b, two_xi, omega, .. } = *constants;
-    let pull = force[0] - f;
+    let pull = force[0] + (b - f);
     // On the threshold with all lower derivatives zero each rung is the one before, differentiated.
     let rungs = [
         (two_xi * pull + y, two_xi * (a + b.abs() + f) + y.abs()),
@@ -123,7 +123,8 @@ mod tests {
     /// Its speed f/(2 xi) is zero in f64: a separation under a force that pushes back would never have ended.
     #[test]
     fn a_force_without_a_speed_is_on_the_threshold() {
-        let constants = Constants::new(&Parameters { xi: 1e4, ..Parameters::default() });
+        let parameters = Parameters { b: 0.0, xi: 1e4, ..Parameters::default() };
+        let constants = Constants::new(&parameters);
         let y = -1.112_536_929_256e-312;
         let state = State { p: 0.02, y, q: f64::MIN_POSITIVE };
         let (_, pushed) = onset(&constants, state, None, [0.1, 0.0, 0.0]);

@@ -10,6 +10,7 @@
 )]
 
 use percuss::{Exit, Leg, Model, Parameters, Phase, Start};
+use std::f64::consts::FRAC_PI_2;
 
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -238,4 +239,130 @@ fn an_envelope_that_rounding_keeps_open() {
     let start = [0.0, 0.0, -5.002_662_570_924_352_5e-11, 0.0];
     let run = legs(case(parameters, start, None), 200.0);
     assert!(matches!(run[0].exit(), Exit::Endless(_)), "{:?}", run[0]);
+}
+
+/// p0 = q0 + g beside g = 1e9 has lost q0, of which a bound of the gap's envelope was made: it proved the
+/// flight to be clear until after its end.
+#[test]
+fn a_flight_far_up_returns_before_the_horizon() {
+    let parameters = [
+        1.0,
+        2.346_301_138_990_674e-6,
+        2_853.950_301_969_395,
+        29_494.100_226_629_93,
+        1e9,
+        -14.922_917_012_182_877,
+    ];
+    let (parameters, start) = case(parameters, [0.0, 1e9, 0.0, 0.0], None);
+    let model = Model::new(parameters).unwrap();
+    let entry = model.start(&start).unwrap();
+    let free: Vec<Leg> = model.trajectory(entry).take(6).collect();
+    assert!(free.iter().filter(|leg| leg.phase() == Phase::NoContact).count() >= 2);
+    // Every flight ends where it does without a horizon.
+    for periods in 1..=12 {
+        let horizon = entry.instant.after_periods(periods, 1);
+        let cut = model.trajectory(entry).until(horizon).take(6);
+        for (leg, whole) in cut.zip(&free).filter(|(leg, _)| matches!(leg.exit(), Exit::Switch(_)))
+        {
+            assert_eq!(leg.duration().to_bits(), whole.duration().to_bits(), "{periods}");
+        }
+        let ends = |leg: &&Leg| matches!(leg.exit(), Exit::Switch(next) if next.instant <= horizon);
+        let expected = free.iter().take_while(ends).count();
+        let found = model.trajectory(entry).until(horizon).take(6);
+        let switches = found.filter(|leg| matches!(leg.exit(), Exit::Switch(_))).count();
+        assert_eq!(switches, expected, "{periods}");
+    }
+}
+
+/// The squares of its derivatives underflow, so that the bound of the eighth was zero and proved a
+/// crossing away. The model is the one with forces 1e200 times larger, as long as both are far from 1.
+#[test]
+fn a_contact_whose_squares_underflow() {
+    let durations = [-276, -76].map(|exponent: i32| {
+        let unit = 10.0_f64.powi(exponent);
+        let (a, b) = (2.100_865_526_582_815_6 * unit, -0.877_014_839_738_917_9 * unit);
+        let parameters = [a, b, 1e-8, 0.001_032_237_949_543_611_8, 0.0, 0.0];
+        legs(case(parameters, [0.0; 4], None), 30.0)[0].duration()
+    });
+    let [tiny, small] = durations;
+    assert!((tiny - small).abs() <= ROUNDING * small, "{tiny} {small}");
+    assert!((small - 6.274_706_586_767_35).abs() < 1e-9, "{small}");
+}
+
+/// Just after its imposed zero the guard underflows to zero, which counted as a crossing.
+#[test]
+fn a_guard_that_underflows_next_to_its_imposed_zero() {
+    let parameters = [
+        8.305_269_339_752_404e-279,
+        -9.686_670_527_496_58e-280,
+        0.000_391_144_498_038_023_54,
+        1e6,
+        0.0,
+        5.817_167_878_477_489,
+    ];
+    let legs = legs(case(parameters, [0.0; 4], None), 1e-3);
+    // The force pushes for most of the first period.
+    let period = std::f64::consts::TAU / 1e6;
+    assert_eq!(legs[0].phase(), Phase::Contact);
+    assert!(legs[0].duration() > 0.2 * period, "{:e}", legs[0].duration());
+}
+
+/// Newton's method crept through a bracket of 1e30 radians: 12,640 evaluations.
+#[test]
+fn a_bracket_with_many_oscillations() {
+    let parameters = [
+        1e9,
+        -1.022_693_731_793_508_5e-52,
+        3.316_876_626_330_518_7,
+        1.0,
+        4.293_820_966_316_33,
+        -1.190_442_054_700_874_6e-5,
+    ];
+    let at = [-FRAC_PI_2, 2.326_226_989_369_825_3, 0.0, -0.027_847_814_572_060_016];
+    let (parameters, start) = case(parameters, at, None);
+    let model = Model::new(parameters).unwrap();
+    let entry = model.start(&start).unwrap();
+    // Next to a horizon a switch is looked for without it as well.
+    let horizon = entry.instant.after_periods(1765, 1_000_000);
+    let mut run = model.trajectory(entry).until(horizon);
+    assert!(run.next().is_some());
+    assert!(run.counters().evaluations < 100, "{:?}", run.counters());
+}
+
+/// A harmonic force of 1e-64 beside a static one of 1 was read off their sum. The root is from the closed form
+/// in 60 digits.
+#[test]
+fn a_small_harmonic_force_on_a_threshold() {
+    let parameters = [2.552_365_740_751_081_6e-64, 1.0, 1.0, 0.177_372_697_593_197_1, 0.02, 0.0];
+    let (tau, y) =
+        (1.567_510_069_900_758_7 / 0.177_372_697_593_197_1, -4.970_896_296_344_797_5e-65);
+    let legs = legs(case(parameters, [tau, 1.02, y, 1.0], Some(Phase::Contact)), 40.0);
+    let lasts = legs[0].duration();
+    // tau is rounded, and the root moves with it: d(lasts) = -d(tau).
+    let model = Model::new(Parameters { omega: 0.177_372_697_593_197_1, ..Parameters::default() });
+    let angle = legs[0].entry().instant.angle();
+    let moved = (angle - 1.567_510_069_900_758_7) / model.unwrap().parameters().omega;
+    let expected = 17.787_837_386_337_64 - moved;
+    assert!((lasts - expected).abs() <= ROUNDING * expected, "{lasts:?} {expected:?}");
+}
+
+/// Its gap closes after 4.5e-16, which a bound of the gap's envelope denied: it had been added up from
+/// parts of 24, whose rounding nothing allowed for.
+#[test]
+fn a_hop_under_a_far_slider() {
+    let phi = -132_601_311_228_378.03;
+    let parameters = [1.000_000_000_000_000_2, 0.0, 1e4, 1e6, 0.0, phi];
+    let (q, y) = (-24.313_010_378_579_69, 0.001_215_650_518_928_977_2);
+    let (parameters, start) = case(parameters, [3.311_970_349_310_081_4, q, y, q], None);
+    let start = Start { cycle: 1 << 53, ..start };
+    let model = Model::new(parameters).unwrap();
+    let entry = model.start(&start).unwrap();
+    let first = |leg: Option<Leg>| leg.unwrap().duration();
+    let free = first(model.trajectory(entry).next());
+    for parts in [1, 10, 1000] {
+        let horizon = entry.instant.after_periods(parts, 1000);
+        let cut = first(model.trajectory(entry).until(horizon).next());
+        assert_eq!(cut.to_bits(), free.to_bits(), "{parts}");
+    }
+    assert!(free < 1e-8, "{free:e}");
 }

@@ -71,9 +71,17 @@ fn next_to_the_upper_threshold_it_is_decided_alike() {
     // f comes from below.
     let (leg, _) = dying_out(1.2, 1.0 - f64::EPSILON / 2.0, 0.9, -0.1);
     assert_eq!(*leg.exit(), Exit::Endless(Endless::RestsForEver));
-    let (leg, counters) = dying_out(1.2, 1.0 + 1e-12, 0.9, -0.1);
-    assert!(matches!(leg.exit(), Exit::Switch(next) if next.phase() == Phase::Progression));
-    assert!(counters.evaluations <= DECIDED, "{counters:?}");
+    let (leg, _) = dying_out(1.2, 1.0, 0.9, -0.1);
+    assert_eq!(*leg.exit(), Exit::Endless(Endless::RestsForEver));
+    for beyond in [f64::EPSILON, 1e-15, 1e-12] {
+        let (leg, counters) = dying_out(1.2, 1.0 + beyond, 0.9, -0.1);
+        let next = leg.exit();
+        assert!(
+            matches!(next, Exit::Switch(next) if next.phase() == Phase::Progression),
+            "{next:?}"
+        );
+        assert!(counters.evaluations <= DECIDED, "{counters:?}");
+    }
 }
 
 /// Free and forced oscillation in step, three to one, which together stay inside although their

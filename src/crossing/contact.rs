@@ -29,7 +29,7 @@ pub struct Split {
 impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     pub(super) fn split(&self, at: &Point<f64>) -> Split {
         let constants = self.constants.borrow();
-        let forced = constants.steady.orders([at.force[0] - constants.b, at.force[1], at.force[2]]);
+        let forced = constants.steady.orders(at.force);
         let [f, f1, f2, f3] = at.guard.orders;
         let level = f + (self.reference - constants.b);
         let free = [level - forced[0], f1 - forced[1], f2 - forced[2], f3 - forced[3]];
@@ -41,13 +41,20 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
         /// Of eight steps of the recurrence, and of the sums here.
         const ROUNDINGS: f64 = 16.0;
+        /// The squares of two numbers whose sum is smaller may underflow.
+        const SQUARABLE: f64 = 1e-140;
         let [[a, b], [c, d]] = self.constants.borrow().free_eighth;
         let [x, rate, ..] = split.free;
         let [ax, br, cx, dr] = [a * x, b * rate, c * x, d * rate];
         let (eighth, ninth) = (ax + br, cx + dr);
         let terms = (ax.abs() + br.abs()) + (cx.abs() + dr.abs());
         let room = ROUNDINGS * f64::EPSILON * terms;
-        let by_energy = (eighth * eighth + ninth * ninth).sqrt() + room;
+        // The norm of two numbers without squares is at most their sum.
+        let by_energy = if terms > SQUARABLE {
+            (eighth * eighth + ninth * ninth).sqrt() + room
+        } else {
+            eighth.abs() + ninth.abs() + room
+        };
         if let Damping::Over { fast, slow, .. } = self.constants.borrow().damping {
             // Eight derivatives of a stiff oscillation are rounding once its fast part has died out.
             let quick = self.fast_amplitude(split) * quick_decay(fast * at.elapsed);
@@ -130,7 +137,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
             state: self.entry,
             slider_velocity: y,
             drift: 0.0,
-            force: [b + u, v, w],
+            force: [u, v, w],
             guard: Jet { orders, largest_term: self.offset.abs() },
         }
     }
@@ -209,9 +216,9 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
     }
 
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
-        let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
+        let Constants { two_xi, omega, .. } = *self.constants.borrow();
         // f'' + 2 xi f' + f = F + 2 xi F'
-        let (u, v) = (at.force[0] - b, at.force[1]);
+        let (u, v) = (at.force[0], at.force[1]);
         let omega2 = omega * omega;
         let (mut drive, mut next) = (v - two_xi * omega2 * u, -omega2 * (u + two_xi * v));
         let [.., mut before, mut last] = at.guard.orders;
@@ -230,14 +237,14 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         series: &Series<N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
-        let Constants { g, two_xi, damping, .. } = *self.constants.borrow();
+        let Constants { b, g, two_xi, damping, .. } = *self.constants.borrow();
         let Push { force, impulse } = Push::new(self.constants.borrow(), &at.force, step);
         let y = at.state.y + (impulse - (self.reference * step + series.integral(step)));
         let (bend, third) = if matches!(damping, Damping::Over { .. }) {
             series.bend_and_third(step)
         } else {
             // f' = 2 xi (F - f) + y
-            let pull = (force[0] - self.reference) - value;
+            let pull = (force[0] + (b - self.reference)) - value;
             let pull_rate = force[1] - slope;
             let bend = two_xi * pull_rate + pull;
             (bend, two_xi * (force[2] - bend) + pull_rate)

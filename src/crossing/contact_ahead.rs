@@ -34,10 +34,17 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// Whether f can never again leave [0, 1] by more than rounding: amplitude and energy norm of the
     /// free part fit inside. At rest on a threshold, with no force, they fit exactly.
     fn rests(&self, split: &Split) -> bool {
-        let b = self.constants.borrow().b;
         let reach = split.amplitude + split.free[0].hypot(split.free[1]);
-        let room = 4.0 * f64::EPSILON * (b.abs() + reach);
-        b + reach <= 1.0 + room && b - reach >= -room
+        self.fits(reach, reach)
+    }
+
+    /// Whether f = b + `up` and f = b - `down` lie in [0, 1], but for the rounding of these two. A
+    /// steady state beyond a threshold by its last digit is beyond it, so b itself gets no room:
+    /// 1 - b is exact for b of at least 1/2, and else half a unit of what fits into it.
+    fn fits(&self, up: f64, down: f64) -> bool {
+        const KEPT: f64 = 1.0 - 4.0 * f64::EPSILON;
+        let b = self.constants.borrow().b;
+        KEPT * up <= 1.0 - b && KEPT * down <= b
     }
 
     /// Looks from critical damping on, where what dies out keeps its sign: for x = f - b less
@@ -65,8 +72,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         // On its way back it does not turn again.
         let far = if x * rate <= 0.0 { x.abs() } else { x.hypot(rate) };
         let (up, down) = if above { (far, 0.0) } else { (0.0, far) };
-        let room = |far: f64| 4.0 * f64::EPSILON * (b.abs() + split.amplitude + far);
-        b + split.amplitude + up <= 1.0 + room(up) && b - split.amplitude - down >= -room(down)
+        self.fits(split.amplitude + up, split.amplitude + down)
     }
 
     /// A time for which f certainly stays inside, by one of two slow changes.

@@ -24,8 +24,11 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
 
     fn trend(&self) -> Trend {
         let constants = self.constants.borrow();
+        // On the surface p0 - g is q0, of which a p0 beside a large g has lost digits.
+        let State { p, q, .. } = self.entry;
+        let height = if self.surface.is_some() { q } else { p - constants.g };
         Trend {
-            offset: self.entry.p - constants.g + constants.a_over_omega2 * self.angle.cos,
+            offset: height + constants.a_over_omega2 * self.angle.cos,
             slope: self.entry.y - constants.a_over_omega * self.angle.sin,
             curvature: constants.b,
             amplitude: constants.a_over_omega2,
@@ -108,7 +111,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
             state: self.entry,
             slider_velocity: -spring,
             drift: 0.0,
-            force: [b + u, v, w],
+            force: [u, v, w],
             guard: Jet { orders, largest_term },
         }
     }
@@ -164,7 +167,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
             }
         }
         let end = |at: &Point<f64>| End { orders: at.guard.orders, parts: self.parts(at) };
-        Walk::new(&self.shape(), strides).verdict(end(left), end(right), ends)
+        Walk::new(&self.shape(), strides).decided(end(left), end(right), ends, slack)
     }
 
     fn underflow(&self) -> f64 {
@@ -185,9 +188,9 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
     }
 
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
-        let Constants { rate, omega, b, .. } = *self.constants.borrow();
+        let Constants { rate, omega, .. } = *self.constants.borrow();
         let mut spring = at.state.q * (rate * rate * rate);
-        let (mut force, mut next) = (at.force[0] - b, at.force[1]);
+        let (mut force, mut next) = (at.force[0], at.force[1]);
         Series::new(&at.guard.orders, || {
             spring *= -rate;
             (force, next) = (next, -(omega * omega * force));
@@ -203,12 +206,13 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         _: &Series<N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
-        let Constants { g, rate, .. } = *self.constants.borrow();
+        let Constants { b, g, rate, .. } = *self.constants.borrow();
         let Push { force, impulse } = Push::new(self.constants.borrow(), &at.force, step);
         let y = at.state.y + impulse;
         let q = at.state.q + at.state.q * short_decay(rate * step);
         let spring = q * rate;
-        let orders = [value, slope, force[0] - spring * rate, force[1] + spring * rate * rate];
+        let pull = (b + force[0]) - spring * rate;
+        let orders = [value, slope, pull, force[1] + spring * rate * rate];
         Point {
             elapsed: at.elapsed + step,
             state: State { p: (q + g) + value, y, q },
@@ -233,12 +237,12 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
 
     /// h = (p - g) - q, where p'' = F.
     fn parts(&self, at: &Point<f64>) -> Parts {
-        let Constants { b, omega, .. } = *self.constants.borrow();
+        let Constants { omega, .. } = *self.constants.borrow();
         Parts {
             elapsed: at.elapsed,
             value: at.guard.orders[0] + at.state.q,
             slope: at.state.y,
-            bow: at.force[0] - b,
+            bow: at.force[0],
             quarter: at.force[1] / omega,
             lasting: -at.state.q,
             room: slack(self, at, at),

@@ -65,7 +65,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
             state: self.entry,
             slider_velocity: self.closing,
             drift: 0.0,
-            force: [b + u, v, w],
+            force: [u, v, w],
             guard: Jet { orders, largest_term: self.drift_rate.abs() },
         }
     }
@@ -117,7 +117,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
             orders: at.guard.orders.map(|order| -order),
             parts: self.parts(at),
         };
-        Walk::new(&self.shape(), strides).verdict(end(left), end(right), ends)
+        Walk::new(&self.shape(), strides).decided(end(left), end(right), ends, slack)
     }
 
     fn underflow(&self) -> f64 {
@@ -208,9 +208,9 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
         Parts {
             elapsed: at.elapsed,
             value: -at.state.y,
-            slope: 1.0 - at.force[0],
+            slope: (1.0 - b) - at.force[0],
             bow: -at.force[1],
-            quarter: omega * (at.force[0] - b),
+            quarter: omega * at.force[0],
             lasting: at.slider_velocity,
             room: slack(self, at, at),
         }

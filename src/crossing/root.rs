@@ -162,8 +162,23 @@ fn leaves(point: &Point<f64>, rises: bool) -> bool {
 /// anywhere.
 #[inline(always)]
 fn passes((over, slope, bend): (f64, f64, f64), rises: bool, slack: f64) -> bool {
+    /// Smaller squares have lost digits to underflow.
+    const EXACT: f64 = 1e-290;
     let outward = if rises { 1.0 } else { -1.0 };
-    slope * slope > 2.0 * (bend * outward) * (over * outward - slack)
+    let (bend, over) = (bend * outward, over * outward - slack);
+    let square = slope * slope;
+    if square >= EXACT {
+        square > 2.0 * bend * over
+    } else {
+        passes_without_squares(slope, bend, over)
+    }
+}
+
+/// The same for slopes that have no square.
+#[cold]
+fn passes_without_squares(slope: f64, bend: f64, over: f64) -> bool {
+    let turns_back = bend < 0.0 && over < 0.0 || bend > 0.0 && over > 0.0;
+    !turns_back || slope.abs() > (2.0 * bend.abs()).sqrt() * over.abs().sqrt()
 }
 
 /// Follows a guess to a root beyond `left`, where the guard leaves its corridor; or gives the last
@@ -228,22 +243,30 @@ pub fn bracketed<G: Guarded>(
             return Root { point, low: 0.0, side: Side::high(rises) };
         }
         let interior = root > inside && root < outside;
-        let next = if within && interior { root } else { middle };
+        // Newton's steps may creep, where a bracket holds many oscillations.
+        let creeps = halvings > PLAIN && halvings % 2 == 0;
+        let next = if within && interior && !creeps { root } else { middle };
         point = evaluate_again(phase, next, counters);
-        if corridor.excess(point.guard.orders[0]) >= 0.0 {
+        let excess = corridor.excess(point.guard.orders[0]);
+        let high = point.guard.orders[0] >= corridor.high;
+        // Next to an imposed zero the guard may underflow to a zero that it does not leave through.
+        if excess > 0.0 || excess == 0.0 && leaves(&point, high) {
             outside = next;
             // An earlier excursion may be through the other threshold.
-            rises = point.guard.orders[0] >= corridor.high;
+            rises = high;
         } else {
             inside = next;
         }
     }
 }
 
+/// Steps towards a root after which it counts as hidden: Newton's method, or halving, has not found
+/// it.
+const PLAIN: usize = 8;
+
 /// Where to look between two times. A root that some halvings have not found may be smaller by orders
 /// of magnitude: then it is the exponent that is halved, so that 1e-300 is no further than 1e-3.
 pub fn middle(inside: f64, outside: f64, halvings: usize) -> f64 {
-    const PLAIN: usize = 8;
     let smallest = inside.max(f64::MIN_POSITIVE);
     if halvings > PLAIN && outside > 4.0 * smallest {
         (smallest.sqrt() * outside.sqrt()).max(inside)

@@ -95,17 +95,17 @@ impl<const N: usize> Series<N> {
     }
 }
 
-/// The external force after a short step, and what it has done to the velocity.
+/// The harmonic force after a short step, and what the external force has done to the velocity.
 #[derive(Clone, Copy, Debug)]
 pub struct Push {
-    /// The force with its first two derivatives.
+    /// The harmonic force with its first two derivatives.
     pub force: [f64; 3],
-    /// Its integral over the step.
+    /// The integral of the external force over the step.
     pub impulse: f64,
 }
 
 impl Push {
-    /// From the force at the evaluation.
+    /// From the harmonic force at the evaluation.
     #[inline]
     pub fn new(constants: &Constants<f64>, force: &[f64; 3], step: f64) -> Self {
         let Constants { b, omega, .. } = *constants;
@@ -116,13 +116,13 @@ impl Push {
         let one_less_cos =
             0.5 - square * (1.0 / 24.0 - square * (1.0 / 720.0 - square * (1.0 / 40320.0)));
         let (time, area) = (step * sin_over_x, step * step * one_less_cos);
-        // u'' = -omega^2 u for the force less b.
+        // u'' = -omega^2 u for the harmonic force u.
         let omega2 = omega * omega;
-        let (u, v) = (force[0] - b, force[1]);
+        let (u, v) = (force[0], force[1]);
         let harmonic = u - omega2 * area * u + time * v;
         let rate = v - omega2 * area * v - omega2 * time * u;
         Self {
-            force: [b + harmonic, rate, -(omega2 * harmonic)],
+            force: [harmonic, rate, -(omega2 * harmonic)],
             impulse: b * step + (time * u + area * v),
         }
     }

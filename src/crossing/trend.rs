@@ -85,8 +85,8 @@ impl Trend {
     fn opening(&self, from: f64, value: f64, rising: f64, curvature: f64) -> Bound {
         let bent = curvature.abs();
         let size = self.offset.abs() + (self.slope * from).abs() + 2.0 * bent * from * from;
-        let value = value + ROOM * (size + self.amplitude);
-        let rising = rising + ROOM * self.slope.abs();
+        let value = value + ROOM * (size + self.amplitude + self.exponential.abs());
+        let rising = rising + ROOM * (self.slope.abs() + self.rate * self.exponential.abs());
         let rising = if rising > 0.0 { rising.max(SQUARABLE) } else { rising };
         let curvature = curvature + 4.0 * ROOM * bent;
         if value < 0.0 {

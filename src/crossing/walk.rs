@@ -127,6 +127,16 @@ pub struct Walk<'a> {
     line: Option<Line>,
 }
 
+/// How high the harmonic's crests may be between two places.
+struct Crests {
+    /// At the left place.
+    here: f64,
+    /// Anywhere between.
+    most: f64,
+    /// What the parts' sums may have rounded off.
+    rounding: f64,
+}
+
 /// Pieces after which the stretch is left to divisions.
 const MOST_PIECES: usize = 12;
 
@@ -141,8 +151,22 @@ impl<'a> Walk<'a> {
         Self { shape, strides, line: None }
     }
 
-    /// What can be said about the excess between the two ends.
-    pub fn verdict(mut self, left: End, right: End, ends: Ends) -> Verdict {
+    /// What can be said about the excess between the two ends, which round it within `slack`. The
+    /// parts may be far larger than their sum: a touch that only their rounding hides is left to
+    /// shorter pieces, which are certified by evaluations alone.
+    pub fn decided(self, left: End, right: End, ends: Ends, slack: f64) -> Verdict {
+        const MUCH: f64 = 16.0;
+        let length = right.parts.elapsed - left.parts.elapsed;
+        let size = |parts: &Parts| parts.value.abs() + parts.slope.abs() * length;
+        let hidden = f64::EPSILON * size(&left.parts).max(size(&right.parts)) > MUCH * slack;
+        match self.verdict(left, right, ends) {
+            Verdict::Touches if hidden => Verdict::Open,
+            verdict => verdict,
+        }
+    }
+
+    /// What can be said about the excess between the two ends by their parts.
+    fn verdict(mut self, left: End, right: End, ends: Ends) -> Verdict {
         let rate = self.shape.rate;
         let pushes = left.parts.lasting > 0.0;
         let decay_times = if pushes { PUSHING } else { PULLING };
@@ -192,8 +216,8 @@ impl<'a> Walk<'a> {
         let mut worst = Verdict::Inside;
         for _ in 0..MOST_PIECES {
             let room = near.parts.room.max(far.parts.room);
-            let (here, most) = self.crests(&near.parts, &far.parts);
-            if most < -room {
+            let Crests { here, most, rounding } = self.crests(&near.parts, &far.parts);
+            if most < -(room + rounding) {
                 return worst;
             }
             if far.parts.elapsed - near.parts.elapsed < REST * stride.length {
@@ -201,7 +225,7 @@ impl<'a> Walk<'a> {
                 return worst.max(last);
             }
             let (left, right, ends);
-            if here < -room {
+            if here < -(room + rounding) {
                 let next = self.end(far.parts.before(stride, self.shape));
                 (left, right, ends) = (next, far, Ends { right: is_root, ..Ends::FREE });
                 (far, is_root) = (next, false);
@@ -220,9 +244,12 @@ impl<'a> Walk<'a> {
         Verdict::Open
     }
 
-    /// How high the harmonic's crests may be: at the left place, and anywhere up to the right one.
-    fn crests(&self, near: &Parts, far: &Parts) -> (f64, f64) {
-        let Shape { curvature, strength, per_omega2, rate, .. } = *self.shape;
+    /// How high the harmonic's crests may be.
+    fn crests(&self, near: &Parts, far: &Parts) -> Crests {
+        /// Of a few sums in the values and, over the length, in the slopes. An evaluation's own room does
+        /// not hold them: there the parts have been added up before they were rounded.
+        const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
+        let Shape { curvature, grain, strength, per_omega2, rate, .. } = *self.shape;
         let line = self.line.unwrap_or_else(|| Line::above(near, far, rate));
         let amplitude = strength * per_omega2;
         let (here, rising) = near.slow(self.shape, &line);
@@ -231,7 +258,12 @@ impl<'a> Walk<'a> {
         if curvature < 0.0 && rising > 0.0 && falling < 0.0 {
             most = most.max(here - 0.5 * rising * rising / curvature);
         }
-        (here + amplitude, most + amplitude)
+        let values = near.value.abs() + line.at(near.elapsed).abs();
+        let values = values.max(far.value.abs() + line.at(far.elapsed).abs());
+        let slopes = near.slope.abs().max(far.slope.abs()) + line.slope.abs() + grain;
+        let over_length = (far.elapsed - near.elapsed) * slopes;
+        let rounding = ROUNDINGS * (values + over_length + amplitude);
+        Crests { here: here + amplitude, most: most + amplitude, rounding }
     }
 
     fn piece(&self, left: &End, right: &End, ends: Ends) -> Verdict {

@@ -44,7 +44,6 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Contact<T, C> {
         let q_change = (q_less_b * free.c_minus_1 + swinging) + steady(response.displacement);
         let (y, q) = (y0 + y_change, q0 + q_change);
 
-        let force = b + harmonic.force[0];
         let excess = self.offset + f_change;
         let orders = self.orders(d, &harmonic.force, &free, excess, y);
         let driven_bound = a * (response.force.re.abs() + response.force.im.abs());
@@ -62,7 +61,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Contact<T, C> {
             state: State { p: q + g, y, q },
             slider_velocity: y,
             drift: T::zero(),
-            force: [force, harmonic.force[1], harmonic.force[2]],
+            force: harmonic.force,
             guard: Jet { orders, largest_term },
         }
     }

@@ -56,7 +56,7 @@ impl<T: Number> EntryAngle<T> {
 }
 
 impl EntryAngle<f64> {
-    /// The forcing angle a time `elapsed` later, where the force and its rate are these, for guesses: a times its
+    /// The forcing angle a time `elapsed` later, where the harmonic force and its rate are these, for guesses: a times its
     /// sine and cosine are good to some roundings of the force.
     #[inline]
     pub(crate) fn roughly_after(
@@ -65,13 +65,13 @@ impl EntryAngle<f64> {
         elapsed: f64,
         force: &[f64; 3],
     ) -> Self {
-        let Constants { b, omega, per_a, per_omega, .. } = *constants;
+        let Constants { omega, per_a, per_omega, .. } = *constants;
         let radians = self.radians + omega * elapsed;
         let turns = (radians * (1.0 / TAU)) as i64 as f64;
         Self {
             radians: radians - turns * TAU,
             sin: -(force[1] * (per_a * per_omega)),
-            cos: (force[0] - b) * per_a,
+            cos: force[0] * per_a,
         }
     }
 }

@@ -37,7 +37,8 @@ pub struct Point<T> {
     pub slider_velocity: T,
     /// Drift since the phase began.
     pub drift: T,
-    /// External force and its first two derivatives.
+    /// Harmonic force a cos(omega tau + phi) and its first two derivatives. The static force b is
+    /// left out, beside which a small harmonic force would lose its digits.
     pub force: [T; 3],
     /// The guard of the phase: the gap function h = p - q - g without contact, the trial force
     /// f = 2 xi y + q less its reference in contact, the drift velocity v' in progression.

@@ -62,7 +62,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
             state: State { p: p0 + p_change, y, q },
             slider_velocity: -spring,
             drift: T::zero(),
-            force: [force, harmonic.force[1], harmonic.force[2]],
+            force: harmonic.force,
             guard: Jet { orders, largest_term },
         }
     }

@@ -56,7 +56,6 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Progression<T, C> {
             (one - two_xi * lag, y - lag, drift, terms)
         };
 
-        let force = b + harmonic.force[0];
         let lag_rate = lag * rate;
         let orders = [
             w,
@@ -70,7 +69,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Progression<T, C> {
             state: State { p: q + g, y, q },
             slider_velocity: lag,
             drift,
-            force: [force, harmonic.force[1], harmonic.force[2]],
+            force: harmonic.force,
             guard: Jet { orders, largest_term },
         }
     }
