@@ -58,6 +58,26 @@ fn archive(path: &Path) -> zip::ZipArchive<Cursor<Vec<u8>>> {
 }
 
 #[test]
+fn a_section_that_is_not_decided_to_its_end_says_so() {
+    // The motion of `a_phase_that_is_not_decided_ends_the_run`.
+    let line = "poincare --periods 10 --transient 999999990 --a 0.84 --b 0.5 --xi 1e-8 --omega 2 \
+                --phi 1.5707963267948966 --p 0.8 --y 0.56 --q 0.78";
+    let words: Vec<_> = line.split_whitespace().collect();
+    let output = run(&words);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(said.contains("undecidable") && said.contains("after 0 points"), "{said}");
+    assert_eq!(text(&output.stdout), "n,p,y,q,v\n");
+    // An array's length stands at its beginning, so there is none of fewer points.
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("s.npy");
+    let output = run(&[&words[..], &["--output", path.to_str().unwrap()]].concat());
+    let said = text(&output.stderr);
+    assert!(!output.status.success() && said.contains("undecidable"), "{said}");
+    assert!(!path.exists());
+}
+
+#[test]
 fn a_section_is_the_table() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("s.npy");

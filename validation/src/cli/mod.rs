@@ -120,7 +120,9 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Simulate(simulate) => {
             simulate::run(simulate).map(|decided| if decided { DONE } else { OUT_OF_BOUNDS })
         }
-        Verb::Poincare(poincare) => poincare::run(poincare).map(|()| DONE),
+        Verb::Poincare(poincare) => {
+            poincare::run(poincare).map(|decided| if decided { DONE } else { OUT_OF_BOUNDS })
+        }
         Verb::Lyapunov(lyapunov) => lyapunov::run(lyapunov).map(|()| DONE),
         Verb::Bifurcation(it) => bifurcation::run(it, arguments.threads).map(|()| DONE),
         Verb::Attractors(it) => basins::attractors(it, arguments.threads).map(|()| DONE),

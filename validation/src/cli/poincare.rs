@@ -45,7 +45,8 @@ enum Format {
 /// A picture of more points shows no more.
 const MAX_PICTURE: u64 = 5_000_000;
 
-pub(super) fn run(arguments: &Arguments) -> Result<()> {
+/// Writes the section; whether the motion was decided to its end.
+pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     let format = arguments.output.format(Format::Csv)?;
     let problem = arguments.model.problem()?;
     work::check_horizon(arguments.transient, arguments.periods)?;
@@ -59,18 +60,30 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let bar = work::run_bar(destination.is_terminal());
     let course = Course::new(arguments, &problem);
     let progress = course.progress(bar);
-    let mut last = problem.entry;
-    let strobes = course.strobes(&progress).inspect(|strobe| last = *strobe);
+    let (mut last, mut count) = (problem.entry, 0);
+    let strobes = course.strobes(&progress).inspect(|strobe| (last, count) = (*strobe, count + 1));
     destination.write(|out| match format {
         Format::Csv => write_csv(strobes, out),
         Format::Npy => write_npy(strobes, arguments.periods, out),
         Format::Png => draw(strobes, &problem, arguments, out),
     })?;
     drop(progress);
+    if count < arguments.periods {
+        note(&undecidable(count));
+        return Ok(false);
+    }
     if let Some(endless) = Section::endless_at(&problem.model, &last) {
         note(&notice(endless));
     }
-    Ok(())
+    Ok(true)
+}
+
+/// What to say of a section that ends where rounding hides how a phase ends.
+fn undecidable(points: u64) -> String {
+    format!(
+        "undecidable: rounding hides how a phase ends, the section ends after {points} points; \
+         simulate with the same flags shows the phase"
+    )
 }
 
 /// A motion and the part of it that is shown.
@@ -121,8 +134,14 @@ fn write_csv(strobes: impl Iterator<Item = Entry>, out: &mut dyn Write) -> Resul
 fn write_npy(strobes: impl Iterator<Item = Entry>, count: u64, out: &mut dyn Write) -> Result<()> {
     let options = npyz::WriteOptions::<f64>::new().default_dtype().shape(&[count, 4]);
     let mut writer = options.writer(out).begin_nd()?;
+    let mut written = 0;
     for strobe in strobes {
         writer.extend(row(&strobe))?;
+        written += 1;
+    }
+    // The shape stands at the beginning of the file.
+    if written < count {
+        bail!("{}; --format csv writes them", undecidable(written));
     }
     Ok(writer.finish()?)
 }
