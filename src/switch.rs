@@ -62,6 +62,10 @@ const FURTHEST: f64 = 1e30;
 /// How far a search looks beyond its horizon, radians of the forcing.
 const BEYOND: f64 = 0.1;
 
+/// How far beyond it a switch next to it is looked for again, radians of the forcing: guesses see
+/// nothing of a horizon as far away, and the work that it takes stays small.
+const FURTHER: f64 = 256.0;
+
 /// What a phase's end leads to.
 trait Landing: Guarded {
     /// What it means that it has none.
@@ -146,7 +150,8 @@ fn pass_late<P: Landing>(
     match found {
         Found::At(elapsed) => {
             let elapsed = horizon.map_or(elapsed, |_| {
-                found_without_horizon(phase, model, (begun, next), counters).unwrap_or(elapsed)
+                let limit = limit + FURTHER / omega;
+                found_later(phase, model, (begun, next), limit, counters).unwrap_or(elapsed)
             });
             if horizon.is_some_and(|it| next.entry.instant > *it) {
                 return ended(End::Horizon, left());
@@ -160,18 +165,18 @@ fn pass_late<P: Landing>(
     }
 }
 
-/// The switch next to a horizon as it is found without one: a search that looks no further may come
-/// to it by another way, and so to other last digits.
-fn found_without_horizon<P: Landing>(
+/// The switch next to a horizon as it is found with a later one, or none: a search that looks no
+/// further may come to it by another way, and so to other last digits.
+fn found_later<P: Landing>(
     phase: &P,
     model: &Model,
     (begun, next): (&Begun, &mut Begun),
+    limit: f64,
     counters: &mut Counters,
 ) -> Option<TwoWord> {
     let mut again = *begun;
     let land = |root: &Root| again = begun.after(model, phase, root);
     let mut counted = Counters::default();
-    let limit = FURTHEST / model.parameters().omega;
     let strides = model.strides();
     let found = match first_crossing_and((phase, strides), begun.guess, limit, &mut counted, land) {
         Found::Stage(from) => {
