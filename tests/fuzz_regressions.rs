@@ -366,3 +366,36 @@ fn a_hop_under_a_far_slider() {
     }
     assert!(free < 1e-8, "{free:e}");
 }
+
+/// Value times bend underflows, so that the gap was proved never to close.
+#[test]
+fn a_gap_that_closes_by_forces_whose_products_underflow() {
+    let (b, g) = (3.328_260_325_600_571_7e-139, 1.592_901_072_926_197e-228);
+    let parameters = [0.0, b, 5.563_688_936_356_673, 8.117_229_193_932_584e-6, g, 0.0];
+    let at = [0.0, -2.225_073_858_507_201_4e-308, 0.0, 0.0];
+    let legs = legs(case(parameters, at, None), 1.0);
+    let expected = (2.0 * g / b).sqrt();
+    assert_eq!(legs[0].phase(), Phase::NoContact);
+    assert!((legs[0].duration() - expected).abs() <= ROUNDING * expected, "{legs:?}");
+}
+
+/// A progression next to b = 1 stops at once. Its mean velocity is zero, and pieces of a period's
+/// length hid the stop in what their parts rounded.
+#[test]
+fn a_short_slip_under_a_force_of_one() {
+    let parameters = [
+        3.392_152_322_883_994e-14,
+        1.0,
+        9.861_280_855_546_347e-7,
+        2.273_764_538_792_842e-6,
+        1.839_281_023_908_239,
+        4.695_069_182_735_851,
+    ];
+    let start = [0.0, 3.597_171_320_951_778, 0.0, 1.757_890_297_043_577_5];
+    let (parameters, start) = case(parameters, start, None);
+    let model = Model::new(parameters).unwrap();
+    let entry = model.start(&start).unwrap();
+    let slip = model.trajectory(entry).nth(3).unwrap();
+    assert_eq!(slip.phase(), Phase::Progression);
+    assert!((slip.duration() - 0.040_489_540_977).abs() < 1e-9, "{slip:?}");
+}

@@ -46,6 +46,8 @@ pub struct Tally {
     pub touches: u64,
     /// Phases that end as undecidable.
     pub undecidable: u64,
+    /// Phases looked at without a horizon as well.
+    pub endless: u64,
     /// The most evaluations that a phase has taken.
     pub most_evaluations: u64,
 }
@@ -92,6 +94,11 @@ pub fn check_counted(case: &Case, tally: &mut Tally) -> Result<(), String> {
         tally.phases += 1;
         tally.most_evaluations = tally.most_evaluations.max(evaluations);
         history.leg(&model, &leg, evaluations, periods).map_err(named)?;
+        if number == 0 {
+            tally.endless += 1;
+            let touched = counters.undecidable > before.undecidable;
+            without_horizon(&model, &leg, leg.elapsed_at(&horizon), touched).map_err(named)?;
+        }
         let undecidable = *leg.exit() == Exit::Undecidable;
         tally.undecidable += u64::from(undecidable);
         if undecidable || judged && number < JUDGED {
@@ -101,6 +108,33 @@ pub fn check_counted(case: &Case, tally: &mut Tally) -> Result<(), String> {
         }
         before = counters;
     }
+    Ok(())
+}
+
+/// Holds a phase to itself without a horizon, `left` after it begins: the same end, unless a touch
+/// was counted, and no more work than the limit of a search.
+fn without_horizon(model: &Model, leg: &Leg, left: f64, touched: bool) -> Result<(), String> {
+    /// What an end may be off where it is next to a graze, or next to the horizon.
+    const APART: f64 = 1e-3;
+    let mut run = model.trajectory(*leg.entry());
+    let Some(whole) = run.next() else { return Err("no phase without a horizon".to_owned()) };
+    let counters = run.counters();
+    let limit = MOST + GRANTED + LAST_ROOT;
+    let evaluations = counters.evaluations;
+    ensure!(evaluations <= limit, "{evaluations} evaluations without a horizon");
+    let (cut, free) = (leg.duration(), whole.duration());
+    let alike = match (leg.exit(), whole.exit()) {
+        (Exit::Undecidable, _) | (_, Exit::Undecidable) => true,
+        (Exit::Switch(one), Exit::Switch(other)) => {
+            one.phase() == other.phase() && (cut - free).abs() <= APART * free
+        }
+        (Exit::Endless(one), Exit::Endless(other)) => one == other,
+        (Exit::Horizon, _) => free >= left * (1.0 - APART),
+        _ => false,
+    };
+    let touched = touched || counters.undecidable > 0;
+    let ends = [leg.exit(), whole.exit()];
+    ensure!(alike || touched, "ends after {cut:e}, without a horizon {free:e}: {ends:?}");
     Ok(())
 }
 

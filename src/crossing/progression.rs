@@ -197,8 +197,8 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
     fn shape(&self) -> Shape {
         let Constants { a, b, omega, omega6, per_omega2, rate, rate8, .. } =
             *self.constants.borrow();
-        // The slope is 1 - F.
-        let (grain, strength) = (1.0 + b.abs(), a * omega);
+        // The slope is 1 - b less the harmonic force.
+        let (grain, strength) = ((1.0 - b).abs() + a, a * omega);
         Shape { curvature: 0.0, grain, strength, omega, omega6, per_omega2, rate, rate8 }
     }
 

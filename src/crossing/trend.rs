@@ -67,7 +67,8 @@ impl Trend {
         if lasting <= 0.0 {
             return dropped;
         }
-        let tangent = self.opening(from, value - lasting, rising + self.rate * lasting, curvature);
+        let sinking = self.rate * lasting * (1.0 + ROOM);
+        let tangent = self.opening(from, value - lasting, rising + sinking, curvature);
         match (dropped, tangent) {
             (Bound::OpenFrom(first), Bound::OpenFrom(second)) => Bound::OpenFrom(first.max(second)),
             (Bound::Never, _) | (_, Bound::Never) => Bound::Never,
@@ -86,7 +87,7 @@ impl Trend {
         let bent = curvature.abs();
         let size = self.offset.abs() + (self.slope * from).abs() + 2.0 * bent * from * from;
         let value = value + ROOM * (size + self.amplitude + self.exponential.abs());
-        let rising = rising + ROOM * (self.slope.abs() + self.rate * self.exponential.abs());
+        let rising = rising + ROOM * self.slope.abs();
         let rising = if rising > 0.0 { rising.max(SQUARABLE) } else { rising };
         let curvature = curvature + 4.0 * ROOM * bent;
         if value < 0.0 {
@@ -261,7 +262,19 @@ impl Place {
 
 /// The first t > 0 with value + rising t + curvature t^2/2 = 0, for value < 0.
 pub fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
+    /// Smaller squares have lost digits to underflow.
+    const EXACT: f64 = 1e-290;
     let discriminant = rising * rising - 2.0 * curvature * value;
+    if discriminant.abs() < EXACT && curvature > 0.0 {
+        // The parabola opens upwards: the square root of a sum of two squares.
+        let root = rising.hypot((2.0 * curvature).sqrt() * (-value).sqrt());
+        let time = if rising >= 0.0 {
+            -2.0 * value / (rising + root)
+        } else {
+            (root - rising) / curvature
+        };
+        return (time >= 0.0 && time.is_finite()).then_some(time);
+    }
     if discriminant < 0.0 {
         return None; // curvature < 0 and the crest stays below zero
     }

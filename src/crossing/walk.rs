@@ -156,17 +156,14 @@ impl<'a> Walk<'a> {
     /// shorter pieces, which are certified by evaluations alone.
     pub fn decided(self, left: End, right: End, ends: Ends, slack: f64) -> Verdict {
         const MUCH: f64 = 16.0;
-        let length = right.parts.elapsed - left.parts.elapsed;
-        let size = |parts: &Parts| parts.value.abs() + parts.slope.abs() * length;
-        let hidden = f64::EPSILON * size(&left.parts).max(size(&right.parts)) > MUCH * slack;
         match self.verdict(left, right, ends) {
-            Verdict::Touches if hidden => Verdict::Open,
-            verdict => verdict,
+            (Verdict::Touches, room) if room > MUCH * slack => Verdict::Open,
+            (verdict, _) => verdict,
         }
     }
 
-    /// What can be said about the excess between the two ends by their parts.
-    fn verdict(mut self, left: End, right: End, ends: Ends) -> Verdict {
+    /// What can be said about the excess between the two ends by their parts, and within which room.
+    fn verdict(mut self, left: End, right: End, ends: Ends) -> (Verdict, f64) {
         let rate = self.shape.rate;
         let pushes = left.parts.lasting > 0.0;
         let decay_times = if pushes { PUSHING } else { PULLING };
@@ -182,8 +179,9 @@ impl<'a> Walk<'a> {
             let settled = left.parts.after(life, self.shape);
             (settled, self.piece(&left, &self.end(settled), left_ends))
         };
+        let room = settled.room;
         if first == Verdict::Open {
-            return first;
+            return (first, room);
         }
         let line = Line::above(&settled, &right.parts, rate);
         // From here on the line stands for it.
@@ -194,9 +192,9 @@ impl<'a> Walk<'a> {
             orders[0] = right.orders[0];
         }
         self.line = Some(line);
-        let rest =
+        let (rest, last_room) =
             self.between((self.end(settled), Ends::FREE), (End { orders, ..right }, ends.right));
-        first.max(rest)
+        (first.max(rest), room.max(last_room))
     }
 
     /// Whether a flight that begins with value and slope zero stays inside until z = [`PARTING`]: its
@@ -211,18 +209,19 @@ impl<'a> Walk<'a> {
         &self,
         (mut near, mut near_ends): (End, Ends),
         (mut far, mut is_root): (End, bool),
-    ) -> Verdict {
+    ) -> (Verdict, f64) {
         let stride = &self.strides.piece;
         let mut worst = Verdict::Inside;
+        let mut room = 0.0;
         for _ in 0..MOST_PIECES {
-            let room = near.parts.room.max(far.parts.room);
+            room = near.parts.room.max(far.parts.room);
             let Crests { here, most, rounding } = self.crests(&near.parts, &far.parts);
             if most < -(room + rounding) {
-                return worst;
+                return (worst, room);
             }
             if far.parts.elapsed - near.parts.elapsed < REST * stride.length {
                 let last = self.piece(&near, &far, Ends { right: is_root, ..near_ends });
-                return worst.max(last);
+                return (worst.max(last), room);
             }
             let (left, right, ends);
             if here < -(room + rounding) {
@@ -237,11 +236,12 @@ impl<'a> Walk<'a> {
             let verdict = self.piece(&left, &right, ends);
             // A crest that rounding hides stops no pieces short of the whole stretch.
             if verdict == Verdict::Open || (verdict == Verdict::Touches && most <= room) {
-                return if most <= room { Verdict::Touches } else { Verdict::Open };
+                let hidden = most <= room;
+                return (if hidden { Verdict::Touches } else { Verdict::Open }, room);
             }
             worst = worst.max(verdict);
         }
-        Verdict::Open
+        (Verdict::Open, room)
     }
 
     /// How high the harmonic's crests may be.
