@@ -244,7 +244,7 @@ pub fn bracketed<G: Guarded>(
         }
         let interior = root > inside && root < outside;
         // Newton's steps may creep, where a bracket holds many oscillations.
-        let creeps = halvings > PLAIN && halvings % 2 == 0;
+        let creeps = halvings > PLAIN && halvings.is_multiple_of(2);
         let next = if within && interior && !creeps { root } else { middle };
         point = evaluate_again(phase, next, counters);
         let excess = corridor.excess(point.guard.orders[0]);
