@@ -399,3 +399,17 @@ fn a_short_slip_under_a_force_of_one() {
     assert_eq!(slip.phase(), Phase::Progression);
     assert!((slip.duration() - 0.040_489_540_977).abs() < 1e-9, "{slip:?}");
 }
+
+/// Over one forcing period its terms grow to 1e21, whose rounding hid that the gap closes after 2.8.
+#[test]
+fn a_gap_that_closes_before_its_terms_grow() {
+    let g = 1.733_552_996_007_155_8;
+    let parameters = [1e9, -1e9, 1e-8, 1e-6, g, -4.655_148_308_255_369_4e-6];
+    let start = [3.141_592_653_589_793, 0.0, 0.627_829_466_626_939_7, 0.0];
+    let (parameters, start) = case(parameters, start, None);
+    let model = Model::new(parameters).unwrap();
+    let leg = model.trajectory(model.start(&start).unwrap()).next().unwrap();
+    assert!(matches!(leg.exit(), Exit::Switch(_)), "{leg:?}");
+    assert!((leg.at(leg.duration()).state.p - g).abs() < 1e-6, "{leg:?}");
+    assert!((2.7..2.8).contains(&leg.duration()), "{leg:?}");
+}

@@ -84,7 +84,7 @@ impl<'a> Found<'a> {
 
 /// The solver's own rounding room for its proof of the whole phase.
 fn room<G: Guarded>(phase: &G, end: f64) -> f64 {
-    slack(&phase.entry(), &phase.at(end))
+    slack(phase, &phase.entry(), &phase.at(end))
 }
 
 /// A guard and its largest term.

@@ -121,19 +121,19 @@ fn a_root_that_is_off_is_refuted() {
     assert!(refuted > 50 * passed && refuted > 1000, "{refuted} {passed}");
 }
 
-/// The intervals know the parameters: with xi off by 1e-12 most switches are not where they were.
-/// The rest are of guards that do not know xi, over a slider at rest, or that are too short to
-/// tell.
+/// The intervals know the parameters: with xi off by 1e-9, a million times the rounding, nearly all
+/// switches are not where they were. The rest are of guards that do not know xi, over a slider at
+/// rest, or that are too short to tell.
 #[test]
 fn other_parameters_are_refuted() {
     let (mut refuted, mut passed) = (0, 0);
     every_switch(4, |parameters, found| {
-        let other = Parameters { xi: parameters.xi * (1.0 + 1e-12), ..*parameters };
+        let other = Parameters { xi: parameters.xi * (1.0 + 1e-9), ..*parameters };
         match examine(&found.guard(&Frame::new(&other)), &found.claim) {
             Verdict::Confirmed { .. } => passed += 1,
             _ => refuted += 1,
         }
     });
     println!("{refuted} refuted, {passed} within rounding");
-    assert!(refuted > 2 * passed && refuted > 400, "{refuted} {passed}");
+    assert!(refuted > 10 * passed && refuted > 400, "{refuted} {passed}");
 }

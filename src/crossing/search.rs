@@ -283,11 +283,12 @@ fn divide<G: Guarded>(
     Ok(Target::Point(left))
 }
 
-/// Whether most of a piece's rounding room comes from what dies out in it: then a touch may be decided
-/// on its later part.
+/// Whether most of a piece's rounding room comes from one of its ends, from what dies out in it or
+/// grows: then a touch may be decided on the part next to the other.
 fn uneven(left: &Point<f64>, right: &Point<f64>) -> bool {
     const MUCH: f64 = 16.0;
-    left.guard.largest_term > MUCH * right.guard.largest_term
+    let [left, right] = [left, right].map(|end| end.guard.largest_term);
+    left > MUCH * right || right > MUCH * left
 }
 
 /// A place well inside a piece: what a phase proposes, unless rounding puts it at an end or many
