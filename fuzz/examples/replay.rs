@@ -76,7 +76,10 @@ fn random() {
                 .chars()
                 .filter(|c| !c.is_ascii_digit() && *c != '.')
                 .collect();
-            let entry = faults.entry(kind).or_insert((0, format!("{fault}\n  {case:?}")));
+            let entry = faults.entry(kind).or_insert_with(|| {
+                println!("case {run}: {fault}\n  {case:?}");
+                (0, format!("{fault}\n  {case:?}"))
+            });
             entry.0 += 1;
         }
     }

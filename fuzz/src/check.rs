@@ -130,7 +130,7 @@ fn without_horizon(model: &Model, leg: &Leg, left: f64, touched: bool) -> Result
         (Exit::Undecidable, _) | (_, Exit::Undecidable) => true,
         (Exit::Switch(one), Exit::Switch(other)) => {
             // Rounding moves an event in time by as much as it likes where nothing moves.
-            one.phase() == other.phase() && same_place(&one.state, &other.state)
+            one.phase() == other.phase() && same_place(model, leg, [&one.state, &other.state])
         }
         (Exit::Endless(one), Exit::Endless(other)) => one == other,
         (Exit::Horizon, _) => free >= left * (1.0 - APART),
@@ -317,10 +317,13 @@ impl History {
     }
 }
 
-/// Whether two states are the same within the rounding of a phase.
-fn same_place(one: &State, other: &State) -> bool {
+/// Whether two ends of a phase are the same state within the rounding of its terms.
+fn same_place(model: &Model, leg: &Leg, [one, other]: [&State; 2]) -> bool {
     const NEAR: f64 = 1e-9;
-    let near = |x: f64, y: f64| (x - y).abs() <= NEAR * (1.0 + x.abs().max(y.abs()));
+    let Parameters { a, b, .. } = *model.parameters();
+    let size = |state: &State| state.p.abs() + state.y.abs() + state.q.abs();
+    let scale = 1.0 + a + b.abs() + size(&leg.entry().state) + size(one);
+    let near = |x: f64, y: f64| (x - y).abs() <= NEAR * scale;
     near(one.p, other.p) && near(one.y, other.y) && near(one.q, other.q)
 }
 
