@@ -274,3 +274,40 @@ pub fn middle(inside: f64, outside: f64, halvings: usize) -> f64 {
         0.5 * (inside + outside)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Excess, slope, bend and slack next to a threshold, and whether the guard passes it: a crest of
+    /// slope^2/(2 bend) above the excess, less the slack.
+    const NEXT_TO_A_CREST: [([f64; 4], bool); 7] = [
+        ([0.0, 1.0, -1.0, 0.4], true),
+        ([0.0, 1.0, -1.0, 0.6], false),
+        ([-0.3, 1.0, -1.0, 0.1], true),
+        ([-0.3, 1.0, -1.0, 0.3], false),
+        ([0.3, 1.0, 1.0, 0.1], true),
+        ([0.9, 1.0, 1.0, 0.1], false),
+        ([-0.9, 0.1, 1.0, 0.1], true),
+    ];
+
+    #[test]
+    fn a_crest_passes_its_threshold_or_not_at_every_scale() {
+        for ([over, slope, bend, slack], passing) in NEXT_TO_A_CREST {
+            for scale in [1.0, 1e-100, 1e-144, 1e-146, 1e-150, 1e-200, 1e-290] {
+                let [over, slope, bend, slack] = [over, slope, bend, slack].map(|it| it * scale);
+                let rises = passes((over, slope, bend), true, slack);
+                let falls = passes((-over, -slope, -bend), false, slack);
+                assert_eq!([rises, falls], [passing; 2], "{over} {slope} {bend} {slack} {scale:e}");
+            }
+        }
+    }
+
+    /// Without a bend there is no crest.
+    #[test]
+    fn a_straight_guard_passes() {
+        for slope in [1.0, 1e-200] {
+            assert!(passes((0.0, slope, 0.0), true, slope));
+        }
+    }
+}
