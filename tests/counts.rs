@@ -7,29 +7,11 @@
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is a failed test")]
 
+#[path = "support/random.rs"]
+mod random;
+
 use percuss::{Counters, Model, Parameters, Start};
-
-/// SplitMix64.
-struct Draw(u64);
-
-impl Draw {
-    /// In [0, 1).
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn log_between(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-}
+use random::Draw;
 
 /// A regime: how its models are drawn, and the sums over its runs.
 struct Regime {
@@ -47,7 +29,7 @@ fn usual(draw: &mut Draw) -> Parameters {
     Parameters {
         a: draw.between(0.1, 1.0),
         b: draw.between(0.01, 0.5),
-        xi: draw.log_between(0.01, 0.5),
+        xi: draw.decades(0.01, 0.5),
         omega: draw.between(0.3, 3.0),
         g: draw.between(0.0, 0.1),
         phi: draw.between(0.0, std::f64::consts::TAU),
@@ -62,7 +44,7 @@ fn count(regime: &Regime) -> Counters {
         let parameters = (regime.model)(&mut draw);
         let model = Model::new(parameters).unwrap();
         let q = draw.between(-0.5, 1.5);
-        let gap = if draw.unit() < 0.5 { 0.0 } else { draw.between(0.0, 1.0) };
+        let gap = if draw.between(0.0, 1.0) < 0.5 { 0.0 } else { draw.between(0.0, 1.0) };
         let start = Start {
             p: q + parameters.g - gap,
             y: draw.between(-1.0, 1.0),
@@ -86,7 +68,7 @@ const REGIMES: [Regime; 14] = [
     Regime { name: "usual", model: usual, counts: [2934, 3653, 212, 0] },
     Regime {
         name: "weak damping",
-        model: |draw| Parameters { xi: draw.log_between(1e-4, 1e-2), ..usual(draw) },
+        model: |draw| Parameters { xi: draw.decades(1e-4, 1e-2), ..usual(draw) },
         counts: [3432, 4990, 202, 0],
     },
     Regime {
@@ -96,22 +78,22 @@ const REGIMES: [Regime; 14] = [
     },
     Regime {
         name: "over-damped",
-        model: |draw| Parameters { xi: draw.log_between(1.2, 20.0), ..usual(draw) },
+        model: |draw| Parameters { xi: draw.decades(1.2, 20.0), ..usual(draw) },
         counts: [3070, 4363, 1041, 0],
     },
     Regime {
         name: "stiff",
-        model: |draw| Parameters { xi: draw.log_between(20.0, 1e4), ..usual(draw) },
+        model: |draw| Parameters { xi: draw.decades(20.0, 1e4), ..usual(draw) },
         counts: [3104, 7463, 3717, 0],
     },
     Regime {
         name: "slow forcing",
-        model: |draw| Parameters { omega: draw.log_between(0.003, 0.1), ..usual(draw) },
+        model: |draw| Parameters { omega: draw.decades(0.003, 0.1), ..usual(draw) },
         counts: [3267, 9979, 501, 0],
     },
     Regime {
         name: "fast forcing",
-        model: |draw| Parameters { omega: draw.log_between(5.0, 200.0), ..usual(draw) },
+        model: |draw| Parameters { omega: draw.decades(5.0, 200.0), ..usual(draw) },
         counts: [732, 1979, 652, 0],
     },
     Regime {
@@ -121,7 +103,7 @@ const REGIMES: [Regime; 14] = [
     },
     Regime {
         name: "next to no static force",
-        model: |draw| Parameters { b: draw.log_between(1e-12, 1e-3), ..usual(draw) },
+        model: |draw| Parameters { b: draw.decades(1e-12, 1e-3), ..usual(draw) },
         counts: [529, 1046, 58, 0],
     },
     Regime {
@@ -136,20 +118,20 @@ const REGIMES: [Regime; 14] = [
     },
     Regime {
         name: "strong force",
-        model: |draw| Parameters { a: draw.log_between(1.0, 100.0), ..usual(draw) },
+        model: |draw| Parameters { a: draw.decades(1.0, 100.0), ..usual(draw) },
         counts: [3109, 3680, 108, 0],
     },
     Regime {
         name: "weak force",
-        model: |draw| Parameters { a: draw.log_between(1e-9, 1e-2), ..usual(draw) },
+        model: |draw| Parameters { a: draw.decades(1e-9, 1e-2), ..usual(draw) },
         counts: [1932, 2703, 179, 0],
     },
     Regime {
         name: "strong force, fast",
         model: |draw| Parameters {
-            a: draw.log_between(1.0, 100.0),
-            omega: draw.log_between(5.0, 50.0),
-            xi: draw.log_between(0.5, 100.0),
+            a: draw.decades(1.0, 100.0),
+            omega: draw.decades(5.0, 50.0),
+            xi: draw.decades(0.5, 100.0),
             ..usual(draw)
         },
         counts: [2974, 4617, 336, 0],

@@ -241,8 +241,8 @@ fn an_envelope_that_rounding_keeps_open() {
     assert!(matches!(run[0].exit(), Exit::Endless(_)), "{:?}", run[0]);
 }
 
-/// p0 = q0 + g beside g = 1e9 has lost q0, of which a bound of the gap's envelope was made: it proved the
-/// flight to be clear until after its end.
+/// p0 = q0 + g beside g = 1e9 has lost q0, of which a bound of the gap's envelope was made: it
+/// proved the flight to be clear until after its end.
 #[test]
 fn a_flight_far_up_returns_before_the_horizon() {
     let parameters = [
@@ -329,8 +329,8 @@ fn a_bracket_with_many_oscillations() {
     assert!(run.counters().evaluations < 100, "{:?}", run.counters());
 }
 
-/// A harmonic force of 1e-64 beside a static one of 1 was read off their sum. The root is from the closed form
-/// in 60 digits.
+/// A harmonic force of 1e-64 beside a static one of 1 was read off their sum. The root is from the
+/// closed form in 60 digits.
 #[test]
 fn a_small_harmonic_force_on_a_threshold() {
     let parameters = [2.552_365_740_751_081_6e-64, 1.0, 1.0, 0.177_372_697_593_197_1, 0.02, 0.0];

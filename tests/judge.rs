@@ -8,7 +8,11 @@
     reason = "each test uses a part of its support; a panic is a failed test"
 )]
 
+#[path = "support/random.rs"]
+mod random;
+
 use percuss::{Counters, Entry, Exit, Leg, Model, Parameters, Phase, Start};
+use random::Draw;
 
 /// Evaluations after which the judge gives a leg up.
 const PATIENCE: u64 = 20_000;
@@ -33,39 +37,18 @@ const REGIMES: [(f64, f64); 16] = [
     (0.3, 1e-3),
 ];
 
-/// A small generator, so that the long test is the same everywhere (splitmix64).
-struct Chance(u64);
+fn random_model(draw: &mut Draw) -> Model {
+    let (a, b) = (draw.decades(0.03, 10.0), draw.between(-0.05, 0.9));
+    let (xi, omega) = (draw.decades(1e-4, 1e2), draw.decades(0.01, 50.0));
+    let (g, phi) = (draw.between(0.0, 0.3), draw.between(0.0, 6.0));
+    Model::new(Parameters { a, b, xi, omega, g, phi }).unwrap()
+}
 
-impl Chance {
-    fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    fn log(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
-    }
-
-    fn model(&mut self) -> Model {
-        let (a, b) = (self.log(0.03, 10.0), self.between(-0.05, 0.9));
-        let (xi, omega) = (self.log(1e-4, 1e2), self.log(0.01, 50.0));
-        let (g, phi) = (self.between(0.0, 0.3), self.between(0.0, 6.0));
-        Model::new(Parameters { a, b, xi, omega, g, phi }).unwrap()
-    }
-
-    fn start(&mut self, model: &Model) -> Entry {
-        let q = self.unit();
-        let p = q + model.parameters().g - self.log(1e-6, 1.0);
-        let y = self.between(-1.0, 1.0);
-        model.start(&Start { p, y, q: Some(q), ..Start::default() }).unwrap()
-    }
+fn random_start(draw: &mut Draw, model: &Model) -> Entry {
+    let q = draw.between(0.0, 1.0);
+    let p = q + model.parameters().g - draw.decades(1e-6, 1.0);
+    let y = draw.between(-1.0, 1.0);
+    model.start(&Start { p, y, q: Some(q), ..Start::default() }).unwrap()
 }
 
 #[derive(Debug, Default)]
@@ -153,18 +136,18 @@ fn run(model: &Model, start: Entry, switches: usize, score: &mut Score) {
 
 fn agree(per_regime: usize, random_models: usize, per_model: usize) -> Score {
     let mut score = Score::default();
-    let mut chance = Chance(2004);
+    let mut draw = Draw(2004);
     for (omega, xi) in REGIMES {
         let model = Model::new(Parameters { omega, xi, ..Parameters::default() }).unwrap();
         // Several starts, because some come to rest.
         for _ in 0..10 {
-            let start = chance.start(&model);
+            let start = random_start(&mut draw, &model);
             run(&model, start, per_regime / 10, &mut score);
         }
     }
     for _ in 0..random_models {
-        let model = chance.model();
-        let start = chance.start(&model);
+        let model = random_model(&mut draw);
+        let start = random_start(&mut draw, &model);
         run(&model, start, per_model, &mut score);
     }
     let Score { switches, given_up, undecidable, worst, disagreements } = &score;

@@ -77,8 +77,9 @@ fn random() {
                 .filter(|c| !c.is_ascii_digit() && *c != '.')
                 .collect();
             let entry = faults.entry(kind).or_insert_with(|| {
-                println!("case {run}: {fault}\n  {case:?}");
-                (0, format!("{fault}\n  {case:?}"))
+                let first = format!("{fault}\n  {case:?}");
+                println!("case {run}: {first}");
+                (0, first)
             });
             entry.0 += 1;
         }

@@ -94,15 +94,14 @@ pub fn check_counted(case: &Case, tally: &mut Tally) -> Result<(), String> {
         tally.phases += 1;
         tally.most_evaluations = tally.most_evaluations.max(evaluations);
         history.leg(&model, &leg, evaluations, periods).map_err(named)?;
+        let touched = counters.undecidable > before.undecidable;
         if number == 0 {
             tally.endless += 1;
-            let touched = counters.undecidable > before.undecidable;
             without_horizon(&model, &leg, leg.elapsed_at(&horizon), touched).map_err(named)?;
         }
         let undecidable = *leg.exit() == Exit::Undecidable;
         tally.undecidable += u64::from(undecidable);
         if undecidable || judged && number < JUDGED {
-            let touched = counters.undecidable > before.undecidable;
             let left = leg.elapsed_at(&horizon);
             judge(&model, &leg, left, touched, tally).map_err(named)?;
         }

@@ -50,11 +50,12 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         let terms = (ax.abs() + br.abs()) + (cx.abs() + dr.abs());
         let room = ROUNDINGS * f64::EPSILON * terms;
         // The norm of two numbers without squares is at most their sum.
-        let by_energy = if terms > SQUARABLE {
-            (eighth * eighth + ninth * ninth).sqrt() + room
+        let norm = if terms > SQUARABLE {
+            (eighth * eighth + ninth * ninth).sqrt()
         } else {
-            eighth.abs() + ninth.abs() + room
+            eighth.abs() + ninth.abs()
         };
+        let by_energy = norm + room;
         if let Damping::Over { fast, slow, .. } = self.constants.borrow().damping {
             // Eight derivatives of a stiff oscillation are rounding once its fast part has died out.
             let quick = self.fast_amplitude(split) * quick_decay(fast * at.elapsed);

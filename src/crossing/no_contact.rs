@@ -24,11 +24,8 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
 
     fn trend(&self) -> Trend {
         let constants = self.constants.borrow();
-        // On the surface p0 - g is q0, of which a p0 beside a large g has lost digits.
-        let State { p, q, .. } = self.entry;
-        let height = if self.surface.is_some() { q } else { p - constants.g };
         Trend {
-            offset: height + constants.a_over_omega2 * self.angle.cos,
+            offset: self.height() + constants.a_over_omega2 * self.angle.cos,
             slope: self.entry.y - constants.a_over_omega * self.angle.sin,
             curvature: constants.b,
             amplitude: constants.a_over_omega2,

@@ -174,7 +174,7 @@ fn passes((over, slope, bend): (f64, f64, f64), rises: bool, slack: f64) -> bool
     }
 }
 
-/// The same for slopes that have no square.
+/// Whether such a guard passes, where its slope has no square.
 #[cold]
 fn passes_without_squares(slope: f64, bend: f64, over: f64) -> bool {
     let turns_back = bend < 0.0 && over < 0.0 || bend > 0.0 && over > 0.0;
@@ -279,8 +279,8 @@ pub fn middle(inside: f64, outside: f64, halvings: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Excess, slope, bend and slack next to a threshold, and whether the guard passes it: a crest of
-    /// slope^2/(2 bend) above the excess, less the slack.
+    /// Excess, slope, bend and slack next to a threshold, and whether the guard passes it: a crest
+    /// of slope^2/(2 bend) above the excess, less the slack.
     const NEXT_TO_A_CREST: [([f64; 4], bool); 7] = [
         ([0.0, 1.0, -1.0, 0.4], true),
         ([0.0, 1.0, -1.0, 0.6], false),

@@ -8,6 +8,7 @@
 //! has to be searched each time the bound becomes positive.
 
 use crate::crossing::guarded::Outlook;
+use crate::crossing::stepping::safe_step;
 use crate::crossing::swing::meeting;
 use crate::flow::stride::{Stride, Strides};
 use crate::remainders::decay;
@@ -266,14 +267,8 @@ pub fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
     const EXACT: f64 = 1e-290;
     let discriminant = rising * rising - 2.0 * curvature * value;
     if discriminant.abs() < EXACT && curvature > 0.0 {
-        // The parabola opens upwards: the square root of a sum of two squares.
-        let root = rising.hypot((2.0 * curvature).sqrt() * (-value).sqrt());
-        let time = if rising >= 0.0 {
-            -2.0 * value / (rising + root)
-        } else {
-            (root - rising) / curvature
-        };
-        return (time >= 0.0 && time.is_finite()).then_some(time);
+        let time = safe_step(value, rising, curvature);
+        return (value < 0.0 && time.is_finite()).then_some(time);
     }
     if discriminant < 0.0 {
         return None; // curvature < 0 and the crest stays below zero

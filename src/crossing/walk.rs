@@ -162,7 +162,8 @@ impl<'a> Walk<'a> {
         }
     }
 
-    /// What can be said about the excess between the two ends by their parts, and within which room.
+    /// What can be said about the excess between the two ends by their parts, and within which
+    /// room.
     fn verdict(mut self, left: End, right: End, ends: Ends) -> (Verdict, f64) {
         let rate = self.shape.rate;
         let pushes = left.parts.lasting > 0.0;
@@ -246,8 +247,8 @@ impl<'a> Walk<'a> {
 
     /// How high the harmonic's crests may be.
     fn crests(&self, near: &Parts, far: &Parts) -> Crests {
-        /// Of a few sums in the values and, over the length, in the slopes. An evaluation's own room does
-        /// not hold them: there the parts have been added up before they were rounded.
+        /// The sums of values, and of slopes over the length, round a few times. An evaluation's
+        /// own room leaves that out: its parts have cancelled before they were rounded.
         const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
         let Shape { curvature, grain, strength, per_omega2, rate, .. } = *self.shape;
         let line = self.line.unwrap_or_else(|| Line::above(near, far, rate));

@@ -56,8 +56,8 @@ impl<T: Number> EntryAngle<T> {
 }
 
 impl EntryAngle<f64> {
-    /// The forcing angle a time `elapsed` later, where the harmonic force and its rate are these, for guesses: a times its
-    /// sine and cosine are good to some roundings of the force.
+    /// The forcing angle a time `elapsed` later, where the harmonic force and its rate are these,
+    /// for guesses: a times its sine and cosine are good to some roundings of the force.
     #[inline]
     pub(crate) fn roughly_after(
         &self,

@@ -22,10 +22,20 @@ pub struct NoContact<T, C = Constants<T>> {
     pub surface: Option<T>,
 }
 
+impl<T: Number, C: Borrow<Constants<T>>> NoContact<T, C> {
+    /// p0 - g when the flight begins: a start's p0 and g are given; on the surface it is q0, of which
+    /// a p0 beside a large g has lost digits.
+    #[inline(always)]
+    pub(crate) fn height(&self) -> T {
+        let State { p, q, .. } = self.entry;
+        if self.surface.is_some() { q } else { p - self.constants.borrow().g }
+    }
+}
+
 impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
     #[inline(always)]
     fn at(&self, d: T) -> Point<T> {
-        let Constants { b, g, rate, .. } = *self.constants.borrow();
+        let Constants { b, rate, .. } = *self.constants.borrow();
         let State { p: p0, y: y0, q: q0 } = self.entry;
         let harmonic = self.angle.harmonic(self.constants.borrow(), d);
         let decay = decay(rate * d);
@@ -40,8 +50,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
         let spring = q * rate;
         // q carries the rounding of its exponent, z times: it dies out with q.
         let q_terms = q.abs() + (spring * d).abs();
-        // Known better than p: a start's p0 and g are given, and on the surface p0 - g is q0.
-        let height = if self.surface.is_some() { q0 } else { p0 - g };
+        let height = self.height();
         let direct_terms = height.abs() + (y0 * d).abs() + lift.abs() + q_terms;
         let (h, h_rate, terms) = match self.surface {
             // The remainder is the better form where z is short, and everywhere after a separation,

@@ -117,12 +117,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
 
 fn dispatch(arguments: &Arguments) -> u8 {
     let result = match &arguments.verb {
-        Verb::Simulate(simulate) => {
-            simulate::run(simulate).map(|decided| if decided { DONE } else { OUT_OF_BOUNDS })
-        }
-        Verb::Poincare(poincare) => {
-            poincare::run(poincare).map(|decided| if decided { DONE } else { OUT_OF_BOUNDS })
-        }
+        Verb::Simulate(simulate) => simulate::run(simulate).map(code),
+        Verb::Poincare(poincare) => poincare::run(poincare).map(code),
         Verb::Lyapunov(lyapunov) => lyapunov::run(lyapunov).map(|()| DONE),
         Verb::Bifurcation(it) => bifurcation::run(it, arguments.threads).map(|()| DONE),
         Verb::Attractors(it) => basins::attractors(it, arguments.threads).map(|()| DONE),
@@ -145,6 +141,11 @@ fn dispatch(arguments: &Arguments) -> u8 {
             REFUSED
         }
     }
+}
+
+/// The exit code of a run that was decided to its end, or not.
+const fn code(decided: bool) -> u8 {
+    if decided { DONE } else { OUT_OF_BOUNDS }
 }
 
 /// The verbs' names.
