@@ -38,7 +38,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
 
     /// A bound of the eighth derivative of the free part from `at` on: x^2 + x'^2 never grows, of no
     /// derivative.
-    fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
+    pub(super) fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
         /// Of eight steps of the recurrence, and of the sums here.
         const ROUNDINGS: f64 = 16.0;
         /// The squares of two numbers whose sum is smaller may underflow.
@@ -63,6 +63,12 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             return by_energy.min(quick * fast.powi(8) + lasting * slow.powi(8));
         }
         by_energy
+    }
+
+    /// A bound of the size of the trial force's eighth derivative, from that of its free part.
+    #[inline(always)]
+    pub(super) fn eighth(&self, free: f64) -> f64 {
+        free + self.constants.borrow().forced_eighth
     }
 
     /// A bound of the fast exponential's size at entry, over-damped: |x' + slow x|/spread, where
@@ -164,7 +170,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         let length = right.elapsed - left.elapsed;
         let split = self.split(left);
         let free = self.free_eighth(left, &split);
-        let eighth = free + self.constants.borrow().forced_eighth;
+        let eighth = self.eighth(free);
         let whole = Piece {
             left: left.guard.orders,
             right: right.guard.orders,
@@ -288,7 +294,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         if two_xi < MILD {
             let size = split.amplitude + x.abs() + x1.abs();
             let room = slack + ROUNDINGS * f64::EPSILON * (size + b.abs());
-            let shape = self.shape(free + self.constants.borrow().forced_eighth, room);
+            let shape = self.shape(self.eighth(free), room);
             let right = (right.elapsed, &right.guard.orders);
             let swing = &strides.contact_piece;
             let parts = self.parts(left, split);

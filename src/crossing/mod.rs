@@ -27,6 +27,8 @@
 //! [`stepping`] is the same question answered in the plainest way, by one-sided steps with a bound on
 //! the curvature. It is several times dearer and serves as the judge in the tests.
 
+#[cfg(test)]
+mod bounds;
 pub mod certificate;
 pub mod contact;
 mod contact_ahead;

@@ -18,6 +18,14 @@ use std::borrow::Borrow;
 const SHORT: f64 = 4.0;
 
 impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
+    /// An upper bound of the eighth derivative of h from `at` on. Its lower bound is of no use,
+    /// because the corridor has no lower threshold.
+    #[inline(always)]
+    pub(super) fn eighth_most(&self, at: &Point<f64>) -> f64 {
+        let Constants { a, omega6, rate8, .. } = *self.constants.borrow();
+        a * omega6 + (-at.state.q).max(0.0) * rate8
+    }
+
     fn separates(&self) -> bool {
         self.surface == Some(0.0)
     }
@@ -149,14 +157,13 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         }
         let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
-        let Constants { omega, rate, rate8, a, omega6, .. } = *self.constants.borrow();
+        let Constants { omega, rate, .. } = *self.constants.borrow();
         if length * rate <= PULLING && length * omega <= SHORT {
-            let lift = (-left.state.q).max(0.0) * rate8;
             let piece = Piece {
                 left: left.guard.orders,
                 right: right.guard.orders,
                 length,
-                eighth: (0.0, a * omega6 + lift),
+                eighth: (0.0, self.eighth_most(left)),
             };
             let verdict = piece.verdict(&self.corridor(), ends, slack);
             if verdict != Verdict::Open || length * omega < 0.5 * SHORT {

@@ -99,14 +99,13 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         }
         let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
-        let Constants { omega, rate, rate8, a, omega6, .. } = *self.constants.borrow();
+        let Constants { omega, rate, .. } = *self.constants.borrow();
         if length * rate <= PUSHING && length * omega <= SHORT {
-            let drop = left.slider_velocity.max(0.0) * rate8;
             let piece = Piece {
                 left: left.guard.orders,
                 right: right.guard.orders,
                 length,
-                eighth: (-a * omega * omega6 - drop, 0.0),
+                eighth: (self.eighth_least(left), 0.0),
             };
             let verdict = piece.verdict(&self.corridor(), ends, slack);
             if verdict != Verdict::Open || length * omega < 0.5 * SHORT {
@@ -178,6 +177,14 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
 }
 
 impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
+    /// A lower bound of the eighth derivative of w from `at` on. Its upper bound is of no use,
+    /// because the corridor has no upper threshold.
+    #[inline(always)]
+    pub(super) fn eighth_least(&self, at: &Point<f64>) -> f64 {
+        let Constants { a, omega, omega6, rate8, .. } = *self.constants.borrow();
+        -a * omega * omega6 - at.slider_velocity.max(0.0) * rate8
+    }
+
     /// Whether w, not negative at the start, has no root before this one: proved, or not known.
     ///
     /// w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's lag only decays. With c = 1 - a - b

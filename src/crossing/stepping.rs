@@ -84,20 +84,24 @@ pub fn first_crossing<G: Bending>(
     while counters.evaluations - first < limit {
         let room = slack(phase, &entry, &point);
         let bend = phase.bend(&point);
-        let [value, slope, ..] = point.guard.orders;
-        let arrived =
-            |excess: f64, outward: f64| excess > -room && outward > 0.0 && point.elapsed > 0.0;
+        let [value, slope, curvature, _] = point.guard.orders;
+        // A guard whose top is within the rounding of its threshold touches it.
+        let passes = |excess: f64| 0.5 * slope * slope > (room - excess) * curvature.abs();
+        let arrived = |excess: f64, outward: f64| {
+            excess > -room && outward > 0.0 && point.elapsed > 0.0 && passes(excess)
+        };
         let (above, below) = (value - corridor.high, corridor.low - value);
         if arrived(above, slope) || arrived(below, -slope) {
             return Some(Crossing::At(arrival(&point, &corridor)));
         }
-        let step = safe_step(above, slope, bend).min(safe_step(below, -slope, bend));
-        // Within the rounding of a touch the step vanishes: go over it by what rounding hides.
-        let blind = (room / bend).sqrt();
-        if step < blind && above.max(below) > -room {
-            counters.undecidable += 1;
+        let mut step = safe_step(above, slope, bend).min(safe_step(below, -slope, bend));
+        if above.max(below) > -room {
+            // Within the rounding of a touch the step vanishes: go over it by what rounding hides.
+            let blind = (room / bend.max(curvature.abs())).sqrt();
+            counters.undecidable += u64::from(step < blind);
+            step = step.max(blind);
         }
-        let next = point.elapsed + step.max(blind).max(f64::EPSILON * point.elapsed);
+        let next = point.elapsed + step.max(f64::EPSILON * point.elapsed);
         if next > horizon {
             return Some(Crossing::Horizon);
         }
@@ -131,4 +135,46 @@ fn arrival(point: &Point<f64>, corridor: &Corridor) -> Root {
     // A crossing follows the start, also where its slope is that of a threefold zero there.
     let TwoWord { high: elapsed, low } = TwoWord::sum(point.elapsed, step.max(-point.elapsed));
     Root { point: Point { elapsed, ..*point }, low, side: Side::high(rises) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::flow::forcing::EntryAngle;
+    use crate::parameters::Parameters;
+    use crate::state::State;
+
+    /// Under the static force alone h is the parabola most - (d - 1)^2/2. What the steps find before
+    /// d = 3, and how many touches they count.
+    fn parabola(most: f64) -> (Option<f64>, u64) {
+        let parameters = Parameters { a: 0.0, b: -1.0, g: 0.0, ..Parameters::default() };
+        let constants = Constants::new(&parameters);
+        let angle = EntryAngle { radians: 0.0, sin: 0.0, cos: 1.0 };
+        let entry = State { p: most - 0.5, y: 1.0, q: 0.0 };
+        let flight = NoContact { constants, entry, angle, surface: None };
+        let mut counters = Counters::default();
+        let found = first_crossing(&flight, 3.0, 10_000, &mut counters);
+        if let Some(Crossing::At(root)) = found {
+            return (Some(root.point.elapsed + root.low), counters.undecidable);
+        }
+        assert!(matches!(found, Some(Crossing::Horizon)), "{found:?}");
+        (None, counters.undecidable)
+    }
+
+    #[test]
+    fn a_parabola_is_crossed_touched_or_passed() {
+        for most in [0.4, 1e-3, 1e-9] {
+            let (crossing, touches) = parabola(most);
+            let expected = 1.0 - (2.0 * most).sqrt();
+            // The parabola's top is rounded by eps, which its slope at the root divides.
+            let room = 4.0 * f64::EPSILON / (2.0 * most).sqrt();
+            let error = (crossing.unwrap_or(f64::NAN) - expected).abs();
+            assert!(error <= room && touches == 0, "{most}: {crossing:?} {expected} {touches}");
+        }
+        for most in [-1e-3, -1e-9, -1e-13] {
+            assert_eq!(parabola(most), (None, 0), "{most}");
+        }
+        // The top is the threshold itself: rounding decides, and it is counted once.
+        assert_eq!(parabola(0.0), (None, 1));
+    }
 }

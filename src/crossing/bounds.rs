@@ -1,0 +1,91 @@
+//! Tests of the bounds on which certificates and one-sided steps rest: each is held against the
+//! derivative itself, which the guard's Taylor series gives at any later time.
+
+use crate::constants::Constants;
+use crate::crossing::stepping::Bending;
+use crate::flow::Point;
+use crate::flow::contact::Contact;
+use crate::flow::forcing::EntryAngle;
+use crate::flow::no_contact::NoContact;
+use crate::flow::progression::Progression;
+use crate::parameters::Parameters;
+use crate::state::State;
+use proptest::prelude::*;
+
+/// A lower and an upper bound of the guard's eighth derivative from an evaluation on, infinite on a
+/// side without a threshold.
+trait Eighth: Bending {
+    fn eighth_within(&self, at: &Point<f64>) -> (f64, f64);
+}
+
+impl Eighth for NoContact<f64> {
+    fn eighth_within(&self, at: &Point<f64>) -> (f64, f64) {
+        (f64::NEG_INFINITY, self.eighth_most(at))
+    }
+}
+
+impl Eighth for Contact<f64> {
+    fn eighth_within(&self, at: &Point<f64>) -> (f64, f64) {
+        let bound = self.eighth(self.free_eighth(at, &self.split(at)));
+        (-bound, bound)
+    }
+}
+
+impl Eighth for Progression<f64> {
+    fn eighth_within(&self, at: &Point<f64>) -> (f64, f64) {
+        (self.eighth_least(at), f64::INFINITY)
+    }
+}
+
+/// Times after the evaluation, in units of the motion's shortest time.
+const LATER: [f64; 8] = [0.0, 0.1, 0.3, 0.7, 1.3, 2.5, 5.0, 20.0];
+
+/// The bounds at `from` hold at all later times, up to the rounding of the derivatives: each order
+/// multiplies the guard's terms by the fastest rate, with a few roundings.
+fn hold<P: Eighth>(phase: &P, from: f64) -> Result<(), TestCaseError> {
+    let here = phase.at(from);
+    let (least, most) = phase.eighth_within(&here);
+    let bend = phase.bend(&here);
+    let (above, below) = {
+        let corridor = phase.corridor();
+        (corridor.high.is_finite(), corridor.low.is_finite())
+    };
+    let rate = phase.fastest_rate();
+    for later in LATER {
+        let there = phase.at(from + later / rate);
+        let derivatives = phase.series::<9>(&there).0;
+        let size: f64 = (0..4).map(|k| derivatives[k].abs() / rate.powi(k as i32)).sum();
+        let room = |order| 64.0 * f64::EPSILON * size * rate.powi(order);
+        let eighth = derivatives[8];
+        let eighth_holds = least - room(8) <= eighth && eighth <= most + room(8);
+        prop_assert!(eighth_holds, "{eighth:e} not within {least:e} to {most:e}, {later}");
+        let bends = derivatives[2];
+        prop_assert!(!above || bends <= bend + room(2), "{bends:e} above {bend:e}, {later}");
+        prop_assert!(!below || -bends <= bend + room(2), "{bends:e} below -{bend:e}, {later}");
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn bounds_of_derivatives_hold_from_an_evaluation_on(
+        // The forcing is left out often enough that the exponential alone has to be bounded.
+        (a, b) in (prop_oneof![Just(0.0), 0.0..1.0_f64], -0.5..1.0_f64),
+        (xi, omega) in (-6.0..2.5_f64, -2.0..2.0_f64).prop_map(|(x, o)| (x.exp(), o.exp())),
+        (y, q, angle) in (-1.0..1.0_f64, -1.0..1.0_f64, 0.0..6.3_f64),
+        (d, closing) in (0.0..3.0_f64, -1.0..1.0_f64),
+    ) {
+        let parameters = Parameters { a, b, xi, omega, ..Parameters::default() };
+        let constants = Constants::new(&parameters);
+        let angle = EntryAngle { radians: angle, sin: angle.sin(), cos: angle.cos() };
+        let entry = State { p: q + 0.02, y, q };
+        hold(&NoContact { constants, entry, angle, surface: None }, d)?;
+        let offset = 2.0 * xi * y + q;
+        hold(&Contact { constants, entry, angle, offset, reference: 0.0 }, d)?;
+        let entry = State { q: 1.0 - 2.0 * xi * closing, ..entry };
+        let drift_rate = y - closing;
+        hold(&Progression { constants, entry, angle, drift_rate, closing }, d)?;
+    }
+}
