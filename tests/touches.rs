@@ -129,3 +129,39 @@ fn flights_that_graze_are_counted() {
         assert!(undecidable > 0 && switches == 0, "{undecidable} {switches}");
     }
 }
+
+/// A contact in its steady state, which is highest `above` beyond 1, in eps: the first phase within
+/// six periods.
+fn steady(draw: &mut Draw, above: f64) -> First {
+    let (xi, omega) = (draw.between(0.75, 3.0), draw.decades(0.003, 0.1));
+    let (a, phi) = (draw.between(0.05, 0.3), draw.between(0.0, 6.0));
+    // f'' + 2 xi f' + f = F + 2 xi F'
+    let (pull, lag) = (1.0 - omega * omega, 2.0 * xi * omega);
+    let amplitude = a * libm::hypot(1.0, lag) / libm::hypot(pull, lag);
+    let b = 1.0 - amplitude + above * EPS;
+    let angle = phi + libm::atan(lag) - libm::atan2(lag, pull);
+    let force = b + amplitude * libm::cos(angle);
+    let force_rate = -omega * amplitude * libm::sin(angle);
+    let y = force_rate - 2.0 * xi * (b + a * libm::cos(phi) - force);
+    let q = force - 2.0 * xi * y;
+    let parameters = Parameters { a, b, xi, omega, g: 0.02, phi };
+    first(parameters, Start { p: q + 0.02, y, q: Some(q), ..Start::default() }, 6)
+}
+
+/// The amplitude here is good to two eps, and the rounding room is at most four of five.
+#[test]
+fn steady_states_that_come_next_to_a_threshold_are_decided_or_counted() {
+    let mut draw = Draw(44);
+    for _ in 0..1000 {
+        let above = draw.sign() * draw.decades(0.1, 1000.0);
+        let First { undecidable, switches, phase } = steady(&mut draw, above);
+        assert_eq!(phase, Phase::Contact);
+        let found = format!("{above} eps: {undecidable} touches, {switches} switches");
+        match above {
+            32.0.. => assert!(switches == 1, "{found}"),
+            ..-32.0 => assert!(switches == 0 && undecidable == 0, "{found}"),
+            ..0.0 => assert!(switches == 0, "{found}"),
+            _ => assert!(switches + undecidable > 0, "{found}"),
+        }
+    }
+}

@@ -65,6 +65,27 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         by_energy
     }
 
+    /// What the coefficients of a long piece may round more than the guard itself, because
+    /// derivatives stand in them times powers of the length, and each derivative repeats the
+    /// rounding of the one below it times a rate: 2 xi or 1 where it is computed from the equation
+    /// of motion, the slower decay or omega where the parts are differentiated one by one.
+    fn room_of_length(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
+        /// Up to this reach the slack has room for the derivatives.
+        const FEW: f64 = 4.0;
+        let Constants { omega, two_xi, damping, .. } = *self.constants.borrow();
+        let rate = match damping {
+            Damping::Over { fast, slow, .. } if fast * left.elapsed > 1.0 => slow.max(omega),
+            _ => two_xi.max(1.0),
+        };
+        let reach = (right.elapsed - left.elapsed) * rate;
+        if reach <= FEW {
+            return 0.0;
+        }
+        // The derivatives' weights in the fourth coefficient of degree eight, the largest there are.
+        let weights = reach * (3.0 / 8.0 + reach * (3.0 / 56.0 + reach * (1.0 / 336.0)));
+        f64::EPSILON * weights * left.guard.largest_term.max(right.guard.largest_term)
+    }
+
     /// A bound of the size of the trial force's eighth derivative, from that of its free part.
     #[inline(always)]
     pub(super) fn eighth(&self, free: f64) -> f64 {
@@ -158,6 +179,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         self.ahead(strides, left, limit)
     }
 
+    fn touches_for_ever(&self, left: &Point<f64>) -> bool {
+        self.rests_by_rounding(left)
+    }
+
     fn certify(
         &self,
         strides: &Strides,
@@ -166,7 +191,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         ends: Ends,
     ) -> Verdict {
         let corridor = self.corridor();
-        let slack = slack(self, left, right);
+        let room = self.room_of_length(left, right);
+        let slack = slack(self, left, right) + room;
         let length = right.elapsed - left.elapsed;
         let split = self.split(left);
         let free = self.free_eighth(left, &split);
@@ -177,7 +203,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
             length,
             eighth: (-eighth, eighth),
         };
-        let verdict = whole.verdict(&corridor, ends, slack);
+        let verdict = near(whole.verdict(&corridor, ends, slack), room);
         if verdict != Verdict::Open {
             return verdict;
         }
@@ -313,6 +339,13 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             length,
             eighth: (-free, free),
         };
-        slow.verdict(&self.corridor().narrowed(split.amplitude), Ends::FREE, slack)
+        let corridor = self.corridor().narrowed(split.amplitude);
+        let room = self.room_of_length(left, right);
+        near(slow.verdict(&corridor, Ends::FREE, slack + room), room)
     }
+}
+
+/// A touch in a piece whose room is wide is none yet: the piece is divided first.
+fn near(verdict: Verdict, room: f64) -> Verdict {
+    if verdict == Verdict::Touches && room > 0.0 { Verdict::Open } else { verdict }
 }

@@ -38,6 +38,15 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         self.fits(reach, reach)
     }
 
+    /// Whether the steady state, which the trial force approaches, fits inside by rounding alone.
+    pub(super) fn rests_by_rounding(&self, left: &Point<f64>) -> bool {
+        /// Of the amplitude, which is good to a few eps, and of what [`Self::fits`] allows.
+        const ROOM: f64 = 1.0 + 16.0 * f64::EPSILON;
+        let b = self.constants.borrow().b;
+        let reach = ROOM * self.split(left).amplitude;
+        reach > 1.0 - b || reach > b
+    }
+
     /// Whether f = b + `up` and f = b - `down` lie in [0, 1], but for the rounding of these two. A
     /// steady state beyond a threshold by its last digit is beyond it, so b itself gets no room:
     /// 1 - b is exact for b of at least 1/2, and else half a unit of what fits into it.

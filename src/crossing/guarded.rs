@@ -32,6 +32,11 @@ pub trait Guarded: Flow<f64> {
     /// A guess, or a proof, about what comes after `left`; nothing after `limit` matters.
     fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook;
 
+    /// Whether a guard that is clear from `left` on may still come to its threshold within rounding.
+    fn touches_for_ever(&self, _left: &Point<f64>) -> bool {
+        false
+    }
+
     /// Tries to prove that the guard stays inside between two evaluations.
     fn certify(
         &self,

@@ -137,7 +137,10 @@ fn search<G: Guarded>(
             return Crossing::Undecided(left.elapsed);
         }
         let target = match onwards(outlook, left.elapsed, &mut stride) {
-            Outlook::ClearFrom(time) if time <= left.elapsed => return Crossing::Never,
+            Outlook::ClearFrom(time) if time <= left.elapsed => {
+                counters.undecidable += u64::from(phase.touches_for_ever(&left));
+                return Crossing::Never;
+            }
             Outlook::ClearUntil(time) => {
                 if time >= horizon {
                     return over;

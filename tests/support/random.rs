@@ -18,9 +18,9 @@ impl Draw {
         low + (high - low) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
     }
 
-    /// Uniform in the logarithm.
+    /// Uniform in the logarithm, the same on every machine.
     pub fn decades(&mut self, low: f64, high: f64) -> f64 {
-        self.between(low.ln(), high.ln()).exp()
+        libm::exp(self.between(libm::log(low), libm::log(high)))
     }
 
     /// True once in `n`.

@@ -149,4 +149,45 @@ mod tests {
         let b = BTreeMap::from([("cpcn".to_owned(), 0.25), (String::new(), 0.75)]);
         approx::assert_relative_eq!(total_variation(&a, &b), 1.0, max_relative = 1e-12);
     }
+
+    /// Ten values a unit apart in each series; the second section's are shifted by 0.25 + k.
+    #[test]
+    fn each_distance_is_the_difference_that_was_put_in() {
+        let sorted = |shift: f64| -> [Vec<f64>; SERIES] {
+            std::array::from_fn(|k| {
+                (0..10).map(|n| f64::from(n) + shift * (0.25 + k as f64)).collect()
+            })
+        };
+        let words =
+            |share: f64| BTreeMap::from([("cn".to_owned(), share), ("n".to_owned(), 1.0 - share)]);
+        let reference = Section {
+            sorted: sorted(0.0),
+            words: words(0.5),
+            lyapunov: 0.1,
+            drift: 0.01,
+            ..Section::default()
+        };
+        let section = Section {
+            sorted: sorted(1.0),
+            words: words(0.75),
+            lyapunov: -0.2,
+            drift: 0.03,
+            map_errors: vec![1.0, 2e-9, 5e-9, 5e-4, 1e-9],
+            ..Section::default()
+        };
+        let mut expected = Distances::new();
+        for k in 0..SERIES {
+            expected.insert(STATISTICS[k], 0.25 + k as f64);
+            // A value of the one section has k + 1 more values of its own below it.
+            expected.insert(STATISTICS[SERIES + k], (k + 1) as f64 / 10.0);
+        }
+        let others = [("phase_words", 0.25), ("lyapunov", 0.3), ("drift", 0.02)];
+        expected.extend(others);
+        expected.extend([(MAP_ERROR_MEDIAN, 5e-9), (MAP_ERROR_SHARE, 0.4)]);
+        let found = distances(&section, &reference);
+        assert!(found.keys().eq(expected.keys()), "{found:?}");
+        for (name, value) in expected {
+            approx::assert_relative_eq!(found[name], value, max_relative = 1e-12);
+        }
+    }
 }

@@ -1,0 +1,81 @@
+//! Starts whose guard has a crest at a chosen time and height, from the plain closed forms.
+//!
+//! The functions of libm are the same on every machine, so that the starts are, to the last bit.
+//! The crest's height is met to some roundings of the guard's terms.
+
+use libm::{cos, exp, sin};
+use percuss::{Parameters, Start};
+
+/// What a start is planted for.
+#[derive(Clone, Copy, Debug)]
+pub struct Crest {
+    /// When the guard is highest, after the start at the angle phi.
+    pub elapsed: f64,
+    /// How far above its threshold it is then.
+    pub above: f64,
+}
+
+fn start(parameters: &Parameters, p: f64, y: f64, q: f64) -> Start {
+    let gap = q + parameters.g - p;
+    // Rounding must not put the mass inside the slider.
+    let p = if gap < 0.0 { q + parameters.g } else { p };
+    Start { p, y, q: Some(q), ..Start::default() }
+}
+
+/// A flight from a slider at q: h = p0 - g - q exp(-d/(2 xi)) + y0 d + b d^2/2 + (a/omega^2)
+/// (cos phi - omega d sin phi - cos(omega d + phi)).
+pub fn flight(parameters: &Parameters, q: f64, crest: Crest) -> Start {
+    let Parameters { a, b, xi, omega, g, phi } = *parameters;
+    let (d, rate) = (crest.elapsed, 0.5 / xi);
+    let lag = q * exp(-rate * d);
+    let impulse = (a / omega) * (sin(omega * d + phi) - sin(phi));
+    let y = -(b * d + impulse + rate * lag);
+    let swing = (a / (omega * omega)) * (cos(phi) - omega * d * sin(phi) - cos(omega * d + phi));
+    let p = crest.above + g + lag - y * d - 0.5 * b * d * d - swing;
+    start(parameters, p, y, q)
+}
+
+/// A contact, under-damped, whose trial force f is highest at 1 or, with `falls`, lowest at 0:
+/// f'' + 2 xi f' + f = F + 2 xi F'.
+pub fn contact(parameters: &Parameters, falls: bool, crest: Crest) -> Start {
+    let Parameters { a, b, xi, omega, g, phi } = *parameters;
+    let d = crest.elapsed;
+    // The forced part is the real part of a (1 + 2 i xi omega)/(1 - omega^2 + 2 i xi omega)
+    // exp(i (omega d + phi)).
+    let (pull, lag) = (1.0 - omega * omega, 2.0 * xi * omega);
+    let size = pull * pull + lag * lag;
+    let (re, im) = (a * (pull + lag * lag) / size, a * lag * (pull - 1.0) / size);
+    let forced = |d: f64| {
+        let (s, c) = (sin(omega * d + phi), cos(omega * d + phi));
+        (b + re * c - im * s, -omega * (re * s + im * c))
+    };
+    let threshold = if falls { -crest.above } else { 1.0 + crest.above };
+    let (level, rate) = forced(d);
+    let (x, x_rate) = (threshold - level, -rate);
+    // The free part, backwards from the crest.
+    let nu = (1.0 - xi * xi).sqrt();
+    let quarter = (x_rate + xi * x) / nu;
+    let (s, c) = (sin(nu * d), cos(nu * d));
+    let (swing, turn) = (x * c - quarter * s, x * s + quarter * c);
+    let (level, rate) = forced(0.0);
+    let force = level + exp(xi * d) * swing;
+    let force_rate = rate + exp(xi * d) * (nu * turn - xi * swing);
+    let y = force_rate - 2.0 * xi * (b + a * cos(phi) - force);
+    let q = force - 2.0 * xi * y;
+    start(parameters, q + g, y, q)
+}
+
+/// A progression of a slider whose velocity is `closing` at the start, and the static force with
+/// which its drift velocity w = y - q' is lowest at 0 at the crest.
+pub fn slip(parameters: &Parameters, closing: f64, crest: Crest) -> (Parameters, Start) {
+    let Parameters { a, xi, omega, phi, g, .. } = *parameters;
+    let (d, rate) = (crest.elapsed, 0.5 / xi);
+    let lag = closing * exp(-rate * d);
+    // w' = F - 1 + q'/(2 xi) vanishes at the crest.
+    let b = 1.0 - a * cos(omega * d + phi) - rate * lag;
+    let impulse = (a / omega) * (sin(omega * d + phi) - sin(phi));
+    let y = lag - crest.above - (b - 1.0) * d - impulse;
+    let q = 1.0 - 2.0 * xi * closing;
+    let parameters = Parameters { b, ..*parameters };
+    (parameters, start(&parameters, q + g, y, q))
+}
