@@ -37,7 +37,7 @@ fn random() {
         loop {
             std::thread::sleep(Duration::from_secs(1));
             if let Ok(current) = watched.lock()
-                && current.0.elapsed() > Duration::from_secs(5)
+                && current.0.elapsed() > Duration::from_secs(60)
             {
                 println!("hang: {:?}", current.1);
                 std::process::exit(1);

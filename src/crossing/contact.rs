@@ -86,6 +86,17 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         f64::EPSILON * weights * left.guard.largest_term.max(right.guard.largest_term)
     }
 
+    /// A touch in a piece whose room is wide is none yet: the piece is divided first, unless the
+    /// guard is within rounding of its threshold at both ends, where shorter pieces touch as well.
+    fn near(&self, verdict: Verdict, room: f64, ends: [&Point<f64>; 2]) -> Verdict {
+        if verdict != Verdict::Touches || room == 0.0 {
+            return verdict;
+        }
+        let corridor = self.corridor();
+        let on_it = |at: &Point<f64>| corridor.excess(at.guard.orders[0]) >= -slack(self, at, at);
+        if ends.into_iter().all(on_it) { verdict } else { Verdict::Open }
+    }
+
     /// A bound of the size of the trial force's eighth derivative, from that of its free part.
     #[inline(always)]
     pub(super) fn eighth(&self, free: f64) -> f64 {
@@ -203,7 +214,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
             length,
             eighth: (-eighth, eighth),
         };
-        let verdict = near(whole.verdict(&corridor, ends, slack), room);
+        let verdict = self.near(whole.verdict(&corridor, ends, slack), room, [left, right]);
         if verdict != Verdict::Open {
             return verdict;
         }
@@ -341,11 +352,6 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         };
         let corridor = self.corridor().narrowed(split.amplitude);
         let room = self.room_of_length(left, right);
-        near(slow.verdict(&corridor, Ends::FREE, slack + room), room)
+        self.near(slow.verdict(&corridor, Ends::FREE, slack + room), room, [left, right])
     }
-}
-
-/// A touch in a piece whose room is wide is none yet: the piece is divided first.
-fn near(verdict: Verdict, room: f64) -> Verdict {
-    if verdict == Verdict::Touches && room > 0.0 { Verdict::Open } else { verdict }
 }

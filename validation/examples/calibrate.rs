@@ -1,6 +1,6 @@
 //! Measures the limits of the same-attractor test and prints `attractors.toml`.
 //!
-//! `cargo run --release -p percuss-validation --example calibrate > validation/attractors.toml`
+//! `cargo run --release -p percuss-validation --example calibrate > target/attractors.toml`
 
 use percuss_validation::case::embedded;
 use percuss_validation::score::attractor::{NULL_RUNS, Plan, calibrate};

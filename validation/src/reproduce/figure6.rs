@@ -93,8 +93,8 @@ fn settle(
         comparisons.iter().map(|(_, it)| it.share()).fold(0.0, f64::max)
     );
     let mut second = Claim::settle(&work.paper, "fig6b", Verdict::of(agree), computed)?.note(
-        "one-dimensional distances of p, y, q and their delay pairs, phase words, exponent, drift; limits from exact runs \
-         against each other, at most one false alarm in a thousand suites",
+        "one-dimensional distances of p, y, q and their delay pairs, phase words, exponent, drift; limits that none \
+         of 20,000 exact runs exceeded",
     );
     for (name, comparison) in comparisons {
         let mut nearest: Vec<_> = comparison.distances.iter().collect();

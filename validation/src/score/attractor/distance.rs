@@ -172,7 +172,7 @@ mod tests {
             words: words(0.75),
             lyapunov: -0.2,
             drift: 0.03,
-            map_errors: vec![1.0, 2e-9, 5e-9, 5e-4, 1e-9],
+            map_errors: vec![1.0, 2e-9, 5e-9, 2.0 * SCORED_ERROR, 0.5 * SCORED_ERROR],
             ..Section::default()
         };
         let mut expected = Distances::new();
@@ -183,7 +183,7 @@ mod tests {
         }
         let others = [("phase_words", 0.25), ("lyapunov", 0.3), ("drift", 0.02)];
         expected.extend(others);
-        expected.extend([(MAP_ERROR_MEDIAN, 5e-9), (MAP_ERROR_SHARE, 0.4)]);
+        expected.extend([(MAP_ERROR_MEDIAN, 0.5 * SCORED_ERROR), (MAP_ERROR_SHARE, 0.4)]);
         let found = distances(&section, &reference);
         assert!(found.keys().eq(expected.keys()), "{found:?}");
         for (name, value) in expected {
