@@ -1,5 +1,5 @@
-//! What a run costs with each engine, chaos from rest at tolerance 1e-9. `percuss bench` times them in
-//! interleaved rounds with their answers checked; this is for exploration of one.
+//! What a run costs with each engine, chaos from rest at tolerance 1e-9. `percuss bench` times them
+//! in interleaved rounds with their answers checked; this is for exploration of one.
 //!
 //! `cargo bench -p percuss-validation --bench engines -- NAME`
 

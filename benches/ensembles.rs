@@ -1,8 +1,9 @@
-//! What a switch costs in an ensemble: by each instruction set that the processor has, on one core and in
-//! one interleaved run, beside the scalar solver; and two threads beside two processes.
+//! What a switch costs in an ensemble: by each instruction set that the processor has, on one core
+//! and in one interleaved run, beside the scalar solver; and two threads beside two processes.
 //!
-//! `cargo bench -p percuss-validation --bench ensembles`. Of every round the quotients are taken, of the rounds
-//! their median: what else the machine does then weighs on both sides. For exploration, no test.
+//! `cargo bench -p percuss-validation --bench ensembles`. Of every round the quotients are taken,
+//! of the rounds their median: what else the machine does then weighs on both sides. For
+//! exploration, no test.
 
 #![allow(clippy::expect_used, reason = "a panic is a failed bench")]
 
@@ -16,8 +17,8 @@ use std::ops::ControlFlow;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// omega, xi: chaos with progression, period two, the attractors of Fig. 7; near resonance, critically damped,
-/// over-damped.
+/// omega, xi: chaos with progression, period two, the attractors of Fig. 7; near resonance,
+/// critically damped, over-damped.
 const REGIMES: [(f64, f64); 7] =
     [(1.4, 0.01), (0.1, 0.01), (1.6, 0.1), (1.4, 0.1), (1.2, 0.01), (1.4, 1.0), (1.4, 5.0)];
 const STARTS: usize = 256;
@@ -130,9 +131,10 @@ fn output(process: Child) -> f64 {
     String::from_utf8_lossy(&output.stdout).trim().parse().expect("a number")
 }
 
-/// Two threads beside two processes, each of which follows `ensemble`: threads with the starts of one of them,
-/// and with the starts of both. At the end of a run the last motions do not fill the vectors, and with half as
-/// many a thread that is twice as large a part of the run; so only the latter is the same work.
+/// Two threads beside two processes, each of which follows `ensemble`: threads with the starts of
+/// one of them, and with the starts of both. At the end of a run the last motions do not fill the
+/// vectors, and with half as many a thread that is twice as large a part of the run; so only the
+/// latter is the same work.
 fn two_cores(ensemble: &Ensemble) {
     let two = threads(2);
     let both = ensemble.twice();

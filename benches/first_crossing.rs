@@ -1,7 +1,7 @@
-//! What a switch costs: guessed and certified, and by plain one-sided stepping (the judge), beside the
-//! floor: the sine, cosine and exponential of one closed-form evaluation, each waiting for the last as in
-//! one trajectory, and independent. The evaluations a switch are printed with each regime, so that one
-//! run tells the quotients.
+//! What a switch costs: guessed and certified, and by plain one-sided stepping (the judge), beside
+//! the floor: the sine, cosine and exponential of one closed-form evaluation, each waiting for the
+//! last as in one trajectory, and independent. The evaluations a switch are printed with each
+//! regime, so that one run tells the quotients.
 //!
 //! `cargo bench -p percuss-validation --bench first_crossing`. For exploration: numbers of a noisy
 //! machine; `percuss bench compare` holds versions against each other.
@@ -19,8 +19,8 @@ use std::hint::black_box;
 
 const SWITCHES: usize = 2_000;
 
-/// omega, xi: chaos with progression, period two with phases from 0.16 to 71 long, the lightly damped
-/// attractors of Fig. 7, over-damped and critical contact.
+/// omega, xi: chaos with progression, period two with phases from 0.16 to 71 long, the lightly
+/// damped attractors of Fig. 7, over-damped and critical contact.
 const REGIMES: [(f64, f64); 6] =
     [(1.4, 0.01), (0.1, 0.01), (1.6, 0.1), (1.4, 0.1), (1.4, 5.0), (1.4, 1.0)];
 

@@ -67,8 +67,8 @@ fn less_turns(rest: TwoWord, whole: f64) -> TwoWord {
     if !(1.0..FEW).contains(&whole) {
         return rest.minus(TWO_PI.times(whole));
     }
-    // The first difference is exact: its digits are those of `rest`, whose unit is 2^-50 at least, and no
-    // more than a turn is left.
+    // The first difference is exact: its digits are those of `rest`, whose unit is 2^-50 at least,
+    // and no more than a turn is left.
     let sum = TwoWord::sum(rest.high - whole * FIRST, -(whole * SECOND));
     TwoWord::sum(sum.high, sum.low + (rest.low - whole * THIRD))
 }

@@ -1,8 +1,9 @@
-//! The exponential of an f64 by a table of the doubling's 64th parts, as [`crate::circle`] has its sines.
+//! The exponential of an f64 by a table of the doubling's 64th parts, as [`crate::circle`] has its
+//! sines.
 //!
-//! The library divides, and its steps wait for one another; here a short series is multiplied to an entry of
-//! the table, which is held in two words. The error is half a unit in the last place and two hundredths. Only
-//! additions and multiplications, hence the same bits on every platform.
+//! The library divides, and its steps wait for one another; here a short series is multiplied to an
+//! entry of the table, which is held in two words. The error is half a unit in the last place and
+//! two hundredths. Only additions and multiplications, hence the same bits on every platform.
 
 use crate::two_word::{ROUNDER, TwoWord, cut};
 
@@ -98,7 +99,8 @@ mod tests {
             worst = worst.max(of_one.abs() / f64::EPSILON);
         }
         println!("worst: {worst} units");
-        // What is multiplied to the table's entry changes it by less than 0.0055, with four roundings.
+        // What is multiplied to the table's entry changes it by less than 0.0055, with four
+        // roundings.
         assert!(worst <= 0.5 + 4.0 * 0.0055, "{worst}");
     }
 

@@ -1,9 +1,10 @@
 //! How much a run amplifies an error made at, or before, any of its switches.
 //!
 //! An accuracy bound at switch n reads |error| <= k eps (1 + |value|) G_n n. Here G_n is the
-//! largest, over m <= n and at least 1, of the Euclidean norm of D(m, n): the gradient of the compared
-//! quantity at switch n with respect to the state just before switch m (m = 0 is the start). The
-//! start alone would not do: on a stable orbit its influence dies out while every step still rounds.
+//! largest, over m <= n and at least 1, of the Euclidean norm of D(m, n): the gradient of the
+//! compared quantity at switch n with respect to the state just before switch m (m = 0 is the
+//! start). The start alone would not do: on a stable orbit its influence dies out while every step
+//! still rounds.
 
 use crate::leg::Leg;
 use crate::variation::{IDENTITY, Matrix, P, Q, SwitchDerivative, V, Y, product, times};
@@ -34,7 +35,8 @@ impl Growth {
 /// switches: it is for scoring, not for running.
 #[derive(Clone, Debug, Default)]
 pub struct GrowthRecorder {
-    /// Derivatives of the state at the start of the current phase by the states at which errors entered.
+    /// Derivatives of the state at the start of the current phase by the states at which errors
+    /// entered.
     sources: Vec<Matrix>,
 }
 

@@ -16,8 +16,9 @@ pub struct Instant {
     angle: TwoWord,
 }
 
-/// Whole cycles, aligned as the other words are: the tag of an option is as wide as its alignment, and one of
-/// sixteen bytes would be read across the words in which it was written, for which a processor has to wait.
+/// Whole cycles, aligned as the other words are: the tag of an option is as wide as its alignment,
+/// and one of sixteen bytes would be read across the words in which it was written, for which a
+/// processor has to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(Rust, packed(8))]
 struct Cycle(i128);
@@ -98,7 +99,8 @@ impl Instant {
         Self::wrapped(self.cycle.0, self.angle.plus_product(elapsed, omega))
     }
 
-    /// The same with the forcing angle there, whose sine does not wait until whole turns have come off.
+    /// The same with the forcing angle there, whose sine does not wait until whole turns have come
+    /// off.
     #[inline(always)]
     pub(crate) fn after_with_forcing(
         &self,

@@ -27,8 +27,9 @@ pub struct Sample {
 
 /// Why a phase has no end.
 ///
-/// It stands in an [`Exit`] where a switch has other numbers. Behind a byte those would be copied across the
-/// words in which they were written, for which a processor has to wait; so it is a whole word.
+/// It stands in an [`Exit`] where a switch has other numbers. Behind a byte those would be copied
+/// across the words in which they were written, for which a processor has to wait; so it is a whole
+/// word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Endless {
@@ -67,7 +68,8 @@ pub struct Leg {
 }
 
 impl Leg {
-    /// The phase that has begun; if a switch ends it, `next` becomes the one that follows ([`pass`]).
+    /// The phase that has begun; if a switch ends it, `next` becomes the one that follows
+    /// ([`pass`]).
     pub(crate) fn new(
         model: &Model,
         begun: &Begun,
@@ -228,8 +230,8 @@ impl Leg {
         Entry { instant: *instant, state, drift, onset }
     }
 
-    /// How long the phase lasts by plain one-sided stepping (the judge): infinite if it does not end
-    /// within `horizon`, none if that takes more than `evaluations`.
+    /// How long the phase lasts by plain one-sided stepping (the judge): infinite if it does not
+    /// end within `horizon`, none if that takes more than `evaluations`.
     #[must_use]
     pub fn judged_duration(&self, horizon: f64, evaluations: u64) -> Option<f64> {
         let mut counters = Counters::default();

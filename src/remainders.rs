@@ -87,8 +87,8 @@ fn same_sign<T: Number>(square: T, n: usize) -> T {
     even + square * odd
 }
 
-/// 1/n! + s^2/(n+4)! + ... and 1/(n+2)! + s^2/(n+6)! + ..., so many terms in all: two chains that run side by
-/// side, each half as long.
+/// 1/n! + s^2/(n+4)! + ... and 1/(n+2)! + s^2/(n+6)! + ..., so many terms in all: two chains that
+/// run side by side, each half as long.
 #[inline]
 fn every_other<T: Number>(square: T, n: usize, terms: usize) -> (T, T) {
     let fourth = square * square;

@@ -1,8 +1,8 @@
 //! Which phase begins on the contact surface: the trial force decides, then its derivatives.
 //!
 //! f = 2 xi y + q at the thresholds 0 and 1 is decided by the first derivative that is not zero. As
-//! the contact sees it f' = 2 xi (F - f) + y, f'' = 2 xi (F' - f') + F - f; the other phases' guards
-//! have these derivatives divided by 2 xi, so the two sides cannot contradict each other.
+//! the contact sees it f' = 2 xi (F - f) + y, f'' = 2 xi (F' - f') + F - f; the other phases'
+//! guards have these derivatives divided by 2 xi, so the two sides cannot contradict each other.
 
 use crate::constants::Constants;
 use crate::entry::Onset;
@@ -120,7 +120,8 @@ mod tests {
     use crate::parameters::Parameters;
     use crate::two_word::TwoWord;
 
-    /// Its speed f/(2 xi) is zero in f64: a separation under a force that pushes back would never have ended.
+    /// Its speed f/(2 xi) is zero in f64: a separation under a force that pushes back would never
+    /// have ended.
     #[test]
     fn a_force_without_a_speed_is_on_the_threshold() {
         let parameters = Parameters { b: 0.0, xi: 1e4, ..Parameters::default() };

@@ -1,8 +1,8 @@
 //! From one switch to the next.
 //!
-//! What every switch takes, guess, evaluation, root and landing, is inlined here: a processor has to wait where
-//! a call has written words that are read back in pairs, and such calls cost a sixth of a switch's time. What
-//! few switches take is kept out of the way.
+//! What every switch takes, guess, evaluation, root and landing, is inlined here: a processor has
+//! to wait where a call has written words that are read back in pairs, and such calls cost a sixth
+//! of a switch's time. What few switches take is kept out of the way.
 
 use crate::constants::Constants;
 use crate::crossing::guarded::{Guarded, Outlook};
@@ -55,8 +55,8 @@ pub(crate) struct Passed {
     pub duration: TwoWord,
 }
 
-/// The forcing angle by which a phase is cut that has no horizon: in two words nothing is known of the angle
-/// much later, and squares of times would overflow.
+/// The forcing angle by which a phase is cut that has no horizon: in two words nothing is known of
+/// the angle much later, and squares of times would overflow.
 const FURTHEST: f64 = 1e30;
 
 /// How far a search looks beyond its horizon, radians of the forcing.
@@ -86,8 +86,8 @@ trait Landing: Guarded {
     }
 }
 
-/// Finds how a phase ends; if by a switch, `next` becomes the one that follows, else it holds nothing of use.
-/// Switches after `horizon` do not count.
+/// Finds how a phase ends; if by a switch, `next` becomes the one that follows, else it holds
+/// nothing of use. Switches after `horizon` do not count.
 pub(crate) fn pass(
     model: &Model,
     begun: &Begun,
@@ -112,8 +112,8 @@ fn pass_by<P: Landing>(
 ) -> Passed {
     let omega = model.parameters().omega;
     let instant = &begun.entry.instant;
-    // The horizon in two words is computed only where it matters. It is looked beyond by more than guesses
-    // err, so that a switch next to it is found as without it; its instant decides.
+    // The horizon in two words is computed only where it matters. It is looked beyond by more than
+    // guesses err, so that a switch next to it is found as without it; its instant decides.
     let beyond = BEYOND / omega;
     let (certain, limit) = horizon.map_or((f64::INFINITY, FURTHEST / omega), |h| {
         let (certain, limit) = h.since_roughly(instant, omega);
@@ -191,7 +191,8 @@ fn found_later<P: Landing>(
 }
 
 impl Begun {
-    /// A phase of which no more is known: its end is guessed when it is passed, but for a gap that closes soon.
+    /// A phase of which no more is known: its end is guessed when it is passed, but for a gap that
+    /// closes soon.
     pub(crate) fn at(model: &Model, entry: Entry) -> Self {
         let angle = model.forcing_angle(&entry.instant);
         let guess = match Motion::new(model.constants(), &entry, angle) {
@@ -203,9 +204,9 @@ impl Begun {
 
     /// The phase that begins at this root of this one.
     ///
-    /// Its guess does not wait for the new forcing angle, which takes two words and a table: the force at the
-    /// root is known, and is as good. So the processor works on both, and then on the certificate of the
-    /// phase that has ended.
+    /// Its guess does not wait for the new forcing angle, which takes two words and a table: the
+    /// force at the root is known, and is as good. So the processor works on both, and then on the
+    /// certificate of the phase that has ended.
     #[inline(always)]
     fn after<P: Landing>(&self, model: &Model, phase: &P, root: &Root) -> Self {
         let Root { point, .. } = root;

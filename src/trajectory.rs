@@ -10,8 +10,8 @@ use crate::two_word::TwoWord;
 
 /// An iterator over the phases of a run; memory does not grow with its length.
 ///
-/// A run taken up at one of its phases goes on as it did to within rounding, not to the last bit: a root is
-/// computed from where it was guessed, and what is guessed depends on the phase before.
+/// A run taken up at one of its phases goes on as it did to within rounding, not to the last bit: a
+/// root is computed from where it was guessed, and what is guessed depends on the phase before.
 ///
 /// It ends after a phase that reaches the horizon, never ends or is undecidable; without a horizon
 /// and as long as switches come it goes on for ever. A phase is cut after a forcing angle of 1e30

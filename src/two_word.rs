@@ -106,7 +106,8 @@ impl TwoWord {
     }
 }
 
-/// 1.5 * 2^52: a sum with it is rounded to a whole number, which its last bits hold, negative ones as well.
+/// 1.5 * 2^52: a sum with it is rounded to a whole number, which its last bits hold, negative ones
+/// as well.
 pub(crate) const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 /// The first 33 bits of a word: whole numbers below 2^20 times that are exact.

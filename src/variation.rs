@@ -1,4 +1,5 @@
-//! The exact derivative of the motion with respect to its state, phase by phase and across switches.
+//! The exact derivative of the motion with respect to its state, phase by phase and across
+//! switches.
 //!
 //! The state is (angle, p, y, q, v) with the forcing angle omega tau in radians. Within a phase the
 //! derivative is that of the closed form. The field is continuous at f = 0 and at f = 1, so only an

@@ -66,8 +66,8 @@ fn the_attractors_of_fig_7() {
 /// A multiple of every period of Fig. 7.
 const PERIODS: u64 = 36_000;
 
-/// An orbit by following it from one of its strobes, and its exponent from errors carried along; chaos
-/// by an exponent over another stretch.
+/// An orbit by following it from one of its strobes, and its exponent from errors carried along;
+/// chaos by an exponent over another stretch.
 fn confirmed(map: &StrobeMap, attractor: &Attractor) {
     let first = attractor.points[0];
     let from = map.entry(first).unwrap();
@@ -84,8 +84,8 @@ fn confirmed(map: &StrobeMap, attractor: &Attractor) {
             assert!((0..3).any(|i| (sooner[i] - first[i]).abs() > 1e-4), "{period}: {divisor}");
         }
         assert!(orbit.is_stable() && attractor.points.iter().all(|it| it[0] >= first[0]));
-        // Of a complex pair the first error turns on an ellipse and tells little; but both exponents
-        // are half the contraction then, which is a sum over whole turns.
+        // Of a complex pair the first error turns on an ellipse and tells little; but both
+        // exponents are half the contraction then, which is a sum over whole turns.
         let turns = orbit.multipliers[0][1] != 0.0;
         let followed = if turns { spectrum.contraction_per_period / 2.0 } else { largest };
         // A real one's first direction is good to about one logarithm of order 1 over the run.
@@ -141,16 +141,16 @@ fn a_finer_grid_finds_the_same() {
         let middle = fine.labels[(3 * row + 1) * 75 + 3 * column + 1];
         let [p, y, _] = coarse.grid.starts()[row * 25 + column];
         let [same_p, same_y, _] = fine.grid.starts()[(3 * row + 1) * 75 + 3 * column + 1];
-        // Where rounding moves a start by its last digit and a boundary runs between, labels may differ:
-        // that has a probability of about 1e-3 at an uncertainty exponent near 0.1.
+        // Where rounding moves a start by its last digit and a boundary runs between, labels may
+        // differ: that has a probability of about 1e-3 at an uncertainty exponent near 0.1.
         if p == same_p && y == same_y {
             assert_eq!(coarse.labels[row * 25 + column], middle);
         }
     }
 }
 
-/// Regimes without chaos: rest on the slider, a mass that leaves, a slider that never stops, an orbit
-/// wholly on the slider, drift.
+/// Regimes without chaos: rest on the slider, a mass that leaves, a slider that never stops, an
+/// orbit wholly on the slider, drift.
 #[test]
 fn regimes_beyond_the_papers() {
     let paper = Parameters::default();

@@ -33,9 +33,9 @@ const DRAWS: usize = 40_000;
 /// phases up to one forcing period: the project's own bound.
 const STATE_EPS: f64 = 10.0;
 
-/// Allowed error of a guard, and of the coefficients of its certificates, in eps of its largest term:
-/// what the search sets aside (`crossing::guarded::slack`) for three roundings in the guard and one in
-/// the coefficients.
+/// Allowed error of a guard, and of the coefficients of its certificates, in eps of its largest
+/// term: what the search sets aside (`crossing::guarded::slack`) for three roundings in the guard
+/// and one in the coefficients.
 const SLACK_EPS: f64 = 4.0;
 
 const PHASES: [Phase; 3] = [Phase::NoContact, Phase::Contact, Phase::Progression];
@@ -47,8 +47,9 @@ fn error(found: f64, exact: DoubleDouble) -> f64 {
 /// How much errors of the entry state and of the forcing angle grow (the growth of one
 /// phase): the norm of the gradient of p, y, q and v, at least 1.
 ///
-/// The forms are linear in sine and cosine of the angle, so its share is a difference of two values.
-/// An entry velocity grows in p without contact and in v in progression by the elapsed time.
+/// The forms are linear in sine and cosine of the angle, so its share is a difference of two
+/// values. An entry velocity grows in p without contact and in v in progression by the elapsed
+/// time.
 fn growth(pair: &Pair) -> [f64; 4] {
     let turned = values(&pair.rounded.with_angle(|angle| (angle.cos, -angle.sin)).at(pair.elapsed));
     let unforced = values(&pair.rounded.with_angle(|_| (0.0, 0.0)).at(pair.elapsed));
@@ -67,10 +68,10 @@ fn values<T: Number>(point: &Point<T>) -> [T; 4] {
 
 /// What errors of a state are measured by: (1 + |value|) times growth.
 ///
-/// In a contact both are those of the moment. Without contact and in progression p, y and v may have
-/// been far away in the meantime (they have a quadratic and a linear part, and at omega = 0.01 reach
-/// thousands and return), and the sum keeps the roundings made there: the largest so far counts. Nor
-/// can y be better than its linear part, which the harmonic may cancel at every moment.
+/// In a contact both are those of the moment. Without contact and in progression p, y and v may
+/// have been far away in the meantime (they have a quadratic and a linear part, and at omega = 0.01
+/// reach thousands and return), and the sum keeps the roundings made there: the largest so far
+/// counts. Nor can y be better than its linear part, which the harmonic may cancel at every moment.
 fn scale(pair: &Pair) -> [f64; 4] {
     const PLACES: u32 = 16;
     let first = if pair.rounded.phase() == Phase::Contact { PLACES } else { 0 };
@@ -137,7 +138,8 @@ fn states_keep_their_digits() {
     }
 }
 
-/// The search counts on this: a guard's rounding error is within the slack that its largest term buys.
+/// The search counts on this: a guard's rounding error is within the slack that its largest term
+/// buys.
 #[test]
 fn largest_term_bounds_the_rounding_of_the_guard() {
     let mut draw = Draw(4);
@@ -155,7 +157,8 @@ fn largest_term_bounds_the_rounding_of_the_guard() {
     }
 }
 
-/// Bernstein coefficients of degree eight of the interpolant next to one end (`crossing::certificate`).
+/// Bernstein coefficients of degree eight of the interpolant next to one end
+/// (`crossing::certificate`).
 fn coefficients<T: Number>(orders: &[T; 4], length: T) -> [T; 4] {
     let [value, first, second, third] = *orders;
     let seventh = |n: f64, term: T, d: f64| term * T::exact(n) / T::exact(d);

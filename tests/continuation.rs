@@ -1,4 +1,5 @@
-//! Branches of orbits: where they turn and double, held against runs on both sides, other sections and theory.
+//! Branches of orbits: where they turn and double, held against runs on both sides, other sections
+//! and theory.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is a failed test")]
 
@@ -42,8 +43,8 @@ fn settled_period(map: &StrobeMap, start: Point, periods: u64) -> Option<usize> 
     (1..=64).find(|n| (0..3).all(|i| (last[*n][i] - last[0][i]).abs() <= 1e-8))
 }
 
-/// The stable one of the two orbits next to a fold: Newton's method goes from there to either, and the other
-/// one lies as far on the other side.
+/// The stable one of the two orbits next to a fold: Newton's method goes from there to either, and
+/// the other one lies as far on the other side.
 fn stable_beside(map: &StrobeMap, fold: Point, period: u32) -> Orbit {
     let found = Orbit::find(map, fold, period).unwrap();
     if found.is_stable() {
@@ -139,7 +140,8 @@ fn another_section_finds_the_same_values() {
     }
 }
 
-/// Parameters at which a branch of unstable or stable orbits meets a graze of an impact, and where it goes.
+/// Parameters at which a branch of unstable or stable orbits meets a graze of an impact, and where
+/// it goes.
 fn corner(parameters: Parameters, parameter: Parameter, to: f64, period: u32) -> (Family, Branch) {
     let family = Family::new(parameters, parameter, Instant::at(1.0, 0.7, 0));
     let from = parameter.of(&parameters);

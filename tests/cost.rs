@@ -17,10 +17,11 @@ fn first(parameters: Parameters, start: &Start) -> (Leg, Counters) {
     (leg, trajectory.counters())
 }
 
-/// omega, xi and the evaluations a switch allowed: one next to the guess, from which a series leads to
-/// the root. The rest is measured (1.06 at most) with room for another stretch of a chaotic run: guesses
-/// that lead past an earlier crossing or too far from theirs for the series, and near misses, which a
-/// certificate decides by a division at the crest. Where the run is periodic there are none.
+/// omega, xi and the evaluations a switch allowed: one next to the guess, from which a series leads
+/// to the root. The rest is measured (1.06 at most) with room for another stretch of a chaotic run:
+/// guesses that lead past an earlier crossing or too far from theirs for the series, and near
+/// misses, which a certificate decides by a division at the crest. Where the run is periodic there
+/// are none.
 const REGIMES: [(f64, f64, f64); 8] = [
     (1.4, 0.01, 1.1),
     (0.1, 0.01, 1.01),

@@ -2,8 +2,8 @@
 //!
 //! A guess, a bound or a piece's length that is wrong loses no event: the certificate asks for more
 //! work instead. So nothing but the work shows such a fault. The runs are short, so that their
-//! counts do not depend on the last digits of chaos. Where a change of the search changes a row, the
-//! test prints the rows as they are; fewer evaluations are a gain, more of them need a reason.
+//! counts do not depend on the last digits of chaos. Where a change of the search changes a row,
+//! the test prints the rows as they are; fewer evaluations are a gain, more of them need a reason.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is a failed test")]
 

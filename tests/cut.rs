@@ -31,7 +31,8 @@ fn a_switch_counts_up_to_the_horizon_and_no_later() {
             let later = next.instant.after(TwoWord::new(part), omega);
             let mut run = model.trajectory(*leg.entry()).until(later);
             let first = run.next().unwrap();
-            // Looked for from a horizon's side a root may have other last digits, of 18 at most here.
+            // Looked for from a horizon's side a root may have other last digits, of 18 at most
+            // here.
             assert!((first.duration() - leg.duration()).abs() <= 1e-13);
             let counts = matches!(first.exit(), Exit::Switch(_));
             assert!(counts || part <= 1e-14, "{part}: {first:?}");

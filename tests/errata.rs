@@ -1,4 +1,5 @@
-//! The paper's equations exactly as printed, against ours: what is right, and what is not (ERRATA.md).
+//! The paper's equations exactly as printed, against ours: what is right, and what is not
+//! (ERRATA.md).
 
 #![allow(
     dead_code,
@@ -25,8 +26,8 @@ use printed::{Begun, Phases, arctan, arctan2};
 
 const DRAWS: usize = 2000;
 
-/// Rounding of the printed forms: their terms reach a few hundred eps of 1 at omega = 0.1 (a/omega^2
-/// = 30) and at tau = 100, and lose 1/(2 xi) = 50 times more next to resonance.
+/// Rounding of the printed forms: their terms reach a few hundred eps of 1 at omega = 0.1
+/// (a/omega^2 = 30) and at tau = 100, and lose 1/(2 xi) = 50 times more next to resonance.
 const ROUNDING: f64 = 1e-10;
 
 /// What counts as a contradiction: far above rounding.
@@ -38,7 +39,8 @@ const TABLE_1_DIGITS: f64 = 3e-5;
 const TABLE_1: Parameters =
     Parameters { a: 0.3, b: 0.1, xi: 0.01, omega: 0.1, g: 0.02, phi: std::f64::consts::FRAC_PI_2 };
 
-/// Rows of Table 1 that begin a contact, and the time and the velocity printed in the row that follows.
+/// Rows of Table 1 that begin a contact, and the time and the velocity printed in the row that
+/// follows.
 const CONTACTS: [(f64, [f64; 3], f64, f64); 4] = [
     (1142.28514, [0.02, 4.58005, 0.0], 1142.48663, 4.43472),
     (1146.21267, [1.02, 0.0, 1.0], 1147.60385, -1.16404),
@@ -172,7 +174,8 @@ fn arctangents_lose_the_quadrant_where_the_denominator_is_negative() {
     );
 }
 
-/// Three of the four contacts in Table 1 end with the printed velocity only if delta has its quadrant.
+/// Three of the four contacts in Table 1 end with the printed velocity only if delta has its
+/// quadrant.
 #[test]
 fn table_1_contradicts_the_printed_delta() {
     let mut contradictions = 0;

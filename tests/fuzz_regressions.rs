@@ -171,8 +171,8 @@ fn a_force_that_is_zero_to_rounding() {
     legs(case(parameters, [3.141_592_653_589_793, 0.0, 0.0, 0.0], None), 0.0063);
 }
 
-/// Strong damping: the derivatives of f were rounding noise long after the fast part had died out, so
-/// that near a threshold no piece was certified.
+/// Strong damping: the derivatives of f were rounding noise long after the fast part had died out,
+/// so that near a threshold no piece was certified.
 #[test]
 fn strong_damping_next_to_a_threshold() {
     let parameters =
@@ -182,8 +182,8 @@ fn strong_damping_next_to_a_threshold() {
     legs(case(parameters, start, None), 200.0);
 }
 
-/// What q was at the start drowned the guard long after it had died out: g was taken off last, or the
-/// piece's other end gave the rounding room.
+/// What q was at the start drowned the guard long after it had died out: g was taken off last, or
+/// the piece's other end gave the rounding room.
 #[test]
 fn a_slider_that_returns_from_far() {
     let parameters = [0.5, 4.696_163_814_168_331e-5, 1e-8, 1e-6, 0.5, -1.570_796_326_794_896_6];
@@ -230,8 +230,8 @@ fn a_root_smaller_by_orders_of_magnitude() {
     assert!(trajectory.counters().evaluations < 200, "{:?}", trajectory.counters());
 }
 
-/// The envelope of a slow, large forcing stays open by its rounding for a while: it advised to go on by
-/// less and less.
+/// The envelope of a slow, large forcing stays open by its rounding for a while: it advised to go
+/// on by less and less.
 #[test]
 fn an_envelope_that_rounding_keeps_open() {
     let omega = 1.000_108_697_328_897_7e-6;
@@ -275,7 +275,8 @@ fn a_flight_far_up_returns_before_the_horizon() {
 }
 
 /// The squares of its derivatives underflow, so that the bound of the eighth was zero and proved a
-/// crossing away. The model is the one with forces 1e200 times larger, as long as both are far from 1.
+/// crossing away. The model is the one with forces 1e200 times larger, as long as both are far from
+/// 1.
 #[test]
 fn a_contact_whose_squares_underflow() {
     let durations = [-276, -76].map(|exponent: i32| {
@@ -346,8 +347,8 @@ fn a_small_harmonic_force_on_a_threshold() {
     assert!((lasts - expected).abs() <= ROUNDING * expected, "{lasts:?} {expected:?}");
 }
 
-/// Its gap closes after 4.5e-16, which a bound of the gap's envelope denied: it had been added up from
-/// parts of 24, whose rounding nothing allowed for.
+/// Its gap closes after 4.5e-16, which a bound of the gap's envelope denied: it had been added up
+/// from parts of 24, whose rounding nothing allowed for.
 #[test]
 fn a_hop_under_a_far_slider() {
     let phi = -132_601_311_228_378.03;
@@ -400,7 +401,8 @@ fn a_short_slip_under_a_force_of_one() {
     assert!((slip.duration() - 0.040_489_540_977).abs() < 1e-9, "{slip:?}");
 }
 
-/// Over one forcing period its terms grow to 1e21, whose rounding hid that the gap closes after 2.8.
+/// Over one forcing period its terms grow to 1e21, whose rounding hid that the gap closes after
+/// 2.8.
 #[test]
 fn a_gap_that_closes_before_its_terms_grow() {
     let g = 1.733_552_996_007_155_8;

@@ -1,7 +1,7 @@
 //! Motions in lanes against the scalar solver: every phase and every strobe.
 //!
-//! A phase is begun by both from the same entry, so that errors do not add up: their results differ by
-//! what both round in one phase, in units of eps (1 + |value|) x growth.
+//! A phase is begun by both from the same entry, so that errors do not add up: their results differ
+//! by what both round in one phase, in units of eps (1 + |value|) x growth.
 
 #![cfg(feature = "lanes")]
 #![allow(clippy::unwrap_used, clippy::expect_used, reason = "a panic is a failed test")]
@@ -116,7 +116,8 @@ fn parameters() -> impl Strategy<Value = Parameters> {
         .prop_map(|(omega, xi, a, b, g, phi)| Parameters { a, b, xi, omega, g, phi })
 }
 
-/// Where the forced oscillation is a divided difference, down to no more than a hundred-thousandth of damping.
+/// Where the forced oscillation is a divided difference, down to no more than a hundred-thousandth
+/// of damping.
 fn near_resonance() -> impl Strategy<Value = Parameters> {
     (parameters(), 0.75..1.2_f64, (1e-5_f64.ln()..0.2_f64.ln()).prop_map(f64::exp))
         .prop_map(|(others, omega, xi)| Parameters { omega, xi, ..others })
@@ -208,7 +209,8 @@ const ATTRACTORS: [(f64, f64); 16] = [
     (0.4, 20.0),
 ];
 
-/// What is left to the scalar solver on attractors: the starts away from the slider, and a share of the phases.
+/// What is left to the scalar solver on attractors: the starts away from the slider, and a share of
+/// the phases.
 #[test]
 fn lanes_take_nearly_all_of_an_attractor() {
     for (omega, xi) in ATTRACTORS {
@@ -229,7 +231,8 @@ fn lanes_take_nearly_all_of_an_attractor() {
     }
 }
 
-/// Where a motion's first so many phases change with a number of its start: a graze, a tie or a touch lies between.
+/// Where a motion's first so many phases change with a number of its start: a graze, a tie or a
+/// touch lies between.
 fn beside_changes(
     parameters: Parameters,
     number: f64,
@@ -276,7 +279,8 @@ proptest! {
 
 proptest! {
     #![proptest_config(config())]
-    /// Contacts in which the quick exponential takes the force to a threshold and the slow one takes it back.
+    /// Contacts in which the quick exponential takes the force to a threshold and the slow one
+    /// takes it back.
     #[test]
     fn dips_of_over_damped_contacts_are_decided_as_the_scalar_solver_does(
         (omega, decade) in (0.3..3.0_f64, 0.1..1.3_f64),
@@ -341,8 +345,8 @@ fn long_flights_are_those_of_the_scalar_solver() {
     }
 }
 
-/// No switch comes later than the judge finds one, who shares nothing with lanes: plain steps that pass no
-/// crossing.
+/// No switch comes later than the judge finds one, who shares nothing with lanes: plain steps that
+/// pass no crossing.
 #[test]
 fn switches_are_the_judges() {
     for (omega, xi) in ATTRACTORS {

@@ -1,6 +1,8 @@
-//! A crossing that is not the first is never proved to be: the certificates are asked about the later ones.
+//! A crossing that is not the first is never proved to be: the certificates are asked about the
+//! later ones.
 //!
-//! The search hands a certificate the first crossing nearly always, and so hardly tests what it refuses.
+//! The search hands a certificate the first crossing nearly always, and so hardly tests what it
+//! refuses.
 
 use percuss::crossing::certificate::{Ends, Verdict};
 use percuss::crossing::guarded::Guarded;
@@ -18,8 +20,8 @@ use random::Draw;
 /// Places at which the guard is looked at.
 const PLACES: u32 = 400;
 
-/// An excursion counts if it is higher than the roundings that a certificate allows for, in the guard's
-/// largest term: SLACK at both ends of the evaluation and of the certificate.
+/// An excursion counts if it is higher than the roundings that a certificate allows for, in the
+/// guard's largest term: SLACK at both ends of the evaluation and of the certificate.
 const HIGH: f64 = 16.0 * f64::EPSILON;
 
 fn excess<G: Guarded>(phase: &G, d: f64) -> (f64, f64) {

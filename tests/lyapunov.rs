@@ -63,8 +63,8 @@ fn by_qr(model: &Model, from: Entry, transient: u64, periods: u64) -> [f64; 3] {
     sums.map(|sum| sum / periods as f64)
 }
 
-/// On orbits both are means of the same numbers; in chaos they follow different runs, since rounding
-/// errors separate them, and agree within their standard errors.
+/// On orbits both are means of the same numbers; in chaos they follow different runs, since
+/// rounding errors separate them, and agree within their standard errors.
 #[test]
 fn exponents_are_those_of_the_strobe_maps_derivative() {
     let (transient, periods) = (400, 4000);
@@ -79,8 +79,8 @@ fn exponents_are_those_of_the_strobe_maps_derivative() {
                 continue;
             }
             let apart = (found.exponents_per_period[i] - expected[i]).abs();
-            // Five standard errors of a difference of two runs; each first direction is good to about
-            // one logarithm of order 1 over the whole run.
+            // Five standard errors of a difference of two runs; each first direction is good to
+            // about one logarithm of order 1 over the whole run.
             let allowed = 5.0 * 2.0_f64.sqrt() * found.standard_error[i] + 2.0 / periods as f64;
             assert!(apart <= allowed, "{parameters:?} {i}: {found:?} {expected:?}");
         }

@@ -8,8 +8,8 @@ use percuss::dynamics::strobe::{Jacobian, Point, StrobeMap};
 use percuss::{Instant, Model, Parameters, Phase};
 use std::sync::OnceLock;
 
-/// A strobe's and a phase's roundings, carried to the end of one forcing period with a derivative of about ten; the
-/// largest met is 3 eps.
+/// A strobe's and a phase's roundings, carried to the end of one forcing period with a derivative
+/// of about ten; the largest met is 3 eps.
 const CLOSED: f64 = 16.0 * f64::EPSILON;
 
 fn map_of(parameters: Parameters, angle: f64) -> StrobeMap {
@@ -97,7 +97,8 @@ fn multipliers_are_those_of_differences_and_contract() {
             let area = first[0] * second[0] - first[1] * second[1];
             assert!(area.abs() < 1.0, "{orbit:?}");
             let in_flight = |it: &Point| map.entry(*it).unwrap().phase() == Phase::NoContact;
-            // Where all sides of a strobe are in the section; growth spoils the differences of others.
+            // Where all sides of a strobe are in the section; growth spoils the differences of
+            // others.
             let Some(point) = orbit.points.iter().find(|it| in_flight(it)) else { continue };
             if modulus(first) > 50.0 {
                 continue;
@@ -173,7 +174,8 @@ fn rest_on_the_slider_is_an_orbit_with_a_zero_multiplier() {
     assert!((modulus - (-0.1 * map.model().period()).exp()).abs() <= 1e-15, "{modulus}");
 }
 
-/// Without a static force and without contact there is a continuum of orbits: nothing to be solved is left alone.
+/// Without a static force and without contact there is a continuum of orbits: nothing to be solved
+/// is left alone.
 #[test]
 fn flights_that_never_touch_are_orbits_where_the_mean_force_vanishes() {
     let map = map_of(Parameters { b: 0.0, ..Parameters::default() }, 0.0);

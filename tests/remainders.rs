@@ -26,7 +26,8 @@ const DRAWS: usize = 200_000;
 const SERIES_EPS: f64 = 2.0;
 
 /// Absolute error of sine, cosine and exponential, and of sums with the argument (in eps of the
-/// argument) where no series is used: libm's one unit in the last place, doubled by the angle's formula.
+/// argument) where no series is used: libm's one unit in the last place, doubled by the angle's
+/// formula.
 const FUNCTION_EPS: f64 = 3.0;
 
 /// The smallest argument: below it the remainders leave the range in which f64 is relatively exact.
@@ -42,8 +43,8 @@ fn absolute(found: f64, exact: Real) -> f64 {
     (Real::exact(found) - exact).to_f64().abs() / f64::EPSILON
 }
 
-/// x^n/n! - x^(n + s)/(n + s)! ... with signs alternating by `sign`: a truth that shares no code with
-/// the library beyond the number type, and takes twice the terms.
+/// x^n/n! - x^(n + s)/(n + s)! ... with signs alternating by `sign`: a truth that shares no code
+/// with the library beyond the number type, and takes twice the terms.
 fn power_series(x: Real, first: usize, stride: usize, sign: f64) -> Real {
     let mut term = Real::one();
     for k in 1..=first {

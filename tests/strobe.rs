@@ -13,8 +13,8 @@ use percuss::dynamics::strobe::StrobeMap;
 use percuss::{Entry, Exit, GrowthRecorder, Instant, Model, Parameters, Phase, Start};
 use random::Draw;
 
-/// Roundings of a phase taken up again: the state's, and those of the form evaluated from there; the
-/// solver's own constant is 0.5 (`validate`).
+/// Roundings of a phase taken up again: the state's, and those of the form evaluated from there;
+/// the solver's own constant is 0.5 (`validate`).
 const ROUNDINGS: f64 = 16.0;
 
 fn models() -> Vec<Model> {

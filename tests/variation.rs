@@ -14,7 +14,8 @@ const FLIGHT: Start =
 const STEP: f64 = 1e-5;
 const CLOSE: f64 = 1e-6;
 
-/// The derivative along the run, the kinds of its impacts, and p, y, q and v a time `span` after the start.
+/// The derivative along the run, the kinds of its impacts, and p, y, q and v a time `span` after
+/// the start.
 struct Run {
     derivative: Matrix,
     impacts: Vec<Phase>,

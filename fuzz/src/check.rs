@@ -259,8 +259,8 @@ impl History {
         // What y was rounded to in an earlier phase it keeps.
         self.speed = self.speed.max(self.speed_terms(leg, elapsed, y));
         let over = p - (q + g);
-        // At the switch f is known to the rounding of its terms, up to 1; h' = f/(2 xi) passes it on as
-        // long as q has not died out.
+        // At the switch f is known to the rounding of its terms, up to 1; h' = f/(2 xi) passes it
+        // on as long as q has not died out.
         let passed_on = (elapsed / two_xi).min(1.0);
         let room = ROUNDING * (place + passed_on) + UNDERFLOW;
         ensure!(over <= room, "p - (q + g) = {over:e}, room {room:e}, {sample:?}");

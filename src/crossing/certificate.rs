@@ -2,12 +2,13 @@
 //!
 //! Let H be the polynomial of degree seven that shares the guard's value and three derivatives at
 //! both ends of a piece of length L. Then G - H = G8(z) s^4 (L - s)^4 / 8! for some z in the piece.
-//! In the Bernstein basis of degree eight, s^4 (L - s)^4 is L^8/70 times the middle member alone, so
-//! with M <= G8 <= N in the piece the coefficients of H, with M L^8/2822400 (N L^8/2822400) added to
-//! the middle one, bound G from below (above): a polynomial lies within the hull of its Bernstein
-//! coefficients. If all of them are inside the corridor, so is the guard. The end coefficients are
-//! the guard's own values: where a guard is known to start or to end on a threshold, they may equal it.
-//! With L small the hull is as narrow as the guard itself, so halving always decides, up to rounding.
+//! In the Bernstein basis of degree eight, s^4 (L - s)^4 is L^8/70 times the middle member alone,
+//! so with M <= G8 <= N in the piece the coefficients of H, with M L^8/2822400 (N L^8/2822400)
+//! added to the middle one, bound G from below (above): a polynomial lies within the hull of its
+//! Bernstein coefficients. If all of them are inside the corridor, so is the guard. The end
+//! coefficients are the guard's own values: where a guard is known to start or to end on a
+//! threshold, they may equal it. With L small the hull is as narrow as the guard itself, so halving
+//! always decides, up to rounding.
 
 /// 8! * C(8, 4): the middle Bernstein coefficient of s^4 (1 - s)^4/8!.
 const MIDDLE: f64 = 2_822_400.0;
@@ -44,8 +45,8 @@ pub struct Piece {
     pub right: [f64; 4],
     /// Length of the piece.
     pub length: f64,
-    /// A lower and an upper bound of the eighth derivative inside; zero on a side where the corridor
-    /// is open.
+    /// A lower and an upper bound of the eighth derivative inside; zero on a side where the
+    /// corridor is open.
     pub eighth: (f64, f64),
 }
 
@@ -110,8 +111,9 @@ impl Piece {
         }
     }
 
-    /// Whether the guard stays inside, where the hull of the whole piece is too wide to tell: the bounding
-    /// polynomials are divided at their crests, which takes no evaluation and narrows the hull.
+    /// Whether the guard stays inside, where the hull of the whole piece is too wide to tell: the
+    /// bounding polynomials are divided at their crests, which takes no evaluation and narrows the
+    /// hull.
     #[cold]
     pub fn stays_inside_in_parts(&self, corridor: &Corridor, ends: Ends, slack: f64) -> bool {
         let (pairs, middle) = self.coefficients();
@@ -168,8 +170,8 @@ impl Piece {
         ]
     }
 
-    /// Where to divide: at the place of the largest excess, so that a near miss is met at its crest,
-    /// where both halves are easily certified.
+    /// Where to divide: at the place of the largest excess, so that a near miss is met at its
+    /// crest, where both halves are easily certified.
     pub fn worst_place(&self, from: f64, corridor: &Corridor) -> f64 {
         let step =
             self.crest_next_to_an_end(corridor).unwrap_or_else(|| self.sampled_crest(corridor));

@@ -36,8 +36,8 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         Split { free, amplitude: constants.steady.amplitude }
     }
 
-    /// A bound of the eighth derivative of the free part from `at` on: x^2 + x'^2 never grows, of no
-    /// derivative.
+    /// A bound of the eighth derivative of the free part from `at` on: x^2 + x'^2 never grows, of
+    /// no derivative.
     pub(super) fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
         /// Of eight steps of the recurrence, and of the sums here.
         const ROUNDINGS: f64 = 16.0;
@@ -57,7 +57,8 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         };
         let by_energy = norm + room;
         if let Damping::Over { fast, slow, .. } = self.constants.borrow().damping {
-            // Eight derivatives of a stiff oscillation are rounding once its fast part has died out.
+            // Eight derivatives of a stiff oscillation are rounding once its fast part has died
+            // out.
             let quick = self.fast_amplitude(split) * quick_decay(fast * at.elapsed);
             let lasting = split.free[0].abs() + quick;
             return by_energy.min(quick * fast.powi(8) + lasting * slow.powi(8));
@@ -81,7 +82,8 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         if reach <= FEW {
             return 0.0;
         }
-        // The derivatives' weights in the fourth coefficient of degree eight, the largest there are.
+        // The derivatives' weights in the fourth coefficient of degree eight, the largest there
+        // are.
         let weights = reach * (3.0 / 8.0 + reach * (3.0 / 56.0 + reach * (1.0 / 336.0)));
         f64::EPSILON * weights * left.guard.largest_term.max(right.guard.largest_term)
     }
@@ -311,8 +313,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
 }
 
 impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
-    /// In pieces; or, where the forcing is fast, by the free part alone, in a corridor narrowed by the
-    /// forced amplitude.
+    /// In pieces; or, where the forcing is fast, by the free part alone, in a corridor narrowed by
+    /// the forced amplitude.
     fn certify_long(
         &self,
         strides: &Strides,

@@ -31,8 +31,8 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         }
     }
 
-    /// Whether f can never again leave [0, 1] by more than rounding: amplitude and energy norm of the
-    /// free part fit inside. At rest on a threshold, with no force, they fit exactly.
+    /// Whether f can never again leave [0, 1] by more than rounding: amplitude and energy norm of
+    /// the free part fit inside. At rest on a threshold, with no force, they fit exactly.
     fn rests(&self, split: &Split) -> bool {
         let reach = split.amplitude + split.free[0].hypot(split.free[1]);
         self.fits(reach, reach)
@@ -131,8 +131,8 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     }
 
     /// A guess of the first exit, or where the look-out for it has ended: in strides as the free
-    /// oscillation moves, about which a fast forcing only ripples; in shorter and then longer ones under
-    /// strong damping, as its fast part lives and dies.
+    /// oscillation moves, about which a fast forcing only ripples; in shorter and then longer ones
+    /// under strong damping, as its fast part lives and dies.
     #[inline(always)]
     fn exit(&self, strides: &Strides, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
         const QUICK: usize = 16;

@@ -32,7 +32,8 @@ pub trait Guarded: Flow<f64> {
     /// A guess, or a proof, about what comes after `left`; nothing after `limit` matters.
     fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook;
 
-    /// Whether a guard that is clear from `left` on may still come to its threshold within rounding.
+    /// Whether a guard that is clear from `left` on may still come to its threshold within
+    /// rounding.
     fn touches_for_ever(&self, _left: &Point<f64>) -> bool {
         false
     }
@@ -62,8 +63,8 @@ pub trait Guarded: Flow<f64> {
     /// The guard's Taylor series at an evaluation.
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N>;
 
-    /// How far that reaches with few terms, against the fastest rate: not at all where [`Self::continued`]
-    /// takes the higher derivatives from it.
+    /// How far that reaches with few terms, against the fastest rate: not at all where
+    /// [`Self::continued`] takes the higher derivatives from it.
     fn short_reach(&self) -> f64 {
         SHORT_REACH
     }
@@ -83,7 +84,8 @@ pub trait Guarded: Flow<f64> {
         guard: (f64, f64),
     ) -> Point<f64>;
 
-    /// The fastest rate at which the motion changes: Taylor steps must be short against its inverse.
+    /// The fastest rate at which the motion changes: Taylor steps must be short against its
+    /// inverse.
     fn fastest_rate(&self) -> f64;
 }
 

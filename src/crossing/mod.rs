@@ -1,20 +1,20 @@
 //! The first crossing of a guard: guessed, evaluated, certified.
 //!
-//! A switch takes one evaluation mostly: next to the guess, from which the guard's own [`series`] leads
-//! to the root and the state there.
+//! A switch takes one evaluation mostly: next to the guess, from which the guard's own [`series`]
+//! leads to the root and the state there.
 //!
 //! # Why no crossing is ever passed
 //!
 //! [`search`] walks from the start of the phase in pieces. A piece counts as done only if a
-//! [`certificate`] proves that the guard stays inside its corridor there, and a root is accepted only
-//! as the right end of a certified piece. Guesses propose where pieces end; a bad guess costs
-//! evaluations, never a crossing. A whole flight is mostly certified by [`tangents`], a whole progression by
-//! an inequality. A long piece is certified in fixed strides from its ends ([`walk`], [`swing`]), which need
-//! no evaluation; where a certificate fails the piece is divided; if the guard is outside at the division, an
-//! earlier crossing is bracketed and takes the place of the right end.
-//! What the guards can prove about whole futures (the mass never returns, never stops, rests for
-//! ever) comes from bounds on the slow part of the motion ([`trend`], and the energy of the free
-//! oscillation in contact).
+//! [`certificate`] proves that the guard stays inside its corridor there, and a root is accepted
+//! only as the right end of a certified piece. Guesses propose where pieces end; a bad guess costs
+//! evaluations, never a crossing. A whole flight is mostly certified by [`tangents`], a whole
+//! progression by an inequality. A long piece is certified in fixed strides from its ends
+//! ([`walk`], [`swing`]), which need no evaluation; where a certificate fails the piece is divided;
+//! if the guard is outside at the division, an earlier crossing is bracketed and takes the place of
+//! the right end. What the guards can prove about whole futures (the mass never returns, never
+//! stops, rests for ever) comes from bounds on the slow part of the motion ([`trend`], and the
+//! energy of the free oscillation in contact).
 //!
 //! Rounding enters through one number a piece, `slack`: a few eps times the largest term that went
 //! into the guard. A guard that comes closer to its threshold than that, without passing it by
@@ -24,8 +24,8 @@
 //! The work of a search has a [`limit`] that grows with the time that is proved to be clear; a
 //! search that passes it leaves the phase undecided.
 //!
-//! [`stepping`] is the same question answered in the plainest way, by one-sided steps with a bound on
-//! the curvature. It is several times dearer and serves as the judge in the tests.
+//! [`stepping`] is the same question answered in the plainest way, by one-sided steps with a bound
+//! on the curvature. It is several times dearer and serves as the judge in the tests.
 
 #[cfg(test)]
 mod bounds;
@@ -112,11 +112,11 @@ impl Root {
 pub struct Counters {
     /// Switches found.
     pub switches: u64,
-    /// Closed-form evaluations spent on finding them: each takes a sine-cosine pair and an exponential
-    /// (in contact one more of either), or their series where the arguments are small.
+    /// Closed-form evaluations spent on finding them: each takes a sine-cosine pair and an
+    /// exponential (in contact one more of either), or their series where the arguments are small.
     /// Not counted are the sine and cosine of the forcing angle at which a phase begins, one pair a
-    /// phase, and the exponential of a [`trend`] that is asked about whole futures because nothing is
-    /// guessed. Guesses, series and certificates call none.
+    /// phase, and the exponential of a [`trend`] that is asked about whole futures because nothing
+    /// is guessed. Guesses, series and certificates call none.
     pub evaluations: u64,
     /// Touches and near misses whose margin is below the rounding error.
     pub undecidable: u64,

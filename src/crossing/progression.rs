@@ -187,9 +187,10 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
 
     /// Whether w, not negative at the start, has no root before this one: proved, or not known.
     ///
-    /// w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's lag only decays. With c = 1 - a - b
-    /// and a omega < c rate, w is concave as long as lag rate >= c and falls from then on; it falls all the
-    /// time if lag rate < c at the start; and it is concave up to a root at which a omega < lag rate^2.
+    /// w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's lag only decays. With c = 1 -
+    /// a - b and a omega < c rate, w is concave as long as lag rate >= c and falls from then on; it
+    /// falls all the time if lag rate < c at the start; and it is concave up to a root at which a
+    /// omega < lag rate^2.
     fn stops_once(&self, root: &Point<f64>) -> bool {
         /// Of the few roundings in the inequalities.
         const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;

@@ -1,4 +1,5 @@
-//! From a guess or a bracket to a root, with a closed-form evaluation a step and a series at the end.
+//! From a guess or a bracket to a root, with a closed-form evaluation a step and a series at the
+//! end.
 
 use crate::crossing::guarded::{Guarded, SLACK, slack};
 use crate::crossing::series::{SHORT_TERMS, Series, TERMS};
@@ -47,9 +48,9 @@ impl Cubic {
         over + step * (slope + step * (0.5 * bend + step * (third * (1.0 / 6.0))))
     }
 
-    /// Its zero by reversion of the series, where that is so near that the guard is almost straight: with
-    /// one division. What is left is the third power of 0.02, and is put right with the series' own
-    /// remainder.
+    /// Its zero by reversion of the series, where that is so near that the guard is almost
+    /// straight: with one division. What is left is the third power of 0.02, and is put right with
+    /// the series' own remainder.
     fn near_zero(&self) -> Option<f64> {
         const STRAIGHT: f64 = 0.02;
         let inverse = 1.0 / self.slope;
@@ -62,8 +63,8 @@ impl Cubic {
         Some(newton * (1.0 - first + 2.0 * first * first - second))
     }
 
-    /// Its zero by Newton's method: three steps do on a transversal crossing; next to a graze it only
-    /// halves at first.
+    /// Its zero by Newton's method: three steps do on a transversal crossing; next to a graze it
+    /// only halves at first.
     #[cold]
     fn zero(&self) -> f64 {
         const ATTEMPTS: usize = 40;
@@ -90,8 +91,8 @@ struct CubicStep {
 }
 
 impl CubicStep {
-    /// Whether the series reaches the root with all its digits, and the root is not so much closer to
-    /// `left` than the point is that the point's rounding would show.
+    /// Whether the series reaches the root with all its digits, and the root is not so much closer
+    /// to `left` than the point is that the point's rounding would show.
     fn is_short(&self, point: &Point<f64>, left: f64, reach: f64) -> bool {
         const NEAR: f64 = 0.25;
         let root = point.elapsed + self.step;
@@ -119,9 +120,9 @@ fn polished_by<G: Guarded, const N: usize>(
     series: &Series<N>,
 ) -> Option<Root> {
     const ATTEMPTS: usize = 5;
-    /// What Newton's last step may change the slope by: it is put right to fifth order, which leaves
-    /// REACH^4/24 = 3e-8 of that, so that the force of an impact keeps its digits; the time is settled by
-    /// twice as many.
+    /// What Newton's last step may change the slope by: it is put right to fifth order, which
+    /// leaves REACH^4/24 = 3e-8 of that, so that the force of an impact keeps its digits; the time
+    /// is settled by twice as many.
     const SETTLED: f64 = 1e-9;
     let CubicStep { mut step, rises, .. } = *cubic;
     let corridor = phase.corridor();
@@ -264,8 +265,9 @@ pub fn bracketed<G: Guarded>(
 /// it.
 const PLAIN: usize = 8;
 
-/// Where to look between two times. A root that some halvings have not found may be smaller by orders
-/// of magnitude: then it is the exponent that is halved, so that 1e-300 is no further than 1e-3.
+/// Where to look between two times. A root that some halvings have not found may be smaller by
+/// orders of magnitude: then it is the exponent that is halved, so that 1e-300 is no further than
+/// 1e-3.
 pub fn middle(inside: f64, outside: f64, halvings: usize) -> f64 {
     let smallest = inside.max(f64::MIN_POSITIVE);
     if halvings > PLAIN && outside > 4.0 * smallest {

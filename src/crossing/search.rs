@@ -29,7 +29,8 @@ impl Target {
     }
 }
 
-/// The first crossing after the start of the phase and not after `horizon` (elapsed, may be infinite).
+/// The first crossing after the start of the phase and not after `horizon` (elapsed, may be
+/// infinite).
 pub fn first_crossing<G: Guarded>(
     phase: &G,
     strides: &Strides,
@@ -61,10 +62,10 @@ pub enum Found {
 
 /// The same where `next` is told the crossing.
 ///
-/// Mostly the first guess, which may have been made already, leads to the root, and one certificate says
-/// that it is the first. What comes next waits for the root but not for the certificate: it is begun before
-/// that, so that the processor works on both. If the certificate fails, `next` is told the right one after; if
-/// none counts, what it was told counts for nothing.
+/// Mostly the first guess, which may have been made already, leads to the root, and one certificate
+/// says that it is the first. What comes next waits for the root but not for the certificate: it is
+/// begun before that, so that the processor works on both. If the certificate fails, `next` is told
+/// the right one after; if none counts, what it was told counts for nothing.
 #[inline]
 pub fn first_crossing_and<G: Guarded>(
     (phase, strides): (&G, &Strides),
@@ -196,12 +197,12 @@ fn search<G: Guarded>(
 /// The first step of its own that the search takes, against the inverse of the fastest rate.
 const STRIDE: f64 = 0.1;
 
-/// Advice to go on by less than this share of the time so far comes from bounds that rounding keeps from
-/// settling: it is followed in strides.
+/// Advice to go on by less than this share of the time so far comes from bounds that rounding keeps
+/// from settling: it is followed in strides.
 const CREEPING: f64 = 1e-3;
 
-/// An outlook that gets on. A guess that falls on `left` is no guess; that, or an advice to go on by
-/// less than a stride, is replaced by a stride, longer each time.
+/// An outlook that gets on. A guess that falls on `left` is no guess; that, or an advice to go on
+/// by less than a stride, is replaced by a stride, longer each time.
 fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
     let resolution = 8.0 * f64::EPSILON * left;
     let nearest = match outlook {

@@ -2,12 +2,12 @@
 //!
 //! The harmonic's derivatives repeat, an exponential's are multiples of it and the contact's follow
 //! from its equation of motion, so that an evaluation knows the guard's Taylor series. Where a step
-//! is shorter than [`REACH`] against the fastest rate of the motion, ten terms give the guard and its
-//! first three derivatives to the last digit: what is left out of the third is REACH^8/8! = 2e-17 of
-//! its size. A guess that comes so close is finished without a second evaluation, and the state is
-//! carried along in one step, which rounds it once, as a second evaluation would. Most guesses come
-//! closer than [`SHORT_REACH`]: there five terms leave SHORT_REACH^5/5! = 8e-18 of the slope, and the
-//! higher derivatives follow from the equation of motion.
+//! is shorter than [`REACH`] against the fastest rate of the motion, ten terms give the guard and
+//! its first three derivatives to the last digit: what is left out of the third is REACH^8/8! =
+//! 2e-17 of its size. A guess that comes so close is finished without a second evaluation, and the
+//! state is carried along in one step, which rounds it once, as a second evaluation would. Most
+//! guesses come closer than [`SHORT_REACH`]: there five terms leave SHORT_REACH^5/5! = 8e-18 of the
+//! slope, and the higher derivatives follow from the equation of motion.
 
 use crate::constants::Constants;
 
@@ -50,8 +50,8 @@ impl<const N: usize> Series<N> {
         Self(derivatives)
     }
 
-    /// Value and slope a time `step` later; even and odd powers apart, so that the chains run side by
-    /// side.
+    /// Value and slope a time `step` later; even and odd powers apart, so that the chains run side
+    /// by side.
     #[inline]
     pub fn value_and_slope(&self, step: f64) -> (f64, f64) {
         let square = step * step;

@@ -1,10 +1,10 @@
 //! The first crossing by plain one-sided steps: the judge.
 //!
 //! If a guard's excess e is negative and M bounds e'' from above from here on, no crossing lies
-//! closer than the smallest r > 0 with e + e' r + M r^2/2 = 0. Stepping by r never passes a crossing,
-//! needs no grid and no guess, and converges quadratically on a transversal crossing. It takes about
-//! nine evaluations a switch where [`crate::crossing::search`] takes two or three, and shares with it
-//! nothing but the closed forms.
+//! closer than the smallest r > 0 with e + e' r + M r^2/2 = 0. Stepping by r never passes a
+//! crossing, needs no grid and no guess, and converges quadratically on a transversal crossing. It
+//! takes about nine evaluations a switch where [`crate::crossing::search`] takes two or three, and
+//! shares with it nothing but the closed forms.
 
 use crate::constants::Constants;
 use crate::crossing::certificate::Corridor;
@@ -144,8 +144,8 @@ mod tests {
     use crate::parameters::Parameters;
     use crate::state::State;
 
-    /// Under the static force alone h is the parabola most - (d - 1)^2/2. What the steps find before
-    /// d = 3, and how many touches they count.
+    /// Under the static force alone h is the parabola most - (d - 1)^2/2. What the steps find
+    /// before d = 3, and how many touches they count.
     fn parabola(most: f64) -> (Option<f64>, u64) {
         let parameters = Parameters { a: 0.0, b: -1.0, g: 0.0, ..Parameters::default() };
         let constants = Constants::new(&parameters);

@@ -1,8 +1,8 @@
 //! A contact followed in fixed strides from an evaluation: where the trial force may leave its
 //! corridor (a guess), and that it does not before (a certificate in pieces).
 //!
-//! The force less b is a free oscillation and a forced one. A stride of the model's own length turns
-//! both by known factors, so that places around an evaluation need none of their own.
+//! The force less b is a free oscillation and a forced one. A stride of the model's own length
+//! turns both by known factors, so that places around an evaluation need none of their own.
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::flow::stride::Swing;

@@ -1,16 +1,17 @@
 //! The certificate of a whole flight, from the separation to the impact, by tangents and chords.
 //!
-//! h = H - q with H'' = F, and -q is concave because q >= 0: it lies below its tangent at the root r. So
-//! h is at most E = H + that tangent, with E(r) = h(r) = 0 and E'' = F. The sign of F is known: negative
-//! between the forcing angles t and 2 pi - t with cos t = -b/a. Where F is positive E is convex and lies
-//! below its chord. Where it is negative E is concave and lies below its tangents; at the ends of such a
-//! stretch sine and cosine are constants of the model. So a flight is proved by a parabola at a few
-//! places. Behind the last of them that lies before r there is a chord to r, or the tangent there.
+//! h = H - q with H'' = F, and -q is concave because q >= 0: it lies below its tangent at the root
+//! r. So h is at most E = H + that tangent, with E(r) = h(r) = 0 and E'' = F. The sign of F is
+//! known: negative between the forcing angles t and 2 pi - t with cos t = -b/a. Where F is positive
+//! E is convex and lies below its chord. Where it is negative E is concave and lies below its
+//! tangents; at the ends of such a stretch sine and cosine are constants of the model. So a flight
+//! is proved by a parabola at a few places. Behind the last of them that lies before r there is a
+//! chord to r, or the tangent there.
 //!
 //! Near the double zero at the start E does not help. There h itself is concave as long as F is
-//! negative; or, up to z = [`PARTING`](crate::flow::stride::PARTING) decay times, q0 (exp(-z) - 1 + z) >= [`GRIP`] q0 z^2/2 outweighs
-//! the force, if GRIP q0 rate^2 exceeds the largest force. What neither serves is left to
-//! [`crate::crossing::walk`].
+//! negative; or, up to z = [`PARTING`](crate::flow::stride::PARTING) decay times, q0 (exp(-z) - 1 +
+//! z) >= [`GRIP`] q0 z^2/2 outweighs the force, if GRIP q0 rate^2 exceeds the largest force. What
+//! neither serves is left to [`crate::crossing::walk`].
 
 use crate::constants::Constants;
 use crate::crossing::guarded::slack;
@@ -32,8 +33,8 @@ struct Tangent {
 }
 
 impl Tangent {
-    /// Whether the function is negative up to a place further on, by the tangents at both: where they
-    /// meet, times the difference of their slopes, if that lies between.
+    /// Whether the function is negative up to a place further on, by the tangents at both: where
+    /// they meet, times the difference of their slopes, if that lies between.
     #[inline]
     fn stays_below_to(&self, end: &Self) -> bool {
         let ends = (self.value < 0.0) & (end.value < 0.0);
@@ -83,8 +84,8 @@ impl Bound {
     }
 }
 
-/// Whether h is negative between the separation that begins the flight and this root: proved, or not
-/// known.
+/// Whether h is negative between the separation that begins the flight and this root: proved, or
+/// not known.
 #[inline]
 pub fn stays_below<C: Borrow<Constants<f64>>>(
     flight: &NoContact<f64, C>,

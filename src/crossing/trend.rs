@@ -62,8 +62,8 @@ impl Trend {
         let value = self.parabola(from) + self.amplitude;
         let rising = slope + curvature * from;
         let lasting = exponential * decay(self.rate * from).exp;
-        // e < 0: what is left of the exponential only decreases. e > 0: it may be dropped, or, being
-        // concave in the guard, be replaced by its tangent here; whichever says more.
+        // e < 0: what is left of the exponential only decreases. e > 0: it may be dropped, or,
+        // being concave in the guard, be replaced by its tangent here; whichever says more.
         let dropped = self.opening(from, value + (-lasting).max(0.0), rising, curvature);
         if lasting <= 0.0 {
             return dropped;
@@ -102,8 +102,8 @@ impl Trend {
         }
     }
 
-    /// Where the search should look after elapsed time `from`; `inside` as for the guess, which begins at
-    /// a `place` before which there is nothing to be found.
+    /// Where the search should look after elapsed time `from`; `inside` as for the guess, which
+    /// begins at a `place` before which there is nothing to be found.
     #[inline(always)]
     pub fn outlook(
         &self,
@@ -162,9 +162,9 @@ impl Trend {
         self.offset + d * (self.slope + 0.5 * self.curvature * d)
     }
 
-    /// A guess, not a proof, of the first rise of G to zero after this place; `inside` says that G is
-    /// known to be negative just after it. None if there is none within three periods in which the
-    /// bound allows one, or none before `limit`.
+    /// A guess, not a proof, of the first rise of G to zero after this place; `inside` says that G
+    /// is known to be negative just after it. None if there is none within three periods in which
+    /// the bound allows one, or none before `limit`.
     #[inline(always)]
     fn guess(&self, look: &Stride, mut here: Place, mut inside: bool, limit: f64) -> Option<f64> {
         const STEPS: usize = 40;
@@ -296,7 +296,8 @@ fn quick_sin_cos(x: f64) -> (f64, f64) {
     let s = r * r;
     let sin = r * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * (1.0 / 5040.0))));
     let cos = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s * (1.0 / 720.0 - s * (1.0 / 40320.0))));
-    // Quarters of the turn: which of the two, and with which sign, without a jump that cannot be foretold.
+    // Quarters of the turn: which of the two, and with which sign, without a jump that cannot be
+    // foretold.
     let quarters = turns as i64 as u64;
     let sign = |quarters: u64| (quarters & 2) << 62;
     let (s, c) = if quarters & 1 == 0 { (sin, cos) } else { (cos, sin) };

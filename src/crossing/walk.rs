@@ -2,13 +2,14 @@
 //!
 //! The guard, counted so that it is negative inside, is a parabola, a harmonic and an exponential.
 //! All three are known at an evaluation, and a stride of the model's own length turns the harmonic
-//! and shrinks the exponential by known factors: the ends of the pieces need no evaluation. In between
-//! there is mostly nothing to prove: the parabola lies below minus the harmonic's amplitude.
+//! and shrinks the exponential by known factors: the ends of the pieces need no evaluation. In
+//! between there is mostly nothing to prove: the parabola lies below minus the harmonic's
+//! amplitude.
 //!
-//! An exponential that lasts longer than a piece stays in the interpolant. Of a shorter one the first
-//! piece takes the life, or, after a separation under a strong spring, an inequality its beginning; what
-//! is left is replaced by a line above it: by its tangent at the right end
-//! where it pulls inwards (it is concave then), else by its chord.
+//! An exponential that lasts longer than a piece stays in the interpolant. Of a shorter one the
+//! first piece takes the life, or, after a separation under a strong spring, an inequality its
+//! beginning; what is left is replaced by a line above it: by its tangent at the right end where it
+//! pulls inwards (it is concave then), else by its chord.
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::flow::stride::{GRIP, PULLING, PUSHING, Stride, Strides};
@@ -198,8 +199,8 @@ impl<'a> Walk<'a> {
         (first.max(rest), room.max(last_room))
     }
 
-    /// Whether a flight that begins with value and slope zero stays inside until z = [`PARTING`]: its
-    /// guard is at most the largest force times d^2/2 less q0 (exp(-z) - 1 + z).
+    /// Whether a flight that begins with value and slope zero stays inside until z = [`PARTING`]:
+    /// its guard is at most the largest force times d^2/2 less q0 (exp(-z) - 1 + z).
     fn parts_for_certain(&self, left: &Parts) -> bool {
         let Shape { curvature, strength, rate, .. } = *self.shape;
         -left.lasting * (rate * rate) * GRIP > (strength + curvature.max(0.0)) * (1.0 + 1e-9)

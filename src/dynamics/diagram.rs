@@ -1,8 +1,8 @@
 //! Brute-force bifurcation diagrams, as in Fig. 10: strobes after a transient, value by value.
 //!
 //! Fig. 10a follows an attractor by starting each value from where the last one ended
-//! ([`Follow::Carry`]); Fig. 10b starts every value from the same state ([`Follow::Reset`]) and jumps
-//! wherever that state changes basins.
+//! ([`Follow::Carry`]); Fig. 10b starts every value from the same state ([`Follow::Reset`]) and
+//! jumps wherever that state changes basins.
 
 use super::ensemble::{self, Motion};
 use super::section::{Kept, Section};
@@ -77,8 +77,8 @@ impl Diagram {
     /// Makes the diagram; `seen` is called as values are done, in any order.
     ///
     /// # Errors
-    /// [`InputError`] names what is out of range; with [`Follow::Reset`] also a start that some value
-    /// does not admit.
+    /// [`InputError`] names what is out of range; with [`Follow::Reset`] also a start that some
+    /// value does not admit.
     pub fn steps(&self, seen: impl Fn() + Sync + Send) -> Result<Vec<Step>, InputError> {
         let steps: Vec<u32> = (0..self.steps).collect();
         match self.follow {

@@ -51,9 +51,9 @@ pub fn determinant(matrix: &Jacobian) -> f64 {
     (0..3).map(|k| matrix[0][k] * adjugate[k][0]).sum()
 }
 
-/// The transposed cofactors: `matrix * adjugate = determinant * identity`. The adjugate of a product
-/// is the product of the adjugates in reverse, and its trace is the sum of the products of two
-/// eigenvalues: so that sum need not be computed from a product in which it has cancelled.
+/// The transposed cofactors: `matrix * adjugate = determinant * identity`. The adjugate of a
+/// product is the product of the adjugates in reverse, and its trace is the sum of the products of
+/// two eigenvalues: so that sum need not be computed from a product in which it has cancelled.
 #[must_use]
 pub fn adjugate(m: &Jacobian) -> Jacobian {
     let minor = |row: usize, column: usize| {
@@ -109,8 +109,9 @@ fn largest<const N: usize>(matrix: &[[f64; N]; N], from: usize) -> (usize, usize
     best
 }
 
-/// The eigenvalues, largest modulus first; of a complex pair the upper one first. Backward stable: each
-/// is that of a matrix that differs by a few eps of the largest entry. NaN where the matrix is not finite.
+/// The eigenvalues, largest modulus first; of a complex pair the upper one first. Backward stable:
+/// each is that of a matrix that differs by a few eps of the largest entry. NaN where the matrix is
+/// not finite.
 #[must_use]
 pub fn eigenvalues(matrix: &Jacobian) -> [Complex; 3] {
     let size = matrix.iter().flatten().fold(0.0_f64, |size, x| size.max(x.abs()));
@@ -154,7 +155,8 @@ pub fn roots(sum: f64, product: f64) -> [Complex; 2] {
 /// The double-shift QR iteration of Francis.
 fn quasi_triangular(mut m: Jacobian) -> [Complex; 3] {
     reflect(&mut m, hessenberg);
-    // Convergence is quadratic; three or four steps do. One in ten is of an odd shift, which breaks cycles.
+    // Convergence is quadratic; three or four steps do. One in ten is of an odd shift, which breaks
+    // cycles.
     const STEPS: usize = 60;
     for step in 1..=STEPS {
         let small = |k: usize| {

@@ -7,8 +7,9 @@
 //!
 //! # The exact mean contraction
 //!
-//! The other two exponents are those of a pair of errors with dp = dq on the slider. Their sum is the
-//! mean growth of the area w = dp ^ dy that the pair spans, and that is known from the durations alone.
+//! The other two exponents are those of a pair of errors with dp = dq on the slider. Their sum is
+//! the mean growth of the area w = dp ^ dy that the pair spans, and that is known from the
+//! durations alone.
 //!
 //! - Contact (Eq. 12): q' = y, y' = -2 xi y - q + F; the divergence is -2 xi, w shrinks by
 //!   exp(-2 xi d).
@@ -51,9 +52,9 @@ pub const BATCHES: u64 = 32;
 pub struct Spectrum {
     /// Per forcing period, largest first; minus infinity where a direction is swallowed.
     pub exponents_per_period: [f64; 3],
-    /// Their standard errors, from the scatter of the means over [`BATCHES`] batches of equal length:
-    /// honest as soon as a batch is longer than the motion remembers. NaN of what is not finite, and
-    /// where there is one period only.
+    /// Their standard errors, from the scatter of the means over [`BATCHES`] batches of equal
+    /// length: honest as soon as a batch is longer than the motion remembers. NaN of what is not
+    /// finite, and where there is one period only.
     pub standard_error: [f64; 3],
     /// Mean growth of the area per forcing period, from durations and impacts alone: the sum of the
     /// first two exponents.

@@ -2,18 +2,18 @@
 //!
 //! Its points are (p, y, q) at instants with one forcing angle. The map is continuous and piecewise
 //! smooth. Its derivative is the product of the phases' derivatives and of the saltations between
-//! them; the field is continuous at f = 0 and f = 1, so only impacts have one. An impact swallows the
-//! direction A = dp - dq: the derivative of a period with any contact is singular.
+//! them; the field is continuous at f = 0 and f = 1, so only impacts have one. An impact swallows
+//! the direction A = dp - dq: the derivative of a period with any contact is singular.
 //!
 //! # At a graze
 //!
-//! Where an impact is tangential its trial force f = 2 xi h' vanishes. The switch time's derivative,
-//! -grad h/h', grows without bound, but the slider's velocity jumps by f/(2 xi) = h' only: their
-//! product is finite, and so is the map's derivative. Its limits from the two sides differ, however.
-//! With a contact, however short, dy changes by -2 xi A and dq becomes dp; without one nothing
-//! happens. So the strobe map has a corner at a graze, no square root: multipliers jump there, and a
-//! branch of orbits may turn or lose its stability without a multiplier having passed through 1 or -1.
-//! Where contact grazes f = 1 or f = 0 the field is continuous and nothing jumps.
+//! Where an impact is tangential its trial force f = 2 xi h' vanishes. The switch time's
+//! derivative, -grad h/h', grows without bound, but the slider's velocity jumps by f/(2 xi) = h'
+//! only: their product is finite, and so is the map's derivative. Its limits from the two sides
+//! differ, however. With a contact, however short, dy changes by -2 xi A and dq becomes dp; without
+//! one nothing happens. So the strobe map has a corner at a graze, no square root: multipliers jump
+//! there, and a branch of orbits may turn or lose its stability without a multiplier having passed
+//! through 1 or -1. Where contact grazes f = 1 or f = 0 the field is continuous and nothing jumps.
 
 use super::linear;
 pub use super::linear::{Jacobian, Point};
@@ -78,8 +78,8 @@ impl StrobeMap {
         self.model.entry(self.instant, State { p, y, q })
     }
 
-    /// The map's derivative and phases over `periods` forcing periods from `from`, which need not be
-    /// a strobe.
+    /// The map's derivative and phases over `periods` forcing periods from `from`, which need not
+    /// be a strobe.
     #[must_use]
     pub fn passage(&self, from: &Entry, periods: u64) -> Passage {
         let end = from.instant.after_periods(periods, 1);
@@ -100,8 +100,8 @@ impl StrobeMap {
         passage
     }
 
-    /// The strobes of the motion that begins at `from`: that instant, and `periods` more one forcing
-    /// period apart.
+    /// The strobes of the motion that begins at `from`: that instant, and `periods` more one
+    /// forcing period apart.
     pub fn strobes(&self, from: Entry, periods: u64) -> impl Iterator<Item = Entry> + use<> {
         let end = from.instant.after_periods(periods, 1);
         let strobes = Section::along(self.model.trajectory(from).until(end), from.instant);
@@ -116,8 +116,8 @@ impl Passage {
         [P, Y, Q].map(|row| [P, Y, Q].map(|column| self.derivative[row][column]))
     }
 
-    /// The same with respect to what of (p, y, q) can change: a mass on the surface takes the slider along,
-    /// and off the surface the derivative of a contact means nothing.
+    /// The same with respect to what of (p, y, q) can change: a mass on the surface takes the
+    /// slider along, and off the surface the derivative of a contact means nothing.
     #[must_use]
     pub fn free_jacobian(&self) -> Jacobian {
         match self.phases.first() {

@@ -47,9 +47,9 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Contact<T, C> {
         let excess = self.offset + f_change;
         let orders = self.orders(d, &harmonic.force, &free, excess, y);
         let driven_bound = a * (response.force.re.abs() + response.force.im.abs());
-        // The slopes count as well, times the length of a certificate: they carry the rounding of y0 and
-        // of f - b even where the oscillation passes through zero or has died out, and that of
-        // 2 xi (F - f), twice for the up to four times of decay.
+        // The slopes count as well, times the length of a certificate: they carry the rounding of
+        // y0 and of f - b even where the oscillation passes through zero or has died out, and that
+        // of 2 xi (F - f), twice for the up to four times of decay.
         let at_most_one = |x: T| if x < T::one() { x } else { T::one() };
         let pulls = harmonic.force[0].abs() + (b - self.reference).abs();
         let carried = y0.abs() * at_most_one(d)
@@ -77,8 +77,8 @@ impl<T: Number, C: Borrow<Constants<T>>> Contact<T, C> {
         {
             return self.slow_and_fast(force, [fast, slow, spread], free.quick, excess);
         }
-        // y' = F - f and f' = 2 xi (F - f) + y, differentiated twice more. F and f may both be near the
-        // threshold: it is taken off first.
+        // y' = F - f and f' = 2 xi (F - f) + y, differentiated twice more. F and f may both be near
+        // the threshold: it is taken off first.
         let pull = (force[0] + (b - self.reference)) - excess;
         let rate = two_xi * pull + y;
         let pull_rate = force[1] - rate;
@@ -87,9 +87,9 @@ impl<T: Number, C: Borrow<Constants<T>>> Contact<T, C> {
         [excess, rate, rate2, two_xi * pull_rate2 + pull_rate]
     }
 
-    /// Above critical damping, once the fast exponential has begun to die out: the equations of motion
-    /// would multiply the rounding of f by 2 xi with each derivative, although what is left of f moves
-    /// slowly. So its parts are differentiated one by one.
+    /// Above critical damping, once the fast exponential has begun to die out: the equations of
+    /// motion would multiply the rounding of f by 2 xi with each derivative, although what is left
+    /// of f moves slowly. So its parts are differentiated one by one.
     #[inline]
     fn slow_and_fast(
         &self,

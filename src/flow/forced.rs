@@ -6,8 +6,9 @@
 //! R = (D+ - D-)/(2 i nu) with D+- = (exp(i omega d) - exp(lambda+- d))/(i omega - lambda+-) and
 //! lambda+- = -xi +- i nu, and D+ in the difference of frequencies delta = omega - nu alone.
 //!
-//! In short times R is d^2/2 although each of its parts is of the order of d, and the guard may hold
-//! nothing larger than R: there both forms take the parts less their linear terms, which cancel.
+//! In short times R is d^2/2 although each of its parts is of the order of d, and the guard may
+//! hold nothing larger than R: there both forms take the parts less their linear terms, which
+//! cancel.
 
 use crate::flow::complex::Complex;
 use crate::flow::damped::{Free, Rotation};

@@ -8,8 +8,8 @@ use std::f64::consts::TAU;
 /// The forcing angle `omega tau + phi` when the phase begins.
 #[derive(Clone, Copy, Debug)]
 pub struct EntryAngle<T> {
-    /// omega tau0 + phi within `[0, 2 pi)`, rounded: certificates find the force's changes of sign by it.
-    /// The motion itself is computed from its sine and cosine.
+    /// omega tau0 + phi within `[0, 2 pi)`, rounded: certificates find the force's changes of sign
+    /// by it. The motion itself is computed from its sine and cosine.
     pub radians: T,
     /// sin(omega tau0 + phi)
     pub sin: T,
@@ -24,7 +24,8 @@ pub struct Harmonic<T> {
     pub force: [T; 3],
     /// Its integral from 0 to d: (a/omega) (sin(omega tau + phi) - sin(omega tau0 + phi)).
     pub impulse: T,
-    /// Its second integral: -(a/omega^2) (cos(omega tau + phi) - cos(omega tau0 + phi) + omega d sin(omega tau0 + phi)).
+    /// Its second integral: -(a/omega^2) (cos(omega tau + phi) - cos(omega tau0 + phi) + omega d
+    /// sin(omega tau0 + phi)).
     pub displacement: T,
     /// An upper bound of the terms that made `displacement`.
     pub displacement_terms: T,

@@ -23,8 +23,8 @@ pub struct NoContact<T, C = Constants<T>> {
 }
 
 impl<T: Number, C: Borrow<Constants<T>>> NoContact<T, C> {
-    /// p0 - g when the flight begins: a start's p0 and g are given; on the surface it is q0, of which
-    /// a p0 beside a large g has lost digits.
+    /// p0 - g when the flight begins: a start's p0 and g are given; on the surface it is q0, of
+    /// which a p0 beside a large g has lost digits.
     #[inline(always)]
     pub(crate) fn height(&self) -> T {
         let State { p, q, .. } = self.entry;

@@ -36,15 +36,15 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Progression<T, C> {
         let push = (b - one) * d;
         let y_change = push + harmonic.impulse;
         let y = y0 + y_change;
-        // 1 - q decays; (1 - q)/(2 xi) = y - w at all times. Early everything is taken by its change, late
-        // by what is left of 1 - q0: else the digits of a large q0 are lost.
+        // 1 - q decays; (1 - q)/(2 xi) = y - w at all times. Early everything is taken by its
+        // change, late by what is left of 1 - q0: else the digits of a large q0 are lost.
         let lag = closing * decay.exp;
         let moved = closing * decay.minus_1;
         let pushed = push * d * T::exact(0.5) + harmonic.displacement;
         let push_terms = push.abs() + harmonic.impulse_terms;
         let early = decay.exp > T::exact(0.5);
-        // Eq. (20) with - (p0 - g - 1) exp(..), its linear terms collected: y0 - (1 - q0)/(2 xi) = w0.
-        // 1 - q0 as 2 xi times the closing velocity keeps the digits that q0 near 1 has lost.
+        // Eq. (20) with - (p0 - g - 1) exp(..), its linear terms collected: y0 - (1 - q0)/(2 xi) =
+        // w0. 1 - q0 as 2 xi times the closing velocity keeps the digits that q0 near 1 has lost.
         let (q, w, drift, terms) = if early {
             let settling = two_xi * closing * decay.remainder;
             let drift = w0 * d + pushed + settling;

@@ -1,7 +1,7 @@
 //! What is left of the trial force in contact when the free oscillation has died out.
 //!
-//! By Eq. (12) f = 2 xi y + q obeys f'' + 2 xi f' + f = F + 2 xi F'; so the forced part of f less b is
-//! Re((F - b) H) with H = (1 + 2 i xi omega)/(1 - omega^2 + 2 i xi omega).
+//! By Eq. (12) f = 2 xi y + q obeys f'' + 2 xi f' + f = F + 2 xi F'; so the forced part of f less b
+//! is Re((F - b) H) with H = (1 + 2 i xi omega)/(1 - omega^2 + 2 i xi omega).
 
 use crate::flow::forced::Forced;
 use crate::number::Number;

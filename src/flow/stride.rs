@@ -1,7 +1,7 @@
 //! Steps of fixed length, whose sine, cosine and exponential belong to the model.
 //!
-//! By such steps the motion is followed from any evaluation to places around it, for guesses and for
-//! certificates, without a library function.
+//! By such steps the motion is followed from any evaluation to places around it, for guesses and
+//! for certificates, without a library function.
 
 use crate::flow::damped::Damping;
 use crate::flow::steady::Steady;
@@ -85,7 +85,8 @@ impl Swing {
 /// Where the force changes its sign: it is negative from this forcing angle to 2 pi less it.
 #[derive(Clone, Copy, Debug)]
 pub struct Turning {
-    /// t within `[0, pi]`, cos t = -b/a; pi if the force is never negative, 0 if it is never positive.
+    /// t within `[0, pi]`, cos t = -b/a; pi if the force is never negative, 0 if it is never
+    /// positive.
     pub angle: f64,
     /// sin t
     pub sin: f64,
@@ -108,8 +109,8 @@ impl Turning {
         Self { angle, sin: libm::sin(angle), cos, length, period: TAU / omega }
     }
 
-    /// Up to which forcing angle the force is negative from `radians` on, within `[0, 2 pi)`; none if it is
-    /// not negative there.
+    /// Up to which forcing angle the force is negative from `radians` on, within `[0, 2 pi)`; none
+    /// if it is not negative there.
     #[inline]
     #[must_use]
     pub fn negative_until(&self, radians: f64) -> Option<f64> {
@@ -125,8 +126,9 @@ const PIECE: f64 = 2.0;
 /// Of a guess: the cubic between two places errs by 0.5^4/384 = 2e-4 of the amplitude.
 const LOOK: f64 = 0.5;
 
-/// As far as a contact's guess may step: as the free oscillation moves, unless the forced one is so strong and
-/// so fast that the cubic between two places would err by more than a thousandth of the corridor.
+/// As far as a contact's guess may step: as the free oscillation moves, unless the forced one is so
+/// strong and so fast that the cubic between two places would err by more than a thousandth of the
+/// corridor.
 fn contact_look(parameters: &Parameters) -> f64 {
     const RIPPLE: f64 = 1e-3;
     let Parameters { a, xi, omega, .. } = *parameters;
@@ -138,12 +140,12 @@ fn contact_look(parameters: &Parameters) -> f64 {
 /// eighth derivative helps, and at twelve its third derivative begins to lift the coefficients.
 pub const PULLING: f64 = 10.0;
 
-/// Decay times after which a flight has got off the surface for certain, where its spring was stronger
-/// than any force ([`GRIP`]).
+/// Decay times after which a flight has got off the surface for certain, where its spring was
+/// stronger than any force ([`GRIP`]).
 pub const PARTING: f64 = 2.0;
 
-/// How much of q0 z^2/2 the slider's return q0 (exp(-z) - 1 + z) comes to at z = [`PARTING`], and more
-/// before: their quotient only falls.
+/// How much of q0 z^2/2 the slider's return q0 (exp(-z) - 1 + z) comes to at z = [`PARTING`], and
+/// more before: their quotient only falls.
 pub const GRIP: f64 = 0.5676;
 
 /// And one that pushes it outwards: its eighth derivative then costs 0.02 of its own size.

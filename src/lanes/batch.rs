@@ -112,7 +112,8 @@ pub struct End {
     pub terms: Column,
 }
 
-/// Constants, beginnings and ends of all lanes; a column is as long as a line of the cache and fills one.
+/// Constants, beginnings and ends of all lanes; a column is as long as a line of the cache and
+/// fills one.
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub struct Batch {

@@ -1,4 +1,5 @@
-//! Contacts ([`crate::flow::contact`]): evaluation and landing; guess and certificate are in [`super::contact_ahead`].
+//! Contacts ([`crate::flow::contact`]): evaluation and landing; guess and certificate are in
+//! [`super::contact_ahead`].
 
 use super::complex::Complex;
 use super::contact_shape::Forms;
@@ -150,9 +151,9 @@ impl<S: Simd> Contact<'_, S> {
         self.orders(self.angle.force(self.shape), self.offset, self.y)
     }
 
-    /// Clearly above critical damping, once the quick exponential has begun to die out, the equations of
-    /// motion would multiply the rounding of f by 2 xi with each derivative, although what is left of f moves
-    /// slowly. There its parts are differentiated one by one.
+    /// Clearly above critical damping, once the quick exponential has begun to die out, the
+    /// equations of motion would multiply the rounding of f by 2 xi with each derivative, although
+    /// what is left of f moves slowly. There its parts are differentiated one by one.
     #[inline(always)]
     fn one_by_one(
         &self,

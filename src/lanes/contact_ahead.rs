@@ -1,7 +1,8 @@
-//! Where a contact ends, guessed, and that it does not end before ([`crate::crossing::contact_ahead`]).
+//! Where a contact ends, guessed, and that it does not end before
+//! ([`crate::crossing::contact_ahead`]).
 //!
-//! The certificate is the scalar solver's ([`crate::crossing::certificate`]), in pieces of fixed length, which are
-//! shorter where great care is taken.
+//! The certificate is the scalar solver's ([`crate::crossing::certificate`]), in pieces of fixed
+//! length, which are shorter where great care is taken.
 
 use super::certificate::Piece;
 use super::contact::Contact;
@@ -23,7 +24,8 @@ const REST: f64 = 1.3;
 const STRIDES: usize = 24;
 
 impl<S: Simd> Contact<'_, S> {
-    /// When the force may first leave its corridor, through which threshold, and where that is told.
+    /// When the force may first leave its corridor, through which threshold, and where that is
+    /// told.
     #[inline(always)]
     pub fn first_exit(&self, orders: [Wide<S>; 4]) -> (Wide<S>, Wide<S>, Mask<S>) {
         let (low, high) = (-self.reference, -self.reference + 1.0);
@@ -64,8 +66,8 @@ impl<S: Simd> Contact<'_, S> {
         (share.times_plus(stride, from), threshold, found)
     }
 
-    /// Where the force stays inside its corridor from the start to the root, by their orders: in pieces, whose
-    /// ends follow from the start in strides of the model's own length.
+    /// Where the force stays inside its corridor from the start to the root, by their orders: in
+    /// pieces, whose ends follow from the start in strides of the model's own length.
     #[inline(always)]
     pub fn stays_inside(
         &self,
@@ -86,7 +88,8 @@ impl<S: Simd> Contact<'_, S> {
             Care::Great => (Swings::of_guess(self.shape, self.forms), FINE_PIECES),
         };
         let mut left = first;
-        // The start's own value does not count where it is a threshold by the switch that began the contact.
+        // The start's own value does not count where it is a threshold by the switch that began the
+        // contact.
         let mut bare = first[0].is(0.0);
         let mut rest = length;
         let none = bare & !bare;

@@ -24,8 +24,8 @@ impl Forms {
     }
 }
 
-/// A step of a guess, radians of the faster of forcing and free oscillation: the cubic between two places errs
-/// by 1/384 of the amplitude, which the series puts right.
+/// A step of a guess, radians of the faster of forcing and free oscillation: the cubic between two
+/// places errs by 1/384 of the amplitude, which the series puts right.
 const SWING: f64 = 0.8;
 
 /// Of a certificate, likewise: the interpolant errs by 3^8/2822400 = 0.002 of the amplitude.
@@ -34,7 +34,8 @@ const PIECE: f64 = 2.0;
 /// Each stride rounds a few times its parts.
 const ROUNDINGS: f64 = 16.0;
 
-/// The first stride is at least this much of all others: each doubling doubles what it has rounded off.
+/// The first stride is at least this much of all others: each doubling doubles what it has rounded
+/// off.
 const SHORTEST: f64 = 1.0 / 256.0;
 
 /// The steps of a contact.
@@ -93,8 +94,8 @@ impl Shape<f64> {
         let first = [SWING * pace.early, PIECE * pace.early];
         let early = if pace.early < 1.0 { first.map(stride) } else { full };
         let ([swing, piece], [early_swing, early_piece]) = (full, early);
-        // Clearly above critical damping the exponentials come from the whole force at the start, and after n
-        // doublings the strides have lost less than 2^(n + 2) eps.
+        // Clearly above critical damping the exponentials come from the whole force at the start,
+        // and after n doublings the strides have lost less than 2^(n + 2) eps.
         let (roundings, pulls) = match damping {
             Damping::Over { .. } => (ROUNDINGS + 4.0 / pace.early, b.abs() + a),
             _ => (ROUNDINGS, b.abs()),

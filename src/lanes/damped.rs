@@ -1,5 +1,5 @@
-//! Free oscillation in contact ([`crate::flow::damped`]): a rotation, a series near critical damping, two
-//! exponentials above.
+//! Free oscillation in contact ([`crate::flow::damped`]): a rotation, a series near critical
+//! damping, two exponentials above.
 
 use super::contact_shape::Forms;
 use super::functions::{Shrink, Turn, cosines, shrink, turn_of};
@@ -70,7 +70,8 @@ impl<S: Simd> Free<S> {
         Self::shrunk(shape, d, shrink, cosine_minus_1, [s, s_minus_d])
     }
 
-    /// C - 1 = exp(-xi d) cos - 1 + xi S, in short times without the xi d that two of its parts share.
+    /// C - 1 = exp(-xi d) cos - 1 + xi S, in short times without the xi d that two of its parts
+    /// share.
     #[inline(always)]
     fn shrunk(
         shape: &Shape<Wide<S>>,
@@ -90,7 +91,8 @@ impl<S: Simd> Free<S> {
         Self { s, s_minus_d, c_minus_1, s_rate_minus_1, shrink, ..Self::nothing(d) }
     }
 
-    /// S = exp(-slow d) (1 - exp(-spread d))/spread, C = exp(-slow d) + slow S and S' = exp(-fast d) - slow S.
+    /// S = exp(-slow d) (1 - exp(-spread d))/spread, C = exp(-slow d) + slow S and S' = exp(-fast
+    /// d) - slow S.
     #[inline(always)]
     fn exponentials(shape: &Shape<Wide<S>>, d: Wide<S>) -> Self {
         let Shape { lasting: slow, spread, .. } = *shape;

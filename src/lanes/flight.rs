@@ -1,10 +1,11 @@
-//! Flights that begin by separation ([`crate::flow::no_contact`]): guess, evaluation, certificate, landing.
+//! Flights that begin by separation ([`crate::flow::no_contact`]): guess, evaluation, certificate,
+//! landing.
 //!
 //! # Certificate
 //!
-//! That of [`crate::crossing::tangents`], a lane's flight beside another's. Flights whose start neither concavity nor
-//! sinking clears are certified with great care, by three tangents more in a stretch or as the scalar solver certifies
-//! short ones ([`crate::crossing::no_contact`]).
+//! That of [`crate::crossing::tangents`], a lane's flight beside another's. Flights whose start
+//! neither concavity nor sinking clears are certified with great care, by three tangents more in a
+//! stretch or as the scalar solver certifies short ones ([`crate::crossing::no_contact`]).
 
 use super::certificate::Piece;
 use super::crest::{Bound, Tangent};
@@ -60,9 +61,11 @@ pub struct Impact<S: Simd> {
 
 /// Decay times after which an exponential is less than 1e-19 of what it was.
 const DEAD: f64 = 45.0;
-/// Certified stretches in which the force is negative, after which a lane is left to the scalar solver.
+/// Certified stretches in which the force is negative, after which a lane is left to the scalar
+/// solver.
 const STRETCHES: usize = 6;
-/// Nearer to a threshold than this, in units of the largest term, the scalar solver decides: it takes 4 eps.
+/// Nearer to a threshold than this, in units of the largest term, the scalar solver decides: it
+/// takes 4 eps.
 pub const TIE: f64 = 64.0 * f64::EPSILON;
 
 impl<S: Simd> Phase<S> for Flight<'_, S> {
@@ -128,7 +131,8 @@ impl<S: Simd> Flight<'_, S> {
     pub fn impact(&self, care: Care) -> Impact<S> {
         let Shape { b, two_xi, rate, look, look_decay, .. } = *self.shape;
         let (guess, guessed) = self.trend().first_root();
-        // Within the first stride of a short-lived exponential: its end, from where the convex h leads back.
+        // Within the first stride of a short-lived exponential: its end, from where the convex h
+        // leads back.
         let hasty = guess.less(look) & look_decay.is(0.0);
         let guess = hasty.choose(look, guess);
         let Found { at, elapsed, step, slope, fine, .. } = find(self, guess, guessed);
@@ -153,8 +157,8 @@ impl<S: Simd> Flight<'_, S> {
         Impact { elapsed: (elapsed, step), y, q, f, fine }
     }
 
-    /// Displacement of the mass, its velocity and the slider's top at some time, and the rate of the latter
-    /// and of the velocity.
+    /// Displacement of the mass, its velocity and the slider's top at some time, and the rate of
+    /// the latter and of the velocity.
     #[inline(always)]
     pub fn state(&self, d: Wide<S>) -> ([Wide<S>; 3], [Wide<S>; 3]) {
         let at = self.at(d);
@@ -180,8 +184,8 @@ impl<S: Simd> Flight<'_, S> {
         }
     }
 
-    /// The same by three tangents more in between: at forcing angles whose sine and cosine are constants. Those
-    /// before the place where the stretch is entered do not count.
+    /// The same by three tangents more in between: at forcing angles whose sine and cosine are
+    /// constants. Those before the place where the stretch is entered do not count.
     #[inline(always)]
     fn stays_below_between(
         &self,
@@ -214,8 +218,8 @@ impl<S: Simd> Flight<'_, S> {
         below & last.stays_below_to(far)
     }
 
-    /// Where one interpolant shows that h is negative from the start to the root, at which these are h', the
-    /// slider's velocity, the force and its rate.
+    /// Where one interpolant shows that h is negative from the start to the root, at which these
+    /// are h', the slider's velocity, the force and its rate.
     #[inline(always)]
     fn hops(&self, root: Wide<S>, [slope, spring, force, force_rate]: [Wide<S>; 4]) -> Mask<S> {
         /// Decay times and forcing angle up to which that may do.

@@ -1,5 +1,5 @@
-//! Forced oscillation in contact ([`crate::flow::forced`]): divided by P, and near resonance as a divided
-//! difference.
+//! Forced oscillation in contact ([`crate::flow::forced`]): divided by P, and near resonance as a
+//! divided difference.
 
 use super::complex::Complex;
 use super::contact_shape::Forms;

@@ -1,8 +1,8 @@
 //! Sine, cosine and exponential of all lanes at once, and their remainders ([`crate::remainders`]).
 //!
-//! The argument is reduced by Cody and Waite's method with fused products and a tail of its own (two
-//! words of pi/2: up to [`FURTHEST`] the third would be 1e-28); the kernels are those of fdlibm. Errors
-//! are below one unit in the last place.
+//! The argument is reduced by Cody and Waite's method with fused products and a tail of its own
+//! (two words of pi/2: up to [`FURTHEST`] the third would be 1e-28); the kernels are those of
+//! fdlibm. Errors are below one unit in the last place.
 
 use super::wide::{Mask, Wide};
 use crate::exponential;

@@ -92,8 +92,9 @@ fn agree(x: [f64; WIDEST], rate: f64) -> Result<(), TestCaseError> {
             } else {
                 prop_assert!(exp <= 1e-303);
             }
-            // The series' remainder has four roundings of half a unit on either side, and up to 1/2 it is
-            // 0.27 of what it is taken from, which rounds once more; beyond 1/2 it is a sum of larger numbers.
+            // The series' remainder has four roundings of half a unit on either side, and up to 1/2
+            // it is 0.27 of what it is taken from, which rounds once more; beyond 1/2 it is a sum
+            // of larger numbers.
             close(minus_1, shrink.minus_1, 2.0 * (0.27 * 2.0 + 0.5), shrink.minus_1.abs())?;
             let size = if x.abs() < 0.5 { shrink.remainder } else { x.abs() };
             close(remainder, shrink.remainder, 2.0 * 2.0, size)?;

@@ -1,12 +1,13 @@
-//! Guesses of roots outside contact: the slow part of a guard and its harmonic, looked at in strides
-//! ([`crate::crossing::trend`]).
+//! Guesses of roots outside contact: the slow part of a guard and its harmonic, looked at in
+//! strides ([`crate::crossing::trend`]).
 
 use super::functions::{FURTHEST, sin_cos};
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use pulp::Simd;
 
-/// The guard, counted so that it rises to zero: c + s d + k d^2/2 - K cos(omega d + angle) - e exp(-rate d).
+/// The guard, counted so that it rises to zero: c + s d + k d^2/2 - K cos(omega d + angle) - e
+/// exp(-rate d).
 pub struct Trend<'a, S: Simd> {
     /// The model.
     pub shape: &'a Shape<Wide<S>>,
@@ -132,8 +133,8 @@ impl<S: Simd> Trend<'_, S> {
     }
 }
 
-/// Where the cubic through two values with these slopes, all in units of the stride, is zero; if it begins
-/// with a zero, the one after that.
+/// Where the cubic through two values with these slopes, all in units of the stride, is zero; if it
+/// begins with a zero, the one after that.
 #[inline(always)]
 pub fn meeting<S: Simd>(
     left: Wide<S>,

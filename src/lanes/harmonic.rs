@@ -67,7 +67,8 @@ impl<S: Simd> Angle<S> {
     }
 }
 
-/// The harmonic force after a short step, and what it has done to the velocity ([`crate::crossing::series`]).
+/// The harmonic force after a short step, and what it has done to the velocity
+/// ([`crate::crossing::series`]).
 pub struct Push<S: Simd> {
     /// The force less b with its first two derivatives.
     pub force: [Wide<S>; 3],

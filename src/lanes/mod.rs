@@ -1,13 +1,14 @@
 //! Many motions at once: phases of one kind, one a lane of the processor's vectors.
 //!
-//! What the scalar solver does for one phase (guess, evaluation, certificate, landing) is done here for
-//! as many as a vector has lanes, without a branch on what a lane holds. A switch is accepted only where a
-//! certificate proves it to be the first; the scalar solver takes every phase for which that fails, which
-//! comes near a tie or a graze, or which begins away from the slider.
+//! What the scalar solver does for one phase (guess, evaluation, certificate, landing) is done here
+//! for as many as a vector has lanes, without a branch on what a lane holds. A switch is accepted
+//! only where a certificate proves it to be the first; the scalar solver takes every phase for
+//! which that fails, which comes near a tie or a graze, or which begins away from the slider.
 //!
-//! Every operation is one of IEEE 754 in each lane by itself, and products and sums are fused where they are
-//! written so, on every instruction set: a motion's bits depend neither on its neighbours nor on the
-//! width of the vectors. The scalar solver, which fuses nothing, differs in the last places.
+//! Every operation is one of IEEE 754 in each lane by itself, and products and sums are fused where
+//! they are written so, on every instruction set: a motion's bits depend neither on its neighbours
+//! nor on the width of the vectors. The scalar solver, which fuses nothing, differs in the last
+//! places.
 
 mod batch;
 mod certificate;

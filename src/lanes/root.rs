@@ -87,8 +87,8 @@ pub fn find<S: Simd, P: Phase<S>>(phase: &P, guess: Wide<S>, guessed: Mask<S>) -
     }
 }
 
-/// The step to where the cubic through a guard's excess is zero, by Newton's method: of a step that is short
-/// against the guard's bending nothing is left after three.
+/// The step to where the cubic through a guard's excess is zero, by Newton's method: of a step that
+/// is short against the guard's bending nothing is left after three.
 #[inline(always)]
 fn cubic_step<S: Simd>(excess: [Wide<S>; 4]) -> Wide<S> {
     let [over, slope, bend, third] = excess;

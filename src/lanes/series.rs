@@ -21,7 +21,8 @@ impl<S: Simd> Series<S> {
         Self(all)
     }
 
-    /// Value and slope after a step; even and odd powers apart, so that the chains run side by side.
+    /// Value and slope after a step; even and odd powers apart, so that the chains run side by
+    /// side.
     #[inline(always)]
     fn value_and_slope(&self, step: Wide<S>) -> (Wide<S>, Wide<S>) {
         let square = step * step;
@@ -39,12 +40,12 @@ impl<S: Simd> Series<S> {
         (self.0[0] + change, step.times_plus(odd_slope, even_slope))
     }
 
-    /// The root next to a step that is one of the series' first four terms; the slope there, and where both are
-    /// settled.
+    /// The root next to a step that is one of the series' first four terms; the slope there, and
+    /// where both are settled.
     #[inline(always)]
     pub fn polished(&self, step: Wide<S>) -> (Wide<S>, Wide<S>, Mask<S>) {
-        /// Of what Newton's step changes the slope by the square is left out of the time: 1e-10 of a step that is
-        /// mostly below 1e-7 itself, and next to a flat inflection below 1e-4.
+        /// Of what Newton's step changes the slope by the square is left out of the time: 1e-10 of
+        /// a step that is mostly below 1e-7 itself, and next to a flat inflection below 1e-4.
         const SETTLED: f64 = 1e-5;
         let (value, slope) = self.value_and_slope(step);
         // To fifth order, which leaves 3e-8 of what the change does to the slope.

@@ -150,8 +150,8 @@ shape! {
     piece_s,
     /// S'
     piece_s_rate,
-    /// What the first step and the first piece in contact are of all others: one but clearly above critical
-    /// damping, where C, S and S' are the slow exponential, zero and the quick one.
+    /// What the first step and the first piece in contact are of all others: one but clearly above
+    /// critical damping, where C, S and S' are the slow exponential, zero and the quick one.
     early,
     /// Sine of omega times the first step.
     early_swing_sin,
@@ -175,16 +175,16 @@ shape! {
     pulls,
 }
 
-/// A step of a guess outside contact, radians of the forcing: the cubic between two places errs by 1/384 of
-/// the amplitude, which the series puts right.
+/// A step of a guess outside contact, radians of the forcing: the cubic between two places errs by
+/// 1/384 of the amplitude, which the series puts right.
 const LOOK: f64 = 1.0;
 
 /// Of an exponential less than this is forgotten in one step of a guess.
 const SHORT_LIVED: f64 = 0.05;
 
 impl Shape<f64> {
-    /// Of a model; none without forcing or where the force never changes sign to positive, and where
-    /// powers of the parameters come near the ends of the f64 range.
+    /// Of a model; none without forcing or where the force never changes sign to positive, and
+    /// where powers of the parameters come near the ends of the f64 range.
     pub fn new(model: &Model) -> Option<Self> {
         let Constants { a, b, g, xi, omega, omega2, two_xi, rate, .. } = *model.constants();
         let moderate = |x: f64, low: f64, high: f64| x >= low && x <= high;

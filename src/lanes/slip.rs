@@ -1,10 +1,11 @@
 //! Progressions ([`crate::flow::progression`]): guess, evaluation, certificate, landing.
 //!
-//! The drift velocity w begins at zero or above, w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's
-//! lag only decays. Let c = 1 - a - b be positive and a omega < c rate. As long as lag rate >= c, w is
-//! concave; from then on it falls. So it is positive between its start and its only root. Nor has it another
-//! one where it falls from the start, lag rate < c there, as under strong damping; or where it is concave up to
-//! the root, a omega < lag rate^2 there. Other progressions are left to the scalar solver.
+//! The drift velocity w begins at zero or above, w' = F - 1 + lag rate, w'' = F' - lag rate^2, and
+//! the slider's lag only decays. Let c = 1 - a - b be positive and a omega < c rate. As long as lag
+//! rate >= c, w is concave; from then on it falls. So it is positive between its start and its only
+//! root. Nor has it another one where it falls from the start, lag rate < c there, as under strong
+//! damping; or where it is concave up to the root, a omega < lag rate^2 there. Other progressions
+//! are left to the scalar solver.
 
 use super::functions::shrink;
 use super::guess::Trend;
@@ -52,7 +53,8 @@ pub struct Sliding<S: Simd> {
 
 /// A progression as strobes show it.
 pub struct Slipping<S: Simd> {
-    /// Displacement of the slider's top, velocity of the mass, drift since the start, drift velocity.
+    /// Displacement of the slider's top, velocity of the mass, drift since the start, drift
+    /// velocity.
     pub values: [Wide<S>; 4],
     /// Their rates.
     pub rates: [Wide<S>; 4],

@@ -1,8 +1,8 @@
 //! A contact followed in strides of fixed length ([`crate::crossing::swing`]).
 //!
-//! Clearly above critical damping the free part is carried as two exponentials, so that what is left of it
-//! has the derivatives of the slow one when the quick one has died out. Strides then begin as short as the
-//! quick one's life and double up to the length of all others.
+//! Clearly above critical damping the free part is carried as two exponentials, so that what is
+//! left of it has the derivatives of the slow one when the quick one has died out. Strides then
+//! begin as short as the quick one's life and double up to the length of all others.
 
 use super::contact_shape::Forms;
 use super::shape::Shape;
@@ -12,7 +12,8 @@ use pulp::Simd;
 /// The trial force in parts.
 #[derive(Clone, Copy)]
 pub struct Parts<S: Simd> {
-    /// Free part and its rate; clearly above critical damping the slow exponential and the quick one.
+    /// Free part and its rate; clearly above critical damping the slow exponential and the quick
+    /// one.
     pub free: [Wide<S>; 2],
     /// Forced part.
     pub forced: Wide<S>,
@@ -100,8 +101,8 @@ impl<S: Simd> Parts<S> {
         ]
     }
 
-    /// A bound of the free part's eighth derivative from here on: every derivative obeys the same equation,
-    /// and x^2 + x'^2 never grows.
+    /// A bound of the free part's eighth derivative from here on: every derivative obeys the same
+    /// equation, and x^2 + x'^2 never grows.
     #[inline(always)]
     pub fn eighth(&self, shape: &Shape<Wide<S>>) -> Wide<S> {
         let [mut x, mut rate] = self.free;
@@ -135,8 +136,8 @@ pub struct Swing<S: Simd> {
     pub sin: Wide<S>,
     /// And cosine.
     pub cos: Wide<S>,
-    /// C, S and S' of the free oscillation; clearly above critical damping the slow exponential, zero and
-    /// the quick one.
+    /// C, S and S' of the free oscillation; clearly above critical damping the slow exponential,
+    /// zero and the quick one.
     pub free: [Wide<S>; 3],
 }
 
@@ -222,8 +223,8 @@ impl<S: Simd> Swing<S> {
     }
 }
 
-/// One of two where the mask holds, the other elsewhere. (Under run-time dispatch the closures of an array's `map`
-/// are calls.)
+/// One of two where the mask holds, the other elsewhere. (Under run-time dispatch the closures of
+/// an array's `map` are calls.)
 #[inline(always)]
 pub fn each<S: Simd, const N: usize>(
     mask: Mask<S>,

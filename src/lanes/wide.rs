@@ -1,7 +1,7 @@
 //! One f64 a lane, with the arithmetic of a number.
 //!
-//! A product and a sum are fused only where [`Wide::times_plus`] says so, and no operation looks at a
-//! neighbouring lane: every instruction set gives the same bits, whatever its width.
+//! A product and a sum are fused only where [`Wide::times_plus`] says so, and no operation looks at
+//! a neighbouring lane: every instruction set gives the same bits, whatever its width.
 
 use pulp::Simd;
 use pulp::bytemuck::cast_slice_mut;
@@ -113,8 +113,8 @@ impl<S: Simd> Wide<S> {
         Mask { simd: self.simd, value: self.simd.equal_f64s(self.value, other) }
     }
 
-    /// The bits of a sum with [`crate::two_word::ROUNDER`], whose lowest ones are those of a whole number: where this one
-    /// of them is set.
+    /// The bits of a sum with [`crate::two_word::ROUNDER`], whose lowest ones are those of a whole
+    /// number: where this one of them is set.
     #[inline(always)]
     pub fn has_bit(self, bit: u64) -> Mask<S> {
         let simd = self.simd;
@@ -184,7 +184,8 @@ impl<S: Simd> Neg for Wide<S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        // pulp's own negation is inlined only if the compiler likes, and a call without vectors otherwise.
+        // pulp's own negation is inlined only if the compiler likes, and a call without vectors
+        // otherwise.
         let sign = self.simd.splat_f64s(-0.0);
         Self { value: self.simd.xor_f64s(self.value, sign), ..self }
     }

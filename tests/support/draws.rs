@@ -90,7 +90,8 @@ impl<T: Number> Form<T> {
         }
     }
 
-    /// The same phase under another sine and cosine of the forcing angle: the closed forms read no more of it.
+    /// The same phase under another sine and cosine of the forcing angle: the closed forms read no
+    /// more of it.
     pub fn with_angle(mut self, change: fn(&EntryAngle<T>) -> (T, T)) -> Self {
         let (Self::Flight(NoContact { angle, .. })
         | Self::Contact(Contact { angle, .. })
@@ -137,9 +138,9 @@ impl Regime {
 }
 
 impl Pair {
-    /// Flights and progressions are cut before the guard leaves its corridor: afterwards p and v come
-    /// back from afar through zero, where (1 + |value|) says nothing about them. Contacts are not cut,
-    /// because nothing in them grows.
+    /// Flights and progressions are cut before the guard leaves its corridor: afterwards p and v
+    /// come back from afar through zero, where (1 + |value|) says nothing about them. Contacts are
+    /// not cut, because nothing in them grows.
     pub fn while_it_lasts(mut self) -> Self {
         const PLACES: u32 = 32;
         let inside = |d: f64| {

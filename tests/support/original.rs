@@ -1,5 +1,6 @@
 //! An integrator that knows only the differential equations (1)-(9) in the original co-ordinates
-//! (x, y, z, v): Taylor series of fixed order, short steps. It shares nothing with the closed forms.
+//! (x, y, z, v): Taylor series of fixed order, short steps. It shares nothing with the closed
+//! forms.
 
 use percuss::{Parameters, Phase};
 

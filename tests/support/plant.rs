@@ -119,7 +119,8 @@ pub fn slip(p: &Parameters, [y0, q0]: [f64; 2], d: f64) -> Guard {
     Guard {
         excess: lag - (y0 + (push + p.a * impulse[0])),
         slope: -(p.b - 1.0 + p.a * force + rate * lag),
-        // The start's force 2 xi y + q is known to an eps of 1, the drift velocity to 1/(2 xi) more.
+        // The start's force 2 xi y + q is known to an eps of 1, the drift velocity to 1/(2 xi)
+        // more.
         size: y0.abs() + (1.0 + q0.abs()) * rate + push.abs() + p.a * impulse[1],
     }
 }

@@ -1,4 +1,5 @@
-//! Heun's method with fixed steps: an engine in a crate of its own, scored and reported by the whole program.
+//! Heun's method with fixed steps: an engine in a crate of its own, scored and reported by the
+//! whole program.
 //!
 //! `cargo run --release -p percuss-validation --example engine -- validate -e '^(exact|heun)$'`
 
@@ -75,8 +76,8 @@ impl Walk {
         std::array::from_fn(|k| state[k] + 0.5 * length * (here[k] + there[k]))
     }
 
-    /// A guard that is positive after a step, and not on its way back: separation begins with a double
-    /// zero of the gap, which rounding turns into a crossing in either direction.
+    /// A guard that is positive after a step, and not on its way back: separation begins with a
+    /// double zero of the gap, which rounding turns into a crossing in either direction.
     fn guard_that_rises(
         &mut self,
         phase: Phase,

@@ -2,7 +2,8 @@
 //!
 //! ```sh
 //! cargo run --release -- bench --out target/bench
-//! cargo run --release -p percuss-validation --example speed_table -- target/bench/bench.json README.md
+//! cargo run --release -p percuss-validation --example speed_table -- \
+//!   target/bench/bench.json README.md
 //! ```
 
 use anyhow::{Context, Result};

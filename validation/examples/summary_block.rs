@@ -2,7 +2,8 @@
 //!
 //! ```sh
 //! cargo run --release -- validate --out target/quick |
-//!   cargo run --release -p percuss-validation --example summary_block -- target/quick/report.json README.md
+//!   cargo run --release -p percuss-validation --example summary_block -- \
+//!   target/quick/report.json README.md
 //! ```
 
 use anyhow::{Context, Result, ensure};

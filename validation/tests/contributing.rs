@@ -82,7 +82,8 @@ fn adding_a_case() {
     }
 }
 
-/// Making the tables takes Python, which no test does; the scripts and flags that are named are there.
+/// Making the tables takes Python, which no test does; the scripts and flags that are named are
+/// there.
 #[test]
 fn the_tables_of_a_case_are_made_as_is_said() {
     for line in block(&section("Add a case"), "sh").lines() {

@@ -1,5 +1,6 @@
-//! `poincare`, `lyapunov`, `bifurcation`, `attractors` and `basins`: golden values, what they refuse, and their
-//! arrays, read back by a library and byte by byte against NumPy's published format.
+//! `poincare`, `lyapunov`, `bifurcation`, `attractors` and `basins`: golden values, what they
+//! refuse, and their arrays, read back by a library and byte by byte against NumPy's published
+//! format.
 
 #![allow(
     clippy::unwrap_used,
@@ -28,8 +29,8 @@ const SURVEY: [&str; 11] = [
     "1.6",
 ];
 
-/// The header's dictionary and the data, by NumPy's format 1.0: magic, version, little-endian length of
-/// a header that ends in a newline on a multiple of 64 bytes.
+/// The header's dictionary and the data, by NumPy's format 1.0: magic, version, little-endian
+/// length of a header that ends in a newline on a multiple of 64 bytes.
 fn by_hand(bytes: &[u8]) -> (String, &[u8]) {
     assert_eq!(&bytes[..8], b"\x93NUMPY\x01\x00");
     let length = usize::from(u16::from_le_bytes([bytes[8], bytes[9]]));

@@ -48,8 +48,9 @@ fn the_exact_solver_lasts_as_long_as_the_truths_growth_lets_it() {
     }
 }
 
-/// The truth's own horizon, from its growth, is where two runs in 106 bits that begin one unit apart
-/// are apart: they are less than a hundredth of 1e-3 apart up to there, but for a few units of rounding.
+/// The truth's own horizon, from its growth, is where two runs in 106 bits that begin one unit
+/// apart are apart: they are less than a hundredth of 1e-3 apart up to there, but for a few units
+/// of rounding.
 #[test]
 fn the_truth_lasts_as_long_as_it_says() {
     const ROOM: f64 = 20.0 * 1e-5;
@@ -65,7 +66,8 @@ fn the_truth_lasts_as_long_as_it_says() {
     assert!(sorted[0] > 100 && sorted[10] > 150, "{sorted:?}");
 }
 
-/// The largest difference in p, y and q after so many periods, of runs whose starts differ by a unit.
+/// The largest difference in p, y and q after so many periods, of runs whose starts differ by a
+/// unit.
 fn apart_after(start: &Problem, periods: u64) -> f64 {
     let (parameters, entry) = (start.model.parameters(), start.entry);
     let horizon = entry.instant.after_periods(periods, 1);

@@ -1,5 +1,5 @@
-//! What a run of the exact solver holds in memory does not grow with its length: between two phases it
-//! holds nothing.
+//! What a run of the exact solver holds in memory does not grow with its length: between two phases
+//! it holds nothing.
 
 #![allow(clippy::expect_used, reason = "a panic is a failed test")]
 
@@ -10,8 +10,8 @@ use std::alloc::System;
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Follows chaos from rest for this many forcing periods; its switches, and the most that is held on the
-/// heap when a phase has been found, bytes.
+/// Follows chaos from rest for this many forcing periods; its switches, and the most that is held
+/// on the heap when a phase has been found, bytes.
 fn followed(periods: u64) -> (u64, usize) {
     let model = Model::new(Parameters { omega: 1.4, ..Parameters::default() }).expect("a model");
     let rest = model.start(&Start::default()).expect("a start");
@@ -26,8 +26,8 @@ fn held(region: &Region<'_, System>) -> usize {
     change.bytes_allocated - change.bytes_deallocated
 }
 
-/// A hard search may ask for memory, and gives it back before the phase is handed out. Without the usual
-/// harness: what its threads hold would be counted too.
+/// A hard search may ask for memory, and gives it back before the phase is handed out. Without the
+/// usual harness: what its threads hold would be counted too.
 fn main() {
     for periods in [1_000, 1_000_000] {
         let (switches, held) = followed(periods);

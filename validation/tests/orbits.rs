@@ -7,8 +7,8 @@ mod support;
 use serde_json::Value;
 use support::{refused, run, text};
 
-/// Digits that do not depend on the platform: the last ones are those of its sine and exponential, times the
-/// orbit's sensitivity.
+/// Digits that do not depend on the platform: the last ones are those of its sine and exponential,
+/// times the orbit's sensitivity.
 const STABLE: f64 = 1e-10;
 
 fn json(arguments: &[&str], code: i32) -> (Value, String) {

@@ -26,9 +26,9 @@ fn prepared() -> Vec<Prepared> {
     prepare(chosen, &library, Suite::Quick).expect("the cases are made ready")
 }
 
-/// A touch that the control's steps find and an integrator's longest pass by, wherever chaos leads: that
-/// of the case with an overlap of 1e-3, made 1e-4 by a wider gap, from a start so much later that two
-/// steps of a 24th period end half a step before its middle and half a step after it.
+/// A touch that the control's steps find and an integrator's longest pass by, wherever chaos leads:
+/// that of the case with an overlap of 1e-3, made 1e-4 by a wider gap, from a start so much later
+/// that two steps of a 24th period end half a step before its middle and half a step after it.
 fn light_touch() -> Vec<Prepared> {
     let mut cases = embedded().expect("the cases are read").into_iter();
     let case = cases.find(|case| case.name == "graze-overlap-1e-3").expect("the case is there");
@@ -67,9 +67,9 @@ fn every_fault_is_caught_and_every_gate_catches_one() {
     }
 }
 
-/// It is the faults that are caught, not the plain solver that they are built into: without a fault it
-/// stays within the bounds of a tolerance of 1e-9, but for touches shorter than its steps, and with one
-/// it fails more.
+/// It is the faults that are caught, not the plain solver that they are built into: without a fault
+/// it stays within the bounds of a tolerance of 1e-9, but for touches shorter than its steps, and
+/// with one it fails more.
 #[test]
 fn the_control_passes_where_the_faults_do_not() {
     let standard =

@@ -66,8 +66,8 @@ fn the_readmes_blocks_are_what_their_commands_print() {
     }
 }
 
-/// The block of the bench is written by the commands that CONTRIBUTING.md names; times are not asserted. It
-/// must be of the cases that are raced today.
+/// The block of the bench is written by the commands that CONTRIBUTING.md names; times are not
+/// asserted. It must be of the cases that are raced today.
 #[test]
 fn the_readmes_bench_is_of_todays_cases() {
     let readme = read("README.md");
@@ -98,4 +98,35 @@ fn the_readmes_summary_is_of_todays_suite() {
     let rows = size(cases, all(), Suite::Quick);
     assert!(block.contains(&format!("\n{rows} rows: ")), "{rows}");
     assert!(block.contains(" 0 fail, 0 error, ") && block.contains("power: "), "{block}");
+}
+
+/// The sources of all packages, those outside the workspace too.
+fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+    let entries = std::fs::read_dir(folder).expect("the folder is there");
+    for path in entries.map(|entry| entry.expect("the entry is readable").path()) {
+        let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+        if path.is_dir() && name != "target" && !name.starts_with('.') {
+            sources(&path, found);
+        } else if name.ends_with(".rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// rustfmt keeps code within this width and leaves comments alone.
+#[test]
+fn comments_are_at_most_100_columns_wide() {
+    const WIDTH: usize = 100;
+    let mut found = Vec::new();
+    sources(&root(), &mut found);
+    assert!(found.len() > 300, "{} sources", found.len());
+    let mut wide = Vec::new();
+    for path in found {
+        let text = std::fs::read_to_string(&path).expect("the source is text");
+        let lines = text.lines().enumerate().filter(|(_, line)| {
+            line.trim_start().starts_with("//") && line.chars().count() > WIDTH
+        });
+        wide.extend(lines.map(|(n, _)| format!("{}:{}", path.display(), n + 1)));
+    }
+    assert!(wide.is_empty(), "{wide:#?}");
 }

@@ -18,8 +18,9 @@ const HALF_A_DIGIT: f64 = 0.5e-24;
 /// They are read into two words in a dozen roundings.
 const READING: f64 = 16.0 * UNIT;
 
-/// k of |error| <= k u (1 + |value| + time) growth switches, beyond the tables' own rounding, with u = 2^-106.
-/// Ten-odd roundings a switch would let it be ten; 0.13 is reached, where 25 digits do not hide it.
+/// k of |error| <= k u (1 + |value| + time) growth switches, beyond the tables' own rounding, with
+/// u = 2^-106. Ten-odd roundings a switch would let it be ten; 0.13 is reached, where 25 digits do
+/// not hide it.
 const ROUNDINGS: f64 = 1.0;
 
 struct Worst {

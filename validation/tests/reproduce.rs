@@ -165,8 +165,8 @@ fn every_verdict_is_the_documented_one() {
     assert_eq!(found, BTreeSet::from(VERDICTS));
 }
 
-/// The table in docs/REPRODUCTION.md is made from docs/claims.json: `PERCUSS_SPLICE=1 cargo test --test
-/// reproduce` writes it anew.
+/// The table in docs/REPRODUCTION.md is made from docs/claims.json: `PERCUSS_SPLICE=1 cargo test
+/// --test reproduce` writes it anew.
 #[test]
 fn the_page_tells_the_documented_claims() {
     const BEGIN: &str = "<!-- begin: claims -->\n";

@@ -13,8 +13,8 @@ use percuss_validation::case::{Case, Problem, embedded};
 use percuss_validation::engine::{Failure, Outcome, Task};
 use percuss_validation::score::{Restart, RestartTest};
 
-/// Of the runs with an impact, in eps (1 + |value|) x growth: twice the largest median measured (1.0,
-/// fast forcing; 0.35 in chaos). The last addition alone makes a quarter.
+/// Of the runs with an impact, in eps (1 + |value|) x growth: twice the largest median measured
+/// (1.0, fast forcing; 0.35 in chaos). The last addition alone makes a quarter.
 const MEDIAN: f64 = 2.0;
 /// The promise of ten roundings; 4.9 is the largest of 430,000 runs (fast forcing), 2.7 in chaos.
 const LARGEST: f64 = 10.0;

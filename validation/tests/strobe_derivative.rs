@@ -1,5 +1,5 @@
-//! The strobe map's derivative, held against differences in 106 bits: over several periods, for both targets of an
-//! impact, and on both sides of the corner at a graze.
+//! The strobe map's derivative, held against differences in 106 bits: over several periods, for
+//! both targets of an impact, and on both sides of the corner at a graze.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is a failed test")]
 
@@ -12,11 +12,12 @@ use percuss::{Entry, Exit, Instant, Leg, Model, Parameters, Phase};
 use percuss_validation::truth::{DoubleDouble, Replay};
 
 /// Half the width of a difference: its square times a third derivative is far below the products'
-/// rounding, and its quotient leaves 106 bits fifteen digits. Next to a graze, at a distance of 1e-10, the third
-/// derivative is 1e-10^(-3/2).
+/// rounding, and its quotient leaves 106 bits fifteen digits. Next to a graze, at a distance of
+/// 1e-10, the third derivative is 1e-10^(-3/2).
 const STEP: f64 = 1e-15;
-/// Of the derivative's largest entry: products of matrices in f64 along a run that is itself rounded, 1e-14 at
-/// most. A distance d from a graze is known to eps, and the derivative there to eps/sqrt(d): 2e-11 at 1e-10.
+/// Of the derivative's largest entry: products of matrices in f64 along a run that is itself
+/// rounded, 1e-14 at most. A distance d from a graze is known to eps, and the derivative there to
+/// eps/sqrt(d): 2e-11 at 1e-10.
 const AGREEMENT: f64 = 1e-11;
 
 fn map_of(xi: f64, omega: f64, a: f64, b: f64, g: f64) -> StrobeMap {
@@ -120,7 +121,8 @@ impl Graze {
         let start = Instant::at(model.parameters().omega, 0.0, 0);
         let mut graze = Self { model, start, p: -0.05, y: 0.0 };
         let (mut low, mut high) = (0.0, 0.19);
-        // Until then the force drives the mass away, after its beginning; later approaches are no grazes.
+        // Until then the force drives the mass away, after its beginning; later approaches are no
+        // grazes.
         const AWAY: f64 = 2.0;
         assert!(graze.first(high).duration() < AWAY && graze.first(low).duration() > 1.2 * AWAY);
         while high - low > 2.0 * f64::EPSILON {
@@ -183,8 +185,8 @@ fn the_map_has_a_corner_at_a_graze_and_no_square_root() {
         assert!(norm(&jump) > 0.1, "{jump:?}");
         let slope = impact.switch_derivative().unwrap().time[P].abs();
         if let Some((rest_before, slope_before)) = last {
-            // A hundred times closer: what is left of the contact shrinks tenfold, as the impact's speed does, and
-            // the switch time's derivative grows as much.
+            // A hundred times closer: what is left of the contact shrinks tenfold, as the impact's
+            // speed does, and the switch time's derivative grows as much.
             assert!((7.0..14.0).contains(&(rest_before / rest)), "{rest_before:e} {rest:e}");
             assert!((7.0..14.0).contains(&(slope / slope_before)), "{slope_before:e} {slope:e}");
         }
@@ -198,7 +200,8 @@ fn the_map_has_a_corner_at_a_graze_and_no_square_root() {
     assert!(rest < 1e-3 && slope > 1e3, "{rest:e} {slope:e}");
 }
 
-/// One-sided differences of the image itself, in f64: the corner is the map's and not the derivative's.
+/// One-sided differences of the image itself, in f64: the corner is the map's and not the
+/// derivative's.
 #[test]
 fn one_sided_differences_at_the_graze_are_the_two_derivatives() {
     let graze = Graze::found();

@@ -17,9 +17,9 @@ fn outcome(engine: &dyn Engine) -> Outcome {
     engine.run(&task, accuracy, &Limits::default()).expect("it runs")
 }
 
-/// Each right-hand side of a multistep method is one of Newton's iterations, which solves one system,
-/// but for those that begin a phase (four in diffsol: one of ours and three that choose the first
-/// step) and those of Hermite's cubic at both ends of a step in differential-equations.
+/// Each right-hand side of a multistep method is one of Newton's iterations, which solves one
+/// system, but for those that begin a phase (four in diffsol: one of ours and three that choose the
+/// first step) and those of Hermite's cubic at both ends of a step in differential-equations.
 #[test]
 fn newtons_iterations_solve_one_system_each() {
     for engine in all() {

@@ -50,8 +50,8 @@ impl Atlas {
         self.extended(entry, Result::ok).unwrap_or(Label::Unresolved)
     }
 
-    /// Where many starts lead; attractors not met before are added. `seen` is told how many starts more
-    /// are done.
+    /// Where many starts lead; attractors not met before are added. `seen` is told how many starts
+    /// more are done.
     pub fn label_all(&mut self, starts: &[Point], seen: &(dyn Fn(u64) + Sync)) -> Vec<Label> {
         let mut labels = vec![Label::Unresolved; starts.len()];
         let mut open = Vec::new();
@@ -101,8 +101,8 @@ impl Atlas {
         settled.unwrap_or(Settled::Label(Label::Unresolved))
     }
 
-    /// Follows a motion for its transient, and for the extensions of that as long as nothing is `made` of
-    /// the label that it has by then, or of where it is without one.
+    /// Follows a motion for its transient, and for the extensions of that as long as nothing is
+    /// `made` of the label that it has by then, or of where it is without one.
     fn extended<T>(
         &self,
         mut from: Entry,
@@ -131,7 +131,8 @@ impl Atlas {
         }))
     }
 
-    /// Labels the motions that are recognised, if anything is known; the others, where they are then.
+    /// Labels the motions that are recognised, if anything is known; the others, where they are
+    /// then.
     fn still_open(
         &self,
         motions: Vec<(usize, Entry)>,

@@ -1,4 +1,5 @@
-//! What an attractor that is no orbit occupies: small cells of (p, y, q) that a long run has visited.
+//! What an attractor that is no orbit occupies: small cells of (p, y, q) that a long run has
+//! visited.
 
 use crate::dynamics::strobe::Point;
 use std::collections::HashSet;

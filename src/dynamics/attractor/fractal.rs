@@ -1,13 +1,14 @@
 //! How fractal the boundary between basins is.
 //!
-//! **Uncertainty exponent** (McDonald, Grebogi, Ott and Yorke 1985): the share of starts that another
-//! start nearer than epsilon, along p, does not follow falls as epsilon^alpha; in the plane (p, y) the
-//! boundary's dimension is 2 - alpha, so alpha = 1 of a smooth one and alpha < 1 of a fractal one.
+//! **Uncertainty exponent** (McDonald, Grebogi, Ott and Yorke 1985): the share of starts that
+//! another start nearer than epsilon, along p, does not follow falls as epsilon^alpha; in the plane
+//! (p, y) the boundary's dimension is 2 - alpha, so alpha = 1 of a smooth one and alpha < 1 of a
+//! fractal one.
 //!
-//! **Basin entropy** (Daza, Wagemakers, Georgeot, Guery-Odelin and Sanjuan 2016): the mean entropy of
-//! the labels in small boxes, and the mean over those boxes only that hold a boundary. Where the
-//! latter exceeds ln 2 the boundary is fractal: along a smooth one nearly all boxes hold two labels. It
-//! needs three labels, and is sufficient, not necessary.
+//! **Basin entropy** (Daza, Wagemakers, Georgeot, Guery-Odelin and Sanjuan 2016): the mean entropy
+//! of the labels in small boxes, and the mean over those boxes only that hold a boundary. Where the
+//! latter exceeds ln 2 the boundary is fractal: along a smooth one nearly all boxes hold two
+//! labels. It needs three labels, and is sufficient, not necessary.
 
 use super::grid::{Basins, Window};
 use super::known::Label;
@@ -107,9 +108,9 @@ pub fn uncertainty_of(
     Uncertainty::fitted(seen, saturation(&counts))
 }
 
-/// The same from the labels of a grid, at distances of 1, 2, 4... up to an eighth of its columns. Starts
-/// that lack neighbours at the largest distance are not compared at any: what is near the window's
-/// sides would count more the smaller the distance.
+/// The same from the labels of a grid, at distances of 1, 2, 4... up to an eighth of its columns.
+/// Starts that lack neighbours at the largest distance are not compared at any: what is near the
+/// window's sides would count more the smaller the distance.
 #[must_use]
 pub fn uncertainty(basins: &Basins) -> Uncertainty {
     let columns = basins.grid.columns as usize;

@@ -34,8 +34,8 @@ pub struct Grid {
 pub struct Basins {
     /// The grid.
     pub grid: Grid,
-    /// What it reaches: orbits first, by period, then by smallest p; then chaotic and quasi-periodic
-    /// attractors by smallest p.
+    /// What it reaches: orbits first, by period, then by smallest p; then chaotic and
+    /// quasi-periodic attractors by smallest p.
     pub attractors: Vec<Attractor>,
     /// A label a start, rows of equal y from the lowest y on: an index into the attractors.
     pub labels: Vec<Label>,
@@ -101,8 +101,8 @@ fn centres([from, to]: [f64; 2], count: u32) -> Vec<f64> {
 impl Basins {
     /// Labels every start of a grid.
     ///
-    /// `transient` is how many forcing periods a start is followed at first (see [`Atlas::new`]); `seen`
-    /// is told of how many starts more the label is known.
+    /// `transient` is how many forcing periods a start is followed at first (see [`Atlas::new`]);
+    /// `seen` is told of how many starts more the label is known.
     #[must_use]
     pub fn of(map: &StrobeMap, grid: &Grid, transient: u64, seen: &(dyn Fn(u64) + Sync)) -> Self {
         let mut atlas = Atlas::new(*map, transient);

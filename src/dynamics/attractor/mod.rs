@@ -1,14 +1,16 @@
 //! Attractors of the strobe map, and the recognition of a motion that approaches one.
 //!
-//! - **Periodic**: strobes repeat, Newton's method confirms the orbit ([`Orbit::find`]), its multipliers
-//!   are inside the unit circle, and a neighbourhood has been found that nothing leaves (`trap.rs`).
-//! - **Chaotic**: the largest exponent is above zero by more than [`ERRORS`] standard errors over a run
-//!   of 2^17 strobes that met no orbit. Another motion is on the same attractor when 48
-//!   strobes in a row lie in the cells of that run (`cells.rs`); so its bands are one attractor.
+//! - **Periodic**: strobes repeat, Newton's method confirms the orbit ([`Orbit::find`]), its
+//!   multipliers are inside the unit circle, and a neighbourhood has been found that nothing leaves
+//!   (`trap.rs`).
+//! - **Chaotic**: the largest exponent is above zero by more than [`ERRORS`] standard errors over a
+//!   run of 2^17 strobes that met no orbit. Another motion is on the same attractor when 48 strobes
+//!   in a row lie in the cells of that run (`cells.rs`); so its bands are one attractor.
 //! - **Quasi-periodic**: neither, with a largest exponent and a contraction below 1e-3.
-//! - **Escaping**: a phase that provably never ends: the mass never returns or the slider never stops.
-//! - Whatever is none of these after the last extension of its transient stays **unresolved**: above
-//!   all an orbit next to a bifurcation, which attracts too slowly for a trap to be found.
+//! - **Escaping**: a phase that provably never ends: the mass never returns or the slider never
+//!   stops.
+//! - Whatever is none of these after the last extension of its transient stays **unresolved**:
+//!   above all an orbit next to a bifurcation, which attracts too slowly for a trap to be found.
 //!
 //! A chaotic set of which a motion leaves after some 10^5 periods on average cannot be told from an
 //! attractor by any run of that length.
@@ -42,8 +44,9 @@ pub enum Kind {
     Periodic,
     /// A positive exponent.
     Chaotic,
-    /// No orbit, a largest exponent of zero, and no contraction. Every contact contracts areas, which
-    /// an invariant curve does not bear: this is what a run cannot tell from one at very light damping.
+    /// No orbit, a largest exponent of zero, and no contraction. Every contact contracts areas,
+    /// which an invariant curve does not bear: this is what a run cannot tell from one at very
+    /// light damping.
     QuasiPeriodic,
     /// A set to which motions return without it being known as what: its starts are unresolved.
     Unidentified,

@@ -50,7 +50,8 @@ impl Watcher for Recognition<'_> {
     }
 }
 
-/// Whether a motion is in a phase that never ends, other than rest on the slider, which is an orbit.
+/// Whether a motion is in a phase that never ends, other than rest on the slider, which is an
+/// orbit.
 pub(super) fn escapes(endless: Option<Endless>) -> bool {
     matches!(endless, Some(Endless::NeverReturns | Endless::NeverStops))
 }

@@ -26,8 +26,8 @@ const DECISION: u64 = 1 << 14;
 /// A largest exponent, and a contraction, that are no larger are taken for zero.
 const NEUTRAL: f64 = 1e-3;
 
-/// With so many attractors known only orbits are added: nearly without damping every start has its own
-/// invariant curve.
+/// With so many attractors known only orbits are added: nearly without damping every start has its
+/// own invariant curve.
 const MOST: usize = 64;
 
 /// What became of a motion.

@@ -1,10 +1,10 @@
 //! Neighbourhoods of a stable orbit that nothing leaves.
 //!
-//! With J the derivative of one turn of the orbit and all |multipliers| < 1, the sum
-//! S = 1 + J'J + J'^2 J^2 + ... exists and x'Sx falls at every turn, by the factor 1 - 1/|S| at least,
-//! in linear theory. How far linear theory reaches is measured: the largest ellipsoid is taken of
-//! which a net of points comes back by half of that contraction or more. The net is finite, so this is
-//! evidence and no proof; a start is believed after further turns each of which brought it closer.
+//! With J the derivative of one turn of the orbit and all |multipliers| < 1, the sum S = 1 + J'J +
+//! J'^2 J^2 + ... exists and x'Sx falls at every turn, by the factor 1 - 1/|S| at least, in linear
+//! theory. How far linear theory reaches is measured: the largest ellipsoid is taken of which a net
+//! of points comes back by half of that contraction or more. The net is finite, so this is evidence
+//! and no proof; a start is believed after further turns each of which brought it closer.
 //!
 //! About a strobe on the slider only motions that are on it too are taken: there p and q are one.
 
@@ -27,8 +27,8 @@ pub(super) struct Trap {
 /// p = q + g to within this share of its terms: some roundings.
 const ON_SLIDER: f64 = 1e-12;
 
-/// Radii that are tried, largest first: how far a trap may reach in any direction. In a larger one the
-/// net would be too coarse for a tongue of another basin.
+/// Radii that are tried, largest first: how far a trap may reach in any direction. In a larger one
+/// the net would be too coarse for a tongue of another basin.
 const LARGEST: f64 = 0.25;
 const HALVINGS: i32 = 28;
 /// Points of the net on each of its shells.

@@ -20,16 +20,16 @@ const HALVINGS: usize = 300;
 const REACHED: f64 = 1e-15;
 /// How far beyond the corner its other side is looked at and entered, nearest first.
 const BEYOND: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
-/// Relative error of a corner with which no nearer place beyond is looked for: a piece of the curve between
-/// two corners may be shorter than the step.
+/// Relative error of a corner with which no nearer place beyond is looked for: a piece of the curve
+/// between two corners may be shorter than the step.
 const SHARP: f64 = 1e-12;
 
 impl Curve {
-    /// The corner between a knot and a distance along its tangent at which the piece is another one or no
-    /// orbit is found.
+    /// The corner between a knot and a distance along its tangent at which the piece is another one
+    /// or no orbit is found.
     ///
-    /// Its error is what the halving leaves, rounding, and how far off the same corner is found from the other
-    /// side: a contact that is too short to be told from a touch counts as none.
+    /// Its error is what the halving leaves, rounding, and how far off the same corner is found
+    /// from the other side: a contact that is too short to be told from a touch counts as none.
     pub(super) fn corner(&self, base: &Knot, distance: f64) -> Option<Corner> {
         let (before, rest) = self.approached(base, distance);
         let mut best: Option<Corner> = None;
@@ -79,8 +79,8 @@ impl Curve {
         (before, rest)
     }
 
-    /// The curve a step beyond the corner at `before`. Its direction there is that of the other piece's
-    /// derivative; of the two ways along it one leads to an orbit of that piece.
+    /// The curve a step beyond the corner at `before`. Its direction there is that of the other
+    /// piece's derivative; of the two ways along it one leads to an orbit of that piece.
     fn beyond(&self, before: &Knot, step: f64) -> Option<Knot> {
         let value = before.value + step * before.tangent.rate;
         let tangents = self.probes(before, step).into_iter().flat_map(|probe| {
@@ -104,9 +104,9 @@ impl Curve {
         })
     }
 
-    /// Chains a step along the old direction that lie on another piece: as it is, and with each strobe replaced
-    /// by the image of the one before. A strobe that is still on the slider where the orbit no longer is
-    /// is so put right.
+    /// Chains a step along the old direction that lie on another piece: as it is, and with each
+    /// strobe replaced by the image of the one before. A strobe that is still on the slider where
+    /// the orbit no longer is is so put right.
     fn probes(&self, from: &Knot, step: f64) -> Vec<Chain> {
         let along = &from.tangent;
         let probed = self.family.map(from.value + step * along.rate).ok().and_then(|map| {

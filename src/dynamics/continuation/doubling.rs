@@ -21,7 +21,8 @@ pub enum Criticality {
 pub struct Doubling {
     /// Sub- or supercritical.
     pub criticality: Criticality,
-    /// The doubled orbits from next to the flip up to where the parameter's interval, or the branch, ends.
+    /// The doubled orbits from next to the flip up to where the parameter's interval, or the
+    /// branch, ends.
     pub branch: Branch,
 }
 
@@ -30,8 +31,9 @@ pub struct Doubling {
 const AMPLITUDES: [f64; 6] = [1e-4, 3e-5, 3e-4, 1e-3, 3e-3, 1e-5];
 
 impl Doubling {
-    /// The doubled branch at a flip, followed until the parameter leaves the interval from `from` to
-    /// `to`; none if no doubled orbit is found. `told` hears where the parameter is in it, 0 to 1.
+    /// The doubled branch at a flip, followed until the parameter leaves the interval from `from`
+    /// to `to`; none if no doubled orbit is found. `told` hears where the parameter is in it, 0 to
+    /// 1.
     pub fn of(
         family: &Family,
         flip: &Bifurcation,
@@ -83,8 +85,8 @@ impl Curve {
     }
 }
 
-/// The direction that once around turns into its opposite: any column of the adjugate of M + 1, of which
-/// the largest has lost least.
+/// The direction that once around turns into its opposite: any column of the adjugate of M + 1, of
+/// which the largest has lost least.
 fn flipped(chain: &Chain) -> Option<Point> {
     let Around { matrix, .. } = chain.around(&chain.defects);
     let plus: [Point; 3] =

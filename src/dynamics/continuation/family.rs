@@ -15,13 +15,13 @@ pub struct Family {
     instant: Instant,
 }
 
-/// Relative steps of the differences, longest first: the first balances truncation and rounding, the
-/// others are for neighbourhoods of a corner.
+/// Relative steps of the differences, longest first: the first balances truncation and rounding,
+/// the others are for neighbourhoods of a corner.
 const STEPS: [f64; 4] = [6e-6, 6e-8, 6e-9, 6e-11];
 
 impl Family {
-    /// The family of `parameter`, the others being fixed, on the section through `instant` (of which the
-    /// forcing angle alone matters).
+    /// The family of `parameter`, the others being fixed, on the section through `instant` (of
+    /// which the forcing angle alone matters).
     #[must_use]
     pub const fn new(parameters: Parameters, parameter: Parameter, instant: Instant) -> Self {
         Self { parameters, parameter, instant }
@@ -44,9 +44,9 @@ impl Family {
 
     /// Derivatives of the images of a chain's strobes with respect to the parameter, per strobe.
     ///
-    /// By differences: they steer the corrector and give the tangent, nothing else. A point that is accepted
-    /// satisfies the map itself, and its multipliers are those of the exact derivative. Where a corner is near, the
-    /// difference is taken on the chain's own side of it.
+    /// By differences: they steer the corrector and give the tangent, nothing else. A point that is
+    /// accepted satisfies the map itself, and its multipliers are those of the exact derivative.
+    /// Where a corner is near, the difference is taken on the chain's own side of it.
     pub(super) fn slopes(&self, value: f64, chain: &Chain, scale: f64) -> Vec<Point> {
         (0..chain.points.len()).map(|k| self.slope(value, chain, k, scale)).collect()
     }

@@ -11,8 +11,9 @@ use crate::dynamics::strobe::Point;
 const AROUND: [f64; 8] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 
 impl Curve {
-    /// The flip of an orbit of half the period that the curve runs into between two knots. It goes on beyond: as
-    /// the same orbits, half a period later, so that the difference of their halves changes sign.
+    /// The flip of an orbit of half the period that the curve runs into between two knots. It goes
+    /// on beyond: as the same orbits, half a period later, so that the difference of their halves
+    /// changes sign.
     pub(super) fn halving(&self, knot: &Knot, next: &Knot) -> Option<Bifurcation> {
         let (here, there) = (differences(&knot.chain)?, differences(&next.chain)?);
         let along: f64 = here.iter().zip(&there).map(|(a, b)| dot(a, b)).sum();

@@ -73,7 +73,8 @@ impl Curve {
         Some(self.knot(value, chain, &base.tangent))
     }
 
-    /// A closed chain with the curve's direction, which is that of `along` as far as there is a choice.
+    /// A closed chain with the curve's direction, which is that of `along` as far as there is a
+    /// choice.
     pub(super) fn knot(&self, value: f64, chain: Chain, along: &Tangent) -> Knot {
         let tangent = self.tangent(&chain, value, along);
         let orbit = Orbit::of(&chain);
@@ -168,8 +169,8 @@ impl Knot {
         self.chain.is_on_piece_of(&other.chain)
     }
 
-    /// The phases of the whole orbit from wherever they are least: a switch that passes a strobe does not
-    /// change them.
+    /// The phases of the whole orbit from wherever they are least: a switch that passes a strobe
+    /// does not change them.
     pub(super) fn word(&self) -> Vec<Phase> {
         let phases = &self.orbit.phases;
         let turned = (0..phases.len()).map(|k| [&phases[k..], &phases[..k]].concat());

@@ -15,8 +15,8 @@ pub(super) struct Located {
 const ITERATIONS: usize = 60;
 /// A sixteenth of f64's digits of the distance: beyond it rounding decides.
 const RESOLUTION: f64 = 1e-15;
-/// Distances at which the test is sampled about its zero, in units of the bracket searched: at these its
-/// curvature is below rounding.
+/// Distances at which the test is sampled about its zero, in units of the bracket searched: at
+/// these its curvature is below rounding.
 const SPREAD: f64 = 1e-6;
 
 impl Curve {
@@ -69,8 +69,8 @@ impl Curve {
         Some(Located { knot, distance: at, bracket })
     }
 
-    /// Slope of the test about a distance, and how far it scatters about that line: what its rounding and
-    /// the corrector's leave of it, measured.
+    /// Slope of the test about a distance, and how far it scatters about that line: what its
+    /// rounding and the corrector's leave of it, measured.
     fn scatter(
         &self,
         base: &Knot,

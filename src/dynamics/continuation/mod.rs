@@ -1,33 +1,36 @@
 //! Branches of periodic orbits followed in a parameter, through folds and corners, stable or not.
 //!
 //! Pseudo-arclength continuation: the curve of orbits in (strobes, parameter) is followed along its
-//! tangent, each orbit solved to its last digits. Between corners of the strobe map the curve is smooth
-//! and three tests are watched: the parameter turns (fold), (1 + mu1)(1 + mu2)(1 + mu3) changes sign (flip), the
-//! modulus of a complex pair passes one (Neimark-Sacker).
+//! tangent, each orbit solved to its last digits. Between corners of the strobe map the curve is
+//! smooth and three tests are watched: the parameter turns (fold), (1 + mu1)(1 + mu2)(1 + mu3)
+//! changes sign (flip), the modulus of a complex pair passes one (Neimark-Sacker).
 //!
 //! # Corners
 //!
 //! The map is smooth as long as the phases stay the same, strobe by strobe. Where they change, the
-//! curve has a kink: at a graze of an impact (the derivative of the map jumps there), and where an impact passes the
-//! strobe itself (the map is what it was; its strobes turn off). Corners are found by halving, and the
-//! curve is taken up again with the derivative of the other side: of the two directions of the new
-//! tangent the one that leaves the old piece. So a branch goes through a corner, with multipliers
-//! that jump, or turns back there, a non-smooth fold, in the same way. A corner at which the phases of the whole orbit
-//! change is a `grazing`; a switch that only passes the strobe turns the word round, and is none.
+//! curve has a kink: at a graze of an impact (the derivative of the map jumps there), and where an
+//! impact passes the strobe itself (the map is what it was; its strobes turn off). Corners are
+//! found by halving, and the curve is taken up again with the derivative of the other side: of the
+//! two directions of the new tangent the one that leaves the old piece. So a branch goes through a
+//! corner, with multipliers that jump, or turns back there, a non-smooth fold, in the same way. A
+//! corner at which the phases of the whole orbit change is a `grazing`; a switch that only passes
+//! the strobe turns the word round, and is none.
 
 //!
 //! # What is not to be expected
 //!
-//! A Neimark-Sacker point needs a pair of multipliers with product one. Where the slider comes to rest between contacts
-//! that product is what a period leaves of an area of neighbouring (p, y): flights keep it, contact contracts
-//! it by exp(-2 xi d), progression by exp(-d/(2 xi)), an impact keeps it or, straight into progression, divides it by
-//! f > 1. So it is less than one. A slider that is still moving when it is hit adds 2 xi dp dq, which
-//! settles nothing; the test is there for that, and none was met.
+//! A Neimark-Sacker point needs a pair of multipliers with product one. Where the slider comes to
+//! rest between contacts that product is what a period leaves of an area of neighbouring (p, y):
+//! flights keep it, contact contracts it by exp(-2 xi d), progression by exp(-d/(2 xi)), an impact
+//! keeps it or, straight into progression, divides it by f > 1. So it is less than one. A slider
+//! that is still moving when it is hit adds 2 xi dp dq, which settles nothing; the test is there
+//! for that, and none was met.
 //!
 //! # Flips
 //!
-//! [`Doubling`] takes the doubled branch from next to a flip and says on which side it lies. A branch that runs
-//! into the flip of an orbit of half its period ends there: beyond, it would be the same orbits again.
+//! [`Doubling`] takes the doubled branch from next to a flip and says on which side it lies. A
+//! branch that runs into the flip of an orbit of half its period ends there: beyond, it would be
+//! the same orbits again.
 
 mod corner;
 mod doubling;
@@ -152,8 +155,9 @@ impl fmt::Display for Ending {
 }
 
 impl Branch {
-    /// Follows the orbit that is found from `guess` at the value `from`, of `period` forcing periods or a
-    /// divisor of it, until the parameter is `to`. `told` hears how far it has come, 0 to 1.
+    /// Follows the orbit that is found from `guess` at the value `from`, of `period` forcing
+    /// periods or a divisor of it, until the parameter is `to`. `told` hears how far it has come, 0
+    /// to 1.
     ///
     /// # Errors
     /// [`NoOrbit`] where there is none to begin with.

@@ -1,8 +1,8 @@
-//! Many motions, each looked at once a forcing period until its watcher has seen enough: starts by the
-//! thousand, or one start at many parameters.
+//! Many motions, each looked at once a forcing period until its watcher has seen enough: starts by
+//! the thousand, or one start at many parameters.
 //!
-//! Motions share nothing, so that every result is the same for any number of threads (feature `parallel`).
-//! With the feature `lanes` several are solved at once in the vectors of the processor
+//! Motions share nothing, so that every result is the same for any number of threads (feature
+//! `parallel`). With the feature `lanes` several are solved at once in the vectors of the processor
 #![cfg_attr(feature = "lanes", doc = "([`crate::lanes`]).")]
 #![cfg_attr(not(feature = "lanes"), doc = "(`percuss::lanes`).")]
 
@@ -24,8 +24,9 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Sees the strobes of one motion.
 pub trait Watcher {
-    /// The next strobe, and why the phase that it lies in has no end, where that is proved. A motion has no
-    /// end of its own: it is followed until this breaks, or into an undecidable phase.
+    /// The next strobe, and why the phase that it lies in has no end, where that is proved. A
+    /// motion has no end of its own: it is followed until this breaks, or into an undecidable
+    /// phase.
     fn see(&mut self, strobe: &Entry, endless: Option<Endless>) -> ControlFlow<()>;
 
     /// A phase begins, by a switch; what was due before it has been seen.
@@ -52,12 +53,13 @@ pub struct Motion<'a, W> {
 pub struct Tally {
     /// In lanes.
     pub in_lanes: u64,
-    /// One by one: what no lane can prove or has the closed form of, and starts away from the slider.
+    /// One by one: what no lane can prove or has the closed form of, and starts away from the
+    /// slider.
     pub alone: u64,
 }
 
-/// Follows motions number 0 to `count`, by the widest instructions that there are; the watchers come back
-/// in order.
+/// Follows motions number 0 to `count`, by the widest instructions that there are; the watchers
+/// come back in order.
 pub fn follow<'a, W: Watcher + Send>(
     count: usize,
     begin: impl Fn(usize) -> Motion<'a, W> + Sync,

@@ -1,7 +1,8 @@
 //! Motions on their way in lanes: those whose phases are of one kind are taken together.
 //!
-//! So many motions are under way that some kind always fills a vector, until there are no more to begin. Which
-//! ones share a vector depends on how they happen to meet; what becomes of them does not.
+//! So many motions are under way that some kind always fills a vector, until there are no more to
+//! begin. Which ones share a vector depends on how they happen to meet; what becomes of them does
+//! not.
 
 use super::course::Course;
 use super::seat::Seat;
@@ -25,7 +26,8 @@ pub struct Pool<'a, W> {
 
 impl<'a, W: Watcher> Pool<'a, W> {
     pub fn new(permit: Permit) -> Self {
-        // With one less than a vector waiting for each stage and one motion more, some vector is full.
+        // With one less than a vector waiting for each stage and one motion more, some vector is
+        // full.
         let seats = Stage::ALL.len() * permit.width();
         Self {
             permit,

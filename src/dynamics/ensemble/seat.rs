@@ -11,7 +11,8 @@ use crate::surface::{self, FOUR_ULPS};
 use crate::two_word::TwoWord;
 use std::ops::ControlFlow;
 
-/// A motion, what the lanes need of its model, and what begins when its phase ends, if that is known.
+/// A motion, what the lanes need of its model, and what begins when its phase ends, if that is
+/// known.
 pub struct Seat<'a, W> {
     number: usize,
     course: Course<'a, W>,
@@ -42,7 +43,8 @@ impl<'a, W: Watcher> Seat<'a, W> {
         }
     }
 
-    /// What the lanes are to do next; what they cannot is done before. None when the watcher has seen enough.
+    /// What the lanes are to do next; what they cannot is done before. None when the watcher has
+    /// seen enough.
     pub fn next_stage(&mut self) -> Option<Stage> {
         loop {
             let stage = match self.course.entry.onset {

@@ -143,7 +143,8 @@ impl Chain {
         self.passages.iter().map(|passage| passage.image.v()).sum()
     }
 
-    /// Whether both meet the same phases strobe by strobe: then they lie on one smooth piece of the map.
+    /// Whether both meet the same phases strobe by strobe: then they lie on one smooth piece of the
+    /// map.
     pub(crate) fn is_on_piece_of(&self, other: &Self) -> bool {
         let pairs = self.passages.iter().zip(&other.passages);
         self.passages.len() == other.passages.len()
@@ -157,7 +158,8 @@ impl Chain {
         if self.points.len().is_multiple_of(2) { self.distance(&turned) } else { f64::INFINITY }
     }
 
-    /// The largest distance to another chain's strobes, over 1 + |strobe|; the other one may close sooner.
+    /// The largest distance to another chain's strobes, over 1 + |strobe|; the other one may close
+    /// sooner.
     pub(crate) fn distance(&self, other: &Self) -> f64 {
         let others = other.points.iter().cycle();
         let apart = self.points.iter().zip(others).map(|(a, b)| {

@@ -1,8 +1,8 @@
 //! Periodic orbits of the strobe map, stable or not, by Newton's method.
 //!
-//! The unknowns are all strobes of the orbit, not the first one alone (multiple shooting): of an unstable orbit
-//! each strobe is then found to the last digits, where one that is shot through the whole
-//! period carries its rounding times the largest multiplier.
+//! The unknowns are all strobes of the orbit, not the first one alone (multiple shooting): of an
+//! unstable orbit each strobe is then found to the last digits, where one that is shot through the
+//! whole period carries its rounding times the largest multiplier.
 
 mod chain;
 mod least;
@@ -28,10 +28,11 @@ pub struct Orbit {
     pub points: Vec<Point>,
     /// The phases met in one whole period of the orbit, in order, from that of the first strobe.
     pub phases: Vec<Phase>,
-    /// Its multipliers (real and imaginary part), largest modulus first. With any contact the last is
-    /// zero: the surface swallows a direction.
+    /// Its multipliers (real and imaginary part), largest modulus first. With any contact the last
+    /// is zero: the surface swallows a direction.
     pub multipliers: [[f64; 2]; 3],
-    /// How well it closes: the largest |image - next strobe| over (1 + |strobe|), per forcing period.
+    /// How well it closes: the largest |image - next strobe| over (1 + |strobe|), per forcing
+    /// period.
     pub residual: f64,
     /// Drift a forcing period.
     pub drift_per_period: f64,

@@ -8,8 +8,8 @@ use crate::dynamics::strobe::StrobeMap;
 const STEPS: usize = 60;
 /// The shortest share of a step that is tried.
 const SHORTEST: f64 = 1.0 / 64.0;
-/// Steps in a row that may lead away: beyond a corner of the map another derivative holds, and the way
-/// down may begin by a way up.
+/// Steps in a row that may lead away: beyond a corner of the map another derivative holds, and the
+/// way down may begin by a way up.
 const WILD: usize = 6;
 /// Steps without a better residual that end the polishing.
 const IDLE: usize = 3;

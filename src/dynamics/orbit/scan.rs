@@ -15,10 +15,10 @@ const WATCHED: u64 = 60;
 /// Two orbits whose strobes are this close are one: they were found to their last digits.
 const SAME: f64 = 1e-9;
 
-/// The orbits of `period` forcing periods, or of a divisor of it, that Newton's method reaches from a grid of
-/// starts, from where the motions from there settle, and from their closest returns. Those of the whole period
-/// come first; among these, stable ones; then the least leading multiplier, then the least p. `told` hears how
-/// much is done, 0 to 1.
+/// The orbits of `period` forcing periods, or of a divisor of it, that Newton's method reaches from
+/// a grid of starts, from where the motions from there settle, and from their closest returns.
+/// Those of the whole period come first; among these, stable ones; then the least leading
+/// multiplier, then the least p. `told` hears how much is done, 0 to 1.
 ///
 /// What it finds is there; what it does not find may be there too.
 #[must_use]
@@ -56,8 +56,8 @@ fn side(period: u32) -> u32 {
     (EFFORT / period.max(1)).isqrt().clamp(least, most)
 }
 
-/// Cell centres of a window that holds the settled motion from rest with as much again around it, at least
-/// one on each side of rest.
+/// Cell centres of a window that holds the settled motion from rest with as much again around it,
+/// at least one on each side of rest.
 fn starts(map: &StrobeMap, side: u32) -> Vec<Point> {
     let mut window = [[-1.0_f64, 1.0_f64]; 2];
     if let Ok(rest) = map.entry([0.0; 3]) {

@@ -1,7 +1,7 @@
 //! Which cases are raced where none are named.
 
-/// Every regime whose dearest engine takes a second at most: what is left out (`resonance`, `slow-forcing`)
-/// keeps explicit integrators busy for minutes, and `-c` asks for it.
+/// Every regime whose dearest engine takes a second at most: what is left out (`resonance`,
+/// `slow-forcing`) keeps explicit integrators busy for minutes, and `-c` asks for it.
 pub const USUAL: [&str; 12] = [
     // chaos with progression, lightly damped chaos, and motion of period two and five
     "chaos-from-rest",

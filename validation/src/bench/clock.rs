@@ -1,5 +1,6 @@
-//! The clock: processor time of the thread that asks. What other programs take of a busy machine does not
-//! count, neither for a run of microseconds nor for one of half a second, which no quiet moment holds.
+//! The clock: processor time of the thread that asks. What other programs take of a busy machine
+//! does not count, neither for a run of microseconds nor for one of half a second, which no quiet
+//! moment holds.
 
 use std::time::Duration;
 

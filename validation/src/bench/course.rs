@@ -1,4 +1,5 @@
-//! What contestants run: a case from its start to its horizon, with the truth that answers are held to.
+//! What contestants run: a case from its start to its horizon, with the truth that answers are held
+//! to.
 
 use crate::case::{Case, FileError, Given};
 use crate::engine::{Event, Failure, Grid, Outcome, Task};
@@ -85,8 +86,8 @@ impl Course {
         self.task.span / self.task.problem.model.period()
     }
 
-    /// How good an answer is, if it is right: every switch there in its order and none besides, and no
-    /// error beyond the 1e-3 at which runs count as lost.
+    /// How good an answer is, if it is right: every switch there in its order and none besides, and
+    /// no error beyond the 1e-3 at which runs count as lost.
     ///
     /// # Errors
     /// What is wrong with it.

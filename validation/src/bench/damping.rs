@@ -1,5 +1,5 @@
-//! What a run costs against xi: the slider relaxes in 2 xi, which an explicit method has to follow step by
-//! step, an implicit one at the price of linear systems, and a closed form not at all.
+//! What a run costs against xi: the slider relaxes in 2 xi, which an explicit method has to follow
+//! step by step, an implicit one at the price of linear systems, and a closed form not at all.
 
 use super::contest::{Finisher, contest_at};
 use super::contestant::Contestant;

@@ -1,7 +1,9 @@
-//! The floor: what one evaluation of a closed form costs at the least, its sine, cosine and exponential.
+//! The floor: what one evaluation of a closed form costs at the least, its sine, cosine and
+//! exponential.
 //!
-//! A switch needs one evaluation: the state at the root. It is timed in the same rounds as the switches,
-//! chained (each waits for the last, as in one run) and independent (as in many runs side by side).
+//! A switch needs one evaluation: the state at the root. It is timed in the same rounds as the
+//! switches, chained (each waits for the last, as in one run) and independent (as in many runs side
+//! by side).
 
 use super::rounds::{Pace, Plain, Racer, Series, race};
 use super::workload::{Repeated, Workload};
@@ -36,8 +38,8 @@ pub struct Cost {
     pub series: Series,
 }
 
-/// One sine-cosine pair and one exponential of libm, which any version is held against: the solver has
-/// its sines from a table of its own by now.
+/// One sine-cosine pair and one exponential of libm, which any version is held against: the solver
+/// has its sines from a table of its own by now.
 #[must_use]
 pub fn transcendental(angle: f64) -> f64 {
     let (sin, cos) = libm::sincos(angle);

@@ -1,4 +1,5 @@
-//! The history: a line of JSON a workload and recorded version, oldest first, appended to and never rewritten.
+//! The history: a line of JSON a workload and recorded version, oldest first, appended to and never
+//! rewritten.
 
 use crate::build::{Build, TARGET_CPU};
 use serde::{Deserialize, Serialize};
@@ -84,7 +85,8 @@ impl Record {
         }
     }
 
-    /// Whether it is of the version that a text names: its number, or its commit's first seven digits or more.
+    /// Whether it is of the version that a text names: its number, or its commit's first seven
+    /// digits or more.
     fn is_of(&self, version: &str) -> bool {
         let is_commit = |commit: &String| version.len() >= 7 && commit.starts_with(version);
         self.percuss == version || self.commit.as_ref().is_some_and(is_commit)

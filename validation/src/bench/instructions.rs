@@ -1,8 +1,8 @@
 //! Instructions, counted by valgrind: a count repeats where no time does.
 //!
 //! A worker of this very program is run twice with different amounts of work: the difference is the
-//! work's alone. Valgrind shows a processor without the widest vectors; programs that ask what there is
-//! count what they do there.
+//! work's alone. Valgrind shows a processor without the widest vectors; programs that ask what
+//! there is count what they do there.
 
 use crate::engine::Failure;
 use std::io::Write;

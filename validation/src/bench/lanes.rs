@@ -1,7 +1,8 @@
 //! The exact solver in the lanes of the processor: a run many times at once, on one thread.
 //!
-//! All runs are the same one, so that each can be held to the truth. That is no help to the lanes: they
-//! take phases of one kind from whatever motions are under way, and different motions fill them as well.
+//! All runs are the same one, so that each can be held to the truth. That is no help to the lanes:
+//! they take phases of one kind from whatever motions are under way, and different motions fill
+//! them as well.
 
 use super::contestant::{Contestant, Heat};
 use super::course::{Course, Score};

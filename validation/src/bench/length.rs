@@ -1,7 +1,8 @@
 //! What a run costs against its length: time in proportion to it, memory none of it.
 //!
-//! A chaotic run of a million periods has no truth to be held to. A stable orbit has: after any multiple of
-//! its period the motion is where it began. So every length that is timed is checked too.
+//! A chaotic run of a million periods has no truth to be held to. A stable orbit has: after any
+//! multiple of its period the motion is where it began. So every length that is timed is checked
+//! too.
 
 use super::clock::Stopwatch;
 use crate::engine::Failure;

@@ -1,9 +1,9 @@
-//! Speed: every engine against the exact solver in interleaved rounds, each answer checked against the
-//! truth; what an event costs against the floor; versions against each other.
+//! Speed: every engine against the exact solver in interleaved rounds, each answer checked against
+//! the truth; what an event costs against the floor; versions against each other.
 //!
-//! A time means something only beside another that was taken in the same rounds ([`rounds`]), of an answer
-//! that was right ([`course`]). Who is timed is a [`contestant`]; what versions are compared by, a
-//! [`workload`].
+//! A time means something only beside another that was taken in the same rounds ([`rounds`]), of an
+//! answer that was right ([`course`]). Who is timed is a [`contestant`]; what versions are compared
+//! by, a [`workload`].
 
 pub mod alone;
 pub mod cases;

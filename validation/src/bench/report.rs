@@ -64,8 +64,8 @@ pub struct Row {
     pub state_error_max: Option<f64>,
     pub event_time_error_max: Option<f64>,
     pub ratio_to_exact: Option<f64>,
-    /// Ratio of times at errors of at most 1e-6, read off this engine's work-precision curve on this
-    /// case.
+    /// Ratio of times at errors of at most 1e-6, read off this engine's work-precision curve on
+    /// this case.
     #[serde(rename = "ratio_at_1e-6")]
     pub ratio_at_1e_6: Option<f64>,
     /// Ratio of times at errors of at most 1e-9.

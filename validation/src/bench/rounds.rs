@@ -1,9 +1,9 @@
 //! Interleaved rounds: every racer in short batches in every round, the best batch of each counts.
 //!
 //! Times of two separate runs cannot be compared on a machine that does other things as well: its
-//! frequency, its caches and its neighbours change meanwhile. Within one round they change little; what
-//! is left is removed by the best of several batches, by turning the order round every round, and by the
-//! median over the rounds.
+//! frequency, its caches and its neighbours change meanwhile. Within one round they change little;
+//! what is left is removed by the best of several batches, by turning the order round every round,
+//! and by the median over the rounds.
 
 use super::clock::Stopwatch;
 use crate::engine::Failure;
@@ -49,8 +49,8 @@ pub struct Pace {
     pub batches: u32,
 }
 
-/// Half a millisecond is five hundred times what reading the clock costs, and short enough to lie between
-/// two interruptions.
+/// Half a millisecond is five hundred times what reading the clock costs, and short enough to lie
+/// between two interruptions.
 pub const PACE: Pace = Pace { batch: 0.5e6, batches: 3 };
 
 /// The best time of a call in each round, ns.
@@ -120,15 +120,16 @@ pub fn race(
     results
 }
 
-/// Whether a racer sits this round out: a call that is so long meets the quiet and the busy moments of a
-/// machine alike, and three rounds tell as much as ten.
+/// Whether a racer sits this round out: a call that is so long meets the quiet and the busy moments
+/// of a machine alike, and three rounds tell as much as ten.
 fn has_rested(series: &Series, round: usize) -> bool {
     const LONG: f64 = 5e7;
     const ENOUGH: usize = 3;
     round >= ENOUGH && series.best() > LONG
 }
 
-/// The best batch of a round, ns a call; `calls` is how many fill a batch, found in the first round.
+/// The best batch of a round, ns a call; `calls` is how many fill a batch, found in the first
+/// round.
 fn best_of(racer: &mut dyn Racer, calls: &mut u32, pace: Pace) -> Result<f64, Failure> {
     if *calls == 0 {
         *calls = filling(racer, pace.batch)?;

@@ -1,5 +1,5 @@
-//! The exact solver's work a switch, apart from any engine's: what is recorded, and what two binaries are
-//! compared by.
+//! The exact solver's work a switch, apart from any engine's: what is recorded, and what two
+//! binaries are compared by.
 //!
 //! Work of another kind is one more [`Workload`], named in [`all`].
 

@@ -19,14 +19,15 @@ pub enum Quantity {
     StateError,
     /// |dv| at the scored horizon, units of displacement.
     DriftError,
-    /// Largest error of a switch's time or state over unit x (1 + |value|) x growth x number of switches.
+    /// Largest error of a switch's time or state over unit x (1 + |value|) x growth x number of
+    /// switches.
     EventConstant,
     /// The same of the sample's states.
     StateConstant,
     /// Forcing periods until the state's error passes 1e-3 (a lower limit).
     ValidPeriods,
-    /// Forcing periods by which valid horizons in chaos are longer than the truth's growth predicts (a
-    /// lower limit).
+    /// Forcing periods by which valid horizons in chaos are longer than the truth's growth predicts
+    /// (a lower limit).
     ValidGain,
     /// Error after one passage through contact from states on the attractor, over
     /// unit x (1 + |value|) x growth.

@@ -10,8 +10,8 @@ const LONGEST: i64 = 1000;
 /// What is asked on a case beyond its own run, which is asked of the exact solver in any case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Probed {
-    /// Whether integrators and wrong engines too restart from states on its attractor and, where its
-    /// section has calibrated limits, run for long.
+    /// Whether integrators and wrong engines too restart from states on its attractor and, where
+    /// its section has calibrated limits, run for long.
     pub integrators: bool,
     /// Of a chaotic case: forcing periods within which every error of eps grows to 1e-3. Valid
     /// horizons are measured in runs as long as that.

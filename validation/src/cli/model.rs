@@ -72,8 +72,8 @@ impl ModelFlags {
         Ok(given)
     }
 
-    /// The problem whose start is a guess, and whether one was given; a parameter that a flag of the verb
-    /// states is set to that.
+    /// The problem whose start is a guess, and whether one was given; a parameter that a flag of
+    /// the verb states is set to that.
     pub(super) fn guess(
         &self,
         stated: Option<(Parameter, &'static str, &Typed<f64>)>,

@@ -131,7 +131,8 @@ fn folders(arguments: &Arguments) -> Vec<(&'static str, String)> {
     given.into_iter().filter_map(shown).collect()
 }
 
-/// Engines that are wrong on purpose, for the power of the gates; none where something else is asked.
+/// Engines that are wrong on purpose, for the power of the gates; none where something else is
+/// asked.
 fn wrong_engines(arguments: &Arguments) -> Vec<(Wrong, Standard)> {
     let everything =
         arguments.engine.is_empty() && arguments.case.is_empty() && arguments.cases.is_none();

@@ -71,9 +71,9 @@ fn positive(value: Option<f64>, what: &str) -> Result<f64, Failure> {
 }
 
 impl Stepping {
-    /// The unit in which an engine's errors are counted, fixed by theory: eps, the tolerance or what
-    /// its steps make of it, or with fixed steps what one unit of time costs a method of this order
-    /// in y' = -y, step^order/(order + 1)!.
+    /// The unit in which an engine's errors are counted, fixed by theory: eps, the tolerance or
+    /// what its steps make of it, or with fixed steps what one unit of time costs a method of this
+    /// order in y' = -y, step^order/(order + 1)!.
     #[must_use]
     pub fn unit(self, accuracy: Accuracy) -> f64 {
         match (self, accuracy) {
@@ -89,9 +89,9 @@ impl Stepping {
     }
 }
 
-/// The shortest of the times in which the model's equations change: 1/omega of the forcing, 1 of the
-/// elastic contact, and 2 xi or 1/(2 xi) of relaxation. A fixed step in this unit is as stable in one
-/// case as in another.
+/// The shortest of the times in which the model's equations change: 1/omega of the forcing, 1 of
+/// the elastic contact, and 2 xi or 1/(2 xi) of relaxation. A fixed step in this unit is as stable
+/// in one case as in another.
 #[must_use]
 pub fn shortest_time(parameters: &Parameters) -> f64 {
     let relaxation = 2.0 * parameters.xi;

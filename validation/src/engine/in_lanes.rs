@@ -1,4 +1,5 @@
-//! The exact solver's ensembles, as far as an outcome goes: switches and the end of a run, no samples.
+//! The exact solver's ensembles, as far as an outcome goes: switches and the end of a run, no
+//! samples.
 
 use super::{Event, Outcome, Task, Work};
 use crate::case::Problem;

@@ -26,7 +26,8 @@ pub(super) enum Ended {
     Inside { t: f64, state: [f64; 4] },
 }
 
-/// Less than this share of the whole run is no step for any library; the state does not change in it.
+/// Less than this share of the whole run is no step for any library; the state does not change in
+/// it.
 const SHORTEST: f64 = 16.0 * f64::EPSILON;
 
 /// Runs a task by stretches of one phase, each from the moment given to a switch or to some later

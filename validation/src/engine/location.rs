@@ -3,8 +3,8 @@
 //! The guards are looked at at [`INTERIOR`] instants inside a step. Between two of them a guard has
 //! risen to zero if it is there at the second, or if it was rising at the first, is falling at the
 //! second and its peak, found by bisection of its rate, reaches zero: so a touch shorter than the
-//! interval is seen wherever the dense output shows it. Rates come from the equations of motion. The
-//! crossing itself is then narrowed down to the last bit.
+//! interval is seen wherever the dense output shows it. Rates come from the equations of motion.
+//! The crossing itself is then narrowed down to the last bit.
 
 use super::field::{Equations, GUARDS, NO_GUARD};
 use super::joining::Moment;

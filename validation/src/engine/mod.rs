@@ -1,8 +1,8 @@
 //! Engines: anything that can run a problem and say when its phases begin.
 //!
-//! Add one by implementing [`Engine`] in a file of its own and naming it in `registry.rs`. An engine
-//! takes plain f64 slices, because the libraries disagree about their linear algebra, and is set up
-//! the way an expert user of its library would; what that took stands in its module.
+//! Add one by implementing [`Engine`] in a file of its own and naming it in `registry.rs`. An
+//! engine takes plain f64 slices, because the libraries disagree about their linear algebra, and is
+//! set up the way an expert user of its library would; what that took stands in its module.
 
 mod accuracy;
 mod alone;

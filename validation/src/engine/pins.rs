@@ -1,4 +1,5 @@
-//! The libraries' versions: the pins of this package's manifest. A test holds them equal to Cargo.lock.
+//! The libraries' versions: the pins of this package's manifest. A test holds them equal to
+//! Cargo.lock.
 
 const MANIFEST: &str = include_str!("../../Cargo.toml");
 

@@ -19,7 +19,8 @@ pub struct BasinMap {
     pub window: [[f64; 2]; 2],
     /// Cells along p.
     pub columns: usize,
-    /// Where each cell leads, row by row from the lowest y on: an attractor by its place in `attractors`.
+    /// Where each cell leads, row by row from the lowest y on: an attractor by its place in
+    /// `attractors`.
     pub cells: Vec<Label>,
     /// The attractors.
     pub attractors: Vec<Shown>,

@@ -39,7 +39,8 @@ const MARKERS: [Marker; 7] = [
     Marker::Nabla,
 ];
 
-/// Hues of the libraries, from and to in degrees: apart for eyes of every kind with their lightness.
+/// Hues of the libraries, from and to in degrees: apart for eyes of every kind with their
+/// lightness.
 const FAMILIES: [(&str, f64, f64); 3] = [
     ("diffsol", 196.0, 250.0),
     ("ode_solvers", 8.0, 42.0),

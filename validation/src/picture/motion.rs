@@ -1,4 +1,5 @@
-//! A run as time histories of x, p and v and as a phase plane, phases by colour (as in Figs. 2 and 3).
+//! A run as time histories of x, p and v and as a phase plane, phases by colour (as in Figs. 2 and
+//! 3).
 
 use super::axes::{around, label};
 use super::font::FAMILY;

@@ -1,4 +1,5 @@
-//! Colours that eyes of every kind tell apart (Okabe and Ito 2008), the same for a phase everywhere.
+//! Colours that eyes of every kind tell apart (Okabe and Ito 2008), the same for a phase
+//! everywhere.
 
 use percuss::Phase;
 use plotters::style::RGBColor;
@@ -19,9 +20,9 @@ pub(super) const GRID: RGBColor = RGBColor(225, 225, 225);
 /// Cells of which it is not known where they lead.
 pub(super) const UNRESOLVED: RGBColor = RGBColor(176, 176, 176);
 
-/// A basin's light colour and its attractor's dark one. The first pairs are near those of the paper's
-/// Fig. 7: orange on yellow, black on purple, red on blue, green on pink; light ones differ in hue and
-/// lightness, so that eyes of every kind tell them apart.
+/// A basin's light colour and its attractor's dark one. The first pairs are near those of the
+/// paper's Fig. 7: orange on yellow, black on purple, red on blue, green on pink; light ones differ
+/// in hue and lightness, so that eyes of every kind tell them apart.
 pub(super) const BASINS: [(RGBColor, RGBColor); 8] = [
     (RGBColor(250, 236, 150), RGBColor(196, 84, 0)),
     (RGBColor(150, 105, 190), RGBColor(20, 10, 40)),

@@ -43,8 +43,8 @@ impl<B: DrawingBackend> Pen<'_, B> {
         self.area.draw(&element).map_err(DrawError::new)
     }
 
-    /// A line through several places. In an SVG it is one path; the scale is that of a picture of pixels
-    /// otherwise, where the drawing library leaves a notch at each joint of a thick path.
+    /// A line through several places. In an SVG it is one path; the scale is that of a picture of
+    /// pixels otherwise, where the drawing library leaves a notch at each joint of a thick path.
     pub fn trace(&self, places: &[At], width: f64, colour: RGBColor) -> Result<(), DrawError> {
         if self.scale == 1 {
             let path: Vec<_> = places.iter().map(|at| self.pixel(*at)).collect();

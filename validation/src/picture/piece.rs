@@ -15,7 +15,8 @@ pub struct Piece {
 const FEWEST: usize = 12;
 
 impl Piece {
-    /// A phase from where it `begins` for as long as it `lasts`, both in tau, in about so many `points`.
+    /// A phase from where it `begins` for as long as it `lasts`, both in tau, in about so many
+    /// `points`.
     #[must_use]
     pub fn of(leg: &Leg, begins: f64, lasts: f64, points: f64) -> Self {
         let count = points.ceil();

@@ -11,7 +11,8 @@ pub fn under_the_service() -> bool {
     std::env::var("GITHUB_ACTIONS").is_ok_and(|value| value == "true")
 }
 
-/// A line for each case with a row that fails or errs; with `require` also where an engine is unavailable.
+/// A line for each case with a row that fails or errs; with `require` also where an engine is
+/// unavailable.
 #[must_use]
 pub fn annotations(report: &Report, evidence: &Evidence, require: bool) -> Vec<String> {
     let wanted = |row: &&Row| match row.verdict {

@@ -54,8 +54,9 @@ pub struct Compared {
     pub common: usize,
 }
 
-/// Errors may grow by this factor: another processor or compiler rounds differently, and a step that
-/// is accepted here is refused there. A method that loses an order, or an adapter a digit, is beyond it.
+/// Errors may grow by this factor: another processor or compiler rounds differently, and a step
+/// that is accepted here is refused there. A method that loses an order, or an adapter a digit, is
+/// beyond it.
 const FACTOR: f64 = 2.0;
 /// Errors below this are rounding.
 const ROUNDING: f64 = 1e-14;

@@ -1,4 +1,5 @@
-//! What a report shows beside its rows: distributions, curves and clouds that a row has no room for.
+//! What a report shows beside its rows: distributions, curves and clouds that a row has no room
+//! for.
 //!
 //! Any part may be empty; the report then says that it was not run.
 
@@ -15,7 +16,8 @@ pub struct Evidence {
     pub growth: Vec<ErrorGrowth>,
     /// Errors of the restart test.
     pub restarts: Vec<RestartHistogram>,
-    /// Near misses and light touches; where there are none they are read off the rows of cases with a margin.
+    /// Near misses and light touches; where there are none they are read off the rows of cases with
+    /// a margin.
     pub grazes: Vec<Graze>,
     /// Poincare sections of the exact solver and of direct integration.
     pub sections: Vec<SectionPair>,

@@ -154,8 +154,8 @@ impl Report {
     }
 }
 
-/// The rows of one engine on one case are its ladder, as far as they are scored to the same horizon:
-/// over a longer one in chaos errors grow by more.
+/// The rows of one engine on one case are its ladder, as far as they are scored to the same
+/// horizon: over a longer one in chaos errors grow by more.
 fn fill_orders(rows: &mut [Row]) {
     for ladder in rows.chunk_by_mut(|a, b| a.case == b.case && a.engine == b.engine) {
         let longest = ladder.iter().map(|row| row.horizon_periods).fold(0.0, f64::max);

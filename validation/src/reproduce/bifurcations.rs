@@ -23,8 +23,8 @@ pub(super) const CLAIMS: &[&str] = &[
     "five-emerges",
 ];
 
-/// Forcing periods after which motions next to a bifurcation are taken to be at rest: at 1e-5 from a
-/// flip the multiplier is some 2e-4 from -1.
+/// Forcing periods after which motions next to a bifurcation are taken to be at rest: at 1e-5 from
+/// a flip the multiplier is some 2e-4 from -1.
 const REST: u64 = 300_000;
 /// Strobes that repeat to this are at rest; a doubling at 1e-5 from its flip is some 3e-3 wide.
 const REPEATS: f64 = 1e-4;
@@ -70,8 +70,8 @@ fn between(printed: &Printed, value: f64) -> Option<f64> {
     Some(0.5 * (edge + value))
 }
 
-/// A flip downwards in omega: by continuation, by brute force from both sides, and by an integrator where we
-/// differ.
+/// A flip downwards in omega: by continuation, by brute force from both sides, and by an integrator
+/// where we differ.
 fn flips(work: &Work<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Failure> {
     let printed = work.paper.claim(id)?;
     let period = flip.orbit.period() as usize;
@@ -121,7 +121,8 @@ fn integrated(omega: f64, point: Point, periods: &[usize]) -> Result<String, Fai
     Ok(format!("after {RUN} periods its strobes repeat {}", apart.join(", ")))
 }
 
-/// Whether a flip downwards in omega is super- or subcritical: what is there beyond it, and how wide.
+/// Whether a flip downwards in omega is super- or subcritical: what is there beyond it, and how
+/// wide.
 fn criticality(work: &Work<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Failure> {
     let period = flip.orbit.period();
     let doubled = 2 * period as usize;

@@ -1,4 +1,5 @@
-//! A run as lines in the paper's notation: no contact dash-dotted, contact solid, progression dotted.
+//! A run as lines in the paper's notation: no contact dash-dotted, contact solid, progression
+//! dotted.
 
 use crate::picture::{KeyEntry, Layer, Piece, Stroke, phase_colour};
 use percuss::{Exit, Instant, Leg, Phase};

@@ -111,7 +111,8 @@ fn count(step: &Step) -> usize {
     kept.len()
 }
 
-/// Steps inside the orbit's stable interval; next to its ends motions settle too slowly to be counted.
+/// Steps inside the orbit's stable interval; next to its ends motions settle too slowly to be
+/// counted.
 fn inside<'a>(steps: &'a [Step], stable: &'a Stable) -> impl Iterator<Item = &'a Step> {
     const ROOM: f64 = 0.002;
     let within = move |step: &&Step| {

@@ -1,7 +1,8 @@
 //! The paper reproduced: every table and figure computed, every claim settled.
 //!
-//! An [`Item`] is one piece of work: it settles some claims and leaves pictures with their data. What
-//! the paper says stands in `paper.toml` and is only ever compared with; nothing is tuned to agree.
+//! An [`Item`] is one piece of work: it settles some claims and leaves pictures with their data.
+//! What the paper says stands in `paper.toml` and is only ever compared with; nothing is tuned to
+//! agree.
 
 mod attractors;
 mod bifurcations;

@@ -1,5 +1,5 @@
-//! What a user of a moling rig wants to see and the paper does not show: the progression rate against
-//! the forcing frequency and against the static force.
+//! What a user of a moling rig wants to see and the paper does not show: the progression rate
+//! against the forcing frequency and against the static force.
 
 use super::paper::chaotic_model;
 use super::work::{Findings, Work};

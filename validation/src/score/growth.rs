@@ -1,8 +1,9 @@
 //! How errors grow along the true run, from the truth's rows alone.
 //!
-//! In every phase (p, y, q, v, cos, sin, 1) obeys a linear system with constant coefficients, so the
-//! derivative of a phase's flow is a matrix exponential: no closed form of the solver is used. Along
-//! a switch the flow's derivative is completed by the field times the gradient of the switch time.
+//! In every phase (p, y, q, v, cos, sin, 1) obeys a linear system with constant coefficients, so
+//! the derivative of a phase's flow is a matrix exponential: no closed form of the solver is used.
+//! Along a switch the flow's derivative is completed by the field times the gradient of the switch
+//! time.
 //!
 //! G at switch n, for one quantity: the largest, over m <= n and at least 1, of the norm of the
 //! quantity's derivative with respect to the state just before switch m (forcing angle, p, y, q, v;
@@ -16,8 +17,8 @@ use percuss::{Parameters, Phase};
 /// Errors above this, in units of displacement, measure the growth and not the engine.
 pub const SCORED_ERROR: f64 = 1e-3;
 /// The scored horizon is where this times the engine's unit of error times the growth passes
-/// [`SCORED_ERROR`]. One: up to there a method that keeps to its tolerance is still close enough for
-/// its switches to be told apart.
+/// [`SCORED_ERROR`]. One: up to there a method that keeps to its tolerance is still close enough
+/// for its switches to be told apart.
 pub const SCORED_FACTOR: f64 = 1.0;
 
 /// p, y, q, v, cos, sin and 1.

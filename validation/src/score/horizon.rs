@@ -1,10 +1,10 @@
 //! The valid horizon in chaos: how many forcing periods pass until an engine's error is 1e-3.
 //!
-//! Errors grow so unevenly that one run says little (55 to 129 periods from eps to 1e-3 between the 1 %
-//! quantiles), and the mean exponent says less. So it is measured from many states on the attractor,
-//! each beside the period at which the truth's own growth along that very run takes the engine's unit
-//! of error to 1e-3. In 106 bits the truth lasts twice as long as f64; it counts while its own unit
-//! times growth is below a hundredth of 1e-3.
+//! Errors grow so unevenly that one run says little (55 to 129 periods from eps to 1e-3 between the
+//! 1 % quantiles), and the mean exponent says less. So it is measured from many states on the
+//! attractor, each beside the period at which the truth's own growth along that very run takes the
+//! engine's unit of error to 1e-3. In 106 bits the truth lasts twice as long as f64; it counts
+//! while its own unit times growth is below a hundredth of 1e-3.
 
 use super::growth::{Growth, SCORED_ERROR};
 use super::restart::task;
@@ -16,9 +16,10 @@ use crate::truth::{Truth, UNIT};
 use percuss::two_word::TwoWord;
 use rayon::prelude::*;
 
-/// An engine's run is made until its unit of error times the growth passes this many times 1e-3. One that
-/// is still right then is a thousand times better than its unit, as one run in some hundreds is whose
-/// errors happen to lie where they shrink; it is made again for as long as the truth lasts.
+/// An engine's run is made until its unit of error times the growth passes this many times 1e-3.
+/// One that is still right then is a thousand times better than its unit, as one run in some
+/// hundreds is whose errors happen to lie where they shrink; it is made again for as long as the
+/// truth lasts.
 const BEYOND: f64 = 1e3;
 /// The truth counts while its own error is below this.
 const TRUSTED: f64 = SCORED_ERROR / 100.0;
@@ -65,8 +66,8 @@ pub struct Horizons {
     pub valid_q01: f64,
     /// The horizons that the truth's growth predicts.
     pub predicted: Spread,
-    /// `valid - predicted`, run by run: zero where an engine's errors are its unit, and what is left of
-    /// the growth's unevenness.
+    /// `valid - predicted`, run by run: zero where an engine's errors are its unit, and what is
+    /// left of the growth's unevenness.
     pub gained: Spread,
 }
 
@@ -106,7 +107,8 @@ impl HorizonTest {
         self.runs.iter().map(|run| u64::from(run.last(unit))).sum()
     }
 
-    /// Scores an engine, given how it runs a task; `unit` is its unit of error: its tolerance, or eps.
+    /// Scores an engine, given how it runs a task; `unit` is its unit of error: its tolerance, or
+    /// eps.
     pub fn score(
         &self,
         unit: f64,

@@ -1,8 +1,8 @@
 //! The order at which a method converges, from what it did.
 //!
-//! The error of a method of order k falls as the k-th power of its number of steps, whether the steps
-//! are prescribed or chosen by a tolerance. So the slope of log(error) against log(steps) over a
-//! ladder is the order in practice: a method below the order it claims is shown as such.
+//! The error of a method of order k falls as the k-th power of its number of steps, whether the
+//! steps are prescribed or chosen by a tolerance. So the slope of log(error) against log(steps)
+//! over a ladder is the order in practice: a method below the order it claims is shown as such.
 
 /// One rung: steps taken, error reached.
 pub type Rung = (f64, f64);

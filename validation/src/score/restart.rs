@@ -1,9 +1,10 @@
-//! The restart test: from states on the attractor through the first impact and the separation after it.
+//! The restart test: from states on the attractor through the first impact and the separation after
+//! it.
 //!
-//! A long run in chaos only multiplies what happens in one passage through contact; here that passage
-//! is measured itself, from many states. Each run ends at a strobe, the start of a forcing period: the
-//! first after its separation, at most the eighth. Half of all single periods hold no switch at all, so
-//! the figures are of the runs that had an impact.
+//! A long run in chaos only multiplies what happens in one passage through contact; here that
+//! passage is measured itself, from many states. Each run ends at a strobe, the start of a forcing
+//! period: the first after its separation, at most the eighth. Half of all single periods hold no
+//! switch at all, so the figures are of the runs that had an impact.
 
 use super::growth::Growth;
 use super::histogram::Histogram;
@@ -97,7 +98,8 @@ impl RestartTest {
         Self { undecided: count - runs.len(), runs }
     }
 
-    /// Scores an engine, given how it runs a task; `unit` is its unit of error: its tolerance, or eps.
+    /// Scores an engine, given how it runs a task; `unit` is its unit of error: its tolerance, or
+    /// eps.
     pub fn score(
         &self,
         unit: f64,

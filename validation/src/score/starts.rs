@@ -1,9 +1,9 @@
 //! States on a case's attractor, from which restarts and horizons are measured.
 //!
-//! They come from the exact solver's own orbit: any state near the attractor serves, because the f64
-//! values are then taken exactly as a start of its own. No two are at the same phase of the forcing:
-//! each is a golden number of periods after the last, so that a periodic orbit is covered as evenly
-//! as a chaotic one and all three phases occur.
+//! They come from the exact solver's own orbit: any state near the attractor serves, because the
+//! f64 values are then taken exactly as a start of its own. No two are at the same phase of the
+//! forcing: each is a golden number of periods after the last, so that a periodic orbit is covered
+//! as evenly as a chaotic one and all three phases occur.
 
 use crate::case::Problem;
 use percuss::{Leg, Start};

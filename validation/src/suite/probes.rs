@@ -1,5 +1,5 @@
-//! What is asked of an engine beyond the run of a case itself: restarts, valid horizons and the same
-//! attractor. Which cases ask what of integrators is said in their files (`[probes]`).
+//! What is asked of an engine beyond the run of a case itself: restarts, valid horizons and the
+//! same attractor. Which cases ask what of integrators is said in their files (`[probes]`).
 
 use super::scope::Suite;
 use crate::case::{Case, FileError, Problem};
@@ -20,8 +20,8 @@ fn is_representative(engine: &str) -> bool {
 const TOLERANCE: f64 = 1e-9;
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
 
-/// Whether a row is shown where all would be too many: one engine a library, as accurate as one that
-/// is asked for everything.
+/// Whether a row is shown where all would be too many: one engine a library, as accurate as one
+/// that is asked for everything.
 #[must_use]
 pub fn is_shown(engine: &str, accuracy: Accuracy) -> bool {
     let among = |it: f64| TOLERANCES.contains(&it);
@@ -88,8 +88,8 @@ impl Probes {
         plan.map_or(0.0, |plan| f64::from(plan.transient + plan.periods))
     }
 
-    /// How much a suite asks of an engine on this case. What the case's own run cost a forcing period
-    /// tells what the probes would: they too stay within the budget of right-hand sides.
+    /// How much a suite asks of an engine on this case. What the case's own run cost a forcing
+    /// period tells what the probes would: they too stay within the budget of right-hand sides.
     #[must_use]
     pub fn extent(
         &self,
@@ -156,7 +156,8 @@ impl Extent {
     }
 }
 
-/// Runs from which a valid horizon is taken: as many as a median needs to be good to a period or two.
+/// Runs from which a valid horizon is taken: as many as a median needs to be good to a period or
+/// two.
 const HORIZONS: usize = 200;
 /// Those of a wrong engine, which is off by far more than that.
 const HORIZONS_OF_WRONG: usize = 40;

@@ -1,9 +1,9 @@
 //! The f64 search for a first crossing, asked for more than its own rounding room.
 //!
 //! The truth takes from f64 the order of events: that no crossing lies before the one that it then
-//! refines. In f64 that is proved for the phase as it was rounded, with room for the rounding of the
-//! guard. Here every certificate must leave a multiple of that room, so that it holds for the phase in
-//! 106 bits too; where one does not, the search counts it, and the run is undecided.
+//! refines. In f64 that is proved for the phase as it was rounded, with room for the rounding of
+//! the guard. Here every certificate must leave a multiple of that room, so that it holds for the
+//! phase in 106 bits too; where one does not, the search counts it, and the run is undecided.
 
 use super::forms::Motion;
 use percuss::crossing::certificate::{Corridor, Ends, Verdict};
@@ -14,8 +14,8 @@ use percuss::crossing::{Counters, Crossing};
 use percuss::flow::stride::Strides;
 use percuss::flow::{Flow, Point};
 
-/// Rounding an entry to f64 moves the guard by a unit or two of its largest term; its own rounding is
-/// within the four that the search sets aside. Sixteen times those four leaves a factor of ten.
+/// Rounding an entry to f64 moves the guard by a unit or two of its largest term; its own rounding
+/// is within the four that the search sets aside. Sixteen times those four leaves a factor of ten.
 const CAUTION: f64 = 16.0;
 
 struct Cautious<'a, G>(&'a G);

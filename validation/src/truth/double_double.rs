@@ -1,8 +1,8 @@
 //! Arithmetic of 106 bits for the truth: the same closed forms, evaluated in double-double.
 //!
 //! Sums, products, quotients, square root and exponential are those of `xprec` (Joldes, Muller and
-//! Popescu 2017: a few units of 2^-106 each). Its sine reduces the argument by two words of pi/2 and
-//! is used inside one quadrant only; the reduction is done here, in three words.
+//! Popescu 2017: a few units of 2^-106 each). Its sine reduces the argument by two words of pi/2
+//! and is used inside one quadrant only; the reduction is done here, in three words.
 
 use percuss::number::Number;
 use percuss::two_word::TwoWord;
@@ -165,7 +165,8 @@ fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     (DoubleDouble(sin), DoubleDouble(cos))
 }
 
-/// Takes whole quarter turns off: how many of them modulo four, and a rest of at most an eighth turn.
+/// Takes whole quarter turns off: how many of them modulo four, and a rest of at most an eighth
+/// turn.
 fn first_quadrant(x: Df64) -> (i64, Df64) {
     let turns = (x.hi() / HALF_PI[0]).round();
     // Each product is exact in two words, and each difference is good to 3 units of itself.

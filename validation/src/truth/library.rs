@@ -57,8 +57,8 @@ impl Library {
         })
     }
 
-    /// The same, but cases without tables are run again in 106 bits instead of being refused: for cases
-    /// of a user's own, before their tables are made.
+    /// The same, but cases without tables are run again in 106 bits instead of being refused: for
+    /// cases of a user's own, before their tables are made.
     #[must_use]
     pub fn replaying(self) -> Self {
         Self { replays: true, ..self }
@@ -80,8 +80,8 @@ impl Library {
     /// What is true of a case.
     ///
     /// # Errors
-    /// [`FileError`] names a file that is missing, altered (its hash differs), malformed, or of another
-    /// case; or a case that has no table and that 106 bits do not decide.
+    /// [`FileError`] names a file that is missing, altered (its hash differs), malformed, or of
+    /// another case; or a case that has no table and that 106 bits do not decide.
     pub fn truth(&self, case: &Case) -> Result<Truth, FileError> {
         if self.is_replayed(case) {
             return Truth::without_tables(case);

@@ -1,5 +1,5 @@
-//! What is true: the proved tables of `reference_data/`, read and checked, and for any other start the
-//! exact solver's run made again in 106 bits.
+//! What is true: the proved tables of `reference_data/`, read and checked, and for any other start
+//! the exact solver's run made again in 106 bits.
 
 mod cautious;
 mod decimal;

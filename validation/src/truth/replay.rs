@@ -1,9 +1,9 @@
 //! The exact solver's run made again in 106 bits, from any start.
 //!
-//! It shares its closed forms with the solver, so what it measures is rounding and nothing else; the
-//! tables of `reference_data/` vouch for the forms, and it is itself held against their digits. The
-//! order of events is that of f64 with room to spare ([`super::cautious`]); each switch time is refined
-//! in 106 bits, the state is landed there, and everything is carried on in 106 bits.
+//! It shares its closed forms with the solver, so what it measures is rounding and nothing else;
+//! the tables of `reference_data/` vouch for the forms, and it is itself held against their digits.
+//! The order of events is that of f64 with room to spare ([`super::cautious`]); each switch time is
+//! refined in 106 bits, the state is landed there, and everything is carried on in 106 bits.
 
 use super::DoubleDouble;
 use super::cautious::crossing;
@@ -165,7 +165,8 @@ fn begin(
 
 /// The crossing that f64 found, to 106 bits: Newton's method on the guard less its threshold.
 fn refine(motion: &Motion<DoubleDouble>, root: &Root) -> Option<Point<DoubleDouble>> {
-    // From 1e-16 two steps do; next to a graze the root of a square root is found, and takes a few more.
+    // From 1e-16 two steps do; next to a graze the root of a square root is found, and takes a few
+    // more.
     const STEPS: usize = 12;
     // A root that f64 has misplaced by more is none.
     const ASTRAY: f64 = 1e-5;

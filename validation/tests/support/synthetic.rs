@@ -1,5 +1,5 @@
-//! A report with everything in it, and with what is hard to show: numbers that are not finite, names
-//! that need escaping, engines without a result.
+//! A report with everything in it, and with what is hard to show: numbers that are not finite,
+//! names that need escaping, engines without a result.
 
 use percuss::Phase;
 use percuss_validation::build::Build;

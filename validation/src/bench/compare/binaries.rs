@@ -1,9 +1,9 @@
 //! Two binaries against each other: both alive, in short batches, turn by turn.
 //!
-//! In one round the sides go old, new, new, old, so that a machine that slows down or speeds up meanwhile
-//! favours neither; a round's quotient is that of the best batches. Where code, stack and heap of a process come to
-//! lie makes it a percent faster or slower for all its life: so both are started anew several times, and the
-//! quotient is the median over the rounds of all of them.
+//! In one round the sides go old, new, new, old, so that a machine that slows down or speeds up
+//! meanwhile favours neither; a round's quotient is that of the best batches. Where code, stack and
+//! heap of a process come to lie makes it a percent faster or slower for all its life: so both are
+//! started anew several times, and the quotient is the median over the rounds of all of them.
 
 use super::process::Worker;
 use crate::bench::rounds::median;
@@ -17,7 +17,8 @@ pub struct Pair<'a> {
     pub old: &'a Path,
     /// The new one.
     pub new: &'a Path,
-    /// Work that the new side does and is not credited with, as a share: a slowdown put in on purpose.
+    /// Work that the new side does and is not credited with, as a share: a slowdown put in on
+    /// purpose.
     pub burden: f64,
 }
 
@@ -25,8 +26,8 @@ pub struct Pair<'a> {
 pub const LIVES: u32 = 20;
 /// Rounds in one life.
 const ROUNDS: u32 = 8;
-/// Batches a turn, and how long they are, ns: short enough to lie between two interruptions, long enough
-/// that a clock that ticks in tens of nanoseconds tells a thousandth.
+/// Batches a turn, and how long they are, ns: short enough to lie between two interruptions, long
+/// enough that a clock that ticks in tens of nanoseconds tells a thousandth.
 const BATCHES: u32 = 4;
 const BATCH: f64 = 3e5;
 

@@ -1,9 +1,9 @@
 //! Two recorded versions against each other, in figures that repeat from run to run.
 //!
-//! Instructions do, where both were counted on the same kind of machine, and evaluations a switch do. Times
-//! of two runs do not; what does is the least time in units of the least time of the floor beside it. It
-//! is recorded twice, so that here too slower means slower twice in a row. Where instructions are counted
-//! they decide, and times only warn.
+//! Instructions do, where both were counted on the same kind of machine, and evaluations a switch
+//! do. Times of two runs do not; what does is the least time in units of the least time of the
+//! floor beside it. It is recorded twice, so that here too slower means slower twice in a row.
+//! Where instructions are counted they decide, and times only warn.
 
 use super::verdict::{FAIL, Verdict, WARN};
 use crate::bench::history::Record;

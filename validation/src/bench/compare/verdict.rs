@@ -1,8 +1,8 @@
 //! When a version is slower: warned of at 1 %, failed at 2 % twice in a row.
 //!
-//! A quotient that interleaved rounds give repeats within half a percent on a busy machine, so 1 % is seldom
-//! noise and 2 % hardly ever; but among a dozen workloads something rare happens now and then. A whole
-//! second measurement, of processes started anew, has to say the same.
+//! A quotient that interleaved rounds give repeats within half a percent on a busy machine, so 1 %
+//! is seldom noise and 2 % hardly ever; but among a dozen workloads something rare happens now and
+//! then. A whole second measurement, of processes started anew, has to say the same.
 
 /// From here on it is said.
 pub const WARN: f64 = 1.01;

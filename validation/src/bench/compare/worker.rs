@@ -10,7 +10,8 @@
 //! | `run NAME UNITS` | `ran X`: evaluations; no clock is read, which valgrind would not have |
 //! | anything else | `error WHAT` |
 //!
-//! It ends with its input. The process stays alive, so that two of them can take turns within milliseconds.
+//! It ends with its input. The process stays alive, so that two of them can take turns within
+//! milliseconds.
 
 use crate::bench::clock::Stopwatch;
 use crate::bench::workload::Workload;

@@ -61,8 +61,8 @@ struct GridFlags {
     /// What the cells fill
     #[arg(long, value_name = "pmin,pmax,ymin,ymax", value_parser = parse::window, allow_hyphen_values = true)]
     window: Window,
-    /// Forcing periods that a start is followed before it is examined; doubled up to three times where
-    /// that does not settle it, and cut short as soon as it does
+    /// Forcing periods that a start is followed before it is examined; doubled up to three times
+    /// where that does not settle it, and cut short as soon as it does
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(1, MAX_TRANSIENT), allow_hyphen_values = true)]
     transient: u64,
 }

@@ -18,7 +18,8 @@ use std::path::{Path, PathBuf};
 /// Hold one version against another: exit 1 where it is slower by 2 % twice in a row
 #[derive(Args)]
 pub(in super::super) struct Arguments {
-    /// A built percuss, or a recorded version: its number or its commit's first seven digits or more
+    /// A built percuss, or a recorded version: its number or its commit's first seven digits or
+    /// more
     #[arg(value_name = "OLD")]
     old: String,
     /// The same

@@ -25,7 +25,8 @@ pub(super) struct Arguments {
     /// default]
     #[arg(long, value_enum)]
     size: Option<Size>,
-    /// Pictures, their data and claims.json go into this folder; interrupted work is taken up again there
+    /// Pictures, their data and claims.json go into this folder; interrupted work is taken up again
+    /// there
     #[arg(long, value_name = "DIR", required = true)]
     out: PathBuf,
 }

@@ -1,9 +1,9 @@
 //! The library's built-in event location, as an engine of its own beside ours on the same method.
 //!
-//! - Guards are events of rising direction that end the integration; the library looks at the ends of
-//!   steps and narrows a change of sign down by a method of Brent's.
-//! - Of two events in one step the library takes the one registered first. Both are located here, by
-//!   the library, and the earlier one counts.
+//! - Guards are events of rising direction that end the integration; the library looks at the ends
+//!   of steps and narrows a change of sign down by a method of Brent's.
+//! - Of two events in one step the library takes the one registered first. Both are located here,
+//!   by the library, and the earlier one counts.
 //! - Its Brent step returns after a few evaluations with an end of the bracket, whatever the
 //!   tolerance: times are good to 1e-4 or 1e-5 only.
 

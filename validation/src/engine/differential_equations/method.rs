@@ -22,8 +22,8 @@ const NEWTON: f64 = 1e-11;
 const RUNG: f64 = 1.25;
 
 /// The largest step on a ladder of fixed ratios. Radau5 keeps its factorised matrices where a step
-/// could grow by less than a fifth, and then forgets to make them anew when the next one changes: with
-/// ratios larger than that it never keeps them.
+/// could grow by less than a fifth, and then forgets to make them anew when the next one changes:
+/// with ratios larger than that it never keeps them.
 fn rungs(h: f64) -> f64 {
     RUNG.powf((h.ln() / RUNG.ln() + ON_A_RUNG).floor())
 }

@@ -12,20 +12,22 @@
 //!   default is a constant, and to its own rule where it has one.
 //! - The interpolants of the Verner methods are as good as their steps and are used. The one of
 //!   `dop853` has the factors of its higher terms in the wrong order, the one of `bdf` uses
-//!   differences that were rescaled to the next step already, and those of `radau5` and `kvaerno745`
-//!   are cubic. For these three Runge-Kutta methods the harness integrates again from the beginning
-//!   of a step to get a state inside it; for `bdf` it takes Hermite's cubic ([`method::Inside`]).
+//!   differences that were rescaled to the next step already, and those of `radau5` and
+//!   `kvaerno745` are cubic. For these three Runge-Kutta methods the harness integrates again from
+//!   the beginning of a step to get a state inside it; for `bdf` it takes Hermite's cubic
+//!   ([`method::Inside`]).
 //! - Methods that integrate again inside a step are walked (`engine/walk.rs`), like the methods of
 //!   ode_solvers: guards are evaluated at the ends of steps, and inside only where the ends show a
-//!   crossing or a peak. Evaluating them at eight instants of every step cost `dop853` five times the
-//!   right-hand sides and found no further event.
-//! - `radau5` gets a ladder of steps ([`method`]): the library reuses a factorisation that belongs to
-//!   another step, which without it spoils a step here and there by thousands of tolerances.
-//! - Linear solves are the library's own count: Radau IIA solves a real and a complex system in each
-//!   iteration. `bdf` counts none; there each right-hand side but the first is one of Newton's
+//!   crossing or a peak. Evaluating them at eight instants of every step cost `dop853` five times
+//!   the right-hand sides and found no further event.
+//! - `radau5` gets a ladder of steps ([`method`]): the library reuses a factorisation that belongs
+//!   to another step, which without it spoils a step here and there by thousands of tolerances.
+//! - Linear solves are the library's own count: Radau IIA solves a real and a complex system in
+//!   each iteration. `bdf` counts none; there each right-hand side but the first is one of Newton's
 //!   iterations, which solves one system.
-//! - `bdf` chooses a first step below rounding at tight tolerances, and gives up: it is given one. Its
-//!   longest step is left open: where that shortens a step the differences are rescaled as if it had not.
+//! - `bdf` chooses a first step below rounding at tight tolerances, and gives up: it is given one.
+//!   Its longest step is left open: where that shortens a step the differences are rescaled as if
+//!   it had not.
 
 mod builtin;
 mod method;

@@ -28,7 +28,8 @@ pub(in super::super) trait Method: Sync {
     const ORDER: usize;
     /// Whether the step may be shortened without loss: a multistep method would begin anew.
     const ONE_STEP: bool;
-    /// Linear systems solved for each estimate of a step's error, beside those of Newton's iterations.
+    /// Linear systems solved for each estimate of a step's error, beside those of Newton's
+    /// iterations.
     const SOLVES_AN_ESTIMATE: usize = 0;
 
     /// A solver from a state of its own that `begin` has written.

@@ -4,18 +4,18 @@
 //!   the state at each switch, because its limit of 50 failed Newton iterations is cumulative.
 //! - On restart the derivative is written afresh and the step chosen anew: a stale derivative makes
 //!   the first steps collapse.
-//! - Root functions know no direction. A root at which the guard falls, such as the double zero that
-//!   begins every separation, is passed over by touching the state; the root finder otherwise keeps
-//!   its old bracket. If another guard has risen by the end of that step, the step is taken back to
-//!   just after the root.
+//! - Root functions know no direction. A root at which the guard falls, such as the double zero
+//!   that begins every separation, is passed over by touching the state; the root finder otherwise
+//!   keeps its old bracket. If another guard has risen by the end of that step, the step is taken
+//!   back to just after the root.
 //! - At a root the library leaves the state at the end of the step: the switch's state is its
 //!   interpolant there.
 //! - Linear solves are from the library's statistics: Newton's iterations, and in the diagonally
 //!   implicit methods one more for each estimate of a step's error.
 //! - There is no maximum step. In one-step methods each step is shortened to an eighth of a forcing
-//!   period, so that none hides a whole phase. A multistep method would begin anew; none is forced on
-//!   it. What a root finder that looks only at the ends of steps still misses is what this harness
-//!   wants to know.
+//!   period, so that none hides a whole phase. A multistep method would begin anew; none is forced
+//!   on it. What a root finder that looks only at the ends of steps still misses is what this
+//!   harness wants to know.
 
 mod method;
 mod phase;

@@ -4,10 +4,10 @@
 //!   makes it a method of first order wherever the right-hand side depends on time, as here. Both
 //!   set-ups are run: what a user gets, and what a user gets who carries time as a fifth state.
 //! - Its dense output is not used: it can only be asked for beforehand at equidistant instants, and
-//!   where steps are as long as relaxation lets them be, its extra stages multiply what is left of q
-//!   by thousands. A state inside a step is had by integrating again from the step's beginning.
-//! - Steps are at most an eighth of a turn of the elastic contact too: guards are looked at at their
-//!   ends, where their rates show a peak inside.
+//!   where steps are as long as relaxation lets them be, its extra stages multiply what is left of
+//!   q by thousands. A state inside a step is had by integrating again from the step's beginning.
+//! - Steps are at most an eighth of a turn of the elastic contact too: guards are looked at at
+//!   their ends, where their rates show a peak inside.
 
 use super::{Field, LIBRARY, NEVER_STIFF, STEPS, packed, plain};
 use crate::engine::cubic::Point;

@@ -75,7 +75,8 @@ impl Run<'_> {
             from: from.state,
             stale: None,
         };
-        // The library makes it a whole number of steps, upwards: half a step short of the end is safe.
+        // The library makes it a whole number of steps, upwards: half a step short of the end is
+        // safe.
         let until = from.t + (count - 0.5) * step;
         let mut solver =
             ::ode_solvers::Rk4::new(field, from.t, packed::<4>(from.t, &from.state), until, step);

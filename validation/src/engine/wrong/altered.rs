@@ -63,8 +63,8 @@ impl Altered {
     }
 }
 
-/// The start with the state that the task begins with: on the surface the phase is stated, because a
-/// changed damping changes the trial force.
+/// The start with the state that the task begins with: on the surface the phase is stated, because
+/// a changed damping changes the trial force.
 fn exact_start(task: &Task) -> Start {
     let [p, y, q, v] = task.state;
     let phase = (task.phase != Phase::NoContact).then_some(task.phase);

@@ -1,4 +1,5 @@
-//! The data inside the page: the rows as columns, and the curves. Rounded; `report.json` has all digits.
+//! The data inside the page: the rows as columns, and the curves. Rounded; `report.json` has all
+//! digits.
 
 use super::super::summary::EngineSummary;
 use super::super::{EventPicture, Evidence, Report, Row};

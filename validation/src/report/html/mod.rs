@@ -1,9 +1,9 @@
 //! `report.html`: one page that works offline, with its styles, scripts and data inside.
 //!
 //! What is read off at a glance (verdicts, recall, grazing, power) is made here, so that it shows
-//! without scripts and in print; the rows, which are filtered, and the curves are drawn in the page.
-//! The charts are SVG of our own: each engine has abscissas of its own, which charting libraries
-//! with one shared column do not take, and SVG follows the colour scheme and prints.
+//! without scripts and in print; the rows, which are filtered, and the curves are drawn in the
+//! page. The charts are SVG of our own: each engine has abscissas of its own, which charting
+//! libraries with one shared column do not take, and SVG follows the colour scheme and prints.
 
 mod command;
 mod data;

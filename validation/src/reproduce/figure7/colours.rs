@@ -1,8 +1,9 @@
 //! One pair of colours an attractor, kept from frame to frame.
 //!
-//! An attractor is followed by carrying its motion along: the frequency is raised in small steps, each
-//! starting where the last ended. The attractor that the motion is on in the next frame inherits the
-//! colours; where two lead to the same, those of its own kind and period, else those that come first.
+//! An attractor is followed by carrying its motion along: the frequency is raised in small steps,
+//! each starting where the last ended. The attractor that the motion is on in the next frame
+//! inherits the colours; where two lead to the same, those of its own kind and period, else those
+//! that come first.
 
 use super::frame::{Frame, Place};
 use crate::engine::Failure;

@@ -49,7 +49,8 @@ pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<C
         ))
 }
 
-/// A point of Table 1 with its number; points in one place share a label, one below another has its own below.
+/// A point of Table 1 with its number; points in one place share a label, one below another has its
+/// own below.
 fn labelled(points: &[[f64; 2]], i: usize) -> Vec<Layer> {
     let [p, y] = points[i];
     let here = |point: &[f64; 2]| (point[0] - p).hypot(point[1] - y) < 0.05;

@@ -94,11 +94,13 @@ fn area(a: &[f64], b: &[f64]) -> f64 {
     area
 }
 
-/// Values nearer than this count as equal for Kolmogorov-Smirnov. Some series have atoms: in a period
-/// of free flight y grows by exactly b T, and an integrator's error, however small, moves all of it.
+/// Values nearer than this count as equal for Kolmogorov-Smirnov. Some series have atoms: in a
+/// period of free flight y grows by exactly b T, and an integrator's error, however small, moves
+/// all of it.
 const EQUAL: f64 = SCORED_ERROR;
 
-/// The largest amount by which the distribution function of `a` exceeds that of `b` a little further on.
+/// The largest amount by which the distribution function of `a` exceeds that of `b` a little
+/// further on.
 fn exceeds(a: &[f64], b: &[f64]) -> f64 {
     let (mut largest, mut below) = (0.0_f64, 0);
     for (k, x) in a.iter().enumerate() {

@@ -1,9 +1,10 @@
 //! Same attractor: whether an engine's long run in chaos has the right statistics.
 //!
-//! Where errors grow exponentially a long run cannot be compared point by point; what it visits, how
-//! often, and how fast it drifts can. Distances are those between an engine's section and a longer
-//! reference section of the exact solver; their limits come from reference runs against that same
-//! reference, in batches of the engine's length, because successive strobes are not independent.
+//! Where errors grow exponentially a long run cannot be compared point by point; what it visits,
+//! how often, and how fast it drifts can. Distances are those between an engine's section and a
+//! longer reference section of the exact solver; their limits come from reference runs against that
+//! same reference, in batches of the engine's length, because successive strobes are not
+//! independent.
 //!
 //! Over one period errors hardly grow, chaos or not. So each strobe is also compared with the exact
 //! map's image of the engine's own strobe before it: this has no sampling noise, and notices a

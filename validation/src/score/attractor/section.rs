@@ -17,7 +17,8 @@ pub struct Section {
     pub words: BTreeMap<String, f64>,
     /// Mean drift per forcing period.
     pub drift: f64,
-    /// Mean growth of a small error per forcing period, in the exact map's derivative along these points.
+    /// Mean growth of a small error per forcing period, in the exact map's derivative along these
+    /// points.
     pub lyapunov: f64,
     /// How far each strobe is from the exact map's image of the strobe before it: the largest of
     /// the differences in p, y and q, each divided by 1 + |value|. Infinite where that has no
