@@ -9,13 +9,13 @@
 )]
 
 use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
-use percuss::{Leg, Model, Parameters, Phase, Start};
+use percuss::{Model, Parameters, Phase, Segment, Start};
 use std::hint::black_box;
 
 /// xi below, at and above one: contact oscillates, creeps critically, or relaxes.
 const XI: [f64; 3] = [0.01, 1.0, 5.0];
 
-fn legs(xi: f64) -> Vec<Leg> {
+fn segments(xi: f64) -> Vec<Segment> {
     let parameters = Parameters { xi, ..Parameters::default() };
     let model = Model::new(parameters).expect("in range");
     let rest = model.start(&Start::default()).expect("rest is a start");
@@ -25,16 +25,18 @@ fn legs(xi: f64) -> Vec<Leg> {
 fn evaluations(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("closed form");
     for xi in XI {
-        let run = legs(xi);
+        let run = segments(xi);
         for phase in Phase::ALL {
-            let Some(leg) = run.iter().find(|leg| leg.phase() == phase) else { continue };
-            let middle = 0.5 * leg.duration();
+            let Some(segment) = run.iter().find(|segment| segment.phase() == phase) else {
+                continue;
+            };
+            let middle = 0.5 * segment.duration();
             let name = format!("{}, xi {xi}", phase.token());
             group.bench_function(BenchmarkId::new("state", &name), |bencher| {
-                bencher.iter(|| leg.at(black_box(middle)));
+                bencher.iter(|| segment.at(black_box(middle)));
             });
             group.bench_function(BenchmarkId::new("derivative", &name), |bencher| {
-                bencher.iter(|| leg.variation(black_box(middle)));
+                bencher.iter(|| segment.variation(black_box(middle)));
             });
         }
     }

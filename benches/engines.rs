@@ -34,8 +34,8 @@ fn engines(criterion: &mut Criterion) {
             _ => Accuracy::Tolerance(1e-9),
         };
         // What would take more than a second is not run.
-        let Ok(mut heat) = enter(*engine, &course, setting) else { continue };
-        group.bench_function(declaration.name, |bencher| bencher.iter(|| heat.call()));
+        let Ok(mut timed) = enter(*engine, &course, setting) else { continue };
+        group.bench_function(declaration.name, |bencher| bencher.iter(|| timed.call()));
     }
     group.finish();
 }

@@ -13,7 +13,7 @@
 )]
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use percuss::{Leg, Model, Parameters, Start};
+use percuss::{Model, Parameters, Segment, Start};
 use percuss_validation::bench::floor::transcendental;
 use std::hint::black_box;
 
@@ -28,7 +28,7 @@ fn model(omega: f64, xi: f64) -> Model {
     Model::new(Parameters { omega, xi, ..Parameters::default() }).expect("in range")
 }
 
-fn legs(model: &Model) -> impl Iterator<Item = Leg> {
+fn segments(model: &Model) -> impl Iterator<Item = Segment> {
     model.trajectory(model.start(&Start::default()).expect("rest is a start"))
 }
 
@@ -56,13 +56,13 @@ fn switches(criterion: &mut Criterion) {
         let evaluations = run.counters().evaluations as f64 / count as f64;
         println!("{name}: {evaluations:.3} evaluations a switch");
         group.bench_function(BenchmarkId::new("certified", &name), |bencher| {
-            bencher.iter(|| black_box(legs(&model).take(SWITCHES).last()));
+            bencher.iter(|| black_box(segments(&model).take(SWITCHES).last()));
         });
-        let run: Vec<Leg> = legs(&model).take(SWITCHES).collect();
+        let run: Vec<Segment> = segments(&model).take(SWITCHES).collect();
         group.bench_function(BenchmarkId::new("stepping", &name), |bencher| {
             bencher.iter(|| {
                 run.iter()
-                    .filter_map(|leg| leg.judged_duration(2.0 * leg.duration(), 1000))
+                    .filter_map(|segment| segment.judged_duration(2.0 * segment.duration(), 1000))
                     .sum::<f64>()
             });
         });

@@ -6,7 +6,7 @@
 //! start). The start alone would not do: on a stable orbit its influence dies out while every step
 //! still rounds.
 
-use crate::leg::Leg;
+use crate::segment::Segment;
 use crate::variation::{IDENTITY, Matrix, P, Q, SwitchDerivative, V, Y, product, times};
 
 /// The growth of tau, p, y, q and v at one switch or sample.
@@ -48,10 +48,10 @@ impl GrowthRecorder {
     }
 
     /// Passes a phase; gives the growth at the switch that ends it, none if no switch does.
-    pub fn pass(&mut self, leg: &Leg) -> Option<Growth> {
-        let SwitchDerivative { time, state } = leg.switch_derivative()?;
-        let flow = leg.variation(leg.duration());
-        let saltation = leg.saltation();
+    pub fn pass(&mut self, segment: &Segment) -> Option<Growth> {
+        let SwitchDerivative { time, state } = segment.switch_derivative()?;
+        let flow = segment.variation(segment.duration());
+        let saltation = segment.saltation();
         let mut growth = Growth::NONE;
         for source in &mut self.sources {
             *source = product(&flow, source);
@@ -67,8 +67,8 @@ impl GrowthRecorder {
 
     /// The growth of a sample at fixed time, `elapsed` into the phase that the run is in.
     #[must_use]
-    pub fn at(&self, leg: &Leg, elapsed: f64) -> Growth {
-        let flow = leg.variation(elapsed);
+    pub fn at(&self, segment: &Segment, elapsed: f64) -> Growth {
+        let flow = segment.variation(elapsed);
         let mut growth = Growth::NONE;
         for source in &self.sources {
             growth.raise(&product(&flow, source));

@@ -11,9 +11,9 @@ use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
 use crate::flow::{Flow, Point};
-use crate::leg::Leg;
 use crate::model::{Model, Motion};
 use crate::number::Number;
+use crate::segment::Segment;
 use crate::state::State;
 
 /// How a phase ends.
@@ -57,7 +57,7 @@ struct Judged<'a, P, B> {
     underflow: f64,
 }
 
-impl Leg {
+impl Segment {
     /// How the phase ends by one-sided steps in the arithmetic `T`.
     #[must_use]
     pub fn judged_in<T: Number>(&self, model: &Model, effort: &Effort) -> Judgement {

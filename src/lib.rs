@@ -11,8 +11,8 @@
 //!
 //! let model = Model::new(Parameters { omega: 0.1, ..Parameters::default() })?;
 //! let from_rest = model.start(&Start::default())?;
-//! for leg in model.trajectory(from_rest).take(5) {
-//!     println!("{} for {}", leg.phase(), leg.duration());
+//! for segment in model.trajectory(from_rest).take(5) {
+//!     println!("{} for {}", segment.phase(), segment.duration());
 //! }
 //! # Ok::<(), percuss::InputError>(())
 //! ```
@@ -31,12 +31,12 @@ mod instant;
 mod judgement;
 #[cfg(feature = "lanes")]
 pub mod lanes;
-mod leg;
 mod model;
 pub mod number;
 mod parameters;
 mod phase;
 pub mod remainders;
+mod segment;
 mod stages;
 mod start;
 mod state;
@@ -53,10 +53,10 @@ pub use error::InputError;
 pub use growth::{Growth, GrowthRecorder};
 pub use instant::Instant;
 pub use judgement::{Effort, Judgement};
-pub use leg::{Endless, Exit, Leg, Sample};
 pub use model::{Model, Motion};
 pub use parameters::{Parameter, Parameters};
 pub use phase::{Phase, UnknownPhase};
+pub use segment::{Endless, Exit, Sample, Segment};
 pub use start::Start;
 pub use state::State;
 pub use trajectory::{Step, Trajectory};

@@ -8,7 +8,7 @@ use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
-use crate::flow::stride::Strides;
+use crate::flow::steps::Steps;
 use crate::instant::Instant;
 use crate::parameters::Parameters;
 use crate::two_word::TwoWord;
@@ -18,7 +18,7 @@ use crate::two_word::TwoWord;
 pub struct Model {
     parameters: Parameters,
     constants: Constants<f64>,
-    strides: Strides,
+    steps: Steps,
     phi: TwoWord,
 }
 
@@ -64,8 +64,8 @@ impl Model {
     pub fn new(parameters: Parameters) -> Result<Self, InputError> {
         parameters.check()?;
         let (_, phi) = angle::reduce(TwoWord::new(parameters.phi));
-        let (constants, strides) = (Constants::new(&parameters), Strides::new(&parameters));
-        Ok(Self { parameters, constants, strides, phi })
+        let (constants, steps) = (Constants::new(&parameters), Steps::new(&parameters));
+        Ok(Self { parameters, constants, steps, phi })
     }
 
     /// The parameters as given.
@@ -89,8 +89,8 @@ impl Model {
         self.phi
     }
 
-    pub(crate) fn strides(&self) -> &Strides {
-        &self.strides
+    pub(crate) fn steps(&self) -> &Steps {
+        &self.steps
     }
 
     /// Sine and cosine of omega tau + phi.

@@ -41,7 +41,7 @@ pub(crate) fn search_in_stages<'a>(
         let (_, angle) = model.instant_after(instant, since);
         contact.taken_up(stage, angle)
     };
-    let limit = Limit::new(model.strides(), counters);
+    let limit = Limit::new(model.steps(), counters);
     let mut since = TwoWord::new(first);
     let mut contact = taken_up(contact, first, since);
     loop {
@@ -50,7 +50,7 @@ pub(crate) fn search_in_stages<'a>(
         if limit.is_passed(elapsed, counters) {
             return ended(Found::Undecided(elapsed));
         }
-        match first_crossing(&contact, model.strides(), horizon - elapsed, counters) {
+        match first_crossing(&contact, model.steps(), horizon - elapsed, counters) {
             Crossing::At(root) => {
                 let total = since.plus(root.elapsed());
                 let point = Point { elapsed: total.high, ..root.point };

@@ -5,7 +5,7 @@
 //! of a switch's time. What few switches take is kept out of the way.
 
 use crate::constants::Constants;
-use crate::crossing::guarded::{Guarded, Outlook};
+use crate::crossing::guarded::{Guarded, SearchHint};
 use crate::crossing::search::{Found, first_crossing_and};
 use crate::crossing::{Counters, Root};
 use crate::entry::{Entry, Onset};
@@ -14,8 +14,8 @@ use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
 use crate::instant::Instant;
-use crate::leg::Endless;
 use crate::model::{Model, Motion};
+use crate::segment::Endless;
 use crate::stages::{Staged, search_in_stages};
 use crate::state::State;
 use crate::surface;
@@ -120,7 +120,7 @@ fn pass_by<P: Landing>(
         (certain - beyond, limit + beyond)
     });
     let land = |root: &Root| *next = begun.after(model, phase, root);
-    let found = first_crossing_and((phase, model.strides()), begun.guess, limit, counters, land);
+    let found = first_crossing_and((phase, model.steps()), begun.guess, limit, counters, land);
     match found {
         Found::At(elapsed) if elapsed.high <= certain => {
             counters.switches += 1;
@@ -177,8 +177,8 @@ fn found_later<P: Landing>(
     let mut again = *begun;
     let land = |root: &Root| again = begun.after(model, phase, root);
     let mut counted = Counters::default();
-    let strides = model.strides();
-    let found = match first_crossing_and((phase, strides), begun.guess, limit, &mut counted, land) {
+    let steps = model.steps();
+    let found = match first_crossing_and((phase, steps), begun.guess, limit, &mut counted, land) {
         Found::Stage(from) => {
             phase.in_stages(model, (begun, &mut again), (from, limit), &mut counted)
         }
@@ -225,15 +225,15 @@ impl Begun {
 /// When the phase that begins at `entry`, at about this forcing angle, may end.
 #[inline(always)]
 fn guess(model: &Model, entry: &Entry, angle: EntryAngle<f64>) -> Option<f64> {
-    let strides = model.strides();
-    let outlook = match Motion::new(model.constants(), entry, angle) {
-        Motion::NoContact(flight) => flight.outlook(strides, &flight.entry(), f64::INFINITY),
-        Motion::Contact(contact) => contact.outlook(strides, &contact.entry(), f64::INFINITY),
-        Motion::Progression(slip) => slip.outlook(strides, &slip.entry(), f64::INFINITY),
+    let steps = model.steps();
+    let hint = match Motion::new(model.constants(), entry, angle) {
+        Motion::NoContact(flight) => flight.hint(steps, &flight.entry(), f64::INFINITY),
+        Motion::Contact(contact) => contact.hint(steps, &contact.entry(), f64::INFINITY),
+        Motion::Progression(slip) => slip.hint(steps, &slip.entry(), f64::INFINITY),
     };
-    // What an outlook proves is not to be proved from a rough angle.
-    match outlook {
-        Outlook::Root(time) => Some(time),
+    // What an hint proves is not to be proved from a rough angle.
+    match hint {
+        SearchHint::Root(time) => Some(time),
         _ => None,
     }
 }

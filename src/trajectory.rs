@@ -3,8 +3,8 @@
 use crate::crossing::Counters;
 use crate::entry::Entry;
 use crate::instant::Instant;
-use crate::leg::Leg;
 use crate::model::Model;
+use crate::segment::Segment;
 use crate::switch::{Begun, End, Passed, pass};
 use crate::two_word::TwoWord;
 
@@ -40,7 +40,7 @@ pub enum Step<'a> {
         next: &'a Entry,
     },
     /// It is the run's last: cut by the horizon, endless, or undecidable.
-    Last(Box<Leg>),
+    Last(Box<Segment>),
 }
 
 impl Model {
@@ -80,7 +80,7 @@ impl Trajectory {
         Some(match passed.end {
             End::Switch => Step::Switch { duration: passed.duration, next: &next.entry },
             End::Horizon | End::Endless(_) | End::Undecidable => {
-                Step::Last(Box::new(Leg::passed(&self.model, begun, &passed, &next.entry)))
+                Step::Last(Box::new(Segment::passed(&self.model, begun, &passed, &next.entry)))
             }
         })
     }
@@ -114,11 +114,11 @@ impl Trajectory {
 }
 
 impl Iterator for Trajectory {
-    type Item = Leg;
+    type Item = Segment;
 
-    fn next(&mut self) -> Option<Leg> {
+    fn next(&mut self) -> Option<Segment> {
         let passed = self.pass()?;
         let (begun, next) = self.last_and_next();
-        Some(Leg::passed(&self.model, begun, &passed, &next.entry))
+        Some(Segment::passed(&self.model, begun, &passed, &next.entry))
     }
 }

@@ -11,10 +11,10 @@ use crate::flow::contact::Contact;
 use crate::flow::forcing::{EntryAngle, Harmonic};
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
-use crate::leg::{Exit, Leg};
 use crate::model::Motion;
 use crate::phase::Phase;
 use crate::remainders::decay;
+use crate::segment::{Exit, Segment};
 
 /// Index of the forcing angle in a [`Matrix`].
 pub const ANGLE: usize = 0;
@@ -65,7 +65,7 @@ pub struct SwitchDerivative {
     pub state: Matrix,
 }
 
-impl Leg {
+impl Segment {
     /// Derivative of the motion a time `elapsed` into the phase, at fixed time.
     #[must_use]
     pub fn variation(&self, elapsed: f64) -> Matrix {

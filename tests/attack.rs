@@ -8,14 +8,14 @@
     reason = "each test uses a part of its support; a panic is a failed test"
 )]
 
-use percuss::{Exit, Leg, Model, Parameters, Phase, Start};
+use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
 use std::sync::mpsc;
 use std::time::Duration;
 
 /// No phase of any accepted input may take longer than this to solve.
-const A_LEG: Duration = Duration::from_secs(1);
+const A_SEGMENT: Duration = Duration::from_secs(1);
 const CASES: u64 = 20_000;
-const LEGS: usize = 300;
+const SEGMENTS: usize = 300;
 
 /// a, b, xi, omega, g, phi; p, y, q: what earlier attacks have found, tried first.
 const FOUND: [[f64; 9]; 7] = [
@@ -143,22 +143,22 @@ fn legal(from: Phase, to: Phase) -> bool {
     }
 }
 
-fn complaint(leg: &Leg, last_v: f64) -> Option<String> {
-    let d = leg.duration();
+fn complaint(segment: &Segment, last_v: f64) -> Option<String> {
+    let d = segment.duration();
     if d.is_nan() || d < 0.0 {
         return Some(format!("duration {d}"));
     }
     let until = if d.is_finite() { d } else { 1.0 };
     for k in 0..=8 {
-        let sample = leg.at(until * f64::from(k) / 8.0);
+        let sample = segment.at(until * f64::from(k) / 8.0);
         let numbers = [sample.state.p, sample.state.y, sample.state.q, sample.v];
         if numbers.iter().any(|number| !number.is_finite()) {
             return Some(format!("{sample:?}"));
         }
     }
-    let Exit::Switch(next) = leg.exit() else { return None };
-    if !legal(leg.phase(), next.phase()) {
-        return Some(format!("{} to {}", leg.phase(), next.phase()));
+    let Exit::Switch(next) = segment.exit() else { return None };
+    if !legal(segment.phase(), next.phase()) {
+        return Some(format!("{} to {}", segment.phase(), next.phase()));
     }
     if d == 0.0 {
         return Some("no time passes".to_owned());
@@ -166,7 +166,7 @@ fn complaint(leg: &Leg, last_v: f64) -> Option<String> {
     (next.v() < last_v).then(|| format!("drift falls from {last_v} to {}", next.v()))
 }
 
-/// Runs a case; the beats between legs tell the watch that it is alive.
+/// Runs a case; the beats between segments tell the watch that it is alive.
 fn attack(seed: u64, beat: &mpsc::Sender<u64>) -> Option<String> {
     let (parameters, start) = Chance::case(seed);
     let model = Model::new(parameters).ok()?;
@@ -176,12 +176,12 @@ fn attack(seed: u64, beat: &mpsc::Sender<u64>) -> Option<String> {
     let periods = (60.0 / model.period()).clamp(1e-3, most);
     let horizon = entry.instant.after_periods((periods * 1e3) as u64, 1000);
     let mut last_v = entry.v();
-    for (n, leg) in model.trajectory(entry).until(horizon).take(LEGS).enumerate() {
+    for (n, segment) in model.trajectory(entry).until(horizon).take(SEGMENTS).enumerate() {
         let _ = beat.send(seed);
-        if let Some(complaint) = complaint(&leg, last_v) {
-            return Some(format!("leg {n}, {}: {complaint}", leg.phase()));
+        if let Some(complaint) = complaint(&segment, last_v) {
+            return Some(format!("segment {n}, {}: {complaint}", segment.phase()));
         }
-        last_v = leg.entry().v();
+        last_v = segment.entry().v();
     }
     None
 }
@@ -204,7 +204,7 @@ fn no_accepted_input_breaks_the_solver() {
         });
         let mut last = from;
         let trouble = loop {
-            match pulse.recv_timeout(A_LEG) {
+            match pulse.recv_timeout(A_SEGMENT) {
                 Ok(seed) => last = seed,
                 Err(mpsc::RecvTimeoutError::Timeout) => break Some("hangs"),
                 Err(mpsc::RecvTimeoutError::Disconnected) if last + 1 < CASES => {
@@ -231,7 +231,7 @@ fn everything_zero_rests() {
     let model = Model::new(nothing).unwrap();
     let entry = model.start(&Start::default()).unwrap();
     let mut trajectory = model.trajectory(entry).until(entry.instant.after_periods(1000, 1));
-    let leg = trajectory.next().unwrap();
-    assert!(!matches!(leg.exit(), Exit::Switch(_)), "{leg:?}");
+    let segment = trajectory.next().unwrap();
+    assert!(!matches!(segment.exit(), Exit::Switch(_)), "{segment:?}");
     assert!(trajectory.counters().evaluations < 100, "{:?}", trajectory.counters());
 }

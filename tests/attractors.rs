@@ -7,7 +7,9 @@
     reason = "a panic is a failed test"
 )]
 
-use percuss::dynamics::attractor::{Atlas, Attractor, Basins, Grid, Kind, Label, Window};
+use percuss::dynamics::attractor::{
+    Attractor, AttractorCatalog, Basins, Grid, Kind, Label, Window,
+};
 use percuss::dynamics::lyapunov::Spectrum;
 use percuss::dynamics::section::Section;
 use percuss::dynamics::strobe::{Point, StrobeMap};
@@ -106,15 +108,15 @@ fn confirmed(map: &StrobeMap, attractor: &Attractor) {
 fn a_label_is_invariant_under_the_map() {
     for omega in [1.45, 1.6, 1.7] {
         let map = fig7(omega);
-        let mut atlas = Atlas::new(map, 400);
+        let mut catalog = AttractorCatalog::new(map, 400);
         let grid = Grid { window: WINDOW, columns: 23, rows: 17, q: 0.0 };
-        let labels = atlas.label_all(&grid.starts(), &|_| {});
+        let labels = catalog.label_all(&grid.starts(), &|_| {});
         let mut seen = std::collections::BTreeSet::new();
         for (n, (start, label)) in grid.starts().iter().zip(&labels).enumerate() {
             seen.insert(*label);
-            assert_eq!(atlas.label(*start), *label, "{omega} {start:?}");
+            assert_eq!(catalog.label(*start), *label, "{omega} {start:?}");
             let later = after(&map, *start, [1, 7, 50, 700][n % 4]);
-            assert_eq!(atlas.label(later), *label, "{omega} {start:?}");
+            assert_eq!(catalog.label(later), *label, "{omega} {start:?}");
         }
         assert!(seen.len() >= 3, "{omega}: {seen:?}");
     }

@@ -8,13 +8,13 @@
     reason = "each test uses a part of its support; a panic is a failed test"
 )]
 
-use percuss::{Counters, Endless, Exit, Leg, Model, Parameters, Start};
+use percuss::{Counters, Endless, Exit, Model, Parameters, Segment, Start};
 
-fn first(parameters: Parameters, start: &Start) -> (Leg, Counters) {
+fn first(parameters: Parameters, start: &Start) -> (Segment, Counters) {
     let model = Model::new(parameters).unwrap();
     let mut trajectory = model.trajectory(model.start(start).unwrap());
-    let leg = trajectory.next().unwrap();
-    (leg, trajectory.counters())
+    let segment = trajectory.next().unwrap();
+    (segment, trajectory.counters())
 }
 
 /// omega, xi and the evaluations a switch allowed: one next to the guess, from which a series leads
@@ -58,13 +58,13 @@ fn flights_stay_cheap_as_the_static_force_vanishes() {
         {
             let start = Start { p: -0.5, y, q: Some(0.3), ..Start::default() };
             let parameters = Parameters { a, b, omega, ..Parameters::default() };
-            let (leg, counters) = first(parameters, &start);
-            assert!(matches!(leg.exit(), Exit::Switch(_)), "{parameters:?}");
+            let (segment, counters) = first(parameters, &start);
+            assert!(matches!(segment.exit(), Exit::Switch(_)), "{parameters:?}");
             // The mean motion is a parabola; the harmonic moves its return by a few periods.
             let expected = 2.0 * (a / omega - y) / b;
             let periods = 5.0 * std::f64::consts::TAU / omega;
             assert!(
-                (leg.duration() - expected).abs() <= periods + 1e-9 * expected,
+                (segment.duration() - expected).abs() <= periods + 1e-9 * expected,
                 "{parameters:?}"
             );
             // Independent of b; before the leap over the calm stretch was right it grew like 1/b.
@@ -117,8 +117,8 @@ fn endless_phases_are_said_to_be_so() {
         ),
     ];
     for (parameters, start, expected) in cases {
-        let (leg, counters) = first(parameters, &start);
-        assert_eq!(*leg.exit(), Exit::Endless(expected), "{parameters:?} {start:?}");
+        let (segment, counters) = first(parameters, &start);
+        assert_eq!(*segment.exit(), Exit::Endless(expected), "{parameters:?} {start:?}");
         assert!(
             counters.evaluations <= 100,
             "{} evaluations at {parameters:?}",

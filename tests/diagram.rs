@@ -101,12 +101,12 @@ fn a_section_begins_at_its_angle_after_the_transient() {
             let turns = (strobe.instant.angle() - angle) / std::f64::consts::TAU;
             assert!((turns - turns.round()).abs() < 1e-14);
             assert_eq!(strobe.instant.cycle(), first + n as i128);
-            let leg = model
+            let segment = model
                 .trajectory(from)
                 .until(strobe.instant.after_periods(1, 1))
-                .find(|leg| !leg.ends_by(&strobe.instant))
+                .find(|segment| !segment.ends_by(&strobe.instant))
                 .unwrap();
-            let sample = leg.at_instant(&strobe.instant);
+            let sample = segment.at_instant(&strobe.instant);
             assert!((sample.state.p - strobe.state.p).abs() <= 1e-12);
             assert!((sample.v - strobe.v()).abs() <= 1e-12);
         }

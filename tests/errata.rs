@@ -281,7 +281,7 @@ fn row_seven_is_cut_and_not_rounded() {
     let rest = model.start(&Start::default()).unwrap();
     let row = model
         .trajectory(rest)
-        .map(|leg| (leg.phase(), leg.entry().instant.tau(TABLE_1.omega)))
+        .map(|segment| (segment.phase(), segment.entry().instant.tau(TABLE_1.omega)))
         .find(|(phase, tau)| *phase == Phase::Contact && *tau > 1190.0);
     let (_, tau) = row.unwrap();
     assert_eq!(format!("{tau:.5}"), "1194.99998");

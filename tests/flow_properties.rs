@@ -12,7 +12,7 @@
 mod original;
 
 use original::Equations;
-use percuss::{Entry, Exit, Instant, Leg, Model, Parameters, Phase, Start, State};
+use percuss::{Entry, Exit, Instant, Model, Parameters, Phase, Segment, Start, State};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestCaseError};
 use std::f64::consts::TAU;
@@ -64,29 +64,29 @@ proptest! {
         let (model, entry) = begin(&problem);
         let Parameters { xi, g, .. } = problem.0;
         let mut v = entry.v();
-        for leg in model.trajectory(entry).take(60) {
-            let until = if leg.duration().is_finite() { leg.duration() } else { 5.0 };
-            let mut largest = 1.0 + leg.entry().state.y.abs();
+        for segment in model.trajectory(entry).take(60) {
+            let until = if segment.duration().is_finite() { segment.duration() } else { 5.0 };
+            let mut largest = 1.0 + segment.entry().state.y.abs();
             for k in 0..=16 {
                 let d = until * f64::from(k) / 16.0;
-                let sample = leg.at(d);
+                let sample = segment.at(d);
                 let state = sample.state;
                 largest = largest.max(state.y.abs());
                 let room = 16.0 * f64::EPSILON * (largest + (1.0 + state.y.abs()) * d);
-                prop_assert!(state.q >= -room && state.q <= 1.0 + room + 2.0 * xi * largest, "{sample:?} at {d:e} room {room:e} of {leg:?}");
-                prop_assert!(state.p <= state.q + g + room, "p: {sample:?} at {d:e} room {room:e} of {leg:?}");
+                prop_assert!(state.q >= -room && state.q <= 1.0 + room + 2.0 * xi * largest, "{sample:?} at {d:e} room {room:e} of {segment:?}");
+                prop_assert!(state.p <= state.q + g + room, "p: {sample:?} at {d:e} room {room:e} of {segment:?}");
                 let step = sample.v - v;
                 let terms = v.abs() + problem.0.a / (problem.0.omega * problem.0.omega);
-                prop_assert!(step >= -4.0 * f64::EPSILON * terms, "{leg:?}: drift falls by {step:e}");
+                prop_assert!(step >= -4.0 * f64::EPSILON * terms, "{segment:?}: drift falls by {step:e}");
                 v = sample.v;
-                if leg.phase() == Phase::NoContact {
-                    prop_assert!(state.q.abs() <= leg.entry().state.q.abs());
+                if segment.phase() == Phase::NoContact {
+                    prop_assert!(state.q.abs() <= segment.entry().state.q.abs());
                 }
             }
-            if let Exit::Switch(next) = leg.exit() {
-                prop_assert!(legal(leg.phase(), next.phase()), "{} to {}", leg.phase(), next.phase());
-                prop_assert!(leg.duration() > 0.0, "{leg:?}");
-                prop_assert!(next.v() >= leg.entry().v());
+            if let Exit::Switch(next) = segment.exit() {
+                prop_assert!(legal(segment.phase(), next.phase()), "{} to {}", segment.phase(), next.phase());
+                prop_assert!(segment.duration() > 0.0, "{segment:?}");
+                prop_assert!(next.v() >= segment.entry().v());
             }
         }
     }
@@ -97,12 +97,12 @@ proptest! {
         let (parameters, start) = problem;
         let start = Start { p: start.p - start.q.unwrap() - 1e-3, q: Some(0.0), ..start };
         let (model, entry) = begin(&(parameters, start));
-        for leg in model.trajectory(entry).take(60) {
-            let until = if leg.duration().is_finite() { leg.duration() } else { 5.0 };
+        for segment in model.trajectory(entry).take(60) {
+            let until = if segment.duration().is_finite() { segment.duration() } else { 5.0 };
             for k in 0..=16 {
-                let q = leg.at(until * f64::from(k) / 16.0).state.q;
-                let room = 1e-14 * (1.0 + 2.0 * parameters.xi * leg.entry().state.y.abs());
-                prop_assert!(q >= -room && q <= 1.0 + room, "{q} in {leg:?}");
+                let q = segment.at(until * f64::from(k) / 16.0).state.q;
+                let room = 1e-14 * (1.0 + 2.0 * parameters.xi * segment.entry().state.y.abs());
+                prop_assert!(q >= -room && q <= 1.0 + room, "{q} in {segment:?}");
             }
         }
     }
@@ -123,30 +123,30 @@ proptest! {
 
     /// Cut anywhere and started again, the run goes on as if it had not been cut.
     #[test]
-    fn a_cut_changes_nothing(problem in problems(), legs in 0..12_usize, part in 0.02..0.98_f64) {
+    fn a_cut_changes_nothing(problem in problems(), segments in 0..12_usize, part in 0.02..0.98_f64) {
         let (model, entry) = begin(&problem);
-        let Some(leg) = model.trajectory(entry).nth(legs) else { return Ok(()) };
-        let Exit::Switch(next) = leg.exit() else { return Ok(()) };
+        let Some(segment) = model.trajectory(entry).nth(segments) else { return Ok(()) };
+        let Exit::Switch(next) = segment.exit() else { return Ok(()) };
         let omega = problem.0.omega;
-        let d = part * leg.duration();
-        prop_assume!(d > 1e-3 && leg.duration() - d > 1e-3);
-        let sample = leg.at(d);
-        let tau = leg.entry().instant.tau(omega) + d;
+        let d = part * segment.duration();
+        prop_assume!(d > 1e-3 && segment.duration() - d > 1e-3);
+        let sample = segment.at(d);
+        let tau = segment.entry().instant.tau(omega) + d;
         let State { p, y, q } = sample.state;
         let again = model.start(&Start { tau, cycle: 0, p, y, q: Some(q), v: sample.v, phase: None });
         // Next to a threshold the rounded state may lie on the other side of it.
         let Ok(again) = again else { return Ok(()) };
-        prop_assume!(again.phase() == leg.phase());
+        prop_assume!(again.phase() == segment.phase());
         let rest = model.trajectory(again).next().unwrap();
         let Exit::Switch(other) = rest.exit() else { return Err(TestCaseError::fail(format!("{rest:?}"))) };
         prop_assert_eq!(other.phase(), next.phase());
         // The guard is known to 1e-13 of its terms on either way; divided by its slope, a time.
-        let slope = crossing_slope(&model, &leg, next);
-        let scale = 1.0 + y.abs() + leg.entry().state.y.abs() + problem.0.a / omega + tau.abs() * 0.1;
+        let slope = crossing_slope(&model, &segment, next);
+        let scale = 1.0 + y.abs() + segment.entry().state.y.abs() + problem.0.a / omega + tau.abs() * 0.1;
         let damping = (1.0 / (2.0 * problem.0.xi)).max(1.0);
-        let room = 1e-13 * scale * (1.0 + leg.duration()) * damping * (1.0 + 1.0 / slope);
+        let room = 1e-13 * scale * (1.0 + segment.duration()) * damping * (1.0 + 1.0 / slope);
         prop_assume!(room < 1e-6);
-        prop_assert!((d + rest.duration() - leg.duration()).abs() <= room);
+        prop_assert!((d + rest.duration() - segment.duration()).abs() <= room);
         let rate = 1.0 + problem.0.a + other.state.y.abs() + other.state.q.abs() * damping;
         for (x, y) in [(other.state.p, next.state.p), (other.state.y, next.state.y), (other.state.q, next.state.q), (other.v(), next.v())] {
             prop_assert!((x - y).abs() <= room * rate, "{x:e} {y:e} {room:e}");
@@ -158,20 +158,20 @@ proptest! {
     fn any_row_repeats_the_rows_after_it(problem in problems()) {
         let (model, entry) = begin(&problem);
         let omega = problem.0.omega;
-        let legs: Vec<Leg> = model.trajectory(entry).take(12).collect();
-        for pair in legs.windows(2).skip(1) {
+        let segments: Vec<Segment> = model.trajectory(entry).take(12).collect();
+        for pair in segments.windows(2).skip(1) {
             let row = pair[0].entry();
             let State { p, y, q } = row.state;
             let printed = Start { tau: row.instant.tau(omega), cycle: 0, p, y, q: Some(q), v: row.v(), phase: None };
             let again = model.start(&printed).unwrap();
             prop_assert_eq!(again.phase(), row.phase(), "{:?} {:?}", problem, row);
-            let leg = model.trajectory(again).next().unwrap();
+            let segment = model.trajectory(again).next().unwrap();
             let next = pair[1].entry();
             let slope = crossing_slope(&model, &pair[0], next);
             prop_assume!(slope > 1e-4);
             let damping = (1.0 / (2.0 * problem.0.xi)).max(1.0);
             let room = 1e-12 * damping * (1.0 + row.instant.tau(omega).abs()) * (1.0 + pair[0].duration()) / slope.min(1.0);
-            prop_assert!((leg.duration() - pair[0].duration()).abs() <= room, "{:?} {:?}", leg, pair[0]);
+            prop_assert!((segment.duration() - pair[0].duration()).abs() <= room, "{:?} {:?}", segment, pair[0]);
         }
     }
 
@@ -179,31 +179,31 @@ proptest! {
     fn the_original_equations_give_the_same(problem in problems()) {
         let (model, entry) = begin(&problem);
         let parameters = problem.0;
-        for leg in model.trajectory(entry).take(10) {
-            let until = if leg.duration().is_finite() { leg.duration() } else { 3.0 };
-            let equations = Equations { phase: leg.phase(), parameters };
+        for segment in model.trajectory(entry).take(10) {
+            let until = if segment.duration().is_finite() { segment.duration() } else { 3.0 };
+            let equations = Equations { phase: segment.phase(), parameters };
             prop_assume!(equations.steps(until) < 3000.0);
-            let State { p, y, q } = leg.entry().state;
-            let v = leg.entry().v();
-            let theta = leg.entry().instant.angle() + parameters.phi;
+            let State { p, y, q } = segment.entry().state;
+            let v = segment.entry().v();
+            let theta = segment.entry().instant.angle() + parameters.phi;
             let [x, y, z, w] = equations.integrate(theta, [p + v, y, q + v, v], until);
-            let end = leg.at(until);
+            let end = segment.at(until);
             let scale = 1.0 + v.abs() + x.abs() + (1.0 + y.abs()) * (1.0 + until) + equations.rate();
             let room = 1e-15 * scale * (4.0 + equations.steps(until).sqrt());
             let pairs = [(x, end.state.p + end.v), (y, end.state.y), (z, end.state.q + end.v), (w, end.v)];
             for (integrated, exact) in pairs {
-                prop_assert!((integrated - exact).abs() <= room, "{leg:?}: {integrated:e} {exact:e} {room:e}");
+                prop_assert!((integrated - exact).abs() <= room, "{segment:?}: {integrated:e} {exact:e} {room:e}");
             }
         }
     }
 }
 
-/// The slope of the guard that ends this leg.
-fn crossing_slope(model: &Model, leg: &Leg, next: &Entry) -> f64 {
+/// The slope of the guard that ends this segment.
+fn crossing_slope(model: &Model, segment: &Segment, next: &Entry) -> f64 {
     let two_xi = 2.0 * model.parameters().xi;
     let State { y, q, .. } = next.state;
     let force = model.force(&next.instant)[0];
-    let slope = match leg.phase() {
+    let slope = match segment.phase() {
         Phase::NoContact => y + q / two_xi,
         Phase::Contact => two_xi * (force - (two_xi * y + q)) + y,
         Phase::Progression => force - 1.0 + y / two_xi,
@@ -218,9 +218,9 @@ fn drift_adds_up_over_a_million_periods() {
     let model = Model::new(Parameters { omega: 0.1, ..Parameters::default() }).unwrap();
     let strobe = |from: Entry, periods: u64| -> (Entry, f64, [f64; 3]) {
         let end = from.instant.after_periods(periods, 1);
-        let leg = model.trajectory(from).until(end).last().unwrap();
-        let at = leg.at_instant(&end);
-        (*leg.entry(), at.v, [at.state.p, at.state.y, at.state.q])
+        let segment = model.trajectory(from).until(end).last().unwrap();
+        let at = segment.at_instant(&end);
+        (*segment.entry(), at.v, [at.state.p, at.state.y, at.state.q])
     };
     let rest = model.start(&Start::default()).unwrap();
     let settle = |n: u64| strobe(rest, n).1;
@@ -242,6 +242,6 @@ fn a_late_horizon_is_where_it_should_be() {
     let model = Model::new(Parameters { omega: 1.0, ..Parameters::default() }).unwrap();
     let start = model.start(&Start { cycle: 1 << 53, ..Start::default() }).unwrap();
     let horizon: Instant = start.instant.after_periods(3, 1);
-    let total: f64 = model.trajectory(start).until(horizon).map(|leg| leg.duration()).sum();
+    let total: f64 = model.trajectory(start).until(horizon).map(|segment| segment.duration()).sum();
     assert!((total - 3.0 * TAU).abs() < 1e-13, "{total}");
 }

@@ -9,7 +9,7 @@
     reason = "each test uses a part of its support; a panic is a failed test"
 )]
 
-use percuss::{Exit, Leg, Model, Parameters, Phase, Start};
+use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
 use std::f64::consts::FRAC_PI_2;
 
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
@@ -23,30 +23,31 @@ fn case(
     (parameters, Start { tau, p, y, q: Some(q), phase, ..Start::default() })
 }
 
-/// The phases of the first 20 legs within `horizon`, none of which may take 3000 evaluations.
-fn legs((parameters, start): (Parameters, Start), horizon: f64) -> Vec<Leg> {
+/// The phases of the first 20 segments within `horizon`, none of which may take 3000 evaluations.
+fn segments((parameters, start): (Parameters, Start), horizon: f64) -> Vec<Segment> {
     let model = Model::new(parameters).expect("the parameters are in range");
     let entry = model.start(&start).expect("the start is in range");
     let periods = horizon / model.period();
     let end = entry.instant.after_periods((periods * 1e6) as u64, 1_000_000);
     let mut trajectory = model.trajectory(entry).until(end);
-    let legs: Vec<Leg> = trajectory.by_ref().take(20).collect();
+    let segments: Vec<Segment> = trajectory.by_ref().take(20).collect();
     assert!(trajectory.counters().evaluations < 3000, "{:?}", trajectory.counters());
-    for leg in &legs {
-        if let Exit::Switch(next) = leg.exit() {
-            assert_ne!(leg.phase(), next.phase(), "a phase follows itself");
+    for segment in &segments {
+        if let Exit::Switch(next) = segment.exit() {
+            assert_ne!(segment.phase(), next.phase(), "a phase follows itself");
         }
     }
-    legs
+    segments
 }
 
 /// The trial force of a contact stays in [0, 1], from its samples.
-fn force_stays(legs: &[Leg], xi: f64, horizon: f64) {
-    for leg in legs.iter().filter(|leg| leg.phase() == Phase::Contact) {
+fn force_stays(segments: &[Segment], xi: f64, horizon: f64) {
+    for segment in segments.iter().filter(|segment| segment.phase() == Phase::Contact) {
         for eighth in 0..=8 {
-            let state = leg.at(leg.duration().min(horizon) * f64::from(eighth) / 8.0).state;
+            let state = segment.at(segment.duration().min(horizon) * f64::from(eighth) / 8.0).state;
             let (damper, spring) = (2.0 * xi * state.y, state.q);
-            let room = ROUNDING * (1.0 + damper.abs() + spring.abs() + leg.entry().state.q.abs());
+            let room =
+                ROUNDING * (1.0 + damper.abs() + spring.abs() + segment.entry().state.q.abs());
             let force = damper + spring;
             assert!((-room..=1.0 + room).contains(&force), "f = {force:e}, room {room:e}");
         }
@@ -61,7 +62,7 @@ fn a_phase_stated_against_the_derivatives() {
     let q = -0.063_181_667_137_700_51;
     let start = [2.624_159_050_362_819_4, 0.515_409_503_252_108, 0.006_022_190_693_577_507, q];
     for phase in [Phase::Contact, Phase::NoContact] {
-        legs(case(parameters, start, Some(phase)), 2.4e-7);
+        segments(case(parameters, start, Some(phase)), 2.4e-7);
     }
 }
 
@@ -72,7 +73,7 @@ fn a_flight_that_underflows() {
     let parameters = [1e9, b, 1.000_000_481_959_808, 1e-6, 0.853_496_877_675_293_3, 0.0];
     let y = -1.112_536_393_055_774e-308;
     let start = [2.787_131_936_795_641, 0.853_496_877_675_293_3, y, -0.0];
-    legs(case(parameters, start, None), 194.778_744_522_567_2);
+    segments(case(parameters, start, None), 194.778_744_522_567_2);
 }
 
 /// The only way out is far on the other side of the corridor from the threshold just left.
@@ -87,7 +88,7 @@ fn a_contact_that_starts_next_to_the_other_threshold() {
         -1.570_796_326_794_896_6,
     ];
     let (p, q) = (-0.598_800_422_746_573_2, -0.599_994_159_908_963_9);
-    legs(case(parameters, [0.0, p, 0.103_273_260_085_867_33, q], None), 0.0787);
+    segments(case(parameters, [0.0, p, 0.103_273_260_085_867_33, q], None), 0.0787);
 }
 
 /// Free oscillation of 2e7 against a forced one of the same size: the guesses must not point at
@@ -96,7 +97,7 @@ fn a_contact_that_starts_next_to_the_other_threshold() {
 fn guesses_in_strong_resonance() {
     let parameters = [1.851_695_129_613_321, 1.0, 4.4e-8, 1.000_000_000_000_000_9, 0.0, -1.57];
     let start = [3.141_592_653_589_793, 1.1e-14, 6.086e-7, 1.1e-14];
-    legs(case(parameters, start, None), 12.0);
+    segments(case(parameters, start, None), 12.0);
 }
 
 /// Contact decays to rest so slowly and so near to a threshold that only relative bounds decide.
@@ -104,10 +105,10 @@ fn guesses_in_strong_resonance() {
 fn an_overdamped_contact_near_its_threshold() {
     let parameters = [2.5e-84, 2.2e-308, 701.837_137_566_102_8, 1.0, 1.464_010_283_691_811, 3.14];
     let start = [2.232_737, 1.464_010_283_691_811, 2.2e-308, -0.0];
-    legs(case(parameters, start, None), 8.0);
+    segments(case(parameters, start, None), 8.0);
     let parameters = [0.0, 2.2e-308, 1.319_139_296_656_565_2, 0.0167, 0.5, 0.0];
     let start = [1.57, -0.5, 0.379_035_027_814_782_77, -1.0];
-    legs(case(parameters, start, None), 200.0);
+    segments(case(parameters, start, None), 200.0);
 }
 
 /// a = 1e9: a contact takes 1e-7 to 1e-4, in which the response to the force is d^2/2 of it.
@@ -121,7 +122,7 @@ fn short_contacts_under_a_large_force_keep_their_digits() {
     ] {
         for q in [0.003, 0.5, 0.999] {
             let start = [0.0, q, 0.0, q];
-            let run = legs(case([1e9, 0.5, xi, omega, 0.0, phi], start, None), 1e-3);
+            let run = segments(case([1e9, 0.5, xi, omega, 0.0, phi], start, None), 1e-3);
             force_stays(&run, xi, 1e-3);
         }
     }
@@ -135,7 +136,7 @@ fn a_progression_forgets_a_large_start() {
     let phi = 6.164_659_551_244_219;
     let parameters = [4.884_387_047_523_054e-5, b, xi, 4.898_253_260_902_872, 0.0, phi];
     let start = [1.570_796_326_794_896_6, 1e9, 0.667_097_934_211_394_3, 1e9];
-    let run = legs(case(parameters, start, None), 1.9);
+    let run = segments(case(parameters, start, None), 1.9);
     let slip = &run[0];
     assert_eq!(slip.phase(), Phase::Progression);
     let mut last = f64::INFINITY;
@@ -150,7 +151,7 @@ fn a_progression_forgets_a_large_start() {
 #[test]
 fn a_slow_separation_far_out() {
     let parameters = [1.0, -1.0, 1e-8, 0.999_999_704_107_353_1, 1e9, 0.0];
-    legs(case(parameters, [0.0, 1e9, 0.0, 0.0], Some(Phase::NoContact)), 0.0063);
+    segments(case(parameters, [0.0, 1e9, 0.0, 0.0], Some(Phase::NoContact)), 0.0063);
 }
 
 /// at rest on a threshold the derivatives of f, from f' = 2 xi (F - f) + y and so on, are
@@ -160,7 +161,7 @@ fn strong_damping_at_rest_on_a_threshold() {
     let parameters = [0.0, 1.0, 1e4, 1.000_000_000_000_002_7, 1.000_000_000_000_000_2, 0.0];
     let start =
         [0.0, 2.000_000_000_000_000_4, -1.110_223_024_625_156_6e-20, 1.000_000_000_000_000_2];
-    legs(case(parameters, start, None), 200.0);
+    segments(case(parameters, start, None), 200.0);
 }
 
 /// F = a cos(pi) + b is zero but for the rounding of pi; what the derivatives decide is not
@@ -168,7 +169,7 @@ fn strong_damping_at_rest_on_a_threshold() {
 #[test]
 fn a_force_that_is_zero_to_rounding() {
     let parameters = [1.0, 1.0, 0.999_999_999_999_996_9, 1.0, 0.0, -3.536_210_690_048_745_7e-12];
-    legs(case(parameters, [3.141_592_653_589_793, 0.0, 0.0, 0.0], None), 0.0063);
+    segments(case(parameters, [3.141_592_653_589_793, 0.0, 0.0, 0.0], None), 0.0063);
 }
 
 /// Strong damping: the derivatives of f were rounding noise long after the fast part had died out,
@@ -179,7 +180,7 @@ fn strong_damping_next_to_a_threshold() {
         [8.686e-171, -4.431e-202, 1e4, 0.000_506_368_118_112_349_7, 0.084_564_703_784_519_01, 2.26];
     let start =
         [0.0, -0.915_608_454_065_904_6, 0.188_017_110_384_073_37, -1.731_578_503_742_369e-4];
-    legs(case(parameters, start, None), 200.0);
+    segments(case(parameters, start, None), 200.0);
 }
 
 /// What q was at the start drowned the guard long after it had died out: g was taken off last, or
@@ -187,7 +188,7 @@ fn strong_damping_next_to_a_threshold() {
 #[test]
 fn a_slider_that_returns_from_far() {
     let parameters = [0.5, 4.696_163_814_168_331e-5, 1e-8, 1e-6, 0.5, -1.570_796_326_794_896_6];
-    let run = legs(case(parameters, [0.0, 0.5, 0.0, 1.0], None), 200.0);
+    let run = segments(case(parameters, [0.0, 0.5, 0.0, 1.0], None), 200.0);
     // q = b d^2/2 after 37 decay times: 1.5e-17.
     let state = run[0].at(run[0].duration()).state;
     assert!((7e-7..8e-7).contains(&run[0].duration()), "{:e}", run[0].duration());
@@ -195,7 +196,7 @@ fn a_slider_that_returns_from_far() {
 
     let g = 0.001_547_336_113_068_120_7;
     let start = [0.0, 0.001_547_336_578_369_140_6, -5.777_937_187_090_381_5e-6, 1e9];
-    let run = legs(case([0.0, 0.0, 1e-8, 1e6, g, 0.0], start, None), 1e-3);
+    let run = segments(case([0.0, 0.0, 1e-8, 1e6, g, 0.0], start, None), 1e-3);
     let force = 2e-8 * start[2] + run[0].at(run[0].duration()).state.q;
     assert!(force > 0.0, "the impact before the graze: {:?}", run[0]);
 }
@@ -206,8 +207,8 @@ fn a_progression_that_begins_at_1e15() {
     let xi = 1.074_929_975_991_823_3e-7;
     let parameters = [0.0, -1.999_999_960_884_451_9, xi, 305.825_457_991_631_9, 0.0, 0.0];
     let y = 0.464_246_323_440_281_27;
-    let run = legs(case(parameters, [0.0, 999_999_999.0, y, 1e9], None), 1.0);
-    let slip = run.iter().find(|leg| leg.phase() == Phase::Progression).expect("it slips");
+    let run = segments(case(parameters, [0.0, 999_999_999.0, y, 1e9], None), 1.0);
+    let slip = run.iter().find(|segment| segment.phase() == Phase::Progression).expect("it slips");
     // y' = b - 1 and 1 - q has died out: w = y.
     let expected = y / 2.999_999_960_884_451_9;
     assert!((slip.duration() - expected).abs() < 1e-14, "{}", slip.duration() - expected);
@@ -222,11 +223,11 @@ fn a_root_smaller_by_orders_of_magnitude() {
     let model = Model::new(parameters).expect("in range");
     let entry = model.start(&start).expect("in range");
     let mut trajectory = model.trajectory(entry).until(entry.instant.after_periods(1, 100));
-    let leg = trajectory.next().expect("a first phase");
+    let segment = trajectory.next().expect("a first phase");
     // h = f d/(2 xi) + F d^2/2
     let force = 1e9 * (0.999_999_942_969_940_4 * start.tau + parameters.phi).cos() + parameters.b;
     let expected = 1.112e-100 / force;
-    assert!((leg.duration() / expected - 1.0).abs() < 1e-6, "{:e}", leg.duration());
+    assert!((segment.duration() / expected - 1.0).abs() < 1e-6, "{:e}", segment.duration());
     assert!(trajectory.counters().evaluations < 200, "{:?}", trajectory.counters());
 }
 
@@ -237,7 +238,7 @@ fn an_envelope_that_rounding_keeps_open() {
     let omega = 1.000_108_697_328_897_7e-6;
     let parameters = [0.343_672_121_955_005_46, -1.0, 1e-8, omega, 0.0, std::f64::consts::PI];
     let start = [0.0, 0.0, -5.002_662_570_924_352_5e-11, 0.0];
-    let run = legs(case(parameters, start, None), 200.0);
+    let run = segments(case(parameters, start, None), 200.0);
     assert!(matches!(run[0].exit(), Exit::Endless(_)), "{:?}", run[0]);
 }
 
@@ -256,20 +257,21 @@ fn a_flight_far_up_returns_before_the_horizon() {
     let (parameters, start) = case(parameters, [0.0, 1e9, 0.0, 0.0], None);
     let model = Model::new(parameters).unwrap();
     let entry = model.start(&start).unwrap();
-    let free: Vec<Leg> = model.trajectory(entry).take(6).collect();
-    assert!(free.iter().filter(|leg| leg.phase() == Phase::NoContact).count() >= 2);
+    let free: Vec<Segment> = model.trajectory(entry).take(6).collect();
+    assert!(free.iter().filter(|segment| segment.phase() == Phase::NoContact).count() >= 2);
     // Every flight ends where it does without a horizon.
     for periods in 1..=12 {
         let horizon = entry.instant.after_periods(periods, 1);
         let cut = model.trajectory(entry).until(horizon).take(6);
-        for (leg, whole) in cut.zip(&free).filter(|(leg, _)| matches!(leg.exit(), Exit::Switch(_)))
+        for (segment, whole) in
+            cut.zip(&free).filter(|(segment, _)| matches!(segment.exit(), Exit::Switch(_)))
         {
-            assert_eq!(leg.duration().to_bits(), whole.duration().to_bits(), "{periods}");
+            assert_eq!(segment.duration().to_bits(), whole.duration().to_bits(), "{periods}");
         }
-        let ends = |leg: &&Leg| matches!(leg.exit(), Exit::Switch(next) if next.instant <= horizon);
+        let ends = |segment: &&Segment| matches!(segment.exit(), Exit::Switch(next) if next.instant <= horizon);
         let expected = free.iter().take_while(ends).count();
         let found = model.trajectory(entry).until(horizon).take(6);
-        let switches = found.filter(|leg| matches!(leg.exit(), Exit::Switch(_))).count();
+        let switches = found.filter(|segment| matches!(segment.exit(), Exit::Switch(_))).count();
         assert_eq!(switches, expected, "{periods}");
     }
 }
@@ -283,7 +285,7 @@ fn a_contact_whose_squares_underflow() {
         let unit = 10.0_f64.powi(exponent);
         let (a, b) = (2.100_865_526_582_815_6 * unit, -0.877_014_839_738_917_9 * unit);
         let parameters = [a, b, 1e-8, 0.001_032_237_949_543_611_8, 0.0, 0.0];
-        legs(case(parameters, [0.0; 4], None), 30.0)[0].duration()
+        segments(case(parameters, [0.0; 4], None), 30.0)[0].duration()
     });
     let [tiny, small] = durations;
     assert!((tiny - small).abs() <= ROUNDING * small, "{tiny} {small}");
@@ -301,11 +303,11 @@ fn a_guard_that_underflows_next_to_its_imposed_zero() {
         0.0,
         5.817_167_878_477_489,
     ];
-    let legs = legs(case(parameters, [0.0; 4], None), 1e-3);
+    let segments = segments(case(parameters, [0.0; 4], None), 1e-3);
     // The force pushes for most of the first period.
     let period = std::f64::consts::TAU / 1e6;
-    assert_eq!(legs[0].phase(), Phase::Contact);
-    assert!(legs[0].duration() > 0.2 * period, "{:e}", legs[0].duration());
+    assert_eq!(segments[0].phase(), Phase::Contact);
+    assert!(segments[0].duration() > 0.2 * period, "{:e}", segments[0].duration());
 }
 
 /// Newton's method crept through a bracket of 1e30 radians: 12,640 evaluations.
@@ -337,11 +339,11 @@ fn a_small_harmonic_force_on_a_threshold() {
     let parameters = [2.552_365_740_751_081_6e-64, 1.0, 1.0, 0.177_372_697_593_197_1, 0.02, 0.0];
     let (tau, y) =
         (1.567_510_069_900_758_7 / 0.177_372_697_593_197_1, -4.970_896_296_344_797_5e-65);
-    let legs = legs(case(parameters, [tau, 1.02, y, 1.0], Some(Phase::Contact)), 40.0);
-    let lasts = legs[0].duration();
+    let segments = segments(case(parameters, [tau, 1.02, y, 1.0], Some(Phase::Contact)), 40.0);
+    let lasts = segments[0].duration();
     // tau is rounded, and the root moves with it: d(lasts) = -d(tau).
     let model = Model::new(Parameters { omega: 0.177_372_697_593_197_1, ..Parameters::default() });
-    let angle = legs[0].entry().instant.angle();
+    let angle = segments[0].entry().instant.angle();
     let moved = (angle - 1.567_510_069_900_758_7) / model.unwrap().parameters().omega;
     let expected = 17.787_837_386_337_64 - moved;
     assert!((lasts - expected).abs() <= ROUNDING * expected, "{lasts:?} {expected:?}");
@@ -358,7 +360,7 @@ fn a_hop_under_a_far_slider() {
     let start = Start { cycle: 1 << 53, ..start };
     let model = Model::new(parameters).unwrap();
     let entry = model.start(&start).unwrap();
-    let first = |leg: Option<Leg>| leg.unwrap().duration();
+    let first = |segment: Option<Segment>| segment.unwrap().duration();
     let free = first(model.trajectory(entry).next());
     for parts in [1, 10, 1000] {
         let horizon = entry.instant.after_periods(parts, 1000);
@@ -374,10 +376,10 @@ fn a_gap_that_closes_by_forces_whose_products_underflow() {
     let (b, g) = (3.328_260_325_600_571_7e-139, 1.592_901_072_926_197e-228);
     let parameters = [0.0, b, 5.563_688_936_356_673, 8.117_229_193_932_584e-6, g, 0.0];
     let at = [0.0, -2.225_073_858_507_201_4e-308, 0.0, 0.0];
-    let legs = legs(case(parameters, at, None), 1.0);
+    let segments = segments(case(parameters, at, None), 1.0);
     let expected = (2.0 * g / b).sqrt();
-    assert_eq!(legs[0].phase(), Phase::NoContact);
-    assert!((legs[0].duration() - expected).abs() <= ROUNDING * expected, "{legs:?}");
+    assert_eq!(segments[0].phase(), Phase::NoContact);
+    assert!((segments[0].duration() - expected).abs() <= ROUNDING * expected, "{segments:?}");
 }
 
 /// A progression next to b = 1 stops at once. Its mean velocity is zero, and pieces of a period's
@@ -410,8 +412,8 @@ fn a_gap_that_closes_before_its_terms_grow() {
     let start = [3.141_592_653_589_793, 0.0, 0.627_829_466_626_939_7, 0.0];
     let (parameters, start) = case(parameters, start, None);
     let model = Model::new(parameters).unwrap();
-    let leg = model.trajectory(model.start(&start).unwrap()).next().unwrap();
-    assert!(matches!(leg.exit(), Exit::Switch(_)), "{leg:?}");
-    assert!((leg.at(leg.duration()).state.p - g).abs() < 1e-6, "{leg:?}");
-    assert!((2.7..2.8).contains(&leg.duration()), "{leg:?}");
+    let segment = model.trajectory(model.start(&start).unwrap()).next().unwrap();
+    assert!(matches!(segment.exit(), Exit::Switch(_)), "{segment:?}");
+    assert!((segment.at(segment.duration()).state.p - g).abs() < 1e-6, "{segment:?}");
+    assert!((2.7..2.8).contains(&segment.duration()), "{segment:?}");
 }

@@ -11,10 +11,10 @@
 #[path = "support/random.rs"]
 mod random;
 
-use percuss::{Counters, Entry, Exit, Leg, Model, Parameters, Phase, Start};
+use percuss::{Counters, Entry, Exit, Model, Parameters, Phase, Segment, Start};
 use random::Draw;
 
-/// Evaluations after which the judge gives a leg up.
+/// Evaluations after which the judge gives a segment up.
 const PATIENCE: u64 = 20_000;
 
 /// omega and xi of the paper's cases and of the corners around them.
@@ -55,21 +55,21 @@ fn random_start(draw: &mut Draw, model: &Model) -> Entry {
 struct Score {
     switches: u64,
     given_up: u64,
-    /// Differences on legs that one of the two called undecidable.
+    /// Differences on segments that one of the two called undecidable.
     undecidable: u64,
     disagreements: Vec<String>,
     worst: f64,
 }
 
-/// How far apart the two may put the end of a leg: both know the guard to a few eps of its terms,
-/// which is that over its slope in time.
-fn room(model: &Model, leg: &Leg, next: &Entry) -> f64 {
+/// How far apart the two may put the end of a segment: both know the guard to a few eps of its
+/// terms, which is that over its slope in time.
+fn room(model: &Model, segment: &Segment, next: &Entry) -> f64 {
     let Parameters { a, b, xi, omega, g, .. } = *model.parameters();
-    let (from, to) = (leg.entry().state, next.state);
-    let (d, rate, two_xi) = (leg.duration(), 0.5 / xi, 2.0 * xi);
+    let (from, to) = (segment.entry().state, next.state);
+    let (d, rate, two_xi) = (segment.duration(), 0.5 / xi, 2.0 * xi);
     let force = model.force(&next.instant)[0];
     let swing = a * (0.5 * d * d).min((2.0 + omega * d) / (omega * omega));
-    let (terms, slope) = match leg.phase() {
+    let (terms, slope) = match segment.phase() {
         Phase::NoContact => {
             let lift = 0.5 * b.abs() * d * d + swing;
             let start = from.p.abs() + g + from.q.abs() + (from.y * d).abs();
@@ -89,33 +89,33 @@ fn room(model: &Model, leg: &Leg, next: &Entry) -> f64 {
     32.0 * f64::EPSILON * (terms / slope.abs() + d)
 }
 
-fn judge(model: &Model, leg: &Leg, undecidable: bool, score: &mut Score) {
-    let (found, next) = match leg.exit() {
-        Exit::Switch(next) => (leg.duration(), next),
+fn judge(model: &Model, segment: &Segment, undecidable: bool, score: &mut Score) {
+    let (found, next) = match segment.exit() {
+        Exit::Switch(next) => (segment.duration(), next),
         // Not a switch: the judge must not find one either, as far as it can look.
         _ => {
-            let horizon = leg.duration().min(20.0 * model.period());
-            match leg.judged_duration(horizon * (1.0 - 1e-9), PATIENCE) {
+            let horizon = segment.duration().min(20.0 * model.period());
+            match segment.judged_duration(horizon * (1.0 - 1e-9), PATIENCE) {
                 None => score.given_up += 1,
                 Some(time) if time.is_infinite() => {}
                 Some(_) if undecidable => score.undecidable += 1,
-                Some(time) => score.disagreements.push(format!("{leg:?}: judged {time:e}")),
+                Some(time) => score.disagreements.push(format!("{segment:?}: judged {time:e}")),
             }
             return;
         }
     };
     score.switches += 1;
-    let Some(judged) = leg.judged_duration(f64::INFINITY, PATIENCE) else {
+    let Some(judged) = segment.judged_duration(f64::INFINITY, PATIENCE) else {
         score.given_up += 1;
         return;
     };
-    let ratio = (judged - found).abs() / room(model, leg, next);
+    let ratio = (judged - found).abs() / room(model, segment, next);
     if ratio <= 1.0 {
         score.worst = score.worst.max(ratio);
     } else if undecidable {
         score.undecidable += 1;
     } else {
-        let about = format!("{:?} {:?} {:?}", model.parameters(), leg.phase(), leg.entry());
+        let about = format!("{:?} {:?} {:?}", model.parameters(), segment.phase(), segment.entry());
         score
             .disagreements
             .push(format!("{about}: {found:e}, judged {judged:e}, {ratio:.1} rooms"));
@@ -127,9 +127,9 @@ fn run(model: &Model, start: Entry, switches: usize, score: &mut Score) {
     let mut trajectory = model.trajectory(start).until(horizon);
     let mut before = Counters::default();
     for _ in 0..switches {
-        let Some(leg) = trajectory.next() else { return };
+        let Some(segment) = trajectory.next() else { return };
         let after = trajectory.counters();
-        judge(model, &leg, after.undecidable > before.undecidable, score);
+        judge(model, &segment, after.undecidable > before.undecidable, score);
         before = after;
     }
 }

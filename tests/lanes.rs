@@ -68,24 +68,24 @@ fn largest_error(model: &Model, diary: &Diary) -> Result<f64, TestCaseError> {
     let mut largest = 0.0_f64;
     for (k, entry) in diary.phases.iter().enumerate() {
         let until = entry.instant.after_periods(1 << 20, 1);
-        let leg = model.trajectory(*entry).until(until).next().expect("a run has a phase");
+        let segment = model.trajectory(*entry).until(until).next().expect("a run has a phase");
         let mut recorder = GrowthRecorder::new();
         for (_, strobe) in diary.strobes.iter().filter(|(begun, _)| *begun == k + 1) {
-            prop_assert!(!leg.ends_by(&strobe.instant), "{k}: {entry:?} {strobe:?}");
-            let expected = leg.entry_at(&strobe.instant);
+            prop_assert!(!segment.ends_by(&strobe.instant), "{k}: {entry:?} {strobe:?}");
+            let expected = segment.entry_at(&strobe.instant);
             prop_assert_eq!(strobe.phase(), expected.phase());
-            let growth = recorder.at(&leg, leg.elapsed_at(&strobe.instant));
+            let growth = recorder.at(&segment, segment.elapsed_at(&strobe.instant));
             largest = largest.max(units(strobe, &expected, &growth));
         }
         let Some(next) = diary.phases.get(k + 1) else { break };
-        let Exit::Switch(expected) = leg.exit() else {
+        let Exit::Switch(expected) = segment.exit() else {
             return Err(TestCaseError::fail(format!("{k}: no switch after {entry:?}")));
         };
         let message = format!("{k}: {entry:?}\n{next:?}\n{expected:?} {:?}", model.parameters());
         prop_assert!(next.phase() == expected.phase(), "{}", message);
-        let growth = recorder.pass(&leg).expect("it ends by a switch");
+        let growth = recorder.pass(&segment).expect("it ends by a switch");
         let late = next.instant.since(&expected.instant, omega).value().abs();
-        let time = late / (f64::EPSILON * (1.0 + leg.duration()) * growth.tau);
+        let time = late / (f64::EPSILON * (1.0 + segment.duration()) * growth.tau);
         let off = time.max(units(next, expected, &growth));
         prop_assert!(off <= ROOM, "{off} {}", message);
         largest = largest.max(off);
@@ -243,8 +243,8 @@ fn beside_changes(
     let entry = |number: f64| model.start(&start(number)).expect("a start");
     let word = |number: f64| -> Vec<_> {
         let start = entry(number);
-        let legs = model.trajectory(start).until(start.instant.after_periods(periods, 1));
-        legs.map(|leg| leg.phase()).take(6).collect()
+        let segments = model.trajectory(start).until(start.instant.after_periods(periods, 1));
+        segments.map(|segment| segment.phase()).take(6).collect()
     };
     let (mut low, mut high) = (number, number + 0.2);
     let first = word(low);
@@ -355,9 +355,9 @@ fn switches_are_the_judges() {
             let (diaries, _) = diaries(set, &motions, 100);
             for ((model, _), diary) in motions.iter().zip(&diaries) {
                 for pair in diary.phases.windows(2) {
-                    let leg = model.trajectory(pair[0]).next().expect("a phase");
+                    let segment = model.trajectory(pair[0]).next().expect("a phase");
                     let found = pair[1].instant.since(&pair[0].instant, omega).value();
-                    let judged = leg.judged_duration(2.0 * found, 100_000).expect("it ends");
+                    let judged = segment.judged_duration(2.0 * found, 100_000).expect("it ends");
                     assert!(
                         (judged - found).abs() <= 1e-7 * (1.0 + found),
                         "{judged} {found} {pair:?}"

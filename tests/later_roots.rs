@@ -9,7 +9,7 @@ use percuss::crossing::guarded::Guarded;
 use percuss::flow::forcing::EntryAngle;
 use percuss::flow::no_contact::NoContact;
 use percuss::flow::progression::Progression;
-use percuss::flow::stride::Strides;
+use percuss::flow::steps::Steps;
 use percuss::{Constants, Parameters, State};
 use std::f64::consts::TAU;
 
@@ -50,16 +50,11 @@ fn later_roots<G: Guarded>(phase: &G, until: f64) -> Vec<f64> {
 }
 
 /// How many later roots there are; none of them may be proved.
-fn ask<G: Guarded>(
-    phase: &G,
-    strides: &Strides,
-    until: f64,
-    about: &impl std::fmt::Debug,
-) -> usize {
+fn ask<G: Guarded>(phase: &G, steps: &Steps, until: f64, about: &impl std::fmt::Debug) -> usize {
     let roots = later_roots(phase, until);
     for root in &roots {
         let ends = Ends { right: true, ..phase.imposed() };
-        let verdict = phase.certify(strides, &phase.entry(), &phase.at(*root), ends);
+        let verdict = phase.certify(steps, &phase.entry(), &phase.at(*root), ends);
         assert_ne!(verdict, Verdict::Inside, "{about:?}: {root:e} is not the first crossing");
     }
     roots.len()
@@ -91,7 +86,7 @@ fn later_impacts_are_not_proved() {
         let constants = Constants::new(&parameters);
         let flight = NoContact { constants, entry, angle, surface: Some(0.0) };
         let until = draw.decades(0.5, 60.0) / omega;
-        roots += ask(&flight, &Strides::new(&parameters), until, &(parameters, entry, angle));
+        roots += ask(&flight, &Steps::new(&parameters), until, &(parameters, entry, angle));
     }
     println!("{roots} later impacts");
     assert!(roots > 1000, "{roots}");
@@ -112,7 +107,7 @@ fn later_stops_are_not_proved() {
         let constants = Constants::new(&parameters);
         let slip = Progression { constants, entry, angle, drift_rate, closing };
         let until = draw.decades(0.5, 60.0) / omega;
-        roots += ask(&slip, &Strides::new(&parameters), until, &(parameters, entry, angle));
+        roots += ask(&slip, &Steps::new(&parameters), until, &(parameters, entry, angle));
     }
     println!("{roots} later stops");
     assert!(roots > 1000, "{roots}");

@@ -5,17 +5,17 @@
 
 use percuss::crossing::guarded::SLACK;
 use percuss::crossing::limit::{GRANTED, LAST_ROOT, MOST};
-use percuss::{Counters, Endless, Exit, Leg, Model, Parameters, Phase, Start};
+use percuss::{Counters, Endless, Exit, Model, Parameters, Phase, Segment, Start};
 
-fn first(parameters: Parameters, start: &Start) -> (Leg, Counters) {
+fn first(parameters: Parameters, start: &Start) -> (Segment, Counters) {
     let model = Model::new(parameters).unwrap();
     let mut run = model.trajectory(model.start(start).unwrap());
-    let leg = run.next().unwrap();
-    (leg, run.counters())
+    let segment = run.next().unwrap();
+    (segment, run.counters())
 }
 
 /// A contact of the model without harmonic force, from this trial force and speed.
-fn dying_out(xi: f64, b: f64, f: f64, y: f64) -> (Leg, Counters) {
+fn dying_out(xi: f64, b: f64, f: f64, y: f64) -> (Segment, Counters) {
     let parameters = Parameters { a: 0.0, b, xi, ..Parameters::default() };
     let q = f - 2.0 * xi * y;
     let start = Start { p: q + parameters.g, y, q: Some(q), ..Start::default() };
@@ -31,8 +31,12 @@ fn what_dies_out_from_one_side_rests_for_ever() {
     for xi in [1.0_f64, 1.0 + 1e-9, 1.2, 1.459, 3.0, 7.3] {
         for b in [0.0, 5e-324, 1e-127, 1e-40, 1e-17] {
             // f' = -2 xi (f - b) + y, and the part that dies out last is positive.
-            let (leg, counters) = dying_out(xi, b, 0.12, 0.3);
-            assert_eq!(*leg.exit(), Exit::Endless(Endless::RestsForEver), "{xi} {b:e} {leg:?}");
+            let (segment, counters) = dying_out(xi, b, 0.12, 0.3);
+            assert_eq!(
+                *segment.exit(),
+                Exit::Endless(Endless::RestsForEver),
+                "{xi} {b:e} {segment:?}"
+            );
             assert!(counters.evaluations <= 40, "{xi} {b:e} {counters:?}");
         }
     }
@@ -46,20 +50,22 @@ fn what_dies_out_towards_a_pull_separates_when_nothing_else_is_left() {
         for exponent in [17, 25, 40, 60, 90, 127] {
             let pull = 10.0_f64.powi(-exponent);
             let (f, y) = (0.12, 0.1);
-            let (leg, counters) = dying_out(xi, -pull, f, y);
+            let (segment, counters) = dying_out(xi, -pull, f, y);
             // f + pull = s exp(-slow d) + k exp(-fast d), of which the second is gone.
             let rate = y - 2.0 * xi * f;
             let s = (rate + fast * f) / (fast - slow);
             let expected = (s / pull).ln() / slow;
-            assert!(matches!(leg.exit(), Exit::Switch(next) if next.phase() == Phase::NoContact));
+            assert!(
+                matches!(segment.exit(), Exit::Switch(next) if next.phase() == Phase::NoContact)
+            );
             // A stage of eight decay times hands on the guard's rounding room, SLACK of its largest
             // term 2 xi y with y = fast f, while f shrinks by e^8. The exponents' own rounding
             // comes on top.
             let stages = (slow * expected / 8.0).ceil();
             let handed_on = SLACK * 2.0 * xi * fast * 8.0_f64.exp() * stages;
             let room = handed_on / slow + f64::EPSILON * 64.0 * expected;
-            let off = (leg.duration() - expected).abs();
-            assert!(off <= room, "{xi} {pull:e}: {} for {expected}", leg.duration());
+            let off = (segment.duration() - expected).abs();
+            assert!(off <= room, "{xi} {pull:e}: {} for {expected}", segment.duration());
             assert!(counters.evaluations <= DECIDED, "{xi} {pull:e}: {counters:?}");
             assert_eq!(counters.undecidable, 0, "{xi} {pull:e}");
         }
@@ -69,13 +75,13 @@ fn what_dies_out_towards_a_pull_separates_when_nothing_else_is_left() {
 #[test]
 fn next_to_the_upper_threshold_it_is_decided_alike() {
     // f comes from below.
-    let (leg, _) = dying_out(1.2, 1.0 - f64::EPSILON / 2.0, 0.9, -0.1);
-    assert_eq!(*leg.exit(), Exit::Endless(Endless::RestsForEver));
-    let (leg, _) = dying_out(1.2, 1.0, 0.9, -0.1);
-    assert_eq!(*leg.exit(), Exit::Endless(Endless::RestsForEver));
+    let (segment, _) = dying_out(1.2, 1.0 - f64::EPSILON / 2.0, 0.9, -0.1);
+    assert_eq!(*segment.exit(), Exit::Endless(Endless::RestsForEver));
+    let (segment, _) = dying_out(1.2, 1.0, 0.9, -0.1);
+    assert_eq!(*segment.exit(), Exit::Endless(Endless::RestsForEver));
     for beyond in [f64::EPSILON, 1e-15, 1e-12] {
-        let (leg, counters) = dying_out(1.2, 1.0 + beyond, 0.9, -0.1);
-        let next = leg.exit();
+        let (segment, counters) = dying_out(1.2, 1.0 + beyond, 0.9, -0.1);
+        let next = segment.exit();
         assert!(
             matches!(next, Exit::Switch(next) if next.phase() == Phase::Progression),
             "{next:?}"
@@ -99,20 +105,20 @@ fn in_step() -> (Parameters, Start) {
 #[test]
 fn a_search_that_passes_its_limit_leaves_the_phase_undecidable() {
     let (parameters, start) = in_step();
-    let (leg, counters) = first(parameters, &start);
-    assert_eq!(*leg.exit(), Exit::Undecidable);
+    let (segment, counters) = first(parameters, &start);
+    assert_eq!(*segment.exit(), Exit::Undecidable);
     assert!((MOST..=MOST + GRANTED + LAST_ROOT).contains(&counters.evaluations), "{counters:?}");
     // What is proved of it goes far, but not until the two amplitudes together fit inside: 0.28 of
     // the free one has then become 0.22.
     let fits = (0.28_f64 / 0.22).ln() / 1e-8;
-    assert!(leg.duration() > 1e5 && leg.duration() < fits, "{}", leg.duration());
+    assert!(segment.duration() > 1e5 && segment.duration() < fits, "{}", segment.duration());
     let model = Model::new(parameters).unwrap();
     let entry = model.start(&start).unwrap();
     let mut run = model.trajectory(entry);
     assert!(run.next().is_some() && run.next().is_none() && run.step().is_none());
-    let proved = leg.entry().instant.after(leg.duration_two_word(), parameters.omega);
-    assert!(!leg.is_undecided_at(&proved.clone()));
-    assert!(leg.is_undecided_at(&proved.after_periods(1, 1)));
+    let proved = segment.entry().instant.after(segment.duration_two_word(), parameters.omega);
+    assert!(!segment.is_undecided_at(&proved.clone()));
+    assert!(segment.is_undecided_at(&proved.after_periods(1, 1)));
 }
 
 #[test]
@@ -123,8 +129,8 @@ fn a_horizon_holds_in_a_phase_that_has_no_decided_end() {
     for periods in [0, 1, 1000] {
         let horizon = entry.instant.after_periods(periods, 1);
         let mut run = model.trajectory(entry).until(horizon);
-        let leg = run.next().unwrap();
-        assert_eq!(*leg.exit(), Exit::Horizon, "{periods}");
+        let segment = run.next().unwrap();
+        assert_eq!(*segment.exit(), Exit::Horizon, "{periods}");
         // The work is that of the time asked for.
         let most = GRANTED as f64 + 64.0 * 3.0 * periods as f64 * model.period();
         assert!((run.counters().evaluations as f64) < most, "{periods} {:?}", run.counters());

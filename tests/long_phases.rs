@@ -8,15 +8,15 @@
     reason = "each test uses a part of its support; a panic is a failed test"
 )]
 
-use percuss::{Endless, Exit, Instant, Leg, Model, Parameters, Start};
+use percuss::{Endless, Exit, Instant, Model, Parameters, Segment, Start};
 
-fn first_leg(parameters: Parameters, start: Start, periods: u64) -> (Leg, u64) {
+fn first_segment(parameters: Parameters, start: Start, periods: u64) -> (Segment, u64) {
     let model = Model::new(parameters).unwrap();
     let entry = model.start(&start).unwrap();
     let horizon: Instant = entry.instant.after_periods(periods, 1);
     let mut run = model.trajectory(entry).until(horizon);
-    let leg = run.next().unwrap();
-    (leg, run.counters().evaluations)
+    let segment = run.next().unwrap();
+    (segment, run.counters().evaluations)
 }
 
 /// A window of search a bound's zero, and some jumps to get there.
@@ -28,11 +28,11 @@ fn a_weak_force_in_resonance_takes_its_time() {
     let parameters =
         Parameters { a: 1.2e-8, b: 0.5, xi: 1e-8, omega: 1.0, g: 0.0, ..Default::default() };
     let start = Start { p: 0.5, q: Some(0.5), ..Default::default() };
-    let (leg, evaluations) = first_leg(parameters, start, 1_000_000_000);
-    assert!(matches!(leg.exit(), Exit::Switch(_)));
+    let (segment, evaluations) = first_segment(parameters, start, 1_000_000_000);
+    assert!(matches!(segment.exit(), Exit::Switch(_)));
     // |f - b| = 0.6 (1 - exp(-xi d)) reaches 0.5 at d = ln(6)/xi; within an oscillation of that.
     let expected = 6.0_f64.ln() / 1e-8;
-    assert!((leg.duration() - expected).abs() < 10.0, "{} {expected}", leg.duration());
+    assert!((segment.duration() - expected).abs() < 10.0, "{} {expected}", segment.duration());
     assert!(evaluations < EVALUATIONS, "{evaluations}");
 }
 
@@ -46,7 +46,7 @@ fn flights_stay_cheap_as_the_static_force_vanishes() {
         {
             let parameters = Parameters { b, ..Default::default() };
             let start = Start { p: -1.0, y, q: Some(0.0), ..Default::default() };
-            let (_, evaluations) = first_leg(parameters, start, 1_000_000_000);
+            let (_, evaluations) = first_segment(parameters, start, 1_000_000_000);
             assert!(evaluations < limit * EVALUATIONS, "b = {b:e}, y = {y}: {evaluations}");
         }
     }

@@ -118,18 +118,18 @@ fn an_impact_changes_areas_as_derived() {
         let model = model(parameters);
         let two_xi = 2.0 * parameters.xi;
         let mut separated = false;
-        for leg in model.trajectory(from_rest(&model)).take(300) {
-            let Exit::Switch(next) = leg.exit() else { break };
-            if leg.phase() == Phase::NoContact && separated {
-                let map = product(&leg.saltation(), &leg.variation(leg.duration()));
+        for segment in model.trajectory(from_rest(&model)).take(300) {
+            let Exit::Switch(next) = segment.exit() else { break };
+            if segment.phase() == Phase::NoContact && separated {
+                let map = product(&segment.saltation(), &segment.variation(segment.duration()));
                 let image = |dq: f64, dy: f64| {
                     [Q, Y].map(|row| map[row][P] * dq + map[row][Q] * dq + map[row][Y] * dy)
                 };
                 let (a, b) = (image(1.0, 0.0), image(0.0, 1.0));
                 let area = a[0] * b[1] - a[1] * b[0];
-                let d = leg.duration();
+                let d = segment.duration();
                 let e = (-d / two_xi).exp();
-                let end = leg.at(d).state;
+                let end = segment.at(d).state;
                 let derived = if next.phase() == Phase::Progression {
                     straight += 1;
                     let f = two_xi * end.y + end.q;

@@ -131,9 +131,9 @@ fn another_section_sees_the_same_orbit() {
         for eighths in [1, 3, 6] {
             let instant = start.instant.after_periods(eighths, 8);
             let run = here.model().trajectory(start);
-            let leg = run.into_iter().find(|leg| !leg.ends_by(&instant)).unwrap();
+            let segment = run.into_iter().find(|segment| !segment.ends_by(&instant)).unwrap();
             let there = StrobeMap::new(*here.model(), instant);
-            let seen = Orbit::find(&there, leg.entry_at(&instant).point(), *period).unwrap();
+            let seen = Orbit::find(&there, segment.entry_at(&instant).point(), *period).unwrap();
             assert_eq!(seen.period(), *period);
             for (a, b) in orbit.multipliers.iter().zip(seen.multipliers) {
                 // Rounding of the products, and of the strobes times the map's second derivative.

@@ -21,7 +21,7 @@ mod original;
 #[path = "support/plant.rs"]
 mod plant;
 
-use draw::{Setting, Tally, count, first_leg, log, margin, runner, setting, state};
+use draw::{Setting, Tally, count, first_segment, log, margin, runner, setting, state};
 use percuss::{Exit, Parameters, Phase, Start};
 use plant::{Finding, examine, flight, hop, steep, wave};
 use proptest::prelude::*;
@@ -47,12 +47,13 @@ fn impacts_are_recovered() {
         let [p, y, q] = aim(&parameters, v, d, 0.0, slope);
         let guard = |t: f64| flight(&parameters, [p, y, q], t);
         prop_assume!(steep(&guard(d), a + b.abs() + q / (4.0 * xi * xi) * (-d / (2.0 * xi)).exp()));
-        let Some((leg, ..)) = first_leg(parameters, state(p, y, q)) else {
+        let Some((segment, ..)) = first_segment(parameters, state(p, y, q)) else {
             return Err(TestCaseError::reject("start not accepted"));
         };
         // Within four units in the last place of the surface a start is on it.
-        prop_assume!(leg.phase() == Phase::NoContact);
-        tally.take(examine(&leg, guard, d, 200)?, (parameters, [p, y, q], d, leg.duration()))
+        prop_assume!(segment.phase() == Phase::NoContact);
+        tally
+            .take(examine(&segment, guard, d, 200)?, (parameters, [p, y, q], d, segment.duration()))
     };
     runner(20_000, 11).run(&strategy, test).unwrap();
     println!("recovered {} earlier {}", tally.recovered.get(), tally.earlier.get());
@@ -73,17 +74,18 @@ fn flights_that_nearly_graze_are_decided() {
         let start = aim(&parameters, v, d, margin * size, 0.0);
         let guard = |t: f64| flight(&parameters, start, t);
         prop_assume!(b + a * wave(&parameters, d).force < -0.05 * a);
-        let Some((leg, ..)) = first_leg(parameters, state(start[0], start[1], start[2])) else {
+        let Some((segment, ..)) = first_segment(parameters, state(start[0], start[1], start[2]))
+        else {
             return Err(TestCaseError::reject("start not accepted"));
         };
         // Within four units in the last place of the surface a start is on it.
-        prop_assume!(leg.phase() == Phase::NoContact);
-        let finding = examine(&leg, guard, d, 200)?;
+        prop_assume!(segment.phase() == Phase::NoContact);
+        let finding = examine(&segment, guard, d, 200)?;
         if margin > 0.0 {
             prop_assert!(
-                leg.duration() <= d,
+                segment.duration() <= d,
                 "passed: {:?}",
-                (parameters, start, d, leg.duration())
+                (parameters, start, d, segment.duration())
             );
         }
         count(if finding == Finding::Earlier { &tally.earlier } else { &tally.recovered }, 1);
@@ -105,14 +107,14 @@ fn touches_within_the_rounding_are_counted_and_passed() {
         let size = flight(&parameters, aim(&parameters, v, d, 0.0, 0.0), d).size;
         let start = aim(&parameters, v, d, ulps * f64::EPSILON * size, 0.0);
         let guard = |t: f64| flight(&parameters, start, t);
-        let Some((leg, counters, rest)) =
-            first_leg(parameters, state(start[0], start[1], start[2]))
+        let Some((segment, counters, rest)) =
+            first_segment(parameters, state(start[0], start[1], start[2]))
         else {
             return Err(TestCaseError::reject("start not accepted"));
         };
-        examine(&leg, guard, d, 200)?;
+        examine(&segment, guard, d, 200)?;
         count(&tally.undecidable, counters.undecidable);
-        prop_assert!(rest.take(20).all(|leg| !leg.duration().is_nan()));
+        prop_assert!(rest.take(20).all(|segment| !segment.duration().is_nan()));
         Ok(())
     };
     runner(1000, 13).run(&strategy, test).unwrap();
@@ -138,11 +140,11 @@ fn hops_after_separation_are_recovered() {
         let bend = a + parameters.b.abs() + y.abs() / (2.0 * xi);
         prop_assume!(steep(&at, bend));
         let q = -2.0 * xi * y;
-        let Some((leg, ..)) = first_leg(parameters, state(q + 0.02, y, q)) else {
+        let Some((segment, ..)) = first_segment(parameters, state(q + 0.02, y, q)) else {
             return Err(TestCaseError::reject("start not accepted"));
         };
-        prop_assume!(leg.phase() == Phase::NoContact);
-        tally.take(examine(&leg, guard, d, 200)?, (parameters, y, d, leg.duration()))
+        prop_assume!(segment.phase() == Phase::NoContact);
+        tally.take(examine(&segment, guard, d, 200)?, (parameters, y, d, segment.duration()))
     };
     runner(20_000, 14).run(&strategy, test).unwrap();
     println!("recovered {} earlier {}", tally.recovered.get(), tally.earlier.get());
@@ -163,12 +165,12 @@ fn impacts_choose_the_phase_by_their_force() {
         let [p, y, q] = aim(&parameters, v, d, 0.0, slope);
         let guard = |t: f64| flight(&parameters, [p, y, q], t);
         prop_assume!(p.abs() < 1e9 && y.abs() < 1e9 && a < 1e9);
-        let Some((leg, ..)) = first_leg(parameters, state(p, y, q)) else {
+        let Some((segment, ..)) = first_segment(parameters, state(p, y, q)) else {
             return Err(TestCaseError::reject("start not accepted"));
         };
-        let finding = examine(&leg, guard, d, 200)?;
-        tally.take(finding, (parameters, [p, y, q], d, leg.duration()))?;
-        let Exit::Switch(next) = leg.exit() else { unreachable!() };
+        let finding = examine(&segment, guard, d, 200)?;
+        tally.take(finding, (parameters, [p, y, q], d, segment.duration()))?;
+        let Exit::Switch(next) = segment.exit() else { unreachable!() };
         // The slope is known to the roundings of its terms, and moves with the crossing.
         let bend = a + b.abs() + v / (4.0 * xi * xi);
         let terms = y.abs() + (b * d).abs() + a / omega * (omega * d).min(1.0) + slope;
@@ -207,13 +209,13 @@ fn shallow_dips_under_strong_damping_are_met() {
         let parameters = Parameters { a, b, xi, omega, g: 0.02, phi };
         let start =
             Start { p: q + 0.02, y, q: Some(q), phase: Some(Phase::Contact), ..Start::default() };
-        let Some((leg, counters, _)) = first_leg(parameters, start) else {
+        let Some((segment, counters, _)) = first_segment(parameters, start) else {
             return Err(TestCaseError::reject("start not accepted"));
         };
         let dips = ((depth - 1.0).acos() - from) / omega;
         let width = (2.0 * depth).sqrt() / omega;
         let room = 0.02 * width + 1e-3 / omega * depth.sqrt();
-        prop_assert!((leg.duration() - dips).abs() < room, "{} for {dips}", leg.duration());
+        prop_assert!((segment.duration() - dips).abs() < room, "{} for {dips}", segment.duration());
         prop_assert!(counters.evaluations < 100, "{counters:?}");
         Ok(())
     };

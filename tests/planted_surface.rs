@@ -15,7 +15,7 @@ mod original;
 #[path = "support/plant.rs"]
 mod plant;
 
-use draw::{Setting, Tally, count, first_leg, log, margin, runner, setting, state};
+use draw::{Setting, Tally, count, first_segment, log, margin, runner, setting, state};
 use original::Equations;
 use percuss::{Exit, Parameters, Phase};
 use plant::{Finding, Side, contact, examine, slip, steep};
@@ -45,11 +45,14 @@ fn stops_of_the_bottom_are_recovered() {
             let guard = |t: f64| slip(&parameters, [y, q], t);
             let lag = (1.0 - q) / (4.0 * xi * xi) * (-d / (2.0 * xi)).exp();
             prop_assume!(steep(&guard(d), a * omega + lag / (2.0 * xi)));
-            let Some((leg, ..)) = first_leg(parameters, state(q + 0.02, y, q)) else {
+            let Some((segment, ..)) = first_segment(parameters, state(q + 0.02, y, q)) else {
                 return Err(TestCaseError::reject("start not accepted"));
             };
-            prop_assume!(leg.phase() == Phase::Progression);
-            tally.take(examine(&leg, guard, d, 200)?, (parameters, [y, q], d, leg.duration()))
+            prop_assume!(segment.phase() == Phase::Progression);
+            tally.take(
+                examine(&segment, guard, d, 200)?,
+                (parameters, [y, q], d, segment.duration()),
+            )
         };
     runner(20_000, 21).run(&strategy, test).unwrap();
     println!("recovered {} earlier {}", tally.recovered.get(), tally.earlier.get());
@@ -73,16 +76,16 @@ fn progressions_that_nearly_stop_are_decided() {
         let guard = |t: f64| slip(&parameters, [y, q], t);
         let around = 1e-4 / omega.max(0.5 / xi);
         prop_assume!(around < d && guard(d - around).slope > 0.0 && guard(d + around).slope < 0.0);
-        let Some((leg, ..)) = first_leg(parameters, state(q + 0.02, y, q)) else {
+        let Some((segment, ..)) = first_segment(parameters, state(q + 0.02, y, q)) else {
             return Err(TestCaseError::reject("start not accepted"));
         };
-        prop_assume!(leg.phase() == Phase::Progression);
-        let finding = examine(&leg, guard, d, 200)?;
+        prop_assume!(segment.phase() == Phase::Progression);
+        let finding = examine(&segment, guard, d, 200)?;
         if margin > 0.0 {
             prop_assert!(
-                leg.duration() <= d,
+                segment.duration() <= d,
                 "passed: {:?}",
-                (parameters, [y, q], d, leg.duration())
+                (parameters, [y, q], d, segment.duration())
             );
         }
         count(if finding == Finding::Earlier { &tally.earlier } else { &tally.recovered }, 1);
@@ -155,20 +158,20 @@ fn ends_of_contact_are_recovered() {
                 rate * rate * (a + b.abs() + y.abs() * (1.0 + 2.0 * xi) + 1.0)
             ));
             prop_assume!(planted.excess.abs() <= planted.noise());
-            let Some((leg, ..)) = first_leg(parameters, state(q + 0.02, y, q)) else {
+            let Some((segment, ..)) = first_segment(parameters, state(q + 0.02, y, q)) else {
                 return Err(TestCaseError::reject("start not accepted"));
             };
-            prop_assume!(leg.phase() == Phase::Contact);
+            prop_assume!(segment.phase() == Phase::Contact);
             // At the planted instant the planted threshold counts, elsewhere the nearer one.
             let guard = |t: f64| contact(&parameters, [y, q], t, (t == d).then_some(side));
-            let finding = examine(&leg, guard, d, 24)?;
+            let finding = examine(&segment, guard, d, 24)?;
             if finding == Finding::Recovered {
-                let Exit::Switch(next) = leg.exit() else { unreachable!() };
+                let Exit::Switch(next) = segment.exit() else { unreachable!() };
                 let expected =
                     if side == Side::Rises { Phase::Progression } else { Phase::NoContact };
                 prop_assert_eq!(next.phase(), expected);
             }
-            tally.take(finding, (parameters, [y, q], d, leg.duration()))
+            tally.take(finding, (parameters, [y, q], d, segment.duration()))
         };
     runner(3000, 23).run(&strategy, test).unwrap();
     println!("recovered {} earlier {}", tally.recovered.get(), tally.earlier.get());
@@ -199,17 +202,17 @@ fn contacts_that_nearly_graze_are_decided() {
             let around = 1e-3 / omega.max(1.0).max(2.0 * xi);
             let slope = |t: f64| contact(&parameters, [y, q], t, Some(side)).slope;
             prop_assume!(around < d && slope(d - around) > 0.0 && slope(d + around) < 0.0);
-            let Some((leg, ..)) = first_leg(parameters, state(q + 0.02, y, q)) else {
+            let Some((segment, ..)) = first_segment(parameters, state(q + 0.02, y, q)) else {
                 return Err(TestCaseError::reject("start not accepted"));
             };
-            prop_assume!(leg.phase() == Phase::Contact);
+            prop_assume!(segment.phase() == Phase::Contact);
             let guard = |t: f64| contact(&parameters, [y, q], t, None);
-            let finding = examine(&leg, guard, d, 24)?;
+            let finding = examine(&segment, guard, d, 24)?;
             if value > 0.0 {
                 prop_assert!(
-                    leg.duration() <= d,
+                    segment.duration() <= d,
                     "passed: {:?}",
-                    (parameters, [y, q], d, leg.duration())
+                    (parameters, [y, q], d, segment.duration())
                 );
             }
             count(if finding == Finding::Earlier { &tally.earlier } else { &tally.recovered }, 1);

@@ -12,7 +12,7 @@
 mod reference;
 
 use percuss::two_word::TwoWord;
-use percuss::{Entry, GrowthRecorder, Instant, Leg, Model, Trajectory};
+use percuss::{Entry, GrowthRecorder, Instant, Model, Segment, Trajectory};
 use reference::{Row, Table, tables};
 
 /// k of the bound |error| <= k eps (1 + |value|) growth switches. Ten roundings a switch is the
@@ -78,14 +78,14 @@ fn every_switch_of_every_case_is_within_ten_roundings() {
         let mut rows = table.rows.iter().skip(1);
         assert_eq!(Some(start.phase()), table.rows[0].phase(), "{}", table.name);
         let omega = table.parameters.omega;
-        for (n, leg) in trajectory.enumerate() {
+        for (n, segment) in trajectory.enumerate() {
             let row =
                 rows.next().unwrap_or_else(|| panic!("{}: switch {n} is spurious", table.name));
-            let percuss::Exit::Switch(next) = leg.exit() else {
+            let percuss::Exit::Switch(next) = segment.exit() else {
                 assert_eq!(row.phase(), None, "{}: switch {} is missed", table.name, n + 1);
                 break;
             };
-            let growth = growth.pass(&leg).unwrap();
+            let growth = growth.pass(&segment).unwrap();
             assert_eq!(Some(next.phase()), row.phase(), "{}: switch {}", table.name, n + 1);
             for (name, units) in compare(next, &start, omega, row, &growth, n + 1) {
                 if units > 1.0 {
@@ -106,20 +106,20 @@ fn every_sample_of_every_case_is_within_ten_roundings() {
     let mut worst = Worst { units: 0.0, place: String::new() };
     for table in tables("samples") {
         let (_, start, trajectory) = run(&table);
-        let mut legs = trajectory;
+        let mut segments = trajectory;
         let mut growth = GrowthRecorder::new();
-        let mut leg: Leg = legs.next().unwrap();
+        let mut segment: Segment = segments.next().unwrap();
         let mut switches = 1;
         for (k, row) in table.rows.iter().enumerate() {
             let instant = start.instant.after_periods(k as u64, 8);
-            while leg.ends_by(&instant) {
-                growth.pass(&leg).unwrap();
-                leg = legs.next().unwrap();
+            while segment.ends_by(&instant) {
+                growth.pass(&segment).unwrap();
+                segment = segments.next().unwrap();
                 switches += 1;
             }
-            let sample = leg.at_instant(&instant);
-            let elapsed = instant.since(&leg.entry().instant, table.parameters.omega).value();
-            let growth = growth.at(&leg, elapsed);
+            let sample = segment.at_instant(&instant);
+            let elapsed = instant.since(&segment.entry().instant, table.parameters.omega).value();
+            let growth = growth.at(&segment, elapsed);
             let found = [sample.state.p, sample.state.y, sample.state.q, sample.v];
             let truth = [row.state[0], row.state[1], row.state[2], row.v];
             let growths = [growth.state[0], growth.state[1], growth.state[2], growth.v];
@@ -167,7 +167,7 @@ fn table_1_appears_from_rest() {
     let rows = table_1();
     let found: Vec<Entry> = model
         .trajectory(rest)
-        .map(|leg| *leg.entry())
+        .map(|segment| *segment.entry())
         .skip_while(|entry| entry.instant.tau(0.1) < rows[0][0] - 1.0)
         .take(rows.len())
         .collect();
@@ -186,9 +186,9 @@ fn table_1_follows_from_its_first_row_as_printed() {
     let start = percuss::Start { tau, p, y, q: Some(q), ..Default::default() };
     let first = model.start(&start).unwrap();
     assert_eq!(first.phase(), percuss::Phase::Contact);
-    for (leg, row) in model.trajectory(first).zip(&rows) {
+    for (segment, row) in model.trajectory(first).zip(&rows) {
         // Half a unit of the first row's last digit, grown along the orbit, and half of this row's.
-        let difference = largest_difference(leg.entry(), row);
+        let difference = largest_difference(segment.entry(), row);
         assert!(difference <= 2.0 * PRINTED_DIGIT, "{difference:e} at {row:?}");
     }
 }

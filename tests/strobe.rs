@@ -47,21 +47,21 @@ fn a_phase_taken_up_again_ends_where_it_would_have() {
     let mut seen = std::collections::BTreeMap::<Phase, usize>::new();
     for model in models() {
         let omega = model.parameters().omega;
-        for leg in model.trajectory(from_rest(&model)).take(400) {
-            let Exit::Switch(next) = leg.exit() else { break };
+        for segment in model.trajectory(from_rest(&model)).take(400) {
+            let Exit::Switch(next) = segment.exit() else { break };
             let share = draw.decades(1e-12, 1.0);
             let share = if draw.once_in(2) { share } else { 1.0 - share };
-            let cut = leg
+            let cut = segment
                 .entry()
                 .instant
-                .after(percuss::two_word::TwoWord::new(share * leg.duration()), omega);
-            if leg.ends_by(&cut) {
+                .after(percuss::two_word::TwoWord::new(share * segment.duration()), omega);
+            if segment.ends_by(&cut) {
                 continue;
             }
-            let entry = leg.entry_at(&cut);
+            let entry = segment.entry_at(&cut);
             let again = model.trajectory(entry).next().unwrap();
             // Next to a switch the phase may already be the next one.
-            let (end, next_phase) = if again.phase() == leg.phase() {
+            let (end, next_phase) = if again.phase() == segment.phase() {
                 let Exit::Switch(end) = *again.exit() else { panic!("the rest has no end") };
                 (end, end.phase())
             } else {
@@ -70,11 +70,15 @@ fn a_phase_taken_up_again_ends_where_it_would_have() {
             assert_eq!(next_phase, next.phase());
             let mut recorder = GrowthRecorder::new();
             let growth = recorder.pass(&again).map_or(1.0, |growth| growth.tau.max(1.0));
-            let size = 1.0 + leg.duration();
+            let size = 1.0 + segment.duration();
             let late = end.instant.since(&next.instant, omega).value().abs();
             let allowed = ROUNDINGS * f64::EPSILON * size * growth;
-            assert!(late <= allowed, "{:?} {share}: {late:e}, allowed {allowed:e}", leg.entry());
-            *seen.entry(leg.phase()).or_default() += 1;
+            assert!(
+                late <= allowed,
+                "{:?} {share}: {late:e}, allowed {allowed:e}",
+                segment.entry()
+            );
+            *seen.entry(segment.phase()).or_default() += 1;
         }
     }
     for phase in Phase::ALL {
@@ -88,14 +92,14 @@ fn strobes_are_the_samples_of_the_run() {
         let start = from_rest(&model);
         let map = StrobeMap::new(model, start.instant);
         let end = start.instant.after_periods(30, 1);
-        let legs: Vec<_> = model.trajectory(start).until(end).collect();
+        let segments: Vec<_> = model.trajectory(start).until(end).collect();
         let strobes: Vec<_> = map.strobes(start, 30).collect();
         assert_eq!(strobes.len(), 31);
         for (n, strobe) in strobes.iter().enumerate() {
             let instant = start.instant.after_periods(n as u64, 1);
             assert_eq!(strobe.instant, instant);
-            let leg = legs.iter().find(|leg| !leg.ends_by(&instant)).unwrap();
-            let sample = leg.at_instant(&instant);
+            let segment = segments.iter().find(|segment| !segment.ends_by(&instant)).unwrap();
+            let sample = segment.at_instant(&instant);
             let state = [sample.state.p, sample.state.y, sample.state.q];
             assert!(
                 distance(strobe.point(), state) <= 4.0 * f64::EPSILON,

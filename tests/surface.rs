@@ -219,9 +219,9 @@ fn a_force_that_stays_on_its_threshold_is_a_contact() {
         let parameters =
             Parameters { a: 0.0, b: threshold, xi: 0.3, omega: 1.4, g: 0.02, phi: 0.0 };
         let (model, entry) = Planted { parameters, y: 0.0, threshold, sign: 0.0 }.entry();
-        let leg = model.trajectory(entry).next().unwrap();
-        assert_eq!(leg.phase(), Phase::Contact);
-        assert!(!matches!(leg.exit(), Exit::Switch(_)), "{leg:?}");
+        let segment = model.trajectory(entry).next().unwrap();
+        assert_eq!(segment.phase(), Phase::Contact);
+        assert!(!matches!(segment.exit(), Exit::Switch(_)), "{segment:?}");
     }
 }
 
@@ -270,9 +270,9 @@ fn a_contact_with_a_second_derivative_of_thirty_per_cent_lasts() {
     let parameters = Parameters { a: 0.3, b: 0.0, xi: 0.5, omega: 1.0, g: 0.02, phi: 0.0 };
     let planted = Planted { parameters, y: -0.3, threshold: 0.0, sign: 1.0 };
     let (model, entry) = planted.entry();
-    let leg = model.trajectory(entry).next().unwrap();
-    assert_eq!(leg.phase(), Phase::Contact);
+    let segment = model.trajectory(entry).next().unwrap();
+    assert_eq!(segment.phase(), Phase::Contact);
     // The end by integration: a bracket of 1.871 whose ends have different signs.
     assert!(planted.above(1.870) > 0.0 && planted.above(1.872) < 0.0);
-    assert!((leg.duration() - 1.871).abs() < 1e-3, "{}", leg.duration());
+    assert!((segment.duration() - 1.871).abs() < 1e-3, "{}", segment.duration());
 }

@@ -27,19 +27,19 @@ fn run(parameters: Parameters, start: Start, span: f64) -> Run {
     let entry = model.start(&start).unwrap();
     let horizon = entry.instant.after(TwoWord::new(span), parameters.omega);
     let mut run = Run { derivative: IDENTITY, impacts: Vec::new(), end: [f64::NAN; 4] };
-    for leg in model.trajectory(entry).until(horizon) {
-        let within = leg.variation(leg.duration());
-        let step = match leg.exit() {
+    for segment in model.trajectory(entry).until(horizon) {
+        let within = segment.variation(segment.duration());
+        let step = match segment.exit() {
             Exit::Switch(next) => {
-                if leg.phase() == Phase::NoContact {
+                if segment.phase() == Phase::NoContact {
                     run.impacts.push(next.phase());
                 }
-                product(&leg.saltation(), &within)
+                product(&segment.saltation(), &within)
             }
             _ => within,
         };
         run.derivative = product(&step, &run.derivative);
-        let end = leg.at_instant(&horizon);
+        let end = segment.at_instant(&horizon);
         run.end = [end.state.p, end.state.y, end.state.q, end.v];
     }
     run

@@ -3,10 +3,10 @@
 use crate::double_double::{DoubleDouble, UNIT};
 use crate::{Case, Family};
 use percuss::crossing::limit::{GRANTED, LAST_ROOT, MOST, PER_RADIAN};
-use percuss::{Effort, Exit, Judgement, Leg, Model, Parameters, Phase, State};
+use percuss::{Effort, Exit, Judgement, Segment, Model, Parameters, Phase, State};
 
 /// Phases followed in one run.
-const LEGS: usize = 20;
+const SEGMENTS: usize = 20;
 
 /// Longest run in units of 1/omega0, the time of the free oscillation.
 const LONGEST: f64 = 200.0;
@@ -86,24 +86,24 @@ pub fn check_counted(case: &Case, tally: &mut Tally) -> Result<(), String> {
     let mut before = trajectory.counters();
     let sampled = case.parameters.a.to_bits() ^ case.start.p.to_bits() ^ case.start.y.to_bits();
     let judged = case.family != Family::Any || sampled % ONE_IN == 0;
-    for number in 0..LEGS {
-        let Some(leg) = trajectory.next() else { break };
+    for number in 0..SEGMENTS {
+        let Some(segment) = trajectory.next() else { break };
         let counters = trajectory.counters();
         let evaluations = counters.evaluations - before.evaluations;
-        let named = |fault| format!("leg {number} ({}): {fault}", leg.phase());
+        let named = |fault| format!("segment {number} ({}): {fault}", segment.phase());
         tally.phases += 1;
         tally.most_evaluations = tally.most_evaluations.max(evaluations);
-        history.leg(&model, &leg, evaluations, periods).map_err(named)?;
+        history.segment(&model, &segment, evaluations, periods).map_err(named)?;
         let touched = counters.undecidable > before.undecidable;
         if number == 0 {
             tally.endless += 1;
-            without_horizon(&model, &leg, leg.elapsed_at(&horizon), touched).map_err(named)?;
+            without_horizon(&model, &segment, segment.elapsed_at(&horizon), touched).map_err(named)?;
         }
-        let undecidable = *leg.exit() == Exit::Undecidable;
+        let undecidable = *segment.exit() == Exit::Undecidable;
         tally.undecidable += u64::from(undecidable);
         if undecidable || judged && number < JUDGED {
-            let left = leg.elapsed_at(&horizon);
-            judge(&model, &leg, left, touched, tally).map_err(named)?;
+            let left = segment.elapsed_at(&horizon);
+            judge(&model, &segment, left, touched, tally).map_err(named)?;
         }
         before = counters;
     }
@@ -112,31 +112,31 @@ pub fn check_counted(case: &Case, tally: &mut Tally) -> Result<(), String> {
 
 /// Holds a phase to itself without a horizon, `left` after it begins: the same end, unless a touch
 /// was counted, and no more work than the limit of a search.
-fn without_horizon(model: &Model, leg: &Leg, left: f64, touched: bool) -> Result<(), String> {
+fn without_horizon(model: &Model, segment: &Segment, left: f64, touched: bool) -> Result<(), String> {
     /// What an end may be off next to the horizon.
     const APART: f64 = 1e-3;
     /// A contact that is taken up in stages is granted the limit by its first search, by its stages
     /// and by the last of these.
     const SEARCHES: u64 = 3;
-    let mut run = model.trajectory(*leg.entry());
+    let mut run = model.trajectory(*segment.entry());
     let Some(whole) = run.next() else { return Err("no phase without a horizon".to_owned()) };
     let counters = run.counters();
     let limit = SEARCHES * (MOST + GRANTED + LAST_ROOT);
     let evaluations = counters.evaluations;
     ensure!(evaluations <= limit, "{evaluations} evaluations without a horizon");
-    let (cut, free) = (leg.duration(), whole.duration());
-    let alike = match (leg.exit(), whole.exit()) {
+    let (cut, free) = (segment.duration(), whole.duration());
+    let alike = match (segment.exit(), whole.exit()) {
         (Exit::Undecidable, _) | (_, Exit::Undecidable) => true,
         (Exit::Switch(one), Exit::Switch(other)) => {
             // Rounding moves an event in time by as much as it likes where nothing moves.
-            one.phase() == other.phase() && same_place(model, leg, [&one.state, &other.state])
+            one.phase() == other.phase() && same_place(model, segment, [&one.state, &other.state])
         }
         (Exit::Endless(one), Exit::Endless(other)) => one == other,
         (Exit::Horizon, _) => free >= left * (1.0 - APART),
         _ => false,
     };
     let touched = touched || counters.undecidable > 0;
-    let ends = [leg.exit(), whole.exit()];
+    let ends = [segment.exit(), whole.exit()];
     ensure!(alike || touched, "ends after {cut:e}, without a horizon {free:e}: {ends:?}");
     Ok(())
 }
@@ -144,24 +144,24 @@ fn without_horizon(model: &Model, leg: &Leg, left: f64, touched: bool) -> Result
 /// Holds a phase to what 106 bits decide.
 fn judge(
     model: &Model,
-    leg: &Leg,
+    segment: &Segment,
     left: f64,
     touched: bool,
     tally: &mut Tally,
 ) -> Result<(), String> {
-    let lasts = leg.duration();
-    let horizon = match leg.exit() {
+    let lasts = segment.duration();
+    let horizon = match segment.exit() {
         Exit::Switch(_) => lasts + 1e-3 * lasts + 1e-9,
         _ => left,
     };
     let effort = Effort { horizon, evaluations: JUDGE_EVALUATIONS, unit: UNIT };
-    let judgement = leg.judged_in::<DoubleDouble>(model, &effort);
+    let judgement = segment.judged_in::<DoubleDouble>(model, &effort);
     tally.judged += 1;
-    let alike = match (leg.exit(), judgement) {
+    let alike = match (segment.exit(), judgement) {
         (_, Judgement::Undecided) => return Ok(()),
         (Exit::Switch(next), Judgement::Crossing { elapsed, rises, width }) => {
             let side =
-                leg.phase() != Phase::Contact || rises == (next.phase() == Phase::Progression);
+                segment.phase() != Phase::Contact || rises == (next.phase() == Phase::Progression);
             side && (elapsed - lasts).abs() <= WIDTHS * width
         }
         (Exit::Switch(_) | Exit::Undecidable, _) => false,
@@ -174,8 +174,8 @@ fn judge(
         tally.touches += 1;
         return Ok(());
     }
-    let exit = leg.exit();
-    ensure!(alike, "in 106 bits {judgement:?}, in f64 {lasts:e}, {exit:?}, {:?}", leg.entry());
+    let exit = segment.exit();
+    ensure!(alike, "in 106 bits {judgement:?}, in f64 {lasts:e}, {exit:?}, {:?}", segment.entry());
     Ok(())
 }
 
@@ -197,16 +197,16 @@ impl History {
         Self { parameters: *parameters, stuck: 0, settled: false, q_room: 0.0, speed: 0.0 }
     }
 
-    fn leg(
+    fn segment(
         &mut self,
         model: &Model,
-        leg: &Leg,
+        segment: &Segment,
         evaluations: u64,
         periods: f64,
     ) -> Result<(), String> {
-        let duration = leg.duration();
+        let duration = segment.duration();
         ensure!(duration >= 0.0, "duration {duration:e}");
-        let entry = leg.entry();
+        let entry = segment.entry();
         ensure!(possible(&entry.state) && entry.v().is_finite(), "entry {entry:?}");
         let angle = entry.instant.angle();
         ensure!((0.0..=std::f64::consts::TAU).contains(&angle), "angle {angle:e}");
@@ -225,51 +225,51 @@ impl History {
         // An endless phase is looked at as far as the run would have gone.
         let seen = duration.min(periods * model.period());
         for eighth in 0..=8 {
-            self.sample(leg, seen * (f64::from(eighth) / 8.0))
+            self.sample(segment, seen * (f64::from(eighth) / 8.0))
                 .map_err(|fault| format!("{fault}, {eighth}/8 of {seen:e}, from {entry:?}"))?;
         }
-        if let Exit::Switch(next) = leg.exit() {
+        if let Exit::Switch(next) = segment.exit() {
             ensure!(possible(&next.state) && next.v().is_finite(), "exit {next:?}");
-            let legal = match (leg.phase(), next.phase()) {
+            let legal = match (segment.phase(), next.phase()) {
                 (before, after) if before == after => false,
                 (Phase::Progression, after) => after == Phase::Contact,
                 _ => true,
             };
             ensure!(legal, "after {duration:e} follows {}, {next:?}", next.phase());
-            let room = self.drift_room(leg, duration);
+            let room = self.drift_room(segment, duration);
             let fall = entry.v() - next.v();
             ensure!(fall <= room, "v falls by {fall:e} in {duration:e}, room {room:e}");
-            ensure!(leg.phase() == Phase::Progression || fall == 0.0, "v moves by {fall:e}");
+            ensure!(segment.phase() == Phase::Progression || fall == 0.0, "v moves by {fall:e}");
         }
         Ok(())
     }
 
-    fn sample(&mut self, leg: &Leg, elapsed: f64) -> Result<(), String> {
+    fn sample(&mut self, segment: &Segment, elapsed: f64) -> Result<(), String> {
         let Parameters { a, b, xi, omega, g, .. } = self.parameters;
         let two_xi = 2.0 * xi;
-        let sample = leg.at(elapsed);
+        let sample = segment.at(elapsed);
         let State { p, y, q } = sample.state;
         ensure!(possible(&sample.state) && sample.v.is_finite(), "sample {sample:?}");
-        let from = leg.entry().state;
+        let from = segment.entry().state;
         // The terms of the closed forms: what was there, and what the force adds.
         let time = elapsed.min(1.0 / omega + 1.0 / omega / omega);
         let pushed = elapsed * (b.abs() * elapsed + a * time);
         let place =
             from.p.abs() + p.abs() + from.q.abs() + q.abs() + g + from.y.abs() * elapsed + pushed;
         // What y was rounded to in an earlier phase it keeps.
-        self.speed = self.speed.max(self.speed_terms(leg, elapsed, y));
+        self.speed = self.speed.max(self.speed_terms(segment, elapsed, y));
         let over = p - (q + g);
         // At the switch f is known to the rounding of its terms, up to 1; h' = f/(2 xi) passes it
         // on as long as q has not died out.
         let passed_on = (elapsed / two_xi).min(1.0);
         let room = ROUNDING * (place + passed_on) + UNDERFLOW;
         ensure!(over <= room, "p - (q + g) = {over:e}, room {room:e}, {sample:?}");
-        if leg.phase() != Phase::NoContact {
+        if segment.phase() != Phase::NoContact {
             ensure!(over.abs() <= room, "p - (q + g) = {over:e} on the surface, room {room:e}");
             let force = two_xi * y + q;
             let speed = self.speed;
             let room = ROUNDING * (1.0 + place + two_xi * speed);
-            let inside = match leg.phase() {
+            let inside = match segment.phase() {
                 Phase::Contact => force >= -room && force <= 1.0 + room,
                 _ => force >= 1.0 - room,
             };
@@ -285,27 +285,27 @@ impl History {
             ensure!(far <= self.q_room, "q = {q:e} left [0, 1] again, room {:e}", self.q_room);
         }
         self.settled |= in_place;
-        let fall = leg.entry().v() - sample.v;
-        let room = self.drift_room(leg, elapsed);
+        let fall = segment.entry().v() - sample.v;
+        let room = self.drift_room(segment, elapsed);
         ensure!(fall <= room, "v fell by {fall:e} in {elapsed:e}, room {room:e}");
         Ok(())
     }
 
     /// The terms of y's closed form: in contact what is forced dies out within 1/(2 xi).
-    fn speed_terms(&self, leg: &Leg, elapsed: f64, y: f64) -> f64 {
+    fn speed_terms(&self, segment: &Segment, elapsed: f64, y: f64) -> f64 {
         let Parameters { a, b, xi, omega, .. } = self.parameters;
-        let forced = match leg.phase() {
+        let forced = match segment.phase() {
             Phase::Contact => elapsed.min(1.0).min(0.5 / xi) * (a + b.abs() + 1.0),
             _ => elapsed.min(1.0 / omega) * a + elapsed * (b.abs() + 1.0),
         };
-        y.abs() + leg.entry().state.y.abs() + forced
+        y.abs() + segment.entry().state.y.abs() + forced
     }
 
     /// Rounding of v, and of the distance slipped.
-    fn drift_room(&self, leg: &Leg, elapsed: f64) -> f64 {
+    fn drift_room(&self, segment: &Segment, elapsed: f64) -> f64 {
         let Parameters { a, b, xi, omega, .. } = self.parameters;
-        let entry = leg.entry();
-        let slipped = if leg.phase() == Phase::Progression {
+        let entry = segment.entry();
+        let slipped = if segment.phase() == Phase::Progression {
             let lag = (1.0 - entry.state.q).abs() * (elapsed / (2.0 * xi)).min(1.0);
             let push = elapsed * ((b - 1.0).abs() * elapsed + a * elapsed.min(1.0 / omega));
             entry.state.y.abs() * elapsed + lag + push
@@ -317,11 +317,11 @@ impl History {
 }
 
 /// Whether two ends of a phase are the same state within the rounding of its terms.
-fn same_place(model: &Model, leg: &Leg, [one, other]: [&State; 2]) -> bool {
+fn same_place(model: &Model, segment: &Segment, [one, other]: [&State; 2]) -> bool {
     const NEAR: f64 = 1e-9;
     let Parameters { a, b, .. } = *model.parameters();
     let size = |state: &State| state.p.abs() + state.y.abs() + state.q.abs();
-    let scale = 1.0 + a + b.abs() + size(&leg.entry().state) + size(one);
+    let scale = 1.0 + a + b.abs() + size(&segment.entry().state) + size(one);
     let near = |x: f64, y: f64| (x - y).abs() <= NEAR * scale;
     near(one.p, other.p) && near(one.y, other.y) && near(one.q, other.q)
 }

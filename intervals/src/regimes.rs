@@ -210,6 +210,6 @@ impl Chance {
 fn first_length(parameters: Parameters, start: &Start) -> Option<f64> {
     let model = Model::new(parameters).ok()?;
     let entry = model.start(start).ok()?;
-    let leg = model.trajectory(entry).until(entry.instant.after_periods(1000, 1)).next()?;
-    Some(if matches!(leg.exit(), Exit::Switch(_)) { leg.duration() } else { 1e6 })
+    let segment = model.trajectory(entry).until(entry.instant.after_periods(1000, 1)).next()?;
+    Some(if matches!(segment.exit(), Exit::Switch(_)) { segment.duration() } else { 1e6 })
 }

@@ -6,7 +6,7 @@ use crate::guard::Guard;
 use crate::proof::{Claim, GRANTED, Verdict, examine};
 use crate::regimes::{Chance, Regime, Run};
 use percuss::crossing::guarded::{Guarded, slack};
-use percuss::{Exit, Leg, Model, Motion, Phase};
+use percuss::{Exit, Segment, Model, Motion, Phase};
 
 /// Examples kept of a regime's switches that were not proved.
 const MOST_EXAMPLES: usize = 20;
@@ -37,7 +37,7 @@ pub struct Tally {
 /// A switch as the solver found it.
 pub struct Found<'a> {
     /// The phase that it ends.
-    pub leg: &'a Leg,
+    pub segment: &'a Segment,
     /// What is claimed.
     pub claim: Claim,
 }
@@ -45,33 +45,33 @@ pub struct Found<'a> {
 impl<'a> Found<'a> {
     /// The claim of a phase that ends by a switch.
     #[must_use]
-    pub fn new(leg: &'a Leg) -> Option<Self> {
-        let Exit::Switch(next) = leg.exit() else { return None };
-        let duration = leg.duration_two_word();
-        let rises = match leg.phase() {
+    pub fn new(segment: &'a Segment) -> Option<Self> {
+        let Exit::Switch(next) = segment.exit() else { return None };
+        let duration = segment.duration_two_word();
+        let rises = match segment.phase() {
             Phase::NoContact => true,
             Phase::Contact => next.phase() == Phase::Progression,
             Phase::Progression => false,
         };
         let claim = |corridor, slack| Claim { duration, corridor, rises, slack };
-        let claim = match leg.motion() {
+        let claim = match segment.motion() {
             Motion::NoContact(it) => claim(it.corridor(), room(&it, duration.high)),
             Motion::Contact(it) => claim(it.corridor(), room(&it, duration.high)),
             Motion::Progression(it) => claim(it.corridor(), room(&it, duration.high)),
         };
-        Some(Self { leg, claim })
+        Some(Self { segment, claim })
     }
 
     /// The exact guard.
     #[must_use]
     pub fn guard(&self, frame: &Frame) -> Guard {
-        Guard::new(frame, &self.leg.motion(), &self.leg.entry().instant)
+        Guard::new(frame, &self.segment.motion(), &self.segment.entry().instant)
     }
 
     /// The error of the f64 guard at a share of the phase, in units of eps times its largest term.
     fn rounding(&self, guard: &Guard, share: f64) -> f64 {
         let elapsed = share * self.claim.duration.high;
-        let jet = match self.leg.motion() {
+        let jet = match self.segment.motion() {
             Motion::NoContact(it) => evaluated(&it, elapsed),
             Motion::Contact(it) => evaluated(&it, elapsed),
             Motion::Progression(it) => evaluated(&it, elapsed),
@@ -115,9 +115,9 @@ impl Tally {
         let mut trajectory = model.trajectory(entry).until(horizon);
         for number in 0..phases {
             let before = trajectory.counters().undecidable;
-            let Some(leg) = trajectory.next() else { return };
+            let Some(segment) = trajectory.next() else { return };
             let flagged = trajectory.counters().undecidable > before;
-            let Some(found) = Found::new(&leg) else {
+            let Some(found) = Found::new(&segment) else {
                 self.endless += 1;
                 return;
             };

@@ -2,14 +2,14 @@
 
 use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
-use crate::crossing::guarded::{Guarded, Outlook, slack};
+use crate::crossing::contact_parts::{Parts, Shape};
+use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::series::{Push, SHORT_REACH, Series};
-use crate::crossing::swing::{Parts, Shape};
-use crate::crossing::trend::quick_decay;
+use crate::crossing::slow_envelope::quick_decay;
 use crate::flow::contact::Contact;
 use crate::flow::damped::Damping;
 use crate::flow::forcing::EntryAngle;
-use crate::flow::stride::Strides;
+use crate::flow::steps::Steps;
 use crate::flow::{Jet, Point};
 use crate::state::State;
 use std::borrow::Borrow;
@@ -188,21 +188,15 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
     }
 
     #[inline(always)]
-    fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
-        self.ahead(strides, left, limit)
+    fn hint(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint {
+        self.ahead(steps, left, limit)
     }
 
     fn touches_for_ever(&self, left: &Point<f64>) -> bool {
         self.rests_by_rounding(left)
     }
 
-    fn certify(
-        &self,
-        strides: &Strides,
-        left: &Point<f64>,
-        right: &Point<f64>,
-        ends: Ends,
-    ) -> Verdict {
+    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
         let corridor = self.corridor();
         let room = self.room_of_length(left, right);
         let slack = slack(self, left, right) + room;
@@ -224,7 +218,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
             let inside = whole.stays_inside_in_parts(&corridor, ends, slack);
             return if inside { Verdict::Inside } else { verdict };
         }
-        self.certify_long(strides, (left, &split, free), right, ends)
+        self.certify_long(steps, (left, &split, free), right, ends)
     }
 
     fn stage(&self) -> f64 {
@@ -317,7 +311,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// the forced amplitude.
     fn certify_long(
         &self,
-        strides: &Strides,
+        steps: &Steps,
         (left, split, free): (&Point<f64>, &Split, f64),
         right: &Point<f64>,
         ends: Ends,
@@ -335,7 +329,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             let room = slack + ROUNDINGS * f64::EPSILON * (size + b.abs());
             let shape = self.shape(self.eighth(free), room);
             let right = (right.elapsed, &right.guard.orders);
-            let swing = &strides.contact_piece;
+            let swing = &steps.contact_piece;
             let parts = self.parts(left, split);
             if parts.stays_inside(&left.guard.orders, right, ends, &shape, swing) {
                 return Verdict::Inside;

@@ -2,31 +2,31 @@
 
 use crate::constants::Constants;
 use crate::crossing::contact::Split;
-use crate::crossing::guarded::{Guarded, Outlook};
-use crate::crossing::trend::first_root;
+use crate::crossing::guarded::{Guarded, SearchHint};
+use crate::crossing::slow_envelope::first_root;
 use crate::flow::Point;
 use crate::flow::contact::Contact;
 use crate::flow::damped::Damping;
-use crate::flow::stride::Strides;
+use crate::flow::steps::Steps;
 use std::borrow::Borrow;
 
 impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// A guess, or a proof, about what comes after `left`.
     #[inline(always)]
-    pub(super) fn ahead(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
+    pub(super) fn ahead(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint {
         if let Some(time) = self.soon(left) {
-            return Outlook::Root(time);
+            return SearchHint::Root(time);
         }
         let split = self.split(left);
-        let onward = match self.exit(strides, left, &split) {
-            Ok(time) => return Outlook::Root(time),
-            Err(time) => Outlook::Onward(time.min(limit)),
+        let onward = match self.exit(steps, left, &split) {
+            Ok(time) => return SearchHint::Root(time),
+            Err(time) => SearchHint::Onward(time.min(limit)),
         };
         if self.rests(&split) || self.rests_on_one_side(left, &split) {
-            return Outlook::ClearFrom(left.elapsed);
+            return SearchHint::ClearFrom(left.elapsed);
         }
         match self.calm(left, &split) {
-            calm if calm > 8.0 => Outlook::ClearUntil(left.elapsed + calm),
+            calm if calm > 8.0 => SearchHint::ClearUntil(left.elapsed + calm),
             _ => onward,
         }
     }
@@ -130,22 +130,22 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         Some(left.elapsed + time)
     }
 
-    /// A guess of the first exit, or where the look-out for it has ended: in strides as the free
+    /// A guess of the first exit, or where the look-out for it has ended: in steps as the free
     /// oscillation moves, about which a fast forcing only ripples; in shorter and then longer ones
     /// under strong damping, as its fast part lives and dies.
     #[inline(always)]
-    fn exit(&self, strides: &Strides, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
+    fn exit(&self, steps: &Steps, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
         const QUICK: usize = 16;
         const STEPS: usize = 24;
         const DEAD: f64 = 40.0; // exp(-40) is below the rounding of what it is added to
         let shape = self.shape(0.0, 0.0);
         let mut parts = self.parts(left, split);
-        let mut look = &strides.contact_look;
+        let mut look = &steps.contact_look;
         if let Damping::Over { fast, .. } = self.constants.borrow().damping {
             if fast * left.elapsed > DEAD {
-                look = &strides.slow_look;
+                look = &steps.slow_look;
             } else {
-                match parts.first_exit(&shape, &strides.quick_look, QUICK) {
+                match parts.first_exit(&shape, &steps.quick_look, QUICK) {
                     Ok(time) => return Ok(time),
                     Err(further) => parts = further,
                 }

@@ -2,12 +2,12 @@
 
 use crate::crossing::certificate::{Corridor, Ends, Verdict};
 use crate::crossing::series::{REACH, SHORT_REACH, Series};
-use crate::flow::stride::Strides;
+use crate::flow::steps::Steps;
 use crate::flow::{Flow, Point};
 
 /// Where the search should look next.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Outlook {
+pub enum SearchHint {
     /// The next crossing may be near this elapsed time (a guess).
     Root(f64),
     /// Go on to this elapsed time; nothing is guessed before it.
@@ -30,7 +30,7 @@ pub trait Guarded: Flow<f64> {
     fn imposed(&self) -> Ends;
 
     /// A guess, or a proof, about what comes after `left`; nothing after `limit` matters.
-    fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook;
+    fn hint(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint;
 
     /// Whether a guard that is clear from `left` on may still come to its threshold within
     /// rounding.
@@ -39,13 +39,7 @@ pub trait Guarded: Flow<f64> {
     }
 
     /// Tries to prove that the guard stays inside between two evaluations.
-    fn certify(
-        &self,
-        strides: &Strides,
-        left: &Point<f64>,
-        right: &Point<f64>,
-        ends: Ends,
-    ) -> Verdict;
+    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict;
 
     /// Where to divide a piece that could not be certified.
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64;

@@ -8,7 +8,7 @@
 //! more than that makes no progress, and is ended.
 
 use crate::crossing::Counters;
-use crate::flow::stride::Strides;
+use crate::flow::steps::Steps;
 use std::f64::consts::TAU;
 
 /// Evaluations that the search of one phase may take wherever it stands.
@@ -39,8 +39,8 @@ pub struct Limit {
 impl Limit {
     /// The limit of a search that begins now.
     #[must_use]
-    pub fn new(strides: &Strides, counters: &Counters) -> Self {
-        Self { begun: counters.evaluations, pace: 1.0 + TAU / strides.turning.period }
+    pub fn new(steps: &Steps, counters: &Counters) -> Self {
+        Self { begun: counters.evaluations, pace: 1.0 + TAU / steps.turning.period }
     }
 
     /// Whether the search has taken more than is granted to one that has proved the phase to be

@@ -9,12 +9,12 @@
 //! [`certificate`] proves that the guard stays inside its corridor there, and a root is accepted
 //! only as the right end of a certified piece. Guesses propose where pieces end; a bad guess costs
 //! evaluations, never a crossing. A whole flight is mostly certified by [`tangents`], a whole
-//! progression by an inequality. A long piece is certified in fixed strides from its ends
-//! ([`walk`], [`swing`]), which need no evaluation; where a certificate fails the piece is divided;
-//! if the guard is outside at the division, an earlier crossing is bracketed and takes the place of
-//! the right end. What the guards can prove about whole futures (the mass never returns, never
-//! stops, rests for ever) comes from bounds on the slow part of the motion ([`trend`], and the
-//! energy of the free oscillation in contact).
+//! progression by an inequality. A long piece is certified in fixed steps from its ends
+//! ([`piecewise`], [`contact_parts`]), which need no evaluation; where a certificate fails the
+//! piece is divided; if the guard is outside at the division, an earlier crossing is bracketed and
+//! takes the place of the right end. What the guards can prove about whole futures (the mass never
+//! returns, never stops, rests for ever) comes from bounds on the slow part of the motion
+//! ([`slow_envelope`], and the energy of the free oscillation in contact).
 //!
 //! Rounding enters through one number a piece, `slack`: a few eps times the largest term that went
 //! into the guard. A guard that comes closer to its threshold than that, without passing it by
@@ -32,18 +32,18 @@ mod bounds;
 pub mod certificate;
 pub mod contact;
 mod contact_ahead;
+pub mod contact_parts;
 pub mod guarded;
 pub mod limit;
 pub mod no_contact;
+pub mod piecewise;
 pub mod progression;
 pub mod root;
 pub mod search;
 pub mod series;
+pub mod slow_envelope;
 pub mod stepping;
-pub mod swing;
 pub mod tangents;
-pub mod trend;
-pub mod walk;
 
 use crate::flow::Point;
 use crate::two_word::TwoWord;
@@ -115,8 +115,8 @@ pub struct Counters {
     /// Closed-form evaluations spent on finding them: each takes a sine-cosine pair and an
     /// exponential (in contact one more of either), or their series where the arguments are small.
     /// Not counted are the sine and cosine of the forcing angle at which a phase begins, one pair a
-    /// phase, and the exponential of a [`trend`] that is asked about whole futures because nothing
-    /// is guessed. Guesses, series and certificates call none.
+    /// phase, and the exponential of a [`slow_envelope`] that is asked about whole futures because
+    /// nothing is guessed. Guesses, series and certificates call none.
     pub evaluations: u64,
     /// Touches and near misses whose margin is below the rounding error.
     pub undecidable: u64,

@@ -2,14 +2,14 @@
 
 use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
-use crate::crossing::guarded::{Guarded, Outlook, slack};
+use crate::crossing::guarded::{Guarded, SearchHint, slack};
+use crate::crossing::piecewise::{End, Parts, PiecewiseCertificate, Shape};
 use crate::crossing::series::{Push, Series, short_decay};
+use crate::crossing::slow_envelope::{Place, SlowEnvelope, first_root};
 use crate::crossing::tangents::stays_below;
-use crate::crossing::trend::{Place, Trend, first_root};
-use crate::crossing::walk::{End, Parts, Shape, Walk};
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
-use crate::flow::stride::{PULLING, Strides, Turning};
+use crate::flow::steps::{PULLING, Steps, Turning};
 use crate::flow::{Jet, Point};
 use crate::state::State;
 use std::borrow::Borrow;
@@ -30,9 +30,9 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
         self.surface == Some(0.0)
     }
 
-    fn trend(&self) -> Trend {
+    fn slow_envelope(&self) -> SlowEnvelope {
         let constants = self.constants.borrow();
-        Trend {
+        SlowEnvelope {
             offset: self.height() + constants.a_over_omega2 * self.angle.cos,
             slope: self.entry.y - constants.a_over_omega * self.angle.sin,
             curvature: constants.b,
@@ -46,13 +46,13 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
     }
 
     /// Until where h is concave after a separation: as long as the force is negative.
-    fn clear_of_the_surface(&self, trend: &Trend, turning: &Turning) -> Place {
+    fn clear_of_the_surface(&self, envelope: &SlowEnvelope, turning: &Turning) -> Place {
         match turning.negative_until(self.angle.radians) {
             Some(angle) => {
                 let elapsed = (angle - self.angle.radians) / self.constants.borrow().omega;
-                trend.place(elapsed, (-turning.sin, turning.cos))
+                envelope.place(elapsed, (-turning.sin, turning.cos))
             }
-            None => trend.start(),
+            None => envelope.start(),
         }
     }
 
@@ -68,7 +68,7 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
     }
 
     /// Where the gap that a run begins with closes, if soon, by its value and three derivatives.
-    /// Strides might pass over a short contact, and to find that out costs more than all of the
+    /// Steps might pass over a short contact, and to find that out costs more than all of the
     /// search.
     pub fn first_closing(&self) -> Option<f64> {
         /// Against the rates of the harmonic and of the spring.
@@ -127,33 +127,27 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
     }
 
     #[inline(always)]
-    fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
+    fn hint(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint {
         let first = left.elapsed == 0.0;
         if first
             && self.separates()
             && let Some(hop) = self.short_hop(left)
         {
-            return Outlook::Root(hop);
+            return SearchHint::Root(hop);
         }
-        let trend = self.trend();
+        let envelope = self.slow_envelope();
         let place = match first {
-            true if self.separates() => self.clear_of_the_surface(&trend, &strides.turning),
-            true => trend.start(),
-            false => trend.near(left.elapsed),
+            true if self.separates() => self.clear_of_the_surface(&envelope, &steps.turning),
+            true => envelope.start(),
+            false => envelope.near(left.elapsed),
         };
         let inside = !first || self.surface.is_some();
-        trend.outlook(strides, left.elapsed, (place, inside), limit)
+        envelope.hint(steps, left.elapsed, (place, inside), limit)
     }
 
-    fn certify(
-        &self,
-        strides: &Strides,
-        left: &Point<f64>,
-        right: &Point<f64>,
-        ends: Ends,
-    ) -> Verdict {
+    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
         let whole = left.elapsed == 0.0 && ends.left_double && ends.right;
-        if whole && stays_below(self, strides, right) {
+        if whole && stays_below(self, steps, right) {
             return Verdict::Inside;
         }
         let slack = slack(self, left, right);
@@ -172,7 +166,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
             }
         }
         let end = |at: &Point<f64>| End { orders: at.guard.orders, parts: self.parts(at) };
-        Walk::new(&self.shape(), strides).decided(end(left), end(right), ends, slack)
+        PiecewiseCertificate::new(&self.shape(), steps).decided(end(left), end(right), ends, slack)
     }
 
     fn underflow(&self) -> f64 {
@@ -181,7 +175,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         let (from, to) = (left.elapsed, right.elapsed);
-        self.trend().division(from, to, PULLING).unwrap_or_else(|| {
+        self.slow_envelope().division(from, to, PULLING).unwrap_or_else(|| {
             let piece = Piece {
                 left: left.guard.orders,
                 right: right.guard.orders,

@@ -2,13 +2,13 @@
 
 use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
-use crate::crossing::guarded::{Guarded, Outlook, slack};
+use crate::crossing::guarded::{Guarded, SearchHint, slack};
+use crate::crossing::piecewise::{End, Parts, PiecewiseCertificate, Shape};
 use crate::crossing::series::{Push, Series, short_decay};
-use crate::crossing::trend::Trend;
-use crate::crossing::walk::{End, Parts, Shape, Walk};
+use crate::crossing::slow_envelope::SlowEnvelope;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::progression::Progression;
-use crate::flow::stride::{PUSHING, Strides};
+use crate::flow::steps::{PUSHING, Steps};
 use crate::flow::{Jet, Point};
 use crate::state::State;
 use std::borrow::Borrow;
@@ -17,10 +17,10 @@ use std::borrow::Borrow;
 const SHORT: f64 = 4.0;
 
 impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
-    /// The trend of -w, which rises to zero.
-    fn trend(&self) -> Trend {
+    /// The envelope of -w, which rises to zero.
+    fn slow_envelope(&self) -> SlowEnvelope {
         let constants = self.constants.borrow();
-        Trend {
+        SlowEnvelope {
             offset: constants.a_over_omega * self.angle.sin - self.entry.y,
             slope: 1.0 - constants.b,
             curvature: 0.0,
@@ -75,25 +75,19 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
     }
 
     #[inline(always)]
-    fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
+    fn hint(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint {
         if left.elapsed == 0.0
             && let Some(slip) = self.short_slip(left)
         {
-            return Outlook::Root(slip);
+            return SearchHint::Root(slip);
         }
-        let trend = self.trend();
+        let envelope = self.slow_envelope();
         let first = left.elapsed == 0.0;
-        let place = if first { trend.start() } else { trend.near(left.elapsed) };
-        trend.outlook(strides, left.elapsed, (place, true), limit)
+        let place = if first { envelope.start() } else { envelope.near(left.elapsed) };
+        envelope.hint(steps, left.elapsed, (place, true), limit)
     }
 
-    fn certify(
-        &self,
-        strides: &Strides,
-        left: &Point<f64>,
-        right: &Point<f64>,
-        ends: Ends,
-    ) -> Verdict {
+    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
         if left.elapsed == 0.0 && ends.right && self.stops_once(right) {
             return Verdict::Inside;
         }
@@ -116,7 +110,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
             orders: at.guard.orders.map(|order| -order),
             parts: self.parts(at),
         };
-        Walk::new(&self.shape(), strides).decided(end(left), end(right), ends, slack)
+        PiecewiseCertificate::new(&self.shape(), steps).decided(end(left), end(right), ends, slack)
     }
 
     fn underflow(&self) -> f64 {
@@ -125,7 +119,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         let (from, to) = (left.elapsed, right.elapsed);
-        self.trend().division(from, to, PUSHING).unwrap_or_else(|| {
+        self.slow_envelope().division(from, to, PUSHING).unwrap_or_else(|| {
             let piece = Piece {
                 left: left.guard.orders,
                 right: right.guard.orders,

@@ -1,12 +1,12 @@
 //! The first crossing: pieces proposed by guesses, accepted by certificates.
 
 use crate::crossing::certificate::{Ends, Verdict};
-use crate::crossing::guarded::{Guarded, Outlook, slack};
+use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::limit::Limit;
 use crate::crossing::root::{bracketed, evaluate_again, follow, middle};
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::Point;
-use crate::flow::stride::Strides;
+use crate::flow::steps::Steps;
 use crate::two_word::TwoWord;
 
 /// The right end of a piece.
@@ -33,7 +33,7 @@ impl Target {
 /// infinite).
 pub fn first_crossing<G: Guarded>(
     phase: &G,
-    strides: &Strides,
+    steps: &Steps,
     horizon: f64,
     counters: &mut Counters,
 ) -> Crossing {
@@ -41,8 +41,8 @@ pub fn first_crossing<G: Guarded>(
         return Crossing::Horizon;
     }
     let left = phase.entry();
-    let outlook = phase.outlook(strides, &left, horizon);
-    search((phase, strides), left, (outlook, None), horizon, counters)
+    let hint = phase.hint(steps, &left, horizon);
+    search((phase, steps), left, (hint, None), horizon, counters)
 }
 
 /// How a search has ended whose crossing has been told already.
@@ -68,7 +68,7 @@ pub enum Found {
 /// the right one after; if none counts, what it was told counts for nothing.
 #[inline]
 pub fn first_crossing_and<G: Guarded>(
-    (phase, strides): (&G, &Strides),
+    (phase, steps): (&G, &Steps),
     guess: Option<f64>,
     horizon: f64,
     counters: &mut Counters,
@@ -78,12 +78,12 @@ pub fn first_crossing_and<G: Guarded>(
         return Found::Horizon;
     }
     let left = phase.entry();
-    let outlook = match guess {
-        Some(time) => Outlook::Root(time),
-        None => phase.outlook(strides, &left, horizon),
+    let hint = match guess {
+        Some(time) => SearchHint::Root(time),
+        None => phase.hint(steps, &left, horizon),
     };
     let mut tried = None;
-    if let Outlook::Root(time) = outlook
+    if let SearchHint::Root(time) = hint
         && time > 0.0
         && time < horizon
     {
@@ -92,7 +92,7 @@ pub fn first_crossing_and<G: Guarded>(
                 next(&root);
                 let ends = Ends { right: true, ..phase.imposed() };
                 if root.elapsed().high <= horizon
-                    && phase.certify(strides, &left, &root.point, ends) == Verdict::Inside
+                    && phase.certify(steps, &left, &root.point, ends) == Verdict::Inside
                 {
                     return Found::At(root.elapsed());
                 }
@@ -101,7 +101,7 @@ pub fn first_crossing_and<G: Guarded>(
             Err(point) => tried = Some(Err(point)),
         }
     }
-    match search((phase, strides), left, (outlook, tried), horizon, counters) {
+    match search((phase, steps), left, (hint, tried), horizon, counters) {
         Crossing::At(root) => {
             next(&root);
             Found::At(root.elapsed())
@@ -116,16 +116,16 @@ pub fn first_crossing_and<G: Guarded>(
 /// A guess that has been followed: to a root, or in vain.
 type Followed = Result<Root, Point<f64>>;
 
-/// The walk in pieces, from an outlook whose guess may have been followed already.
+/// The walk in pieces, from an hint whose guess may have been followed already.
 #[cold]
 fn search<G: Guarded>(
-    (phase, strides): (&G, &Strides),
+    (phase, steps): (&G, &Steps),
     mut left: Point<f64>,
-    (mut outlook, mut tried): (Outlook, Option<Followed>),
+    (mut hint, mut tried): (SearchHint, Option<Followed>),
     horizon: f64,
     counters: &mut Counters,
 ) -> Crossing {
-    let limit = Limit::new(strides, counters);
+    let limit = Limit::new(steps, counters);
     let stage = phase.stage();
     let (horizon, over) = match stage < horizon {
         true => (stage, Crossing::Stage(stage)),
@@ -137,12 +137,12 @@ fn search<G: Guarded>(
         if limit.is_passed(left.elapsed, counters) {
             return Crossing::Undecided(left.elapsed);
         }
-        let target = match onwards(outlook, left.elapsed, &mut stride) {
-            Outlook::ClearFrom(time) if time <= left.elapsed => {
+        let target = match onwards(hint, left.elapsed, &mut stride) {
+            SearchHint::ClearFrom(time) if time <= left.elapsed => {
                 counters.undecidable += u64::from(phase.touches_for_ever(&left));
                 return Crossing::Never;
             }
-            Outlook::ClearUntil(time) => {
+            SearchHint::ClearUntil(time) => {
                 if time >= horizon {
                     return over;
                 }
@@ -151,12 +151,12 @@ fn search<G: Guarded>(
                 if !target.is_root() {
                     left = point;
                     ends = Ends::FREE;
-                    outlook = phase.outlook(strides, &left, horizon);
+                    hint = phase.hint(steps, &left, horizon);
                     continue;
                 }
                 target
             }
-            Outlook::Root(time) if time < horizon => {
+            SearchHint::Root(time) if time < horizon => {
                 let followed = tried
                     .take()
                     .unwrap_or_else(|| follow(phase, left.elapsed, time, horizon, counters));
@@ -175,7 +175,7 @@ fn search<G: Guarded>(
                     }
                 }
             }
-            Outlook::Root(time) | Outlook::Onward(time) | Outlook::ClearFrom(time) => {
+            SearchHint::Root(time) | SearchHint::Onward(time) | SearchHint::ClearFrom(time) => {
                 let time = time.min(horizon);
                 if !time.is_finite() {
                     return over;
@@ -183,14 +183,14 @@ fn search<G: Guarded>(
                 Target::Point(evaluate_again(phase, time, counters))
             }
         };
-        match settle((phase, strides), left, ends, target, (&limit, counters)) {
+        match settle((phase, steps), left, ends, target, (&limit, counters)) {
             Ok(Target::Root(root)) if root.elapsed().high <= horizon => return Crossing::At(root),
             Ok(Target::Point(point)) if point.elapsed < horizon => left = point,
             Ok(_) => return over,
             Err(elapsed) => return Crossing::Undecided(elapsed),
         }
         ends = Ends::FREE;
-        outlook = phase.outlook(strides, &left, horizon);
+        hint = phase.hint(steps, &left, horizon);
     }
 }
 
@@ -198,28 +198,28 @@ fn search<G: Guarded>(
 const STRIDE: f64 = 0.1;
 
 /// Advice to go on by less than this share of the time so far comes from bounds that rounding keeps
-/// from settling: it is followed in strides.
+/// from settling: it is followed in steps.
 const CREEPING: f64 = 1e-3;
 
-/// An outlook that gets on. A guess that falls on `left` is no guess; that, or an advice to go on
+/// An hint that gets on. A guess that falls on `left` is no guess; that, or an advice to go on
 /// by less than a stride, is replaced by a stride, longer each time.
-fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
+fn onwards(hint: SearchHint, left: f64, stride: &mut f64) -> SearchHint {
     let resolution = 8.0 * f64::EPSILON * left;
-    let nearest = match outlook {
-        Outlook::Onward(_) => left + stride.max(CREEPING * left),
-        Outlook::Root(_) | Outlook::ClearUntil(_) => left + resolution,
-        Outlook::ClearFrom(_) => return outlook,
+    let nearest = match hint {
+        SearchHint::Onward(_) => left + stride.max(CREEPING * left),
+        SearchHint::Root(_) | SearchHint::ClearUntil(_) => left + resolution,
+        SearchHint::ClearFrom(_) => return hint,
     };
-    match outlook {
-        Outlook::Root(time) | Outlook::ClearUntil(time) | Outlook::Onward(time)
+    match hint {
+        SearchHint::Root(time) | SearchHint::ClearUntil(time) | SearchHint::Onward(time)
             if time > nearest =>
         {
-            outlook
+            hint
         }
         // A NaN comes here too.
         _ => {
             *stride *= 2.0;
-            Outlook::Onward(left + stride.max(2.0 * resolution))
+            SearchHint::Onward(left + stride.max(2.0 * resolution))
         }
     }
 }
@@ -228,7 +228,7 @@ fn onwards(outlook: Outlook, left: f64, stride: &mut f64) -> Outlook {
 /// says how far it came within the limit.
 #[inline]
 fn settle<G: Guarded>(
-    (phase, strides): (&G, &Strides),
+    (phase, steps): (&G, &Steps),
     left: Point<f64>,
     mut ends: Ends,
     target: Target,
@@ -236,16 +236,16 @@ fn settle<G: Guarded>(
 ) -> Result<Target, f64> {
     let target = inside_or_root(phase, &left, target, counters);
     ends.right = target.is_root();
-    if phase.certify(strides, &left, target.point(), ends) == Verdict::Inside {
+    if phase.certify(steps, &left, target.point(), ends) == Verdict::Inside {
         return Ok(target);
     }
-    divide((phase, strides), left, ends, target, (limit, counters))
+    divide((phase, steps), left, ends, target, (limit, counters))
 }
 
 /// The piecewise way, where one certificate does not reach from `left` to `target`.
 #[cold]
 fn divide<G: Guarded>(
-    (phase, strides): (&G, &Strides),
+    (phase, steps): (&G, &Steps),
     mut left: Point<f64>,
     mut ends: Ends,
     target: Target,
@@ -258,7 +258,7 @@ fn divide<G: Guarded>(
         }
         let right = target.point();
         ends.right = target.is_root();
-        let mut verdict = phase.certify(strides, &left, right, ends);
+        let mut verdict = phase.certify(steps, &left, right, ends);
         if verdict == Verdict::Touches && uneven(&left, right) {
             verdict = Verdict::Open;
         }

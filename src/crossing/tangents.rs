@@ -9,15 +9,15 @@
 //! chord to r, or the tangent there.
 //!
 //! Near the double zero at the start E does not help. There h itself is concave as long as F is
-//! negative; or, up to z = [`PARTING`](crate::flow::stride::PARTING) decay times, q0 (exp(-z) - 1 +
-//! z) >= [`GRIP`] q0 z^2/2 outweighs the force, if GRIP q0 rate^2 exceeds the largest force. What
-//! neither serves is left to [`crate::crossing::walk`].
+//! negative; or, up to z = [`SEPARATION_INTERVAL`](crate::flow::steps::SEPARATION_INTERVAL) decay
+//! times, q0 (exp(-z) - 1 + z) >= [`GRIP`] q0 z^2/2 outweighs the force, if GRIP q0 rate^2 exceeds
+//! the largest force. What neither serves is left to [`crate::crossing::piecewise`].
 
 use crate::constants::Constants;
 use crate::crossing::guarded::slack;
 use crate::flow::Point;
 use crate::flow::no_contact::NoContact;
-use crate::flow::stride::{GRIP, Strides, Turning};
+use crate::flow::steps::{GRIP, Steps, Turning};
 use std::borrow::Borrow;
 use std::f64::consts::TAU;
 
@@ -89,13 +89,13 @@ impl Bound {
 #[inline]
 pub fn stays_below<C: Borrow<Constants<f64>>>(
     flight: &NoContact<f64, C>,
-    strides: &Strides,
+    steps: &Steps,
     root: &Point<f64>,
 ) -> bool {
-    let Turning { angle, sin, cos, length, period } = strides.turning;
+    let Turning { angle, sin, cos, length, period } = steps.turning;
     let omega = flight.constants.borrow().omega;
     let bound = Bound::new(flight, root);
-    let Some(start) = off_the_surface(flight, strides, &bound) else { return false };
+    let Some(start) = off_the_surface(flight, steps, &bound) else { return false };
     // Written so that a NaN proves nothing.
     if !(start.from < root.elapsed && start.value < 0.0 && flight.entry.q > 0.0) {
         return false;
@@ -124,14 +124,14 @@ pub fn stays_below<C: Borrow<Constants<f64>>>(
 #[inline]
 fn off_the_surface<C: Borrow<Constants<f64>>>(
     flight: &NoContact<f64, C>,
-    strides: &Strides,
+    steps: &Steps,
     bound: &Bound,
 ) -> Option<Tangent> {
     let Constants { a, b, omega, rate, .. } = *flight.constants.borrow();
-    let Turning { sin, cos, .. } = strides.turning;
+    let Turning { sin, cos, .. } = steps.turning;
     let entry = flight.angle;
-    let parting = &strides.parting;
-    let negative_until = strides.turning.negative_until(entry.radians);
+    let parting = &steps.separation_interval;
+    let negative_until = steps.turning.negative_until(entry.radians);
     let concave_until = (negative_until.unwrap_or(entry.radians) - entry.radians) / omega;
     let sinks = (a + b.max(0.0)) * (1.0 + 1e-9) < flight.entry.q * (rate * rate) * GRIP;
     if sinks && parting.length > concave_until {

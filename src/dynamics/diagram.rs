@@ -10,9 +10,9 @@ use super::strobe::{Point, StrobeMap};
 use crate::entry::Entry;
 use crate::error::InputError;
 use crate::instant::Instant;
-use crate::leg::Endless;
 use crate::model::Model;
 use crate::parameters::{Parameter, Parameters};
+use crate::segment::Endless;
 use crate::start::Start;
 
 /// How each value is started.

@@ -40,9 +40,9 @@ use super::section::Section;
 use super::tangent::{Tangent, contact_rates};
 use crate::entry::Entry;
 use crate::instant::Instant;
-use crate::leg::{Endless, Exit, Leg};
 use crate::model::{Model, Motion};
 use crate::phase::Phase;
+use crate::segment::{Endless, Exit, Segment};
 
 /// Batches for the standard error.
 pub const BATCHES: u64 = 32;
@@ -81,15 +81,15 @@ impl Spectrum {
         from: Entry,
         transient: u64,
         periods: u64,
-        seen: &mut dyn FnMut(&Leg),
+        seen: &mut dyn FnMut(&Segment),
     ) -> Self {
         let periods = periods.max(1);
         let mut run = Run::new(model, from, transient, periods);
         let begin = from.instant.after_periods(transient, 1);
         let end = begin.after_periods(periods, 1);
-        for leg in model.trajectory(from).until(end) {
-            run.pass(&leg);
-            seen(&leg);
+        for segment in model.trajectory(from).until(end) {
+            run.pass(&segment);
+            seen(&segment);
         }
         run.spectrum(model)
     }
@@ -109,7 +109,7 @@ struct Mark {
     drift: f64,
 }
 
-/// One run, leg by leg.
+/// One run, segment by segment.
 struct Run {
     tangent: Tangent,
     two_xi: f64,
@@ -121,7 +121,7 @@ struct Run {
     marks: Vec<Mark>,
     contraction: f64,
     touched: bool,
-    last: Option<Leg>,
+    last: Option<Segment>,
 }
 
 impl Run {
@@ -145,35 +145,35 @@ impl Run {
         !self.marks.is_empty()
     }
 
-    fn pass(&mut self, leg: &Leg) {
+    fn pass(&mut self, segment: &Segment) {
         let mut done = 0.0;
-        while self.marks.len() as u64 <= self.batches && !leg.ends_by(&self.next) {
-            let here = leg.elapsed_at(&self.next).max(done);
-            self.go(leg, done, here);
-            self.mark(leg, here);
+        while self.marks.len() as u64 <= self.batches && !segment.ends_by(&self.next) {
+            let here = segment.elapsed_at(&self.next).max(done);
+            self.go(segment, done, here);
+            self.mark(segment, here);
             done = here;
         }
-        if let Exit::Switch(next) = leg.exit() {
-            self.go(leg, done, leg.duration());
-            self.tangent.switch(leg);
-            if self.observing() && leg.phase() == Phase::NoContact {
-                self.contraction += impact_factor(leg, next.phase(), self.two_xi).abs().ln();
+        if let Exit::Switch(next) = segment.exit() {
+            self.go(segment, done, segment.duration());
+            self.tangent.switch(segment);
+            if self.observing() && segment.phase() == Phase::NoContact {
+                self.contraction += impact_factor(segment, next.phase(), self.two_xi).abs().ln();
                 self.touched = true;
             }
         }
-        if *leg.exit() == Exit::Undecidable {
+        if *segment.exit() == Exit::Undecidable {
             self.marks.clear();
         }
-        self.last = Some(*leg);
+        self.last = Some(*segment);
     }
 
     /// Carries errors from one time in a phase to another.
-    fn go(&mut self, leg: &Leg, from: f64, to: f64) {
+    fn go(&mut self, segment: &Segment, from: f64, to: f64) {
         let elapsed = (to - from).max(0.0);
-        self.tangent.flow(leg, elapsed);
+        self.tangent.flow(segment, elapsed);
         if self.observing() {
-            self.touched |= leg.phase() != Phase::NoContact;
-            self.contraction -= match leg.phase() {
+            self.touched |= segment.phase() != Phase::NoContact;
+            self.contraction -= match segment.phase() {
                 Phase::NoContact => 0.0,
                 Phase::Contact => self.two_xi * elapsed,
                 Phase::Progression => elapsed / self.two_xi,
@@ -181,9 +181,9 @@ impl Run {
         }
     }
 
-    fn mark(&mut self, leg: &Leg, here: f64) {
+    fn mark(&mut self, segment: &Segment, here: f64) {
         let Tangent { length, size, .. } = self.tangent;
-        self.marks.push(Mark { length, size, drift: leg.at(here).v });
+        self.marks.push(Mark { length, size, drift: segment.at(here).v });
         let passed = batch_end(self.marks.len() as u64, self.periods, self.batches);
         self.next = self.start.after_periods(self.transient + passed, 1);
     }
@@ -245,13 +245,13 @@ fn batch_end(k: u64, periods: u64, batches: u64) -> u64 {
 }
 
 /// By how much the impact that ends a flight changes an area that was dp ^ dy at separation.
-fn impact_factor(leg: &Leg, next: Phase, two_xi: f64) -> f64 {
-    let d = leg.duration();
+fn impact_factor(segment: &Segment, next: Phase, two_xi: f64) -> f64 {
+    let d = segment.duration();
     let e = (-d / two_xi).exp();
     let lost = two_xi * e * d;
-    match (next, &leg.motion()) {
+    match (next, &segment.motion()) {
         (Phase::Progression, Motion::NoContact(_)) => {
-            let f = two_xi * leg.point(d).guard.orders[1];
+            let f = two_xi * segment.point(d).guard.orders[1];
             e + (1.0 - e - lost) / f
         }
         _ => 1.0 - lost,

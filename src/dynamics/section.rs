@@ -3,8 +3,8 @@
 use super::ensemble::{self, Motion, Watcher};
 use crate::entry::Entry;
 use crate::instant::Instant;
-use crate::leg::{Endless, Exit, Leg};
 use crate::model::Model;
+use crate::segment::{Endless, Exit, Segment};
 use crate::trajectory::Trajectory;
 use std::ops::ControlFlow;
 
@@ -16,24 +16,24 @@ use std::ops::ControlFlow;
 #[derive(Clone, Debug)]
 pub struct Section<I = Trajectory> {
     trajectory: I,
-    leg: Option<Leg>,
+    segment: Option<Segment>,
     next: Instant,
 }
 
-impl<I: Iterator<Item = Leg>> Section<I> {
+impl<I: Iterator<Item = Segment>> Section<I> {
     /// The strobes of a run from `first` on, which is not before its start.
     ///
     /// Phases that a horizon cuts are continued beyond it.
     #[must_use]
     pub fn along(mut trajectory: I, first: Instant) -> Self {
-        let leg = trajectory.next();
-        Self { trajectory, leg, next: first }
+        let segment = trajectory.next();
+        Self { trajectory, segment, next: first }
     }
 
     /// Why the phase that the motion is in has no end, where that is proved.
     #[must_use]
     pub fn endless(&self) -> Option<Endless> {
-        match self.leg.as_ref()?.exit() {
+        match self.segment.as_ref()?.exit() {
             Exit::Endless(endless) => Some(*endless),
             Exit::Switch(_) | Exit::Horizon | Exit::Undecidable => None,
         }
@@ -48,18 +48,18 @@ impl Section {
     }
 }
 
-impl<I: Iterator<Item = Leg>> Iterator for Section<I> {
+impl<I: Iterator<Item = Segment>> Iterator for Section<I> {
     type Item = Entry;
 
     fn next(&mut self) -> Option<Entry> {
-        while self.leg.as_ref()?.ends_by(&self.next) {
-            self.leg = self.trajectory.next();
+        while self.segment.as_ref()?.ends_by(&self.next) {
+            self.segment = self.trajectory.next();
         }
-        let leg = self.leg.as_ref()?;
-        if leg.is_undecided_at(&self.next) {
+        let segment = self.segment.as_ref()?;
+        if segment.is_undecided_at(&self.next) {
             return None;
         }
-        let strobe = leg.entry_at(&self.next);
+        let strobe = segment.entry_at(&self.next);
         self.next = self.next.after_periods(1, 1);
         Some(strobe)
     }

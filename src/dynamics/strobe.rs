@@ -21,9 +21,9 @@ use super::section::Section;
 use crate::entry::Entry;
 use crate::error::InputError;
 use crate::instant::Instant;
-use crate::leg::Exit;
 use crate::model::Model;
 use crate::phase::Phase;
+use crate::segment::Exit;
 use crate::state::State;
 use crate::variation::{IDENTITY, Matrix, P, Q, V, Y, product};
 
@@ -84,15 +84,17 @@ impl StrobeMap {
     pub fn passage(&self, from: &Entry, periods: u64) -> Passage {
         let end = from.instant.after_periods(periods, 1);
         let mut passage = Passage { image: *from, derivative: IDENTITY, phases: Vec::new() };
-        for leg in self.model.trajectory(*from).until(end) {
-            passage.phases.push(leg.phase());
-            let step = match leg.exit() {
-                Exit::Switch(_) => product(&leg.saltation(), &leg.variation(leg.duration())),
+        for segment in self.model.trajectory(*from).until(end) {
+            passage.phases.push(segment.phase());
+            let step = match segment.exit() {
+                Exit::Switch(_) => {
+                    product(&segment.saltation(), &segment.variation(segment.duration()))
+                }
                 // Nothing is known of the image: nothing converges on it.
                 Exit::Undecidable => [[f64::NAN; 5]; 5],
                 _ => {
-                    passage.image = leg.entry_at(&end);
-                    leg.variation(leg.elapsed_at(&end))
+                    passage.image = segment.entry_at(&end);
+                    segment.variation(segment.elapsed_at(&end))
                 }
             };
             passage.derivative = product(&step, &passage.derivative);

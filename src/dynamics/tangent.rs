@@ -6,8 +6,8 @@
 //! [`super::lyapunov`]). Both may shrink by more than an f64 can hold, which is why logarithms are
 //! kept: of a phase on the slider exactly, from its duration.
 
-use crate::leg::Leg;
 use crate::model::{Model, Motion};
+use crate::segment::Segment;
 use crate::variation::{Matrix, P, Q, Y};
 
 /// A contact is passed in pieces in which its slowest part shrinks by at most exp(-PIECE).
@@ -46,16 +46,16 @@ impl Tangent {
     }
 
     /// Carries both a time `elapsed` on inside a phase.
-    pub fn flow(&mut self, leg: &Leg, elapsed: f64) {
-        match leg.motion() {
+    pub fn flow(&mut self, segment: &Segment, elapsed: f64) {
+        match segment.motion() {
             Motion::NoContact(_) => {
-                let variation = leg.variation(elapsed);
+                let variation = segment.variation(elapsed);
                 self.turn(&variation);
                 self.area = wedge(&variation, self.area);
             }
             Motion::Contact(_) => {
                 let pieces = (elapsed * self.slowest / PIECE).ceil().max(1.0);
-                let variation = leg.variation(elapsed / pieces);
+                let variation = segment.variation(elapsed / pieces);
                 for _ in 0..pieces as u64 {
                     self.turn(&variation);
                     self.stay_on_slider();
@@ -63,7 +63,7 @@ impl Tangent {
                 self.size -= self.two_xi * elapsed;
             }
             Motion::Progression(_) => {
-                self.turn(&leg.variation(elapsed));
+                self.turn(&segment.variation(elapsed));
                 self.stay_on_slider();
                 self.size -= elapsed / self.two_xi;
             }
@@ -71,11 +71,11 @@ impl Tangent {
     }
 
     /// Carries both over the switch that ends a phase.
-    pub fn switch(&mut self, leg: &Leg) {
-        if !matches!(leg.motion(), Motion::NoContact(_)) {
+    pub fn switch(&mut self, segment: &Segment) {
+        if !matches!(segment.motion(), Motion::NoContact(_)) {
             return;
         }
-        let saltation = leg.saltation();
+        let saltation = segment.saltation();
         self.turn(&saltation);
         self.stay_on_slider();
         let [area, ..] = wedge(&saltation, self.area);

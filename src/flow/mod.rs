@@ -12,7 +12,7 @@ pub mod forcing;
 pub mod no_contact;
 pub mod progression;
 pub mod steady;
-pub mod stride;
+pub mod steps;
 
 use crate::number::Number;
 use crate::state::State;

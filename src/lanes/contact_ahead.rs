@@ -20,7 +20,7 @@ const PIECES: usize = 8;
 const FINE_PIECES: usize = 16;
 /// and how much longer than a stride the last one may be.
 const REST: f64 = 1.3;
-/// Strides of a guess, after which a lane is left to the scalar solver.
+/// Steps of a guess, after which a lane is left to the scalar solver.
 const STRIDES: usize = 24;
 
 impl<S: Simd> Contact<'_, S> {

@@ -40,7 +40,7 @@ const SHORTEST: f64 = 1.0 / 256.0;
 
 /// The steps of a contact.
 struct Pace {
-    /// Strides are measured by this rate,
+    /// Steps are measured by this rate,
     full: f64,
     /// and the first one is this much of them.
     early: f64,

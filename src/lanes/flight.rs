@@ -10,14 +10,14 @@
 use super::certificate::Piece;
 use super::crest::{Bound, Tangent};
 use super::functions::shrink;
-use super::guess::Trend;
+use super::guess::SlowEnvelope;
 use super::harmonic::{Angle, Harmonic, Push, short_decay};
 use super::root::{Care, Found, Phase, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::series::REACH;
-use crate::flow::stride::{GRIP, PARTING};
+use crate::flow::steps::{GRIP, SEPARATION_INTERVAL};
 use pulp::Simd;
 use std::f64::consts::TAU;
 
@@ -130,7 +130,7 @@ impl<S: Simd> Flight<'_, S> {
     #[inline(always)]
     pub fn impact(&self, care: Care) -> Impact<S> {
         let Shape { b, two_xi, rate, look, look_decay, .. } = *self.shape;
-        let (guess, guessed) = self.trend().first_root();
+        let (guess, guessed) = self.slow_envelope().first_root();
         // Within the first stride of a short-lived exponential: its end, from where the convex h
         // leads back.
         let hasty = guess.less(look) & look_decay.is(0.0);
@@ -167,11 +167,11 @@ impl<S: Simd> Flight<'_, S> {
     }
 
     #[inline(always)]
-    fn trend(&self) -> Trend<'_, S> {
+    fn slow_envelope(&self) -> SlowEnvelope<'_, S> {
         let Shape { a_over_omega, a_over_omega2, b, .. } = *self.shape;
         let Angle { sin, cos, .. } = self.angle;
         let offset = a_over_omega2.times_plus(cos, self.q);
-        Trend {
+        SlowEnvelope {
             shape: self.shape,
             offset,
             slope: a_over_omega.times_from(sin, self.y),
@@ -258,7 +258,7 @@ impl<S: Simd> Flight<'_, S> {
         let bound = Bound::new(self, root, q);
 
         let concave_at_first = !angle.less(turning) & !(-turning + TAU).less(angle);
-        let settled = rate.same(PARTING) / rate;
+        let settled = rate.same(SEPARATION_INTERVAL) / rate;
         let concave_until = ((-turning + TAU) - angle) / omega;
         let Shape { settling_sin, settling_cos, .. } = *self.shape;
         let settled_sin = sin.times_plus(settling_cos, cos * settling_sin);

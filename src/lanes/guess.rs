@@ -1,5 +1,5 @@
 //! Guesses of roots outside contact: the slow part of a guard and its harmonic, looked at in
-//! strides ([`crate::crossing::trend`]).
+//! strides ([`crate::crossing::slow_envelope`]).
 
 use super::functions::{FURTHEST, sin_cos};
 use super::shape::Shape;
@@ -8,7 +8,7 @@ use pulp::Simd;
 
 /// The guard, counted so that it rises to zero: c + s d + k d^2/2 - K cos(omega d + angle) - e
 /// exp(-rate d).
-pub struct Trend<'a, S: Simd> {
+pub struct SlowEnvelope<'a, S: Simd> {
     /// The model.
     pub shape: &'a Shape<Wide<S>>,
     /// c
@@ -38,10 +38,10 @@ struct Place<S: Simd> {
     rate: Wide<S>,
 }
 
-/// Strides after which a lane is left to the scalar solver.
+/// Steps after which a lane is left to the scalar solver.
 const STRIDES: usize = 24;
 
-impl<S: Simd> Trend<'_, S> {
+impl<S: Simd> SlowEnvelope<'_, S> {
     /// When the guard may first rise to zero, and in which lanes that is told.
     #[inline(always)]
     pub fn first_root(&self) -> (Wide<S>, Mask<S>) {

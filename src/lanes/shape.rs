@@ -2,7 +2,7 @@
 
 use super::wide::{Column, Wide};
 use crate::constants::Constants;
-use crate::flow::stride::Strides;
+use crate::flow::steps::Steps;
 use crate::model::Model;
 use pulp::Simd;
 
@@ -196,7 +196,7 @@ impl Shape<f64> {
         if !suits {
             return None;
         }
-        let Strides { turning, parting, .. } = *model.strides();
+        let Steps { turning, separation_interval: parting, .. } = *model.steps();
         let (halfway_sin, halfway_cos) = libm::sincos(0.5 * (turning.angle + std::f64::consts::PI));
         let (look_sin, look_cos) = libm::sincos(LOOK);
         let look = LOOK / omega;

@@ -8,7 +8,7 @@
 //! are left to the scalar solver.
 
 use super::functions::shrink;
-use super::guess::Trend;
+use super::guess::SlowEnvelope;
 use super::harmonic::{Angle, Harmonic, short_decay};
 use super::root::{Found, Phase, find};
 use super::series::LATER;
@@ -146,7 +146,7 @@ impl<S: Simd> Slip<'_, S> {
     #[inline(always)]
     pub fn stop(&self) -> Stop<S> {
         let Shape { a, b, omega, rate, .. } = *self.shape;
-        let (guess, guessed) = self.trend().first_root();
+        let (guess, guessed) = self.slow_envelope().first_root();
         let Found { at, elapsed, series, step, slope, fine } = find(self, guess, guessed);
         let lag = at.lag + at.lag * short_decay(rate * step);
         let drift = at.drift + series.integral(step);
@@ -169,11 +169,11 @@ impl<S: Simd> Slip<'_, S> {
     }
 
     #[inline(always)]
-    fn trend(&self) -> Trend<'_, S> {
+    fn slow_envelope(&self) -> SlowEnvelope<'_, S> {
         let Shape { a_over_omega, b, look_decay, .. } = *self.shape;
         let Angle { sin, cos, .. } = self.angle;
         let zero = b.same(0.0);
-        Trend {
+        SlowEnvelope {
             shape: self.shape,
             offset: a_over_omega.times_plus(sin, -self.y),
             slope: -b + 1.0,

@@ -1,7 +1,7 @@
-//! A contact followed in strides of fixed length ([`crate::crossing::swing`]).
+//! A contact followed in strides of fixed length ([`crate::crossing::contact_parts`]).
 //!
 //! Clearly above critical damping the free part is carried as two exponentials, so that what is
-//! left of it has the derivatives of the slow one when the quick one has died out. Strides then
+//! left of it has the derivatives of the slow one when the quick one has died out. Steps then
 //! begin as short as the quick one's life and double up to the length of all others.
 
 use super::contact_shape::Forms;

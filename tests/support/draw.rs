@@ -1,7 +1,7 @@
 //! What the planted tests draw from, and what they count.
 
 use super::plant::Finding;
-use percuss::{Counters, Leg, Model, Parameters, Start, Trajectory};
+use percuss::{Counters, Model, Parameters, Segment, Start, Trajectory};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestCaseError, TestRunner};
 use std::cell::Cell;
@@ -71,12 +71,15 @@ pub fn setting() -> impl Strategy<Value = Setting> {
     (damping(), log(0.01, 50.0), phase_length(), 0.0..TAU, 0.0..1.0_f64, 0.0..1.0_f64)
 }
 
-pub fn first_leg(parameters: Parameters, start: Start) -> Option<(Leg, Counters, Trajectory)> {
+pub fn first_segment(
+    parameters: Parameters,
+    start: Start,
+) -> Option<(Segment, Counters, Trajectory)> {
     let model = Model::new(parameters).ok()?;
     let entry = model.start(&start).ok()?;
     let mut trajectory = model.trajectory(entry).until(entry.instant.after_periods(200, 1));
-    let leg = trajectory.next()?;
-    Some((leg, trajectory.counters(), trajectory))
+    let segment = trajectory.next()?;
+    Some((segment, trajectory.counters(), trajectory))
 }
 
 pub fn state(p: f64, y: f64, q: f64) -> Start {

@@ -1,7 +1,7 @@
 //! Guards written down a second time, and the question whether a claimed first crossing is one.
 
 use super::original::Equations;
-use percuss::{Exit, Leg, Parameters, Phase};
+use percuss::{Exit, Parameters, Phase, Segment};
 use proptest::test_runner::TestCaseError;
 
 /// Roundings of the plain formulas below, of the planted data and of the solver together, in eps
@@ -159,15 +159,15 @@ fn fail(message: String) -> TestCaseError {
     TestCaseError::fail(message)
 }
 
-/// Holds a leg against its guard: no sample before its end is outside, its end is a crossing, and
-/// its duration is right to (noise of the guard)/slope.
+/// Holds a segment against its guard: no sample before its end is outside, its end is a crossing,
+/// and its duration is right to (noise of the guard)/slope.
 pub fn examine(
-    leg: &Leg,
+    segment: &Segment,
     guard: impl Fn(f64) -> Guard,
     planted: f64,
     samples: u32,
 ) -> Result<Finding, TestCaseError> {
-    let found = leg.duration();
+    let found = segment.duration();
     if found.is_nan() || found < 0.0 {
         return Err(fail(format!("duration {found}")));
     }
@@ -180,7 +180,7 @@ pub fn examine(
             return Err(fail(format!("outside at {d:e} before the end at {found:e}: {at:?}")));
         }
     }
-    if !matches!(leg.exit(), Exit::Switch(_)) {
+    if !matches!(segment.exit(), Exit::Switch(_)) {
         return Ok(Finding::Later);
     }
     let end = guard(found);

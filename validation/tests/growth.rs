@@ -10,7 +10,7 @@ mod exact;
 use percuss::number::Number;
 use percuss::two_word::TwoWord;
 use percuss::variation::{ANGLE, IDENTITY, Matrix, P, Q, V, Y, product, times};
-use percuss::{Entry, Exit, GrowthRecorder, Instant, Leg};
+use percuss::{Entry, Exit, GrowthRecorder, Instant, Segment};
 use percuss_validation::case::Case;
 use percuss_validation::engine::{Grid, Task};
 use percuss_validation::score::Growth;
@@ -68,21 +68,22 @@ fn products_of_the_solver_agree_with_matrix_exponentials() {
             [it.tau, p, y, q, it.v]
         };
         let start = task.problem.entry;
-        let legs = task.problem.model.trajectory(start).until(task.horizon);
+        let segments = task.problem.model.trajectory(start).until(task.horizon);
         let (mut switch, mut sample) = (0, 0);
-        for leg in legs {
+        for segment in segments {
             while sample < task.grid.count {
                 let instant = start.instant.after_periods(sample as u64, 8);
-                if leg.ends_by(&instant) {
+                if segment.ends_by(&instant) {
                     break;
                 }
-                let elapsed = instant.since(&leg.entry().instant, case.parameters.omega).value();
+                let elapsed =
+                    instant.since(&segment.entry().instant, case.parameters.omega).value();
                 let [p, y, q, v] = growth.samples[sample];
                 let what = format!("sample {sample}");
-                compare(values(recorder.at(&leg, elapsed)), [1.0, p, y, q, v], &what);
+                compare(values(recorder.at(&segment, elapsed)), [1.0, p, y, q, v], &what);
                 sample += 1;
             }
-            if let Some(found) = recorder.pass(&leg) {
+            if let Some(found) = recorder.pass(&segment) {
                 let what = format!("switch {}", switch + 1);
                 compare(values(found), growth.switches[switch], &what);
                 switch += 1;
@@ -117,18 +118,18 @@ fn switches(
 }
 
 /// The derivatives of every switch's row with respect to the start, by the solver's products.
-fn derivatives(legs: impl Iterator<Item = Leg>) -> Vec<Matrix> {
+fn derivatives(segments: impl Iterator<Item = Segment>) -> Vec<Matrix> {
     let mut source = IDENTITY;
     let mut all = Vec::new();
-    for leg in legs {
-        let Exit::Switch(_) = leg.exit() else { break };
-        let switch = leg.switch_derivative().expect("a switch ends it");
-        source = product(&leg.variation(leg.duration()), &source);
+    for segment in segments {
+        let Exit::Switch(_) = segment.exit() else { break };
+        let switch = segment.switch_derivative().expect("a switch ends it");
+        source = product(&segment.variation(segment.duration()), &source);
         let mut rows = product(&switch.state, &source);
         // The first row of a switch is its time's.
         rows[ANGLE] = times(&switch.time, &source);
         all.push(rows);
-        source = product(&leg.saltation(), &source);
+        source = product(&segment.saltation(), &source);
     }
     all
 }

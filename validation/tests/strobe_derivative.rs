@@ -8,7 +8,7 @@ use percuss::dynamics::strobe::{Jacobian, Point, StrobeMap};
 use percuss::number::Number;
 use percuss::two_word::TwoWord;
 use percuss::variation::{IDENTITY, Matrix, P, Q, Y, product};
-use percuss::{Entry, Exit, Instant, Leg, Model, Parameters, Phase};
+use percuss::{Entry, Exit, Instant, Model, Parameters, Phase, Segment};
 use percuss_validation::truth::{DoubleDouble, Replay};
 
 /// Half the width of a difference: its square times a third derivative is far below the products'
@@ -68,11 +68,12 @@ fn over_several_periods_for_both_targets_of_an_impact() {
         let rest = map.entry([0.0; 3]).unwrap();
         // In mid-flight, where every direction of the state is free.
         let omega = map.model().parameters().omega;
-        let legs = map.model().trajectory(rest).skip(60);
-        let flights = legs.filter(|leg| leg.phase() == Phase::NoContact).map(|leg| {
-            let half = TwoWord::new(0.5 * leg.duration());
-            leg.entry_at(&leg.entry().instant.after(half, omega))
-        });
+        let segments = map.model().trajectory(rest).skip(60);
+        let flights =
+            segments.filter(|segment| segment.phase() == Phase::NoContact).map(|segment| {
+                let half = TwoWord::new(0.5 * segment.duration());
+                segment.entry_at(&segment.entry().instant.after(half, omega))
+            });
         let flights: Vec<_> = flights.take(6).collect();
         for entry in &flights {
             for periods in [1, 2, 4] {
@@ -111,7 +112,7 @@ impl Graze {
         map.entry([self.p, self.y + distance, 0.01]).unwrap()
     }
 
-    fn first(&self, distance: f64) -> Leg {
+    fn first(&self, distance: f64) -> Segment {
         self.model.trajectory(self.entry(distance)).next().unwrap()
     }
 
@@ -137,10 +138,12 @@ impl Graze {
 
 fn between(model: &Model, entry: Entry, end: Instant) -> Matrix {
     let mut derivative = IDENTITY;
-    for leg in model.trajectory(entry).until(end) {
-        let step = match leg.exit() {
-            Exit::Switch(_) => product(&leg.saltation(), &leg.variation(leg.duration())),
-            _ => leg.variation(leg.elapsed_at(&end)),
+    for segment in model.trajectory(entry).until(end) {
+        let step = match segment.exit() {
+            Exit::Switch(_) => {
+                product(&segment.saltation(), &segment.variation(segment.duration()))
+            }
+            _ => segment.variation(segment.elapsed_at(&end)),
         };
         derivative = product(&step, &derivative);
     }

@@ -3,7 +3,7 @@
 use gungraun::prelude::*;
 use gungraun::{Callgrind, EventKind};
 use percuss::dynamics::strobe::StrobeMap;
-use percuss::{Entry, Leg, Model, Parameters, Phase, Start};
+use percuss::{Entry, Segment, Model, Parameters, Phase, Start};
 use percuss_instructions::{Grain, limit};
 use std::hint::black_box;
 
@@ -19,14 +19,14 @@ fn at_rest(model: Model) -> (Model, Entry) {
     (model, entry)
 }
 
-fn leg(phase: Phase) -> Leg {
+fn segment(phase: Phase) -> Segment {
     let (model, entry) = at_rest(model(CHAOS));
-    model.trajectory(entry).skip(20).find(|leg| leg.phase() == phase).expect("all phases occur")
+    model.trajectory(entry).skip(20).find(|segment| segment.phase() == phase).expect("all phases occur")
 }
 
 /// Where a phase begins, with its model.
 fn beginning(phase: Phase) -> (Model, Entry) {
-    (model(CHAOS), *leg(phase).entry())
+    (model(CHAOS), *segment(phase).entry())
 }
 
 fn held(bench: &str, grain: Grain) -> LibraryBenchmarkConfig {
@@ -38,11 +38,11 @@ fn held(bench: &str, grain: Grain) -> LibraryBenchmarkConfig {
 }
 
 #[library_benchmark]
-#[bench::no_contact(args = (leg(Phase::NoContact)), config = held("closed_form/no_contact", Grain::Micro))]
-#[bench::contact(args = (leg(Phase::Contact)), config = held("closed_form/contact", Grain::Micro))]
-#[bench::progression(args = (leg(Phase::Progression)), config = held("closed_form/progression", Grain::Micro))]
-fn closed_form(leg: Leg) -> f64 {
-    black_box(&leg).at(black_box(0.5 * leg.duration())).state.q
+#[bench::no_contact(args = (segment(Phase::NoContact)), config = held("closed_form/no_contact", Grain::Micro))]
+#[bench::contact(args = (segment(Phase::Contact)), config = held("closed_form/contact", Grain::Micro))]
+#[bench::progression(args = (segment(Phase::Progression)), config = held("closed_form/progression", Grain::Micro))]
+fn closed_form(segment: Segment) -> f64 {
+    black_box(&segment).at(black_box(0.5 * segment.duration())).state.q
 }
 
 #[library_benchmark]
@@ -50,7 +50,7 @@ fn closed_form(leg: Leg) -> f64 {
 #[bench::contact(args = (beginning(Phase::Contact)), config = held("switch/contact", Grain::Micro))]
 #[bench::progression(args = (beginning(Phase::Progression)), config = held("switch/progression", Grain::Micro))]
 fn switch((model, entry): (Model, Entry)) -> f64 {
-    black_box(&model).trajectory(black_box(entry)).next().map_or(f64::NAN, |leg| leg.duration())
+    black_box(&model).trajectory(black_box(entry)).next().map_or(f64::NAN, |segment| segment.duration())
 }
 
 #[library_benchmark]
@@ -67,7 +67,7 @@ fn made() -> Model {
 #[bench::over_damped(args = (at_rest(model((1.4, 5.0)))), config = held("trajectory/over_damped", Grain::EndToEnd))]
 fn trajectory((model, entry): (Model, Entry)) -> f64 {
     const SWITCHES: usize = 3000;
-    black_box(&model).trajectory(entry).take(SWITCHES).map(|leg| leg.duration()).sum()
+    black_box(&model).trajectory(entry).take(SWITCHES).map(|segment| segment.duration()).sum()
 }
 
 fn strobe_map() -> (StrobeMap, Entry) {

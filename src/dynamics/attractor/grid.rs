@@ -1,6 +1,6 @@
 //! A grid of starts, and which attractor each of them reaches.
 
-use super::atlas::Atlas;
+use super::catalog::AttractorCatalog;
 use super::known::Label;
 use super::{Attractor, Kind};
 use crate::dynamics::strobe::{Point, StrobeMap};
@@ -101,20 +101,20 @@ fn centres([from, to]: [f64; 2], count: u32) -> Vec<f64> {
 impl Basins {
     /// Labels every start of a grid.
     ///
-    /// `transient` is how many forcing periods a start is followed at first (see [`Atlas::new`]);
-    /// `seen` is told of how many starts more the label is known.
+    /// `transient` is how many forcing periods a start is followed at first (see
+    /// [`AttractorCatalog::new`]); `seen` is told of how many starts more the label is known.
     #[must_use]
     pub fn of(map: &StrobeMap, grid: &Grid, transient: u64, seen: &(dyn Fn(u64) + Sync)) -> Self {
-        let mut atlas = Atlas::new(*map, transient);
+        let mut catalog = AttractorCatalog::new(*map, transient);
         let lattice = Grid { columns: LATTICE, rows: LATTICE, ..*grid };
-        atlas.label_all(&lattice.starts(), &|_| {});
-        let labels = atlas.label_all(&grid.starts(), seen);
-        Self::sorted(*grid, &atlas, labels)
+        catalog.label_all(&lattice.starts(), &|_| {});
+        let labels = catalog.label_all(&grid.starts(), seen);
+        Self::sorted(*grid, &catalog, labels)
     }
 
     /// Drops attractors that no start reaches and puts the others in order.
-    fn sorted(grid: Grid, atlas: &Atlas, labels: Vec<Label>) -> Self {
-        let known: Vec<&Attractor> = atlas.attractors().collect();
+    fn sorted(grid: Grid, catalog: &AttractorCatalog, labels: Vec<Label>) -> Self {
+        let known: Vec<&Attractor> = catalog.attractors().collect();
         let mut reached = vec![false; known.len()];
         for label in &labels {
             if let Label::Attractor(id) = label {

@@ -7,7 +7,7 @@ use super::trap::Trap;
 /// Where a start leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Label {
-    /// To an attractor, by its place in the atlas.
+    /// To an attractor, by its place in the catalog.
     Attractor(usize),
     /// To a phase that never ends: the mass never returns or the slider never stops.
     Escaping,

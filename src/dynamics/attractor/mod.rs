@@ -15,7 +15,7 @@
 //! A chaotic set of which a motion leaves after some 10^5 periods on average cannot be told from an
 //! attractor by any run of that length.
 
-mod atlas;
+mod catalog;
 mod cells;
 mod fractal;
 mod grid;
@@ -24,7 +24,7 @@ mod recognition;
 mod settle;
 mod trap;
 
-pub use atlas::Atlas;
+pub use catalog::AttractorCatalog;
 pub use fractal::{Entropy, Scale, Uncertainty, entropy, uncertainty, uncertainty_of};
 pub use grid::{Basins, Grid, Window};
 pub use known::Label;

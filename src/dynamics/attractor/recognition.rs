@@ -6,7 +6,7 @@ use super::trap::Trap;
 use crate::dynamics::ensemble::Watcher;
 use crate::dynamics::strobe::Point;
 use crate::entry::Entry;
-use crate::leg::Endless;
+use crate::segment::Endless;
 use std::ops::ControlFlow;
 
 /// So many turns in a row have to bring a motion in a trap closer.

@@ -1,15 +1,15 @@
 //! From one smooth piece of the map to the next.
 
-use super::knot::{Curve, Knot, shifted};
-use crate::dynamics::orbit::Chain;
+use super::point::{ContinuationPoint, Curve, shifted};
+use crate::dynamics::orbit::ShootingIterate;
 use crate::dynamics::strobe::Point;
 
 /// Where the curve leaves a piece, and where it goes on.
 pub(super) struct Corner {
     /// The last orbit of the piece that is left.
-    pub(super) before: Knot,
+    pub(super) before: ContinuationPoint,
     /// The first one beyond.
-    pub(super) beyond: Knot,
+    pub(super) beyond: ContinuationPoint,
     /// How far the parameter's value at the corner may be off.
     pub(super) error: f64,
 }
@@ -30,7 +30,7 @@ impl Curve {
     ///
     /// Its error is what the halving leaves, rounding, and how far off the same corner is found
     /// from the other side: a contact that is too short to be told from a touch counts as none.
-    pub(super) fn corner(&self, base: &Knot, distance: f64) -> Option<Corner> {
+    pub(super) fn corner(&self, base: &ContinuationPoint, distance: f64) -> Option<Corner> {
         let (before, rest) = self.approached(base, distance);
         let mut best: Option<Corner> = None;
         for step in BEYOND {
@@ -47,15 +47,15 @@ impl Curve {
     }
 
     /// How far off the corner is found from beyond, and rounding.
-    fn seen_from(&self, beyond: &Knot, step: f64, before: &Knot) -> f64 {
-        let back = Knot { tangent: beyond.tangent.turned(), ..beyond.clone() };
+    fn seen_from(&self, beyond: &ContinuationPoint, step: f64, before: &ContinuationPoint) -> f64 {
+        let back = ContinuationPoint { tangent: beyond.tangent.turned(), ..beyond.clone() };
         let (after, rest) = self.approached(&back, 2.0 * step);
         let apart = (after.value - before.value).abs() + rest * after.tangent.rate.abs();
         apart + self.uncertainty(before)
     }
 
     /// The last orbit of a knot's piece along the curve, and how much further the corner may be.
-    fn approached(&self, base: &Knot, distance: f64) -> (Knot, f64) {
+    fn approached(&self, base: &ContinuationPoint, distance: f64) -> (ContinuationPoint, f64) {
         let mut before = base.clone();
         let mut rest = distance;
         let mut strides = 0;
@@ -81,7 +81,7 @@ impl Curve {
 
     /// The curve a step beyond the corner at `before`. Its direction there is that of the other
     /// piece's derivative; of the two ways along it one leads to an orbit of that piece.
-    fn beyond(&self, before: &Knot, step: f64) -> Option<Knot> {
+    fn beyond(&self, before: &ContinuationPoint, step: f64) -> Option<ContinuationPoint> {
         let value = before.value + step * before.tangent.rate;
         let tangents = self.probes(before, step).into_iter().flat_map(|probe| {
             let forward = self.tangent(&probe, value, &before.tangent);
@@ -91,7 +91,7 @@ impl Curve {
         let mut tangents: Vec<_> = tangents.collect();
         tangents.reverse();
         tangents.into_iter().find_map(|tangent| {
-            let base = Knot { tangent, ..before.clone() };
+            let base = ContinuationPoint { tangent, ..before.clone() };
             let mut knot = self.corrected(&base, step)?;
             if knot.is_on_piece_of(before) {
                 return None;
@@ -107,16 +107,16 @@ impl Curve {
     /// Chains a step along the old direction that lie on another piece: as it is, and with each
     /// strobe replaced by the image of the one before. A strobe that is still on the slider where
     /// the orbit no longer is is so put right.
-    fn probes(&self, from: &Knot, step: f64) -> Vec<Chain> {
+    fn probes(&self, from: &ContinuationPoint, step: f64) -> Vec<ShootingIterate> {
         let along = &from.tangent;
         let probed = self.family.map(from.value + step * along.rate).ok().and_then(|map| {
             let points = shifted(&from.chain.points, &along.points, step);
-            let chain = Chain::of(&map, &points)?;
+            let chain = ShootingIterate::of(&map, &points)?;
             let mut images: Vec<Point> = chain.passages.iter().map(|it| it.point()).collect();
             images.rotate_right(1);
-            Some([Some(chain), Chain::of(&map, &images)])
+            Some([Some(chain), ShootingIterate::of(&map, &images)])
         });
-        let other = |probe: &Chain| !probe.is_on_piece_of(&from.chain);
+        let other = |probe: &ShootingIterate| !probe.is_on_piece_of(&from.chain);
         probed.into_iter().flatten().flatten().filter(other).collect()
     }
 }

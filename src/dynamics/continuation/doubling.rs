@@ -1,10 +1,10 @@
 //! The orbit of twice the period that branches off at a flip.
 
 use super::follow::Walk;
-use super::knot::{Curve, Knot, Tangent};
+use super::point::{ContinuationPoint, Curve, Tangent};
 use super::{Bifurcation, Branch, Family};
 use crate::dynamics::linear::{IDENTITY, adjugate, norm};
-use crate::dynamics::orbit::{Around, Chain, Orbit, size, solved};
+use crate::dynamics::orbit::{Around, Orbit, ShootingIterate, size, solved};
 use crate::dynamics::strobe::Point;
 
 /// On which side of a flip the doubled orbit exists.
@@ -50,9 +50,9 @@ impl Doubling {
 }
 
 impl Curve {
-    fn doubled(&self, flip: &Bifurcation) -> Option<Knot> {
+    fn doubled(&self, flip: &Bifurcation) -> Option<ContinuationPoint> {
         let map = self.family.map(flip.value).ok()?;
-        let single = Chain::of(&map, &flip.orbit.points)?;
+        let single = ShootingIterate::of(&map, &flip.orbit.points)?;
         let first = flipped(&single)?;
         let none = vec![[0.0; 3]; single.points.len()];
         let there = single.spread(first, &none);
@@ -60,20 +60,26 @@ impl Curve {
         let scale = (1.0 + size(&single.points[0])) / size(&first);
         let points: Vec<Point> =
             there.iter().copied().chain(back).map(|it| it.map(|x| x * scale)).collect();
-        let chain = Chain::of(&map, &[&flip.orbit.points[..], &flip.orbit.points].concat())?;
+        let chain =
+            ShootingIterate::of(&map, &[&flip.orbit.points[..], &flip.orbit.points].concat())?;
         let orbit = Orbit::of(&chain);
-        let base = Knot { value: flip.value, chain, tangent: Tangent { points, rate: 0.0 }, orbit };
+        let base = ContinuationPoint {
+            value: flip.value,
+            chain,
+            tangent: Tangent { points, rate: 0.0 },
+            orbit,
+        };
         AMPLITUDES.iter().find_map(|amplitude| {
             let knot = self.corrected(&base, *amplitude)?;
             (knot.chain.width() > 0.1 * amplitude).then_some(knot)
         })
     }
 
-    fn criticality(&self, flip: &Bifurcation, doubled: &Knot) -> Option<Criticality> {
+    fn criticality(&self, flip: &Bifurcation, doubled: &ContinuationPoint) -> Option<Criticality> {
         let offset = doubled.value - flip.value;
         let below = |value: f64| {
             let map = self.family.map(value).ok()?;
-            let chain = solved(&map, Chain::of(&map, &flip.orbit.points)?).ok()?;
+            let chain = solved(&map, ShootingIterate::of(&map, &flip.orbit.points)?).ok()?;
             let multipliers = Orbit::of(&chain).multipliers;
             Some(multipliers.iter().filter(|it| it[1] == 0.0 && it[0] < -1.0).count())
         };
@@ -87,7 +93,7 @@ impl Curve {
 
 /// The direction that once around turns into its opposite: any column of the adjugate of M + 1, of
 /// which the largest has lost least.
-fn flipped(chain: &Chain) -> Option<Point> {
+fn flipped(chain: &ShootingIterate) -> Option<Point> {
     let Around { matrix, .. } = chain.around(&chain.defects);
     let plus: [Point; 3] =
         std::array::from_fn(|i| std::array::from_fn(|j| matrix[i][j] + IDENTITY[i][j]));

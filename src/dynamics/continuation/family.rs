@@ -1,6 +1,6 @@
 //! The strobe maps of one parameter's values, and how they change with it.
 
-use crate::dynamics::orbit::Chain;
+use crate::dynamics::orbit::ShootingIterate;
 use crate::dynamics::strobe::{Point, StrobeMap};
 use crate::error::InputError;
 use crate::instant::Instant;
@@ -47,11 +47,11 @@ impl Family {
     /// By differences: they steer the corrector and give the tangent, nothing else. A point that is
     /// accepted satisfies the map itself, and its multipliers are those of the exact derivative.
     /// Where a corner is near, the difference is taken on the chain's own side of it.
-    pub(super) fn slopes(&self, value: f64, chain: &Chain, scale: f64) -> Vec<Point> {
+    pub(super) fn slopes(&self, value: f64, chain: &ShootingIterate, scale: f64) -> Vec<Point> {
         (0..chain.points.len()).map(|k| self.slope(value, chain, k, scale)).collect()
     }
 
-    fn slope(&self, value: f64, chain: &Chain, k: usize, scale: f64) -> Point {
+    fn slope(&self, value: f64, chain: &ShootingIterate, k: usize, scale: f64) -> Point {
         let here = &chain.passages[k];
         let beside = |step: f64| {
             let map = self.map(value + step).ok()?;

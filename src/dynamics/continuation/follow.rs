@@ -1,10 +1,10 @@
 //! Step control: how a branch is followed, and what is met on the way.
 
 use super::corner::Corner;
-use super::knot::{Curve, Knot};
 use super::locate::Located;
+use super::point::{ContinuationPoint, Curve};
 use super::{Bifurcation, Branch, BranchPoint, Ending, Kind};
-use crate::dynamics::orbit::{Chain, polished};
+use crate::dynamics::orbit::{ShootingIterate, polished};
 
 const FIRST: f64 = 1e-3;
 const LONGEST: f64 = 0.03;
@@ -34,12 +34,12 @@ impl<'a> Walk<'a> {
     }
 
     /// Follows the curve from a knot until it leaves the interval or is lost.
-    pub(super) fn branch(mut self, first: Knot) -> Branch {
+    pub(super) fn branch(mut self, first: ContinuationPoint) -> Branch {
         let ending = self.follow(first);
         Branch { points: self.points, bifurcations: self.bifurcations, ending }
     }
 
-    fn follow(&mut self, first: Knot) -> Ending {
+    fn follow(&mut self, first: ContinuationPoint) -> Ending {
         let start = first.clone();
         let mut knot = first;
         self.keep(&knot);
@@ -66,7 +66,11 @@ impl<'a> Walk<'a> {
     }
 
     /// The next knot, what lies between being noted, and whether the branch ends there.
-    fn step(&mut self, knot: &Knot, step: &mut f64) -> Result<(Knot, Option<Ending>), Ending> {
+    fn step(
+        &mut self,
+        knot: &ContinuationPoint,
+        step: &mut f64,
+    ) -> Result<(ContinuationPoint, Option<Ending>), Ending> {
         loop {
             let distance = *step;
             let attempt = self.curve.corrected(knot, distance);
@@ -101,10 +105,10 @@ impl<'a> Walk<'a> {
     /// Passes a corner.
     fn turn(
         &mut self,
-        knot: &Knot,
+        knot: &ContinuationPoint,
         corner: Corner,
         step: &mut f64,
-    ) -> Result<(Knot, Option<Ending>), Ending> {
+    ) -> Result<(ContinuationPoint, Option<Ending>), Ending> {
         let Corner { before, beyond, error } = corner;
         if !self.is_inside(before.value) {
             let (end, _, ending) = self.cut(knot, before, 0.0);
@@ -126,14 +130,19 @@ impl<'a> Walk<'a> {
         Ok((beyond, ending))
     }
 
-    fn is_smooth(&self, knot: &Knot, next: &Knot, distance: f64) -> bool {
+    fn is_smooth(&self, knot: &ContinuationPoint, next: &ContinuationPoint, distance: f64) -> bool {
         next.is_on_piece_of(knot)
             && self.curve.product(&knot.tangent, &next.tangent, &knot.chain) >= TURN
             && (next.change_of_multipliers(knot) <= CHANGE || distance <= SHORTEST)
     }
 
     /// A step that leaves the interval is cut at its end.
-    fn cut(&self, knot: &Knot, next: Knot, distance: f64) -> (Knot, f64, Option<Ending>) {
+    fn cut(
+        &self,
+        knot: &ContinuationPoint,
+        next: ContinuationPoint,
+        distance: f64,
+    ) -> (ContinuationPoint, f64, Option<Ending>) {
         if self.is_inside(next.value) {
             return (next, distance, None);
         }
@@ -144,13 +153,19 @@ impl<'a> Walk<'a> {
         (cut.unwrap_or(next), distance * share, Some(ending))
     }
 
-    /// The orbit at a value of the parameter, between two knots.
-    fn at(&self, knot: &Knot, next: &Knot, value: f64, share: f64) -> Option<Knot> {
+    /// The orbit at a value of the parameter, between two points.
+    fn at(
+        &self,
+        knot: &ContinuationPoint,
+        next: &ContinuationPoint,
+        value: f64,
+        share: f64,
+    ) -> Option<ContinuationPoint> {
         let pairs = knot.chain.points.iter().zip(&next.chain.points);
         let between: Vec<_> =
             pairs.map(|(a, b)| std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))).collect();
         let map = self.curve.family.map(value).ok()?;
-        let chain = polished(&map, Chain::of(&map, &between)?);
+        let chain = polished(&map, ShootingIterate::of(&map, &between)?);
         chain.is_closed().then(|| self.curve.knot(value, chain, &next.tangent))
     }
 
@@ -165,36 +180,41 @@ impl<'a> Walk<'a> {
     }
 
     /// Whether the step passes where the branch began, in the same direction.
-    fn is_back(&self, knot: &Knot, next: &Knot, start: &Knot) -> bool {
+    fn is_back(
+        &self,
+        knot: &ContinuationPoint,
+        next: &ContinuationPoint,
+        start: &ContinuationPoint,
+    ) -> bool {
         let span = (next.value - knot.value).abs().max(1e-12 * self.curve.unit);
-        let near = |it: &Knot| it.chain.distance(&start.chain);
+        let near = |it: &ContinuationPoint| it.chain.distance(&start.chain);
         let length = knot.chain.distance(&next.chain);
         (knot.value - start.value).abs() <= 2.0 * span
             && near(knot).min(near(next)) <= length
             && self.curve.product(&next.tangent, &start.tangent, &start.chain) > 0.0
     }
 
-    fn keep(&mut self, knot: &Knot) {
+    fn keep(&mut self, knot: &ContinuationPoint) {
         self.points.push(BranchPoint { value: knot.value, orbit: knot.orbit.clone() });
     }
 
-    /// Bifurcations between two knots of one piece.
-    fn note_between(&mut self, knot: &Knot, next: &Knot, distance: f64) {
+    /// Bifurcations between two points of one piece.
+    fn note_between(&mut self, knot: &ContinuationPoint, next: &ContinuationPoint, distance: f64) {
         let mut found: Vec<(Kind, Located)> = Vec::new();
-        let mut seek = |kind: Kind, test: &dyn Fn(&Knot) -> f64| {
+        let mut seek = |kind: Kind, test: &dyn Fn(&ContinuationPoint) -> f64| {
             if test(knot) * test(next) < 0.0 {
                 found.extend(self.curve.located(knot, distance, test).map(|it| (kind, it)));
             }
         };
         seek(Kind::Fold, &|it| it.tangent.rate);
-        seek(Kind::Flip, &Knot::flip);
+        seek(Kind::Flip, &ContinuationPoint::flip);
         if knot.torus().is_some() && next.torus().is_some() {
             seek(Kind::NeimarkSacker, &|it| it.torus().unwrap_or(f64::NAN));
         }
         found.sort_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
         for (kind, located) in found {
             let error = self.curve.error(&located);
-            let Located { knot: Knot { value, orbit, .. }, .. } = located;
+            let Located { knot: ContinuationPoint { value, orbit, .. }, .. } = located;
             let turns = kind == Kind::Fold;
             self.bifurcations.push(Bifurcation { kind, value, error, turns, orbit, beyond: None });
         }

@@ -1,20 +1,24 @@
 //! Where a branch ends because its orbits close after half their period.
 
-use super::knot::{Curve, Knot, Tangent};
 use super::locate::Located;
+use super::point::{ContinuationPoint, Curve, Tangent};
 use super::{Bifurcation, Kind};
 use crate::dynamics::linear::dot;
-use crate::dynamics::orbit::{Chain, solved};
+use crate::dynamics::orbit::{ShootingIterate, solved};
 use crate::dynamics::strobe::Point;
 
 /// Distances about the branch's end in which the half's flip is looked for.
 const AROUND: [f64; 8] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 
 impl Curve {
-    /// The flip of an orbit of half the period that the curve runs into between two knots. It goes
+    /// The flip of an orbit of half the period that the curve runs into between two points. It goes
     /// on beyond: as the same orbits, half a period later, so that the difference of their halves
     /// changes sign.
-    pub(super) fn halving(&self, knot: &Knot, next: &Knot) -> Option<Bifurcation> {
+    pub(super) fn halving(
+        &self,
+        knot: &ContinuationPoint,
+        next: &ContinuationPoint,
+    ) -> Option<Bifurcation> {
         let (here, there) = (differences(&knot.chain)?, differences(&next.chain)?);
         let along: f64 = here.iter().zip(&there).map(|(a, b)| dot(a, b)).sum();
         if along >= 0.0 {
@@ -28,21 +32,21 @@ impl Curve {
             .zip(second)
             .map(|(a, b)| std::array::from_fn(|i| 0.5 * (a[i] + b[i])))
             .collect();
-        let chain = solved(&map, Chain::of(&map, &middle)?).ok()?;
+        let chain = solved(&map, ShootingIterate::of(&map, &middle)?).ok()?;
         let along = Tangent { points: vec![[0.0; 3]; half], rate: self.unit };
         let single = self.knot(knot.value, chain, &along);
         let located = AROUND.iter().find_map(|distance| {
             let start = self.corrected(&single, -distance)?;
-            self.located(&start, 2.0 * distance, Knot::flip)
+            self.located(&start, 2.0 * distance, ContinuationPoint::flip)
         })?;
         let error = self.error(&located);
-        let Located { knot: Knot { value, orbit, .. }, .. } = located;
+        let Located { knot: ContinuationPoint { value, orbit, .. }, .. } = located;
         Some(Bifurcation { kind: Kind::Flip, value, error, turns: true, orbit, beyond: None })
     }
 }
 
 /// Each strobe less the one half a period later; none of an odd number.
-fn differences(chain: &Chain) -> Option<Vec<Point>> {
+fn differences(chain: &ShootingIterate) -> Option<Vec<Point>> {
     let count = chain.points.len();
     let (first, second) = chain.points.split_at(count / 2);
     let pairs = first.iter().zip(second);

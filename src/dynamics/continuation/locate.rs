@@ -1,10 +1,10 @@
 //! A sign change of a test along a smooth piece of the curve, found and held against rounding.
 
-use super::knot::{Curve, Knot};
+use super::point::{ContinuationPoint, Curve};
 
 /// Where a test vanishes.
 pub(super) struct Located {
-    pub(super) knot: Knot,
+    pub(super) knot: ContinuationPoint,
     /// Distance from the knot that was searched from.
     pub(super) distance: f64,
     /// How far along the curve it may be off.
@@ -28,9 +28,9 @@ impl Curve {
     /// The zero of `test` on the curve between `base` and a distance along its tangent.
     pub(super) fn located(
         &self,
-        base: &Knot,
+        base: &ContinuationPoint,
         distance: f64,
-        test: impl Fn(&Knot) -> f64,
+        test: impl Fn(&ContinuationPoint) -> f64,
     ) -> Option<Located> {
         let end = self.corrected(base, distance)?;
         let (mut low, mut f_low) = (0.0, test(base));
@@ -73,10 +73,10 @@ impl Curve {
     /// rounding and the corrector's leave of it, measured.
     fn scatter(
         &self,
-        base: &Knot,
+        base: &ContinuationPoint,
         at: f64,
         spread: f64,
-        test: &impl Fn(&Knot) -> f64,
+        test: &impl Fn(&ContinuationPoint) -> f64,
     ) -> Option<(f64, f64)> {
         let mut samples = [0.0; 5];
         for (k, sample) in samples.iter_mut().enumerate() {

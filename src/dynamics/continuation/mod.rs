@@ -37,15 +37,15 @@ mod doubling;
 mod family;
 mod follow;
 mod halving;
-mod knot;
 mod locate;
+mod point;
 
-use super::orbit::{Chain, NoOrbit, Orbit};
+use super::orbit::{NoOrbit, Orbit, ShootingIterate};
 use super::strobe::Point;
 pub use doubling::{Criticality, Doubling};
 pub use family::Family;
 use follow::Walk;
-use knot::{Curve, Tangent};
+use point::{Curve, Tangent};
 use std::fmt;
 
 /// A branch of orbits.
@@ -171,8 +171,8 @@ impl Branch {
     ) -> Result<Self, NoOrbit> {
         let map = family.map(from).map_err(|it| NoOrbit::from(super::orbit::Reason::Guess(it)))?;
         let orbit = Orbit::find(&map, guess, period)?;
-        let chain =
-            Chain::of(&map, &orbit.points).ok_or(NoOrbit::from(super::orbit::Reason::Escaped))?;
+        let chain = ShootingIterate::of(&map, &orbit.points)
+            .ok_or(NoOrbit::from(super::orbit::Reason::Escaped))?;
         let curve = Curve::new(family, from, to);
         let towards = Tangent {
             points: vec![[0.0; 3]; chain.points.len()],

@@ -6,19 +6,19 @@
 #![cfg_attr(feature = "lanes", doc = "([`crate::lanes`]).")]
 #![cfg_attr(not(feature = "lanes"), doc = "(`percuss::lanes`).")]
 
-mod course;
+mod cursor;
 #[cfg(feature = "lanes")]
-mod pool;
+mod scheduler;
 #[cfg(feature = "lanes")]
-mod seat;
+mod slot;
 
 use crate::entry::Entry;
 use crate::instant::Instant;
 #[cfg(feature = "lanes")]
 use crate::lanes::Instructions;
-use crate::leg::Endless;
 use crate::model::Model;
-use course::Course;
+use crate::segment::Endless;
+use cursor::Cursor;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -78,14 +78,14 @@ pub fn follow_by<'a, W: Watcher + Send>(
     begin: impl Fn(usize) -> Motion<'a, W> + Sync,
 ) -> (Vec<W>, Tally) {
     on_all_threads(count, |next| match instructions.permit() {
-        Some(permit) => pool::Pool::new(permit).follow(next, &begin),
+        Some(permit) => scheduler::LaneScheduler::new(permit).follow(next, &begin),
         None => one_by_one(next, &begin),
     })
 }
 
 /// Follows one motion by the scalar solver.
 pub fn follow_alone<W: Watcher>(motion: Motion<'_, W>) -> W {
-    Course::new(motion).watched_alone().0
+    Cursor::new(motion).watched_alone().0
 }
 
 /// What a thread has done.
@@ -101,7 +101,7 @@ fn one_by_one<'a, W: Watcher>(
 ) -> Done<W> {
     let mut done = Done { watchers: Vec::new(), tally: Tally::default() };
     while let Some(number) = next() {
-        let (watcher, phases) = Course::new(begin(number)).watched_alone();
+        let (watcher, phases) = Cursor::new(begin(number)).watched_alone();
         done.watchers.push((number, watcher));
         done.tally.alone += phases;
     }

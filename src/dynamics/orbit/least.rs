@@ -1,7 +1,7 @@
 //! The least period: after how many forcing periods an orbit closes for the first time.
 
-use super::chain::Chain;
 use super::newton;
+use super::shooting::ShootingIterate;
 use crate::dynamics::strobe::{Point, StrobeMap};
 
 /// Orbits further apart than this are never taken for one: at a flip the residual of the doubled
@@ -9,7 +9,7 @@ use crate::dynamics::strobe::{Point, StrobeMap};
 const NEAR: f64 = 1e-4;
 
 /// The same orbit with its least number of strobes.
-pub(super) fn closed(map: &StrobeMap, chain: Chain) -> Chain {
+pub(super) fn closed(map: &StrobeMap, chain: ShootingIterate) -> ShootingIterate {
     let period = chain.points.len();
     let divisors = (1..=period / 2).filter(|divisor| period.is_multiple_of(*divisor));
     let mut shorter = divisors.filter_map(|divisor| halved(map, &chain, divisor));
@@ -17,8 +17,8 @@ pub(super) fn closed(map: &StrobeMap, chain: Chain) -> Chain {
 }
 
 /// The orbit of `divisor` strobes that cannot be told from this one.
-fn halved(map: &StrobeMap, chain: &Chain, divisor: usize) -> Option<Chain> {
-    let first = Chain::of(map, &chain.points[..divisor])?;
+fn halved(map: &StrobeMap, chain: &ShootingIterate, divisor: usize) -> Option<ShootingIterate> {
+    let first = ShootingIterate::of(map, &chain.points[..divisor])?;
     if chain.distance(&first) > NEAR {
         return None;
     }
@@ -30,5 +30,5 @@ fn halved(map: &StrobeMap, chain: &Chain, divisor: usize) -> Option<Chain> {
     let pairs = chain.points.iter().zip(orbit.points.iter().cycle());
     let between: Vec<Point> =
         pairs.map(|(a, b)| std::array::from_fn(|i| 0.5 * (a[i] + b[i]))).collect();
-    Chain::of(map, &between)?.is_closed().then_some(orbit)
+    ShootingIterate::of(map, &between)?.is_closed().then_some(orbit)
 }

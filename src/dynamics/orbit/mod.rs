@@ -4,18 +4,18 @@
 //! unstable orbit each strobe is then found to the last digits, where one that is shot through the
 //! whole period carries its rounding times the largest multiplier.
 
-mod chain;
 mod least;
 mod multipliers;
 mod newton;
 mod scan;
+mod shooting;
 
 use super::strobe::{Point, StrobeMap};
 use crate::error::InputError;
 use crate::phase::Phase;
-pub(crate) use chain::{Around, Chain, size};
 pub(crate) use newton::{polished, solved};
 pub use scan::scan;
+pub(crate) use shooting::{Around, ShootingIterate, size};
 use std::fmt;
 
 /// The largest period that is looked for, in forcing periods.
@@ -45,12 +45,12 @@ impl Orbit {
     /// # Errors
     /// [`NoOrbit`] says why none was reached and how close it came.
     pub fn find(map: &StrobeMap, guess: Point, period: u32) -> Result<Self, NoOrbit> {
-        let chain = Chain::shot(map, guess, period)?;
+        let chain = ShootingIterate::shot(map, guess, period)?;
         Ok(Self::of(&least::closed(map, solved(map, chain)?)))
     }
 
     /// What a converged chain is.
-    pub(crate) fn of(chain: &Chain) -> Self {
+    pub(crate) fn of(chain: &ShootingIterate) -> Self {
         Self {
             points: chain.points.clone(),
             phases: chain.phases(),

@@ -1,6 +1,6 @@
 //! The multipliers of a closed chain.
 
-use super::chain::Chain;
+use super::shooting::ShootingIterate;
 use crate::dynamics::linear::{
     Complex, IDENTITY, Jacobian, adjugate, eigenvalues, product, roots, trace,
 };
@@ -14,7 +14,7 @@ pub(crate) struct Invariants {
 }
 
 impl Invariants {
-    pub(crate) fn of(chain: &Chain) -> Self {
+    pub(crate) fn of(chain: &ShootingIterate) -> Self {
         let around = around(chain);
         let reversed = chain
             .jacobians
@@ -26,7 +26,7 @@ impl Invariants {
 
 /// With any contact one multiplier is zero and the others follow from two invariants; without, all
 /// three are computed.
-pub(super) fn of(chain: &Chain) -> [Complex; 3] {
+pub(super) fn of(chain: &ShootingIterate) -> [Complex; 3] {
     if touches(chain) {
         let Invariants { sum, pairs } = Invariants::of(chain);
         let [first, second] = roots(sum, pairs);
@@ -36,10 +36,10 @@ pub(super) fn of(chain: &Chain) -> [Complex; 3] {
     }
 }
 
-fn around(chain: &Chain) -> Jacobian {
+fn around(chain: &ShootingIterate) -> Jacobian {
     chain.jacobians.iter().fold(IDENTITY, |before, jacobian| product(jacobian, &before))
 }
 
-fn touches(chain: &Chain) -> bool {
+fn touches(chain: &ShootingIterate) -> bool {
     chain.passages.iter().flat_map(|it| &it.phases).any(|phase| *phase != Phase::NoContact)
 }

@@ -1,6 +1,6 @@
 //! Newton's method on a chain of strobes, damped, and over the corners of the map.
 
-use super::chain::Chain;
+use super::shooting::ShootingIterate;
 use super::{NoOrbit, Reason};
 use crate::dynamics::strobe::StrobeMap;
 
@@ -15,7 +15,7 @@ const WILD: usize = 6;
 const IDLE: usize = 3;
 
 /// The closed chain that is reached from this one.
-pub(crate) fn solved(map: &StrobeMap, start: Chain) -> Result<Chain, NoOrbit> {
+pub(crate) fn solved(map: &StrobeMap, start: ShootingIterate) -> Result<ShootingIterate, NoOrbit> {
     let mut best = start.clone();
     let mut chain = start;
     let mut wild = 0;
@@ -42,11 +42,11 @@ pub(crate) fn solved(map: &StrobeMap, start: Chain) -> Result<Chain, NoOrbit> {
 }
 
 /// The longest share of the step that comes closer.
-fn damped(map: &StrobeMap, chain: &Chain, step: &[[f64; 3]]) -> Option<Chain> {
+fn damped(map: &StrobeMap, chain: &ShootingIterate, step: &[[f64; 3]]) -> Option<ShootingIterate> {
     let mut share = 1.0;
     while share >= SHORTEST {
         let next = chain.moved(map, step, share);
-        let closer = |next: &Chain| next.residual <= (1.0 - 0.1 * share) * chain.residual;
+        let closer = |next: &ShootingIterate| next.residual <= (1.0 - 0.1 * share) * chain.residual;
         if let Some(next) = next.filter(closer) {
             return Some(next);
         }
@@ -56,7 +56,7 @@ fn damped(map: &StrobeMap, chain: &Chain, step: &[[f64; 3]]) -> Option<Chain> {
 }
 
 /// Newton's steps as long as they gain anything.
-pub(crate) fn polished(map: &StrobeMap, start: Chain) -> Chain {
+pub(crate) fn polished(map: &StrobeMap, start: ShootingIterate) -> ShootingIterate {
     let mut best = start.clone();
     let mut chain = start;
     let mut idle = 0;

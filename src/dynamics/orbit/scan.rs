@@ -1,6 +1,6 @@
 //! Orbits found without a guess: Newton's method from many starts.
 
-use super::{Chain, Orbit};
+use super::{Orbit, ShootingIterate};
 use crate::dynamics::strobe::{Point, StrobeMap};
 use std::cmp::Ordering;
 
@@ -107,5 +107,5 @@ fn from_least(map: &StrobeMap, orbit: Orbit) -> Orbit {
     let least = |(_, a): &(usize, &Point), (_, b): &(usize, &Point)| a[0].total_cmp(&b[0]);
     let first = points.iter().enumerate().min_by(least).map_or(0, |(first, _)| first);
     points.rotate_left(first);
-    Chain::of(map, &points).map_or(orbit, |chain| Orbit::of(&chain))
+    ShootingIterate::of(map, &points).map_or(orbit, |chain| Orbit::of(&chain))
 }

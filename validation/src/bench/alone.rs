@@ -7,7 +7,7 @@
 //! exact solver the table of events is left out. The answer has to be the same to the last bit.
 
 use super::course::Course;
-use super::rounds::Racer;
+use super::rounds::Benchmark;
 use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Script, contain, exact};
 use percuss::Step;
 use std::hint::black_box;
@@ -25,7 +25,7 @@ pub fn alone<'a>(
     course: &'a Course,
     setting: Accuracy,
     limits: Limits,
-) -> Result<Option<Box<dyn Racer + 'a>>, Failure> {
+) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
     let answer = contain(|| engine.run(&course.task, setting, &limits))?;
     if engine.declaration().name == exact().declaration().name {
         return Ok(Some(Box::new(Stepped { course, end: answer.end, last: answer.end })));
@@ -49,7 +49,7 @@ struct Told<'a> {
     last: Outcome,
 }
 
-impl Racer for Told<'_> {
+impl Benchmark for Told<'_> {
     fn call(&mut self) -> Result<(), Failure> {
         let Self { engine, course, setting, limits, .. } = self;
         let run = || contain(|| engine.run(&course.task, *setting, limits));
@@ -74,7 +74,7 @@ struct Stepped<'a> {
     last: [f64; 4],
 }
 
-impl Racer for Stepped<'_> {
+impl Benchmark for Stepped<'_> {
     fn call(&mut self) -> Result<(), Failure> {
         let task = &self.course.task;
         let entry = black_box(task.problem.entry);
@@ -84,8 +84,8 @@ impl Racer for Stepped<'_> {
                 Step::Switch { next, .. } => {
                     black_box(next);
                 }
-                Step::Last(leg) => {
-                    let end = leg.at_instant(&task.horizon);
+                Step::Last(segment) => {
+                    let end = segment.at_instant(&task.horizon);
                     self.last = [end.state.p, end.state.y, end.state.q, end.v];
                     return Ok(());
                 }

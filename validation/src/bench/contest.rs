@@ -1,8 +1,8 @@
 //! One course, all contestants: who answers rightly at which setting, and how fast.
 
-use super::contestant::{Contestant, Heat, ladder};
+use super::contestant::{Contestant, TimedRun, ladder};
 use super::course::{Course, Score};
-use super::rounds::{PACE, Racer, Series, race};
+use super::rounds::{Benchmark, PACE, Series, race};
 use crate::engine::{Accuracy, Failure, Stepping, Work};
 
 /// A contestant at a setting, and what came of it.
@@ -59,26 +59,26 @@ pub fn contest_at(
         entries.push(qualified(*contestant, course, *setting));
         done();
     }
-    let mut racers: Vec<&mut dyn Racer> = Vec::new();
-    for Entry { heat, alone } in entries.iter_mut().flatten() {
-        racers.push(&mut **heat);
+    let mut benchmarks: Vec<&mut dyn Benchmark> = Vec::new();
+    for Entry { timed, alone } in entries.iter_mut().flatten() {
+        benchmarks.push(&mut **timed);
         if let Some(alone) = alone {
-            racers.push(&mut **alone);
+            benchmarks.push(&mut **alone);
         }
     }
     // Those that are out take no time; their share of the work is done.
-    (0..rounds * (2 * asked.len() - racers.len())).for_each(|_| done());
-    let mut raced = race(&mut racers, rounds, PACE, done).into_iter();
+    (0..rounds * (2 * asked.len() - benchmarks.len())).for_each(|_| done());
+    let mut raced = race(&mut benchmarks, rounds, PACE, done).into_iter();
     let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced")));
     let mut result = |entry: Result<Entry<'_>, Failure>| {
-        let Entry { heat, alone } = entry?;
+        let Entry { timed, alone } = entry?;
         let (whole, alone) = (next(), alone.map(|_| next()));
         let whole = whole?;
         let share = alone.and_then(Result::ok).map(|alone| 1.0 - alone.ratio_to(&whole));
-        let scale = 1.0 / (heat.runs() * course.periods());
+        let scale = 1.0 / (timed.runs() * course.periods());
         let series = Series(whole.0.into_iter().map(|time| time * scale).collect());
         let harness_share = share.filter(|it| it.is_finite());
-        Ok(Timed { score: heat.score()?, work: heat.work(), series, harness_share })
+        Ok(Timed { score: timed.score()?, work: timed.work(), series, harness_share })
     };
     let finisher = |((contestant, setting), entry): (&(&dyn Contestant, Accuracy), _)| Finisher {
         name: contestant.name(),
@@ -92,8 +92,8 @@ pub fn contest_at(
 
 /// A contestant at a setting, and right after it its part alone where that can be timed.
 struct Entry<'a> {
-    heat: Box<dyn Heat + 'a>,
-    alone: Option<Box<dyn Racer + 'a>>,
+    timed: Box<dyn TimedRun + 'a>,
+    alone: Option<Box<dyn Benchmark + 'a>>,
 }
 
 /// Those whose answer is right are raced.
@@ -102,10 +102,10 @@ fn qualified<'a>(
     course: &'a Course,
     setting: Accuracy,
 ) -> Result<Entry<'a>, Failure> {
-    let mut heat = contestant.enter(course, setting)?;
-    heat.call()?;
-    heat.score()?;
-    Ok(Entry { heat, alone: contestant.alone(course, setting)? })
+    let mut timed = contestant.enter(course, setting)?;
+    timed.call()?;
+    timed.score()?;
+    Ok(Entry { timed, alone: contestant.alone(course, setting)? })
 }
 
 /// How much work a contest is, for progress.

@@ -6,7 +6,7 @@
 
 use super::alone::alone;
 use super::course::{Course, Score};
-use super::rounds::Racer;
+use super::rounds::Benchmark;
 use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Stepping, Work, contain};
 use crate::number::brief;
 
@@ -32,7 +32,7 @@ pub trait Contestant: Sync {
         &'a self,
         course: &'a Course,
         setting: Accuracy,
-    ) -> Result<Box<dyn Heat + 'a>, Failure>;
+    ) -> Result<Box<dyn TimedRun + 'a>, Failure>;
 
     /// Its part of a run without the harness's; nothing where that cannot be told apart.
     ///
@@ -42,13 +42,13 @@ pub trait Contestant: Sync {
         &'a self,
         _course: &'a Course,
         _setting: Accuracy,
-    ) -> Result<Option<Box<dyn Racer + 'a>>, Failure> {
+    ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
         Ok(None)
     }
 }
 
 /// A contestant on a course. What is timed is its `call`.
-pub trait Heat: Racer {
+pub trait TimedRun: Benchmark {
     /// Runs of the course's length that a call makes.
     fn runs(&self) -> f64 {
         1.0
@@ -84,7 +84,7 @@ impl Contestant for Entered {
         &'a self,
         course: &'a Course,
         setting: Accuracy,
-    ) -> Result<Box<dyn Heat + 'a>, Failure> {
+    ) -> Result<Box<dyn TimedRun + 'a>, Failure> {
         enter(self.0, course, setting)
     }
 
@@ -92,7 +92,7 @@ impl Contestant for Entered {
         &'a self,
         course: &'a Course,
         setting: Accuracy,
-    ) -> Result<Option<Box<dyn Racer + 'a>>, Failure> {
+    ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
         alone(self.0, course, setting, limits())
     }
 }
@@ -109,7 +109,7 @@ pub fn enter<'a>(
     engine: &'a dyn Engine,
     course: &'a Course,
     setting: Accuracy,
-) -> Result<Box<dyn Heat + 'a>, Failure> {
+) -> Result<Box<dyn TimedRun + 'a>, Failure> {
     engine.available().map_err(Failure::new)?;
     let least = engine.least_work(&course.task, setting);
     if least > BUDGET as f64 {
@@ -128,7 +128,7 @@ struct EngineHeat<'a> {
     answer: Outcome,
 }
 
-impl Racer for EngineHeat<'_> {
+impl Benchmark for EngineHeat<'_> {
     fn call(&mut self) -> Result<(), Failure> {
         let Self { engine, course, setting, .. } = self;
         self.answer = contain(|| engine.run(&course.task, *setting, &limits()))?;
@@ -140,7 +140,7 @@ impl Racer for EngineHeat<'_> {
     }
 }
 
-impl Heat for EngineHeat<'_> {
+impl TimedRun for EngineHeat<'_> {
     fn score(&self) -> Result<Score, Failure> {
         self.course.score(&self.answer)
     }

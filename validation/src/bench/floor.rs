@@ -5,7 +5,7 @@
 //! switches, chained (each waits for the last, as in one run) and independent (as in many runs side
 //! by side).
 
-use super::rounds::{Pace, Plain, Racer, Series, race};
+use super::rounds::{Benchmark, Pace, Plain, Series, race};
 use super::workload::{Repeated, Workload};
 use crate::engine::Failure;
 use std::hint::black_box;
@@ -66,10 +66,10 @@ pub fn floors(
     });
     let mut repeated: Vec<_> =
         workloads.iter().map(|it| Repeated { workload: it.as_ref(), units: UNITS }).collect();
-    let mut racers: Vec<&mut dyn Racer> = vec![&mut chained, &mut independent];
-    racers.extend(repeated.iter_mut().map(|it| it as &mut dyn Racer));
+    let mut benchmarks: Vec<&mut dyn Benchmark> = vec![&mut chained, &mut independent];
+    benchmarks.extend(repeated.iter_mut().map(|it| it as &mut dyn Benchmark));
     let per_unit = |series: Series| Series(series.0.iter().map(|it| it / UNITS as f64).collect());
-    let mut raced = race(&mut racers, rounds, PACE, done).into_iter();
+    let mut raced = race(&mut benchmarks, rounds, PACE, done).into_iter();
     let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced"))).map(per_unit);
     let (chained, independent) = (next()?, next()?);
     let mut cost = |workload: &dyn Workload| {

@@ -4,9 +4,9 @@
 //! they take phases of one kind from whatever motions are under way, and different motions fill
 //! them as well.
 
-use super::contestant::{Contestant, Heat};
+use super::contestant::{Contestant, TimedRun};
 use super::course::{Course, Score};
-use super::rounds::Racer;
+use super::rounds::Benchmark;
 use crate::engine::{Accuracy, Failure, Outcome, Stepping, Work, contain, run_in_lanes};
 use percuss::lanes::Instructions;
 
@@ -29,7 +29,11 @@ impl Contestant for Lanes {
         Stepping::Exact
     }
 
-    fn enter<'a>(&'a self, course: &'a Course, _: Accuracy) -> Result<Box<dyn Heat + 'a>, Failure> {
+    fn enter<'a>(
+        &'a self,
+        course: &'a Course,
+        _: Accuracy,
+    ) -> Result<Box<dyn TimedRun + 'a>, Failure> {
         Ok(Box::new(Many { course, answers: Vec::new() }))
     }
 }
@@ -39,7 +43,7 @@ struct Many<'a> {
     answers: Vec<Outcome>,
 }
 
-impl Racer for Many<'_> {
+impl Benchmark for Many<'_> {
     fn call(&mut self) -> Result<(), Failure> {
         let task = &self.course.task;
         self.answers = contain(|| Ok(run_in_lanes(Instructions::widest(), task, RUNS)))?;
@@ -51,7 +55,7 @@ impl Racer for Many<'_> {
     }
 }
 
-impl Heat for Many<'_> {
+impl TimedRun for Many<'_> {
     fn runs(&self) -> f64 {
         RUNS as f64
     }

@@ -90,8 +90,8 @@ fn end(model: &Model, start: &Entry, periods: u64) -> Result<Entry, Failure> {
     let horizon = start.instant.after_periods(periods, 1);
     let mut run = model.trajectory(*start).until(horizon);
     while let Some(step) = run.step() {
-        if let Step::Last(leg) = step {
-            return Ok(leg.entry_at(&horizon));
+        if let Step::Last(segment) = step {
+            return Ok(segment.entry_at(&horizon));
         }
     }
     Err(Failure::new("a run without end"))

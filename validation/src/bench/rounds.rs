@@ -1,4 +1,5 @@
-//! Interleaved rounds: every racer in short batches in every round, the best batch of each counts.
+//! Interleaved rounds: every benchmark in short batches in every round, the best batch of each
+//! counts.
 //!
 //! Times of two separate runs cannot be compared on a machine that does other things as well: its
 //! frequency, its caches and its neighbours change meanwhile. Within one round they change little;
@@ -9,7 +10,7 @@ use super::clock::Stopwatch;
 use crate::engine::Failure;
 
 /// Something that can be timed.
-pub trait Racer {
+pub trait Benchmark {
     /// Does the work once; this is what is timed.
     ///
     /// # Errors
@@ -30,10 +31,10 @@ pub trait Racer {
     }
 }
 
-/// A racer whose answer needs no check.
+/// A benchmark whose answer needs no check.
 pub struct Plain<F>(pub F);
 
-impl<F: FnMut()> Racer for Plain<F> {
+impl<F: FnMut()> Benchmark for Plain<F> {
     fn call(&mut self) -> Result<(), Failure> {
         (self.0)();
         Ok(())
@@ -90,25 +91,25 @@ pub fn median(mut values: Vec<f64>) -> f64 {
 
 /// Races them; one that fails, or whose answer is wrong in any batch, has no times.
 pub fn race(
-    racers: &mut [&mut dyn Racer],
+    benchmarks: &mut [&mut dyn Benchmark],
     rounds: usize,
     pace: Pace,
     done: &dyn Fn(),
 ) -> Vec<Result<Series, Failure>> {
     let mut results: Vec<Result<Series, Failure>> =
-        racers.iter().map(|_| Ok(Series::default())).collect();
-    let mut calls: Vec<u32> = vec![0; racers.len()];
+        benchmarks.iter().map(|_| Ok(Series::default())).collect();
+    let mut calls: Vec<u32> = vec![0; benchmarks.len()];
     for round in 0..rounds {
         let order: Vec<usize> = match round % 2 {
-            0 => (0..racers.len()).collect(),
-            _ => (0..racers.len()).rev().collect(),
+            0 => (0..benchmarks.len()).collect(),
+            _ => (0..benchmarks.len()).rev().collect(),
         };
         for i in order {
             if let Ok(series) = &mut results[i]
-                && round < racers[i].rounds()
+                && round < benchmarks[i].rounds()
                 && !has_rested(series, round)
             {
-                let best = best_of(racers[i], &mut calls[i], pace);
+                let best = best_of(benchmarks[i], &mut calls[i], pace);
                 match best {
                     Ok(best) => series.0.push(best),
                     Err(failure) => results[i] = Err(failure),
@@ -120,8 +121,8 @@ pub fn race(
     results
 }
 
-/// Whether a racer sits this round out: a call that is so long meets the quiet and the busy moments
-/// of a machine alike, and three rounds tell as much as ten.
+/// Whether a benchmark sits this round out: a call that is so long meets the quiet and the busy
+/// moments of a machine alike, and three rounds tell as much as ten.
 fn has_rested(series: &Series, round: usize) -> bool {
     const LONG: f64 = 5e7;
     const ENOUGH: usize = 3;
@@ -130,14 +131,14 @@ fn has_rested(series: &Series, round: usize) -> bool {
 
 /// The best batch of a round, ns a call; `calls` is how many fill a batch, found in the first
 /// round.
-fn best_of(racer: &mut dyn Racer, calls: &mut u32, pace: Pace) -> Result<f64, Failure> {
+fn best_of(benchmark: &mut dyn Benchmark, calls: &mut u32, pace: Pace) -> Result<f64, Failure> {
     if *calls == 0 {
-        *calls = filling(racer, pace.batch)?;
+        *calls = filling(benchmark, pace.batch)?;
     }
     let mut best = f64::INFINITY;
     for _ in 0..pace.batches {
-        let time = batch(racer, *calls)?;
-        racer.check()?;
+        let time = batch(benchmark, *calls)?;
+        benchmark.check()?;
         best = best.min(time);
         if time > f64::from(pace.batches) * 4.0 * pace.batch {
             break;
@@ -147,19 +148,19 @@ fn best_of(racer: &mut dyn Racer, calls: &mut u32, pace: Pace) -> Result<f64, Fa
 }
 
 /// Calls that fill a batch.
-fn filling(racer: &mut dyn Racer, least: f64) -> Result<u32, Failure> {
+fn filling(benchmark: &mut dyn Benchmark, least: f64) -> Result<u32, Failure> {
     const MOST: u32 = 1 << 20;
     let mut calls = 1;
-    while calls < MOST && batch(racer, calls)? < least {
+    while calls < MOST && batch(benchmark, calls)? < least {
         calls *= 2;
     }
     Ok(calls)
 }
 
-fn batch(racer: &mut dyn Racer, calls: u32) -> Result<f64, Failure> {
+fn batch(benchmark: &mut dyn Benchmark, calls: u32) -> Result<f64, Failure> {
     let watch = Stopwatch::start();
     for _ in 0..calls {
-        racer.call()?;
+        benchmark.call()?;
     }
     Ok(watch.nanoseconds())
 }
@@ -170,7 +171,8 @@ mod tests {
 
     #[test]
     fn a_ratio_is_the_median_of_the_rounds_quotients() {
-        // The machine was twice as slow in the second round and disturbed one racer in the fourth.
+        // The machine was twice as slow in the second round and disturbed one benchmark in the
+        // fourth.
         let exact = Series(vec![1.0, 2.0, 1.0, 1.0, 1.0]);
         let engine = Series(vec![300.0, 600.0, 310.0, 900.0, 290.0]);
         assert_eq!(engine.ratio_to(&exact), 300.0);
@@ -195,7 +197,7 @@ mod tests {
         last: u32,
     }
 
-    impl Racer for Faulty {
+    impl Benchmark for Faulty {
         fn call(&mut self) -> Result<(), Failure> {
             Ok(())
         }

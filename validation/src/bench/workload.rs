@@ -4,7 +4,7 @@
 //! Work of another kind is one more [`Workload`], named in [`all`].
 
 use super::course::Course;
-use super::rounds::Racer;
+use super::rounds::Benchmark;
 use crate::engine::Failure;
 use percuss::{Counters, Entry, Model, Step};
 use std::hint::black_box;
@@ -73,7 +73,7 @@ pub struct Repeated<'a> {
     pub units: u64,
 }
 
-impl Racer for Repeated<'_> {
+impl Benchmark for Repeated<'_> {
     fn call(&mut self) -> Result<(), Failure> {
         self.workload.run(self.units).map(|_| ())
     }

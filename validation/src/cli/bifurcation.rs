@@ -6,7 +6,7 @@ use super::model::ModelFlags;
 use super::parse::{self, MAX_PERIODS, Typed};
 use super::{note, work};
 use crate::number::shortest;
-use crate::picture::{self, Layer, Plot, Sheet};
+use crate::picture::{self, Figure, Layer, Plot};
 use anyhow::{Result, anyhow, bail};
 use clap::{Args, ValueEnum};
 use percuss::dynamics::diagram::{Diagram, Follow, Step};
@@ -123,7 +123,7 @@ fn write_csv(steps: &[Step], out: &mut dyn Write) -> Result<()> {
     Ok(())
 }
 
-fn drawing(diagram: &Diagram, steps: &[Step]) -> Sheet {
+fn drawing(diagram: &Diagram, steps: &[Step]) -> Figure {
     let section =
         |step: &Step| step.points.iter().map(|it| [step.value, it[0]]).collect::<Vec<_>>();
     let how = match diagram.follow {
@@ -138,7 +138,7 @@ fn drawing(diagram: &Diagram, steps: &[Step]) -> Sheet {
         layers: vec![Layer::cloud(points, picture::INK)],
     };
     let drift = steps.iter().map(|step| [step.value, step.drift_per_period]);
-    Sheet {
+    Figure {
         title: picture::caption_without(&diagram.parameters, Some(diagram.parameter)),
         caption: format!(
             "{} values of {symbol}, {} strobes each after {} forcing periods; {how}",

@@ -10,7 +10,7 @@ use super::{note, work};
 use crate::case::Problem;
 use anyhow::Result;
 use clap::Args;
-use percuss::Leg;
+use percuss::Segment;
 use percuss::dynamics::lyapunov::{BATCHES, Spectrum};
 use serde::Serialize;
 
@@ -69,6 +69,6 @@ fn spectrum(arguments: &Arguments, problem: &Problem) -> Spectrum {
     let end = entry.instant.after_periods(transient + periods, 1);
     let bar = Some(work::share_bar());
     let progress = Progress::new(bar, model.parameters().omega, entry.instant, &end);
-    let mut seen = |leg: &Leg| progress.at(&leg.entry().instant);
+    let mut seen = |segment: &Segment| progress.at(&segment.entry().instant);
     Spectrum::told(model, *entry, transient, periods, &mut seen)
 }

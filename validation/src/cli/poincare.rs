@@ -9,7 +9,7 @@ use super::progress::Progress;
 use super::work::{self, Bar};
 use crate::case::Problem;
 use crate::number::shortest;
-use crate::picture::{self, Layer, Plot, Sheet};
+use crate::picture::{self, Figure, Layer, Plot};
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use npyz::WriterBuilder;
@@ -110,9 +110,9 @@ impl<'a> Course<'a> {
 
     fn strobes<'s>(&'s self, progress: &'s Progress) -> impl Iterator<Item = Entry> + 's {
         let Problem { model, entry, .. } = self.problem;
-        let legs = model.trajectory(*entry).until(self.end);
-        let legs = legs.inspect(|leg| progress.at(&leg.entry().instant));
-        let strobes = (0..self.count).zip(Section::along(legs, self.first));
+        let segments = model.trajectory(*entry).until(self.end);
+        let segments = segments.inspect(|segment| progress.at(&segment.entry().instant));
+        let strobes = (0..self.count).zip(Section::along(segments, self.first));
         strobes.map(|(_, strobe)| strobe).inspect(|strobe| progress.at(&strobe.instant))
     }
 }
@@ -153,7 +153,7 @@ fn draw(
     out: &mut dyn Write,
 ) -> Result<()> {
     let points = strobes.map(|strobe| [strobe.state.p, strobe.state.y]).collect();
-    let sheet = Sheet {
+    let sheet = Figure {
         title: picture::caption(problem.model.parameters()),
         caption: format!(
             "{} points at \u{3c9}\u{3c4} mod 2\u{3c0} = {}, after {} forcing periods",

@@ -3,7 +3,7 @@
 use super::meter::{Failure, Limits};
 use super::{Accuracy, Declaration, Engine, Event, Location, Outcome, Stepping, Task, Work, pins};
 use percuss::two_word::TwoWord;
-use percuss::{Entry, Exit, Leg, Phase, Sample, Step, Trajectory};
+use percuss::{Entry, Exit, Phase, Sample, Segment, Step, Trajectory};
 
 /// The closed forms, joined at proved first crossings.
 pub(super) struct Exact;
@@ -28,11 +28,11 @@ impl Engine for Exact {
         loop {
             let (duration, phase, state) = match passed(task, &mut run, &mut outcome.samples) {
                 Some(Passed::Switch { duration, phase, state }) => (duration, phase, state),
-                Some(Passed::Last(leg)) => {
-                    if leg.is_undecided_at(&task.horizon) {
+                Some(Passed::Last(segment)) => {
+                    if segment.is_undecided_at(&task.horizon) {
                         return Err(Failure::new("rounding hides how a phase ends"));
                     }
-                    outcome.end = state_of(&leg.at_instant(&task.horizon));
+                    outcome.end = state_of(&segment.at_instant(&task.horizon));
                     break;
                 }
                 None => break,
@@ -61,7 +61,7 @@ enum Passed {
     /// It lasts so long; then this phase begins, in this state.
     Switch { duration: TwoWord, phase: Phase, state: [f64; 4] },
     /// It is the run's last.
-    Last(Box<Leg>),
+    Last(Box<Segment>),
 }
 
 impl Passed {
@@ -76,26 +76,26 @@ fn passed(task: &Task, run: &mut Trajectory, samples: &mut Vec<[f64; 4]>) -> Opt
     if samples.len() == task.grid.count {
         return Some(match run.step()? {
             Step::Switch { duration, next } => Passed::by_switch(duration, next),
-            Step::Last(leg) => Passed::Last(leg),
+            Step::Last(segment) => Passed::Last(segment),
         });
     }
-    let leg = run.next()?;
-    sample(task, &leg, samples);
-    Some(match leg.exit() {
-        Exit::Switch(next) => Passed::by_switch(leg.duration_two_word(), next),
-        _ => Passed::Last(Box::new(leg)),
+    let segment = run.next()?;
+    sample(task, &segment, samples);
+    Some(match segment.exit() {
+        Exit::Switch(next) => Passed::by_switch(segment.duration_two_word(), next),
+        _ => Passed::Last(Box::new(segment)),
     })
 }
 
 /// The grid's instants that lie in this phase.
-fn sample(task: &Task, leg: &Leg, samples: &mut Vec<[f64; 4]>) {
+fn sample(task: &Task, segment: &Segment, samples: &mut Vec<[f64; 4]>) {
     let start = task.problem.entry.instant;
     while samples.len() < task.grid.count {
         let instant = start.after_periods(samples.len() as u64, u64::from(task.grid.per_period));
-        if leg.ends_by(&instant) {
+        if segment.ends_by(&instant) {
             return;
         }
-        samples.push(state_of(&leg.at_instant(&instant)));
+        samples.push(state_of(&segment.at_instant(&instant)));
     }
 }
 

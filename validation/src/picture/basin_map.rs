@@ -1,8 +1,8 @@
 //! Basins of attraction: every cell in its attractor's light colour, the attractors on top in dark.
 
+use super::canvas::{At, Canvas, Side};
 use super::frame::{Panel, Ruler};
 use super::look::Marker;
-use super::pen::{At, Pen, Side};
 use super::{DrawError, Drawing, palette};
 use percuss::dynamics::attractor::Label;
 use plotters::coord::Shift;
@@ -64,22 +64,22 @@ impl Drawing for BasinMap {
         area: &DrawingArea<B, Shift>,
         scale: u32,
     ) -> Result<(), DrawError> {
-        let pen = Pen { area, scale };
-        pen.paper()?;
-        pen.text(&self.title, (24.0, 30.0), TEXT + 4.0, Side::Left, palette::INK)?;
+        let canvas = Canvas { area, scale };
+        canvas.paper()?;
+        canvas.text(&self.title, (24.0, 30.0), TEXT + 4.0, Side::Left, palette::INK)?;
         for (k, line) in self.note.lines().enumerate() {
             let at = (24.0, 916.0 + 26.0 * k as f64);
-            pen.text(line, at, TEXT - 2.0, Side::Left, palette::INK)?;
+            canvas.text(line, at, TEXT - 2.0, Side::Left, palette::INK)?;
         }
-        self.cells(&pen)?;
+        self.cells(&canvas)?;
         let [[p_from, p_to], [y_from, y_to]] = self.window;
         let (x, y) = (Ruler::between(p_from, p_to), Ruler::between(y_from, y_to));
         let panel = Panel { from: FROM, to: TO, x, y };
-        panel.draw_over(&pen, "p (displacement)", "y (velocity)")?;
+        panel.draw_over(&canvas, "p (displacement)", "y (velocity)")?;
         for shown in &self.attractors {
-            shown.draw(&pen, &panel)?;
+            shown.draw(&canvas, &panel)?;
         }
-        self.key(&pen)
+        self.key(&canvas)
     }
 }
 
@@ -93,7 +93,7 @@ impl BasinMap {
     }
 
     /// Equal neighbours in one stroke.
-    fn cells<B: DrawingBackend>(&self, pen: &Pen<'_, B>) -> Result<(), DrawError> {
+    fn cells<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<(), DrawError> {
         let columns = self.columns.max(1);
         let rows = self.cells.len() / columns;
         let x = |k: usize| FROM.0 + (TO.0 - FROM.0) * k as f64 / columns as f64;
@@ -102,22 +102,22 @@ impl BasinMap {
             let mut begin = 0;
             for run in cells.chunk_by(|a, b| a == b) {
                 let end = begin + run.len();
-                pen.fill((x(begin), y(row + 1)), (x(end), y(row)), self.paper(run[0]))?;
+                canvas.fill((x(begin), y(row + 1)), (x(end), y(row)), self.paper(run[0]))?;
                 begin = end;
             }
         }
         Ok(())
     }
 
-    fn key<B: DrawingBackend>(&self, pen: &Pen<'_, B>) -> Result<(), DrawError> {
+    fn key<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<(), DrawError> {
         let mut at = KEY;
         for shown in &self.attractors {
             let (light, dark) = shown.colours();
-            pen.fill((at.0, at.1 - 13.0), (at.0 + 26.0, at.1 + 13.0), light)?;
-            pen.marker(Marker::Circle, (at.0 + 13.0, at.1), 5.0, dark)?;
+            canvas.fill((at.0, at.1 - 13.0), (at.0 + 26.0, at.1 + 13.0), light)?;
+            canvas.marker(Marker::Circle, (at.0 + 13.0, at.1), 5.0, dark)?;
             for (k, line) in shown.name.lines().enumerate() {
                 let place = (at.0 + 36.0, at.1 + 24.0 * k as f64);
-                pen.text(line, place, TEXT - 3.0, Side::Left, palette::INK)?;
+                canvas.text(line, place, TEXT - 3.0, Side::Left, palette::INK)?;
             }
             at.1 += 20.0 + 24.0 * shown.name.lines().count() as f64;
         }
@@ -127,8 +127,8 @@ impl BasinMap {
         ];
         for (cell, name, colour) in others {
             if self.cells.contains(&cell) {
-                pen.fill((at.0, at.1 - 13.0), (at.0 + 26.0, at.1 + 13.0), colour)?;
-                pen.text(name, (at.0 + 36.0, at.1), TEXT - 3.0, Side::Left, palette::INK)?;
+                canvas.fill((at.0, at.1 - 13.0), (at.0 + 26.0, at.1 + 13.0), colour)?;
+                canvas.text(name, (at.0 + 36.0, at.1), TEXT - 3.0, Side::Left, palette::INK)?;
                 at.1 += 40.0;
             }
         }
@@ -141,14 +141,18 @@ impl Shown {
         basin_colours(self.colour)
     }
 
-    fn draw<B: DrawingBackend>(&self, pen: &Pen<'_, B>, panel: &Panel) -> Result<(), DrawError> {
+    fn draw<B: DrawingBackend>(
+        &self,
+        canvas: &Canvas<'_, B>,
+        panel: &Panel,
+    ) -> Result<(), DrawError> {
         let dark = self.colours().1;
         for at in self.points.iter().filter_map(|[p, y]| panel.at((*p, *y))) {
             if self.is_orbit {
-                pen.marker(Marker::Circle, at, 6.0, WHITE)?;
-                pen.marker(Marker::Circle, at, 4.5, dark)?;
+                canvas.marker(Marker::Circle, at, 6.0, WHITE)?;
+                canvas.marker(Marker::Circle, at, 4.5, dark)?;
             } else {
-                pen.fill((at.0 - 0.7, at.1 - 0.7), (at.0 + 0.7, at.1 + 0.7), dark)?;
+                canvas.fill((at.0 - 0.7, at.1 - 0.7), (at.0 + 0.7, at.1 + 0.7), dark)?;
             }
         }
         Ok(())

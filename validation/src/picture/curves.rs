@@ -1,8 +1,8 @@
 //! Curves with markers in one panel, their key beside it.
 
+use super::canvas::{At, Canvas, Side};
+use super::figure::Stroke;
 use super::frame::{Axis, Panel, Ruler};
-use super::pen::{At, Pen, Side};
-use super::sheet::Stroke;
 use super::{DrawError, Drawing, Marker, palette};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -50,14 +50,14 @@ impl Drawing for Curves {
         area: &DrawingArea<B, Shift>,
         scale: u32,
     ) -> Result<(), DrawError> {
-        let pen = Pen { area, scale };
-        pen.paper()?;
-        pen.text(&self.title, (24.0, 32.0), TEXT + 4.0, Side::Left, palette::INK)?;
+        let canvas = Canvas { area, scale };
+        canvas.paper()?;
+        canvas.text(&self.title, (24.0, 32.0), TEXT + 4.0, Side::Left, palette::INK)?;
         let points = || self.curves.iter().flat_map(|curve| &curve.points).filter(|it| finite(it));
         let x = Ruler::over(self.x.scale, points().map(|point| point.0));
         let y = Ruler::over(self.y.scale, points().map(|point| point.1));
         let (Some(x), Some(y)) = (x, y) else {
-            return pen.text(
+            return canvas.text(
                 "nothing was measured",
                 (130.0, 120.0),
                 TEXT,
@@ -66,14 +66,14 @@ impl Drawing for Curves {
             );
         };
         let panel = Panel { from: (130.0, 64.0), to: (1110.0, 816.0), x, y };
-        panel.draw(&pen, &self.x.label, &self.y.label)?;
+        panel.draw(&canvas, &self.x.label, &self.y.label)?;
         for curve in &self.curves {
-            curve.draw(&pen, &panel)?;
+            curve.draw(&canvas, &panel)?;
         }
         let named = self.curves.iter().filter(|curve| !curve.name.is_empty());
         let step = (740.0 / named.clone().count().max(1) as f64).min(30.0);
         for (i, curve) in named.enumerate() {
-            curve.key(&pen, (1136.0, 80.0 + i as f64 * step), (step - 4.0).min(TEXT - 1.0))?;
+            curve.key(&canvas, (1136.0, 80.0 + i as f64 * step), (step - 4.0).min(TEXT - 1.0))?;
         }
         Ok(())
     }
@@ -84,33 +84,41 @@ fn finite(point: &(f64, f64)) -> bool {
 }
 
 impl Curve {
-    fn draw<B: DrawingBackend>(&self, pen: &Pen<'_, B>, panel: &Panel) -> Result<(), DrawError> {
+    fn draw<B: DrawingBackend>(
+        &self,
+        canvas: &Canvas<'_, B>,
+        panel: &Panel,
+    ) -> Result<(), DrawError> {
         let places = self.points.iter().filter(|it| finite(it)).filter_map(|it| panel.at(*it));
         let places: Vec<_> = places.collect();
-        self.line(pen, &places)?;
+        self.line(canvas, &places)?;
         match self.marker {
             Some(marker) => {
-                places.iter().try_for_each(|at| pen.marker(marker, *at, 6.0, self.colour))
+                places.iter().try_for_each(|at| canvas.marker(marker, *at, 6.0, self.colour))
             }
             None => Ok(()),
         }
     }
 
-    fn line<B: DrawingBackend>(&self, pen: &Pen<'_, B>, places: &[At]) -> Result<(), DrawError> {
+    fn line<B: DrawingBackend>(
+        &self,
+        canvas: &Canvas<'_, B>,
+        places: &[At],
+    ) -> Result<(), DrawError> {
         let stretches = self.stroke.cut(places);
-        stretches.iter().try_for_each(|stretch| pen.trace(stretch, self.width, self.colour))
+        stretches.iter().try_for_each(|stretch| canvas.trace(stretch, self.width, self.colour))
     }
 
     fn key<B: DrawingBackend>(
         &self,
-        pen: &Pen<'_, B>,
+        canvas: &Canvas<'_, B>,
         (x, y): (f64, f64),
         size: f64,
     ) -> Result<(), DrawError> {
-        self.line(pen, &[(x, y), (x + 38.0, y)])?;
+        self.line(canvas, &[(x, y), (x + 38.0, y)])?;
         if let Some(marker) = self.marker {
-            pen.marker(marker, (x + 19.0, y), 6.0, self.colour)?;
+            canvas.marker(marker, (x + 19.0, y), 6.0, self.colour)?;
         }
-        pen.text(&self.name, (x + 44.0, y), size, Side::Left, palette::INK)
+        canvas.text(&self.name, (x + 44.0, y), size, Side::Left, palette::INK)
     }
 }

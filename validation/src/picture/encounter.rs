@@ -1,8 +1,8 @@
 //! A guard against time around one event, as it truly is and as an engine had it, in a wide panel
 //! and a close one. Steps, evaluations of the guard and events are marks, phases bands above.
 
+use super::canvas::{At, Canvas, Side};
 use super::frame::{Panel, Ruler, Scale, power_of_ten};
-use super::pen::{At, Pen, Side};
 use super::{DrawError, Drawing, Marker, palette};
 use percuss::Phase;
 use plotters::coord::Shift;
@@ -75,23 +75,23 @@ impl Drawing for Encounter {
         area: &DrawingArea<B, Shift>,
         scale: u32,
     ) -> Result<(), DrawError> {
-        let pen = Pen { area, scale };
-        pen.paper()?;
-        pen.text(&self.title, (24.0, 30.0), TEXT + 5.0, Side::Left, palette::INK)?;
-        pen.text(&self.subtitle, (24.0, 64.0), TEXT, Side::Left, palette::INK)?;
+        let canvas = Canvas { area, scale };
+        canvas.paper()?;
+        canvas.text(&self.title, (24.0, 30.0), TEXT + 5.0, Side::Left, palette::INK)?;
+        canvas.text(&self.subtitle, (24.0, 64.0), TEXT, Side::Left, palette::INK)?;
         let width = WIDE / self.stretches.len().max(1) as f64;
         for (i, stretch) in self.stretches.iter().enumerate() {
             let left = width * i as f64;
-            self.stretch(&pen, stretch, (left + 132.0, left + width - 26.0))?;
+            self.stretch(&canvas, stretch, (left + 132.0, left + width - 26.0))?;
         }
-        self.key(&pen)
+        self.key(&canvas)
     }
 }
 
 impl Encounter {
     fn stretch<B: DrawingBackend>(
         &self,
-        pen: &Pen<'_, B>,
+        canvas: &Canvas<'_, B>,
         it: &Stretch,
         (left, right): (f64, f64),
     ) -> Result<(), DrawError> {
@@ -103,54 +103,54 @@ impl Encounter {
         let x = Ruler::between(from, to);
         let panel = Panel { from: (left, TOP), to: (right, BOTTOM), x, y };
         let below = times.named(&format!("time \u{2212} {:.7}", self.centre));
-        panel.draw(pen, &below, &values.named(&self.guard))?;
+        panel.draw(canvas, &below, &values.named(&self.guard))?;
         let at = |t: f64, v: f64| panel.at((times.scaled(t), values.scaled(v)));
         let guide = [panel.place((0.0, 0.0)).0, panel.place((0.0, 0.0)).1];
-        pen.line((left, guide[1]), (right, guide[1]), 1.4, palette::INK)?;
-        pen.line((guide[0], TOP), (guide[0], BOTTOM), 1.0, palette::INK)?;
+        canvas.line((left, guide[1]), (right, guide[1]), 1.4, palette::INK)?;
+        canvas.line((guide[0], TOP), (guide[0], BOTTOM), 1.0, palette::INK)?;
         let place = |t: f64| panel.place((times.scaled(t), 0.0)).0.clamp(left, right);
         for (trail, name, top) in [(&it.truth, "truth", 96.0), (&it.engine, "engine", 126.0)] {
-            trail.band(pen, place, (left, right, top))?;
-            pen.text(name, (left - 10.0, top + BAND / 2.0), TEXT, Side::Right, palette::INK)?;
+            trail.band(canvas, place, (left, right, top))?;
+            canvas.text(name, (left - 10.0, top + BAND / 2.0), TEXT, Side::Right, palette::INK)?;
         }
         let curve = |trail: &Trail| -> Vec<At> {
             trail.places(it.from, it.to).filter_map(|(t, v)| at(t, v)).collect()
         };
-        pen.trace(&curve(&it.truth), 6.0, TRUTH)?;
-        pen.trace(&curve(&it.engine), 2.4, self.colour)?;
+        canvas.trace(&curve(&it.truth), 6.0, TRUTH)?;
+        canvas.trace(&curve(&it.engine), 2.4, self.colour)?;
         let ends = it.steps.iter().filter_map(|t| at(*t, it.engine.along(it.from, it.to, *t)?));
-        ends.into_iter().try_for_each(|at| pen.marker(Marker::Circle, at, 5.0, self.colour))?;
+        ends.into_iter().try_for_each(|at| canvas.marker(Marker::Circle, at, 5.0, self.colour))?;
         let looks = it.looks.iter().filter_map(|[t, v]| at(*t, *v));
-        looks.into_iter().try_for_each(|at| hollow(pen, at, self.colour))?;
-        self.events(pen, it, |t| at(t, 0.0))
+        looks.into_iter().try_for_each(|at| hollow(canvas, at, self.colour))?;
+        self.events(canvas, it, |t| at(t, 0.0))
     }
 
     fn events<B: DrawingBackend>(
         &self,
-        pen: &Pen<'_, B>,
+        canvas: &Canvas<'_, B>,
         it: &Stretch,
         at: impl Fn(f64) -> Option<At>,
     ) -> Result<(), DrawError> {
         for (t, _, matched) in &it.truth.events {
             let Some(at) = at(*t) else { continue };
             if *matched {
-                pen.marker(Marker::Circle, at, 4.5, palette::INK)?;
+                canvas.marker(Marker::Circle, at, 4.5, palette::INK)?;
             } else {
-                wrong(pen, at, false)?;
+                wrong(canvas, at, false)?;
             }
         }
         for (t, _, matched) in &it.engine.events {
             let Some(at) = at(*t) else { continue };
             if *matched {
-                pen.marker(Marker::Triangle, (at.0, at.1 + 12.0), 6.0, self.colour)?;
+                canvas.marker(Marker::Triangle, (at.0, at.1 + 12.0), 6.0, self.colour)?;
             } else {
-                wrong(pen, at, true)?;
+                wrong(canvas, at, true)?;
             }
         }
         Ok(())
     }
 
-    fn key<B: DrawingBackend>(&self, pen: &Pen<'_, B>) -> Result<(), DrawError> {
+    fn key<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<(), DrawError> {
         let y = 664.0;
         let ink = palette::INK;
         let words = [
@@ -167,15 +167,15 @@ impl Encounter {
         for (i, (word, wide)) in words.into_iter().enumerate() {
             let (from, to, middle) = ((x, y), (x + 30.0, y), (x + 18.0, y));
             match i {
-                0 => pen.line(from, to, 6.0, TRUTH)?,
-                1 => pen.line(from, to, 2.4, self.colour)?,
-                2 => pen.marker(Marker::Circle, middle, 5.0, self.colour)?,
-                3 => hollow(pen, middle, self.colour)?,
-                4 => pen.marker(Marker::Circle, middle, 4.5, ink)?,
-                5 => pen.marker(Marker::Triangle, middle, 6.0, self.colour)?,
-                _ => wrong(pen, middle, i > 6)?,
+                0 => canvas.line(from, to, 6.0, TRUTH)?,
+                1 => canvas.line(from, to, 2.4, self.colour)?,
+                2 => canvas.marker(Marker::Circle, middle, 5.0, self.colour)?,
+                3 => hollow(canvas, middle, self.colour)?,
+                4 => canvas.marker(Marker::Circle, middle, 4.5, ink)?,
+                5 => canvas.marker(Marker::Triangle, middle, 6.0, self.colour)?,
+                _ => wrong(canvas, middle, i > 6)?,
             }
-            pen.text(word, (x + 38.0, y), TEXT - 1.0, Side::Left, ink)?;
+            canvas.text(word, (x + 38.0, y), TEXT - 1.0, Side::Left, ink)?;
             x += wide;
         }
         Ok(())
@@ -210,7 +210,7 @@ impl Trail {
     /// Phases one after the other, named where there is room.
     fn band<B: DrawingBackend>(
         &self,
-        pen: &Pen<'_, B>,
+        canvas: &Canvas<'_, B>,
         place: impl Fn(f64) -> f64,
         (left, right, top): (f64, f64, f64),
     ) -> Result<(), DrawError> {
@@ -219,12 +219,12 @@ impl Trail {
         for (i, (from, phase)) in starts.iter().enumerate() {
             let to = starts.get(i + 1).map_or(right, |next| next.0);
             let to = to.max(from + 1.0).min(right);
-            pen.fill((*from, top), (to, top + BAND), palette::phase(*phase))?;
+            canvas.fill((*from, top), (to, top + BAND), palette::phase(*phase))?;
             let name = phase.token().replace('-', " ");
             if to - from > 11.0 * name.len() as f64 {
                 let colour = if *phase == Phase::Contact { palette::INK } else { WHITE };
                 let middle = ((from + to) / 2.0, top + BAND / 2.0);
-                pen.text(&name, middle, TEXT - 2.0, Side::Middle, colour)?;
+                canvas.text(&name, middle, TEXT - 2.0, Side::Middle, colour)?;
             }
         }
         Ok(())
@@ -254,17 +254,25 @@ impl Factor {
 }
 
 /// A disc, with a cross where the engine alone has the event.
-fn wrong<B: DrawingBackend>(pen: &Pen<'_, B>, at: At, spurious: bool) -> Result<(), DrawError> {
-    pen.marker(Marker::Circle, at, 9.0, palette::INK)?;
-    pen.marker(Marker::Circle, at, 7.4, WRONG)?;
-    if spurious { pen.marker(Marker::Cross, at, 4.6, palette::INK) } else { Ok(()) }
+fn wrong<B: DrawingBackend>(
+    canvas: &Canvas<'_, B>,
+    at: At,
+    spurious: bool,
+) -> Result<(), DrawError> {
+    canvas.marker(Marker::Circle, at, 9.0, palette::INK)?;
+    canvas.marker(Marker::Circle, at, 7.4, WRONG)?;
+    if spurious { canvas.marker(Marker::Cross, at, 4.6, palette::INK) } else { Ok(()) }
 }
 
-fn hollow<B: DrawingBackend>(pen: &Pen<'_, B>, at: At, colour: RGBColor) -> Result<(), DrawError> {
+fn hollow<B: DrawingBackend>(
+    canvas: &Canvas<'_, B>,
+    at: At,
+    colour: RGBColor,
+) -> Result<(), DrawError> {
     const HALF: f64 = 6.0;
     let corner = |(x, y): At| (at.0 + HALF * x, at.1 + HALF * y);
     let corners = [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)].map(corner);
-    corners.windows(2).try_for_each(|pair| pen.line(pair[0], pair[1], 1.6, colour))
+    corners.windows(2).try_for_each(|pair| canvas.line(pair[0], pair[1], 1.6, colour))
 }
 
 #[cfg(test)]

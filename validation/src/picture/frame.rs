@@ -1,6 +1,6 @@
 //! A framed panel with ticks on linear or logarithmic axes.
 
-use super::pen::{At, Pen, Side};
+use super::canvas::{At, Canvas, Side};
 use super::{DrawError, axes, palette};
 use plotters::prelude::DrawingBackend;
 
@@ -135,44 +135,44 @@ impl Panel {
 
     pub fn draw<B: DrawingBackend>(
         &self,
-        pen: &Pen<'_, B>,
+        canvas: &Canvas<'_, B>,
         below: &str,
         beside: &str,
     ) -> Result<(), DrawError> {
         let (from, to) = (self.from, self.to);
         for (placed, _) in &self.x.ticks {
             let x = from.0 + self.x.share(*placed) * (to.0 - from.0);
-            pen.line((x, from.1), (x, to.1), 1.0, palette::GRID)?;
+            canvas.line((x, from.1), (x, to.1), 1.0, palette::GRID)?;
         }
         for (placed, _) in &self.y.ticks {
             let y = to.1 - self.y.share(*placed) * (to.1 - from.1);
-            pen.line((from.0, y), (to.0, y), 1.0, palette::GRID)?;
+            canvas.line((from.0, y), (to.0, y), 1.0, palette::GRID)?;
         }
-        self.draw_over(pen, below, beside)
+        self.draw_over(canvas, below, beside)
     }
 
     /// Frame, labels and names without lines across: what is drawn already stays.
     pub fn draw_over<B: DrawingBackend>(
         &self,
-        pen: &Pen<'_, B>,
+        canvas: &Canvas<'_, B>,
         below: &str,
         beside: &str,
     ) -> Result<(), DrawError> {
         let (from, to) = (self.from, self.to);
         for (placed, label) in &self.x.ticks {
             let x = from.0 + self.x.share(*placed) * (to.0 - from.0);
-            pen.line((x, to.1), (x, to.1 + 6.0), 1.0, palette::INK)?;
-            pen.text(label, (x, to.1 + 20.0), TEXT, Side::Middle, palette::INK)?;
+            canvas.line((x, to.1), (x, to.1 + 6.0), 1.0, palette::INK)?;
+            canvas.text(label, (x, to.1 + 20.0), TEXT, Side::Middle, palette::INK)?;
         }
         for (placed, label) in &self.y.ticks {
             let y = to.1 - self.y.share(*placed) * (to.1 - from.1);
-            pen.line((from.0 - 6.0, y), (from.0, y), 1.0, palette::INK)?;
-            pen.text(label, (from.0 - 10.0, y), TEXT, Side::Right, palette::INK)?;
+            canvas.line((from.0 - 6.0, y), (from.0, y), 1.0, palette::INK)?;
+            canvas.text(label, (from.0 - 10.0, y), TEXT, Side::Right, palette::INK)?;
         }
-        pen.frame(from, to)?;
+        canvas.frame(from, to)?;
         let middle = ((from.0 + to.0) / 2.0, to.1 + 52.0);
-        pen.text(below, middle, TEXT + 2.0, Side::Middle, palette::INK)?;
-        pen.upright(beside, (from.0 - 96.0, (from.1 + to.1) / 2.0), TEXT + 2.0)
+        canvas.text(below, middle, TEXT + 2.0, Side::Middle, palette::INK)?;
+        canvas.upright(beside, (from.0 - 96.0, (from.1 + to.1) / 2.0), TEXT + 2.0)
     }
 }
 

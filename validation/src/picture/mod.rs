@@ -2,31 +2,31 @@
 
 mod axes;
 mod basin_map;
+mod canvas;
 mod caption;
 mod curves;
 mod encounter;
+mod figure;
 mod font;
 mod frame;
+mod heat_map;
+mod histograms;
 mod look;
 mod motion;
 mod palette;
-mod pen;
 mod piece;
-mod sheet;
-mod strips;
-mod tiles;
 
 pub use basin_map::{BASIN_COLOURS, BasinMap, Shown, basin_colours};
 pub use caption::{caption, caption_without, symbol};
 pub use curves::{Curve, Curves};
 pub use encounter::{Encounter, Stretch, Trail};
+pub use figure::{Figure, KeyEntry, Layer, Plot, Raster, Stroke, Window};
 pub use frame::{Axis, Scale};
+pub use heat_map::{HeatCell, HeatMap, Tint};
+pub use histograms::{HistogramRow, Histograms};
 pub use look::{Look, Marker, looks};
 pub use motion::Motion;
 pub use piece::Piece;
-pub use sheet::{KeyEntry, Layer, Plot, Raster, Sheet, Stroke, Window};
-pub use strips::{Strip, Strips};
-pub use tiles::{Tile, Tiles, Tint};
 
 use plotters::coord::Shift;
 use plotters::prelude::*;

@@ -6,7 +6,7 @@ use super::font::FAMILY;
 use super::piece::Piece;
 use super::{DrawError, Drawing, palette};
 use crate::case::Problem;
-use percuss::{Exit, Instant, Leg, Phase};
+use percuss::{Exit, Instant, Phase, Segment};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -27,14 +27,14 @@ pub struct Motion {
 }
 
 /// A figure of a point.
-type Figure = fn(&[f64; 5]) -> f64;
+type Measure = fn(&[f64; 5]) -> f64;
 
 /// What one panel shows.
 struct Panel {
     below: &'static str,
     beside: &'static str,
-    x: Figure,
-    y: Figure,
+    x: Measure,
+    y: Measure,
     /// About how many labels the vertical axis has.
     ticks: usize,
 }
@@ -77,18 +77,18 @@ impl Drawing for Motion {
 impl Motion {
     /// The phases of a run up to `last`.
     #[must_use]
-    pub fn of(problem: &Problem, legs: &[Leg], last: &Instant) -> Self {
+    pub fn of(problem: &Problem, segments: &[Segment], last: &Instant) -> Self {
         let parameters = problem.model.parameters();
         let percuss::Parameters { a, b, xi, omega, g, .. } = *parameters;
         let begins = problem.entry.instant;
         let span = last.since(&begins, omega).value();
-        let pieces = legs.iter().map(|leg| {
-            let since = leg.entry().instant.since(&begins, omega).value();
-            let lasts = match leg.exit() {
-                Exit::Switch(_) | Exit::Undecidable => leg.duration(),
-                _ => last.since(&leg.entry().instant, omega).value(),
+        let pieces = segments.iter().map(|segment| {
+            let since = segment.entry().instant.since(&begins, omega).value();
+            let lasts = match segment.exit() {
+                Exit::Switch(_) | Exit::Undecidable => segment.duration(),
+                _ => last.since(&segment.entry().instant, omega).value(),
             };
-            Piece::of(leg, begins.tau(omega) + since, lasts, POINTS * lasts / span)
+            Piece::of(segment, begins.tau(omega) + since, lasts, POINTS * lasts / span)
         });
         Self {
             title: format!("a = {a}, b = {b}, \u{3be} = {xi}, \u{3c9} = {omega}, g = {g}"),

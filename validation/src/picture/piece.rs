@@ -1,6 +1,6 @@
 //! A phase's motion as points to be drawn.
 
-use percuss::{Leg, Phase};
+use percuss::{Phase, Segment};
 
 /// One phase's motion, sampled.
 #[derive(Clone, Debug)]
@@ -18,14 +18,14 @@ impl Piece {
     /// A phase from where it `begins` for as long as it `lasts`, both in tau, in about so many
     /// `points`.
     #[must_use]
-    pub fn of(leg: &Leg, begins: f64, lasts: f64, points: f64) -> Self {
+    pub fn of(segment: &Segment, begins: f64, lasts: f64, points: f64) -> Self {
         let count = points.ceil();
         let count = if count.is_finite() { (count as usize).max(FEWEST) } else { FEWEST };
         let point = |i: usize| {
             let elapsed = lasts * (i as f64 / count as f64);
-            let at = leg.at(elapsed);
+            let at = segment.at(elapsed);
             [begins + elapsed, at.state.p, at.state.y, at.state.q, at.v]
         };
-        Self { phase: leg.phase(), points: (0..=count).map(point).collect() }
+        Self { phase: segment.phase(), points: (0..=count).map(point).collect() }
     }
 }

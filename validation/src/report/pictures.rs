@@ -6,8 +6,8 @@ use super::summary::{self, EngineSummary, SettingSummary};
 use super::{Evidence, Report, RestartHistogram, SectionPair};
 use crate::number::brief;
 use crate::picture::{
-    self, Axis, Curve, Curves, DrawError, Drawing, Encounter, Layer, Look, Marker, Plot, Scale,
-    Sheet, Strip, Strips, Stroke, Tile, Tiles, Tint, looks, png, svg,
+    self, Axis, Curve, Curves, DrawError, Drawing, Encounter, Figure, HeatCell, HeatMap,
+    HistogramRow, Histograms, Layer, Look, Marker, Plot, Scale, Stroke, Tint, looks, png, svg,
 };
 use percuss::Phase;
 use plotters::style::RGBColor;
@@ -162,14 +162,14 @@ impl Palette {
     }
 
     /// A picture a unit: errors in different units share no axis.
-    fn restarts(&self, case: &str, runs: &[&RestartHistogram]) -> Vec<(String, Strips)> {
+    fn restarts(&self, case: &str, runs: &[&RestartHistogram]) -> Vec<(String, Histograms)> {
         let mut units: Vec<&str> = Vec::new();
         for run in runs {
             if !units.contains(&run.unit.as_str()) {
                 units.push(&run.unit);
             }
         }
-        let strip = |run: &&&RestartHistogram| Strip {
+        let strip = |run: &&&RestartHistogram| HistogramRow {
             name: who(&run.engine, &setting(run.tolerance, None)),
             colour: self.colour(&run.engine),
             edges: run.edges.clone(),
@@ -178,7 +178,7 @@ impl Palette {
         let picture = |(i, unit): (usize, &&str)| {
             let suffix = if i == 0 { String::new() } else { format!("-{}", i + 1) };
             let strips = runs.iter().filter(|run| run.unit == **unit);
-            let strips = Strips {
+            let strips = Histograms {
                 title: format!("Errors after one impact and separation: {case}"),
                 label: format!("error in units of {unit}"),
                 strips: strips.collect::<Vec<_>>().iter().map(strip).collect(),
@@ -189,7 +189,7 @@ impl Palette {
     }
 }
 
-fn recall(report: &Report, summaries: &[EngineSummary]) -> Tiles {
+fn recall(report: &Report, summaries: &[EngineSummary]) -> HeatMap {
     let tile = |it: &SettingSummary| {
         let tint = match it.recall() {
             share if share.is_nan() => Tint::None,
@@ -200,12 +200,12 @@ fn recall(report: &Report, summaries: &[EngineSummary]) -> Tiles {
         };
         let share = summary::percent(it.recall());
         let of = if it.setting.is_empty() { String::new() } else { format!("{}: ", it.setting) };
-        Tile { text: of + &share, tint }
+        HeatCell { text: of + &share, tint }
     };
     let row = |(engine, summary): (&super::EngineEntry, &EngineSummary)| {
         (engine.name.to_owned(), summary.settings.iter().map(tile).collect())
     };
-    Tiles {
+    HeatMap {
         title: "Recall: events found of those that there are".to_owned(),
         note: "settings from coarse to fine; blue: some spurious, or runs without a result"
             .to_owned(),
@@ -214,7 +214,7 @@ fn recall(report: &Report, summaries: &[EngineSummary]) -> Tiles {
     }
 }
 
-fn touches(grazing: Grazing) -> Tiles {
+fn touches(grazing: Grazing) -> HeatMap {
     let tile = |cell: Vec<(String, Seen)>| {
         let sign = |(_, seen): &(String, Seen)| match seen {
             Seen::Right => '\u{25cf}',
@@ -230,11 +230,11 @@ fn touches(grazing: Grazing) -> Tiles {
             0 => Tint::Bad,
             _ => Tint::Poor,
         };
-        Tile { text: cell.iter().map(sign).collect(), tint }
+        HeatCell { text: cell.iter().map(sign).collect(), tint }
     };
     let row =
         |(engine, cells): (String, Vec<Vec<_>>)| (engine, cells.into_iter().map(tile).collect());
-    Tiles {
+    HeatMap {
         title: "Grazing: how far the mass stays short of the slider (\u{2212}) or reaches beyond it (+)"
             .to_owned(),
         note: "settings from coarse to fine; \u{25cf} right, \u{25cb} missed, \u{d7} spurious, \u{25d0} undecidable, \u{2013} no result"
@@ -244,7 +244,7 @@ fn touches(grazing: Grazing) -> Tiles {
     }
 }
 
-fn attractors((i, pair): (usize, &SectionPair)) -> (String, Sheet) {
+fn attractors((i, pair): (usize, &SectionPair)) -> (String, Figure) {
     let told = |(name, value, limit): &(String, f64, f64)| {
         format!("{name} {} (limit {})", brief(*value), brief(*limit))
     };
@@ -254,7 +254,7 @@ fn attractors((i, pair): (usize, &SectionPair)) -> (String, Sheet) {
         window: None,
         layers: vec![Layer::cloud(points.to_vec(), colour)],
     };
-    let sheet = Sheet {
+    let sheet = Figure {
         title: format!("Attractors at \u{3c9} = {}, \u{3be} = {}", pair.omega, pair.xi),
         caption: pair.distances.iter().map(told).collect::<Vec<_>>().join("; "),
         columns: 2,

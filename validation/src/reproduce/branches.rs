@@ -5,7 +5,7 @@ use super::attractors::{found, of_period};
 use super::continued::branch;
 use super::work::{Findings, Work};
 use crate::engine::Failure;
-use crate::picture::{INK, KeyEntry, Layer, Plot, Sheet, Stroke};
+use crate::picture::{Figure, INK, KeyEntry, Layer, Plot, Stroke};
 use percuss::dynamics::continuation::{Bifurcation, Branch, BranchPoint, Kind};
 use percuss::dynamics::orbit::Orbit;
 use plotters::style::RGBColor;
@@ -119,7 +119,7 @@ fn marks(branch: &Branch) -> Vec<Layer> {
     branch.bifurcations.iter().map(mark).collect()
 }
 
-fn sheet(branches: &[(u32, RGBColor, Branch)]) -> Sheet {
+fn sheet(branches: &[(u32, RGBColor, Branch)]) -> Figure {
     let mut layers: Vec<Layer> =
         branches.iter().flat_map(|(_, colour, branch)| lines(branch, *colour)).collect();
     layers.extend(branches.iter().flat_map(|(.., branch)| marks(branch)));
@@ -134,7 +134,7 @@ fn sheet(branches: &[(u32, RGBColor, Branch)]) -> Sheet {
         text: "black squares: fold; red: flip; grey: graze".to_owned(),
         colour: INK,
     });
-    Sheet {
+    Figure {
         title: "Orbits behind Figs. 7 and 10, stable and unstable".to_owned(),
         caption: "a = 0.3, b = 0.1, \u{3be} = 0.1, g = 0.02, \u{3c6} = \u{3c0}/2; strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}) of orbits \
                   followed by pseudo-arclength continuation. Solid: stable; dashed: unstable. What looks like one branch in a \

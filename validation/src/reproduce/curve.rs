@@ -2,20 +2,25 @@
 //! dotted.
 
 use crate::picture::{KeyEntry, Layer, Piece, Stroke, phase_colour};
-use percuss::{Exit, Instant, Leg, Phase};
+use percuss::{Exit, Instant, Phase, Segment};
 
 /// The phases of a run up to `last`, some `per_period` points a forcing period.
-pub(super) fn pieces(legs: &[Leg], last: &Instant, omega: f64, per_period: f64) -> Vec<Piece> {
+pub(super) fn pieces(
+    segments: &[Segment],
+    last: &Instant,
+    omega: f64,
+    per_period: f64,
+) -> Vec<Piece> {
     let spacing = std::f64::consts::TAU / omega / per_period;
-    let piece = |leg: &Leg| {
-        let lasts = match leg.exit() {
-            Exit::Switch(next) if next.instant <= *last => leg.duration(),
-            _ => leg.elapsed_at(last),
+    let piece = |segment: &Segment| {
+        let lasts = match segment.exit() {
+            Exit::Switch(next) if next.instant <= *last => segment.duration(),
+            _ => segment.elapsed_at(last),
         };
-        let begins = leg.entry().instant.tau(omega);
-        Piece::of(leg, begins, lasts, lasts / spacing)
+        let begins = segment.entry().instant.tau(omega);
+        Piece::of(segment, begins, lasts, lasts / spacing)
     };
-    legs.iter().map(piece).collect()
+    segments.iter().map(piece).collect()
 }
 
 /// The paper's line for a phase.

@@ -6,7 +6,7 @@ use super::continued::first;
 use super::paper::attractors_model;
 use super::work::{Findings, Work};
 use crate::engine::Failure;
-use crate::picture::{INK, Layer, Plot, Sheet};
+use crate::picture::{Figure, INK, Layer, Plot};
 use percuss::Parameter;
 use percuss::dynamics::attractor::Attractor;
 use percuss::dynamics::continuation::{Bifurcation, Kind};
@@ -191,7 +191,7 @@ fn settle_12(work: &Work<'_>, uncorrected: &[Step], stable: &Stable) -> Result<C
         ))
 }
 
-fn sheet(corrected: &[Step], uncorrected: &[Step]) -> Sheet {
+fn sheet(corrected: &[Step], uncorrected: &[Step]) -> Figure {
     let plot = |title: &str, steps: &[Step]| Plot {
         title: title.to_owned(),
         axes: ["\u{3c9}".to_owned(), "p".to_owned()],
@@ -205,7 +205,7 @@ fn sheet(corrected: &[Step], uncorrected: &[Step]) -> Sheet {
             size: 0.6,
         }],
     };
-    Sheet {
+    Figure {
         title: "Fig. 10: bifurcation diagrams of the period-four attractor".to_owned(),
         caption: format!(
             "a = 0.3, b = 0.1, \u{3be} = 0.1, g = 0.02, \u{3c6} = \u{3c0}/2; strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}), {TRANSIENT} periods \

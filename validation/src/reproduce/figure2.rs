@@ -5,7 +5,7 @@ use super::curve::{self, HEADER};
 use super::paper::table_1_model;
 use super::work::{Findings, Work, from_rest};
 use crate::engine::Failure;
-use crate::picture::{Layer, Piece, Plot, Sheet, Stroke, caption};
+use crate::picture::{Figure, Layer, Piece, Plot, Stroke, caption};
 use percuss::Phase;
 
 const PERIODS: u64 = 12;
@@ -19,8 +19,8 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     let parameters = table_1_model();
     let (model, rest) = from_rest(parameters)?;
     let end = rest.instant.after_periods(PERIODS, 1);
-    let legs: Vec<_> = model.trajectory(rest).until(end).collect();
-    let pieces = curve::pieces(&legs, &end, parameters.omega, POINTS);
+    let segments: Vec<_> = model.trajectory(rest).until(end).collect();
+    let pieces = curve::pieces(&segments, &end, parameters.omega, POINTS);
     let mut findings = Findings::default();
     findings.claims.push(settle(work, &pieces)?);
     findings.picture("figure-2", &sheet(&pieces, &caption(&parameters)))?;
@@ -66,7 +66,7 @@ fn settle(work: &Work<'_>, pieces: &[Piece]) -> Result<Claim, Failure> {
     ))
 }
 
-fn sheet(pieces: &[Piece], parameters: &str) -> Sheet {
+fn sheet(pieces: &[Piece], parameters: &str) -> Figure {
     let plot = |title: &str, label: &str, layers: Vec<Layer>| Plot {
         title: title.to_owned(),
         axes: ["\u{3c4}".to_owned(), label.to_owned()],
@@ -80,7 +80,7 @@ fn sheet(pieces: &[Piece], parameters: &str) -> Sheet {
         width: 1.5,
         stroke: Stroke::Dashed,
     });
-    Sheet {
+    Figure {
         title: "Fig. 2: drifting displacement, bounded displacement, progression".to_owned(),
         caption: format!(
             "{parameters}; from rest, {PERIODS} forcing periods. (a) x and, dashed, the slider's bottom v; (b) p = x - v; \

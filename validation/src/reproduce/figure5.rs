@@ -5,7 +5,7 @@ use super::curve::{self, HEADER};
 use super::paper::chaotic_model;
 use super::work::{Findings, Work, from_rest};
 use crate::engine::Failure;
-use crate::picture::{Layer, Piece, Plot, Sheet, caption};
+use crate::picture::{Figure, Layer, Piece, Plot, caption};
 use percuss::{Parameters, Phase};
 
 const TRANSIENT: u64 = 100;
@@ -19,9 +19,9 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     let (model, rest) = from_rest(parameters)?;
     let begin = rest.instant.after_periods(TRANSIENT, 1);
     let end = begin.after_periods(PERIODS, 1);
-    let legs: Vec<_> =
-        model.trajectory(rest).until(end).filter(|leg| !leg.ends_by(&begin)).collect();
-    let pieces = curve::pieces(&legs, &end, parameters.omega, POINTS);
+    let segments: Vec<_> =
+        model.trajectory(rest).until(end).filter(|segment| !segment.ends_by(&begin)).collect();
+    let pieces = curve::pieces(&segments, &end, parameters.omega, POINTS);
     let mut findings = Findings::default();
     findings.claims.push(settle(work, &pieces, &parameters)?);
     findings.picture("figure-5", &sheet(&pieces, &parameters))?;
@@ -54,11 +54,11 @@ fn settle(work: &Work<'_>, pieces: &[Piece], parameters: &Parameters) -> Result<
         .evidence("exact solver, every phase sampled", "each phase's range of p"))
 }
 
-fn sheet(pieces: &[Piece], parameters: &Parameters) -> Sheet {
+fn sheet(pieces: &[Piece], parameters: &Parameters) -> Figure {
     let mut layers = curve::lines(pieces, |at| [at[1], at[2]]);
     layers.extend([Layer::Guide(parameters.g), Layer::Guide(parameters.g + 1.0)]);
     layers.push(curve::key());
-    Sheet {
+    Figure {
         title: "Fig. 5: chaotic motion on the phase plane".to_owned(),
         caption: format!(
             "{}; {PERIODS} forcing periods after {TRANSIENT}, from rest. Dashed: p = g and p = g + 1.",

@@ -6,7 +6,7 @@ use super::work::{Findings, Work};
 use crate::case;
 use crate::engine::{self, Accuracy, Engine, Failure, Limits};
 use crate::number::brief;
-use crate::picture::{INK, Layer, Plot, Sheet, caption, phase_colour};
+use crate::picture::{Figure, INK, Layer, Plot, caption, phase_colour};
 use crate::score::attractor::{AttractorTest, Comparison, Section, calibrated, run_of};
 use percuss::{Phase, Start};
 
@@ -109,7 +109,7 @@ fn settle(
     Ok([first, second])
 }
 
-fn sheet(exact: &Section, other: &Section, engine: &str, farthest: f64) -> Sheet {
+fn sheet(exact: &Section, other: &Section, engine: &str, farthest: f64) -> Figure {
     let plot = |title: String, section: &Section, colour| Plot {
         title,
         axes: ["p".to_owned(), "y".to_owned()],
@@ -120,7 +120,7 @@ fn sheet(exact: &Section, other: &Section, engine: &str, farthest: f64) -> Sheet
             size: 0.6,
         }],
     };
-    Sheet {
+    Figure {
         title: "Fig. 6: Poincar\u{e9} section of the strange attractor".to_owned(),
         caption: format!(
             "{}; strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}), {POINTS} points after {TRANSIENT} periods from rest. (a) exact solver; \

@@ -6,7 +6,7 @@ use super::curve;
 use super::paper::attractors_model;
 use super::work::{Findings, Work};
 use crate::engine::Failure;
-use crate::picture::{INK, Layer, Plot, Sheet, caption};
+use crate::picture::{Figure, INK, Layer, Plot, caption};
 use percuss::dynamics::attractor::Attractor;
 use percuss::dynamics::section::section;
 use percuss::dynamics::strobe::StrobeMap;
@@ -18,16 +18,16 @@ const TRANSIENT: u64 = 200;
 const PER_PERIOD: f64 = 200.0;
 
 /// One of the two figures.
-struct Figure {
+struct Panel {
     id: &'static str,
     name: &'static str,
     omega: f64,
     periods: &'static [u32],
 }
 
-const FIGURES: [Figure; 2] = [
-    Figure { id: "fig8", name: "figure-8", omega: 1.4, periods: &[4] },
-    Figure { id: "fig9", name: "figure-9", omega: 1.6, periods: &[5, 6] },
+const FIGURES: [Panel; 2] = [
+    Panel { id: "fig8", name: "figure-8", omega: 1.4, periods: &[4] },
+    Panel { id: "fig9", name: "figure-9", omega: 1.6, periods: &[5, 6] },
 ];
 
 pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
@@ -57,7 +57,7 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     Ok(findings)
 }
 
-fn settle(work: &Work<'_>, figure: &Figure, attractors: &[Attractor]) -> Result<Claim, Failure> {
+fn settle(work: &Work<'_>, figure: &Panel, attractors: &[Attractor]) -> Result<Claim, Failure> {
     let strange = strange(attractors)?;
     let said: Vec<_> = attractors.iter().map(described).collect();
     let mut periods: Vec<_> = attractors.iter().filter_map(Attractor::period).collect();
@@ -75,9 +75,9 @@ fn phase_plane(map: &StrobeMap, attractor: &Attractor) -> Result<Plot, Failure> 
     let period = attractor.period().unwrap_or(1);
     let entry = map.entry(attractor.points[0]).map_err(Failure::new)?;
     let end = entry.instant.after_periods(u64::from(period), 1);
-    let legs: Vec<_> = map.model().trajectory(entry).until(end).collect();
+    let segments: Vec<_> = map.model().trajectory(entry).until(end).collect();
     let omega = map.model().parameters().omega;
-    let pieces = curve::pieces(&legs, &end, omega, PER_PERIOD);
+    let pieces = curve::pieces(&segments, &end, omega, PER_PERIOD);
     let mut layers = curve::lines(&pieces, |at| [at[1], at[2]]);
     let points = attractor.points.iter().map(|[p, y, _]| [*p, *y]).collect();
     layers.push(Layer::Dots { points, colour: INK, size: 3.5 });
@@ -108,8 +108,8 @@ fn section_plot(points: &[[f64; 3]]) -> Plot {
     }
 }
 
-fn sheet(figure: &Figure, plots: Vec<Plot>) -> Sheet {
-    Sheet {
+fn sheet(figure: &Panel, plots: Vec<Plot>) -> Figure {
+    Figure {
         title: format!("Fig. {}: coexisting attractors", figure.id.trim_start_matches("fig")),
         caption: format!(
             "{}. Phase planes over one whole period, with the strobes at \u{3c9}\u{3c4} = 0 (mod 2\u{3c0}) as squares: \

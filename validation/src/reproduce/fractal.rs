@@ -4,7 +4,9 @@ use super::attractors::{TRANSIENT, WINDOW, grid, map};
 use super::claim::{Claim, Verdict};
 use super::work::{Findings, Work};
 use crate::engine::Failure;
-use percuss::dynamics::attractor::{Atlas, Basins, Entropy, Uncertainty, entropy, uncertainty_of};
+use percuss::dynamics::attractor::{
+    AttractorCatalog, Basins, Entropy, Uncertainty, entropy, uncertainty_of,
+};
 
 /// The frequencies of Fig. 7.
 const OMEGAS: [f64; 6] = [1.4, 1.45, 1.56, 1.58, 1.60, 1.70];
@@ -46,9 +48,9 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
 
 fn measure(omega: f64) -> Result<Measured, Failure> {
     let map = map(omega)?;
-    let mut atlas = Atlas::new(map, TRANSIENT);
-    atlas.label_all(&grid(32).starts(), &|_| {});
-    let uncertainty = uncertainty_of(|start| atlas.label(start), &WINDOW, 0.0, SCALES, STARTS);
+    let mut catalog = AttractorCatalog::new(map, TRANSIENT);
+    catalog.label_all(&grid(32).starts(), &|_| {});
+    let uncertainty = uncertainty_of(|start| catalog.label(start), &WINDOW, 0.0, SCALES, STARTS);
     let basins = Basins::of(&map, &grid(CELLS), TRANSIENT, &|_| {});
     Ok(Measured { omega, uncertainty, entropy: entropy(&basins, BOX) })
 }

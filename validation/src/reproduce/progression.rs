@@ -4,7 +4,7 @@
 use super::paper::chaotic_model;
 use super::work::{Findings, Work};
 use crate::engine::Failure;
-use crate::picture::{KeyEntry, Layer, Plot, Sheet, caption_without};
+use crate::picture::{Figure, KeyEntry, Layer, Plot, caption_without};
 use percuss::dynamics::diagram::{Diagram, Follow, Step};
 use percuss::{Parameter, Parameters, Start};
 use plotters::style::RGBColor;
@@ -111,7 +111,7 @@ impl Rate {
         step.drift_per_period * omega / std::f64::consts::TAU
     }
 
-    fn sheet(&self, steps: &[Step]) -> Sheet {
+    fn sheet(&self, steps: &[Step]) -> Figure {
         let axis = |label: &str| [self.label.to_owned(), label.to_owned()];
         let dots = |of: &dyn Fn(&Step) -> Vec<[f64; 2]>, size: f64| -> Vec<Layer> {
             let layer = |(kind, _, colour): &(Regime, &str, RGBColor)| Layer::Dots {
@@ -137,7 +137,7 @@ impl Rate {
             window: None,
             layers,
         };
-        Sheet {
+        Figure {
             title: format!("Progression rate against {}", self.label),
             caption: format!(
                 "{}; {} varied, from rest, {TRANSIENT} forcing periods left out, mean over {PERIODS}. Left: drift per unit of time; \

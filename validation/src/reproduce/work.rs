@@ -3,7 +3,7 @@
 use super::claim::Claim;
 use super::paper::Paper;
 use crate::engine::Failure;
-use crate::picture::{Sheet, png, svg};
+use crate::picture::{Figure, png, svg};
 use percuss::{Entry, Model, Parameters, Start};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -71,7 +71,7 @@ impl Findings {
     ///
     /// # Errors
     /// The drawing library's reason.
-    pub fn picture(&mut self, name: &str, sheet: &Sheet) -> Result<(), Failure> {
+    pub fn picture(&mut self, name: &str, sheet: &Figure) -> Result<(), Failure> {
         self.files.push((format!("{name}.png"), png(sheet).map_err(Failure::new)?));
         if sheet.points() <= MOST_SVG_POINTS {
             self.files

@@ -60,14 +60,14 @@ struct Scan<'a> {
 }
 
 /// One segment's closed form with its guards.
-struct Segment {
+struct GuardedSegment {
     phase: Phase,
     began: f64,
     oscillator: Oscillator,
     closed: Closed,
 }
 
-impl Segment {
+impl GuardedSegment {
     fn guards(&self, d: f64) -> [f64; GUARDS] {
         self.oscillator.guards(self.phase, &self.closed.at(d))
     }
@@ -109,7 +109,7 @@ impl Scan<'_> {
         let length = end.elapsed.minus(begin.elapsed).value();
         let parameters = &self.task.parameters;
         let angle = self.task.forcing_angle + parameters.omega * began;
-        let segment = Segment {
+        let segment = GuardedSegment {
             phase,
             began,
             oscillator: Oscillator::of(parameters, self.task.forcing_angle),
@@ -129,7 +129,13 @@ impl Scan<'_> {
     }
 
     /// Every maximum of a guard inside a segment that stays short of the threshold by little.
-    fn near_misses(&self, n: usize, segment: &Segment, guard: usize, length: f64) -> Vec<Graze> {
+    fn near_misses(
+        &self,
+        n: usize,
+        segment: &GuardedSegment,
+        guard: usize,
+        length: f64,
+    ) -> Vec<Graze> {
         let step = self.step().min(length / 4.0);
         // A phase that begins on a threshold leaves it; the double zero there is no near miss.
         let on_threshold = segment.guards(0.0)[guard].abs() <= ON_THRESHOLD;
@@ -149,7 +155,7 @@ impl Scan<'_> {
     }
 
     /// The crossing that ends a segment, where the guard would have turned soon after it.
-    fn crossing(&self, n: usize, segment: &Segment, length: f64) -> Option<Graze> {
+    fn crossing(&self, n: usize, segment: &GuardedSegment, length: f64) -> Option<Graze> {
         let guards = segment.guards(length);
         let guard = usize::from(guards[1] > guards[0]);
         let beyond = length + self.task.problem.model.period();
@@ -166,7 +172,7 @@ impl Scan<'_> {
     fn graze(
         &self,
         n: usize,
-        segment: &Segment,
+        segment: &GuardedSegment,
         (guard, at): (usize, f64),
         events: Range<usize>,
     ) -> Graze {

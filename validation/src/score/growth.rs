@@ -214,13 +214,14 @@ mod tests {
         let given = Given { parameters: case.parameters, start, ..Given::default() };
         let Ok(problem) = given.check() else { return Vec::new() };
         let begin = problem.entry.instant;
-        let rows = problem.model.trajectory(problem.entry).map_while(|leg| match leg.exit() {
-            Exit::Switch(next) => {
-                let elapsed = next.instant.since(&begin, case.parameters.omega).value();
-                Some([elapsed, next.state.p, next.state.y, next.state.q, next.v()])
-            }
-            _ => None,
-        });
+        let rows =
+            problem.model.trajectory(problem.entry).map_while(|segment| match segment.exit() {
+                Exit::Switch(next) => {
+                    let elapsed = next.instant.since(&begin, case.parameters.omega).value();
+                    Some([elapsed, next.state.p, next.state.y, next.state.q, next.v()])
+                }
+                _ => None,
+            });
         rows.take(SWITCHES).collect()
     }
 

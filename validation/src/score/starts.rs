@@ -6,7 +6,7 @@
 //! as evenly as a chaotic one and all three phases occur.
 
 use crate::case::Problem;
-use percuss::{Leg, Start};
+use percuss::{Segment, Start};
 
 /// Forcing periods after which a run counts as on its attractor.
 const TRANSIENT: u64 = 300;
@@ -31,17 +31,17 @@ pub fn far_apart(problem: &Problem, count: usize, periods: u64) -> Vec<Problem> 
     let instant = |k: u64| begin.after_periods(TRANSIENT * PARTS + k * step, PARTS);
     // A state that rounding puts on another phase's side of a switch is passed over: a few in 1e15.
     let last = 2 * count as u64;
-    let mut legs = model.trajectory(problem.entry).until(instant(last));
-    let Some(mut leg) = legs.next() else { return Vec::new() };
+    let mut segments = model.trajectory(problem.entry).until(instant(last));
+    let Some(mut segment) = segments.next() else { return Vec::new() };
     let mut starts = Vec::with_capacity(count);
     for instant in (0..last).map(instant) {
-        while leg.ends_by(&instant) {
-            match legs.next() {
-                Some(next) => leg = next,
+        while segment.ends_by(&instant) {
+            match segments.next() {
+                Some(next) => segment = next,
                 None => return starts,
             }
         }
-        starts.extend(restarted(problem, &leg, &instant));
+        starts.extend(restarted(problem, &segment, &instant));
         if starts.len() == count {
             break;
         }
@@ -50,11 +50,11 @@ pub fn far_apart(problem: &Problem, count: usize, periods: u64) -> Vec<Problem> 
 }
 
 /// The state at an instant as a start; `None` if that is no start of the same phase.
-fn restarted(problem: &Problem, leg: &Leg, instant: &percuss::Instant) -> Option<Problem> {
+fn restarted(problem: &Problem, segment: &Segment, instant: &percuss::Instant) -> Option<Problem> {
     let model = problem.model;
-    let state = leg.at_instant(instant).state;
+    let state = segment.at_instant(instant).state;
     let tau = instant.angle() / model.parameters().omega;
     let start = Start { tau, p: state.p, y: state.y, q: Some(state.q), ..Start::default() };
     let entry = model.start(&start).ok()?;
-    (entry.phase() == leg.phase()).then_some(Problem { model, start, entry })
+    (entry.phase() == segment.phase()).then_some(Problem { model, start, entry })
 }

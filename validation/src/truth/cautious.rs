@@ -7,11 +7,11 @@
 
 use super::forms::Motion;
 use percuss::crossing::certificate::{Corridor, Ends, Verdict};
-use percuss::crossing::guarded::{Guarded, Outlook};
+use percuss::crossing::guarded::{Guarded, SearchHint};
 use percuss::crossing::search::first_crossing;
 use percuss::crossing::series::Series;
 use percuss::crossing::{Counters, Crossing};
-use percuss::flow::stride::Strides;
+use percuss::flow::steps::Steps;
 use percuss::flow::{Flow, Point};
 
 /// Rounding an entry to f64 moves the guard by a unit or two of its largest term; its own rounding
@@ -46,18 +46,12 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
         self.0.imposed()
     }
 
-    fn outlook(&self, strides: &Strides, left: &Point<f64>, limit: f64) -> Outlook {
-        self.0.outlook(strides, left, limit)
+    fn hint(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint {
+        self.0.hint(steps, left, limit)
     }
 
-    fn certify(
-        &self,
-        strides: &Strides,
-        left: &Point<f64>,
-        right: &Point<f64>,
-        ends: Ends,
-    ) -> Verdict {
-        self.0.certify(strides, left, right, ends)
+    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
+        self.0.certify(steps, left, right, ends)
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
@@ -92,12 +86,12 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
 }
 
 /// How the phase ends before `limit`, and whether every certificate left the room asked for.
-pub(super) fn crossing(motion: &Motion<f64>, strides: &Strides, limit: f64) -> (Crossing, bool) {
+pub(super) fn crossing(motion: &Motion<f64>, steps: &Steps, limit: f64) -> (Crossing, bool) {
     let mut counters = Counters::default();
     let crossing = match motion {
-        Motion::NoContact(it) => first_crossing(&Cautious(it), strides, limit, &mut counters),
-        Motion::Contact(it) => first_crossing(&Cautious(it), strides, limit, &mut counters),
-        Motion::Progression(it) => first_crossing(&Cautious(it), strides, limit, &mut counters),
+        Motion::NoContact(it) => first_crossing(&Cautious(it), steps, limit, &mut counters),
+        Motion::Contact(it) => first_crossing(&Cautious(it), steps, limit, &mut counters),
+        Motion::Progression(it) => first_crossing(&Cautious(it), steps, limit, &mut counters),
     };
     (crossing, counters.undecidable == 0)
 }

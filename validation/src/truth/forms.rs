@@ -5,7 +5,7 @@ use percuss::flow::contact::Contact;
 use percuss::flow::forcing::EntryAngle;
 use percuss::flow::no_contact::NoContact;
 use percuss::flow::progression::Progression;
-use percuss::flow::stride::Strides;
+use percuss::flow::steps::Steps;
 use percuss::flow::{Flow, Point};
 use percuss::number::Number;
 use percuss::two_word::TwoWord;
@@ -37,7 +37,7 @@ pub(super) enum Motion<T> {
 pub(super) struct Forms {
     pub(super) constants: Constants<DoubleDouble>,
     rounded: Constants<f64>,
-    pub(super) strides: Strides,
+    pub(super) steps: Steps,
     phi: DoubleDouble,
     pub(super) omega: f64,
 }
@@ -48,7 +48,7 @@ impl Forms {
         Self {
             constants: Constants::new(parameters),
             rounded: Constants::new(parameters),
-            strides: Strides::new(parameters),
+            steps: Steps::new(parameters),
             phi: phi.into(),
             omega: parameters.omega,
         }

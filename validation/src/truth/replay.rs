@@ -114,7 +114,7 @@ impl Replay {
         // The search's horizon is a little late: whether a switch comes before it is decided here.
         let limit = span.max(0.0) * (1.0 + 1e-12) + f64::MIN_POSITIVE;
         let passage = |next| Ok(Passage { begin, next, omega });
-        match crossing(&self.forms.rounded(&begin.motion), &self.forms.strides, limit) {
+        match crossing(&self.forms.rounded(&begin.motion), &self.forms.steps, limit) {
             (_, false) => Err("the margin of a graze"),
             (Crossing::Stage(_) | Crossing::Undecided(_), _) => Err("the end of a phase"),
             (Crossing::Horizon | Crossing::Never, _) => passage(None),

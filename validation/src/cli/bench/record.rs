@@ -88,8 +88,8 @@ fn records(arguments: &Arguments, courses: &[Course]) -> Result<Vec<Record>> {
 
 /// What both halves of the rounds say of a workload.
 fn figures(course: &Course, halves: &[Floors; 2], i: usize) -> Result<Figures, Failure> {
-    let mut heat = enter(exact(), course, Accuracy::Exact)?;
-    heat.call()?;
+    let mut timed = enter(exact(), course, Accuracy::Exact)?;
+    timed.call()?;
     let cost = |half: &Floors| {
         let cost = half.switches.get(i).cloned();
         cost.unwrap_or_else(|| Err(Failure::new("not timed")))
@@ -106,6 +106,6 @@ fn figures(course: &Course, halves: &[Floors; 2], i: usize) -> Result<Figures, F
         floors: first.series.best() / floor(&halves[0]),
         floors_again: second.series.best() / floor(&halves[1]),
         evaluations_per_switch: first.evaluations,
-        state_error_max: heat.score()?.state_error,
+        state_error_max: timed.score()?.state_error,
     })
 }

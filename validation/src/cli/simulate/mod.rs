@@ -93,8 +93,8 @@ fn write_rows(plan: &Plan, samples: Option<u32>, sink: &mut dyn rows::Sink) -> R
 }
 
 fn draw(plan: &Plan, format: Format, out: &mut dyn Write) -> Result<Ending> {
-    let (legs, ending) = plan.legs_for_picture()?;
-    let motion = picture::Motion::of(&plan.problem, &legs, &plan.last_instant(&legs));
+    let (segments, ending) = plan.segments_for_picture()?;
+    let motion = picture::Motion::of(&plan.problem, &segments, &plan.last_instant(&segments));
     let bytes = match format {
         Format::Svg => picture::svg(&motion)?.into_bytes(),
         _ => picture::png(&motion)?,

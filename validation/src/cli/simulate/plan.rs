@@ -7,7 +7,7 @@ use crate::cli::parse::{MAX_PERIODS, Typed};
 use crate::cli::progress::Progress;
 use crate::cli::work::Bar;
 use anyhow::{Result, bail};
-use percuss::{Endless, Exit, Instant, Leg, Trajectory};
+use percuss::{Endless, Exit, Instant, Segment, Trajectory};
 
 /// Forcing periods after which a run that counts switches stops, where `--max-periods` is not
 /// given.
@@ -47,22 +47,22 @@ impl Plan {
     }
 
     /// The run's phases, the last one ending with the run; none where no switch is wanted.
-    pub(super) fn legs(&self) -> Legs<'_> {
+    pub(super) fn segments(&self) -> Segments<'_> {
         let run = self.problem.model.trajectory(self.problem.entry).until(self.horizon);
-        Legs { run, wanted: self.events, switches: 0, progress: &self.progress }
+        Segments { run, wanted: self.events, switches: 0, progress: &self.progress }
     }
 
-    /// What to say of a run whose last phase is `last` after the phases of `legs`.
-    pub(super) fn ending(&self, last: Option<&Leg>, legs: &Legs<'_>) -> Ending {
-        let undecided = last.filter(|leg| *leg.exit() == Exit::Undecidable);
+    /// What to say of a run whose last phase is `last` after the phases of `segments`.
+    pub(super) fn ending(&self, last: Option<&Segment>, segments: &Segments<'_>) -> Ending {
+        let undecided = last.filter(|segment| *segment.exit() == Exit::Undecidable);
         let how = match undecided {
-            Some(leg) => Some(self.undecided(leg)),
-            None => last.and_then(|last| self.how_it_ends(last, legs.switches)),
+            Some(segment) => Some(self.undecided(segment)),
+            None => last.and_then(|last| self.how_it_ends(last, segments.switches)),
         };
-        Ending { how, touches: legs.touches(), undecided: undecided.is_some() }
+        Ending { how, touches: segments.touches(), undecided: undecided.is_some() }
     }
 
-    fn undecided(&self, last: &Leg) -> String {
+    fn undecided(&self, last: &Segment) -> String {
         format!(
             "undecidable: rounding hides how the phase {} ends that begins at tau = {:?}, it is \
              followed to tau = {:?}",
@@ -73,7 +73,7 @@ impl Plan {
     }
 
     /// Where the last of a run's phases is cut: by the horizon, or where it is no longer decided.
-    pub(super) fn end_of(&self, last: &Leg) -> Instant {
+    pub(super) fn end_of(&self, last: &Segment) -> Instant {
         if *last.exit() == Exit::Undecidable {
             last.entry().instant.after(last.duration_two_word(), self.omega())
         } else {
@@ -81,7 +81,7 @@ impl Plan {
         }
     }
 
-    fn how_it_ends(&self, last: &Leg, switches: u64) -> Option<String> {
+    fn how_it_ends(&self, last: &Segment, switches: u64) -> Option<String> {
         let found = self.endless(last).map(|endless| {
             let since = last.entry().instant.tau(self.omega());
             format!("{} after tau = {since:?}", words(endless))
@@ -101,7 +101,7 @@ impl Plan {
     }
 
     /// Whether a last phase has no end at all, beyond the horizon too.
-    fn endless(&self, last: &Leg) -> Option<Endless> {
+    fn endless(&self, last: &Segment) -> Option<Endless> {
         match last.exit() {
             Exit::Endless(endless) => Some(*endless),
             Exit::Horizon => {
@@ -113,13 +113,13 @@ impl Plan {
     }
 
     /// All phases at once, for a picture.
-    pub(super) fn legs_for_picture(&self) -> Result<(Vec<Leg>, Ending)> {
+    pub(super) fn segments_for_picture(&self) -> Result<(Vec<Segment>, Ending)> {
         let start = self.problem.entry.instant;
         let longest = MAX_PICTURE_PERIODS * self.problem.model.period();
-        let mut legs: Vec<Leg> = Vec::new();
-        let mut run = self.legs();
-        for leg in run.by_ref() {
-            let begins = leg.entry().instant.since(&start, self.omega()).value();
+        let mut segments: Vec<Segment> = Vec::new();
+        let mut run = self.segments();
+        for segment in run.by_ref() {
+            let begins = segment.entry().instant.since(&start, self.omega()).value();
             let ends_late =
                 self.events.is_none() && self.horizon.since(&start, self.omega()).value() > longest;
             if begins > longest || ends_late {
@@ -127,18 +127,18 @@ impl Plan {
                     "a picture of more than {MAX_PICTURE_PERIODS} forcing periods is not accepted: --output or --format of csv or json is, or a shorter run"
                 );
             }
-            legs.push(leg);
+            segments.push(segment);
         }
-        let ending = self.ending(legs.last(), &run);
-        Ok((legs, ending))
+        let ending = self.ending(segments.last(), &run);
+        Ok((segments, ending))
     }
 
     /// Where the last of these phases ends.
-    pub(super) fn last_instant(&self, legs: &[Leg]) -> Instant {
-        if let Some(last) = legs.last().filter(|leg| *leg.exit() == Exit::Undecidable) {
+    pub(super) fn last_instant(&self, segments: &[Segment]) -> Instant {
+        if let Some(last) = segments.last().filter(|segment| *segment.exit() == Exit::Undecidable) {
             return self.end_of(last);
         }
-        match (self.events, legs.last().map(|leg| (leg.entry(), leg.exit()))) {
+        match (self.events, segments.last().map(|segment| (segment.entry(), segment.exit()))) {
             (_, Some((_, Exit::Switch(next)))) => next.instant,
             // Switches were wanted and none came: the last phase is shown for a few periods.
             (Some(_), Some((entry, _))) => entry.instant.after_periods(2, 1),
@@ -149,32 +149,32 @@ impl Plan {
 }
 
 /// A run's phases up to the switch that ends it.
-pub(super) struct Legs<'a> {
+pub(super) struct Segments<'a> {
     run: Trajectory,
     wanted: Option<u64>,
     switches: u64,
     progress: &'a Progress,
 }
 
-impl Legs<'_> {
+impl Segments<'_> {
     /// Touches so far that rounding does not decide.
     fn touches(&self) -> u64 {
         self.run.counters().undecidable
     }
 }
 
-impl Iterator for Legs<'_> {
-    type Item = Leg;
+impl Iterator for Segments<'_> {
+    type Item = Segment;
 
-    fn next(&mut self) -> Option<Leg> {
+    fn next(&mut self) -> Option<Segment> {
         if self.wanted == Some(self.switches) {
             return None;
         }
-        let leg = self.run.next()?;
-        self.switches += u64::from(matches!(leg.exit(), Exit::Switch(_)));
+        let segment = self.run.next()?;
+        self.switches += u64::from(matches!(segment.exit(), Exit::Switch(_)));
         let share = self.wanted.map_or(0.0, |wanted| self.switches as f64 / wanted as f64);
-        self.progress.at_least(&leg.entry().instant, share);
-        Some(leg)
+        self.progress.at_least(&segment.entry().instant, share);
+        Some(segment)
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::plan::{Ending, Plan};
 use anyhow::Result;
-use percuss::{Exit, Instant, Leg, Sample};
+use percuss::{Exit, Instant, Sample, Segment};
 
 /// One row.
 #[derive(Clone, Copy, Debug)]
@@ -34,13 +34,13 @@ pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<Ending> {
     let mut index = 0;
     let mut last = None;
     let mut entry = plan.problem.entry;
-    let mut legs = plan.legs();
-    for leg in std::iter::once(None).chain(legs.by_ref().map(Some)) {
-        match leg.as_ref().map(Leg::exit) {
+    let mut segments = plan.segments();
+    for segment in std::iter::once(None).chain(segments.by_ref().map(Some)) {
+        match segment.as_ref().map(Segment::exit) {
             None => {}
             Some(Exit::Switch(next)) => (index, entry) = (index + 1, *next),
             Some(_) => {
-                last = leg;
+                last = segment;
                 break;
             }
         }
@@ -56,7 +56,7 @@ pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<Ending> {
             },
         )?;
     }
-    let ending = plan.ending(last.as_ref(), &legs);
+    let ending = plan.ending(last.as_ref(), &segments);
     if let Some(last) = last
         && (plan.events.is_none() || ending.undecided)
     {
@@ -82,21 +82,21 @@ pub(super) fn samples(plan: &Plan, per_period: u32, sink: &mut dyn Sink) -> Resu
     let start = plan.problem.entry.instant;
     let mut k = 0;
     let mut last = None;
-    let mut legs = plan.legs();
-    for leg in legs.by_ref() {
+    let mut segments = plan.segments();
+    for segment in segments.by_ref() {
         loop {
             let instant = start.after_periods(k, u64::from(per_period));
-            let over = instant > plan.horizon || leg.is_undecided_at(&instant);
-            if over || leg.ends_by(&instant) {
+            let over = instant > plan.horizon || segment.is_undecided_at(&instant);
+            if over || segment.ends_by(&instant) {
                 break;
             }
             plan.progress.at(&instant);
-            sink.row(plan, &sample(k, leg.phase().token(), &leg, instant))?;
+            sink.row(plan, &sample(k, segment.phase().token(), &segment, instant))?;
             k += 1;
         }
-        last = Some(leg);
+        last = Some(segment);
     }
-    let ending = plan.ending(last.as_ref(), &legs);
+    let ending = plan.ending(last.as_ref(), &segments);
     if let Some(last) = last
         && ending.undecided
     {
@@ -108,8 +108,8 @@ pub(super) fn samples(plan: &Plan, per_period: u32, sink: &mut dyn Sink) -> Resu
 /// The phase of a row at which the run is no longer decided.
 const UNDECIDABLE: &str = "undecidable";
 
-fn sample(index: u64, phase: &'static str, leg: &Leg, instant: Instant) -> Row {
-    let state = state(&leg.at_instant(&instant));
+fn sample(index: u64, phase: &'static str, segment: &Segment, instant: Instant) -> Row {
+    let state = state(&segment.at_instant(&instant));
     let [p, _, q, v] = state;
     Row { index, phase, instant, state, co_ordinates: Some([p + v, q + v]) }
 }

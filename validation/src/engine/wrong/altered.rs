@@ -3,7 +3,7 @@
 use super::super::exact::Exact;
 use super::super::{Accuracy, Declaration, Engine, Failure, Limits, Outcome, Task};
 use crate::case::Problem;
-use percuss::{Exit, Leg, Model, Parameters, Phase, Start};
+use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
 
 /// What is different.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -87,16 +87,16 @@ fn drifting(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
     let times = task.sample_times();
     let (mut offset, mut switch, mut sample) = (0.0, 0, 0);
     let mut begin = 0.0;
-    for leg in task.problem.model.trajectory(task.problem.entry).until(task.horizon) {
-        let end = match leg.exit() {
+    for segment in task.problem.model.trajectory(task.problem.entry).until(task.horizon) {
+        let end = match segment.exit() {
             Exit::Switch(next) => next.instant.since(&start, omega).value(),
             _ => task.span,
         };
         while sample < outcome.samples.len() && times[sample] < end {
-            outcome.samples[sample][3] += offset + left_over(task, &leg, times[sample] - begin);
+            outcome.samples[sample][3] += offset + left_over(task, &segment, times[sample] - begin);
             sample += 1;
         }
-        offset += left_over(task, &leg, end - begin);
+        offset += left_over(task, &segment, end - begin);
         begin = end;
         if let Some(event) = outcome.events.get_mut(switch) {
             event.state[3] += offset;
@@ -110,9 +110,9 @@ fn drifting(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-fn left_over(task: &Task, leg: &Leg, elapsed: f64) -> f64 {
-    if leg.phase() != Phase::Progression {
+fn left_over(task: &Task, segment: &Segment, elapsed: f64) -> f64 {
+    if segment.phase() != Phase::Progression {
         return 0.0;
     }
-    2.0 * (leg.entry().state.q - 1.0) * (-elapsed / (2.0 * task.parameters.xi)).exp()
+    2.0 * (segment.entry().state.q - 1.0) * (-elapsed / (2.0 * task.parameters.xi)).exp()
 }

@@ -9,7 +9,7 @@ use super::claim::{Claim, Verdict};
 use super::paper::{Printed, attractors_model};
 use super::work::{Findings, Size, Work};
 use crate::engine::Failure;
-use crate::picture::{Sheet, caption, caption_without};
+use crate::picture::{Figure, caption, caption_without};
 use frame::Frame;
 use percuss::Parameter;
 use percuss::dynamics::attractor::Kind;
@@ -163,12 +163,12 @@ fn sheet(
     plots: Vec<crate::picture::Plot>,
     cells: u32,
     columns: usize,
-) -> Sheet {
+) -> Figure {
     let parameters = match omega {
         Some(omega) => caption(&attractors_model(omega)),
         None => caption_without(&attractors_model(1.0), Some(Parameter::Omega)),
     };
-    Sheet {
+    Figure {
         title: format!("Fig. 7{letter}: basins of attraction"),
         caption: format!(
             "{parameters}; {cells} x {cells} starts at \u{3c9}\u{3c4} = 0, q = 0 where p < g and on the contact surface elsewhere \

@@ -6,7 +6,7 @@ use super::super::paper::TABLE_1_UNIT;
 use super::super::work::Work;
 use super::Told;
 use crate::engine::Failure;
-use crate::picture::{INK, Layer, Piece, Plot, Sheet, Window, caption};
+use crate::picture::{Figure, INK, Layer, Piece, Plot, Window, caption};
 use percuss::Phase;
 
 /// The zoom: where the slider is met, compressed and left.
@@ -66,14 +66,14 @@ fn labelled(points: &[[f64; 2]], i: usize) -> Vec<Layer> {
     layers
 }
 
-pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Sheet {
+pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Figure {
     let plane = |at: &[f64; 5]| [at[1], at[2]];
     let mut whole = curve::lines(pieces, plane);
     whole.push(curve::key());
     let mut zoom = curve::lines(pieces, plane);
-    let at: Vec<[f64; 2]> = told.legs[..told.legs.len() - 1]
+    let at: Vec<[f64; 2]> = told.segments[..told.segments.len() - 1]
         .iter()
-        .map(|leg| [leg.entry().state.p, leg.entry().state.y])
+        .map(|segment| [segment.entry().state.p, segment.entry().state.y])
         .collect();
     let numbered = (0..at.len()).flat_map(|i| labelled(&at, i));
     zoom.extend(numbered);
@@ -83,13 +83,13 @@ pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Sheet {
         window,
         layers,
     };
-    Sheet {
+    Figure {
         title: "Fig. 3: phase plane of the period-two motion".to_owned(),
         caption: format!(
             "{}; from row 1 to row 9 of Table 1, {:.5} <= \u{3c4} <= {:.5}. Right: the stick-slip part, points 1 to 8 of Table 1.",
             caption(told.parameters()),
             told.tau(0),
-            told.tau(told.legs.len() - 1)
+            told.tau(told.segments.len() - 1)
         ),
         columns: 2,
         panel: (760, 600),

@@ -5,7 +5,7 @@ use super::super::curve;
 use super::super::work::Work;
 use super::Told;
 use crate::engine::Failure;
-use crate::picture::{Piece, Plot, Sheet, caption};
+use crate::picture::{Figure, Piece, Plot, caption};
 use percuss::{Parameters, Phase};
 
 /// Eq. (20) from a row of the table, `d` later; `sign` is that of its exponential term.
@@ -27,9 +27,9 @@ pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<C
     let printed = &work.paper.table1;
     let (mut worst, mut jump) = (0.0_f64, 0.0_f64);
     let mut gains = Vec::new();
-    for (i, leg) in told.legs[..told.legs.len() - 1].iter().enumerate() {
-        let gained = told.legs[i + 1].entry().v() - leg.entry().v();
-        if leg.phase() != Phase::Progression {
+    for (i, segment) in told.segments[..told.segments.len() - 1].iter().enumerate() {
+        let gained = told.segments[i + 1].entry().v() - segment.entry().v();
+        if segment.phase() != Phase::Progression {
             worst = worst.max(gained.abs());
             continue;
         }
@@ -55,11 +55,11 @@ pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<C
         .evidence("Eq. (20) as printed", format!("v(tau0) is off v0 by {jump:.4}")))
 }
 
-pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Sheet {
-    let start = told.legs[0].entry().v();
+pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Figure {
+    let start = told.segments[0].entry().v();
     let mut layers = curve::lines(pieces, |at| [at[0], at[4] - start]);
     layers.push(curve::key());
-    Sheet {
+    Figure {
         title: "Fig. 4: reconstructed progression".to_owned(),
         caption: format!(
             "{}; over Table 1, counted from its row 1. Eq. (20) with the sign of its exponential term mended.",

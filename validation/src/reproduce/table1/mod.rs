@@ -11,7 +11,7 @@ use crate::engine::Failure;
 use crate::picture::Piece;
 use percuss::dynamics::orbit::Orbit;
 use percuss::dynamics::strobe::StrobeMap;
-use percuss::{Entry, Instant, Leg, Model, Parameters};
+use percuss::{Entry, Instant, Model, Parameters, Segment};
 
 /// Time up to which the paper follows the motion.
 const UNTIL: f64 = 1300.0;
@@ -25,7 +25,7 @@ struct Told {
     model: Model,
     rest: Entry,
     /// The phases whose beginnings are the table's rows.
-    legs: Vec<Leg>,
+    segments: Vec<Segment>,
     /// Where the last row begins.
     end: Instant,
 }
@@ -36,13 +36,14 @@ impl Told {
         let (model, rest) = from_rest(parameters)?;
         let horizon = Instant::at(parameters.omega, UNTIL, 0);
         let all: Vec<_> = model.trajectory(rest).until(horizon).collect();
-        let near = |leg: &Leg| (leg.entry().instant.tau(parameters.omega) - rows[0].tau).abs();
+        let near =
+            |segment: &Segment| (segment.entry().instant.tau(parameters.omega) - rows[0].tau).abs();
         let first = (0..all.len()).min_by(|i, j| near(&all[*i]).total_cmp(&near(&all[*j])));
         let first = first.ok_or_else(|| Failure::new("the run has no phases"))?;
         let last = first + rows.len() - 1;
         let end = all.get(last).ok_or_else(|| Failure::new("the run ends before the table"))?;
         let end = end.entry().instant;
-        Ok(Self { model, rest, legs: all[first..=last].to_vec(), end })
+        Ok(Self { model, rest, segments: all[first..=last].to_vec(), end })
     }
 
     fn parameters(&self) -> &Parameters {
@@ -50,13 +51,13 @@ impl Told {
     }
 
     fn tau(&self, row: usize) -> f64 {
-        self.legs[row].entry().instant.tau(self.parameters().omega)
+        self.segments[row].entry().instant.tau(self.parameters().omega)
     }
 
     /// The phases between the first row and the last.
     fn pieces(&self) -> Vec<Piece> {
-        let legs = &self.legs[..self.legs.len() - 1];
-        curve::pieces(legs, &self.end, self.parameters().omega, POINTS)
+        let segments = &self.segments[..self.segments.len() - 1];
+        curve::pieces(segments, &self.end, self.parameters().omega, POINTS)
     }
 }
 
@@ -78,19 +79,23 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
 }
 
 fn table(told: &Told) -> impl Iterator<Item = Vec<String>> {
-    told.legs.iter().enumerate().map(|(row, leg)| {
-        let [p, y, q] = leg.entry().point();
+    told.segments.iter().enumerate().map(|(row, segment)| {
+        let [p, y, q] = segment.entry().point();
         let numbers = [told.tau(row), p, y, q].map(|number| number.to_string());
-        [(row + 1).to_string(), leg.phase().to_string()].into_iter().chain(numbers).collect()
+        [(row + 1).to_string(), segment.phase().to_string()].into_iter().chain(numbers).collect()
     })
 }
 
 fn rows(work: &Work<'_>, told: &Told) -> Result<Claim, Failure> {
     let printed = &work.paper.table1;
-    let phases = told.legs.iter().zip(printed).all(|(leg, row)| leg.phase().token() == row.phase);
+    let phases = told
+        .segments
+        .iter()
+        .zip(printed)
+        .all(|(segment, row)| segment.phase().token() == row.phase);
     let mut differences = Vec::new();
-    for (i, (leg, row)) in told.legs.iter().zip(printed).enumerate() {
-        let [p, y, q] = leg.entry().point();
+    for (i, (segment, row)) in told.segments.iter().zip(printed).enumerate() {
+        let [p, y, q] = segment.entry().point();
         let pairs =
             [("tau", told.tau(i), row.tau), ("p", p, row.p), ("y", y, row.y), ("q", q, row.q)];
         differences.extend(pairs.map(|(name, ours, theirs)| (i + 1, name, (ours - theirs).abs())));
@@ -105,7 +110,7 @@ fn rows(work: &Work<'_>, told: &Told) -> Result<Claim, Failure> {
     let holds = phases && largest <= TABLE_1_UNIT;
     let computed = format!(
         "all {} phases; {rounded} of {} numbers round to the printed ones, the farthest, {name} of row {row}, is {largest:.1e} off",
-        told.legs.len(),
+        told.segments.len(),
         differences.len()
     );
     Ok(Claim::settle(&work.paper, "table1", Verdict::of(holds), computed)?
@@ -154,7 +159,7 @@ fn period(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure>
 fn closed(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure> {
     let printed = &work.paper.table1;
     let whole = f64::from(orbit.period()) * told.model.period();
-    let last = told.legs.len() - 1;
+    let last = told.segments.len() - 1;
     let ours = told.tau(last) - told.tau(0);
     let theirs = printed[last].tau - printed[0].tau;
     let apart = [ours, theirs].map(|length| length - whole);
@@ -162,7 +167,7 @@ fn closed(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure>
     let computed = format!(
         "T = {whole:.5}; rows 1 and 9 are {ours:.5} apart, {:.5} more, and y differs by {:.5}: the motion has not settled yet",
         apart[0],
-        told.legs[0].entry().state.y - told.legs[last].entry().state.y
+        told.segments[0].entry().state.y - told.segments[last].entry().state.y
     );
     Ok(Claim::settle(&work.paper, "table1-closed", Verdict::of(holds), computed)?
         .note("the printed rows say so themselves; the orbit that the motion settles on later does close after T")

@@ -1,11 +1,11 @@
-//! A contact followed in fixed strides from an evaluation: where the trial force may leave its
+//! A contact followed in fixed steps from an evaluation: where the trial force may leave its
 //! corridor (a guess), and that it does not before (a certificate in pieces).
 //!
 //! The force less b is a free oscillation and a forced one. A stride of the model's own length
 //! turns both by known factors, so that places around an evaluation need none of their own.
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
-use crate::flow::stride::Swing;
+use crate::flow::steps::ContactStep;
 
 /// The trial force in parts, at some place.
 #[derive(Clone, Copy, Debug)]
@@ -40,8 +40,8 @@ pub struct Shape {
 }
 
 impl Parts {
-    fn after(&self, swing: &Swing) -> Self {
-        let Swing { length, sin, cos, c, s, s_rate } = *swing;
+    fn after(&self, swing: &ContactStep) -> Self {
+        let ContactStep { length, sin, cos, c, s, s_rate } = *swing;
         Self {
             elapsed: self.elapsed + length,
             free: self.free * c + self.free_rate * s,
@@ -71,13 +71,18 @@ impl Parts {
         (shape.level + self.free + self.forced, self.free_rate + shape.omega * self.quarter)
     }
 
-    /// A guess of the first exit in so many strides, or the parts where they end.
+    /// A guess of the first exit in so many steps, or the parts where they end.
     #[inline(always)]
-    pub fn first_exit(&self, shape: &Shape, swing: &Swing, strides: usize) -> Result<f64, Self> {
+    pub fn first_exit(
+        &self,
+        shape: &Shape,
+        swing: &ContactStep,
+        steps: usize,
+    ) -> Result<f64, Self> {
         let corridor = shape.corridor;
         let mut here = *self;
         let (mut last, mut last_rate) = here.value_and_rate(shape);
-        for _ in 0..strides {
+        for _ in 0..steps {
             let next = here.after(swing);
             let (value, rate) = next.value_and_rate(shape);
             if corridor.excess(value) >= 0.0 {
@@ -98,7 +103,7 @@ impl Parts {
         (right, right_orders): (f64, &[f64; 4]),
         ends: Ends,
         shape: &Shape,
-        swing: &Swing,
+        swing: &ContactStep,
     ) -> bool {
         const MOST_PIECES: usize = 8;
         /// The last piece may be this much longer than a stride.

@@ -1,7 +1,7 @@
 //! Histograms below each other on one axis, a strip each.
 
+use super::canvas::{Canvas, Side};
 use super::frame::{Ruler, Scale, power_of_ten};
-use super::pen::{Pen, Side};
 use super::{DrawError, Drawing, palette};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -15,7 +15,7 @@ const RIGHT: f64 = 1470.0;
 
 /// One histogram.
 #[derive(Clone, Debug)]
-pub struct Strip {
+pub struct HistogramRow {
     /// Its name.
     pub name: String,
     /// Its colour.
@@ -28,16 +28,16 @@ pub struct Strip {
 
 /// A picture of histograms.
 #[derive(Clone, Debug)]
-pub struct Strips {
+pub struct Histograms {
     /// What it shows.
     pub title: String,
     /// The axis's name.
     pub label: String,
     /// From top to bottom.
-    pub strips: Vec<Strip>,
+    pub strips: Vec<HistogramRow>,
 }
 
-impl Strip {
+impl HistogramRow {
     /// Bins with something in them: edges and count.
     fn bins(&self) -> impl Iterator<Item = (f64, f64, u64)> + '_ {
         let pairs = self.edges.windows(2).zip(&self.counts);
@@ -46,7 +46,7 @@ impl Strip {
     }
 }
 
-impl Drawing for Strips {
+impl Drawing for Histograms {
     fn size(&self) -> (u32, u32) {
         let rows = u32::try_from(self.strips.len()).unwrap_or(0).clamp(1, 200);
         (1500, HEAD + rows * ROW + FOOT)
@@ -57,13 +57,14 @@ impl Drawing for Strips {
         area: &DrawingArea<B, Shift>,
         scale: u32,
     ) -> Result<(), DrawError> {
-        let pen = Pen { area, scale };
+        let canvas = Canvas { area, scale };
         let [head, row] = [HEAD, ROW].map(f64::from);
-        pen.paper()?;
-        pen.text(&self.title, (24.0, 28.0), TEXT + 4.0, Side::Left, palette::INK)?;
-        let edges = self.strips.iter().flat_map(Strip::bins).flat_map(|(from, to, _)| [from, to]);
+        canvas.paper()?;
+        canvas.text(&self.title, (24.0, 28.0), TEXT + 4.0, Side::Left, palette::INK)?;
+        let edges =
+            self.strips.iter().flat_map(HistogramRow::bins).flat_map(|(from, to, _)| [from, to]);
         let Some(ruler) = Ruler::over(Scale::Linear, edges) else {
-            return pen.text(
+            return canvas.text(
                 "nothing was measured",
                 (24.0, head + 20.0),
                 TEXT,
@@ -77,22 +78,26 @@ impl Drawing for Strips {
             let whole = (value - value.round()).abs() < 1e-9;
             let label = if whole { power_of_ten(value.round() as i64) } else { label.clone() };
             let x = across(ruler.share(*value));
-            pen.line((x, head), (x, bottom), 1.0, palette::GRID)?;
-            pen.text(&label, (x, bottom + 20.0), TEXT, Side::Middle, palette::INK)?;
+            canvas.line((x, head), (x, bottom), 1.0, palette::GRID)?;
+            canvas.text(&label, (x, bottom + 20.0), TEXT, Side::Middle, palette::INK)?;
         }
         for (i, strip) in self.strips.iter().enumerate() {
             let base = head + (i + 1) as f64 * row;
             let most = strip.bins().map(|bin| bin.2).max().unwrap_or(1) as f64;
-            pen.line((LEFT, base), (RIGHT, base), 1.0, palette::GRID)?;
+            canvas.line((LEFT, base), (RIGHT, base), 1.0, palette::GRID)?;
             let at = (LEFT - 16.0, base - row / 2.0);
-            pen.text(&strip.name, at, TEXT, Side::Right, palette::INK)?;
+            canvas.text(&strip.name, at, TEXT, Side::Right, palette::INK)?;
             for (from, to, count) in strip.bins() {
                 let tall = ((row - 8.0) * count as f64 / most).max(1.0);
                 let [from, to] = [from, to].map(|edge| across(ruler.share(edge)));
-                pen.fill((from, base - tall), ((to - 1.0).max(from + 1.0), base), strip.colour)?;
+                canvas.fill(
+                    (from, base - tall),
+                    ((to - 1.0).max(from + 1.0), base),
+                    strip.colour,
+                )?;
             }
         }
         let middle = ((LEFT + RIGHT) / 2.0, bottom + 54.0);
-        pen.text(&self.label, middle, TEXT + 1.0, Side::Middle, palette::INK)
+        canvas.text(&self.label, middle, TEXT + 1.0, Side::Middle, palette::INK)
     }
 }

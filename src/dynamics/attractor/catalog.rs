@@ -11,7 +11,7 @@ use crate::entry::Entry;
 
 /// The attractors of a strobe map that have been met.
 #[derive(Clone, Debug)]
-pub struct Atlas {
+pub struct AttractorCatalog {
     map: StrobeMap,
     transient: u64,
     known: Vec<Known>,
@@ -24,7 +24,7 @@ const LARGEST_BATCH: usize = 64;
 /// How often a transient is doubled before a start is given up.
 const EXTENSIONS: u32 = 3;
 
-impl Atlas {
+impl AttractorCatalog {
     /// Of no attractor yet. A start is followed for `transient` forcing periods (at least one), and
     /// for 2, 4 and 8 times that more where it is not recognised by then.
     #[must_use]

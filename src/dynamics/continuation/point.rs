@@ -2,15 +2,15 @@
 
 use super::family::Family;
 use crate::dynamics::linear::{IDENTITY, dot, modulus, solve};
-use crate::dynamics::orbit::{Around, Chain, Orbit, size};
+use crate::dynamics::orbit::{Around, Orbit, ShootingIterate, size};
 use crate::dynamics::strobe::Point;
 use crate::phase::Phase;
 
 /// An orbit on the curve, and the curve's direction there.
 #[derive(Clone, Debug)]
-pub(super) struct Knot {
+pub(super) struct ContinuationPoint {
     pub(super) value: f64,
-    pub(super) chain: Chain,
+    pub(super) chain: ShootingIterate,
     pub(super) tangent: Tangent,
     pub(super) orbit: Orbit,
 }
@@ -46,13 +46,17 @@ impl Curve {
     }
 
     /// The orbit at a distance along the tangent of `base`.
-    pub(super) fn corrected(&self, base: &Knot, distance: f64) -> Option<Knot> {
+    pub(super) fn corrected(
+        &self,
+        base: &ContinuationPoint,
+        distance: f64,
+    ) -> Option<ContinuationPoint> {
         let Tangent { points, rate } = &base.tangent;
         let mut value = base.value + distance * rate;
         let mut strobes = shifted(&base.chain.points, points, distance);
-        let mut best: Option<(f64, Chain)> = None;
+        let mut best: Option<(f64, ShootingIterate)> = None;
         for _ in 0..ITERATIONS {
-            let chain = Chain::of(&self.family.map(value).ok()?, &strobes)?;
+            let chain = ShootingIterate::of(&self.family.map(value).ok()?, &strobes)?;
             let left = self.along(base, &chain, value) - distance;
             let in_place = left.abs() <= 0.01 * distance.abs() + f64::EPSILON;
             let closed = in_place && chain.is_closed();
@@ -75,14 +79,19 @@ impl Curve {
 
     /// A closed chain with the curve's direction, which is that of `along` as far as there is a
     /// choice.
-    pub(super) fn knot(&self, value: f64, chain: Chain, along: &Tangent) -> Knot {
+    pub(super) fn knot(
+        &self,
+        value: f64,
+        chain: ShootingIterate,
+        along: &Tangent,
+    ) -> ContinuationPoint {
         let tangent = self.tangent(&chain, value, along);
         let orbit = Orbit::of(&chain);
-        Knot { value, chain, tangent, orbit }
+        ContinuationPoint { value, chain, tangent, orbit }
     }
 
     /// The curve's direction at a chain.
-    pub(super) fn tangent(&self, chain: &Chain, value: f64, along: &Tangent) -> Tangent {
+    pub(super) fn tangent(&self, chain: &ShootingIterate, value: f64, along: &Tangent) -> Tangent {
         let bordered = self.bordered(chain, value, along, chain);
         let [p, y, q, rate] = solve(bordered.matrix, [0.0, 0.0, 0.0, 1.0]);
         let rate = rate * self.unit;
@@ -98,7 +107,7 @@ impl Curve {
     }
 
     /// How far along the tangent of `base` a chain lies.
-    fn along(&self, base: &Knot, chain: &Chain, value: f64) -> f64 {
+    fn along(&self, base: &ContinuationPoint, chain: &ShootingIterate, value: f64) -> f64 {
         let moved: Point = std::array::from_fn(|i| chain.points[0][i] - base.chain.points[0][i]);
         let weight = weight(&base.chain);
         let Tangent { points, rate } = &base.tangent;
@@ -106,11 +115,17 @@ impl Curve {
     }
 
     /// The arc's inner product of two directions.
-    pub(super) fn product(&self, a: &Tangent, b: &Tangent, at: &Chain) -> f64 {
+    pub(super) fn product(&self, a: &Tangent, b: &Tangent, at: &ShootingIterate) -> f64 {
         weight(at) * dot(&a.points[0], &b.points[0]) + a.rate / self.unit * (b.rate / self.unit)
     }
 
-    fn bordered(&self, chain: &Chain, value: f64, along: &Tangent, weighed: &Chain) -> Bordered {
+    fn bordered(
+        &self,
+        chain: &ShootingIterate,
+        value: f64,
+        along: &Tangent,
+        weighed: &ShootingIterate,
+    ) -> Bordered {
         let slopes = self.family.slopes(value, chain, self.unit.min(1.0));
         let Around { matrix: around, offset } = chain.around(&chain.defects);
         let Around { offset: by_value, .. } = chain.around(&slopes);
@@ -127,7 +142,7 @@ impl Curve {
     }
 
     /// What rounding of the map leaves uncertain of the parameter's value at a place of the curve.
-    pub(super) fn uncertainty(&self, knot: &Knot) -> f64 {
+    pub(super) fn uncertainty(&self, knot: &ContinuationPoint) -> f64 {
         let Bordered { matrix, .. } =
             self.bordered(&knot.chain, knot.value, &knot.tangent, &knot.chain);
         let by_row = (0..3).map(|row| {
@@ -142,7 +157,7 @@ impl Curve {
 }
 
 /// Points and parameter weigh alike when they change by their own size.
-fn weight(chain: &Chain) -> f64 {
+fn weight(chain: &ShootingIterate) -> f64 {
     (1.0 + size(&chain.points[0])).powi(-2)
 }
 
@@ -163,7 +178,7 @@ impl Tangent {
     }
 }
 
-impl Knot {
+impl ContinuationPoint {
     /// The phases strobe by strobe: where they are the same, the map is smooth in between.
     pub(super) fn is_on_piece_of(&self, other: &Self) -> bool {
         self.chain.is_on_piece_of(&other.chain)

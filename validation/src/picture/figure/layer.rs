@@ -1,7 +1,7 @@
 //! What a panel of a sheet is made of.
 
+use super::super::canvas::{At, Canvas, Side};
 use super::super::frame::Panel;
-use super::super::pen::{At, Pen, Side};
 use super::super::{DrawError, palette};
 use plotters::prelude::DrawingBackend;
 use plotters::style::RGBColor;
@@ -140,21 +140,21 @@ impl Layer {
 
     pub(super) fn draw<B: DrawingBackend>(
         &self,
-        pen: &Pen<'_, B>,
+        canvas: &Canvas<'_, B>,
         panel: &Panel,
     ) -> Result<(), DrawError> {
         match self {
             Self::Line { points, colour, width, stroke } => {
                 let stretches = stretches(points, panel);
                 let dashes = stretches.iter().flat_map(|stretch| stroke.cut(stretch));
-                dashes.into_iter().try_for_each(|dash| pen.trace(&dash, *width, *colour))
+                dashes.into_iter().try_for_each(|dash| canvas.trace(&dash, *width, *colour))
             }
             Self::Dots { points, colour, size } => {
                 points.iter().filter_map(|[x, y]| panel.at((*x, *y))).try_for_each(|at| {
-                    pen.fill((at.0 - size, at.1 - size), (at.0 + size, at.1 + size), *colour)
+                    canvas.fill((at.0 - size, at.1 - size), (at.0 + size, at.1 + size), *colour)
                 })
             }
-            Self::Raster(raster) => raster.draw(pen, panel),
+            Self::Raster(raster) => raster.draw(canvas, panel),
             Self::Guide(x) => {
                 let x = panel.from.0 + panel.x.place(*x) * (panel.to.0 - panel.from.0);
                 if !(panel.from.0..=panel.to.0).contains(&x) {
@@ -162,16 +162,16 @@ impl Layer {
                 }
                 let line = [(x, panel.from.1), (x, panel.to.1)];
                 let dashes = broken(&line, Stroke::Dashed.pattern());
-                dashes.iter().try_for_each(|dash| pen.trace(dash, 1.2, palette::INK))
+                dashes.iter().try_for_each(|dash| canvas.trace(dash, 1.2, palette::INK))
             }
             Self::Text { at, text, colour } => match panel.at((at[0], at[1])) {
-                Some(at) => pen.text(text, (at.0 + 8.0, at.1 - 12.0), TEXT, Side::Left, *colour),
+                Some(at) => canvas.text(text, (at.0 + 8.0, at.1 - 12.0), TEXT, Side::Left, *colour),
                 None => Ok(()),
             },
             Self::Key(entries) => {
                 let mut x = panel.from.0;
                 entries.iter().try_for_each(|entry| {
-                    entry.draw(pen, (x, panel.from.1 - 18.0))?;
+                    entry.draw(canvas, (x, panel.from.1 - 18.0))?;
                     x += 74.0 + LETTER * entry.name.chars().count() as f64;
                     Ok(())
                 })
@@ -181,19 +181,20 @@ impl Layer {
 }
 
 impl KeyEntry {
-    fn draw<B: DrawingBackend>(&self, pen: &Pen<'_, B>, at: At) -> Result<(), DrawError> {
+    fn draw<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>, at: At) -> Result<(), DrawError> {
         let line = [at, (at.0 + 40.0, at.1)];
         match self.stroke {
             None => {
                 let middle = at.0 + 28.0;
                 let corners = ((middle - 4.0, at.1 - 4.0), (middle + 4.0, at.1 + 4.0));
-                pen.fill(corners.0, corners.1, self.colour)?;
+                canvas.fill(corners.0, corners.1, self.colour)?;
             }
-            Some(stroke) => {
-                stroke.cut(&line).iter().try_for_each(|dash| pen.trace(dash, 2.0, self.colour))?
-            }
+            Some(stroke) => stroke
+                .cut(&line)
+                .iter()
+                .try_for_each(|dash| canvas.trace(dash, 2.0, self.colour))?,
         }
-        pen.text(&self.name, (at.0 + 48.0, at.1), TEXT, Side::Left, palette::INK)
+        canvas.text(&self.name, (at.0 + 48.0, at.1), TEXT, Side::Left, palette::INK)
     }
 }
 
@@ -243,7 +244,11 @@ fn broken(line: &[At], pattern: &[f64]) -> Vec<Vec<At>> {
 }
 
 impl Raster {
-    fn draw<B: DrawingBackend>(&self, pen: &Pen<'_, B>, panel: &Panel) -> Result<(), DrawError> {
+    fn draw<B: DrawingBackend>(
+        &self,
+        canvas: &Canvas<'_, B>,
+        panel: &Panel,
+    ) -> Result<(), DrawError> {
         let [(left, right), (bottom, top)] = self.window;
         let height = (top - bottom) / self.rows.len() as f64;
         for (i, row) in self.rows.iter().enumerate() {
@@ -255,7 +260,7 @@ impl Raster {
                 let end = begin + run.len();
                 let x = |cell: usize| left + width * cell as f64;
                 let corners = (panel.place((x(begin), y + height)), panel.place((x(end), y)));
-                pen.fill(corners.0, corners.1, run[0])?;
+                canvas.fill(corners.0, corners.1, run[0])?;
                 begin = end;
             }
         }

@@ -10,7 +10,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 /// A place in pixels.
 pub(super) type At = (f64, f64);
 
-pub(super) struct Pen<'a, B: DrawingBackend> {
+pub(super) struct Canvas<'a, B: DrawingBackend> {
     pub area: &'a DrawingArea<B, Shift>,
     pub scale: u32,
 }
@@ -23,7 +23,7 @@ pub(super) enum Side {
     Right,
 }
 
-impl<B: DrawingBackend> Pen<'_, B> {
+impl<B: DrawingBackend> Canvas<'_, B> {
     fn pixel(&self, at: At) -> (i32, i32) {
         let scaled = |value: f64| (value * f64::from(self.scale)).round() as i32;
         (scaled(at.0), scaled(at.1))

@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 
 /// A step of fixed length outside contact.
 #[derive(Clone, Copy, Debug)]
-pub struct Stride {
+pub struct FreeStep {
     /// How long it is.
     pub length: f64,
     /// Sine of x = omega times that.
@@ -30,7 +30,7 @@ pub struct Stride {
     pub drop: f64,
 }
 
-impl Stride {
+impl FreeStep {
     fn new(length: f64, omega: f64, rate: f64) -> Self {
         let Circular { sin, cos_minus_1, sin_minus_x } = circular(omega * length);
         let omega2 = omega * omega;
@@ -58,7 +58,7 @@ impl Stride {
 
 /// A step of fixed length in contact.
 #[derive(Clone, Copy, Debug)]
-pub struct Swing {
+pub struct ContactStep {
     /// How long it is.
     pub length: f64,
     /// Sine of omega times that.
@@ -73,7 +73,7 @@ pub struct Swing {
     pub s_rate: f64,
 }
 
-impl Swing {
+impl ContactStep {
     fn new(length: f64, omega: f64, damping: &Damping<f64>) -> Self {
         let (sin, cos) = libm::sincos(omega * length);
         let free = damping.at(length);
@@ -142,10 +142,10 @@ pub const PULLING: f64 = 10.0;
 
 /// Decay times after which a flight has got off the surface for certain, where its spring was
 /// stronger than any force ([`GRIP`]).
-pub const PARTING: f64 = 2.0;
+pub const SEPARATION_INTERVAL: f64 = 2.0;
 
-/// How much of q0 z^2/2 the slider's return q0 (exp(-z) - 1 + z) comes to at z = [`PARTING`], and
-/// more before: their quotient only falls.
+/// How much of q0 z^2/2 the slider's return q0 (exp(-z) - 1 + z) comes to at z =
+/// [`SEPARATION_INTERVAL`], and more before: their quotient only falls.
 pub const GRIP: f64 = 0.5676;
 
 /// And one that pushes it outwards: its eighth derivative then costs 0.02 of its own size.
@@ -153,37 +153,37 @@ pub const PUSHING: f64 = 4.0;
 
 /// The steps of a model.
 #[derive(Clone, Copy, Debug)]
-pub struct Strides {
+pub struct Steps {
     /// From piece to piece of a certificate.
-    pub piece: Stride,
+    pub piece: FreeStep,
     /// Over the life of an exponential that pulls inwards.
-    pub pulling: Stride,
+    pub pulling: FreeStep,
     /// Until a flight has got off the surface.
-    pub parting: Stride,
+    pub separation_interval: FreeStep,
     /// Over the life of an exponential that pushes outwards.
-    pub pushing: Stride,
+    pub pushing: FreeStep,
     /// From place to place of a guess.
-    pub look: Stride,
+    pub look: FreeStep,
     /// From piece to piece of a contact's certificate.
-    pub contact_piece: Swing,
+    pub contact_piece: ContactStep,
     /// From place to place of a contact's guess while a fast part lives, above critical damping.
-    pub quick_look: Swing,
+    pub quick_look: ContactStep,
     /// From place to place of a contact's guess.
-    pub contact_look: Swing,
+    pub contact_look: ContactStep,
     /// The same above critical damping when the fast part has died out.
-    pub slow_look: Swing,
+    pub slow_look: ContactStep,
     /// Where the force changes its sign.
     pub turning: Turning,
 }
 
-impl Strides {
+impl Steps {
     /// Of these parameters.
     #[must_use]
     pub fn new(parameters: &Parameters) -> Self {
         let Parameters { omega, xi, .. } = *parameters;
         let rate = 0.5 / xi;
         let damping = &Damping::new(xi);
-        let stride = |length: f64| Stride::new(length, omega, rate);
+        let stride = |length: f64| FreeStep::new(length, omega, rate);
         let fastest = omega.max(1.0);
         let (slowest, quickest) = match damping {
             Damping::Over { slow, fast, .. } => (slow.max(omega).min(1.0), *fast),
@@ -192,13 +192,13 @@ impl Strides {
         Self {
             piece: stride(PIECE / omega),
             pulling: stride(0.9 * PULLING / rate),
-            parting: stride(PARTING / rate),
+            separation_interval: stride(SEPARATION_INTERVAL / rate),
             pushing: stride(0.9 * PUSHING / rate),
             look: stride(LOOK / omega),
-            contact_piece: Swing::new(PIECE / fastest, omega, damping),
-            quick_look: Swing::new(LOOK / quickest, omega, damping),
-            contact_look: Swing::new(contact_look(parameters), omega, damping),
-            slow_look: Swing::new(LOOK / slowest, omega, damping),
+            contact_piece: ContactStep::new(PIECE / fastest, omega, damping),
+            quick_look: ContactStep::new(LOOK / quickest, omega, damping),
+            contact_look: ContactStep::new(contact_look(parameters), omega, damping),
+            slow_look: ContactStep::new(LOOK / slowest, omega, damping),
             turning: Turning::new(parameters),
         }
     }
@@ -212,7 +212,8 @@ mod tests {
     #[test]
     fn the_grip_is_least_at_parting() {
         let share = |z: f64| decay(z).remainder / (0.5 * z * z);
-        let shares: Vec<f64> = (1..=1000).map(|k| share(PARTING * f64::from(k) / 1000.0)).collect();
+        let shares: Vec<f64> =
+            (1..=1000).map(|k| share(SEPARATION_INTERVAL * f64::from(k) / 1000.0)).collect();
         assert!(shares.windows(2).all(|pair| pair[1] < pair[0]));
         assert!(shares[999] > GRIP && shares[999] - GRIP < 1e-4);
     }

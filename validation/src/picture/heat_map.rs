@@ -1,6 +1,6 @@
 //! A table of tinted cells: engines by something.
 
-use super::pen::{Pen, Side};
+use super::canvas::{Canvas, Side};
 use super::{DrawError, Drawing, palette};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -28,7 +28,7 @@ pub enum Tint {
 
 /// A cell.
 #[derive(Clone, Debug)]
-pub struct Tile {
+pub struct HeatCell {
     /// What stands in it.
     pub text: String,
     /// Its tint.
@@ -37,7 +37,7 @@ pub struct Tile {
 
 /// A table of cells.
 #[derive(Clone, Debug)]
-pub struct Tiles {
+pub struct HeatMap {
     /// What it shows.
     pub title: String,
     /// How to read it.
@@ -45,10 +45,10 @@ pub struct Tiles {
     /// Names of the columns; cells may go beyond them.
     pub columns: Vec<String>,
     /// Name and cells of each row.
-    pub rows: Vec<(String, Vec<Tile>)>,
+    pub rows: Vec<(String, Vec<HeatCell>)>,
 }
 
-impl Tiles {
+impl HeatMap {
     fn across(&self) -> usize {
         self.rows.iter().map(|row| row.1.len()).chain([self.columns.len(), 1]).max().unwrap_or(1)
     }
@@ -59,7 +59,7 @@ impl Tiles {
     }
 }
 
-impl Drawing for Tiles {
+impl Drawing for HeatMap {
     fn size(&self) -> (u32, u32) {
         let width = 2 * MARGIN + LABEL + (self.cell() * self.across() as f64).ceil() as u32;
         let rows = u32::try_from(self.rows.len()).unwrap_or(0).clamp(1, 400);
@@ -71,26 +71,26 @@ impl Drawing for Tiles {
         area: &DrawingArea<B, Shift>,
         scale: u32,
     ) -> Result<(), DrawError> {
-        let pen = Pen { area, scale };
+        let canvas = Canvas { area, scale };
         let [margin, head, row, label] = [MARGIN, HEAD, ROW, LABEL].map(f64::from);
         let left = margin + label;
         let middle = |i: usize| left + self.cell() * (i as f64 + 0.5);
-        pen.paper()?;
-        pen.text(&self.title, (margin, 28.0), TEXT + 4.0, Side::Left, palette::INK)?;
-        pen.text(&self.note, (margin, 58.0), TEXT - 2.0, Side::Left, palette::INK)?;
+        canvas.paper()?;
+        canvas.text(&self.title, (margin, 28.0), TEXT + 4.0, Side::Left, palette::INK)?;
+        canvas.text(&self.note, (margin, 58.0), TEXT - 2.0, Side::Left, palette::INK)?;
         for (i, name) in self.columns.iter().enumerate() {
-            pen.text(name, (middle(i), head - 16.0), TEXT, Side::Middle, palette::INK)?;
+            canvas.text(name, (middle(i), head - 16.0), TEXT, Side::Middle, palette::INK)?;
         }
         for (j, (name, cells)) in self.rows.iter().enumerate() {
             let top = head + j as f64 * row;
-            pen.text(name, (margin, top + row / 2.0), TEXT, Side::Left, palette::INK)?;
+            canvas.text(name, (margin, top + row / 2.0), TEXT, Side::Left, palette::INK)?;
             for (i, cell) in cells.iter().enumerate() {
                 let from = left + self.cell() * i as f64;
                 let (paper, ink) = colours(cell.tint);
                 let to = (from + self.cell() - 2.0, top + row - 2.0);
-                pen.fill((from, top), to, paper)?;
+                canvas.fill((from, top), to, paper)?;
                 let at = (middle(i) - 1.0, top + row / 2.0 - 1.0);
-                pen.text(&cell.text, at, TEXT - 1.0, Side::Middle, ink)?;
+                canvas.text(&cell.text, at, TEXT - 1.0, Side::Middle, ink)?;
             }
         }
         Ok(())

@@ -4,13 +4,13 @@ use super::{Motion, Watcher};
 use crate::crossing::Counters;
 use crate::entry::Entry;
 use crate::instant::Instant;
-use crate::leg::{Endless, Exit, Leg};
 use crate::model::Model;
+use crate::segment::{Endless, Exit, Segment};
 use crate::switch::Begun;
 use std::ops::ControlFlow;
 
 /// A motion and where it is.
-pub struct Course<'a, W> {
+pub struct Cursor<'a, W> {
     /// What moves.
     pub model: &'a Model,
     /// Where its phase began.
@@ -23,7 +23,7 @@ pub struct Course<'a, W> {
     watcher: W,
 }
 
-impl<'a, W: Watcher> Course<'a, W> {
+impl<'a, W: Watcher> Cursor<'a, W> {
     pub fn new(motion: Motion<'a, W>) -> Self {
         let Motion { model, entry, first, horizon, watcher } = motion;
         Self { model, entry, begun: None, due: first, horizon, watcher }
@@ -49,18 +49,19 @@ impl<'a, W: Watcher> Course<'a, W> {
         let horizon = self.horizon.as_ref();
         let begun = self.begun.take().unwrap_or_else(|| Begun::at(self.model, self.entry));
         let mut next_begun = begun;
-        let leg = Leg::new(self.model, &begun, &mut next_begun, horizon, &mut Counters::default());
-        let endless = match leg.exit() {
+        let segment =
+            Segment::new(self.model, &begun, &mut next_begun, horizon, &mut Counters::default());
+        let endless = match segment.exit() {
             Exit::Endless(endless) => Some(*endless),
             Exit::Switch(_) | Exit::Horizon | Exit::Undecidable => None,
         };
-        while !leg.ends_by(&self.due) {
-            if leg.is_undecided_at(&self.due) {
+        while !segment.ends_by(&self.due) {
+            if segment.is_undecided_at(&self.due) {
                 return ControlFlow::Break(());
             }
-            self.see(&leg.entry_at(&self.due), endless)?;
+            self.see(&segment.entry_at(&self.due), endless)?;
         }
-        if let Exit::Switch(next) = leg.exit() {
+        if let Exit::Switch(next) = segment.exit() {
             self.enter(next);
             self.begun = Some(next_begun);
         }

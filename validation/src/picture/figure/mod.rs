@@ -7,7 +7,7 @@ pub use layer::{KeyEntry, Layer, Raster, Stroke};
 pub use plot::{Plot, Window};
 
 use super::axes::around;
-use super::pen::{Pen, Side};
+use super::canvas::{Canvas, Side};
 use super::{DrawError, Drawing, palette};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -22,7 +22,7 @@ const LETTER: usize = 9;
 
 /// A sheet of panels, row by row.
 #[derive(Clone, Debug)]
-pub struct Sheet {
+pub struct Figure {
     /// What it shows.
     pub title: String,
     /// Parameters, axes, what is assumed: wrapped under the panels.
@@ -35,7 +35,7 @@ pub struct Sheet {
     pub plots: Vec<Plot>,
 }
 
-impl Sheet {
+impl Figure {
     fn lines(&self) -> Vec<String> {
         let width = (self.panel.0 as usize * self.columns.max(1)).saturating_sub(48) / LETTER;
         let mut lines = vec![String::new()];
@@ -80,7 +80,7 @@ impl Sheet {
     }
 }
 
-impl Drawing for Sheet {
+impl Drawing for Figure {
     fn size(&self) -> (u32, u32) {
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         let width = self.panel.0.saturating_mul(count(self.columns.max(1)));
@@ -93,19 +93,19 @@ impl Drawing for Sheet {
         area: &DrawingArea<B, Shift>,
         scale: u32,
     ) -> Result<(), DrawError> {
-        let pen = Pen { area, scale };
-        pen.paper()?;
-        pen.text(&self.title, (24.0, 30.0), TITLE, Side::Left, palette::INK)?;
+        let canvas = Canvas { area, scale };
+        canvas.paper()?;
+        canvas.text(&self.title, (24.0, 30.0), TITLE, Side::Left, palette::INK)?;
         let (width, height) = (f64::from(self.panel.0), f64::from(self.panel.1));
         for (i, plot) in self.plots.iter().enumerate() {
             let (row, column) = (i / self.columns.max(1), i % self.columns.max(1));
             let corner = (width * column as f64, f64::from(HEAD) + height * row as f64);
-            plot.draw(&pen, corner, (width, height))?;
+            plot.draw(&canvas, corner, (width, height))?;
         }
         let below = f64::from(HEAD) + height * self.rows() as f64 + 14.0;
         for (i, line) in self.lines().iter().enumerate() {
             let at = (24.0, below + f64::from(LINE) * i as f64);
-            pen.text(line, at, TEXT, Side::Left, palette::INK)?;
+            canvas.text(line, at, TEXT, Side::Left, palette::INK)?;
         }
         Ok(())
     }

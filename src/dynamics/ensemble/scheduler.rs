@@ -4,18 +4,18 @@
 //! begin. Which ones share a vector depends on how they happen to meet; what becomes of them does
 //! not.
 
-use super::course::Course;
-use super::seat::Seat;
+use super::cursor::Cursor;
+use super::slot::Slot;
 use super::{Done, Motion, Tally, Watcher};
 use crate::lanes::{Batch, Permit, Stage, WIDEST};
 use crate::model::Model;
 
 /// The motions of one thread.
-pub struct Pool<'a, W> {
+pub struct LaneScheduler<'a, W> {
     permit: Permit,
-    seats: Vec<Option<Seat<'a, W>>>,
+    slots: Vec<Option<Slot<'a, W>>>,
     free: Vec<usize>,
-    /// Seats by the stage that they wait for.
+    /// Slots by the stage that they wait for.
     waiting: [Vec<usize>; Stage::ALL.len()],
     batch: Box<Batch>,
     /// Whose constants each lane of the batch has.
@@ -24,15 +24,15 @@ pub struct Pool<'a, W> {
     tally: Tally,
 }
 
-impl<'a, W: Watcher> Pool<'a, W> {
+impl<'a, W: Watcher> LaneScheduler<'a, W> {
     pub fn new(permit: Permit) -> Self {
         // With one less than a vector waiting for each stage and one motion more, some vector is
         // full.
-        let seats = Stage::ALL.len() * permit.width();
+        let slots = Stage::ALL.len() * permit.width();
         Self {
             permit,
-            seats: (0..seats).map(|_| None).collect(),
-            free: (0..seats).collect(),
+            slots: (0..slots).map(|_| None).collect(),
+            free: (0..slots).collect(),
             waiting: Default::default(),
             batch: Box::default(),
             shaped: vec![None; permit.width()],
@@ -51,7 +51,7 @@ impl<'a, W: Watcher> Pool<'a, W> {
         loop {
             while more && let Some(place) = self.free.pop() {
                 match next() {
-                    Some(number) => self.enter(place, number, Course::new(begin(number))),
+                    Some(number) => self.enter(place, number, Cursor::new(begin(number))),
                     None => {
                         more = false;
                         self.free.push(place);
@@ -66,10 +66,10 @@ impl<'a, W: Watcher> Pool<'a, W> {
         }
     }
 
-    fn enter(&mut self, place: usize, number: usize, course: Course<'a, W>) {
-        let mut seat = Seat::new(number, course);
-        let stage = seat.next_stage();
-        self.seats[place] = Some(seat);
+    fn enter(&mut self, place: usize, number: usize, cursor: Cursor<'a, W>) {
+        let mut slot = Slot::new(number, cursor);
+        let stage = slot.next_stage();
+        self.slots[place] = Some(slot);
         self.queue(place, stage);
     }
 
@@ -77,7 +77,7 @@ impl<'a, W: Watcher> Pool<'a, W> {
         match stage {
             Some(stage) => self.waiting[stage as usize].push(place),
             None => {
-                if let Some((number, watcher, tally)) = self.seats[place].take().map(Seat::leave) {
+                if let Some((number, watcher, tally)) = self.slots[place].take().map(Slot::leave) {
                     self.done.push((number, watcher));
                     self.tally.add(tally);
                 }
@@ -96,18 +96,18 @@ impl<'a, W: Watcher> Pool<'a, W> {
         waiting.truncate(rest);
         let places = &places[..taken];
         for (lane, place) in places.iter().enumerate() {
-            let Some(seat) = &self.seats[*place] else { continue };
-            let model = seat.model();
+            let Some(slot) = &self.slots[*place] else { continue };
+            let model = slot.model();
             if !self.shaped[lane].is_some_and(|it| std::ptr::eq(it, model)) {
-                seat.shape(lane, &mut self.batch.shape);
+                slot.shape(lane, &mut self.batch.shape);
                 self.shaped[lane] = Some(model);
             }
-            seat.begin(stage, lane, &mut self.batch.begin);
+            slot.begin(stage, lane, &mut self.batch.begin);
         }
         self.permit.work(stage, &mut self.batch);
         for (lane, place) in places.iter().enumerate() {
-            let Some(seat) = &mut self.seats[*place] else { continue };
-            let stage = seat.advance(stage, lane, &self.batch.end);
+            let Some(slot) = &mut self.slots[*place] else { continue };
+            let stage = slot.advance(stage, lane, &self.batch.end);
             self.queue(*place, stage);
         }
     }

@@ -1,6 +1,6 @@
-//! One motion of a pool: into a lane and out of it.
+//! One motion of a scheduler: into a lane and out of it.
 
-use super::course::Course;
+use super::cursor::Cursor;
 use super::{Tally, Watcher};
 use crate::entry::{Entry, Onset};
 use crate::instant::Instant;
@@ -13,27 +13,27 @@ use std::ops::ControlFlow;
 
 /// A motion, what the lanes need of its model, and what begins when its phase ends, if that is
 /// known.
-pub struct Seat<'a, W> {
+pub struct Slot<'a, W> {
     number: usize,
-    course: Course<'a, W>,
+    cursor: Cursor<'a, W>,
     shape: Option<Shape<f64>>,
     next: Option<Entry>,
     tally: Tally,
 }
 
-impl<'a, W: Watcher> Seat<'a, W> {
-    pub fn new(number: usize, course: Course<'a, W>) -> Self {
-        let shape = Shape::new(course.model);
-        Self { number, course, shape, next: None, tally: Tally::default() }
+impl<'a, W: Watcher> Slot<'a, W> {
+    pub fn new(number: usize, cursor: Cursor<'a, W>) -> Self {
+        let shape = Shape::new(cursor.model);
+        Self { number, cursor, shape, next: None, tally: Tally::default() }
     }
 
     /// The motion's number and its watcher, and by what its phases were solved.
     pub fn leave(self) -> (usize, W, Tally) {
-        (self.number, self.course.into_watcher(), self.tally)
+        (self.number, self.cursor.into_watcher(), self.tally)
     }
 
     pub fn model(&self) -> &'a Model {
-        self.course.model
+        self.cursor.model
     }
 
     /// Gives a lane the constants.
@@ -47,7 +47,7 @@ impl<'a, W: Watcher> Seat<'a, W> {
     /// seen enough.
     pub fn next_stage(&mut self) -> Option<Stage> {
         loop {
-            let stage = match self.course.entry.onset {
+            let stage = match self.cursor.entry.onset {
                 _ if self.shape.is_none() => None,
                 Onset::Separation { h_rate: 0.0 } => Some(Stage::Flight),
                 Onset::Contact { .. } => Some(Stage::Contact),
@@ -58,7 +58,7 @@ impl<'a, W: Watcher> Seat<'a, W> {
                 return stage;
             }
             self.tally.alone += 1;
-            if self.course.pass().is_break() {
+            if self.cursor.pass().is_break() {
                 return None;
             }
         }
@@ -67,7 +67,7 @@ impl<'a, W: Watcher> Seat<'a, W> {
     /// The phase, and in it the strobe that is due, by the scalar solver.
     fn pass_alone(&mut self) -> Option<Stage> {
         self.tally.alone += 1;
-        match self.course.pass() {
+        match self.cursor.pass() {
             ControlFlow::Continue(()) => self.next_stage(),
             ControlFlow::Break(()) => None,
         }
@@ -76,7 +76,7 @@ impl<'a, W: Watcher> Seat<'a, W> {
     /// Fills a lane.
     #[inline]
     pub fn begin(&self, stage: Stage, lane: usize, begin: &mut Begin) {
-        let Entry { instant, state, onset, .. } = &self.course.entry;
+        let Entry { instant, state, onset, .. } = &self.cursor.entry;
         let angle = instant.angle_two_word();
         begin.angle[lane] = angle.high;
         begin.angle_low[lane] = angle.low;
@@ -90,7 +90,7 @@ impl<'a, W: Watcher> Seat<'a, W> {
         begin.first[lane] = first;
         begin.second[lane] = second;
         if stage.is_strobe() {
-            let due = self.course.due;
+            let due = self.cursor.due;
             let angle = due.angle_two_word();
             begin.due_cycles[lane] = (due.cycle() - instant.cycle()) as i64 as f64;
             begin.due[lane] = angle.high;
@@ -106,7 +106,7 @@ impl<'a, W: Watcher> Seat<'a, W> {
         }
         if stage.is_strobe() {
             let Some(strobe) = self.strobe(stage, lane, end) else { return self.pass_alone() };
-            if self.course.see(&strobe, None).is_break() {
+            if self.cursor.see(&strobe, None).is_break() {
                 return None;
             }
             return match self.next {
@@ -122,26 +122,26 @@ impl<'a, W: Watcher> Seat<'a, W> {
     /// The next strobe in the phase, or the phase after it.
     #[inline]
     fn onwards(&mut self, stage: Stage, next: Entry) -> Option<Stage> {
-        // As a leg shows them: what is due when the phase ends belongs to the next one.
-        while next.instant > self.course.due {
-            if self.course.due > self.course.entry.instant {
+        // As a segment shows them: what is due when the phase ends belongs to the next one.
+        while next.instant > self.cursor.due {
+            if self.cursor.due > self.cursor.entry.instant {
                 self.next = Some(next);
                 return Some(stage.strobe());
             }
-            let entry = self.course.entry;
-            if self.course.see(&entry, None).is_break() {
+            let entry = self.cursor.entry;
+            if self.cursor.see(&entry, None).is_break() {
                 return None;
             }
         }
-        self.course.enter(&next);
+        self.cursor.enter(&next);
         self.next_stage()
     }
 
     /// What begins at a switch, with what is known there imposed ([`crate::switch`]).
     #[inline]
     fn landed(&self, stage: Stage, lane: usize, end: &End) -> Entry {
-        let Entry { instant, drift, .. } = self.course.entry;
-        let constants = self.course.model.constants();
+        let Entry { instant, drift, .. } = self.cursor.entry;
+        let constants = self.cursor.model.constants();
         let angle = TwoWord { high: end.angle[lane], low: end.angle_low[lane] };
         let instant =
             Instant::from_parts(instant.cycle() + i128::from(end.cycles[lane] as i64), angle);
@@ -174,11 +174,11 @@ impl<'a, W: Watcher> Seat<'a, W> {
         Entry { instant, state: State { p: q + constants.g, y, q }, drift, onset }
     }
 
-    /// The phase taken up at the strobe ([`crate::Leg::entry_at`]); none next to a threshold.
+    /// The phase taken up at the strobe ([`crate::Segment::entry_at`]); none next to a threshold.
     #[inline]
     fn strobe(&self, stage: Stage, lane: usize, end: &End) -> Option<Entry> {
-        let Entry { drift, onset, .. } = self.course.entry;
-        let g = self.course.model.constants().g;
+        let Entry { drift, onset, .. } = self.cursor.entry;
+        let g = self.cursor.model.constants().g;
         let state = State { p: end.p[lane], y: end.y[lane], q: end.q[lane] };
         let guard = end.guard[lane];
         let (onset, drift) = match (stage, onset) {
@@ -197,6 +197,6 @@ impl<'a, W: Watcher> Seat<'a, W> {
                 (clear.then_some(onset)?, drift.plus(TwoWord::new(end.drift[lane])))
             }
         };
-        Some(Entry { instant: self.course.due, state, drift, onset })
+        Some(Entry { instant: self.cursor.due, state, drift, onset })
     }
 }

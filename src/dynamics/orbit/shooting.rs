@@ -10,7 +10,7 @@ const ROUNDINGS: f64 = 8.0;
 
 /// Strobes that are to be an orbit.
 #[derive(Clone, Debug)]
-pub(crate) struct Chain {
+pub(crate) struct ShootingIterate {
     /// p, y, q of each strobe.
     pub(crate) points: Vec<Point>,
     /// One forcing period from each.
@@ -29,7 +29,7 @@ pub(crate) struct Around {
     pub(crate) offset: Point,
 }
 
-impl Chain {
+impl ShootingIterate {
     /// The motion that begins at a point, for `period` forcing periods.
     pub(crate) fn shot(map: &StrobeMap, guess: Point, period: u32) -> Result<Self, NoOrbit> {
         if !(1..=LARGEST_PERIOD).contains(&period) {

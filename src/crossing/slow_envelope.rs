@@ -7,17 +7,17 @@
 //! harmonic is at its crest the bound is attained, so that of a crossing no more than one period
 //! has to be searched each time the bound becomes positive.
 
-use crate::crossing::guarded::Outlook;
+use crate::crossing::contact_parts::meeting;
+use crate::crossing::guarded::SearchHint;
 use crate::crossing::stepping::safe_step;
-use crate::crossing::swing::meeting;
-use crate::flow::stride::{Stride, Strides};
+use crate::flow::steps::{FreeStep, Steps};
 use crate::remainders::decay;
 use crate::two_word::ROUNDER;
 use std::f64::consts::TAU;
 
 /// See the module's text.
 #[derive(Clone, Copy, Debug)]
-pub struct Trend {
+pub struct SlowEnvelope {
     /// c
     pub offset: f64,
     /// s
@@ -55,7 +55,7 @@ const SQUARABLE: f64 = 1e-150;
 /// Room for rounding in statements about the parabola, relative to its terms.
 const ROOM: f64 = 8.0 * f64::EPSILON;
 
-impl Trend {
+impl SlowEnvelope {
     /// What the bound says from elapsed time `from` on.
     pub fn bound(&self, from: f64) -> Bound {
         let Self { slope, curvature, exponential, .. } = *self;
@@ -105,26 +105,26 @@ impl Trend {
     /// Where the search should look after elapsed time `from`; `inside` as for the guess, which
     /// begins at a `place` before which there is nothing to be found.
     #[inline(always)]
-    pub fn outlook(
+    pub fn hint(
         &self,
-        strides: &Strides,
+        steps: &Steps,
         from: f64,
         (place, inside): (Place, bool),
         limit: f64,
-    ) -> Outlook {
-        if let Some(time) = self.guess(&strides.look, place, inside, limit) {
-            return Outlook::Root(time);
+    ) -> SearchHint {
+        if let Some(time) = self.guess(&steps.look, place, inside, limit) {
+            return SearchHint::Root(time);
         }
         match self.bound(from) {
             Bound::OpenFrom(time) if time > from + 4.0 * TAU / self.omega => {
-                Outlook::ClearUntil(time)
+                SearchHint::ClearUntil(time)
             }
-            Bound::Never => Outlook::ClearFrom(from),
+            Bound::Never => SearchHint::ClearFrom(from),
             Bound::NeverAfter(time) | Bound::OpenFrom(time) if time > limit => {
-                Outlook::Onward(limit)
+                SearchHint::Onward(limit)
             }
-            Bound::NeverAfter(time) => Outlook::Onward(time),
-            Bound::OpenFrom(_) => Outlook::Onward(from + TAU / self.omega),
+            Bound::NeverAfter(time) => SearchHint::Onward(time),
+            Bound::OpenFrom(_) => SearchHint::Onward(from + TAU / self.omega),
         }
     }
 
@@ -166,7 +166,7 @@ impl Trend {
     /// is known to be negative just after it. None if there is none within three periods in which
     /// the bound allows one, or none before `limit`.
     #[inline(always)]
-    fn guess(&self, look: &Stride, mut here: Place, mut inside: bool, limit: f64) -> Option<f64> {
+    fn guess(&self, look: &FreeStep, mut here: Place, mut inside: bool, limit: f64) -> Option<f64> {
         const STEPS: usize = 40;
         // At larger angles one leap more, with an evaluation, is worth its cost.
         const FURTHEST: f64 = 1e6;
@@ -250,8 +250,8 @@ pub struct Place {
 }
 
 impl Place {
-    fn after(&self, stride: &Stride) -> Self {
-        let Stride { length, sin, cos, decay, .. } = *stride;
+    fn after(&self, stride: &FreeStep) -> Self {
+        let FreeStep { length, sin, cos, decay, .. } = *stride;
         Self {
             elapsed: self.elapsed + length,
             sin: self.sin * cos + self.cos * sin,

@@ -1,7 +1,7 @@
 //! One panel of a sheet.
 
+use super::super::canvas::{At, Canvas, Side};
 use super::super::frame::{Panel, Ruler, Scale};
-use super::super::pen::{At, Pen, Side};
 use super::super::{DrawError, palette};
 use super::layer::Layer;
 use plotters::prelude::DrawingBackend;
@@ -31,13 +31,13 @@ const BOTTOM: f64 = 84.0;
 impl Plot {
     pub(super) fn draw<B: DrawingBackend>(
         &self,
-        pen: &Pen<'_, B>,
+        canvas: &Canvas<'_, B>,
         corner: At,
         (width, height): At,
     ) -> Result<(), DrawError> {
         let from = (corner.0 + LEFT, corner.1 + TOP);
         let to = (corner.0 + width - RIGHT, corner.1 + height - BOTTOM);
-        pen.text(&self.title, (from.0, from.1 - 18.0), TEXT, Side::Left, palette::INK)?;
+        canvas.text(&self.title, (from.0, from.1 - 18.0), TEXT, Side::Left, palette::INK)?;
         let ruler = |axis: usize| match self.window {
             Some(window) => {
                 let (from, to) = window[axis];
@@ -49,18 +49,18 @@ impl Plot {
             }
         };
         let (Some(x), Some(y)) = (ruler(0), ruler(1)) else {
-            return pen.text("nothing to show", from, TEXT, Side::Left, palette::INK);
+            return canvas.text("nothing to show", from, TEXT, Side::Left, palette::INK);
         };
         let panel = Panel { from, to, x, y };
         let (below, above): (Vec<&Layer>, Vec<&Layer>) =
             self.layers.iter().partition(|layer| matches!(layer, Layer::Raster(_)));
         // A raster fills the panel: it would hide the grid.
-        below.iter().try_for_each(|layer| layer.draw(pen, &panel))?;
+        below.iter().try_for_each(|layer| layer.draw(canvas, &panel))?;
         if below.is_empty() {
-            panel.draw(pen, &self.axes[0], &self.axes[1])?;
+            panel.draw(canvas, &self.axes[0], &self.axes[1])?;
         } else {
-            panel.draw_over(pen, &self.axes[0], &self.axes[1])?;
+            panel.draw_over(canvas, &self.axes[0], &self.axes[1])?;
         }
-        above.iter().try_for_each(|layer| layer.draw(pen, &panel))
+        above.iter().try_for_each(|layer| layer.draw(canvas, &panel))
     }
 }

@@ -52,14 +52,14 @@ pub enum Exit {
     /// Never: proved.
     Endless(Endless),
     /// Not decided: the search has taken more work than its limit ([`crate::crossing::limit`])
-    /// because rounding hides what the phase does. It is proved to last for [`Leg::duration`];
+    /// because rounding hides what the phase does. It is proved to last for [`Segment::duration`];
     /// nothing is known of what follows.
     Undecidable,
 }
 
 /// One phase of a run.
 #[derive(Clone, Copy, Debug)]
-pub struct Leg {
+pub struct Segment {
     entry: Entry,
     exit: Exit,
     duration: TwoWord,
@@ -67,7 +67,7 @@ pub struct Leg {
     constants: Constants<f64>,
 }
 
-impl Leg {
+impl Segment {
     /// The phase that has begun; if a switch ends it, `next` becomes the one that follows
     /// ([`pass`]).
     pub(crate) fn new(

@@ -1,4 +1,4 @@
-//! The certificate of a long flight or progression: pieces in fixed strides from both ends.
+//! The certificate of a long flight or progression: pieces in fixed steps from both ends.
 //!
 //! The guard, counted so that it is negative inside, is a parabola, a harmonic and an exponential.
 //! All three are known at an evaluation, and a stride of the model's own length turns the harmonic
@@ -12,7 +12,7 @@
 //! pulls inwards (it is concave then), else by its chord.
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
-use crate::flow::stride::{GRIP, PULLING, PUSHING, Stride, Strides};
+use crate::flow::steps::{FreeStep, GRIP, PULLING, PUSHING, Steps};
 
 /// A guard's excess in parts, at some place.
 #[derive(Clone, Copy, Debug)]
@@ -64,10 +64,10 @@ pub struct End {
 }
 
 impl Parts {
-    fn after(&self, stride: &Stride, shape: &Shape) -> Self {
+    fn after(&self, stride: &FreeStep, shape: &Shape) -> Self {
         const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
         let Shape { curvature, strength, grain, .. } = *shape;
-        let Stride { length, sin, cos, decay, speed, sag, fall, drop } = *stride;
+        let FreeStep { length, sin, cos, decay, speed, sag, fall, drop } = *stride;
         let (lift, gain) = (0.5 * length * curvature, length * curvature);
         let change = length * (self.slope + lift);
         let slopes = self.slope.abs() + lift.abs() + grain;
@@ -83,7 +83,7 @@ impl Parts {
         }
     }
 
-    fn before(&self, stride: &Stride, shape: &Shape) -> Self {
+    fn before(&self, stride: &FreeStep, shape: &Shape) -> Self {
         self.after(&stride.reversed(), shape)
     }
 
@@ -121,9 +121,9 @@ impl Line {
 }
 
 /// A stretch of the guard between two evaluations.
-pub struct Walk<'a> {
+pub struct PiecewiseCertificate<'a> {
     shape: &'a Shape,
-    strides: &'a Strides,
+    steps: &'a Steps,
     /// Once the exponential has lived.
     line: Option<Line>,
 }
@@ -146,10 +146,10 @@ const REST: f64 = 1.3;
 
 const BELOW_ZERO: Corridor = Corridor { low: f64::NEG_INFINITY, high: 0.0 };
 
-impl<'a> Walk<'a> {
+impl<'a> PiecewiseCertificate<'a> {
     /// Of a model's guard.
-    pub fn new(shape: &'a Shape, strides: &'a Strides) -> Self {
-        Self { shape, strides, line: None }
+    pub fn new(shape: &'a Shape, steps: &'a Steps) -> Self {
+        Self { shape, steps, line: None }
     }
 
     /// What can be said about the excess between the two ends, which round it within `slack`. The
@@ -171,13 +171,13 @@ impl<'a> Walk<'a> {
         let decay_times = if pushes { PUSHING } else { PULLING };
         let length = right.parts.elapsed - left.parts.elapsed;
         let left_ends = Ends { right: false, ..ends };
-        if rate * self.strides.piece.length <= decay_times || rate * length <= decay_times {
+        if rate * self.steps.piece.length <= decay_times || rate * length <= decay_times {
             return self.between((left, left_ends), (right, ends.right));
         }
         let (settled, first) = if ends.left_double && self.parts_for_certain(&left.parts) {
-            (left.parts.after(&self.strides.parting, self.shape), Verdict::Inside)
+            (left.parts.after(&self.steps.separation_interval, self.shape), Verdict::Inside)
         } else {
-            let life = if pushes { &self.strides.pushing } else { &self.strides.pulling };
+            let life = if pushes { &self.steps.pushing } else { &self.steps.pulling };
             let settled = left.parts.after(life, self.shape);
             (settled, self.piece(&left, &self.end(settled), left_ends))
         };
@@ -199,8 +199,9 @@ impl<'a> Walk<'a> {
         (first.max(rest), room.max(last_room))
     }
 
-    /// Whether a flight that begins with value and slope zero stays inside until z = [`PARTING`]:
-    /// its guard is at most the largest force times d^2/2 less q0 (exp(-z) - 1 + z).
+    /// Whether a flight that begins with value and slope zero stays inside until z =
+    /// [`SEPARATION_INTERVAL`]: its guard is at most the largest force times d^2/2 less q0 (exp(-z)
+    /// - 1 + z).
     fn parts_for_certain(&self, left: &Parts) -> bool {
         let Shape { curvature, strength, rate, .. } = *self.shape;
         -left.lasting * (rate * rate) * GRIP > (strength + curvature.max(0.0)) * (1.0 + 1e-9)
@@ -212,7 +213,7 @@ impl<'a> Walk<'a> {
         (mut near, mut near_ends): (End, Ends),
         (mut far, mut is_root): (End, bool),
     ) -> (Verdict, f64) {
-        let stride = &self.strides.piece;
+        let stride = &self.steps.piece;
         let mut worst = Verdict::Inside;
         let mut room = 0.0;
         for _ in 0..MOST_PIECES {
