@@ -170,6 +170,10 @@ fn slip(parameters: &Parameters, draw: &mut Draw, crest: Crest) -> (Parameters, 
     graze::slip(parameters, draw.between(-0.5, 1.0), crest)
 }
 
+fn hop(parameters: &Parameters, _: &mut Draw, crest: Crest) -> (Parameters, Start) {
+    graze::hop(parameters, crest)
+}
+
 fn weak(draw: &mut Draw) -> Parameters {
     Parameters { xi: draw.decades(1e-4, 1e-2), ..usual(draw) }
 }
@@ -186,7 +190,15 @@ fn stiff(draw: &mut Draw) -> Parameters {
     Parameters { xi: draw.decades(1.0, 50.0), ..usual(draw) }
 }
 
-const GRAZES: [Grazes; 11] = [
+const GRAZES: [Grazes; 14] = [
+    Grazes { name: "hops", model: usual, plant: hop, counts: [2970, 10479, 3855, 376] },
+    Grazes { name: "hops, fast forcing", model: fast, plant: hop, counts: [3061, 12456, 4453, 64] },
+    Grazes {
+        name: "hops, slow slider",
+        model: stiff,
+        plant: hop,
+        counts: [3033, 11297, 5538, 244],
+    },
     Grazes { name: "flights", model: usual, plant: flight, counts: [3027, 7692, 2230, 224] },
     Grazes {
         name: "flights, strong spring",

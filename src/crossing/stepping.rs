@@ -163,7 +163,7 @@ mod tests {
 
     #[test]
     fn a_parabola_is_crossed_touched_or_passed() {
-        for most in [0.4, 1e-3, 1e-9] {
+        for most in [0.4, 1e-3, 1e-9, 1e-14] {
             let (crossing, touches) = parabola(most);
             let expected = 1.0 - (2.0 * most).sqrt();
             // The parabola's top is rounded by eps, which its slope at the root divides.

@@ -143,3 +143,34 @@ fn off_the_surface<C: Borrow<Constants<f64>>>(
     }
     (concave_until > 0.0).then(|| bound.at(concave_until, (-sin, cos)))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// e(x) = top - bend x^2 at a place.
+    fn tangent(top: f64, bend: f64, from: f64) -> Tangent {
+        Tangent { from, value: top - bend * from * from, slope: -2.0 * bend * from }
+    }
+
+    #[test]
+    fn tangents_prove_what_lies_below_where_they_meet() {
+        for bend in [1e-3, 0.1, 1.0, 50.0] {
+            for reach in [0.1, 1.0, 3.0] {
+                // The tangents at -reach and reach meet at bend reach^2 above the top.
+                let room = bend * reach * reach;
+                for (top, below) in [(-1.1, true), (-0.9, false), (-0.1, false), (0.1, false)] {
+                    let at = |from: f64| tangent(top * room, bend, from);
+                    let proved = at(-reach).stays_below_to(&at(reach));
+                    assert_eq!(proved, below, "{bend} {reach} {top}");
+                    // On one side of the top the ends alone decide.
+                    assert!(at(-3.0 * reach).stays_below_to(&at(-2.0 * reach)));
+                    assert!(at(2.0 * reach).stays_below_to(&at(3.0 * reach)));
+                }
+                let crossed = tangent(5.0 * room, bend, -reach);
+                assert!(!tangent(5.0 * room, bend, -3.0 * reach).stays_below_to(&crossed));
+                assert!(!crossed.stays_below_to(&tangent(5.0 * room, bend, 3.0 * reach)));
+            }
+        }
+    }
+}

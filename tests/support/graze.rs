@@ -79,3 +79,23 @@ pub fn slip(parameters: &Parameters, closing: f64, crest: Crest) -> (Parameters,
     let parameters = Parameters { b, ..*parameters };
     (parameters, start(&parameters, q + g, y, q))
 }
+
+/// A flight off the surface, the slider's q0 = -2 xi y0, and the static force with which h is
+/// highest at its threshold at the crest: h = y0 2 xi (exp(-z) - 1 + z) + b d^2/2 + (a/omega^2)
+/// (cos phi - omega d sin phi - cos(omega d + phi)) with z = d/(2 xi).
+pub fn hop(parameters: &Parameters, crest: Crest) -> (Parameters, Start) {
+    let Parameters { a, xi, omega, phi, g, .. } = *parameters;
+    let d = crest.elapsed;
+    let z = 0.5 * d / xi;
+    let (sink, sink_rate) = (2.0 * xi * (exp(-z) - 1.0 + z), 1.0 - exp(-z));
+    let (lift, lift_rate) = (0.5 * d * d, d);
+    let swing = (a / (omega * omega)) * (cos(phi) - omega * d * sin(phi) - cos(omega * d + phi));
+    let swing_rate = (a / omega) * (sin(omega * d + phi) - sin(phi));
+    // h = above and h' = 0 in y0 and b.
+    let determinant = sink * lift_rate - lift * sink_rate;
+    let y = ((crest.above - swing) * lift_rate + lift * swing_rate) / determinant;
+    let b = (-sink * swing_rate - sink_rate * (crest.above - swing)) / determinant;
+    let q = -2.0 * xi * y;
+    let parameters = Parameters { b, ..*parameters };
+    (parameters, start(&parameters, q + g, y, q))
+}
