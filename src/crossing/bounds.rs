@@ -3,11 +3,11 @@
 
 use crate::constants::Constants;
 use crate::crossing::stepping::Bending;
-use crate::flow::Point;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
+use crate::flow::{Flow, Point};
 use crate::parameters::Parameters;
 use crate::state::State;
 use proptest::prelude::*;
@@ -87,5 +87,26 @@ proptest! {
         let entry = State { q: 1.0 - 2.0 * xi * closing, ..entry };
         let drift_rate = y - closing;
         hold(&Progression { constants, entry, angle, drift_rate, closing }, d)?;
+    }
+}
+
+/// The fourth Bernstein coefficient of degree eight is the sum of C(3, k)/C(8, k) L^k f^(k)/k!: so
+/// much of the derivatives' rounding is in it, where each has that of the guard times 2 xi to the k.
+#[test]
+fn the_room_of_a_long_contact_has_the_weights_of_its_coefficients() {
+    let constants = Constants::new(&Parameters { xi: 1.1, omega: 0.05, ..Parameters::default() });
+    let angle = EntryAngle { radians: 1.0, sin: 1.0_f64.sin(), cos: 1.0_f64.cos() };
+    let entry = State { p: 0.32, y: 0.01, q: 0.3 };
+    let contact = Contact { constants, entry, angle, offset: 0.322, reference: 0.0 };
+    let left = contact.at(40.0);
+    for length in [1.0, 1.8, 2.0, 5.0, 12.0_f64] {
+        let right = contact.at(40.0 + length);
+        let reach: f64 = 2.2 * length;
+        let share = [3.0 / 8.0, 3.0 / 28.0 / 2.0, 1.0 / 56.0 / 6.0];
+        let weights: f64 = (1..4).map(|k| share[k - 1] * reach.powi(k as i32)).sum();
+        let largest = left.guard.largest_term.max(right.guard.largest_term);
+        let expected = if reach > 4.0 { f64::EPSILON * weights * largest } else { 0.0 };
+        let room = contact.room_of_length(&left, &right);
+        assert!((room - expected).abs() <= 1e-12 * expected, "{length}: {room:e} {expected:e}");
     }
 }

@@ -70,7 +70,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// derivatives stand in them times powers of the length, and each derivative repeats the
     /// rounding of the one below it times a rate: 2 xi or 1 where it is computed from the equation
     /// of motion, the slower decay or omega where the parts are differentiated one by one.
-    fn room_of_length(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
+    pub(super) fn room_of_length(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         /// Up to this reach the slack has room for the derivatives.
         const FEW: f64 = 4.0;
         let Constants { omega, two_xi, damping, .. } = *self.constants.borrow();

@@ -147,6 +147,10 @@ fn off_the_surface<C: Borrow<Constants<f64>>>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flow::Flow;
+    use crate::flow::forcing::EntryAngle;
+    use crate::parameters::Parameters;
+    use crate::state::State;
 
     /// e(x) = top - bend x^2 at a place.
     fn tangent(top: f64, bend: f64, from: f64) -> Tangent {
@@ -170,6 +174,32 @@ mod tests {
                 let crossed = tangent(5.0 * room, bend, -reach);
                 assert!(!tangent(5.0 * room, bend, -3.0 * reach).stays_below_to(&crossed));
                 assert!(!crossed.stays_below_to(&tangent(5.0 * room, bend, 3.0 * reach)));
+            }
+        }
+    }
+
+    /// E is the guard itself at the root, but for the room of its rounding, which is larger than
+    /// the rounding of each of its terms.
+    #[test]
+    fn the_bound_is_raised_by_more_than_it_rounds() {
+        for (xi, omega, y) in [(0.1, 1.0, -0.5), (0.01, 3.0, -2.0), (1.0, 0.2, -0.1)] {
+            let parameters = Parameters { xi, omega, ..Parameters::default() };
+            let constants = Constants::new(&parameters);
+            let radians = 2.0_f64;
+            let angle = EntryAngle { radians, sin: radians.sin(), cos: radians.cos() };
+            let q = -2.0 * xi * y;
+            let entry = State { p: q + parameters.g, y, q };
+            let flight = NoContact { constants, entry, angle, surface: Some(0.0) };
+            for d in [0.5, 2.0, 11.0] {
+                let root = flight.at(d);
+                let there = (radians + omega * d).sin_cos();
+                let raised = Bound::new(&flight, &root).at(d, there).value - root.guard.orders[0];
+                let terms = [q, y * d, parameters.b * d * d, parameters.a / (omega * omega)];
+                for term in terms {
+                    assert!(raised > 8.0 * f64::EPSILON * term.abs(), "{d}: {raised:e} {term}");
+                }
+                let all: f64 = terms.iter().map(|term| term.abs()).sum();
+                assert!(raised < 200.0 * f64::EPSILON * all, "{d}: {raised:e} {all}");
             }
         }
     }

@@ -198,6 +198,6 @@ fn held(
     let measured = prepared.measured(wrong.engine, accuracy, unit, &limits, extent);
     let (measures, outcome, _) = measured.ok()?;
     let bounds: Vec<_> = prepared.case.bounds.iter().chain(defaults).collect();
-    let expected = Expected { bounds: &bounds, shortcomings: &[] };
+    let expected = Expected { bounds: &bounds, of_classes: defaults, shortcomings: &[] };
     Some(judge(&subject, &prepared.as_run(&measures, &outcome), &expected).bounds)
 }

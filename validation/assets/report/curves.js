@@ -68,7 +68,9 @@ function errorGrowth() {
     // The truth's own growth stands once for each unit of error.
     const units = distinct(here.map((it) => it.tolerance));
     for (const unit of units) {
-      const it = here.find((other) => other.tolerance === unit);
+      // Of an engine whose unit of error is the tolerance itself: its line begins lowest.
+      const own = here.filter((other) => other.tolerance === unit);
+      const it = own.reduce((a, b) => ((b.truth_growth[0] ?? Infinity) < (a.truth_growth[0] ?? Infinity) ? b : a));
       series.push({ name: `growth of the truth × ${unit === null ? "eps" : unit.toExponential().replace("e+", "e")}`, color: "var(--muted)", width: 1.2, points: it.periods.map((t, i) => [t, it.truth_growth[i]]).filter((p) => p[1] > 0) });
     }
     const known = here.find((it) => it.lambda_per_period !== null && it.periods.length > 1);

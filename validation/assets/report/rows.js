@@ -99,6 +99,14 @@ const WORDS = {
   phase_word_ok: "phases in the right order", valid_periods: "valid (forcing periods)", valid_horizon: "valid horizon",
   predicted_median: "predicted median", q01: "1 % quantile", q99: "99 % quantile", max: "largest", with_impact: "with an impact",
   order: "order of convergence", rhs_evaluations: "right-hand sides", jacobian_evaluations: "Jacobians", linear_solves: "linear solves",
+  ks_p: "Kolmogorov-Smirnov distance of p", ks_y: "Kolmogorov-Smirnov distance of y", ks_q: "Kolmogorov-Smirnov distance of q",
+  ks_p_sum: "Kolmogorov-Smirnov distance of sums of successive p", ks_p_step: "Kolmogorov-Smirnov distance of differences of successive p",
+  ks_y_sum: "Kolmogorov-Smirnov distance of sums of successive y", ks_y_step: "Kolmogorov-Smirnov distance of differences of successive y",
+  wasserstein_p: "Wasserstein distance of p", wasserstein_y: "Wasserstein distance of y", wasserstein_q: "Wasserstein distance of q",
+  wasserstein_p_sum: "Wasserstein distance of sums of successive p", wasserstein_p_step: "Wasserstein distance of differences of successive p",
+  wasserstein_y_sum: "Wasserstein distance of sums of successive y", wasserstein_y_step: "Wasserstein distance of differences of successive y",
+  phase_words: "frequencies of phase words", lyapunov: "Lyapunov exponent", drift: "mean drift",
+  map_error_median: "median error of a period", map_error_share: "share of periods with a large error",
   wall_ns: "nanoseconds", restart: "restart test", distance: "distance of attractors",
 };
 const inWords = (key) => key.split(".").map((part) => WORDS[part] ?? part.replaceAll("_", " ")).join(", ");

@@ -1,6 +1,7 @@
 //! The tables for people.
 
 use super::grid::{plain, shown};
+use super::lead::times;
 use super::report::{Bench, Row};
 use super::summary::{figure, share, summary};
 use crate::number::brief;
@@ -72,7 +73,7 @@ fn cells(case: &str, row: &Row) -> [String; 11] {
 }
 
 fn ratio(value: f64) -> String {
-    if value < 10.0 { format!("{value:.2}") } else { format!("{value:.0}") }
+    if value < 10.0 { format!("{value:.2}") } else { times(value) }
 }
 
 /// Cost against length, where that was measured.

@@ -87,6 +87,7 @@ fn wrong_type(text: &str, span: Range<usize>, expected: &str) -> String {
         (None, "i64") => "an integer".to_owned(),
         (None, "a sequence") => "a list".to_owned(),
         (None, "a boolean") => "a boolean, true or false".to_owned(),
+        (None, it) if it.starts_with("struct ") => "a table, in single brackets".to_owned(),
         (None, other) => other.to_owned(),
     };
     format!("{} {value} is not accepted: {expected}", key.trim())

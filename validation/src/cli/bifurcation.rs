@@ -80,6 +80,12 @@ fn diagram(arguments: &Arguments) -> Result<Diagram> {
     let problem = arguments.model.problem()?;
     let parameters = *problem.model.parameters();
     let parameter = arguments.parameter;
+    if arguments.steps == 1 && arguments.from.value != arguments.to.value {
+        bail!(
+            "--to {} has no effect with --steps 1; accepted is the value of --from",
+            arguments.to
+        );
+    }
     for (flag, value) in [("--from", &arguments.from), ("--to", &arguments.to)] {
         if let Err(InputError::OutOfRange { accepted, .. }) =
             parameter.set(parameters, value.value).check()

@@ -28,7 +28,7 @@ mod validate;
 mod work;
 
 use crate::engine::{self, Engine};
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ErrorKind};
 use clap::{ColorChoice, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -163,6 +163,12 @@ fn usage(error: &clap::Error) -> u8 {
         }
         ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
             say(&format!("no verb was given: accepted are {} (see percuss --help)", verbs()));
+            REFUSED
+        }
+        ErrorKind::InvalidSubcommand => {
+            let verb = error.get(ContextKind::InvalidSubcommand);
+            let verb = verb.map_or_else(String::new, |verb| format!("'{verb}' "));
+            say(&format!("{verb}is no verb: accepted are {} (see percuss --help)", verbs()));
             REFUSED
         }
         _ => {

@@ -89,6 +89,13 @@ impl ModelFlags {
         Ok((given.check().map_err(|line| anyhow!(line))?, is_given))
     }
 
+    /// The model and the instant of a grid of starts, which takes the place of the start's phase.
+    pub(super) fn problem_of_grid(&self) -> Result<Problem> {
+        let mut given = self.given()?;
+        given.start.phase = None;
+        given.check().map_err(|line| anyhow!(line))
+    }
+
     fn override_in(&self, given: &mut Given) {
         let (model, start) = (&mut given.parameters, &mut given.start);
         let numbers = [

@@ -113,7 +113,7 @@ fn write_or_replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<()
 }
 
 /// The folder that a file is in.
-fn folder_of(path: &Path) -> &Path {
+pub(super) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

@@ -2,7 +2,7 @@
 
 use super::names::{CASES, ENGINES};
 use super::output::{Destination, reader_left};
-use super::{DONE, OUT_OF_BOUNDS, parse, reports, work};
+use super::{DONE, OUT_OF_BOUNDS, note, parse, reports, say, work};
 use crate::case::{self, Case};
 use crate::engine::{self, Engine, Wrong, hush_contained_panics};
 use crate::power::{self, Finding, Standard};
@@ -72,6 +72,9 @@ enum Format {
 const FEW_CASES: usize = 3;
 
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
+    if arguments.rows && arguments.format != Format::Table {
+        bail!("--rows has no effect with this --format; accepted with --rows is table");
+    }
     let baseline = arguments.baseline.as_deref().map(read_baseline).transpose()?;
     let engines = chosen_engines(&arguments.engine)?;
     let cases = prepared_cases(arguments)?;
@@ -142,7 +145,7 @@ fn wrong_engines(arguments: &Arguments) -> Vec<(Wrong, Standard)> {
 /// Whether a wrong engine passes every bound of all cases together; said on stderr.
 fn unnoticed(findings: &[Finding]) -> bool {
     let missed: Vec<_> = findings.iter().filter(|it| !it.caught()).collect();
-    missed.iter().for_each(|it| eprintln!("no bound notices {}: {}", it.engine, it.fault));
+    missed.iter().for_each(|it| say(&format!("no bound notices {}: {}", it.engine, it.fault)));
     !missed.is_empty()
 }
 
@@ -160,7 +163,9 @@ fn worse(arguments: &Arguments, baseline: &Baseline, report: &Report) -> Result<
     if common == 0 {
         bail!("--baseline: no row in common with this run; accepted is a report of the same rows");
     }
-    if !arguments.allow_missing {
+    if arguments.allow_missing {
+        gone.iter().for_each(|it| note(&format!("{it}: gone, which --allow-missing accepts")));
+    } else {
         worse.extend(gone.iter().map(|it| format!("{it}: gone, --allow-missing accepts that")));
     }
     Ok(worse)
@@ -179,6 +184,9 @@ fn write(arguments: &Arguments, report: &Report, evidence: &Evidence, cases: usi
         Format::Csv => ranking_text(report, RankingFormat::Csv)?,
         Format::Json => ranking_text(report, RankingFormat::Json)?,
     };
+    if arguments.format != Format::Table {
+        evidence.worse.iter().for_each(|it| say(&format!("worse than --baseline: {it}")));
+    }
     let shown = Destination::Stdout.write(|out| Ok(out.write_all(text.as_bytes())?));
     // A reader that leaves early does not turn a failure into a success.
     shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })
@@ -222,10 +230,10 @@ fn prepared_cases(arguments: &Arguments) -> Result<Vec<Prepared>> {
         None => Library::embedded()?,
     };
     for case in cases.iter().filter(|case| library.is_replayed(case)) {
-        eprintln!(
+        note(&format!(
             "{}: without tables: its truth is the exact solver's run made again in 106 bits",
             case.name
-        );
+        ));
     }
     Ok(suite::prepare(cases, &library, arguments.suite)?)
 }

@@ -78,7 +78,11 @@ fn restarts(row: &Scored, measures: &Measures) -> Option<RestartHistogram> {
     let restart = measures.probed.restart.as_ref().filter(|it| it.with_impact > 0)?;
     let Histogram { lowest, ref counts } = restart.histogram;
     let edge = |k: usize| f64::from(lowest + k as i32) * std::f64::consts::LOG10_2;
-    let unit = if row.accuracy.tolerance().is_some() { "tolerances" } else { "eps" };
+    let unit = match row.accuracy.tolerance() {
+        Some(tolerance) if row.unit > tolerance => "tolerances^(p/(p + 1))",
+        Some(_) => "tolerances",
+        None => "eps",
+    };
     Some(RestartHistogram {
         case: row.case.clone(),
         engine: row.engine.to_owned(),
@@ -100,6 +104,8 @@ fn in_words(name: &str) -> String {
     let kind = match kind {
         "ks" => "Kolmogorov-Smirnov distance",
         "wasserstein" => "Wasserstein distance",
+        "map" if of == "error_median" => return "median error of a period".to_owned(),
+        "map" if of == "error_share" => return "share of periods with a large error".to_owned(),
         other => other,
     };
     match of.split_once('_') {

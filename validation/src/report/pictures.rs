@@ -198,15 +198,15 @@ fn recall(report: &Report, summaries: &[EngineSummary]) -> HeatMap {
             _ if it.spurious > 0 || it.failed > 0 => Tint::Fair,
             _ => Tint::Good,
         };
-        let share = summary::percent(it.recall());
+        let found = format!("{}/{}/{}", it.matched, it.expected, it.total);
         let of = if it.setting.is_empty() { String::new() } else { format!("{}: ", it.setting) };
-        HeatCell { text: of + &share, tint }
+        HeatCell { text: of + &found, tint }
     };
     let row = |(engine, summary): (&super::EngineEntry, &EngineSummary)| {
         (engine.name.to_owned(), summary.settings.iter().map(tile).collect())
     };
     HeatMap {
-        title: "Recall: events found of those that there are".to_owned(),
+        title: "Recall: events found of checked of all".to_owned(),
         note: "settings from coarse to fine; blue: some spurious, or runs without a result"
             .to_owned(),
         columns: Vec::new(),

@@ -32,7 +32,8 @@ pub struct Ranked {
     pub events_spurious: usize,
     /// Cases with a row that fails or errs, a known shortcoming included.
     pub fails_on: Vec<String>,
-    /// Errors of event times in units of error x (1 + |value|) x growth x events so far.
+    /// Errors of event times over tolerance x (1 + |value|) x growth x events so far; eps stands in
+    /// for the tolerance of the exact solver, and step^p/(p + 1)! for that of a fixed step.
     pub event_time_error_units: Units,
     /// Right-hand sides an event where the largest event-time error is [`COMPARED_AT`]: the median
     /// over the cases on which its settings reach that error.
@@ -92,8 +93,8 @@ fn place(engines: Vec<(Ranked, bool)>) -> Vec<Ranked> {
 fn one(engine: &'static str, rows: Vec<(&Scored, &Row)>) -> (Ranked, bool) {
     let exact = rows.iter().all(|(scored, _)| scored.is_exact());
     let counted = || rows.iter().filter_map(|(scored, row)| Counted::of(scored, row));
-    let sum = |count: fn(&Counted<'_>) -> usize| counted().map(|it| count(&it)).sum();
-    let units: Vec<f64> = counted().flat_map(|it| it.units.iter().copied()).collect();
+    let sum = |count: fn(&Counted) -> usize| counted().map(|it| count(&it)).sum();
+    let units: Vec<f64> = counted().flat_map(|it| it.units).collect();
     let Spread { median, max, .. } = Spread::of(units);
     let bad = |row: &Row| matches!(row.verdict, Verdict::Fail | Verdict::Error | Verdict::Known);
     let mut fails_on: Vec<String> =
@@ -115,16 +116,16 @@ fn one(engine: &'static str, rows: Vec<(&Scored, &Row)>) -> (Ranked, bool) {
 }
 
 /// What one row counts for: nothing where nothing could be judged.
-struct Counted<'a> {
+struct Counted {
     found: usize,
     checked: usize,
     missed: usize,
     spurious: usize,
-    units: &'a [f64],
+    units: Vec<f64>,
 }
 
-impl<'a> Counted<'a> {
-    fn of(scored: &'a Scored, row: &Row) -> Option<Self> {
+impl Counted {
+    fn of(scored: &Scored, row: &Row) -> Option<Self> {
         let Status::Ok(measures, _) = &scored.status else { return None };
         // A row that is not scored finds nothing, but what it invents is invented.
         let judged = row.verdict != Verdict::NotScored;
@@ -134,9 +135,15 @@ impl<'a> Counted<'a> {
             checked: count(measures.expected),
             missed: count(measures.mismatch.missed.len()),
             spurious: measures.mismatch.spurious.len(),
-            units: if judged { &measures.event_time_units } else { &[] },
+            units: if judged { in_tolerances(scored, &measures.event_time_units) } else { vec![] },
         })
     }
+}
+
+/// Errors that are in the method's own units in those of the tolerance that was asked for.
+fn in_tolerances(scored: &Scored, units: &[f64]) -> Vec<f64> {
+    let scale = scored.accuracy.tolerance().map_or(1.0, |tolerance| scored.unit / tolerance);
+    units.iter().map(|error| error * scale).collect()
 }
 
 /// The median over the cases of the cost at [`COMPARED_AT`].

@@ -2,6 +2,7 @@
 
 use super::Report;
 use super::ranking::Ranked;
+use super::screen::figure;
 use crate::number::shortest;
 use serde::Serialize;
 use std::io;
@@ -53,15 +54,15 @@ fn markdown(ranking: &[Ranked]) -> String {
         let rank = if it.is_reference() { "\u{2013}".to_owned() } else { it.rank.to_string() };
         let cost = it.rhs_per_event.map_or("\u{2013}".to_owned(), |cost| format!("{cost:.0}"));
         text.push_str(&format!(
-            "| {rank} | {} | {} of {} of {} | {} | {} | {:.2} | {:.2} | {cost} | {} |\n",
+            "| {rank} | {} | {} of {} of {} | {} | {} | {} | {} | {cost} | {} |\n",
             it.engine,
             it.events_found,
             it.events_checked,
             it.events_total,
             it.events_missed,
             it.events_spurious,
-            units.median,
-            units.max,
+            figure(units.median),
+            figure(units.max),
             it.fails_on.join(", ")
         ));
     }

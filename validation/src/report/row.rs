@@ -76,6 +76,8 @@ pub struct Row {
     pub status: &'static str,
     pub horizon_periods: f64,
     pub events_expected: Option<usize>,
+    #[serde(skip)]
+    pub events_total: usize,
     pub events_matched: Option<usize>,
     pub events_missed: Option<usize>,
     pub events_spurious: Option<usize>,
@@ -271,6 +273,7 @@ impl Row {
             },
             horizon_periods: f64::NAN,
             events_expected: None,
+            events_total: scored.events,
             events_matched: None,
             events_missed: None,
             events_spurious: None,

@@ -80,13 +80,13 @@ fn ranking_table(ranking: &[Ranked]) -> String {
     let legend = format!(
         "rank: (found - spurious) of all events, over all cases and settings; what was not run or not \
          scored counts as not found. median, worst: error of event times in units of tolerance x \
-         growth. rhs: right-hand sides an event at an event-time error of {COMPARED_AT:e}, which \
+         growth x events so far (eps for exact, the step's own error for fixed steps). rhs: right-hand sides an event at an event-time error of {COMPARED_AT:e}, which \
          decides between equals. exact is the reference."
     );
     text(&table) + &wrapped(&legend) + "\n"
 }
 
-fn figure(value: f64) -> String {
+pub(super) fn figure(value: f64) -> String {
     match value.abs() {
         size if size.is_nan() => "-".to_owned(),
         size if (0.01..1000.0).contains(&size) => format!("{value:.2}"),

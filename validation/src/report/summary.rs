@@ -22,6 +22,8 @@ pub(super) struct SettingSummary {
     pub runs: usize,
     pub failed: usize,
     pub expected: usize,
+    /// Events of the truth, scored or not.
+    pub total: usize,
     pub matched: usize,
     pub spurious: usize,
     pub time_error: f64,
@@ -53,6 +55,7 @@ impl SettingSummary {
             runs: ran.len(),
             failed: ran.iter().filter(|row| row.status != "ok").count(),
             expected: sum(|row| row.events_expected),
+            total: rows.iter().map(|row| row.events_total).sum(),
             matched: sum(|row| row.events_matched),
             spurious: sum(|row| row.events_spurious),
             time_error: error(|row| row.event_time_error.max),
@@ -80,17 +83,6 @@ fn one(report: &Report, engine: &str) -> EngineSummary {
     rows.sort_by(|a, b| fineness(b).total_cmp(&fineness(a)));
     let same = |a: &&Row, b: &&Row| a.setting() == b.setting();
     EngineSummary { counts, settings: rows.chunk_by(same).map(SettingSummary::of).collect() }
-}
-
-/// A share that reads 100 % only where it is.
-pub(super) fn percent(share: f64) -> String {
-    if share.is_nan() {
-        "\u{2013}".to_owned()
-    } else if share >= 1.0 {
-        "100 %".to_owned()
-    } else {
-        format!("{:.2} %", (share * 1e4).floor() / 1e2)
-    }
 }
 
 /// The middle value, by nearest rank; NaN of nothing.

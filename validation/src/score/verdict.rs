@@ -128,6 +128,9 @@ pub struct Subject<'a> {
 pub struct Expected<'a> {
     /// Bounds in order: the first for a quantity and statistic counts.
     pub bounds: &'a [&'a Bound],
+    /// Bounds of classes of methods alone, whose constants decide which grazes are undecidable:
+    /// what a case allows besides excuses no event.
+    pub of_classes: &'a [Bound],
     /// Known shortcomings.
     pub shortcomings: &'a [&'a Shortcoming],
 }
@@ -150,7 +153,7 @@ pub struct Run<'a> {
 /// Judges a run.
 #[must_use]
 pub fn judge(subject: &Subject<'_>, run: &Run<'_>, expected: &Expected<'_>) -> Judgement {
-    let excused = excused(subject, run, expected.bounds);
+    let excused = excused(subject, run, expected.of_classes);
     let mut checked = check(subject, run, &excused, expected.bounds);
     // A probe that the suite does not ask for can show no shortcoming.
     let of = |it: &&&Shortcoming| {
@@ -217,9 +220,9 @@ fn little_scored(measures: &Measures) -> String {
     )
 }
 
-/// The grazes that the engine's own bound on its error leaves undecided.
-fn excused(subject: &Subject<'_>, run: &Run<'_>, bounds: &[&Bound]) -> Excused {
-    let constant = bounds.iter().find(|it| {
+/// The grazes that the bound on errors of the engine's class leaves undecided.
+fn excused(subject: &Subject<'_>, run: &Run<'_>, of_classes: &[Bound]) -> Excused {
+    let constant = of_classes.iter().find(|it| {
         it.quantity == Quantity::EventConstant
             && it.statistic == Statistic::Max
             && it.is_for(subject.engine, subject.accuracy)

@@ -201,7 +201,8 @@ fn one(
     let subject = Subject { case: &case.name, engine: declaration.name, accuracy, unit };
     let bounds: Vec<_> = case.bounds.iter().chain(&defaults.bounds).collect();
     let shortcomings: Vec<_> = case.shortcomings.iter().chain(&defaults.shortcomings).collect();
-    let expected = Expected { bounds: &bounds, shortcomings: &shortcomings };
+    let expected =
+        Expected { bounds: &bounds, of_classes: &defaults.bounds, shortcomings: &shortcomings };
     let asked = (accuracy, unit);
     let extent = |work| prepared.probes.extent(suite, case, declaration.name, asked, work);
     match prepared.measured(engine, accuracy, unit, &suite.limits(), extent) {

@@ -55,6 +55,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
         status: "ok",
         horizon_periods: 12.0,
         events_expected: Some(40),
+        events_total: 40,
         events_matched: Some(40),
         events_missed: Some(0),
         events_spurious: Some(0),

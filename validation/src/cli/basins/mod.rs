@@ -165,7 +165,7 @@ fn show(survey: &Survey, shown: Shown, destination: &Destination) -> Result<()> 
 
 impl GridFlags {
     fn survey(&self, model: &ModelFlags, threads: Option<u16>) -> Result<Survey> {
-        let problem = model.problem()?;
+        let problem = model.problem_of_grid()?;
         model.note_replaced_by_grid();
         let map = StrobeMap::new(problem.model, problem.entry.instant);
         let grid = Grid {

@@ -1,7 +1,7 @@
 //! The parts of the page that need no script, as the template takes them.
 
 use super::super::grazing::{Grazing, Seen, Touches};
-use super::super::summary::{EngineSummary, SettingSummary, percent};
+use super::super::summary::{EngineSummary, SettingSummary};
 use super::super::{Evidence, Report};
 use crate::number::brief;
 use crate::picture::{Look, Marker};
@@ -26,8 +26,10 @@ pub(super) struct EngineLine {
     pub rhs: String,
     pub finest: String,
     pub recall: Vec<RecallCell>,
-    /// The worst recall, in words.
+    /// Events found, checked and all, over all settings.
     pub overall: String,
+    /// Whether events that were checked are missing.
+    pub incomplete: bool,
 }
 
 pub(super) struct RecallCell {
@@ -65,6 +67,7 @@ pub(super) fn engines(
                 finest: finest.map_or(String::new(), |it| it.setting.clone()),
                 recall: summary.settings.iter().map(recall).collect(),
                 overall: overall(summary),
+                incomplete: summary.settings.iter().any(|it| it.matched < it.expected),
             }
         };
     lines.map(line).collect()
@@ -92,7 +95,18 @@ pub(super) fn count(value: f64) -> String {
 
 fn verdict(summary: &EngineSummary) -> (&'static str, String) {
     let count = |verdict| summary.count(verdict);
-    let worst = Verdict::ALL.into_iter().find(|it| count(*it) > 0);
+    // A row that was not run hides nothing worse.
+    let by_weight = [
+        Verdict::Error,
+        Verdict::Fail,
+        Verdict::Known,
+        Verdict::NotRun,
+        Verdict::Unavailable,
+        Verdict::NotScored,
+        Verdict::Undecidable,
+        Verdict::Pass,
+    ];
+    let worst = by_weight.into_iter().find(|it| count(*it) > 0);
     match worst.unwrap_or(Verdict::NotScored) {
         Verdict::Pass => ("pass", "every row passes".to_owned()),
         other => (other.as_str(), format!("{} {}", count(other), other.as_str())),
@@ -106,7 +120,7 @@ fn counts(summary: &EngineSummary) -> String {
 }
 
 fn recall(summary: &SettingSummary) -> RecallCell {
-    let SettingSummary { matched, expected, spurious, failed, .. } = *summary;
+    let SettingSummary { matched, expected, total, spurious, failed, .. } = *summary;
     let share = summary.recall();
     let level = match share {
         share if share.is_nan() || share < 0.9 => 0,
@@ -115,19 +129,22 @@ fn recall(summary: &SettingSummary) -> RecallCell {
         _ if spurious > 0 || failed > 0 => 3,
         _ => 4,
     };
-    let mut note = format!("{matched} of {expected} events found");
+    let mut note = format!("{matched} found of {expected} checked of {total} events");
     if spurious > 0 {
         let _ = write!(note, ", {spurious} spurious");
     }
     if failed > 0 {
         let _ = write!(note, ", {failed} runs without a result");
     }
-    RecallCell { setting: summary.setting.clone(), text: percent(share), note, level }
+    let text = format!("{matched}/{expected}/{total}");
+    RecallCell { setting: summary.setting.clone(), text, note, level }
 }
 
+/// Events found, checked and all, over all settings.
 fn overall(summary: &EngineSummary) -> String {
-    let worst = summary.settings.iter().map(SettingSummary::recall).fold(f64::NAN, f64::min);
-    percent(worst)
+    let sum =
+        |count: fn(&SettingSummary) -> usize| -> usize { summary.settings.iter().map(count).sum() };
+    format!("{}/{}/{}", sum(|it| it.matched), sum(|it| it.expected), sum(|it| it.total))
 }
 
 pub(super) struct Failure {
