@@ -91,7 +91,8 @@ proptest! {
 }
 
 /// The fourth Bernstein coefficient of degree eight is the sum of C(3, k)/C(8, k) L^k f^(k)/k!: so
-/// much of the derivatives' rounding is in it, where each has that of the guard times 2 xi to the k.
+/// much of the derivatives' rounding is in it, where each has that of the guard times 2 xi to the
+/// k.
 #[test]
 fn the_room_of_a_long_contact_has_the_weights_of_its_coefficients() {
     let constants = Constants::new(&Parameters { xi: 1.1, omega: 0.05, ..Parameters::default() });

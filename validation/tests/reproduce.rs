@@ -152,7 +152,8 @@ fn the_documented_claims_are_all_and_to_the_schema() {
     assert_eq!(told, BTreeSet::from(VERDICTS));
 }
 
-/// Like `the_documented_claims_are_what_is_found`, for every claim: many minutes.
+/// Like `the_documented_claims_are_what_is_found`, for every claim: minutes, so `.ci/run` asks for
+/// it.
 #[test]
 #[ignore = "computes every figure of the paper"]
 fn every_verdict_is_the_documented_one() {
