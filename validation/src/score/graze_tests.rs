@@ -51,3 +51,22 @@ fn only_what_is_allowed_anyway_is_undecidable() {
     assert!(!graze.is_undecidable(4.9e-7));
     assert!(!graze.is_undecidable(f64::NAN));
 }
+
+/// On `small-b` the guard turns close to its threshold in three forcing periods one after the
+/// other, before any event and once more after six; on `resonance` in two half oscillations.
+#[test]
+fn all_near_misses_of_a_segment_are_found() {
+    let between = |name: &str, event: usize| -> Vec<f64> {
+        let misses = of_case(name).into_iter().filter(|it| it.events == (event..event));
+        misses.map(|it| it.elapsed).collect()
+    };
+    let period = std::f64::consts::TAU / 1.4;
+    for (name, event, count, apart) in
+        [("small-b", 0, 3, period), ("small-b", 6, 3, period), ("resonance", 0, 2, PI)]
+    {
+        let found = between(name, event);
+        assert_eq!(found.len(), count, "{name}: {found:?}");
+        let steps = found.windows(2).map(|pair| pair[1] - pair[0]);
+        assert!(steps.into_iter().all(|it| (it - apart).abs() < 1e-2 * apart), "{name}: {found:?}");
+    }
+}

@@ -129,3 +129,52 @@ fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
     let variance = values.map(|x| (x - mean).powi(2)).sum::<f64>() / (count - 1.0);
     (mean, variance.sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const PLAN: Plan = Plan { transient: 0, periods: 1_000_000, reference_periods: 1 };
+
+    fn nulls(name: &'static str, values: &[f64], signed: bool) -> Vec<Null> {
+        let null = |value: &f64| Null {
+            distances: Distances::from([(name, value.abs())]),
+            signed: if signed { BTreeMap::from([(name, *value)]) } else { BTreeMap::new() },
+        };
+        values.iter().map(null).collect()
+    }
+
+    /// Of the logarithms 1, 2 and 3 the mean is 2 and the deviation 1; of the differences 0.1, 0.2
+    /// and 0.3 they are 0.2 and 0.1.
+    #[test]
+    fn a_run_so_many_deviations_off_has_the_limit_of_so_many() {
+        let logarithms = [1.0_f64, 2.0, 3.0].map(f64::exp);
+        let scale = Scale::of("wasserstein_p", &PLAN, &nulls("wasserstein_p", &logarithms, false));
+        for z in [-1.5, 0.5, 4.0_f64] {
+            let value = (2.0 + z).exp();
+            let null = &nulls("wasserstein_p", &[value], false)[0];
+            approx::assert_relative_eq!(scale.standardized(null), z, max_relative = 1e-12);
+            approx::assert_relative_eq!(scale.limit(z), value, max_relative = 1e-12);
+        }
+        for sign in [1.0, -1.0] {
+            let differences = [0.1, 0.2, 0.3].map(|value| sign * value);
+            let scale = Scale::of("drift", &PLAN, &nulls("drift", &differences, true));
+            for z in [0.5, 3.0] {
+                let value = 0.2 + 0.1 * z;
+                let null = &nulls("drift", &[sign * value], true)[0];
+                approx::assert_relative_eq!(scale.standardized(null), z, max_relative = 1e-12);
+                approx::assert_relative_eq!(scale.limit(z), value, max_relative = 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn the_floor_forgives_what_is_below_it() {
+        let values = [1e-3_f64, 2e-3, 3e-3];
+        let coarse = Plan { periods: 100, ..PLAN };
+        let scale = Scale::of("ks_p", &coarse, &nulls("ks_p", &values, false));
+        assert_eq!(scale.floor, ODD_PERIODS / 100.0);
+        assert_eq!(scale.standardized(&nulls("ks_p", &[scale.floor], false)[0]), 0.0);
+        assert_eq!(scale.limit(0.0), scale.floor);
+    }
+}

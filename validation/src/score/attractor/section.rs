@@ -137,3 +137,15 @@ fn apart(found: &[f64; 3], image: &[f64; 3]) -> f64 {
     let differences = found.iter().zip(image).map(|(a, b)| (a - b).abs() / (1.0 + b.abs()));
     differences.fold(0.0, f64::max)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_count_against_one_and_the_size_of_the_image() {
+        assert_eq!(apart(&[0.5, 0.0, 0.0], &[0.0, 0.0, 0.0]), 0.5);
+        assert_eq!(apart(&[0.0, -4.0, 0.0], &[0.0, -3.0, 0.0]), 0.25);
+        assert_eq!(apart(&[1.0, 1.0, 9.0], &[1.0, 1.0, 4.0]), 1.0);
+    }
+}
