@@ -130,3 +130,29 @@ fn comments_are_at_most_100_columns_wide() {
     }
     assert!(wide.is_empty(), "{wide:#?}");
 }
+
+/// The relative links of a page, without the anchors in them.
+fn links(page: &str) -> Vec<String> {
+    let ends = page.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    let paths = ends.map(|(link, _)| link.split('#').next().unwrap_or_default().to_owned());
+    paths.filter(|path| !path.is_empty() && !path.contains("://")).collect()
+}
+
+#[test]
+fn links_lead_somewhere() {
+    for page in [
+        "ARCHITECTURE.md",
+        "BIAS.md",
+        "CHANGELOG.md",
+        "CONTRIBUTING.md",
+        "ERRATA.md",
+        "METHODOLOGY.md",
+        "README.md",
+    ] {
+        let text = read(page);
+        for link in links(&text) {
+            assert!(root().join(&link).exists(), "{page} links {link}");
+        }
+    }
+    assert!(links(&read("ARCHITECTURE.md")).len() > 30);
+}
