@@ -6,7 +6,7 @@ use crate::guard::Guard;
 use crate::proof::{Claim, GRANTED, Verdict, examine};
 use crate::regimes::{Chance, Regime, Run};
 use percuss::crossing::guarded::{Guarded, slack};
-use percuss::{Exit, Segment, Model, Motion, Phase};
+use percuss::{Exit, Model, Motion, Phase, Segment};
 
 /// Examples kept of a regime's switches that were not proved.
 const MOST_EXAMPLES: usize = 20;

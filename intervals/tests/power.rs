@@ -19,8 +19,8 @@ fn every_switch(runs: usize, mut look: impl FnMut(&Parameters, &Found<'_>)) {
             for (parameters, start) in (regime.draw)(&mut chance) {
                 let Ok(model) = Model::new(parameters) else { continue };
                 let Ok(entry) = model.start(&start) else { continue };
-                for leg in model.trajectory(entry).take(regime.phases.min(12)) {
-                    if let Some(found) = Found::new(&leg) {
+                for segment in model.trajectory(entry).take(regime.phases.min(12)) {
+                    if let Some(found) = Found::new(&segment) {
                         look(&parameters, &found);
                     }
                 }
@@ -32,7 +32,7 @@ fn every_switch(runs: usize, mut look: impl FnMut(&Parameters, &Found<'_>)) {
 /// A later time at which the f64 guard leaves its corridor once more, after an excursion of this
 /// height.
 fn later_root(found: &Found<'_>) -> Option<(f64, f64)> {
-    match found.leg.motion() {
+    match found.segment.motion() {
         Motion::NoContact(it) => later(&it, &found.claim),
         Motion::Contact(it) => later(&it, &found.claim),
         Motion::Progression(it) => later(&it, &found.claim),
