@@ -14,6 +14,10 @@ use crate::flow::{Jet, Point};
 use crate::state::State;
 use std::borrow::Borrow;
 
+/// Up to this reach, a length times the rate at which derivatives repeat a rounding, the slack has
+/// room for the derivatives in a piece's coefficients.
+const FEW: f64 = 4.0;
+
 /// Up to this angle of the faster of forcing and free oscillation one piece must do.
 const SHORT: f64 = 2.0;
 
@@ -70,9 +74,20 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// derivatives stand in them times powers of the length, and each derivative repeats the
     /// rounding of the one below it times a rate: 2 xi or 1 where it is computed from the equation
     /// of motion, the slower decay or omega where the parts are differentiated one by one.
+    #[inline(always)]
     pub(super) fn room_of_length(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
-        /// Up to this reach the slack has room for the derivatives.
-        const FEW: f64 = 4.0;
+        let Constants { omega, two_xi, .. } = *self.constants.borrow();
+        // Most pieces are short at any of the rates.
+        let length = right.elapsed - left.elapsed;
+        if length * two_xi.max(omega).max(1.0) <= FEW {
+            return 0.0;
+        }
+        self.room_of_a_long_piece(left, right)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn room_of_a_long_piece(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         let Constants { omega, two_xi, damping, .. } = *self.constants.borrow();
         let rate = match damping {
             Damping::Over { fast, slow, .. } if fast * left.elapsed > 1.0 => slow.max(omega),
@@ -82,14 +97,14 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         if reach <= FEW {
             return 0.0;
         }
-        // The derivatives' weights in the fourth coefficient of degree eight, the largest there
-        // are.
+        // The derivatives' weights in the fourth coefficient of degree eight, the largest there are.
         let weights = reach * (3.0 / 8.0 + reach * (3.0 / 56.0 + reach * (1.0 / 336.0)));
         f64::EPSILON * weights * left.guard.largest_term.max(right.guard.largest_term)
     }
 
     /// A touch in a piece whose room is wide is none yet: the piece is divided first, unless the
     /// guard is within rounding of its threshold at both ends, where shorter pieces touch as well.
+    #[inline(always)]
     fn near(&self, verdict: Verdict, room: f64, ends: [&Point<f64>; 2]) -> Verdict {
         if verdict != Verdict::Touches || room == 0.0 {
             return verdict;

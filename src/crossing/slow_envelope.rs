@@ -267,8 +267,7 @@ pub fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
     const EXACT: f64 = 1e-290;
     let discriminant = rising * rising - 2.0 * curvature * value;
     if discriminant.abs() < EXACT && curvature > 0.0 {
-        let time = safe_step(value, rising, curvature);
-        return (value < 0.0 && time.is_finite()).then_some(time);
+        return first_root_without_squares(value, rising, curvature);
     }
     if discriminant < 0.0 {
         return None; // curvature < 0 and the crest stays below zero
@@ -278,6 +277,14 @@ pub fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
     let time =
         if rising >= 0.0 { -2.0 * value / (rising + root) } else { (root - rising) / curvature };
     (time >= 0.0 && time.is_finite()).then_some(time)
+}
+
+/// The same of a parabola that opens upwards, whose terms' squares underflow.
+#[cold]
+#[inline(never)]
+fn first_root_without_squares(value: f64, rising: f64, curvature: f64) -> Option<f64> {
+    let time = safe_step(value, rising, curvature);
+    (value < 0.0 && time.is_finite()).then_some(time)
 }
 
 /// The last t >= 0 with value + rising t + curvature t^2/2 = 0, for value >= 0 and a parabola that
