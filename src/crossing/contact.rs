@@ -97,7 +97,8 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         if reach <= FEW {
             return 0.0;
         }
-        // The derivatives' weights in the fourth coefficient of degree eight, the largest there are.
+        // The derivatives' weights in the fourth coefficient of degree eight, the largest there
+        // are.
         let weights = reach * (3.0 / 8.0 + reach * (3.0 / 56.0 + reach * (1.0 / 336.0)));
         f64::EPSILON * weights * left.guard.largest_term.max(right.guard.largest_term)
     }
