@@ -208,8 +208,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         self.ahead(steps, left, limit)
     }
 
-    fn touches_for_ever(&self, left: &Point<f64>) -> bool {
-        self.rests_by_rounding(left)
+    fn touches_for_ever(&self) -> bool {
+        self.rests_by_rounding()
     }
 
     fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
@@ -234,7 +234,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
             let inside = whole.stays_inside_in_parts(&corridor, ends, slack);
             return if inside { Verdict::Inside } else { verdict };
         }
-        self.certify_long(steps, (left, &split, free), right, ends)
+        self.certify_long(steps, (left, &split, free), right, (ends, room))
     }
 
     fn stage(&self) -> f64 {
@@ -330,7 +330,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         steps: &Steps,
         (left, split, free): (&Point<f64>, &Split, f64),
         right: &Point<f64>,
-        ends: Ends,
+        (ends, room): (Ends, f64),
     ) -> Verdict {
         /// Each stride rounds a few times its parts.
         const ROUNDINGS: f64 = 16.0;
@@ -342,8 +342,8 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         let length = right.elapsed - left.elapsed;
         if two_xi < MILD {
             let size = split.amplitude + x.abs() + x1.abs();
-            let room = slack + ROUNDINGS * f64::EPSILON * (size + b.abs());
-            let shape = self.shape(self.eighth(free), room);
+            let stepped = slack + ROUNDINGS * f64::EPSILON * (size + b.abs());
+            let shape = self.shape(self.eighth(free), stepped);
             let right = (right.elapsed, &right.guard.orders);
             let swing = &steps.contact_piece;
             let parts = self.parts(left, split);
@@ -363,7 +363,6 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             eighth: (-free, free),
         };
         let corridor = self.corridor().narrowed(split.amplitude);
-        let room = self.room_of_length(left, right);
         self.near(slow.verdict(&corridor, Ends::FREE, slack + room), room, [left, right])
     }
 }

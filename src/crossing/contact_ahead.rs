@@ -39,11 +39,11 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     }
 
     /// Whether the steady state, which the trial force approaches, fits inside by rounding alone.
-    pub(super) fn rests_by_rounding(&self, left: &Point<f64>) -> bool {
-        /// Of the amplitude, which is good to a few eps, and of what [`Self::fits`] allows.
+    pub(super) fn rests_by_rounding(&self) -> bool {
+        /// The amplitude is good to a few eps, and [`Self::fits`] allows four of them.
         const ROOM: f64 = 1.0 + 16.0 * f64::EPSILON;
-        let b = self.constants.borrow().b;
-        let reach = ROOM * self.split(left).amplitude;
+        let Constants { b, steady, .. } = *self.constants.borrow();
+        let reach = ROOM * steady.amplitude;
         reach > 1.0 - b || reach > b
     }
 

@@ -32,9 +32,8 @@ pub trait Guarded: Flow<f64> {
     /// A guess, or a proof, about what comes after `left`; nothing after `limit` matters.
     fn hint(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint;
 
-    /// Whether a guard that is clear from `left` on may still come to its threshold within
-    /// rounding.
-    fn touches_for_ever(&self, _left: &Point<f64>) -> bool {
+    /// Whether a guard that is clear for ever may still come to its threshold within rounding.
+    fn touches_for_ever(&self) -> bool {
         false
     }
 

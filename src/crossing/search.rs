@@ -139,7 +139,7 @@ fn search<G: Guarded>(
         }
         let target = match onwards(hint, left.elapsed, &mut stride) {
             SearchHint::ClearFrom(time) if time <= left.elapsed => {
-                counters.undecidable += u64::from(phase.touches_for_ever(&left));
+                counters.undecidable += u64::from(phase.touches_for_ever());
                 return Crossing::Never;
             }
             SearchHint::ClearUntil(time) => {

@@ -279,7 +279,8 @@ pub fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
     (time >= 0.0 && time.is_finite()).then_some(time)
 }
 
-/// The same of a parabola that opens upwards, whose terms' squares underflow.
+/// The first root of a parabola that opens upwards, where the squares in its discriminant
+/// underflow.
 #[cold]
 #[inline(never)]
 fn first_root_without_squares(value: f64, rising: f64, curvature: f64) -> Option<f64> {

@@ -22,15 +22,22 @@ fn start(parameters: &Parameters, p: f64, y: f64, q: f64) -> Start {
     Start { p, y, q: Some(q), ..Start::default() }
 }
 
+/// What the harmonic force adds to a velocity within a time d, and to a displacement.
+fn harmonic(parameters: &Parameters, d: f64) -> (f64, f64) {
+    let Parameters { a, omega, phi, .. } = *parameters;
+    let impulse = (a / omega) * (sin(omega * d + phi) - sin(phi));
+    let swing = (a / (omega * omega)) * (cos(phi) - omega * d * sin(phi) - cos(omega * d + phi));
+    (impulse, swing)
+}
+
 /// A flight from a slider at q: h = p0 - g - q exp(-d/(2 xi)) + y0 d + b d^2/2 + (a/omega^2)
 /// (cos phi - omega d sin phi - cos(omega d + phi)).
 pub fn flight(parameters: &Parameters, q: f64, crest: Crest) -> Start {
-    let Parameters { a, b, xi, omega, g, phi } = *parameters;
+    let Parameters { b, xi, g, .. } = *parameters;
     let (d, rate) = (crest.elapsed, 0.5 / xi);
     let lag = q * exp(-rate * d);
-    let impulse = (a / omega) * (sin(omega * d + phi) - sin(phi));
+    let (impulse, swing) = harmonic(parameters, d);
     let y = -(b * d + impulse + rate * lag);
-    let swing = (a / (omega * omega)) * (cos(phi) - omega * d * sin(phi) - cos(omega * d + phi));
     let p = crest.above + g + lag - y * d - 0.5 * b * d * d - swing;
     start(parameters, p, y, q)
 }
@@ -73,7 +80,7 @@ pub fn slip(parameters: &Parameters, closing: f64, crest: Crest) -> (Parameters,
     let lag = closing * exp(-rate * d);
     // w' = F - 1 + q'/(2 xi) vanishes at the crest.
     let b = 1.0 - a * cos(omega * d + phi) - rate * lag;
-    let impulse = (a / omega) * (sin(omega * d + phi) - sin(phi));
+    let (impulse, _) = harmonic(parameters, d);
     let y = lag - crest.above - (b - 1.0) * d - impulse;
     let q = 1.0 - 2.0 * xi * closing;
     let parameters = Parameters { b, ..*parameters };
@@ -84,13 +91,12 @@ pub fn slip(parameters: &Parameters, closing: f64, crest: Crest) -> (Parameters,
 /// highest at its threshold at the crest: h = y0 2 xi (exp(-z) - 1 + z) + b d^2/2 + (a/omega^2)
 /// (cos phi - omega d sin phi - cos(omega d + phi)) with z = d/(2 xi).
 pub fn hop(parameters: &Parameters, crest: Crest) -> (Parameters, Start) {
-    let Parameters { a, xi, omega, phi, g, .. } = *parameters;
+    let Parameters { xi, g, .. } = *parameters;
     let d = crest.elapsed;
     let z = 0.5 * d / xi;
     let (sink, sink_rate) = (2.0 * xi * (exp(-z) - 1.0 + z), 1.0 - exp(-z));
     let (lift, lift_rate) = (0.5 * d * d, d);
-    let swing = (a / (omega * omega)) * (cos(phi) - omega * d * sin(phi) - cos(omega * d + phi));
-    let swing_rate = (a / omega) * (sin(omega * d + phi) - sin(phi));
+    let (swing_rate, swing) = harmonic(parameters, d);
     // h = above and h' = 0 in y0 and b.
     let determinant = sink * lift_rate - lift * sink_rate;
     let y = ((crest.above - swing) * lift_rate + lift * swing_rate) / determinant;

@@ -26,18 +26,7 @@ impl Destination {
     /// Refuses a file that cannot be made, before the work that would be lost.
     pub(super) fn check(&self) -> Result<()> {
         let Self::File(path) = self else { return Ok(()) };
-        let shown = path.display();
-        let folder = folder_of(path);
-        if path.as_os_str().is_empty() || path.is_dir() {
-            bail!("--output {shown} cannot be written: it is a folder; accepted is a file's path");
-        }
-        if !folder.is_dir() {
-            let folder = folder.display();
-            bail!(
-                "--output {shown} cannot be written: there is no folder {folder}; accepted is a path in a folder that exists"
-            );
-        }
-        Ok(())
+        check_file("--output", path)
     }
 
     /// Whether what is written is seen on a terminal.
@@ -112,8 +101,24 @@ fn write_or_replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<()
     Ok(file.finish(&target)?)
 }
 
+/// Refuses a file that a flag names and that cannot be made, before the work that would be lost.
+pub(super) fn check_file(flag: &str, path: &Path) -> Result<()> {
+    let shown = path.display();
+    let folder = folder_of(path);
+    if path.as_os_str().is_empty() || path.is_dir() {
+        bail!("{flag} {shown} cannot be written: it is a folder; accepted is a file's path");
+    }
+    if !folder.is_dir() {
+        let folder = folder.display();
+        bail!(
+            "{flag} {shown} cannot be written: there is no folder {folder}; accepted is a path in a folder that exists"
+        );
+    }
+    Ok(())
+}
+
 /// The folder that a file is in.
-pub(super) fn folder_of(path: &Path) -> &Path {
+fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

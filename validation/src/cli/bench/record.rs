@@ -1,6 +1,6 @@
 //! `bench record`: lines of this version, appended to the history.
 
-use super::output::{Destination, folder_of, reader_left, write_whole};
+use super::output::{Destination, check_file, reader_left, write_whole};
 use super::{cases_by_default, courses, parse, work};
 use crate::bench::contestant::enter;
 use crate::bench::course::Course;
@@ -9,7 +9,7 @@ use crate::bench::history::{self, Figures, History, Record};
 use crate::bench::rounds::Series;
 use crate::bench::{instructions, workload};
 use crate::engine::{Accuracy, Failure, exact};
-use anyhow::{Context, Result, anyhow, bail};
+use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -29,14 +29,7 @@ pub(in super::super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     // Told before the minutes of work.
-    let folder = folder_of(&arguments.history);
-    if !folder.is_dir() {
-        let (file, folder) = (arguments.history.display(), folder.display());
-        bail!(
-            "--history {file} cannot be written: there is no folder {folder}; accepted is a path in \
-             a folder that exists"
-        );
-    }
+    check_file("--history", &arguments.history)?;
     let before = raw(&arguments.history)?;
     History::read(&arguments.history).map_err(|what| anyhow!("--history {what}"))?;
     let courses = courses(&cases_by_default()?)?;
