@@ -1,13 +1,5 @@
 //! Accepted inputs of every size at random: no panic, no hang, legal phases, finite numbers.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
 use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
 use std::sync::mpsc;
 use std::time::Duration;

@@ -1,12 +1,5 @@
 //! Attractors and basins: the paper's cases, and what must hold of any labelling.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a panic is a failed test"
-)]
-
 use percuss::dynamics::attractor::{
     Attractor, AttractorCatalog, Basins, Grid, Kind, Label, Window,
 };

@@ -1,30 +1,16 @@
 //! The closed forms in f64 against the same forms in 106 bits: how many digits each regime keeps.
 //!
-//! `cargo test --release --test closed_forms -- --nocapture` prints the constant of every regime.
+//! `cargo test --release --test library closed_forms:: -- --nocapture` prints the constant of every
+//! regime.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
-#[path = "../validation/src/truth/double_double.rs"]
-mod double_double;
-#[path = "support/draws.rs"]
-mod draws;
-#[path = "support/random.rs"]
-mod random;
-
-use double_double::DoubleDouble;
-use draws::{Pair, REGIMES};
+use crate::double_double::DoubleDouble;
+use crate::support::draws::{Pair, REGIMES};
+use crate::support::random::Draw;
 use percuss::Constants;
 use percuss::flow::Point;
 use percuss::flow::damped::Damping;
 use percuss::number::Number;
 use percuss::{Phase, State};
-use random::Draw;
 
 /// Phases drawn from each regime.
 const DRAWS: usize = 40_000;

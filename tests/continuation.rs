@@ -1,8 +1,6 @@
 //! Branches of orbits: where they turn and double, held against runs on both sides, other sections
 //! and theory.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is a failed test")]
-
 use percuss::dynamics::continuation::{
     Bifurcation, Branch, Criticality, Doubling, Ending, Family, Kind,
 };

@@ -1,13 +1,5 @@
 //! What a switch costs, and that endless phases are said to be so at once.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
 use percuss::{Counters, Endless, Exit, Model, Parameters, Segment, Start};
 
 fn first(parameters: Parameters, start: &Start) -> (Segment, Counters) {

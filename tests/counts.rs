@@ -5,16 +5,9 @@
 //! counts do not depend on the last digits of chaos. Where a change of the search changes a row,
 //! the test prints the rows as they are; fewer evaluations are a gain, more of them need a reason.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is a failed test")]
-
-#[path = "support/graze.rs"]
-mod graze;
-#[path = "support/random.rs"]
-mod random;
-
-use graze::Crest;
+use crate::support::graze::{self, Crest};
+use crate::support::random::Draw;
 use percuss::{Counters, Model, Parameters, Start};
-use random::Draw;
 
 /// A regime: how its models are drawn, and the sums over its runs.
 struct Regime {

@@ -1,7 +1,5 @@
 //! Where a horizon cuts a run: at the entry, and next to a switch.
 
-#![allow(clippy::unwrap_used, reason = "a panic is a failed test")]
-
 use percuss::two_word::TwoWord;
 use percuss::{Exit, Model, Parameters, Start, Step};
 

@@ -1,12 +1,5 @@
 //! Diagrams and sections against the runs they are made of.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a panic is a failed test"
-)]
-
 use percuss::dynamics::diagram::{Diagram, Follow};
 use percuss::dynamics::section::section;
 use percuss::dynamics::strobe::StrobeMap;

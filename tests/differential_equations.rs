@@ -3,30 +3,13 @@
 //! The form at d + s must be what the equations make of the form at d, for any d and a short s, and
 //! at d = 0 it must be the entry state. Together that is the definition of the solution.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
-#[path = "../validation/src/truth/double_double.rs"]
-mod double_double;
-#[path = "support/draws.rs"]
-mod draws;
-#[path = "support/random.rs"]
-mod random;
-#[path = "support/taylor.rs"]
-mod taylor;
-
-use double_double::{DoubleDouble, UNIT};
-use draws::{Form, REGIMES};
+use crate::double_double::{DoubleDouble, UNIT};
+use crate::support::draws::{Form, REGIMES};
+use crate::support::random::Draw;
+use crate::support::taylor::{STEP, fastest_rate, series};
 use percuss::flow::Point;
 use percuss::number::Number;
 use percuss::{Phase, State};
-use random::Draw;
-use taylor::{STEP, fastest_rate, series};
 
 /// Phases drawn from each regime.
 const DRAWS: usize = 2000;

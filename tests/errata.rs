@@ -1,18 +1,7 @@
 //! The paper's equations exactly as printed, against ours: what is right, and what is not
 //! (ERRATA.md).
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-#[path = "support/printed.rs"]
-mod printed;
-#[path = "support/random.rs"]
-mod random;
-
+use crate::support::random::Draw;
 use approx::{assert_abs_diff_eq, assert_abs_diff_ne, assert_relative_eq};
 use percuss::flow::contact::Contact;
 use percuss::flow::forcing::EntryAngle;
@@ -20,9 +9,8 @@ use percuss::flow::no_contact::NoContact;
 use percuss::flow::progression::Progression;
 use percuss::flow::{Flow, Point};
 use percuss::{Constants, Model, Parameters, Phase, Start, State};
-use random::Draw;
 
-use printed::{Begun, Phases, arctan, arctan2};
+use crate::support::printed::{Begun, Phases, arctan, arctan2};
 
 const DRAWS: usize = 2000;
 

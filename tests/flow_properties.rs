@@ -1,17 +1,6 @@
 //! What any exact flow of the model must satisfy, whatever its formulas.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
-#[path = "support/original.rs"]
-mod original;
-
-use original::Equations;
+use crate::support::original::Equations;
 use percuss::{Entry, Exit, Instant, Model, Parameters, Phase, Segment, Start, State};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, RngSeed, TestCaseError};

@@ -1,18 +1,7 @@
 //! The search against plain one-sided stepping, which shares nothing with it but the closed forms.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
-#[path = "support/random.rs"]
-mod random;
-
+use crate::support::random::Draw;
 use percuss::{Counters, Entry, Exit, Model, Parameters, Phase, Segment, Start};
-use random::Draw;
 
 /// Evaluations after which the judge gives a segment up.
 const PATIENCE: u64 = 20_000;
@@ -172,7 +161,7 @@ fn search_and_plain_stepping_agree() {
 }
 
 #[test]
-#[ignore = "a million switches: cargo test --release --test judge -- --ignored --nocapture"]
+#[ignore = "a million switches; CONTRIBUTING.md names the command"]
 fn search_and_plain_stepping_agree_on_a_million_switches() {
     let score = agree(60_000, 20_000, 50);
     assert!(score.switches > 1_000_000, "{}", score.switches);

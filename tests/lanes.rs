@@ -3,9 +3,6 @@
 //! A phase is begun by both from the same entry, so that errors do not add up: their results differ
 //! by what both round in one phase, in units of eps (1 + |value|) x growth.
 
-#![cfg(feature = "lanes")]
-#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a panic is a failed test")]
-
 use percuss::dynamics::ensemble::{Motion, Tally, Watcher, follow_by};
 use percuss::lanes::Instructions;
 use percuss::{Endless, Entry, Exit, Growth, GrowthRecorder, Instant, Model, Parameters, Start};

@@ -13,9 +13,7 @@ use percuss::flow::steps::Steps;
 use percuss::{Constants, Parameters, State};
 use std::f64::consts::TAU;
 
-#[path = "support/random.rs"]
-mod random;
-use random::Draw;
+use crate::support::random::Draw;
 
 /// Places at which the guard is looked at.
 const PLACES: u32 = 400;

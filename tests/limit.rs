@@ -1,8 +1,6 @@
 //! The work of a search has a limit, and contacts that die out next to a threshold are decided
 //! within it.
 
-#![allow(clippy::unwrap_used, reason = "a panic is a failed test")]
-
 use percuss::crossing::guarded::SLACK;
 use percuss::crossing::limit::{GRANTED, LAST_ROOT, MOST};
 use percuss::{Counters, Endless, Exit, Model, Parameters, Phase, Segment, Start};

@@ -1,13 +1,5 @@
 //! Phases that last very long cost little: what cannot happen is proved, not waited for.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
 use percuss::{Endless, Exit, Instant, Model, Parameters, Segment, Start};
 
 fn first_segment(parameters: Parameters, start: Start, periods: u64) -> (Segment, u64) {

@@ -1,12 +1,5 @@
 //! Exponents against QR of the strobe map's derivative, their sum against the exact contraction.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a panic is a failed test"
-)]
-
 use percuss::dynamics::lyapunov::Spectrum;
 use percuss::dynamics::strobe::StrobeMap;
 use percuss::variation::{P, Q, Y, product};

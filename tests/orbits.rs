@@ -1,7 +1,5 @@
 //! Periodic orbits: they map to themselves, and their multipliers are those of the map.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is a failed test")]
-
 use percuss::dynamics::linear::{eigenvalues, modulus};
 use percuss::dynamics::orbit::{LARGEST_PERIOD, Orbit, Reason, scan};
 use percuss::dynamics::strobe::{Jacobian, Point, StrobeMap};

@@ -6,24 +6,11 @@
 //! (rounding of the guard's terms)/slope. A crossing before the planted one is legitimate if it is
 //! one by that measure; one after it never is.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
-#[path = "support/draw.rs"]
-mod draw;
-#[path = "support/original.rs"]
-mod original;
-#[path = "support/plant.rs"]
-mod plant;
-
-use draw::{Setting, Tally, count, first_segment, log, margin, runner, setting, state};
+use crate::support::draw::{
+    Setting, Tally, count, first_segment, log, margin, runner, setting, state,
+};
+use crate::support::plant::{Finding, examine, flight, hop, steep, wave};
 use percuss::{Exit, Parameters, Phase, Start};
-use plant::{Finding, examine, flight, hop, steep, wave};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 use std::f64::consts::TAU;

@@ -1,24 +1,11 @@
 //! As `planted.rs`, for the phases on the contact surface: contact and progression.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
-#[path = "support/draw.rs"]
-mod draw;
-#[path = "support/original.rs"]
-mod original;
-#[path = "support/plant.rs"]
-mod plant;
-
-use draw::{Setting, Tally, count, first_segment, log, margin, runner, setting, state};
-use original::Equations;
+use crate::support::draw::{
+    Setting, Tally, count, first_segment, log, margin, runner, setting, state,
+};
+use crate::support::original::Equations;
+use crate::support::plant::{Finding, Side, contact, examine, slip, steep};
 use percuss::{Exit, Parameters, Phase};
-use plant::{Finding, Side, contact, examine, slip, steep};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
 use std::f64::consts::TAU;

@@ -1,19 +1,8 @@
 //! The solver against the proved tables of `reference_data/`.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
-#[path = "support/reference.rs"]
-mod reference;
-
+use crate::support::reference::{self, Row, Table, tables};
 use percuss::two_word::TwoWord;
 use percuss::{Entry, GrowthRecorder, Instant, Model, Segment, Trajectory};
-use reference::{Row, Table, tables};
 
 /// k of the bound |error| <= k eps (1 + |value|) growth switches. Ten roundings a switch is the
 /// promise; what is reached is printed, and stands in the README.

@@ -1,24 +1,11 @@
 //! The remainder functions in f64 against 106 bits.
 //!
-//! `cargo test --release --test remainders -- --nocapture` prints what each reaches.
+//! `cargo test --release --test library remainders:: -- --nocapture` prints what each reaches.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
-#[path = "../validation/src/truth/double_double.rs"]
-mod double_double;
-#[path = "support/random.rs"]
-mod random;
-
-use double_double::DoubleDouble;
+use crate::double_double::DoubleDouble;
+use crate::support::random::Draw;
 use percuss::number::Number;
 use percuss::remainders::{Circular, Decay, circular, circular_of, decay};
-use random::Draw;
 
 const DRAWS: usize = 200_000;
 

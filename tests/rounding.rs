@@ -1,12 +1,5 @@
 //! What the proofs in interval arithmetic (docs/ROUNDING.md) have found.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a panic is a failed test"
-)]
-
 use percuss::{Model, Motion, Parameters, Start};
 
 fn start(p: f64, y: f64, q: f64, tau: f64) -> Start {

@@ -1,17 +1,8 @@
 //! The strobe map against the run it is made from.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a panic is a failed test"
-)]
-#[path = "support/random.rs"]
-mod random;
-
+use crate::support::random::Draw;
 use percuss::dynamics::strobe::StrobeMap;
 use percuss::{Entry, Exit, GrowthRecorder, Instant, Model, Parameters, Phase, Start};
-use random::Draw;
 
 /// Roundings of a phase taken up again: the state's, and those of the form evaluated from there;
 /// the solver's own constant is 0.5 (`validate`).

@@ -5,22 +5,10 @@
 //! chosen one has a chosen sign. The expected phase follows from that sign, and is confirmed by an
 //! integration of the equations of contact, which shares nothing with the solver.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "each test uses a part of its support; a panic is a failed test"
-)]
-
-#[path = "support/original.rs"]
-mod original;
-#[path = "support/random.rs"]
-mod random;
-
-use original::Equations;
+use crate::support::original::Equations;
+use crate::support::random::Draw;
 use percuss::two_word::TwoWord;
 use percuss::{Entry, Exit, Model, Parameters, Phase, Start};
-use random::Draw;
 use std::f64::consts::PI;
 
 /// Starts for every derivative, threshold and sign.

@@ -4,13 +4,8 @@
 //! the rounding room that the solver allows itself: four eps times the largest sum of the guard's
 //! terms.
 
-#![allow(clippy::unwrap_used, reason = "a panic is a failed test")]
-
-#[path = "support/random.rs"]
-mod random;
-
+use crate::support::random::Draw;
 use percuss::{Model, Parameters, Phase, Start};
-use random::Draw;
 use std::f64::consts::PI;
 
 const EPS: f64 = f64::EPSILON;

@@ -1,7 +1,5 @@
 //! The derivative of the motion over impacts and other switches, against differences of the motion.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is a failed test")]
-
 use percuss::two_word::TwoWord;
 use percuss::variation::{ANGLE, IDENTITY, Matrix, P, Q, V, Y, product};
 use percuss::{Exit, Model, Parameters, Phase, Start};

@@ -1,8 +1,7 @@
 //! Random phases in every regime: the same start in f64 and, exactly consistent, in double-double.
-#![allow(dead_code)] // every test uses its own part
 
+use super::random::Draw;
 use crate::double_double::DoubleDouble;
-use crate::random::Draw;
 use percuss::flow::contact::Contact;
 use percuss::flow::forcing::EntryAngle;
 use percuss::flow::no_contact::NoContact;

@@ -1,5 +1,4 @@
 //! Random numbers for tests that print what they reach.
-#![allow(dead_code)] // every test uses its own part
 
 /// A small generator (SplitMix64): the tests draw the same cases everywhere.
 pub struct Draw(pub u64);

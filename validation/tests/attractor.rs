@@ -1,7 +1,5 @@
 //! The same-attractor test catches a model that is slightly different, and lets the right one pass.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
 use percuss_validation::case::{Case, embedded};
 use percuss_validation::score::attractor::{
     Alarms, AttractorTest, Calibrated, Changed, STATISTICS, calibrated,

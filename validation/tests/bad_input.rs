@@ -1,11 +1,7 @@
 //! Every flag and field of the contract out of its range, not a number, infinite, missing,
 //! contradictory; files that cannot be read or written: exit 2 and one line that names the culprit.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
-use support::{refused, run};
+use crate::support::{refused, run};
 
 /// Flag, and what is beyond its range on either side.
 const RANGES: [(&str, &[&str]); 11] = [

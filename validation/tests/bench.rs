@@ -1,11 +1,8 @@
 //! `bench`: a wrong answer has no time, versions are held against each other, and what is given
 //! wrongly is refused.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod exact;
-mod support;
-
+use crate::exact;
+use crate::support::{refused, run, stdout, text};
 use percuss_validation::bench::alone::alone;
 use percuss_validation::bench::cases::USUAL;
 use percuss_validation::bench::contest::{contest_at, most_accurate};
@@ -14,7 +11,6 @@ use percuss_validation::bench::course::Course;
 use percuss_validation::engine::{Accuracy, CONTROL, Engine, Limits, Location, Script, all, wrong};
 use percuss_validation::truth::Library;
 use std::path::{Path, PathBuf};
-use support::{refused, run, stdout, text};
 
 fn course(name: &str) -> Course {
     let library = Library::embedded().expect("the tables are read");

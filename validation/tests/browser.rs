@@ -1,15 +1,12 @@
 //! `report.html` in a real browser, at a desk's and at a telephone's width.
 //!
-//! `cargo test --test browser -- --ignored`, with `chromium` installed.
+//! `cargo test --test harness browser:: -- --ignored`, with `chromium` installed.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support;
+use crate::support::synthetic::{evidence, report};
 use percuss_validation::report::exporters;
 use serde_json::Value;
 use std::process::Command;
-use support::synthetic::{evidence, report};
 
 /// Uses the page in a frame of a given width and writes down what it sees.
 const PROBE: &str = r##"<!doctype html><meta charset="utf-8"><iframe id="frame" src="page.html#verdict=fail" style="border:0;width:WIDTHpx;height:900px"></iframe>

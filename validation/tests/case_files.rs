@@ -1,12 +1,8 @@
 //! Case files and reference data that are wrong: exit 2, one line, with file and line.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support::{refused, run};
 use std::fs;
 use std::path::{Path, PathBuf};
-use support::{refused, run};
 
 fn package() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))

@@ -1,18 +1,15 @@
 //! docs/COMMAND_LINE.md has a section for every verb and no other, names every flag and no other,
 //! and its examples print what they show.
 //!
-//! `PERCUSS_SPLICE=1 cargo test --test command_line` writes the examples' output anew. A line `...`
-//! stands for any number of lines; splicing keeps as many lines before and after it as there are.
+//! `PERCUSS_SPLICE=1 cargo test --test harness command_line::` writes the examples' output anew. A
+//! line `...` stands for any number of lines; splicing keeps as many lines before and after it as
+//! there are.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support::{percuss, text};
 use clap::Command;
 use percuss_validation::cli::command;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use support::{percuss, text};
 
 const GAP: &str = "...";
 
@@ -184,7 +181,10 @@ fn examples_print_what_they_show() {
     if std::env::var_os("PERCUSS_SPLICE").is_some() {
         std::fs::write(page(), &whole).expect("written");
     } else if cfg!(all(target_arch = "x86_64", target_os = "linux")) {
-        assert!(page_text == whole, "PERCUSS_SPLICE=1 cargo test --test command_line:\n{whole}");
+        assert!(
+            page_text == whole,
+            "PERCUSS_SPLICE=1 cargo test --test harness command_line:::\n{whole}"
+        );
     }
 }
 

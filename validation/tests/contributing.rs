@@ -1,11 +1,7 @@
 //! The transcripts of CONTRIBUTING.md, done as they say.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support::{percuss, text};
 use std::path::{Path, PathBuf};
-use support::{percuss, text};
 
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")

@@ -2,18 +2,10 @@
 //! refuse, and their arrays, read back by a library and byte by byte against NumPy's published
 //! format.
 
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "a panic is a failed test"
-)]
-
-mod support;
-
+use crate::support;
+use crate::support::{run, stdout, text};
 use std::io::{Cursor, Read};
 use std::path::Path;
-use support::{run, stdout, text};
 
 const SURVEY: [&str; 11] = [
     "basins",

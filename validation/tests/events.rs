@@ -1,9 +1,6 @@
 //! Pictures of missed and spurious events, made from runs as `validate` makes them.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod exact;
-
+use crate::exact;
 use percuss::Phase;
 use percuss_validation::case::defaults;
 use percuss_validation::engine::select;

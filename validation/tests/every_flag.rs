@@ -1,13 +1,9 @@
 //! Every flag of every verb with odd values: exit 2, and one line that names the flag, the value as
 //! typed and what is accepted. Flags that would have no effect are refused too.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support::{refused, run, text};
 use clap::Command;
 use percuss_validation::cli::command;
-use support::{refused, run, text};
 
 /// Each verb with flags that make it complete; a flag under test takes the place of its own pair.
 const VERBS: [(&str, &[(&str, &str)]); 18] = [

@@ -1,12 +1,5 @@
 //! docs/FINDINGS.md: its commands choose rows that exist, and its programs are as it describes.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::unwrap_used,
-    reason = "a panic is a failed test"
-)]
-
 use percuss_validation::case::embedded;
 use percuss_validation::engine::all;
 use std::collections::BTreeSet;

@@ -1,12 +1,9 @@
 //! The JSON that the program writes, held to the schemas of the repository.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support;
+use crate::support::stdout;
 use serde_json::Value;
 use std::path::Path;
-use support::stdout;
 
 fn json(text: &str) -> Value {
     serde_json::from_str(text).expect("JSON")

@@ -3,10 +3,7 @@
 //! The harness follows perturbations along the truth's rows with matrix exponentials of the linear
 //! phases; the solver multiplies the derivatives of its closed forms.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod exact;
-
+use crate::exact;
 use percuss::number::Number;
 use percuss::two_word::TwoWord;
 use percuss::variation::{ANGLE, IDENTITY, Matrix, P, Q, V, Y, product, times};

@@ -1,11 +1,8 @@
 //! The valid horizon of the exact solver in chaos, and of the truth itself.
 //!
-//! `cargo test --release --test horizon -- --nocapture` prints the figures.
+//! `cargo test --release --test harness horizon:: -- --nocapture` prints the figures.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod exact;
-
+use crate::exact;
 use percuss::number::Number;
 use percuss_validation::case::Problem;
 use percuss_validation::score::{HorizonTest, far_apart};

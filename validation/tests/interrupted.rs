@@ -1,10 +1,6 @@
 //! An interrupted run leaves the old file or none, and says by its exit code what ended it.
 
-#![cfg(unix)]
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support;
 use rustix::process::{Pid, Signal, kill_process};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};

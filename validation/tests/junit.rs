@@ -1,14 +1,10 @@
 //! `junit.xml` and annotations, through the real binary.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support::{percuss, text};
 use quick_junit::{NonSuccessKind, Report, TestCaseStatus};
 use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
-use support::{percuss, text};
 
 /// `small-b`, where no engine is accurate enough; the reason holds what formats have to escape.
 fn failing_case(folder: &Path) -> PathBuf {

@@ -1,11 +1,7 @@
 //! `orbit` and `continue` as users and scripts rely on them.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support::{refused, run, text};
 use serde_json::Value;
-use support::{refused, run, text};
 
 /// Digits that do not depend on the platform: the last ones are those of its sine and exponential,
 /// times the orbit's sensitivity.

@@ -1,7 +1,5 @@
 //! Every engine that is wrong on purpose fails a bound, and every gate has a fault that trips it.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
 use percuss::{Model, Parameters, Start};
 use percuss_validation::case::{Case, defaults, embedded};
 use percuss_validation::engine::{Accuracy, CONTROL, FAULTY_CONTROL, Wrong, faulty, wrong};

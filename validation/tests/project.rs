@@ -1,9 +1,6 @@
 //! What the project says of itself is what its program says.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support;
 use percuss_validation::case::embedded;
 use percuss_validation::engine::all;
 use percuss_validation::suite::{Suite, size};
@@ -34,7 +31,7 @@ fn ci_runs_the_readmes_commands() {
 }
 
 /// A block between `<!-- begin: cargo run --release -- ARGS -->` and `<!-- end -->` holds, fenced,
-/// what ARGS print. `PERCUSS_SPLICE=1 cargo test --test project` writes them anew.
+/// what ARGS print. `PERCUSS_SPLICE=1 cargo test --test harness project::` writes them anew.
 ///
 /// The last digits of an integrator's error are those of one platform's sine.
 #[test]
@@ -62,7 +59,10 @@ fn the_readmes_blocks_are_what_their_commands_print() {
     if std::env::var_os("PERCUSS_SPLICE").is_some() {
         std::fs::write(root().join("README.md"), &spliced).expect("README.md can be written");
     } else {
-        assert_eq!(readme, spliced, "PERCUSS_SPLICE=1 cargo test --test project makes them equal");
+        assert_eq!(
+            readme, spliced,
+            "PERCUSS_SPLICE=1 cargo test --test harness project:: makes them equal"
+        );
     }
 }
 
@@ -129,6 +129,27 @@ fn comments_are_at_most_100_columns_wide() {
         wide.extend(lines.map(|(n, _)| format!("{}:{}", path.display(), n + 1)));
     }
     assert!(wide.is_empty(), "{wide:#?}");
+}
+
+/// A file of tests that its program does not name would not run, and nobody would know.
+#[test]
+fn every_file_of_tests_is_in_its_program() {
+    for package in ["", "validation"] {
+        let folder = root().join(package).join("tests");
+        let manifest = read(Path::new(package).join("Cargo.toml").to_str().expect("a path"));
+        let program =
+            std::fs::read_to_string(folder.join("main.rs")).expect("the program is there");
+        for entry in std::fs::read_dir(&folder).expect("the folder is there") {
+            let name = entry.expect("the entry is readable").file_name();
+            let name = name.to_string_lossy();
+            let Some(stem) = name.strip_suffix(".rs").filter(|stem| *stem != "main") else {
+                continue;
+            };
+            let own = manifest.contains(&format!("path = \"tests/{name}\""));
+            let part = program.lines().any(|line| line == format!("mod {stem};"));
+            assert!(own || part, "{package} tests/{name}: main.rs does not name it");
+        }
+    }
 }
 
 /// The relative links of a page, without the anchors in them.

@@ -1,11 +1,8 @@
 //! The run in 106 bits against the proved digits of `reference_data/`.
 //!
-//! `cargo test --release --test replay -- --nocapture` prints what is reached.
+//! `cargo test --release --test harness replay:: -- --nocapture` prints what is reached.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod exact;
-
+use crate::exact;
 use percuss::Start;
 use percuss::two_word::TwoWord;
 use percuss_validation::case::{Case, Given, embedded};

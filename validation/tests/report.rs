@@ -1,14 +1,11 @@
 //! `report.html` and the pictures beside it, full, empty, and with numbers that are not finite.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support;
+use crate::support::synthetic::{NASTY, evidence, report};
 use percuss_validation::report::{Evidence, Report, exporters, pictures};
 use percuss_validation::score::Verdict;
 use serde_json::Value;
 use std::path::Path;
-use support::synthetic::{NASTY, evidence, report};
 
 fn written(name: &str, report: &Report, evidence: &Evidence) -> String {
     let exporter = exporters().iter().find(|it| it.file_name() == name).expect("the format");

@@ -1,20 +1,11 @@
 //! `reproduce`: what it writes, what it refuses, and that the documentation tells what it found.
 
-#![allow(
-    clippy::expect_used,
-    clippy::panic,
-    clippy::unwrap_used,
-    reason = "a panic is a failed test"
-)]
-
-mod support;
-
+use crate::support::{run, text};
 use percuss_validation::reproduce::items;
 use percuss_validation::reproduce::paper::Paper;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use support::{run, text};
 
 const REPRODUCED: &str = "reproduced";
 const DIFFERS: &str = "differs";
@@ -167,7 +158,7 @@ fn every_verdict_is_the_documented_one() {
 }
 
 /// The table in docs/REPRODUCTION.md is made from docs/claims.json: `PERCUSS_SPLICE=1 cargo test
-/// --test reproduce` writes it anew.
+/// --test harness reproduce::` writes it anew.
 #[test]
 fn the_page_tells_the_documented_claims() {
     const BEGIN: &str = "<!-- begin: claims -->\n";
@@ -197,7 +188,10 @@ fn the_page_tells_the_documented_claims() {
     if std::env::var_os("PERCUSS_SPLICE").is_some() {
         std::fs::write(&path, &spliced).expect("written");
     } else {
-        assert!(page == spliced, "PERCUSS_SPLICE=1 cargo test --test reproduce makes them equal");
+        assert!(
+            page == spliced,
+            "PERCUSS_SPLICE=1 cargo test --test harness reproduce:: makes them equal"
+        );
     }
 }
 

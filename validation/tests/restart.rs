@@ -1,12 +1,9 @@
 //! The restart test of the exact solver on every case, one by one and in lanes.
 //!
-//! `cargo test --release --test restart -- --nocapture` prints the figures of every case; with
-//! `--ignored` from ten thousand states each.
+//! `cargo test --release --test harness restart:: -- --nocapture` prints the figures of every case;
+//! with `--ignored` from ten thousand states each.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod exact;
-
+use crate::exact;
 use percuss::lanes::Instructions;
 use percuss::{Parameters, Phase};
 use percuss_validation::case::{Case, Problem, embedded};

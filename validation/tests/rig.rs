@@ -1,14 +1,10 @@
 //! The commands of docs/RIG.md, run as they stand there, and the numbers that the page takes from
 //! them.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support::{number, percuss, rows, text};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
-use support::{number, percuss, rows, text};
 
 fn page() -> String {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/RIG.md");

@@ -1,12 +1,8 @@
 //! `simulate` as users and scripts rely on it.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support::{number, percuss, rows, run, stdout, text};
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Command, Stdio};
-use support::{number, percuss, rows, run, stdout, text};
 
 /// Table 1 of the paper: phase, tau, p, y, q.
 const TABLE_1: [(&str, [f64; 4]); 9] = [

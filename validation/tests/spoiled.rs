@@ -1,7 +1,5 @@
 //! Answers that are spoiled in one way each: none of them passes.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
 use percuss::Phase;
 use percuss_validation::case::{defaults, embedded};
 use percuss_validation::engine::{

@@ -1,8 +1,6 @@
 //! The strobe map's derivative, held against differences in 106 bits: over several periods, for
 //! both targets of an impact, and on both sides of the corner at a graze.
 
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a panic is a failed test")]
-
 use percuss::dynamics::linear::norm;
 use percuss::dynamics::strobe::{Jacobian, Point, StrobeMap};
 use percuss::number::Number;

@@ -1,11 +1,7 @@
 //! Messages, colours, tables for people, completions and manual pages.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support::{percuss, run, stdout, text};
 use percuss_validation::cli::command;
-use support::{percuss, run, stdout, text};
 
 /// A run that ends early and says so.
 const NOTED: [&str; 5] = ["simulate", "--events", "3", "--b", "-0.1"];

@@ -1,12 +1,9 @@
 //! `validate` through the real binary: exit codes, bounds and shortcomings as data.
 
-#![allow(clippy::expect_used, reason = "a panic is a failed test")]
-
-mod support;
-
+use crate::support;
+use crate::support::{run, stdout, text};
 use std::fs;
 use std::path::Path;
-use support::{run, stdout, text};
 
 /// A few regimes serve here, unoptimised: CI runs the whole suite in a release build.
 #[test]

@@ -1,9 +1,6 @@
 //! What the engines count: right-hand sides, Jacobians, linear solves and steps belong together.
 
-#![allow(clippy::expect_used, clippy::panic, reason = "a panic is a failed test")]
-
-mod exact;
-
+use crate::exact;
 use percuss_validation::engine::{Accuracy, Engine, Grid, Limits, Outcome, Stepping, Task, all};
 
 fn outcome(engine: &dyn Engine) -> Outcome {

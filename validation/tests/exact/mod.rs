@@ -1,5 +1,4 @@
 //! The exact solver as the harness runs it, and the problems that cases pose.
-#![allow(dead_code, reason = "each test uses its own part")]
 
 use percuss::lanes::Instructions;
 use percuss_validation::case::{Case, Given, Problem, embedded};

@@ -1,13 +1,5 @@
 //! What the tests of the command share.
 
-#![allow(
-    dead_code,
-    clippy::unwrap_used,
-    clippy::expect_used,
-    clippy::panic,
-    reason = "each test uses a part; a panic is a failed test"
-)]
-
 pub mod synthetic;
 
 use assert_cmd::Command;

@@ -1,0 +1,11 @@
+//! What the tests share.
+
+pub mod draw;
+pub mod draws;
+pub mod graze;
+pub mod original;
+pub mod plant;
+pub mod printed;
+pub mod random;
+pub mod reference;
+pub mod taylor;

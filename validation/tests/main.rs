@@ -1,0 +1,44 @@
+//! The tests of the harness and of the command, in one program: it is linked once, and its tests
+//! share all threads.
+
+#![allow(
+    clippy::unwrap_used,
+    clippy::expect_used,
+    clippy::panic,
+    reason = "a panic is a failed test"
+)]
+
+mod attractor;
+mod bad_input;
+mod bench;
+mod browser;
+mod case_files;
+mod command_line;
+mod contributing;
+mod dynamics_verbs;
+mod events;
+mod every_flag;
+mod findings;
+mod formats;
+mod growth;
+mod horizon;
+#[cfg(unix)]
+mod interrupted;
+mod junit;
+mod orbits;
+mod power;
+mod project;
+mod replay;
+mod report;
+mod reproduce;
+mod restart;
+mod rig;
+mod simulate;
+mod spoiled;
+mod strobe_derivative;
+mod terminal;
+mod validate;
+mod work;
+
+mod exact;
+mod support;
