@@ -79,7 +79,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         let Constants { omega, two_xi, .. } = *self.constants.borrow();
         // Most pieces are short at any of the rates.
         let length = right.elapsed - left.elapsed;
-        if length * two_xi.max(omega).max(1.0) <= FEW {
+        if length <= FEW && length * two_xi <= FEW && length * omega <= FEW {
             return 0.0;
         }
         self.room_of_a_long_piece(left, right)
