@@ -47,7 +47,7 @@ struct Arguments {
     #[arg(long, value_delimiter = ',')]
     skip: Vec<String>,
     /// How many times its time without a fault a test program may take.
-    #[arg(long, default_value_t = 20.0)]
+    #[arg(long, default_value_t = 4.0)]
     patience: f64,
     /// The folder for the copied sources and for the table `faults.csv`.
     #[arg(long, default_value = "target/faults")]
