@@ -30,11 +30,13 @@ pub const VALIDATION: &str = "percuss-validation";
 /// Everything that the solver can do is tested.
 const FEATURES: [&str; 2] = ["--features", "lanes,parallel"];
 
-/// A test program.
+/// A test program, or a module of one.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// The name of its target.
+    /// The name of the target.
     pub name: String,
+    /// The module whose tests are run; `None` runs all tests.
+    pub module: Option<String>,
     /// The program.
     pub path: PathBuf,
     /// The folder it is run in.
@@ -152,11 +154,17 @@ pub fn programs(scratch: &Path, package: &str) -> Result<Vec<Program>> {
             continue;
         };
         let manifest = PathBuf::from(it["manifest_path"].as_str().unwrap_or_default());
-        programs.push(Program {
+        let program = Program {
             name: it["target"]["name"].as_str().unwrap_or_default().to_owned(),
+            module: None,
             path: path.into(),
             folder: manifest.parent().unwrap_or(scratch).to_owned(),
-        });
+        };
+        if it["target"]["kind"] == serde_json::json!(["test"]) {
+            programs.extend(modules(program)?);
+        } else {
+            programs.push(program);
+        }
     }
     if programs.is_empty() {
         bail!("{package} has no test programs");
@@ -184,4 +192,28 @@ fn cargo(scratch: &Path, arguments: &[&str]) -> Result<Vec<Value>> {
         bail!("cargo {} failed", arguments.join(" "));
     }
     Ok(messages)
+}
+
+/// The modules of a program that holds the tests of many files, so that the quickest ones can be
+/// asked first; the program itself if it does not list its tests.
+fn modules(program: Program) -> Result<Vec<Program>> {
+    let list = Command::new(&program.path)
+        .arg("--list")
+        .current_dir(&program.folder)
+        .stdin(Stdio::null())
+        .output()
+        .with_context(|| program.path.display().to_string())?;
+    let list = String::from_utf8_lossy(&list.stdout).into_owned();
+    let tests = list.lines().filter_map(|line| line.strip_suffix(": test"));
+    let modules: BTreeSet<&str> =
+        tests.filter_map(|test| test.split_once("::").map(|(module, _)| module)).collect();
+    if modules.is_empty() {
+        return Ok(vec![program]);
+    }
+    let one = |module: &str| Program {
+        name: format!("{} {module}", program.name),
+        module: Some(format!("{module}::")),
+        ..program.clone()
+    };
+    Ok(modules.into_iter().map(one).collect())
 }

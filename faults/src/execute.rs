@@ -53,6 +53,7 @@ fn start(program: &Program, fault: u32, limit: Option<u64>) -> Result<Child> {
         .arg("-c")
         .arg(format!("ulimit -v {MEMORY}; ulimit -t {time}; exec \"$0\" \"$@\""))
         .arg(&program.path)
+        .args(&program.module)
         .env("PERCUSS_FAULT", fault.to_string())
         .env("CARGO_MANIFEST_DIR", &program.folder)
         // The same cases every time, and none made smaller: a failure is enough.
