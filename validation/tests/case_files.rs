@@ -32,12 +32,12 @@ fn fields_that_are_wrong() {
         (
             "[horizon]",
             "[[bounds]]\nengine = \"(\"\nquantity = \"state_error\"\nstatistic = \"max\"\nlimit = 1\nwhy = \"-\"\n[horizon]",
-            &["engine \"(\"", "regular expression"],
+            &["small-b.toml:", "engine = \"(\" is not accepted: a string, a regular expression"],
         ),
         (
             "[horizon]",
             "[[shortcomings]]\nengine = \"x\"\nwhy = \"-\"\n[horizon]",
-            &["shortcomings", "quantity"],
+            &["quantity is missing here; accepted is a string, one of its names"],
         ),
         (
             "[horizon]",
@@ -51,13 +51,30 @@ fn fields_that_are_wrong() {
     }
     let bound = "[[bounds]]\nengine = \"x\"\nquantity = \"state_error\"\nstatistic = \"max\"\nlimit = LIMIT\nwhy = \"-\"\n";
     for (from, to, wanted) in [
-        ("LIMIT", "nan", "limit = nan"),
+        ("LIMIT", "nan", "limit = nan is not accepted: a number"),
+        ("limit = LIMIT\n", "", "limit is missing here; accepted is a number"),
+        ("why = \"-\"\n", "", "why is missing here; accepted is a string"),
         ("max", "mean", "mean"),
         ("state_error", "speed", "speed"),
     ] {
         let bound = bound.replace(from, to).replace("LIMIT", "1");
         let cases = changed(folder.path(), |text| text + &bound);
         refused(&["validate", "--cases", &cases], &["small-b.toml:", wanted]);
+    }
+}
+
+#[test]
+fn a_wrong_key_of_a_bound_is_named_with_its_own_line() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let bound = "[[bounds]]\nengine = \"x\"\nquantity = \"state_error\"\nstatistic = \"max\"\nlimit = 1\nwhy = \"-\"\n";
+    for (key, from, to) in [("engine", "\"x\"", "\"(\""), ("limit", "= 1", "= nan")] {
+        let wrong = bound.replacen(from, to, 1);
+        let cases = changed(folder.path(), |text| text + &wrong);
+        let text = fs::read_to_string(folder.path().join("small-b.toml")).expect("read");
+        let lines: Vec<_> = text.lines().collect();
+        let place = lines.iter().rposition(|line| line.starts_with(key)).expect("the key");
+        let wanted = format!("small-b.toml:{}: {key} = ", place + 1);
+        refused(&["validate", "--cases", &cases], &[&wanted]);
     }
 }
 

@@ -12,6 +12,8 @@ pub fn accepted(name: &str) -> Option<&'static str> {
         "valid_within" => Some("an integer, 1 to 1000"),
         "phase" => Some("\"no-contact\", \"contact\" or \"progression\""),
         "margin" => Some("a finite number"),
+        "limit" | "at_least" | "at_most" => Some("a number"),
+        "engine" | "case" => Some("a string, a regular expression of whole names"),
         name => Parameter::named(name).map_or_else(|| of_start(name), of_parameter),
     }
 }

@@ -22,7 +22,8 @@ pub enum Quantity {
     /// Largest error of a switch's time or state over unit x (1 + |value|) x growth x number of
     /// switches.
     EventConstant,
-    /// The same of the sample's states.
+    /// Largest error of the sample's states over unit x (1 + |value|) x growth x number of
+    /// switches.
     StateConstant,
     /// Forcing periods until the state's error passes 1e-3 (a lower limit).
     ValidPeriods,

@@ -10,7 +10,7 @@ use toml::Spanned;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BoundsFile {
-    bounds: Vec<Spanned<BoundTable>>,
+    bounds: Vec<BoundTable>,
 }
 
 /// What is expected of engines on every case, after what the case says itself.
@@ -22,7 +22,7 @@ pub struct Defaults {
     pub shortcomings: Vec<Shortcoming>,
 }
 
-/// One or several.
+/// One number, or a list of numbers.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "accepted is a number or a list of numbers")]
 enum Several {
@@ -33,12 +33,12 @@ enum Several {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table, [[bounds]]")]
 pub(super) struct BoundTable {
-    engine: String,
+    engine: Spanned<String>,
     tolerance: Option<Several>,
     step: Option<Several>,
     quantity: Quantity,
     statistic: Statistic,
-    limit: f64,
+    limit: Spanned<f64>,
     #[serde(default)]
     times_tolerance: bool,
     why: String,
@@ -47,13 +47,13 @@ pub(super) struct BoundTable {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table, [[shortcomings]]")]
 pub(super) struct ShortcomingTable {
-    case: Option<String>,
-    engine: String,
+    case: Option<Spanned<String>>,
+    engine: Spanned<String>,
     tolerance: Option<Several>,
     step: Option<Several>,
     quantity: Quantity,
     statistic: Option<Statistic>,
-    at_least: f64,
+    at_least: Spanned<f64>,
     at_most: f64,
     why: String,
 }
@@ -77,53 +77,62 @@ fn accuracies(tolerance: Option<Several>, step: Option<Several>) -> Vec<Accuracy
 }
 
 impl Source<'_> {
-    pub(super) fn bound(&self, item: Spanned<BoundTable>) -> Result<Bound, FileError> {
-        let engine = self.regex(&item, "engine", &item.get_ref().engine)?;
-        if item.get_ref().limit.is_nan() {
-            return Err(self.error(&item, "limit = nan is not accepted: a number"));
+    pub(super) fn bound(&self, table: BoundTable) -> Result<Bound, FileError> {
+        let engine = self.regex("engine", &table.engine)?;
+        if table.limit.get_ref().is_nan() {
+            return Err(self.refused("limit", &table.limit));
         }
-        let table = item.into_inner();
         Ok(Bound {
             engine,
             at: accuracies(table.tolerance, table.step),
             quantity: table.quantity,
             statistic: table.statistic,
-            limit: table.limit,
+            limit: table.limit.into_inner(),
             times_tolerance: table.times_tolerance,
             why: table.why,
         })
     }
 
-    pub(super) fn shortcoming(
-        &self,
-        item: Spanned<ShortcomingTable>,
-    ) -> Result<Shortcoming, FileError> {
-        let table = item.get_ref();
-        let engine = self.regex(&item, "engine", &table.engine)?;
-        let case = table.case.as_ref().map(|it| self.regex(&item, "case", it)).transpose()?;
-        let (at_least, at_most) = (table.at_least, table.at_most);
-        // Written so that a NaN is refused.
-        let ordered = at_least <= at_most;
-        if !ordered {
-            let what = format!(
-                "at_least = {at_least:?} and at_most = {at_most:?} are not accepted: a floor and a \
-                 ceiling above it"
-            );
-            return Err(self.error(&item, &what));
-        }
-        let ShortcomingTable { tolerance, step, quantity, statistic, why, .. } = item.into_inner();
-        let (at, statistic) = (accuracies(tolerance, step), statistic.unwrap_or(Statistic::Value));
-        Ok(Shortcoming { case, engine, at, quantity, statistic, at_least, at_most, why })
-    }
-
-    pub(super) fn regex<T>(
-        &self,
-        item: &Spanned<T>,
-        of: &str,
-        pattern: &str,
-    ) -> Result<Regex, FileError> {
-        Regex::new(&format!("^(?:{pattern})$")).map_err(|_| {
-            self.error(item, &format!("{of} {pattern:?} is not accepted: a regular expression"))
+    pub(super) fn shortcoming(&self, table: ShortcomingTable) -> Result<Shortcoming, FileError> {
+        let ShortcomingTable { at_least, at_most, quantity, why, .. } = table;
+        self.range(&at_least, *at_least.get_ref(), at_most)?;
+        Ok(Shortcoming {
+            case: table.case.map(|case| self.regex("case", &case)).transpose()?,
+            engine: self.regex("engine", &table.engine)?,
+            at: accuracies(table.tolerance, table.step),
+            quantity,
+            statistic: table.statistic.unwrap_or(Statistic::Value),
+            at_least: at_least.into_inner(),
+            at_most,
+            why,
         })
     }
+
+    /// Refuses a range between a floor and a ceiling that holds no number.
+    pub(super) fn range<T>(
+        &self,
+        place: &Spanned<T>,
+        at_least: f64,
+        at_most: f64,
+    ) -> Result<(), FileError> {
+        // Written so that a NaN is refused.
+        let ordered = at_least <= at_most;
+        if ordered {
+            return Ok(());
+        }
+        let what = format!(
+            "at_least = {at_least:?} and at_most = {at_most:?} are not accepted: a floor and a \
+             ceiling above it"
+        );
+        Err(self.error(place, &what))
+    }
+
+    fn regex(&self, key: &str, pattern: &Spanned<String>) -> Result<Regex, FileError> {
+        whole(pattern.get_ref()).map_err(|_| self.refused(key, pattern))
+    }
+}
+
+/// A pattern of whole names.
+pub(super) fn whole(pattern: &str) -> Result<Regex, regex::Error> {
+    Regex::new(&format!("^(?:{pattern})$"))
 }

@@ -1,6 +1,7 @@
 //! `shortcomings.toml`: known shortcomings of engines on the cases inside the binary, row by row.
 
 use super::bound::{Quantity, Shortcoming, Statistic};
+use super::expectations::whole;
 use super::located::{FileError, Source};
 use crate::engine::Accuracy;
 use regex::Regex;
@@ -14,7 +15,7 @@ struct KnownFile {
     defects: Vec<DefectTable>,
 }
 
-/// One defect of an engine with every row on which it shows.
+/// A defect of an engine with every row on which it shows.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct DefectTable {
@@ -50,14 +51,10 @@ impl Source<'_> {
         row: &Spanned<KnownRow>,
     ) -> Result<Shortcoming, FileError> {
         let (ref case, setting, quantity, statistic, at_least, at_most) = *row.get_ref();
-        // Written so that a NaN is refused.
-        let ordered = at_least <= at_most;
-        if !ordered {
-            let what =
-                format!("{at_least:?} to {at_most:?} is not accepted: a floor and a ceiling");
-            return Err(self.error(row, &what));
-        }
-        let exactly = |name: &str| self.regex(row, "a name", &regex::escape(name));
+        self.range(row, at_least, at_most)?;
+        let exactly = |name: &str| {
+            whole(&regex::escape(name)).map_err(|error| self.error(row, &error.to_string()))
+        };
         let pattern: Regex = exactly(case)?;
         let accuracy =
             if setting < 0.0 { Accuracy::Step(-setting) } else { Accuracy::Tolerance(setting) };

@@ -28,7 +28,10 @@ impl FileError {
             Some((found, expected)) if found.starts_with("invalid type: ") => {
                 wrong_type(text, span, expected)
             }
-            _ => format!("{message}: {}", text.lines().nth(line - 1).unwrap_or_default()),
+            _ => match message.strip_prefix("missing field `") {
+                Some(key) => missing(key.trim_end_matches('`')),
+                None => format!("{message}: {}", text.lines().nth(line - 1).unwrap_or_default()),
+            },
         };
         Self(one_line(&format!("{file}:{line}: {what}")))
     }
@@ -73,6 +76,17 @@ impl Source<'_> {
     }
 }
 
+/// A key that has to be there, with what it takes.
+fn missing(key: &str) -> String {
+    let accepted = accepted(key).unwrap_or(match key {
+        "horizon" => "a table, [horizon], with periods or until",
+        "rows" => "a list of rows",
+        "quantity" | "statistic" => "a string, one of its names",
+        _ => "a string",
+    });
+    format!("{key} is missing here; accepted is {accepted}")
+}
+
 /// `key = value is not accepted: a type`, with the range where the key has one.
 fn wrong_type(text: &str, span: Range<usize>, expected: &str) -> String {
     let before = text.get(..span.start).unwrap_or_default();
@@ -103,7 +117,8 @@ pub(crate) fn line_of(text: &str, offset: usize) -> usize {
     1 + text.bytes().take(offset).filter(|byte| *byte == b'\n').count()
 }
 
-/// Where each name's value came from, `--xi` or `file.toml:7: xi =`, and how it was typed there.
+/// The place from which each name's value came, `--xi` or `file.toml:7: xi =`, and how it was typed
+/// there.
 #[derive(Clone, Debug, Default)]
 pub struct Origins(BTreeMap<&'static str, Origin>);
 

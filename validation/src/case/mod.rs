@@ -21,16 +21,16 @@ pub use wire::{parse_case, parse_problem, read_problem};
 
 use percuss::{Parameters, Start};
 
-/// Where a run ends.
+/// The end of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Horizon {
     /// This many forcing periods after the start.
     Periods(u32),
-    /// At this time tau.
+    /// The run ends at this time tau.
     Until(f64),
 }
 
-/// One case of the harness.
+/// A case of the harness.
 #[derive(Clone, Debug)]
 pub struct Case {
     /// Name, as in `-c` and in the reference data's file names.
@@ -43,8 +43,8 @@ pub struct Case {
     pub regime: String,
     /// Why it is here.
     pub why: String,
-    /// Of a near miss or light touch: how far the gap's first maximum reaches beyond the surface
-    /// (negative: stays short of it), units of displacement.
+    /// The margin of a near miss or light touch: how far the gap's first maximum reaches beyond the
+    /// surface (negative: stays short of it), units of displacement.
     pub margin: Option<f64>,
     /// The model, checked.
     pub parameters: Parameters,

@@ -13,7 +13,7 @@ pub struct Probed {
     /// Whether integrators and wrong engines too restart from states on its attractor and, where
     /// its section has calibrated limits, run for long.
     pub integrators: bool,
-    /// Of a chaotic case: forcing periods within which every error of eps grows to 1e-3. Valid
+    /// The forcing periods of a chaotic case within which every error of eps grows to 1e-3. Valid
     /// horizons are measured in runs as long as that.
     pub valid_within: Option<u32>,
 }

@@ -10,7 +10,7 @@ pub struct Given {
     pub parameters: Parameters,
     /// The start.
     pub start: Start,
-    /// Where each value came from.
+    /// The place from which each value came.
     pub origins: Origins,
 }
 

@@ -26,9 +26,9 @@ struct CaseFile {
     #[serde(default)]
     probes: ProbesTable,
     #[serde(default)]
-    bounds: Vec<Spanned<BoundTable>>,
+    bounds: Vec<BoundTable>,
     #[serde(default)]
-    shortcomings: Vec<Spanned<ShortcomingTable>>,
+    shortcomings: Vec<ShortcomingTable>,
 }
 
 /// A problem file; a harness case serves as one, and its other tables are left alone.
@@ -108,6 +108,10 @@ pub fn parse_problem(file: &str, text: &str) -> Result<Given, FileError> {
     let source = Source { file, text };
     let file: ProblemFile = source.parse()?;
     source.given(file.parameters, file.start)
+}
+
+fn each<T, U, E>(list: Vec<T>, check: impl Fn(T) -> Result<U, E>) -> Result<Vec<U>, E> {
+    list.into_iter().map(check).collect()
 }
 
 impl Source<'_> {
@@ -190,16 +194,8 @@ pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
         start: given.start,
         horizon,
         probed: source.probed(&wire.probes)?,
-        bounds: wire
-            .bounds
-            .into_iter()
-            .map(|bound| source.bound(bound))
-            .collect::<Result<_, _>>()?,
-        shortcomings: wire
-            .shortcomings
-            .into_iter()
-            .map(|it| source.shortcoming(it))
-            .collect::<Result<_, _>>()?,
+        bounds: each(wire.bounds, |it| source.bound(it))?,
+        shortcomings: each(wire.shortcomings, |it| source.shortcoming(it))?,
     })
 }
 
