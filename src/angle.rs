@@ -73,7 +73,7 @@ fn less_turns(rest: TwoWord, whole: f64) -> TwoWord {
     TwoWord::sum(sum.high, sum.low + (rest.low - whole * THIRD))
 }
 
-/// Of more than 2^53 turns the first count is off by some.
+/// Takes whole turns off again, because a count of more than 2^53 turns is off by some.
 #[cold]
 #[inline(never)]
 fn wrap_again(turns: i128, rest: TwoWord) -> (i128, TwoWord) {

@@ -134,7 +134,7 @@ mod tests {
         }
     }
 
-    /// The same in two words: whole quarters of the turn taken off, then the series.
+    /// Sine and cosine in two words: whole quarters of the turn taken off, then the series.
     fn exact(x: f64) -> (TwoWord, TwoWord) {
         let quarters = (x / (0.25 * TWO_PI.high)).round();
         let rest = TwoWord::new(x).minus(TWO_PI.times(0.25 * quarters));

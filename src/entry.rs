@@ -5,7 +5,7 @@ use crate::phase::Phase;
 use crate::state::State;
 use crate::two_word::TwoWord;
 
-/// Where and when a phase begins.
+/// The state and the instant at which a phase begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
     /// When.
@@ -14,12 +14,12 @@ pub struct Entry {
     pub state: State,
     /// Displacement of the slider's bottom, v, in two words: it grows without bound by small steps.
     pub drift: TwoWord,
-    pub(crate) onset: Onset,
+    pub(crate) mode: ModeEntry,
 }
 
 /// How a phase begins: its kind, and what is known exactly at that instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Onset {
+pub(crate) enum ModeEntry {
     /// No contact, the mass away from the slider: only ever at a start.
     Apart,
     /// No contact, on the surface with this rate of h; zero at a separation.
@@ -34,10 +34,10 @@ impl Entry {
     /// The phase that begins.
     #[must_use]
     pub fn phase(&self) -> Phase {
-        match self.onset {
-            Onset::Apart | Onset::Separation { .. } => Phase::NoContact,
-            Onset::Contact { .. } => Phase::Contact,
-            Onset::Progression { .. } => Phase::Progression,
+        match self.mode {
+            ModeEntry::Apart | ModeEntry::Separation { .. } => Phase::NoContact,
+            ModeEntry::Contact { .. } => Phase::Contact,
+            ModeEntry::Progression { .. } => Phase::Progression,
         }
     }
 

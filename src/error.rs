@@ -29,9 +29,9 @@ pub enum InputError {
         phase: Phase,
         /// Which variable would have to move.
         name: &'static str,
-        /// Where it is.
+        /// The value that was given.
         from: f64,
-        /// Where the phase would have it.
+        /// The value that the phase asks for.
         to: f64,
     },
 }

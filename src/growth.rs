@@ -12,11 +12,11 @@ use crate::variation::{IDENTITY, Matrix, P, Q, SwitchDerivative, V, Y, product, 
 /// The growth of tau, p, y, q and v at one switch or sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Growth {
-    /// Of the switch time; of a sample 1.
+    /// The growth of errors of the event's time; 1 for a sample.
     pub tau: f64,
-    /// Of p, y, q.
+    /// The growth of errors of p, y and q.
     pub state: [f64; 3],
-    /// Of the drift.
+    /// The growth of errors of the drift.
     pub v: f64,
 }
 

@@ -84,7 +84,7 @@ impl Instant {
     /// Bounds of [`Self::since`] that cost little.
     #[inline]
     pub(crate) fn since_roughly(&self, earlier: &Self, omega: f64) -> (f64, f64) {
-        /// Some roundings of the whole and of the angles.
+        /// The whole and the angles round a few times.
         const ROOM: f64 = 16.0 * f64::EPSILON;
         let cycles = to_f64(self.cycle.0 - earlier.cycle.0) * TWO_PI.high;
         let radians = cycles + (self.angle.high - earlier.angle.high);
@@ -99,8 +99,8 @@ impl Instant {
         Self::wrapped(self.cycle.0, self.angle.plus_product(elapsed, omega))
     }
 
-    /// The same with the forcing angle there, whose sine does not wait until whole turns have come
-    /// off.
+    /// The instant later, with the forcing angle there, whose sine does not wait until whole turns
+    /// have come off.
     #[inline(always)]
     pub(crate) fn after_with_forcing(
         &self,
@@ -141,7 +141,7 @@ impl Instant {
         EntryAngle { radians: self.radians(phi), sin, cos }
     }
 
-    /// The same within `[0, 2 pi)`, rounded.
+    /// The forcing angle within `[0, 2 pi)`, rounded.
     #[inline(always)]
     fn radians(&self, phi: TwoWord) -> f64 {
         let high = with_phase(self.angle, phi).high;

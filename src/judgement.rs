@@ -19,18 +19,18 @@ use crate::state::State;
 /// How a phase ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Judgement {
-    /// By a crossing.
+    /// The phase ends by a crossing.
     Crossing {
-        /// After this time.
+        /// The elapsed time at which the guard crosses.
         elapsed: f64,
         /// Through the upper threshold.
         rises: bool,
         /// What the rounding of the guard in f64 may move it by.
         width: f64,
     },
-    /// Not before the horizon.
+    /// The phase does not end before the horizon.
     Clear,
-    /// By something that this arithmetic does not decide, or not in so many evaluations.
+    /// This arithmetic does not decide how the phase ends, or not in so many evaluations.
     Undecided,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::angle;
 use crate::constants::Constants;
-use crate::entry::{Entry, Onset};
+use crate::entry::{Entry, ModeEntry};
 use crate::error::InputError;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
@@ -43,13 +43,13 @@ impl<'a> Motion<'a> {
     ) -> Self {
         let entry = begun.state;
         let flight = |surface| Self::NoContact(NoContact { constants, entry, angle, surface });
-        match begun.onset {
-            Onset::Apart => flight(None),
-            Onset::Separation { h_rate } => flight(Some(h_rate)),
-            Onset::Contact { offset, reference } => {
+        match begun.mode {
+            ModeEntry::Apart => flight(None),
+            ModeEntry::Separation { h_rate } => flight(Some(h_rate)),
+            ModeEntry::Contact { offset, reference } => {
                 Self::Contact(Contact { constants, entry, angle, offset, reference })
             }
-            Onset::Progression { drift_rate, closing } => {
+            ModeEntry::Progression { drift_rate, closing } => {
                 Self::Progression(Progression { constants, entry, angle, drift_rate, closing })
             }
         }

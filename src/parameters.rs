@@ -43,7 +43,7 @@ impl Parameters {
     }
 }
 
-/// One of the parameters, by the paper's symbol.
+/// A parameter, named by the paper's symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Parameter {
     /// Amplitude of the harmonic force.
@@ -83,7 +83,7 @@ impl Parameter {
         Self::ALL.into_iter().find(|parameter| parameter.name() == name)
     }
 
-    /// Its value.
+    /// The parameter's value.
     #[must_use]
     pub const fn of(self, parameters: &Parameters) -> f64 {
         match self {

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::str::FromStr;
 
-/// In which of its three ways the oscillator moves.
+/// The three ways in which the oscillator moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Phase {
     /// Mass and slider top move separately, p < q + g (Eq. 11).

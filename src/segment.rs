@@ -3,7 +3,7 @@
 use crate::constants::Constants;
 use crate::crossing::stepping;
 use crate::crossing::{Counters, Crossing};
-use crate::entry::{Entry, Onset};
+use crate::entry::{Entry, ModeEntry};
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::progression::Progression;
@@ -45,19 +45,20 @@ pub enum Endless {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Exit {
-    /// By a switch; the next phase begins so.
+    /// The phase ends by a switch, and the next phase begins at this entry.
     Switch(Entry),
-    /// Not before the horizon; without one, not before a forcing angle of 1e30 has passed.
+    /// The phase does not end before the horizon; without a horizon, not before a forcing angle of
+    /// 1e30 has passed.
     Horizon,
     /// Never: proved.
     Endless(Endless),
-    /// Not decided: the search has taken more work than its limit ([`crate::crossing::limit`])
-    /// because rounding hides what the phase does. It is proved to last for [`Segment::duration`];
-    /// nothing is known of what follows.
+    /// It is not decided how the phase ends: the search has taken more work than its limit
+    /// ([`crate::crossing::limit`]) because rounding hides what the phase does. It is proved to
+    /// last for [`Segment::duration`]; nothing is known of what follows.
     Undecidable,
 }
 
-/// One phase of a run.
+/// A segment of a run: one phase from its entry to its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
     entry: Entry,
@@ -105,7 +106,7 @@ impl Segment {
         Motion::new(&self.constants, &self.entry, self.angle)
     }
 
-    /// Where the phase begins.
+    /// The entry at which the phase begins.
     #[must_use]
     pub fn entry(&self) -> &Entry {
         &self.entry
@@ -130,7 +131,7 @@ impl Segment {
         self.duration.value()
     }
 
-    /// The same in two words.
+    /// The phase's duration in two words.
     #[must_use]
     pub fn duration_two_word(&self) -> TwoWord {
         self.duration
@@ -142,7 +143,8 @@ impl Segment {
         self.at_two_word(TwoWord::new(elapsed))
     }
 
-    /// As [`Self::at`]; late in a long phase the second word of the time matters.
+    /// The state as [`Self::at`] gives it; late in a long phase the second word of the time
+    /// matters.
     fn at_two_word(&self, elapsed: TwoWord) -> Sample {
         let (_, state, drift) = self.shifted_to(elapsed);
         Sample { state, v: drift.value() }
@@ -201,33 +203,33 @@ impl Segment {
         }
         let (point, state, drift) = self.shifted_to(elapsed);
         let guard = point.guard.orders[0] + elapsed.low * point.guard.orders[1];
-        let (state, onset) = match self.motion() {
+        let (state, mode) = match self.motion() {
             Motion::NoContact(flight) => {
                 let constants = &flight.constants;
                 if state.p < state.q + constants.g {
-                    (state, Onset::Apart)
+                    (state, ModeEntry::Apart)
                 } else {
-                    surface::onset(constants, state, None, point.force)
+                    surface::mode_entry(constants, state, None, point.force)
                 }
             }
             Motion::Contact(Contact { constants, reference, .. }) => {
                 let f = reference + guard;
                 if f.min(1.0 - f) > FOUR_ULPS {
-                    (state, Onset::Contact { offset: guard, reference })
+                    (state, ModeEntry::Contact { offset: guard, reference })
                 } else {
-                    surface::onset(constants, state, Some(f), point.force)
+                    surface::mode_entry(constants, state, Some(f), point.force)
                 }
             }
             Motion::Progression(Progression { constants, .. }) => {
                 if guard > FOUR_ULPS * point.guard.largest_term {
                     let closing = point.slider_velocity;
-                    (state, Onset::Progression { drift_rate: guard, closing })
+                    (state, ModeEntry::Progression { drift_rate: guard, closing })
                 } else {
-                    surface::onset(constants, state, None, point.force)
+                    surface::mode_entry(constants, state, None, point.force)
                 }
             }
         };
-        Entry { instant: *instant, state, drift, onset }
+        Entry { instant: *instant, state, drift, mode }
     }
 
     /// How long the phase lasts by plain one-sided stepping (the judge): infinite if it does not

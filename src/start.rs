@@ -1,6 +1,6 @@
 //! Start states as users give them, and the phase in which they begin.
 
-use crate::entry::{Entry, Onset};
+use crate::entry::{Entry, ModeEntry};
 use crate::error::InputError;
 use crate::instant::Instant;
 use crate::model::Model;
@@ -19,7 +19,7 @@ pub struct Start {
     pub cycle: i64,
     /// Displacement of the mass, -1e9 to 1e9.
     pub p: f64,
-    /// Its velocity, -1e9 to 1e9.
+    /// The velocity of the mass, -1e9 to 1e9.
     pub y: f64,
     /// Displacement of the slider's top, -1e9 to 1e9; where not given, the slider touches a mass at
     /// p >= g and is at rest otherwise.
@@ -45,11 +45,11 @@ impl Model {
         let g = self.parameters().g;
         let q = start.q.unwrap_or(if start.p >= g { start.p - g } else { 0.0 });
         let state = State { p: start.p, y: start.y, q };
-        let (state, onset) = match start.phase {
+        let (state, mode) = match start.phase {
             None => self.decided(state, &instant)?,
             Some(phase) => self.stated(state, phase, &instant)?,
         };
-        Ok(Entry { instant, state, drift: TwoWord::new(start.v), onset })
+        Ok(Entry { instant, state, drift: TwoWord::new(start.v), mode })
     }
 
     /// The motion that begins in `state` at `instant` with no drift; its phase is decided as for a
@@ -59,21 +59,26 @@ impl Model {
     /// [`InputError`] names what is out of range, or a mass beyond the slider's top.
     pub fn entry(&self, instant: Instant, state: State) -> Result<Entry, InputError> {
         check_size(&state)?;
-        let (state, onset) = self.decided(state, &instant)?;
-        Ok(Entry { instant, state, drift: TwoWord::ZERO, onset })
+        let (state, mode) = self.decided(state, &instant)?;
+        Ok(Entry { instant, state, drift: TwoWord::ZERO, mode })
     }
 
-    fn decided(&self, state: State, instant: &Instant) -> Result<(State, Onset), InputError> {
+    fn decided(&self, state: State, instant: &Instant) -> Result<(State, ModeEntry), InputError> {
         let g = self.parameters().g;
         let scale = state.p.abs().max(state.q.abs()).max(g);
         let limit = state.q + g;
         if (state.p - limit).abs() <= FOUR_ULPS * scale {
-            return Ok(surface::onset(self.constants(), state, None, self.harmonic_force(instant)));
+            return Ok(surface::mode_entry(
+                self.constants(),
+                state,
+                None,
+                self.harmonic_force(instant),
+            ));
         }
         if state.p > limit {
             return Err(InputError::Penetrates { p: state.p, limit });
         }
-        Ok((state, Onset::Apart))
+        Ok((state, ModeEntry::Apart))
     }
 
     /// Projects a rounded state onto where its phase can begin.
@@ -82,12 +87,12 @@ impl Model {
         given: State,
         phase: Phase,
         instant: &Instant,
-    ) -> Result<(State, Onset), InputError> {
+    ) -> Result<(State, ModeEntry), InputError> {
         let two_xi = self.constants().two_xi;
         let g = self.parameters().g;
         let mut state = given;
         let force = two_xi * state.y + state.q;
-        let onset = match phase {
+        let mode = match phase {
             Phase::NoContact => {
                 let near =
                     (state.p - (state.q + g)).abs() <= PROJECTION && force.abs() <= PROJECTION;
@@ -112,7 +117,7 @@ impl Model {
                         self.harmonic_force(instant),
                     )
                 } else {
-                    Onset::Contact { offset: settled, reference: 0.0 }
+                    ModeEntry::Contact { offset: settled, reference: 0.0 }
                 }
             }
             Phase::Progression => {
@@ -133,14 +138,14 @@ impl Model {
         near(phase, "p", given.p, state.p)?;
         near(phase, "q", given.q, state.q)?;
         near(phase, "y", given.y, state.y)?;
-        Ok((state, onset))
+        Ok((state, mode))
     }
 
     /// A start stated to be without contact and not at a separation must be so.
-    fn apart(&self, state: State, instant: &Instant) -> Result<(State, Onset), InputError> {
-        let (settled, onset) = self.decided(state, instant)?;
-        match onset {
-            Onset::Apart | Onset::Separation { .. } => Ok((settled, onset)),
+    fn apart(&self, state: State, instant: &Instant) -> Result<(State, ModeEntry), InputError> {
+        let (settled, mode) = self.decided(state, instant)?;
+        match mode {
+            ModeEntry::Apart | ModeEntry::Separation { .. } => Ok((settled, mode)),
             // In contact: the force would have to fall to zero.
             _ => Err(InputError::FarFromPhase {
                 phase: Phase::NoContact,

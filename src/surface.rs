@@ -5,7 +5,7 @@
 //! guards have these derivatives divided by 2 xi, so the two sides cannot contradict each other.
 
 use crate::constants::Constants;
-use crate::entry::Onset;
+use crate::entry::ModeEntry;
 use crate::state::State;
 
 /// A sum within this of its largest term counts as zero: four units in the last place.
@@ -16,12 +16,12 @@ pub(crate) const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
 /// `force` is the harmonic force with its first two derivatives; `f` is the trial force if it is
 /// known better than as 2 xi y + q.
 #[inline(always)]
-pub(crate) fn onset(
+pub(crate) fn mode_entry(
     constants: &Constants<f64>,
     mut state: State,
     f: Option<f64>,
     force: [f64; 3],
-) -> (State, Onset) {
+) -> (State, ModeEntry) {
     let Constants { two_xi, g, rate, .. } = *constants;
     let (damper, spring) = (two_xi * state.y, state.q);
     let largest = damper.abs().max(spring.abs());
@@ -37,7 +37,7 @@ pub(crate) fn onset(
         return (state, on_threshold(constants, &state, 1.0, force));
     }
     state.p = state.q + g;
-    let onset = if f < 0.0 {
+    let mode = if f < 0.0 {
         let h_rate = f * rate;
         if h_rate == 0.0 {
             // Of a force without a speed nothing is known but that it is at the threshold.
@@ -45,31 +45,31 @@ pub(crate) fn onset(
             state.p = state.q + g;
             return (state, on_threshold(constants, &state, 0.0, force));
         }
-        Onset::Separation { h_rate }
+        ModeEntry::Separation { h_rate }
     } else if f < 1.0 {
-        Onset::Contact { offset: f, reference: 0.0 }
+        ModeEntry::Contact { offset: f, reference: 0.0 }
     } else {
         match slipping(constants, &state) {
             // What is known of f and the state are rounded apart: where the state does not slip, f
             // is within rounding of the threshold.
-            Onset::Progression { drift_rate, .. } if drift_rate <= 0.0 => {
+            ModeEntry::Progression { drift_rate, .. } if drift_rate <= 0.0 => {
                 state.q = 1.0 - damper;
                 state.p = state.q + g;
                 return (state, on_threshold(constants, &state, 1.0, force));
             }
-            onset => onset,
+            mode => mode,
         }
     };
-    (state, onset)
+    (state, mode)
 }
 
 /// A progression under way. Its drift velocity is y - q' and not (f - 1)/(2 xi), which would carry
 /// 1/(2 xi) times the rounding of f: 1 - q is exact where the slider is nearly compressed. It must
 /// be that of the state after an impact too, although f is known by itself there: the closed form
 /// goes by the drift velocity at first and by y later, and would jump where it changes over.
-pub(crate) fn slipping(constants: &Constants<f64>, state: &State) -> Onset {
+pub(crate) fn slipping(constants: &Constants<f64>, state: &State) -> ModeEntry {
     let closing = (1.0 - state.q) * constants.rate;
-    Onset::Progression { drift_rate: state.y - closing, closing }
+    ModeEntry::Progression { drift_rate: state.y - closing, closing }
 }
 
 /// Which phase begins where the trial force is at a threshold, 0 or 1, computed or stated: its
@@ -79,24 +79,24 @@ pub(crate) fn on_threshold(
     state: &State,
     threshold: f64,
     force: [f64; 3],
-) -> Onset {
+) -> ModeEntry {
     let direction = ladder(constants, state.y, threshold, force);
     if threshold == 0.0 { at_zero(direction) } else { at_one(direction, state.y) }
 }
 
-fn at_zero(direction: f64) -> Onset {
+fn at_zero(direction: f64) -> ModeEntry {
     if direction < 0.0 {
-        Onset::Separation { h_rate: 0.0 }
+        ModeEntry::Separation { h_rate: 0.0 }
     } else {
-        Onset::Contact { offset: 0.0, reference: 0.0 }
+        ModeEntry::Contact { offset: 0.0, reference: 0.0 }
     }
 }
 
-fn at_one(direction: f64, y: f64) -> Onset {
+fn at_one(direction: f64, y: f64) -> ModeEntry {
     if direction > 0.0 {
-        Onset::Progression { drift_rate: 0.0, closing: y }
+        ModeEntry::Progression { drift_rate: 0.0, closing: y }
     } else {
-        Onset::Contact { offset: 0.0, reference: 1.0 }
+        ModeEntry::Contact { offset: 0.0, reference: 1.0 }
     }
 }
 
@@ -128,10 +128,10 @@ mod tests {
         let constants = Constants::new(&parameters);
         let y = -1.112_536_929_256e-312;
         let state = State { p: 0.02, y, q: f64::MIN_POSITIVE };
-        let (_, pushed) = onset(&constants, state, None, [0.1, 0.0, 0.0]);
-        assert_eq!(pushed, Onset::Contact { offset: 0.0, reference: 0.0 });
-        let (_, pulled) = onset(&constants, state, None, [-0.1, 0.0, 0.0]);
-        assert_eq!(pulled, Onset::Separation { h_rate: 0.0 });
+        let (_, pushed) = mode_entry(&constants, state, None, [0.1, 0.0, 0.0]);
+        assert_eq!(pushed, ModeEntry::Contact { offset: 0.0, reference: 0.0 });
+        let (_, pulled) = mode_entry(&constants, state, None, [-0.1, 0.0, 0.0]);
+        assert_eq!(pulled, ModeEntry::Separation { h_rate: 0.0 });
     }
 
     /// A start in mid-slip at 1/(2 xi) = 5000: (f - 1)/(2 xi) was wrong by thousands of eps.
@@ -140,8 +140,8 @@ mod tests {
         let xi = 1e-4;
         let constants = Constants::new(&Parameters { xi, ..Parameters::default() });
         let (y, q) = (0.108_015_697_104_435_81, 0.999_999_999_999_754_3);
-        let (_, onset) = onset(&constants, State { p: q + 0.02, y, q }, None, [0.0; 3]);
-        let Onset::Progression { drift_rate, .. } = onset else { unreachable!("f exceeds 1") };
+        let (_, mode) = mode_entry(&constants, State { p: q + 0.02, y, q }, None, [0.0; 3]);
+        let ModeEntry::Progression { drift_rate, .. } = mode else { unreachable!("f exceeds 1") };
         let exact = TwoWord::new(y).minus(TwoWord::new(1.0 - q).over(2.0 * xi)).value();
         // Roundings of the rate, of its product and of the difference.
         assert!((drift_rate - exact).abs() <= 2.0 * f64::EPSILON * y, "{drift_rate} {exact}");

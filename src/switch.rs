@@ -8,7 +8,7 @@ use crate::constants::Constants;
 use crate::crossing::guarded::{Guarded, SearchHint};
 use crate::crossing::search::{Found, first_crossing_and};
 use crate::crossing::{Counters, Root};
-use crate::entry::{Entry, Onset};
+use crate::entry::{Entry, ModeEntry};
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
@@ -28,20 +28,20 @@ pub(crate) struct Begun {
     pub entry: Entry,
     /// The forcing angle then.
     pub angle: EntryAngle<f64>,
-    /// After what time it may end: a guess.
+    /// A guess of the time after which the phase ends.
     pub guess: Option<f64>,
 }
 
 /// How a phase ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
-    /// By a switch.
+    /// The phase ends by a switch.
     Switch,
-    /// Not before the horizon.
+    /// The phase does not end before the horizon.
     Horizon,
     /// Never: proved.
     Endless(Endless),
-    /// Not decided within the limit of work ([`crate::crossing::limit`]).
+    /// It is not decided within the limit of work ([`crate::crossing::limit`]).
     Undecidable,
 }
 
@@ -71,8 +71,8 @@ trait Landing: Guarded {
     /// What it means that it has none.
     const NONE: Endless;
 
-    /// State and onset of the next phase, with what is known imposed.
-    fn land(&self, root: &Root) -> (State, Onset);
+    /// State and mode of the next phase, with what is known imposed.
+    fn land(&self, root: &Root) -> (State, ModeEntry);
 
     /// Searches on from where a stage has ended ([`Guarded::stage`]); only a contact has stages.
     fn in_stages(
@@ -211,12 +211,12 @@ impl Begun {
     fn after<P: Landing>(&self, model: &Model, phase: &P, root: &Root) -> Self {
         let Root { point, .. } = root;
         let (instant, angle) = model.instant_after(&self.entry.instant, root.elapsed());
-        let (state, onset) = phase.land(root);
+        let (state, mode) = phase.land(root);
         // Only a progression drifts.
         let still = point.drift == 0.0;
         let before = self.entry.drift;
         let drift = if still { before } else { before.plus(TwoWord::new(point.drift)) };
-        let entry = Entry { instant, state, drift, onset };
+        let entry = Entry { instant, state, drift, mode };
         let about = self.angle.roughly_after(model.constants(), point.elapsed, &point.force);
         Self { entry, angle, guess: guess(model, &entry, about) }
     }
@@ -242,16 +242,16 @@ impl Landing for NoContact<f64, &Constants<f64>> {
     const NONE: Endless = Endless::NeverReturns;
 
     #[inline]
-    fn land(&self, root: &Root) -> (State, Onset) {
+    fn land(&self, root: &Root) -> (State, ModeEntry) {
         let Root { point, .. } = root;
         let f = self.constants.two_xi * point.guard.orders[1];
-        let (state, onset) = surface::onset(self.constants, point.state, Some(f), point.force);
-        match onset {
+        let (state, mode) = surface::mode_entry(self.constants, point.state, Some(f), point.force);
+        match mode {
             // The gap closed, by however little: a contact, which may end at once.
-            Onset::Separation { .. } => {
-                (state, Onset::Contact { offset: f.max(0.0), reference: 0.0 })
+            ModeEntry::Separation { .. } => {
+                (state, ModeEntry::Contact { offset: f.max(0.0), reference: 0.0 })
             }
-            onset => (state, onset),
+            mode => (state, mode),
         }
     }
 }
@@ -260,15 +260,15 @@ impl Landing for Contact<f64, &Constants<f64>> {
     const NONE: Endless = Endless::RestsForEver;
 
     #[inline]
-    fn land(&self, root: &Root) -> (State, Onset) {
+    fn land(&self, root: &Root) -> (State, ModeEntry) {
         let y = root.point.state.y;
-        let (threshold, onset) = if root.rises() {
-            (1.0, Onset::Progression { drift_rate: 0.0, closing: y })
+        let (threshold, mode) = if root.rises() {
+            (1.0, ModeEntry::Progression { drift_rate: 0.0, closing: y })
         } else {
-            (0.0, Onset::Separation { h_rate: 0.0 })
+            (0.0, ModeEntry::Separation { h_rate: 0.0 })
         };
         let q = threshold - self.constants.two_xi * y;
-        (State { p: q + self.constants.g, y, q }, onset)
+        (State { p: q + self.constants.g, y, q }, mode)
     }
 
     fn in_stages(
@@ -291,10 +291,13 @@ impl Landing for Progression<f64, &Constants<f64>> {
     const NONE: Endless = Endless::NeverStops;
 
     #[inline]
-    fn land(&self, root: &Root) -> (State, Onset) {
+    fn land(&self, root: &Root) -> (State, ModeEntry) {
         let y = root.point.slider_velocity;
         let q = 1.0 - self.constants.two_xi * y;
-        (State { p: q + self.constants.g, y, q }, Onset::Contact { offset: 0.0, reference: 1.0 })
+        (
+            State { p: q + self.constants.g, y, q },
+            ModeEntry::Contact { offset: 0.0, reference: 1.0 },
+        )
     }
 }
 

@@ -29,7 +29,7 @@ pub struct Trajectory {
     counters: Counters,
 }
 
-/// One phase passed ([`Trajectory::step`]).
+/// The phase that [`Trajectory::step`] has passed.
 #[derive(Clone, Debug)]
 pub enum Step<'a> {
     /// It ends by a switch.

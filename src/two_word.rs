@@ -21,7 +21,7 @@ impl TwoWord {
     /// The number zero.
     pub const ZERO: Self = Self { high: 0.0, low: 0.0 };
 
-    /// One word, exactly.
+    /// The two-word number that equals this one word.
     #[must_use]
     pub const fn new(value: f64) -> Self {
         Self { high: value, low: 0.0 }

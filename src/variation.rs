@@ -6,7 +6,7 @@
 //! impact has a saltation: there the contact surface swallows the direction A = dp - dq.
 
 use crate::constants::Constants;
-use crate::entry::Onset;
+use crate::entry::ModeEntry;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::{EntryAngle, Harmonic};
 use crate::flow::no_contact::NoContact;
@@ -103,8 +103,8 @@ impl Segment {
         let two_xi = flight.constants.two_xi;
         let f = two_xi * landing.guard_rate;
         // What one unit of A = dp - dq adds to (p, y, q, v).
-        let [p, y, q, v] = match next.onset {
-            Onset::Progression { .. } => [(1.0 - f) / f, -two_xi / f, 1.0 / f, (f - 1.0) / f],
+        let [p, y, q, v] = match next.mode {
+            ModeEntry::Progression { .. } => [(1.0 - f) / f, -two_xi / f, 1.0 / f, (f - 1.0) / f],
             _ => [0.0, -two_xi, 1.0, 0.0],
         };
         for (row, change) in [(P, p), (Y, y), (Q, q), (V, v)] {

@@ -27,9 +27,9 @@ impl Grain {
 #[must_use]
 pub fn limit(bench: &str, grain: Grain) -> u64 {
     let rows = include_str!("record.csv").lines().skip(1);
-    let recorded = rows.map(|row| row.splitn(3, ',')).find_map(|mut row| {
-        (row.next()? == bench).then(|| row.next()?.parse::<u64>().ok())?
-    });
+    let recorded = rows
+        .map(|row| row.splitn(3, ','))
+        .find_map(|mut row| (row.next()? == bench).then(|| row.next()?.parse::<u64>().ok())?);
     recorded.map_or(1, |recorded| above(recorded, grain))
 }
 

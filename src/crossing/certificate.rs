@@ -57,7 +57,7 @@ pub enum Verdict {
     Inside,
     /// Inside but for a touch that is smaller than the rounding error.
     Touches,
-    /// Nothing proved.
+    /// Nothing is proved about the guard between the two ends.
     Open,
 }
 
@@ -66,7 +66,7 @@ pub enum Verdict {
 pub struct Ends {
     /// The left value is a threshold, exactly, by the switch that began the phase.
     pub left: bool,
-    /// So is the left slope zero.
+    /// Whether the left slope is exactly zero as well.
     pub left_double: bool,
     /// The right end is a root.
     pub right: bool,
@@ -170,8 +170,8 @@ impl Piece {
         ]
     }
 
-    /// Where to divide: at the place of the largest excess, so that a near miss is met at its
-    /// crest, where both halves are easily certified.
+    /// The time at which a piece is divided: at the place of the largest excess, so that a near
+    /// miss is met at its crest, where both halves are easily certified.
     pub fn worst_place(&self, from: f64, corridor: &Corridor) -> f64 {
         let step =
             self.crest_next_to_an_end(corridor).unwrap_or_else(|| self.sampled_crest(corridor));
@@ -180,7 +180,7 @@ impl Piece {
         if inside { place } else { from + 0.5 * self.length }
     }
 
-    /// One Newton step on the slope, where an end is already near a crest of the excess.
+    /// Makes one Newton step on the slope, where an end is already near a crest of the excess.
     fn crest_next_to_an_end(&self, corridor: &Corridor) -> Option<f64> {
         const NEAR: f64 = 0.1; // of the piece
         let newton = |orders: &[f64; 4]| {

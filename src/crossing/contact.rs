@@ -43,7 +43,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// A bound of the eighth derivative of the free part from `at` on: x^2 + x'^2 never grows, of
     /// no derivative.
     pub(super) fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
-        /// Of eight steps of the recurrence, and of the sums here.
+        /// The recurrence rounds in each of its eight steps, and the sums here round as well.
         const ROUNDINGS: f64 = 16.0;
         /// The squares of two numbers whose sum is smaller may underflow.
         const SQUARABLE: f64 = 1e-140;
@@ -323,8 +323,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
 }
 
 impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
-    /// In pieces; or, where the forcing is fast, by the free part alone, in a corridor narrowed by
-    /// the forced amplitude.
+    /// Certifies a long piece step by step; or, where the forcing is fast, by the free part alone,
+    /// in a corridor narrowed by the forced amplitude.
     fn certify_long(
         &self,
         steps: &Steps,
@@ -332,7 +332,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         right: &Point<f64>,
         (ends, room): (Ends, f64),
     ) -> Verdict {
-        /// Each stride rounds a few times its parts.
+        /// Each step rounds its parts a few times.
         const ROUNDINGS: f64 = 16.0;
         /// Under stronger damping the free part's derivatives would multiply its rounding.
         const MILD: f64 = 4.0;

@@ -14,11 +14,11 @@ pub struct Parts {
     pub elapsed: f64,
     /// Free part.
     pub free: f64,
-    /// Its rate.
+    /// The rate of the free part.
     pub free_rate: f64,
     /// Forced part.
     pub forced: f64,
-    /// Its rate over omega.
+    /// The rate of the forced part over omega.
     pub quarter: f64,
 }
 
@@ -31,7 +31,7 @@ pub struct Shape {
     pub two_xi: f64,
     /// omega
     pub omega: f64,
-    /// Where the guard stays.
+    /// The corridor in which the guard has to stay.
     pub corridor: Corridor,
     /// A bound of the guard's eighth derivative.
     pub eighth: f64,
@@ -136,7 +136,8 @@ impl Parts {
     }
 }
 
-/// Where the cubic through two values with these slopes, all in units of the stride, is zero.
+/// The place at which the cubic through two values with these slopes, all in units of the step, is
+/// zero.
 pub fn meeting(left: f64, right: f64, (left_slope, right_slope): (f64, f64)) -> f64 {
     let rise = right - left;
     let second = 3.0 * rise - 2.0 * left_slope - right_slope;

@@ -5,7 +5,7 @@ use crate::crossing::series::{REACH, SHORT_REACH, Series};
 use crate::flow::steps::Steps;
 use crate::flow::{Flow, Point};
 
-/// Where the search should look next.
+/// A hint about where the search should look next.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum SearchHint {
     /// The next crossing may be near this elapsed time (a guess).
@@ -20,7 +20,7 @@ pub enum SearchHint {
 
 /// A phase with its guard.
 pub trait Guarded: Flow<f64> {
-    /// Where the guard stays while the phase lasts.
+    /// The corridor in which the guard stays while the phase lasts.
     fn corridor(&self) -> Corridor;
 
     /// The evaluation at the start, with what is known there imposed.
@@ -40,7 +40,7 @@ pub trait Guarded: Flow<f64> {
     /// Tries to prove that the guard stays inside between two evaluations.
     fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict;
 
-    /// Where to divide a piece that could not be certified.
+    /// The time at which a piece that could not be certified is divided.
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64;
 
     /// Until when the closed form of this phase serves to find its end. A later search has to take

@@ -75,7 +75,7 @@ pub struct Root {
     pub side: Side,
 }
 
-/// One of a guard's thresholds; a whole word, because a root is copied in words.
+/// One of a guard's thresholds. It takes a whole word, because a root is copied in words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Side {

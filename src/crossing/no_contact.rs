@@ -67,9 +67,9 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
         (h3 > 0.0 && hop > 0.0 && hop * self.fastest_rate() < 0.7).then_some(hop)
     }
 
-    /// Where the gap that a run begins with closes, if soon, by its value and three derivatives.
-    /// Steps might pass over a short contact, and to find that out costs more than all of the
-    /// search.
+    /// The time at which the gap that a run begins with closes, if it does soon, by its value and
+    /// three derivatives. Steps might pass over a short contact, and to find that out costs more
+    /// than all of the search.
     pub fn first_closing(&self) -> Option<f64> {
         /// Against the rates of the harmonic and of the spring.
         const SOON: f64 = 0.7;

@@ -21,11 +21,11 @@ pub struct Parts {
     pub elapsed: f64,
     /// Parabola and harmonic.
     pub value: f64,
-    /// Their slope.
+    /// The slope of the lasting parts.
     pub slope: f64,
     /// The harmonic's second derivative.
     pub bow: f64,
-    /// Its third over omega.
+    /// The third derivative of the harmonic part over omega.
     pub quarter: f64,
     /// The exponential.
     pub lasting: f64,
@@ -50,7 +50,7 @@ pub struct Shape {
     pub per_omega2: f64,
     /// Rate of the exponential.
     pub rate: f64,
-    /// Its eighth power.
+    /// The eighth power of the rate.
     pub rate8: f64,
 }
 
@@ -59,7 +59,7 @@ pub struct Shape {
 pub struct End {
     /// Value and three derivatives of the excess.
     pub orders: [f64; 4],
-    /// The same in parts.
+    /// The guard at this end in parts.
     pub parts: Parts,
 }
 
@@ -104,7 +104,7 @@ struct Line {
 }
 
 impl Line {
-    /// Not below the exponential anywhere between the two places.
+    /// A straight line that is nowhere below the exponential between the two places.
     fn above(from: &Parts, to: &Parts, rate: f64) -> Self {
         // At the right end it may have sunk below the smallest number: the left one has its sign.
         let slope = if from.lasting > 0.0 {
@@ -130,7 +130,7 @@ pub struct PiecewiseCertificate<'a> {
 
 /// How high the harmonic's crests may be between two places.
 struct Crests {
-    /// At the left place.
+    /// The line's value at the left place.
     here: f64,
     /// Anywhere between.
     most: f64,
@@ -147,7 +147,7 @@ const REST: f64 = 1.3;
 const BELOW_ZERO: Corridor = Corridor { low: f64::NEG_INFINITY, high: 0.0 };
 
 impl<'a> PiecewiseCertificate<'a> {
-    /// Of a model's guard.
+    /// A certificate for guards of this shape, with steps of these lengths.
     pub fn new(shape: &'a Shape, steps: &'a Steps) -> Self {
         Self { shape, steps, line: None }
     }
@@ -207,7 +207,7 @@ impl<'a> PiecewiseCertificate<'a> {
         -left.lasting * (rate * rate) * GRIP > (strength + curvature.max(0.0)) * (1.0 + 1e-9)
     }
 
-    /// From the left end until the amplitude takes over, then back from the right end.
+    /// Goes from the left end until the amplitude takes over, then back from the right end.
     fn between(
         &self,
         (mut near, mut near_ends): (End, Ends),

@@ -186,7 +186,7 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
     /// falls all the time if lag rate < c at the start; and it is concave up to a root at which a
     /// omega < lag rate^2.
     fn stops_once(&self, root: &Point<f64>) -> bool {
-        /// Of the few roundings in the inequalities.
+        /// The inequalities round a few times.
         const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;
         let Constants { a, b, omega, rate, .. } = *self.constants.borrow();
         let steepest = a * omega * ROOM;

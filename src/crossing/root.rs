@@ -14,7 +14,7 @@ pub fn evaluate<G: Guarded>(phase: &G, elapsed: f64, counters: &mut Counters) ->
     phase.at(elapsed)
 }
 
-/// The same out of the way of what every switch takes.
+/// Evaluates a phase, out of the way of the code that every event takes.
 #[cold]
 #[inline(never)]
 pub fn evaluate_again<G: Guarded>(phase: &G, elapsed: f64, counters: &mut Counters) -> Point<f64> {
@@ -48,9 +48,9 @@ impl Cubic {
         over + step * (slope + step * (0.5 * bend + step * (third * (1.0 / 6.0))))
     }
 
-    /// Its zero by reversion of the series, where that is so near that the guard is almost
-    /// straight: with one division. What is left is the third power of 0.02, and is put right with
-    /// the series' own remainder.
+    /// The cubic's zero by reversion of the series, with one division, where that zero is so near
+    /// that the guard is almost straight. What is left is the third power of 0.02, and is put right
+    /// with the series' own remainder.
     fn near_zero(&self) -> Option<f64> {
         const STRAIGHT: f64 = 0.02;
         let inverse = 1.0 / self.slope;
@@ -63,8 +63,8 @@ impl Cubic {
         Some(newton * (1.0 - first + 2.0 * first * first - second))
     }
 
-    /// Its zero by Newton's method: three steps do on a transversal crossing; next to a graze it
-    /// only halves at first.
+    /// The cubic's zero by Newton's method: three steps do on a transversal crossing; next to a
+    /// graze it only halves at first.
     #[cold]
     fn zero(&self) -> f64 {
         const ATTEMPTS: usize = 40;
@@ -81,7 +81,7 @@ impl Cubic {
     }
 }
 
-/// Where a point's cubic meets a threshold.
+/// The step from a point to where its cubic meets a threshold.
 struct CubicStep {
     step: f64,
     /// Whether that is the upper threshold.
@@ -265,9 +265,9 @@ pub fn bracketed<G: Guarded>(
 /// it.
 const PLAIN: usize = 8;
 
-/// Where to look between two times. A root that some halvings have not found may be smaller by
-/// orders of magnitude: then it is the exponent that is halved, so that 1e-300 is no further than
-/// 1e-3.
+/// The time between two times at which the search looks next. A root that some halvings have not
+/// found may be smaller by orders of magnitude: then it is the exponent that is halved, so that
+/// 1e-300 is no further than 1e-3.
 pub fn middle(inside: f64, outside: f64, halvings: usize) -> f64 {
     let smallest = inside.max(f64::MIN_POSITIVE);
     if halvings > PLAIN && outside > 4.0 * smallest {

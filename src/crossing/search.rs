@@ -48,19 +48,20 @@ pub fn first_crossing<G: Guarded>(
 /// How a search has ended whose crossing has been told already.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Found {
-    /// By a crossing after this time.
+    /// The phase ends by a crossing after this time.
     At(TwoWord),
-    /// None before the horizon.
+    /// There is no crossing before the horizon.
     Horizon,
-    /// None ever: proved.
+    /// There is never a crossing, which is proved.
     Never,
-    /// None until this time, when the motion is to be taken up again ([`Guarded::stage`]).
+    /// There is no crossing until this time, when the motion is to be taken up again
+    /// ([`Guarded::stage`]).
     Stage(f64),
-    /// None until this time, and no decision within the [`Limit`].
+    /// There is no crossing until this time, and no decision after it within the [`Limit`].
     Undecided(f64),
 }
 
-/// The same where `next` is told the crossing.
+/// Finds the first crossing and tells it to `next`.
 ///
 /// Mostly the first guess, which may have been made already, leads to the root, and one certificate
 /// says that it is the first. What comes next waits for the root but not for the certificate: it is
@@ -305,7 +306,7 @@ fn between(left: f64, proposed: f64, right: f64, divisions: usize) -> f64 {
     if inside && divisions < PATIENCE { proposed } else { middle(left, right, divisions) }
 }
 
-/// If the guard is outside at the target by more than rounding, the crossing before it.
+/// The crossing before the target, if the guard is outside there by more than rounding.
 fn inside_or_root<G: Guarded>(
     phase: &G,
     left: &Point<f64>,

@@ -105,7 +105,7 @@ pub struct Push {
 }
 
 impl Push {
-    /// From the harmonic force at the evaluation.
+    /// The series that follows from the harmonic force at the evaluation.
     #[inline]
     pub fn new(constants: &Constants<f64>, force: &[f64; 3], step: f64) -> Self {
         let Constants { b, omega, .. } = *constants;

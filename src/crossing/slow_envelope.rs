@@ -102,8 +102,8 @@ impl SlowEnvelope {
         }
     }
 
-    /// Where the search should look after elapsed time `from`; `inside` as for the guess, which
-    /// begins at a `place` before which there is nothing to be found.
+    /// A hint about where the search should look after elapsed time `from`; `inside` as for the
+    /// guess, which begins at a `place` before which there is nothing to be found.
     #[inline(always)]
     pub fn hint(
         &self,
@@ -128,8 +128,9 @@ impl SlowEnvelope {
         }
     }
 
-    /// Where to divide a long piece: after the first `decay_times` of the exponential, and around
-    /// the time in which the bound is negative. None if the piece is short in both respects.
+    /// The time at which a long piece is divided: after the first `decay_times` of the exponential,
+    /// and around the time in which the bound is negative. None if the piece is short in both
+    /// respects.
     pub fn division(&self, from: f64, to: f64, decay_times: f64) -> Option<f64> {
         let length = to - from;
         let settled = 0.9 * decay_times / self.rate;
@@ -216,7 +217,7 @@ impl SlowEnvelope {
         Place { elapsed: 0.0, sin: self.sin, cos: self.cos, lasting: self.exponential }
     }
 
-    /// Where the harmonic is known.
+    /// The place at this time, where sine and cosine of the forcing angle are known.
     pub fn place(&self, elapsed: f64, (sin, cos): (f64, f64)) -> Place {
         let lasting = self.exponential * quick_decay(self.rate * elapsed);
         Place { elapsed, sin, cos, lasting }

@@ -18,9 +18,9 @@ use crate::start::Start;
 /// How each value is started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Follow {
-    /// From the last strobe of the value before.
+    /// Each value starts from the last strobe of the value before.
     Carry,
-    /// From the start given.
+    /// Each value starts from the start given.
     Reset,
 }
 
@@ -29,13 +29,13 @@ pub enum Follow {
 pub struct Diagram {
     /// The parameters other than the one that varies.
     pub parameters: Parameters,
-    /// Where the first value starts, and every one with [`Follow::Reset`].
+    /// The start of the first value, and of every value with [`Follow::Reset`].
     pub start: Start,
     /// What varies.
     pub parameter: Parameter,
-    /// Its first value.
+    /// The parameter's first value.
     pub from: f64,
-    /// Its last value, which may be the smaller one.
+    /// The parameter's last value, which may be the smaller one.
     pub to: f64,
     /// How many values, both ends included; one is `from`.
     pub steps: u32,

@@ -52,9 +52,9 @@ pub const BATCHES: u64 = 32;
 pub struct Spectrum {
     /// Per forcing period, largest first; minus infinity where a direction is swallowed.
     pub exponents_per_period: [f64; 3],
-    /// Their standard errors, from the scatter of the means over [`BATCHES`] batches of equal
-    /// length: honest as soon as a batch is longer than the motion remembers. NaN of what is not
-    /// finite, and where there is one period only.
+    /// The standard errors of the exponents, from the scatter of the means over [`BATCHES`] batches
+    /// of equal length: honest as soon as a batch is longer than the motion remembers. NaN of what
+    /// is not finite, and where there is one period only.
     pub standard_error: [f64; 3],
     /// Mean growth of the area per forcing period, from durations and impacts alone: the sum of the
     /// first two exponents.
@@ -109,7 +109,7 @@ struct Mark {
     drift: f64,
 }
 
-/// One run, segment by segment.
+/// A run that is followed segment by segment.
 struct Run {
     tangent: Tangent,
     two_xi: f64,
@@ -244,7 +244,8 @@ fn batch_end(k: u64, periods: u64, batches: u64) -> u64 {
     (u128::from(k) * u128::from(periods) / u128::from(batches)) as u64
 }
 
-/// By how much the impact that ends a flight changes an area that was dp ^ dy at separation.
+/// The factor by which the impact that ends a flight changes an area that was dp ^ dy at
+/// separation.
 fn impact_factor(segment: &Segment, next: Phase, two_xi: f64) -> f64 {
     let d = segment.duration();
     let e = (-d / two_xi).exp();
@@ -258,7 +259,7 @@ fn impact_factor(segment: &Segment, next: Phase, two_xi: f64) -> f64 {
     }
 }
 
-/// Of the mean of batch means; NaN of a single one.
+/// The standard error of the mean of batch means; NaN for a single batch.
 fn standard_error(batches: impl Iterator<Item = f64> + Clone) -> f64 {
     let count = batches.clone().count() as f64;
     let mean = batches.clone().sum::<f64>() / count;
@@ -286,7 +287,7 @@ fn endless_spectrum(model: &Model, endless: Endless, third: f64, drift: f64) -> 
 }
 
 impl Spectrum {
-    /// Nothing was observed.
+    /// A spectrum of which nothing is known.
     const UNKNOWN: Self = Self {
         exponents_per_period: [f64::NAN; 3],
         standard_error: [f64::NAN; 3],

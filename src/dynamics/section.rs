@@ -80,7 +80,8 @@ pub fn section(
     (0..count).zip(strobes).map(|(_, strobe)| strobe)
 }
 
-/// The same of many motions of one model, all at once: their strobes in the order of the starts.
+/// The sections of many motions of one model, followed all at once: their strobes in the order of
+/// the starts.
 #[must_use]
 pub fn sections(
     model: &Model,

@@ -27,7 +27,7 @@ use crate::segment::Exit;
 use crate::state::State;
 use crate::variation::{IDENTITY, Matrix, P, Q, V, Y, product};
 
-/// On the slider q moves with p.
+/// The derivative of a state on the slider, where q moves with p.
 const TOGETHER: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];
 
 /// The strobe map at one forcing angle.
@@ -40,7 +40,7 @@ pub struct StrobeMap {
 /// What some forcing periods do to a point of the section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Passage {
-    /// Where they lead, ready to go on: its drift goes on from where it began.
+    /// The image of the strobe, ready to go on: its drift goes on from where it began.
     pub image: Entry,
     /// Derivative of the image with respect to (angle, p, y, q, v) where it began.
     pub derivative: Matrix,
@@ -118,7 +118,7 @@ impl Passage {
         [P, Y, Q].map(|row| [P, Y, Q].map(|column| self.derivative[row][column]))
     }
 
-    /// The same with respect to what of (p, y, q) can change: a mass on the surface takes the
+    /// The derivative with respect to what of (p, y, q) can change: a mass on the surface takes the
     /// slider along, and off the surface the derivative of a contact means nothing.
     #[must_use]
     pub fn free_jacobian(&self) -> Jacobian {

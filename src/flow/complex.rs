@@ -28,7 +28,7 @@ impl<T: Number> Complex<T> {
         Self::new(self.re * factor, self.im * factor)
     }
 
-    /// One over it.
+    /// The inverse of the number.
     pub fn inverse(self) -> Self {
         self.conjugate().scale(T::one() / (self.re * self.re + self.im * self.im))
     }

@@ -17,7 +17,7 @@ pub struct Steady<T> {
 }
 
 impl<T: Number> Steady<T> {
-    /// Of these parameters.
+    /// The steady state of a contact with these parameters.
     #[must_use]
     pub fn new(a: T, xi: T, omega: T) -> Self {
         let one = T::one();

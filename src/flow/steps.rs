@@ -46,7 +46,7 @@ impl FreeStep {
         }
     }
 
-    /// The same step backwards.
+    /// The step of the same length backwards in time.
     #[inline]
     #[must_use]
     pub fn reversed(&self) -> Self {
@@ -82,7 +82,8 @@ impl ContactStep {
     }
 }
 
-/// Where the force changes its sign: it is negative from this forcing angle to 2 pi less it.
+/// The forcing angles at which the force changes its sign: it is negative from this forcing angle
+/// to 2 pi less it.
 #[derive(Clone, Copy, Debug)]
 pub struct Turning {
     /// t within `[0, pi]`, cos t = -b/a; pi if the force is never negative, 0 if it is never
@@ -119,14 +120,15 @@ impl Turning {
     }
 }
 
-/// Of a certificate's pieces, against the faster of forcing and free oscillation, radians: the
-/// interpolant's error is 2^8/2822400 = 1e-4 of the amplitude.
+/// The length of a certificate's pieces, measured against the faster of forcing and free
+/// oscillation, radians: the interpolant's error is 2^8/2822400 = 1e-4 of the amplitude.
 const PIECE: f64 = 2.0;
 
-/// Of a guess: the cubic between two places errs by 0.5^4/384 = 2e-4 of the amplitude.
+/// The length of a guess's steps: the cubic between two places errs by 0.5^4/384 = 2e-4 of the
+/// amplitude.
 const LOOK: f64 = 0.5;
 
-/// As far as a contact's guess may step: as the free oscillation moves, unless the forced one is so
+/// The longest step of a contact's guess: the free oscillation sets it, unless the forced one is so
 /// strong and so fast that the cubic between two places would err by more than a thousandth of the
 /// corridor.
 fn contact_look(parameters: &Parameters) -> f64 {
@@ -154,7 +156,7 @@ pub const PUSHING: f64 = 4.0;
 /// The steps of a model.
 #[derive(Clone, Copy, Debug)]
 pub struct Steps {
-    /// From piece to piece of a certificate.
+    /// The step from piece to piece of a certificate.
     pub piece: FreeStep,
     /// Over the life of an exponential that pulls inwards.
     pub pulling: FreeStep,
@@ -162,22 +164,22 @@ pub struct Steps {
     pub separation_interval: FreeStep,
     /// Over the life of an exponential that pushes outwards.
     pub pushing: FreeStep,
-    /// From place to place of a guess.
+    /// The step from place to place of a guess.
     pub look: FreeStep,
-    /// From piece to piece of a contact's certificate.
+    /// The step from piece to piece of a contact's certificate.
     pub contact_piece: ContactStep,
-    /// From place to place of a contact's guess while a fast part lives, above critical damping.
+    /// The step of a contact's guess while a fast part lives, above critical damping.
     pub quick_look: ContactStep,
-    /// From place to place of a contact's guess.
+    /// The step from place to place of a contact's guess.
     pub contact_look: ContactStep,
-    /// The same above critical damping when the fast part has died out.
+    /// The step of a contact's guess above critical damping, when the fast part has died out.
     pub slow_look: ContactStep,
-    /// Where the force changes its sign.
+    /// The forcing angles at which the force changes its sign.
     pub turning: Turning,
 }
 
 impl Steps {
-    /// Of these parameters.
+    /// The steps of a model with these parameters.
     #[must_use]
     pub fn new(parameters: &Parameters) -> Self {
         let Parameters { omega, xi, .. } = *parameters;

@@ -26,7 +26,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// All of them.
+    /// All stages.
     pub const ALL: [Self; 8] = [
         Self::Flight,
         Self::Contact,
@@ -43,7 +43,7 @@ impl Stage {
         matches!(self, Self::FlightStrobe | Self::ContactStrobe | Self::SlipStrobe)
     }
 
-    /// The same with great care, where there is more than one way.
+    /// The stage that solves the same phase with great care, where there is more than one way.
     pub const fn again(self) -> Option<Self> {
         match self {
             Self::Flight => Some(Self::FlightAgain),
@@ -67,32 +67,34 @@ impl Stage {
 pub struct Begin {
     /// omega tau mod 2 pi.
     pub angle: Column,
-    /// Its second word.
+    /// The second word of the forcing angle.
     pub angle_low: Column,
     /// Velocity of the mass.
     pub y: Column,
     /// Displacement of the slider's top; the mass is in touch with it.
     pub q: Column,
-    /// In contact the force less its reference; in progression the drift velocity.
+    /// The guard's value: in contact the force less its reference; in progression the drift
+    /// velocity.
     pub first: Column,
-    /// In contact the reference; in progression the velocity of the slider's top.
+    /// A second value: in contact the reference; in progression the velocity of the slider's top.
     pub second: Column,
-    /// Of a strobe: forcing cycles from the phase's own,
+    /// The strobe's time in forcing cycles from the phase's own.
     pub due_cycles: Column,
-    /// its forcing angle,
+    /// The strobe's forcing angle.
     pub due: Column,
-    /// and the second word of that.
+    /// The second word of the strobe's forcing angle.
     pub due_low: Column,
 }
 
-/// What becomes of them.
+/// How the phases end.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct End {
-    /// One where the lane's result is proved; else it is to be left alone.
+    /// One where the lane's result is proved; where it is not, the lane's other numbers mean
+    /// nothing.
     pub fine: Column,
     /// omega tau mod 2 pi at the switch.
     pub angle: Column,
-    /// Its second word.
+    /// The second word of the forcing angle at the switch.
     pub angle_low: Column,
     /// Forcing cycles passed.
     pub cycles: Column,
@@ -102,11 +104,12 @@ pub struct End {
     pub y: Column,
     /// Displacement of the slider's top (not where contact or progression end).
     pub q: Column,
-    /// Of an impact the trial force; of a contact's end the threshold; at a strobe the guard.
+    /// The guard: at an impact the trial force, at a contact's end the threshold, at a strobe the
+    /// guard.
     pub guard: Column,
     /// Drift gained.
     pub drift: Column,
-    /// At a strobe in progression the velocity of the slider's top,
+    /// The velocity of the slider's top at a strobe in progression.
     pub closing: Column,
     /// and the largest term of its guard.
     pub terms: Column,

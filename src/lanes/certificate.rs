@@ -13,16 +13,16 @@ pub struct Piece<S: Simd> {
     pub length: Wide<S>,
     /// A bound of the eighth derivative's size.
     pub eighth: Wide<S>,
-    /// Where the left value is a threshold by the switch that began the phase.
+    /// The lanes in which the left value is a threshold by the switch that began the phase.
     pub bare: Mask<S>,
-    /// Where the left slope is zero as well.
+    /// The lanes in which the left slope is zero as well.
     pub double: Mask<S>,
-    /// Where the right end is a root, through which the guard is known to leave.
+    /// The lanes in which the right end is a root, through which the guard is known to leave.
     pub to_root: Mask<S>,
 }
 
 impl<S: Simd> Piece<S> {
-    /// Where the guard stays between two values, with this room for rounding.
+    /// The lanes in which the guard stays between two values, with this room for rounding.
     #[inline(always)]
     pub fn stays_between(&self, low: Wide<S>, high: Wide<S>, slack: Wide<S>) -> Mask<S> {
         /// 1/(8! C(8, 4))

@@ -32,7 +32,7 @@ impl<S: Simd> Complex<S> {
         Self::new(self.re * factor, self.im * factor)
     }
 
-    /// One number where the mask holds, the other elsewhere.
+    /// Takes one number where the mask holds, the other elsewhere.
     #[inline(always)]
     pub fn choose(mask: Mask<S>, yes: Self, no: Self) -> Self {
         Self::new(mask.choose(yes.re, no.re), mask.choose(yes.im, no.im))

@@ -53,9 +53,9 @@ pub struct Release<S: Simd> {
     pub elapsed: (Wide<S>, Wide<S>),
     /// Velocity of the mass.
     pub y: Wide<S>,
-    /// Where it is the upper threshold.
+    /// The lanes in which the root is on the upper threshold.
     pub rises: Mask<S>,
-    /// Where all this is proved.
+    /// The lanes in which all this is proved.
     pub fine: Mask<S>,
 }
 
@@ -145,7 +145,7 @@ impl<S: Simd> Contact<'_, S> {
         [excess, rate, bend, two_xi.times_plus(pull_bend, pull_rate)]
     }
 
-    /// The same at the start.
+    /// The first four orders of the guard at the start.
     #[inline(always)]
     fn first(&self) -> [Wide<S>; 4] {
         self.orders(self.angle.force(self.shape), self.offset, self.y)

@@ -66,8 +66,8 @@ impl<S: Simd> Contact<'_, S> {
         (share.times_plus(stride, from), threshold, found)
     }
 
-    /// Where the force stays inside its corridor from the start to the root, by their orders: in
-    /// pieces, whose ends follow from the start in strides of the model's own length.
+    /// The lanes in which the force stays inside its corridor from the start to the root, by their
+    /// orders: in pieces, whose ends follow from the start in strides of the model's own length.
     #[inline(always)]
     pub fn stays_inside(
         &self,

@@ -10,9 +10,9 @@ use pulp::Simd;
 /// Which closed forms the contacts of a vector have: what no lane needs is not asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Forms {
-    /// All are below 0.7 of critical damping and away from resonance.
+    /// All lanes are below 0.7 of critical damping and away from resonance.
     Usual,
-    /// Each lane has its own.
+    /// Each lane has its own forms.
     Any,
 }
 
@@ -28,10 +28,11 @@ impl Forms {
 /// places errs by 1/384 of the amplitude, which the series puts right.
 const SWING: f64 = 0.8;
 
-/// Of a certificate, likewise: the interpolant errs by 3^8/2822400 = 0.002 of the amplitude.
+/// The length of a certificate's pieces: the interpolant errs by 3^8/2822400 = 0.002 of the
+/// amplitude.
 const PIECE: f64 = 2.0;
 
-/// Each stride rounds a few times its parts.
+/// Each step rounds its parts a few times.
 const ROUNDINGS: f64 = 16.0;
 
 /// The first stride is at least this much of all others: each doubling doubles what it has rounded

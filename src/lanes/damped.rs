@@ -30,7 +30,7 @@ pub struct Free<S: Simd> {
 const SERIES: f64 = 0.5;
 
 impl<S: Simd> Free<S> {
-    /// After `d`.
+    /// The free oscillation after `d`.
     #[inline(always)]
     pub fn after(shape: &Shape<Wide<S>>, forms: Forms, d: Wide<S>) -> Self {
         if forms == Forms::Usual {

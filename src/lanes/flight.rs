@@ -55,7 +55,7 @@ pub struct Impact<S: Simd> {
     pub q: Wide<S>,
     /// Trial force.
     pub f: Wide<S>,
-    /// Where all this is proved.
+    /// The lanes in which all this is proved.
     pub fine: Mask<S>,
 }
 
@@ -184,7 +184,7 @@ impl<S: Simd> Flight<'_, S> {
         }
     }
 
-    /// The same by three tangents more in between: at forcing angles whose sine and cosine are
+    /// Proves it by three tangents more in between: at forcing angles whose sine and cosine are
     /// constants. Those before the place where the stretch is entered do not count.
     #[inline(always)]
     fn stays_below_between(
@@ -218,8 +218,8 @@ impl<S: Simd> Flight<'_, S> {
         below & last.stays_below_to(far)
     }
 
-    /// Where one interpolant shows that h is negative from the start to the root, at which these
-    /// are h', the slider's velocity, the force and its rate.
+    /// The lanes in which one interpolant shows that h is negative from the start to the root, at
+    /// which these are h', the slider's velocity, the force and its rate.
     #[inline(always)]
     fn hops(&self, root: Wide<S>, [slope, spring, force, force_rate]: [Wide<S>; 4]) -> Mask<S> {
         /// Decay times and forcing angle up to which that may do.
@@ -249,7 +249,8 @@ impl<S: Simd> Flight<'_, S> {
         short & piece.stays_between(lowest, zero, terms * (4.0 * f64::EPSILON))
     }
 
-    /// Where h is negative from the start to the root, at which the slider's top is `q`.
+    /// The lanes in which h is negative from the start to the root, at which the slider's top is
+    /// `q`.
     #[inline(always)]
     fn stays_below(&self, root: Wide<S>, q: Wide<S>, care: Care) -> Mask<S> {
         let Shape { a, b, omega, rate, turning, turning_sin, turning_cos, .. } = *self.shape;

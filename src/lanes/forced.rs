@@ -21,7 +21,7 @@ pub struct Response<S: Simd> {
 }
 
 impl<S: Simd> Response<S> {
-    /// After `d`; `turn` belongs to `omega d`, `free` to `d`.
+    /// The forced oscillation after `d`; `turn` belongs to `omega d`, `free` to `d`.
     #[inline(always)]
     pub fn after(
         shape: &Shape<Wide<S>>,
@@ -107,7 +107,8 @@ impl<S: Simd> Parts<S> {
         }
     }
 
-    /// With the beat as long as the two oscillations are in step, and without where they are not.
+    /// Takes the beat as long as the two oscillations are in step, and the two of them apart
+    /// afterwards.
     #[inline(always)]
     fn long(
         shape: &Shape<Wide<S>>,

@@ -21,7 +21,7 @@ pub struct SlowEnvelope<'a, S: Simd> {
     pub amplitude: Wide<S>,
     /// Sine of `angle`.
     pub sin: Wide<S>,
-    /// And cosine.
+    /// Cosine of the forcing angle.
     pub cos: Wide<S>,
     /// e
     pub exponential: Wide<S>,
@@ -100,7 +100,8 @@ impl<S: Simd> SlowEnvelope<'_, S> {
         d.times_plus(d.times_plus(self.curvature * 0.5, self.slope), self.offset)
     }
 
-    /// Where the parabola lies below minus the amplitude: the place where it no longer does.
+    /// Skips the time in which the parabola lies below minus the amplitude: the place where it no
+    /// longer does.
     #[inline(always)]
     fn skipped(&self, here: Place<S>, closed: Mask<S>) -> Place<S> {
         let Shape { omega, look, .. } = *self.shape;
@@ -133,8 +134,8 @@ impl<S: Simd> SlowEnvelope<'_, S> {
     }
 }
 
-/// Where the cubic through two values with these slopes, all in units of the stride, is zero; if it
-/// begins with a zero, the one after that.
+/// The place at which the cubic through two values with these slopes, all in units of the step, is
+/// zero; if it begins with a zero, the one after that.
 #[inline(always)]
 pub fn meeting<S: Simd>(
     left: Wide<S>,

@@ -11,9 +11,9 @@ use pulp::Simd;
 pub struct Angle<S: Simd> {
     /// omega tau0 + phi within `[0, 2 pi)`, rounded.
     pub value: Wide<S>,
-    /// Its sine.
+    /// Sine of the forcing angle.
     pub sin: Wide<S>,
-    /// And cosine.
+    /// Cosine of the forcing angle.
     pub cos: Wide<S>,
 }
 
@@ -22,16 +22,16 @@ pub struct Angle<S: Simd> {
 pub struct Harmonic<S: Simd> {
     /// a cos(omega tau + phi) and its first two derivatives.
     pub force: [Wide<S>; 3],
-    /// Its integral.
+    /// The integral of the force.
     pub impulse: Wide<S>,
-    /// Its second integral.
+    /// The second integral of the force.
     pub displacement: Wide<S>,
     /// Circular functions of omega d.
     pub turn: Turn<S>,
 }
 
 impl<S: Simd> Angle<S> {
-    /// From omega tau0.
+    /// The forcing angle that follows from omega tau0.
     #[inline(always)]
     pub fn new(shape: &Shape<Wide<S>>, angle: Words<S>) -> Self {
         let (_, angle) = angle.plus(Words { high: shape.phi, low: shape.phi_low }).wrapped();
@@ -72,12 +72,12 @@ impl<S: Simd> Angle<S> {
 pub struct Push<S: Simd> {
     /// The force less b with its first two derivatives.
     pub force: [Wide<S>; 3],
-    /// Its integral over the step.
+    /// The integral of the force over the step.
     pub impulse: Wide<S>,
 }
 
 impl<S: Simd> Push<S> {
-    /// From the force less b and its rate at an evaluation.
+    /// The step that follows from the force less b and its rate at an evaluation.
     #[inline(always)]
     pub fn new(shape: &Shape<Wide<S>>, [u, v]: [Wide<S>; 2], step: Wide<S>) -> Self {
         let omega2 = shape.omega2;

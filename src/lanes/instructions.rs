@@ -31,7 +31,7 @@ pub(crate) enum Permit {
 }
 
 impl Instructions {
-    /// One motion after the other, by the scalar solver: for every processor.
+    /// The scalar solver, which follows one motion after the other on every processor.
     pub const ONE: Self = Self(Set::One);
 
     /// What this processor has, the widest last.
@@ -53,7 +53,7 @@ impl Instructions {
         Self::available().pop().unwrap_or(Self::ONE)
     }
 
-    /// Its usual name.
+    /// The usual name of the instruction set.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self.0 {

@@ -18,16 +18,17 @@ pub trait Phase<S: Simd> {
     /// The guard's derivatives of orders four and on.
     fn later(&self, at: &Self::At) -> [Wide<S>; LATER];
 
-    /// Where a step from an evaluation at `d` is so short that the guard's series loses nothing.
+    /// The lanes in which a step from an evaluation at `d` is so short that the guard's series
+    /// loses nothing.
     fn is_short(&self, d: Wide<S>, step: Wide<S>) -> Mask<S>;
 }
 
 /// What a certificate may cost.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Care {
-    /// As is enough nearly always.
+    /// The care that is enough nearly always.
     Usual,
-    /// For what that has left open.
+    /// The care for what usual care has left open.
     Great,
 }
 
@@ -40,11 +41,11 @@ pub struct Found<S: Simd, A> {
     pub elapsed: Wide<S>,
     /// The guard's excess as a series from there.
     pub series: Series<S>,
-    /// From there to the root.
+    /// The step from the evaluation to the root.
     pub step: Wide<S>,
     /// The guard's slope at the root.
     pub slope: Wide<S>,
-    /// Where there is one.
+    /// The lanes in which there is a root.
     pub fine: Mask<S>,
 }
 

@@ -12,7 +12,7 @@ pub const LATER: usize = TERMS - 4;
 pub struct Series<S: Simd>([Wide<S>; TERMS]);
 
 impl<S: Simd> Series<S> {
-    /// From the first four orders and the later ones.
+    /// The series of the first four orders and the later ones.
     #[inline(always)]
     pub fn new(orders: [Wide<S>; 4], later: [Wide<S>; LATER]) -> Self {
         let mut all = [orders[0]; TERMS];

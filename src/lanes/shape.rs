@@ -20,7 +20,7 @@ macro_rules! shape {
                 $(self.$name[lane] = shape.$name;)*
             }
 
-            /// Of all lanes.
+            /// Loads the constants of all lanes.
             #[inline(always)]
             pub fn load<S: Simd>(&self, simd: S) -> Shape<Wide<S>> {
                 Shape { $($name: Wide::load(simd, &self.$name),)* }
@@ -42,7 +42,7 @@ shape! {
     omega2,
     /// Phase of the harmonic force in two words, radians.
     phi,
-    /// Its second word.
+    /// The second word of the phase.
     phi_low,
     /// a/omega
     a_over_omega,
@@ -58,53 +58,54 @@ shape! {
     pace,
     /// The forcing angle from which on the force is negative, up to 2 pi less this.
     turning,
-    /// Its sine; its cosine is -b/a.
+    /// Sine of that forcing angle, whose cosine is -b/a.
     turning_sin,
-    /// And its cosine.
+    /// Cosine of that forcing angle.
     turning_cos,
     /// Sine of the angle halfway from there to pi.
     halfway_sin,
-    /// And its cosine.
+    /// Cosine of that angle.
     halfway_cos,
     /// Sine of omega times two decay times of the slider.
     settling_sin,
-    /// And its cosine.
+    /// Cosine of that angle.
     settling_cos,
     /// A step of a guess, outside contact.
     look,
     /// Sine of omega times that.
     look_sin,
-    /// And its cosine.
+    /// Cosine of omega times that.
     look_cos,
     /// exp(-rate look), zero if there is little left.
     look_decay,
     /// Damped frequency; this and the next two are zero at and above critical damping.
     nu,
-    /// What rounding took from it.
+    /// What rounding took from the damped frequency.
     nu_low,
     /// 1/nu
     per_nu,
-    /// One near resonance and near critical damping and above, zero elsewhere.
+    /// Whether a model is near resonance or near critical damping or above: one there, zero
+    /// elsewhere.
     unusual,
-    /// One near critical damping, zero elsewhere,
+    /// Whether a model is near critical damping: one there, zero elsewhere.
     near_critical,
-    /// and there 1 - xi^2; zero elsewhere.
+    /// 1 - xi^2 near critical damping, zero elsewhere.
     discriminant,
-    /// The difference of the two rates above critical damping, zero elsewhere,
+    /// The difference of the two rates above critical damping, zero elsewhere.
     spread,
-    /// and the smaller one.
+    /// The smaller one of the two rates above critical damping, zero elsewhere.
     lasting,
-    /// The larger one clearly above critical damping, zero elsewhere,
+    /// The larger rate clearly above critical damping, zero elsewhere.
     fast,
-    /// its eighth power,
+    /// The eighth power of the larger rate.
     fast8,
-    /// and that of the smaller one.
+    /// The eighth power of the smaller rate.
     lasting8,
     /// The fastest rate of a contact.
     quickest,
     /// 1/(1 - omega^2 + 2 i xi omega), real part; zero near resonance.
     response,
-    /// And imaginary part.
+    /// Imaginary part of 1/(1 - omega^2 + 2 i xi omega).
     response_im,
     /// 1/(2 nu) near resonance, zero elsewhere: which of the two forms serves.
     half_over_nu,
@@ -112,17 +113,17 @@ shape! {
     delta,
     /// 1/(xi + i delta), real part.
     slow,
-    /// And imaginary part.
+    /// Imaginary part of 1/(xi + i delta).
     slow_im,
     /// The time after which forced and free oscillation are out of step.
     in_step,
     /// 1/(xi + i (omega + nu)), real part.
     quick,
-    /// And imaginary part.
+    /// Imaginary part of 1/(xi + i (omega + nu)).
     quick_im,
     /// What the steady trial force takes of F - b.
     steady,
-    /// And of F'.
+    /// What the steady trial force takes of F'.
     steady_rate,
     /// A bound of the eighth derivative of the forced trial force.
     forced_eighth,
@@ -130,7 +131,7 @@ shape! {
     swing,
     /// Sine of omega times that.
     swing_sin,
-    /// And its cosine.
+    /// Cosine of omega times that.
     swing_cos,
     /// C, S and S' of the free oscillation after it.
     swing_c,
@@ -142,7 +143,7 @@ shape! {
     piece,
     /// Sine of omega times that.
     piece_sin,
-    /// And its cosine.
+    /// Cosine of omega times that.
     piece_cos,
     /// C, S and S' of the free oscillation after it.
     piece_c,
@@ -155,7 +156,7 @@ shape! {
     early,
     /// Sine of omega times the first step.
     early_swing_sin,
-    /// And its cosine.
+    /// Cosine of omega times the first step.
     early_swing_cos,
     /// C
     early_swing_c,
@@ -163,15 +164,15 @@ shape! {
     early_swing_s_rate,
     /// Sine of omega times the first piece.
     early_piece_sin,
-    /// And its cosine.
+    /// Cosine of omega times the first piece.
     early_piece_cos,
     /// C
     early_piece_c,
     /// S'
     early_piece_s_rate,
-    /// What the steps may round off, eps of the parts' size
+    /// What the steps may round off, in eps of the parts' size.
     roundings,
-    /// together with this.
+    /// What the steps may round off besides.
     pulls,
 }
 
@@ -179,12 +180,12 @@ shape! {
 /// 1/384 of the amplitude, which the series puts right.
 const LOOK: f64 = 1.0;
 
-/// Of an exponential less than this is forgotten in one step of a guess.
+/// The part of an exponential below which one step of a guess forgets it.
 const SHORT_LIVED: f64 = 0.05;
 
 impl Shape<f64> {
-    /// Of a model; none without forcing or where the force never changes sign to positive, and
-    /// where powers of the parameters come near the ends of the f64 range.
+    /// The constants of a model; `None` without forcing or where the force never changes sign to
+    /// positive, and where powers of the parameters come near the ends of the f64 range.
     pub fn new(model: &Model) -> Option<Self> {
         let Constants { a, b, g, xi, omega, omega2, two_xi, rate, .. } = *model.constants();
         let moderate = |x: f64, low: f64, high: f64| x >= low && x <= high;

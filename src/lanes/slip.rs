@@ -42,7 +42,7 @@ pub struct Sliding<S: Simd> {
     lag: Wide<S>,
     y: Wide<S>,
     q: Wide<S>,
-    /// Of the velocity of the mass.
+    /// The rate of the velocity of the mass.
     y_rate: Wide<S>,
     /// The force's first two derivatives.
     force: [Wide<S>; 2],
@@ -56,7 +56,7 @@ pub struct Slipping<S: Simd> {
     /// Displacement of the slider's top, velocity of the mass, drift since the start, drift
     /// velocity.
     pub values: [Wide<S>; 4],
-    /// Their rates.
+    /// The rates of those four.
     pub rates: [Wide<S>; 4],
     /// Velocity of the slider's top.
     pub lag: Wide<S>,
@@ -72,7 +72,7 @@ pub struct Stop<S: Simd> {
     pub y: Wide<S>,
     /// Drift since the start.
     pub drift: Wide<S>,
-    /// Where all this is proved.
+    /// The lanes in which all this is proved.
     pub fine: Mask<S>,
 }
 
@@ -142,7 +142,7 @@ impl<S: Simd> Phase<S> for Slip<'_, S> {
 }
 
 impl<S: Simd> Slip<'_, S> {
-    /// Where the slider's bottom stops.
+    /// The stop of the slider's bottom.
     #[inline(always)]
     pub fn stop(&self) -> Stop<S> {
         let Shape { a, b, omega, rate, .. } = *self.shape;

@@ -17,14 +17,14 @@ pub struct Parts<S: Simd> {
     pub free: [Wide<S>; 2],
     /// Forced part.
     pub forced: Wide<S>,
-    /// Its rate over omega.
+    /// The rate of the forced part over omega.
     pub quarter: Wide<S>,
     /// Whether some lanes may have exponentials.
     pub forms: Forms,
 }
 
 impl<S: Simd> Parts<S> {
-    /// From the free part and its rate.
+    /// The parts that follow from the free part and its rate.
     #[inline(always)]
     pub fn new(
         shape: &Shape<Wide<S>>,
@@ -43,7 +43,7 @@ impl<S: Simd> Parts<S> {
         Self { free, forced, quarter, forms }
     }
 
-    /// After a stride.
+    /// The parts after a step.
     #[inline(always)]
     pub fn after(&self, swing: &Swing<S>) -> Self {
         let Swing { sin, cos, free: [c, s, s_rate], .. } = *swing;
@@ -112,7 +112,8 @@ impl<S: Simd> Parts<S> {
         x.times_plus(x, rate * rate).sqrt()
     }
 
-    /// The same clearly above critical damping, where both exponentials only shrink.
+    /// A bound of the free part's eighth derivative clearly above critical damping, where both
+    /// exponentials only shrink.
     #[inline(always)]
     pub fn eighth_of_exponentials(&self, shape: &Shape<Wide<S>>) -> Wide<S> {
         let [slowly, quickly] = self.free;
@@ -134,7 +135,7 @@ pub struct Swing<S: Simd> {
     pub length: Wide<S>,
     /// Sine of omega times that.
     pub sin: Wide<S>,
-    /// And cosine.
+    /// Cosine of omega times the step.
     pub cos: Wide<S>,
     /// C, S and S' of the free oscillation; clearly above critical damping the slow exponential,
     /// zero and the quick one.
@@ -151,7 +152,7 @@ pub struct Swings<S: Simd> {
 }
 
 impl<S: Simd> Swings<S> {
-    /// Of a guess.
+    /// The step of a guess.
     #[inline(always)]
     pub fn of_guess(shape: &Shape<Wide<S>>, forms: Forms) -> Self {
         let Shape { swing, swing_sin, swing_cos, swing_c, swing_s, swing_s_rate, .. } = *shape;
@@ -163,7 +164,7 @@ impl<S: Simd> Swings<S> {
         Self::new(shape, forms, full, early)
     }
 
-    /// Of the pieces of a certificate.
+    /// The step of the pieces of a certificate.
     #[inline(always)]
     pub fn of_pieces(shape: &Shape<Wide<S>>, forms: Forms) -> Self {
         let Shape { piece, piece_sin, piece_cos, piece_c, piece_s, piece_s_rate, .. } = *shape;
@@ -175,7 +176,7 @@ impl<S: Simd> Swings<S> {
         Self::new(shape, forms, full, early)
     }
 
-    /// From the full stride, and from sine, cosine, C and S' of the early one.
+    /// The step that follows from the full one, and from sine, cosine, C and S' of the early one.
     #[inline(always)]
     fn new(
         shape: &Shape<Wide<S>>,
@@ -223,8 +224,8 @@ impl<S: Simd> Swing<S> {
     }
 }
 
-/// One of two where the mask holds, the other elsewhere. (Under run-time dispatch the closures of
-/// an array's `map` are calls.)
+/// Takes one of two where the mask holds, the other elsewhere. (Under run-time dispatch the
+/// closures of an array's `map` are calls.)
 #[inline(always)]
 pub fn each<S: Simd, const N: usize>(
     mask: Mask<S>,

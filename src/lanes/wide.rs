@@ -7,20 +7,20 @@ use pulp::Simd;
 use pulp::bytemuck::cast_slice_mut;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// As many lanes as the widest instruction set has.
+/// The number of lanes of the widest instruction set.
 pub const WIDEST: usize = 8;
 
 /// A value of each lane in memory.
 pub type Column = [f64; WIDEST];
 
-/// One f64 a lane.
+/// One f64 per lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Wide<S: Simd> {
     simd: S,
     value: S::f64s,
 }
 
-/// One truth value a lane.
+/// One truth value per lane.
 #[derive(Clone, Copy, Debug)]
 pub struct Mask<S: Simd> {
     simd: S,
@@ -28,7 +28,7 @@ pub struct Mask<S: Simd> {
 }
 
 impl<S: Simd> Wide<S> {
-    /// The same number in all lanes.
+    /// One number in all lanes.
     #[inline(always)]
     pub fn splat(simd: S, value: f64) -> Self {
         Self { simd, value: simd.splat_f64s(value) }
@@ -46,7 +46,7 @@ impl<S: Simd> Wide<S> {
         S::as_mut_simd_f64s(column).0[0] = self.value;
     }
 
-    /// The same number in all lanes.
+    /// One number in all lanes, on the same processor.
     #[inline(always)]
     pub fn same(self, value: f64) -> Self {
         Self::splat(self.simd, value)
@@ -88,25 +88,25 @@ impl<S: Simd> Wide<S> {
         other.less(self).choose(other, self)
     }
 
-    /// Where it is less; not where either is a NaN.
+    /// The lanes in which it is less; not those in which either is a NaN.
     #[inline(always)]
     pub fn less(self, other: Self) -> Mask<S> {
         Mask { simd: self.simd, value: self.simd.less_than_f64s(self.value, other.value) }
     }
 
-    /// Where it is less than a number.
+    /// The lanes in which it is less than a number.
     #[inline(always)]
     pub fn below(self, other: f64) -> Mask<S> {
         self.less(self.same(other))
     }
 
-    /// Where it is greater than a number.
+    /// The lanes in which it is greater than a number.
     #[inline(always)]
     pub fn above(self, other: f64) -> Mask<S> {
         self.same(other).less(self)
     }
 
-    /// Where it is this number.
+    /// The lanes in which it is this number.
     #[inline(always)]
     pub fn is(self, other: f64) -> Mask<S> {
         let other = self.simd.splat_f64s(other);
@@ -136,7 +136,7 @@ impl<S: Simd> Wide<S> {
 }
 
 impl<S: Simd> Mask<S> {
-    /// One value where it holds, the other elsewhere.
+    /// Takes one value where the mask holds, the other elsewhere.
     #[inline(always)]
     pub fn choose(self, yes: Wide<S>, no: Wide<S>) -> Wide<S> {
         Wide { simd: self.simd, value: self.simd.select_f64s(self.value, yes.value, no.value) }
@@ -148,7 +148,7 @@ impl<S: Simd> Mask<S> {
         self.simd.first_true_m64s(self.value) < S::F64_LANES
     }
 
-    /// One where it holds, zero elsewhere.
+    /// One where the mask holds, zero elsewhere.
     #[inline(always)]
     pub fn number(self) -> Wide<S> {
         self.choose(Wide::splat(self.simd, 1.0), Wide::splat(self.simd, 0.0))

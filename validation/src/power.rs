@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Gate {
-    /// Switches missed, invented, or of another phase.
+    /// Events missed, spurious, or of another phase.
     Events,
     /// Errors at the switches.
     EventErrors,
@@ -40,7 +40,7 @@ impl Gate {
         Self::Attractor,
     ];
 
-    /// Its name for people.
+    /// The gate's name for people.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
@@ -82,7 +82,7 @@ pub struct Trip {
 /// What was found about a wrong engine.
 #[derive(Clone, Debug)]
 pub struct Finding {
-    /// Its name, with its tolerance where it has one.
+    /// The engine's name, with its tolerance where it has one.
     pub engine: String,
     /// What is wrong with it.
     pub fault: &'static str,
@@ -107,11 +107,11 @@ pub struct Standard {
     pub engine: &'static str,
     /// What that engine is asked for.
     pub accuracy: Accuracy,
-    /// Its unit of error.
+    /// The unit of error of the engine.
     pub unit: f64,
 }
 
-/// As the exact solver is held.
+/// The standard to which the exact solver is held.
 pub const AS_EXACT: Standard =
     Standard { engine: "exact", accuracy: Accuracy::Exact, unit: f64::EPSILON };
 
@@ -119,7 +119,8 @@ pub const AS_EXACT: Standard =
 const FAULTY_AT: [f64; 2] = [1e-6, 1e-9];
 
 impl Standard {
-    /// As the integrator is held of which faulty ones are made, at each of their tolerances.
+    /// The standards to which the integrator is held of which faulty ones are made, at each of
+    /// their tolerances.
     #[must_use]
     pub fn of_faulty() -> [Self; 2] {
         FAULTY_AT.map(|tolerance| Self {

@@ -213,7 +213,7 @@ fn events_stop_early_after_so_many_periods() {
     let said = text(&output.stderr);
     assert!(output.status.success());
     assert!(
-        said.contains("stopped after 10 forcing periods with") && said.contains("of 1000 switches"),
+        said.contains("stopped after 10 forcing periods with") && said.contains("of 1000 events"),
         "{said}"
     );
     assert_eq!(said.lines().count(), 1);

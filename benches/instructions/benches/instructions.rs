@@ -3,7 +3,7 @@
 use gungraun::prelude::*;
 use gungraun::{Callgrind, EventKind};
 use percuss::dynamics::strobe::StrobeMap;
-use percuss::{Entry, Segment, Model, Parameters, Phase, Start};
+use percuss::{Entry, Model, Parameters, Phase, Segment, Start};
 use percuss_instructions::{Grain, limit};
 use std::hint::black_box;
 
@@ -21,7 +21,11 @@ fn at_rest(model: Model) -> (Model, Entry) {
 
 fn segment(phase: Phase) -> Segment {
     let (model, entry) = at_rest(model(CHAOS));
-    model.trajectory(entry).skip(20).find(|segment| segment.phase() == phase).expect("all phases occur")
+    model
+        .trajectory(entry)
+        .skip(20)
+        .find(|segment| segment.phase() == phase)
+        .expect("all phases occur")
 }
 
 /// Where a phase begins, with its model.
@@ -50,7 +54,10 @@ fn closed_form(segment: Segment) -> f64 {
 #[bench::contact(args = (beginning(Phase::Contact)), config = held("switch/contact", Grain::Micro))]
 #[bench::progression(args = (beginning(Phase::Progression)), config = held("switch/progression", Grain::Micro))]
 fn switch((model, entry): (Model, Entry)) -> f64 {
-    black_box(&model).trajectory(black_box(entry)).next().map_or(f64::NAN, |segment| segment.duration())
+    black_box(&model)
+        .trajectory(black_box(entry))
+        .next()
+        .map_or(f64::NAN, |segment| segment.duration())
 }
 
 #[library_benchmark]

@@ -25,8 +25,8 @@ const LARGEST_BATCH: usize = 64;
 const EXTENSIONS: u32 = 3;
 
 impl AttractorCatalog {
-    /// Of no attractor yet. A start is followed for `transient` forcing periods (at least one), and
-    /// for 2, 4 and 8 times that more where it is not recognised by then.
+    /// A catalog that has no attractor yet. A start is followed for `transient` forcing periods (at
+    /// least one), and for 2, 4 and 8 times that more where it is not recognised by then.
     #[must_use]
     pub fn new(map: StrobeMap, transient: u64) -> Self {
         Self { map, transient: transient.max(1), known: Vec::new() }
@@ -43,15 +43,15 @@ impl AttractorCatalog {
         self.known.iter().map(|it| &it.attractor)
     }
 
-    /// Where a start leads, as far as the attractors met so far tell.
+    /// The attractor to which a start leads, as far as the attractors met so far tell.
     #[must_use]
     pub fn label(&self, start: Point) -> Label {
         let Ok(entry) = self.map.entry(start) else { return Label::Unresolved };
         self.extended(entry, Result::ok).unwrap_or(Label::Unresolved)
     }
 
-    /// Where many starts lead; attractors not met before are added. `seen` is told how many starts
-    /// more are done.
+    /// The attractors to which many starts lead; attractors not met before are added. `seen` is
+    /// told how many starts more are done.
     pub fn label_all(&mut self, starts: &[Point], seen: &(dyn Fn(u64) + Sync)) -> Vec<Label> {
         let mut labels = vec![Label::Unresolved; starts.len()];
         let mut open = Vec::new();

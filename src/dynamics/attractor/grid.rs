@@ -10,9 +10,9 @@ use crate::parameters::within;
 /// A rectangle of starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Window {
-    /// From and to, of the displacement of the mass.
+    /// The range of the displacement of the mass, from and to.
     pub p: [f64; 2],
-    /// From and to, of its velocity.
+    /// The range of the velocity of the mass, from and to.
     pub y: [f64; 2],
 }
 

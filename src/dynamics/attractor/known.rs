@@ -4,14 +4,15 @@ use super::Attractor;
 use super::cells::Cells;
 use super::trap::Trap;
 
-/// Where a start leads.
+/// The place to which a start leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Label {
-    /// To an attractor, by its place in the catalog.
+    /// The start leads to the attractor at this place in the catalog.
     Attractor(usize),
-    /// To a phase that never ends: the mass never returns or the slider never stops.
+    /// The start leads to a phase that never ends: the mass never returns or the slider never
+    /// stops.
     Escaping,
-    /// Not known.
+    /// It is not known where the start leads.
     Unresolved,
 }
 
@@ -65,7 +66,7 @@ impl Known {
         }
     }
 
-    /// Of the orbit; one where it is none.
+    /// The orbit's period in forcing periods; one where the attractor is no orbit.
     pub fn period(&self) -> u64 {
         u64::from(self.attractor.period().unwrap_or(1))
     }

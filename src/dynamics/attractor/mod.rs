@@ -78,7 +78,7 @@ pub struct Attractor {
     pub drift_per_period: f64,
     /// The largest exponent per forcing period; of an orbit from its multipliers.
     pub lyapunov_per_period: f64,
-    /// Its standard error; zero of an orbit.
+    /// The standard error of the exponent; zero for an orbit.
     pub lyapunov_error: f64,
 }
 
@@ -86,7 +86,7 @@ pub struct Attractor {
 pub const POINTS: usize = 4096;
 
 impl Attractor {
-    /// Of a stable orbit, told from its smallest p on.
+    /// An attractor that is a stable orbit, told from its smallest p on.
     fn periodic(map: &StrobeMap, orbit: Orbit) -> Self {
         let first = orbit.points.iter().copied().min_by(|a, b| a[0].total_cmp(&b[0]));
         let told = first.and_then(|first| Orbit::find(map, first, orbit.period()).ok());
@@ -113,7 +113,7 @@ impl Attractor {
         }
     }
 
-    /// Its period in forcing periods, where it has one.
+    /// The attractor's period in forcing periods, where it has one.
     #[must_use]
     pub fn period(&self) -> Option<u32> {
         self.orbit.as_ref().map(Orbit::period)
@@ -125,7 +125,7 @@ impl Attractor {
         mine.cmp(&its).then_with(|| self.smallest_p().total_cmp(&other.smallest_p()))
     }
 
-    /// Its smallest p.
+    /// The smallest p among the attractor's strobes.
     #[must_use]
     pub fn smallest_p(&self) -> f64 {
         self.points.iter().map(|point| point[0]).fold(f64::INFINITY, f64::min)

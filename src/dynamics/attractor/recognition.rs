@@ -9,7 +9,7 @@ use crate::entry::Entry;
 use crate::segment::Endless;
 use std::ops::ControlFlow;
 
-/// So many turns in a row have to bring a motion in a trap closer.
+/// How many turns in a row have to bring a motion in a trap closer.
 const TURNS: u32 = 3;
 
 /// Watches for what is known.
@@ -28,7 +28,7 @@ impl<'a> Recognition<'a> {
         Self { watch: Watch::new(known), label: None, last: from, met: 0, most, seen }
     }
 
-    /// Its label, or where the motion is if it has none.
+    /// The motion's label, or its state if it has none yet.
     pub fn outcome(self) -> Result<Label, Entry> {
         self.label.ok_or(self.last)
     }
@@ -138,7 +138,7 @@ mod tests {
         Known { attractor, evidence: Evidence::Traps(vec![Trap::ball([0.0; 3], 1.0)]) }
     }
 
-    /// After how many strobes at these distances a motion is recognised.
+    /// How many strobes at these distances it takes to recognise a motion.
     fn recognised_after(distances: &[f64]) -> Option<usize> {
         let known = [origin()];
         let mut watch = Watch::new(&known);

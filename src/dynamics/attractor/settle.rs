@@ -15,7 +15,7 @@ use crate::entry::Entry;
 const LONGEST: usize = 128;
 /// Strobes that repeat this closely (relative to their size) are handed to Newton's method.
 const CLOSE: f64 = 1e-3;
-/// At least so many pairs of strobes must repeat.
+/// The least number of pairs of strobes that must repeat.
 const PAIRS: usize = 8;
 /// Turns within which a motion must enter a trap of the orbit that it seems to follow: one that
 /// loses 1 % of its distance a turn loses 1e-8 of it in so many.
@@ -26,15 +26,15 @@ const DECISION: u64 = 1 << 14;
 /// A largest exponent, and a contraction, that are no larger are taken for zero.
 const NEUTRAL: f64 = 1e-3;
 
-/// With so many attractors known only orbits are added: nearly without damping every start has its
-/// own invariant curve.
+/// With this number of attractors known, only orbits are added: nearly without damping every start
+/// has its own invariant curve.
 const MOST: usize = 64;
 
 /// What became of a motion.
 pub(super) enum Settled {
-    /// Where it leads was known, or it is not known.
+    /// The attractor was known, or it stays unknown.
     Label(Label),
-    /// To an attractor not met before.
+    /// The motion leads to an attractor that was not met before.
     New(Box<Known>),
 }
 

@@ -35,7 +35,7 @@ const HALVINGS: i32 = 28;
 const DIRECTIONS: u32 = 48;
 /// The shells, as shares of the radius: a corner of the map inside must not stay unseen.
 const SHELLS: [f64; 4] = [1.0, 0.6, 0.3, 0.1];
-/// At most about so many strobes of an orbit get a trap.
+/// About how many strobes of an orbit get a trap at most.
 const TRAPS: usize = 12;
 /// The sum S is doubled in length so often: multipliers up to 1 - 1e-8 are summed up.
 const DOUBLINGS: usize = 32;

@@ -4,7 +4,7 @@ use super::point::{ContinuationPoint, Curve, shifted};
 use crate::dynamics::orbit::ShootingIterate;
 use crate::dynamics::strobe::Point;
 
-/// Where the curve leaves a piece, and where it goes on.
+/// A corner: where the curve leaves a smooth piece, and where it goes on.
 pub(super) struct Corner {
     /// The last orbit of the piece that is left.
     pub(super) before: ContinuationPoint,

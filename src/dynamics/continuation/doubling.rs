@@ -7,12 +7,14 @@ use crate::dynamics::linear::{IDENTITY, adjugate, norm};
 use crate::dynamics::orbit::{Around, Orbit, ShootingIterate, size, solved};
 use crate::dynamics::strobe::Point;
 
-/// On which side of a flip the doubled orbit exists.
+/// The side of a flip on which the doubled orbit exists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criticality {
-    /// Where the orbit that doubles has one more multiplier below -1: it hands its stability on.
+    /// The doubled orbit exists where the orbit that doubles has one more multiplier below -1: it
+    /// hands its stability on.
     Supercritical,
-    /// Where it has one less: an orbit that was stable loses its stability to nothing near.
+    /// The doubled orbit exists where the orbit that doubles has one multiplier less below -1: an
+    /// orbit that was stable loses its stability to nothing near.
     Subcritical,
 }
 

@@ -20,7 +20,7 @@ const CHANGE: f64 = 0.3;
 /// A branch being followed.
 pub(super) struct Walk<'a> {
     curve: Curve,
-    /// Where the parameter begins and where it is to go.
+    /// The value at which the parameter begins, and below it the value to which it is to go.
     from: f64,
     to: f64,
     told: &'a mut dyn FnMut(f64),

@@ -45,7 +45,7 @@ impl Curve {
     }
 }
 
-/// Each strobe less the one half a period later; none of an odd number.
+/// The differences of strobes half a period apart; `None` for an odd number of strobes.
 fn differences(chain: &ShootingIterate) -> Option<Vec<Point>> {
     let count = chain.points.len();
     let (first, second) = chain.points.split_at(count / 2);

@@ -2,7 +2,7 @@
 
 use super::point::{ContinuationPoint, Curve};
 
-/// Where a test vanishes.
+/// The orbit at which a test function vanishes.
 pub(super) struct Located {
     pub(super) knot: ContinuationPoint,
     /// Distance from the knot that was searched from.

@@ -51,11 +51,11 @@ use std::fmt;
 /// A branch of orbits.
 #[derive(Clone, Debug)]
 pub struct Branch {
-    /// Its orbits in order.
+    /// The branch's orbits in order.
     pub points: Vec<BranchPoint>,
     /// What was met on the way, in order.
     pub bifurcations: Vec<Bifurcation>,
-    /// Where it ends.
+    /// How and where the branch ends.
     pub ending: Ending,
 }
 
@@ -107,20 +107,21 @@ pub struct Bifurcation {
     pub turns: bool,
     /// The orbit there; at a corner as the branch comes to it.
     pub orbit: Orbit,
-    /// At a corner, the first orbit beyond it.
+    /// The first orbit beyond a corner.
     pub beyond: Option<Orbit>,
 }
 
 /// How a branch ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending {
-    /// At the value that was asked for.
+    /// The branch ends at the value that was asked for.
     Reached,
     /// Back at the value where it began.
     Left,
     /// It is closed: back at the orbit where it began.
     Closed,
-    /// In a flip of an orbit of half its period, which is the last of the branch's bifurcations.
+    /// The branch ends in a flip of an orbit of half its period, which is the last of the branch's
+    /// bifurcations.
     Halved {
         /// Where.
         value: f64,

@@ -13,9 +13,9 @@ use std::ops::ControlFlow;
 pub struct Cursor<'a, W> {
     /// What moves.
     pub model: &'a Model,
-    /// Where its phase began.
+    /// The entry of the motion's present phase.
     pub entry: Entry,
-    /// The same with what the scalar solver knows of it, if that has passed the phase before.
+    /// The present phase as the scalar solver has begun it, if it passed the phase before.
     begun: Option<Begun>,
     /// When it is next looked at.
     pub due: Instant,

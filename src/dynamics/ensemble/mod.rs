@@ -38,9 +38,9 @@ pub trait Watcher {
 pub struct Motion<'a, W> {
     /// What moves.
     pub model: &'a Model,
-    /// Where it begins.
+    /// The entry at which the motion begins.
     pub entry: Entry,
-    /// Its first strobe, not before that; the others follow at whole forcing periods.
+    /// The motion's first strobe, not before its entry; the others follow at whole forcing periods.
     pub first: Instant,
     /// No switch after this need be found: not before the last strobe that is looked at.
     pub horizon: Option<Instant>,
@@ -48,13 +48,13 @@ pub struct Motion<'a, W> {
     pub watcher: W,
 }
 
-/// By what the phases of an ensemble were solved.
+/// How many phases of an ensemble were solved in lanes and how many one by one.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
-    /// In lanes.
+    /// The phases that were solved in lanes.
     pub in_lanes: u64,
-    /// One by one: what no lane can prove or has the closed form of, and starts away from the
-    /// slider.
+    /// The phases that were solved one by one: those that no lane can prove or has the closed form
+    /// of, and starts away from the slider.
     pub alone: u64,
 }
 
@@ -70,7 +70,8 @@ pub fn follow<'a, W: Watcher + Send>(
     on_all_threads(count, |next| one_by_one(next, &begin)).0
 }
 
-/// As [`follow`], by these instructions, and by what the phases were solved.
+/// Follows the motions as [`follow`] does, by these instructions, and counts how their phases were
+/// solved.
 #[cfg(feature = "lanes")]
 pub fn follow_by<'a, W: Watcher + Send>(
     instructions: Instructions,

@@ -18,7 +18,7 @@ pub struct LaneScheduler<'a, W> {
     /// Slots by the stage that they wait for.
     waiting: [Vec<usize>; Stage::ALL.len()],
     batch: Box<Batch>,
-    /// Whose constants each lane of the batch has.
+    /// The model whose constants each lane of the batch has.
     shaped: Vec<Option<&'a Model>>,
     done: Vec<(usize, W)>,
     tally: Tally,

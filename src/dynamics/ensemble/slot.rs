@@ -2,7 +2,7 @@
 
 use super::cursor::Cursor;
 use super::{Tally, Watcher};
-use crate::entry::{Entry, Onset};
+use crate::entry::{Entry, ModeEntry};
 use crate::instant::Instant;
 use crate::lanes::{Begin, Column, End, Shape, Stage};
 use crate::model::Model;
@@ -47,12 +47,12 @@ impl<'a, W: Watcher> Slot<'a, W> {
     /// seen enough.
     pub fn next_stage(&mut self) -> Option<Stage> {
         loop {
-            let stage = match self.cursor.entry.onset {
+            let stage = match self.cursor.entry.mode {
                 _ if self.shape.is_none() => None,
-                Onset::Separation { h_rate: 0.0 } => Some(Stage::Flight),
-                Onset::Contact { .. } => Some(Stage::Contact),
-                Onset::Progression { .. } => Some(Stage::Slip),
-                Onset::Apart | Onset::Separation { .. } => None,
+                ModeEntry::Separation { h_rate: 0.0 } => Some(Stage::Flight),
+                ModeEntry::Contact { .. } => Some(Stage::Contact),
+                ModeEntry::Progression { .. } => Some(Stage::Slip),
+                ModeEntry::Apart | ModeEntry::Separation { .. } => None,
             };
             if stage.is_some() {
                 return stage;
@@ -76,16 +76,16 @@ impl<'a, W: Watcher> Slot<'a, W> {
     /// Fills a lane.
     #[inline]
     pub fn begin(&self, stage: Stage, lane: usize, begin: &mut Begin) {
-        let Entry { instant, state, onset, .. } = &self.cursor.entry;
+        let Entry { instant, state, mode, .. } = &self.cursor.entry;
         let angle = instant.angle_two_word();
         begin.angle[lane] = angle.high;
         begin.angle_low[lane] = angle.low;
         begin.y[lane] = state.y;
         begin.q[lane] = state.q;
-        let (first, second) = match *onset {
-            Onset::Contact { offset, reference } => (offset, reference),
-            Onset::Progression { drift_rate, closing } => (drift_rate, closing),
-            Onset::Apart | Onset::Separation { .. } => (0.0, 0.0),
+        let (first, second) = match *mode {
+            ModeEntry::Contact { offset, reference } => (offset, reference),
+            ModeEntry::Progression { drift_rate, closing } => (drift_rate, closing),
+            ModeEntry::Apart | ModeEntry::Separation { .. } => (0.0, 0.0),
         };
         begin.first[lane] = first;
         begin.second[lane] = second;
@@ -146,57 +146,57 @@ impl<'a, W: Watcher> Slot<'a, W> {
         let instant =
             Instant::from_parts(instant.cycle() + i128::from(end.cycles[lane] as i64), angle);
         let y = end.y[lane];
-        let (q, onset, drift) = match stage {
+        let (q, mode, drift) = match stage {
             Stage::Contact | Stage::ContactAgain | Stage::ContactStrobe => {
                 let threshold = end.guard[lane];
-                let onset = if threshold == 1.0 {
-                    Onset::Progression { drift_rate: 0.0, closing: y }
+                let mode = if threshold == 1.0 {
+                    ModeEntry::Progression { drift_rate: 0.0, closing: y }
                 } else {
-                    Onset::Separation { h_rate: 0.0 }
+                    ModeEntry::Separation { h_rate: 0.0 }
                 };
-                (threshold - constants.two_xi * y, onset, drift)
+                (threshold - constants.two_xi * y, mode, drift)
             }
             Stage::Slip | Stage::SlipStrobe => {
-                let onset = Onset::Contact { offset: 0.0, reference: 1.0 };
+                let mode = ModeEntry::Contact { offset: 0.0, reference: 1.0 };
                 let drift = drift.plus(TwoWord::new(end.drift[lane]));
-                (1.0 - constants.two_xi * y, onset, drift)
+                (1.0 - constants.two_xi * y, mode, drift)
             }
             Stage::Flight | Stage::FlightAgain | Stage::FlightStrobe => {
                 let (f, q) = (end.guard[lane], end.q[lane]);
-                let onset = if f < 1.0 {
-                    Onset::Contact { offset: f, reference: 0.0 }
+                let mode = if f < 1.0 {
+                    ModeEntry::Contact { offset: f, reference: 0.0 }
                 } else {
                     surface::slipping(constants, &State { p: q + constants.g, y, q })
                 };
-                (q, onset, drift)
+                (q, mode, drift)
             }
         };
-        Entry { instant, state: State { p: q + constants.g, y, q }, drift, onset }
+        Entry { instant, state: State { p: q + constants.g, y, q }, drift, mode }
     }
 
     /// The phase taken up at the strobe ([`crate::Segment::entry_at`]); none next to a threshold.
     #[inline]
     fn strobe(&self, stage: Stage, lane: usize, end: &End) -> Option<Entry> {
-        let Entry { drift, onset, .. } = self.cursor.entry;
+        let Entry { drift, mode, .. } = self.cursor.entry;
         let g = self.cursor.model.constants().g;
         let state = State { p: end.p[lane], y: end.y[lane], q: end.q[lane] };
         let guard = end.guard[lane];
-        let (onset, drift) = match (stage, onset) {
+        let (mode, drift) = match (stage, mode) {
             (Stage::FlightStrobe, _) => {
                 let clear = state.p < state.q + g;
-                (clear.then_some(Onset::Apart)?, drift)
+                (clear.then_some(ModeEntry::Apart)?, drift)
             }
-            (_, Onset::Contact { reference, .. }) => {
+            (_, ModeEntry::Contact { reference, .. }) => {
                 let f = reference + guard;
                 let clear = f.min(1.0 - f) > FOUR_ULPS;
-                (clear.then_some(Onset::Contact { offset: guard, reference })?, drift)
+                (clear.then_some(ModeEntry::Contact { offset: guard, reference })?, drift)
             }
             _ => {
                 let clear = guard > FOUR_ULPS * end.terms[lane];
-                let onset = Onset::Progression { drift_rate: guard, closing: end.closing[lane] };
-                (clear.then_some(onset)?, drift.plus(TwoWord::new(end.drift[lane])))
+                let mode = ModeEntry::Progression { drift_rate: guard, closing: end.closing[lane] };
+                (clear.then_some(mode)?, drift.plus(TwoWord::new(end.drift[lane])))
             }
         };
-        Some(Entry { instant: self.cursor.due, state, drift, onset })
+        Some(Entry { instant: self.cursor.due, state, drift, mode })
     }
 }

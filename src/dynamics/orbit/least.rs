@@ -8,7 +8,7 @@ use crate::dynamics::strobe::{Point, StrobeMap};
 /// orbit is cubic in its width, and rounding hides (1e-15)^(1/3).
 const NEAR: f64 = 1e-4;
 
-/// The same orbit with its least number of strobes.
+/// The orbit with the least number of strobes that it needs.
 pub(super) fn closed(map: &StrobeMap, chain: ShootingIterate) -> ShootingIterate {
     let period = chain.points.len();
     let divisors = (1..=period / 2).filter(|divisor| period.is_multiple_of(*divisor));

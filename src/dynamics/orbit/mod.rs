@@ -24,12 +24,12 @@ pub const LARGEST_PERIOD: u32 = 10_000;
 /// A periodic orbit of the strobe map.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orbit {
-    /// Its strobes (p, y, q), one a forcing period, as many as the least period.
+    /// The orbit's strobes (p, y, q), one per forcing period, as many as the least period.
     pub points: Vec<Point>,
     /// The phases met in one whole period of the orbit, in order, from that of the first strobe.
     pub phases: Vec<Phase>,
-    /// Its multipliers (real and imaginary part), largest modulus first. With any contact the last
-    /// is zero: the surface swallows a direction.
+    /// The orbit's multipliers (real and imaginary part), largest modulus first. With any contact
+    /// the last is zero: the surface swallows a direction.
     pub multipliers: [[f64; 2]; 3],
     /// How well it closes: the largest |image - next strobe| over (1 + |strobe|), per forcing
     /// period.

@@ -24,8 +24,8 @@ impl Invariants {
     }
 }
 
-/// With any contact one multiplier is zero and the others follow from two invariants; without, all
-/// three are computed.
+/// The multipliers of an orbit. With any contact one multiplier is zero and the others follow from
+/// two invariants; without, all three are computed.
 pub(super) fn of(chain: &ShootingIterate) -> [Complex; 3] {
     if touches(chain) {
         let Invariants { sum, pairs } = Invariants::of(chain);

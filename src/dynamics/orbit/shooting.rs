@@ -13,7 +13,7 @@ const ROUNDINGS: f64 = 8.0;
 pub(crate) struct ShootingIterate {
     /// p, y, q of each strobe.
     pub(crate) points: Vec<Point>,
-    /// One forcing period from each.
+    /// The passages over one forcing period, one from each strobe.
     pub(crate) passages: Vec<Passage>,
     /// The derivatives of these.
     pub(crate) jacobians: Vec<Jacobian>,

@@ -30,7 +30,7 @@ fn now() -> Duration {
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec as u32)
 }
 
-/// Where a thread's own time cannot be asked for, wall time: best-of batches then hide less.
+/// The wall time, where a thread's own time cannot be asked for: best-of batches then hide less.
 #[cfg(not(any(target_os = "linux", target_os = "macos")))]
 fn now() -> Duration {
     use std::sync::OnceLock;

@@ -15,7 +15,7 @@ const BUDGET: u64 = 5_000_000;
 
 /// Something that can be timed on a course.
 pub trait Contestant: Sync {
-    /// Its name, as in `-e`.
+    /// The contestant's name, as in `-e`.
     fn name(&self) -> &'static str;
 
     /// The library it is of.
@@ -34,7 +34,8 @@ pub trait Contestant: Sync {
         setting: Accuracy,
     ) -> Result<Box<dyn TimedRun + 'a>, Failure>;
 
-    /// Its part of a run without the harness's; nothing where that cannot be told apart.
+    /// The contestant's own part of a run, without the harness's; nothing where that cannot be told
+    /// apart.
     ///
     /// # Errors
     /// Why it does not run there, or is not the same run then.

@@ -11,7 +11,7 @@ use percuss::{Parameters, Start};
 /// A run to be made and what is true of it.
 #[derive(Clone, Debug)]
 pub struct Course {
-    /// Its name.
+    /// The name of the course's case.
     pub name: String,
     /// The regime it stands for.
     pub regime: String,
@@ -80,7 +80,7 @@ impl Course {
         })
     }
 
-    /// Its length in forcing periods.
+    /// The length of the course in forcing periods.
     #[must_use]
     pub fn periods(&self) -> f64 {
         self.task.span / self.task.problem.model.period()
@@ -98,9 +98,9 @@ impl Course {
             && truth.iter().zip(&answer.events).all(|(row, event)| is_same(row, event, window));
         if !same {
             let matched = Matching::of(truth, &answer.events, window).pairs.len();
-            let (missed, invented) = (truth.len() - matched, answer.events.len() - matched);
+            let (missed, spurious) = (truth.len() - matched, answer.events.len() - matched);
             return Err(Failure::new(format!(
-                "wrong: {missed} switches missed, {invented} invented"
+                "wrong: {missed} events missed, {spurious} spurious"
             )));
         }
         let pairs = || truth.iter().zip(&answer.events);

@@ -30,7 +30,7 @@ pub struct Floors {
 /// What a workload costs.
 #[derive(Clone, Debug)]
 pub struct Cost {
-    /// Its name.
+    /// The name of the floor.
     pub name: String,
     /// Closed-form evaluations a unit.
     pub evaluations: f64,
@@ -38,8 +38,8 @@ pub struct Cost {
     pub series: Series,
 }
 
-/// One sine-cosine pair and one exponential of libm, which any version is held against: the solver
-/// has its sines from a table of its own by now.
+/// Times one sine-cosine pair and one exponential of libm, against which any version is held: the
+/// solver has its sines from a table of its own by now.
 #[must_use]
 pub fn transcendental(angle: f64) -> f64 {
     let (sin, cos) = libm::sincos(angle);

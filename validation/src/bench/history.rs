@@ -5,7 +5,7 @@ use crate::build::{Build, TARGET_CPU};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// Where the repository keeps it.
+/// The file in which the repository keeps the history.
 pub const FILE: &str = "benches/history.jsonl";
 
 /// One workload of one recorded version.
@@ -36,7 +36,7 @@ pub struct Record {
     pub floor_ns: f64,
     /// Floors a unit: the quotient of least times in the first half of the rounds.
     pub floors: f64,
-    /// The same in the second half.
+    /// The time of the floor in the second half of the rounds.
     pub floors_again: f64,
     /// Closed-form evaluations a switch.
     pub evaluations_per_switch: f64,
@@ -102,7 +102,7 @@ impl Record {
 /// A history.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct History {
-    /// Its lines.
+    /// The lines of the history.
     pub records: Vec<Record>,
 }
 
@@ -143,7 +143,7 @@ impl History {
         Ok(Self { records: lines.map(line).collect::<Result<_, _>>()? })
     }
 
-    /// As a file holds it.
+    /// The history's text, as a file holds it.
     ///
     /// # Errors
     /// What the serializer says; never of numbers that were measured.

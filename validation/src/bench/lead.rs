@@ -96,7 +96,7 @@ pub struct Shortfall<'a> {
     pub ns_per_event: f64,
     /// The competitor's right-hand sides for each event.
     pub right_hand_sides: f64,
-    /// One evaluation at the least, ns.
+    /// The least time of one evaluation, ns.
     pub floor: f64,
 }
 

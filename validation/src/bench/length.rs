@@ -20,7 +20,7 @@ const LEAST: f64 = 2e7;
 /// Rounding a period, damped by the orbit's multipliers, adds up to no more than this.
 const CLOSED: f64 = 1e-12;
 
-/// One length.
+/// A length of run with its time and error.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 #[allow(missing_docs, reason = "the keys of bench.json, explained in its schema")]
 pub struct Length {
@@ -85,7 +85,7 @@ fn length(model: &Model, start: &Entry, periods: u64) -> Result<Length, Failure>
     }
 }
 
-/// Where a run of this many forcing periods ends.
+/// The state at which a run of this many forcing periods ends.
 fn end(model: &Model, start: &Entry, periods: u64) -> Result<Entry, Failure> {
     let horizon = start.instant.after_periods(periods, 1);
     let mut run = model.trajectory(*start).until(horizon);

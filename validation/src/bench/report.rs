@@ -131,7 +131,8 @@ pub struct EventCost {
     pub case: String,
     pub evaluations_per_event: Option<f64>,
     pub ns_per_event: Option<f64>,
-    /// In units of the floor of dependent evaluations, then of independent ones.
+    /// The time per event in units of the floor of dependent evaluations, and below in units of the
+    /// floor of independent ones.
     pub floors_per_event: Option<f64>,
     pub independent_floors_per_event: Option<f64>,
     pub why: Option<String>,

@@ -25,7 +25,7 @@ pub trait Benchmark {
         Ok(())
     }
 
-    /// In how many rounds it takes part at most.
+    /// The number of rounds in which it takes part at most.
     fn rounds(&self) -> usize {
         usize::MAX
     }

@@ -71,7 +71,7 @@ fn competitors(bench: &Bench) -> String {
     shown(table, 3)
 }
 
-/// On which cases the exact solver errs least.
+/// A line about the cases on which the exact solver errs least.
 fn least_error(bench: &Bench) -> String {
     let cases = bench.cases.iter().map(|it| it.case.as_str());
     let beaten: Vec<_> = cases.filter(|case| !errs_least(bench, case)).collect();

@@ -48,7 +48,7 @@ fn reasons(bench: &Bench) -> String {
     last.filter_map(reason).collect()
 }
 
-/// One row an engine: at its most accurate setting, or, where no answer was right, the last.
+/// One row per engine: at its most accurate setting, or, where no answer was right, the last.
 fn best<'a>(bench: &'a Bench, case: &str) -> Vec<&'a Row> {
     let rows: Vec<&Row> = bench.results.iter().filter(|row| row.case == case).collect();
     let one =

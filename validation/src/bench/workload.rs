@@ -11,7 +11,7 @@ use std::hint::black_box;
 
 /// Work in units of which any number can be done.
 pub trait Workload {
-    /// Its name, as in the history.
+    /// The workload's name, as in the history.
     fn name(&self) -> String;
 
     /// Does this many units; the closed-form evaluations that took.
@@ -69,7 +69,7 @@ pub fn all(courses: &[Course]) -> Vec<Box<dyn Workload + '_>> {
 pub struct Repeated<'a> {
     /// The work.
     pub workload: &'a dyn Workload,
-    /// Its units a call.
+    /// The number of units that one call does.
     pub units: u64,
 }
 

@@ -5,7 +5,7 @@ use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 
-/// Where one thing goes, and as what.
+/// The flags that say where a result goes, and in which format.
 #[derive(Args, Clone, Debug)]
 pub(super) struct OutputFlags<F: ValueEnum + Send + Sync + 'static> {
     /// Where the result goes, - is stdout; its extension is its format
@@ -30,7 +30,7 @@ impl<F: ValueEnum + PartialEq + Send + Sync + 'static> OutputFlags<F> {
     }
 }
 
-/// As [`OutputFlags::format`], for verbs whose flags are told otherwise.
+/// Chooses a format as [`OutputFlags::format`] does, for verbs whose flags are described otherwise.
 pub(super) fn chosen<F: ValueEnum + PartialEq>(
     output: Option<&Path>,
     stated: Option<F>,

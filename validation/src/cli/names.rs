@@ -7,7 +7,7 @@ use strsim::normalized_damerau_levenshtein;
 
 /// A name less similar than this is no help.
 const LEAST: f64 = 0.5;
-/// So many names are shown.
+/// The number of names that are shown.
 const SHOWN: usize = 3;
 
 /// A flag that selects things by patterns on their names.
@@ -16,7 +16,7 @@ pub(super) struct Selection<'a> {
     pub(super) flag: &'a str,
     /// What the names are of.
     pub(super) what: &'a str,
-    /// Where all names can be seen.
+    /// The command that lists all names.
     pub(super) listed: &'a str,
 }
 

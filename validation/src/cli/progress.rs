@@ -4,7 +4,7 @@ use super::work::Bar;
 use percuss::Instant;
 use std::cell::Cell;
 
-/// So many phases or rows pass between two looks at the bar.
+/// The number of phases or rows between two updates of the bar.
 const RARELY: u64 = 256;
 
 /// A bar that is moved now and then.

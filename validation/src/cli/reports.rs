@@ -23,7 +23,8 @@ pub(super) fn write(report: &Report, evidence: &Evidence, folder: &Path) -> Resu
     Ok(())
 }
 
-/// On stderr, which the service reads as well: stdout holds the table and nothing else.
+/// Writes annotations to stderr, which the service reads as well: stdout holds the table and
+/// nothing else.
 pub(super) fn annotate(report: &Report, evidence: &Evidence, require: bool) {
     if under_the_service() {
         for line in annotations(report, evidence, require) {

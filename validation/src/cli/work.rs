@@ -20,7 +20,7 @@ pub(super) fn check_horizon(transient: u64, periods: u64) -> Result<()> {
     Ok(())
 }
 
-/// As many threads as were asked for; all where none were.
+/// A pool of as many threads as were asked for, or of all.
 pub(super) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool> {
     let threads = usize::from(threads.unwrap_or(0));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -50,7 +50,7 @@ impl Bar {
         Self { bar, waiting }
     }
 
-    /// So much more is done.
+    /// Tells the bar that this much more is done.
     pub(super) fn inc(&self, count: u64) {
         self.bar.inc(count);
     }

@@ -6,17 +6,18 @@ use percuss::Parameters;
 /// How an engine's accuracy is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stepping {
-    /// Nothing to choose: closed forms.
+    /// There is nothing to choose: closed forms are exact.
     Exact,
-    /// By a tolerance.
+    /// A tolerance sets the accuracy.
     Adaptive,
-    /// By a tolerance to which a method of this order holds the error of the solution it continues
-    /// with, step by step: what adds up over steps as long as that goes as tolerance^(p/(p + 1)).
+    /// A tolerance sets the accuracy, and a method of this order holds the error of the solution it
+    /// continues with, step by step: what adds up over steps as long as that goes as
+    /// tolerance^(p/(p + 1)).
     PerStep {
         /// The order.
         order: i32,
     },
-    /// By a step, for a method of this order.
+    /// A step sets the accuracy of a method of this order.
     Fixed {
         /// The order.
         order: i32,
@@ -26,7 +27,7 @@ pub enum Stepping {
 /// What is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Accuracy {
-    /// Nothing: as good as rounding allows.
+    /// The run is as accurate as rounding allows.
     Exact,
     /// A tolerance, relative and absolute.
     Tolerance(f64),

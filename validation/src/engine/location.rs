@@ -194,8 +194,8 @@ impl<'a, E: Equations> Search<'a, E> {
         }
     }
 
-    /// Where a guard that is negative at the left and not at the right becomes zero: regula falsi
-    /// with the weight of an end that stays halved, and every fourth time the middle.
+    /// The time at which a guard that is negative at the left and not at the right becomes zero, by
+    /// regula falsi with the weight of an end that stays halved, and every fourth time the middle.
     fn root(
         &self,
         guard: usize,

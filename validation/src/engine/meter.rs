@@ -51,7 +51,7 @@ pub(super) struct Meter {
     solves: Cell<u64>,
     steps: Cell<u64>,
     recorder: OnceCell<Recorder>,
-    /// Where this run's events lie, if it is made without the harness's own part.
+    /// The times of this run's events, if it is made without the harness's own part.
     told: Option<Told>,
 }
 
@@ -74,7 +74,7 @@ impl Meter {
         }
     }
 
-    /// Where this run's events lie, if it is made without the harness's own part
+    /// The times of this run's events, if it is made without the harness's own part
     /// ([`super::alone`]).
     pub(super) fn told(&self) -> Option<&Told> {
         self.told.as_ref()

@@ -50,18 +50,18 @@ use percuss::{Instant, Parameters, Phase, angle};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Location {
-    /// In closed form, proved to be the first.
+    /// Events are located in closed form and proved to be the first.
     Proved,
-    /// By the library's own event location.
+    /// Events are located by the library's own event location.
     Library,
-    /// By this harness on the library's dense output.
+    /// Events are located by this harness on the library's dense output.
     Harness,
 }
 
 /// What an engine says of itself.
 #[derive(Clone, Debug)]
 pub struct Declaration {
-    /// Its name, as in `-e`.
+    /// The engine's name, as in `-e`.
     pub name: &'static str,
     /// The library it is of.
     pub library: &'static str,
@@ -100,7 +100,7 @@ pub struct Task {
     /// omega tau + phi at the start, reduced to a few turns: integrators run in the time elapsed
     /// since the start, so that a late start costs them no digits.
     pub forcing_angle: f64,
-    /// Where the run ends.
+    /// The instant at which the run ends.
     pub horizon: Instant,
     /// Time from start to horizon.
     pub span: f64,

@@ -9,7 +9,7 @@ use std::cell::RefCell;
 /// What a task wants recorded, in times since its start.
 #[derive(Clone, Debug)]
 pub struct Watched {
-    /// From and to: steps and guards outside are not recorded.
+    /// The window of time, from and to: steps and guards outside are not recorded.
     pub window: [f64; 2],
     /// Instants at which the state is taken instead of those of the grid, in ascending order.
     pub instants: Vec<f64>,
@@ -24,7 +24,7 @@ pub struct Look {
     pub phase: Phase,
     /// Which of the phase's guards.
     pub guard: usize,
-    /// Its value: negative inside the phase.
+    /// The guard's value, which is negative inside the phase.
     pub value: f64,
 }
 

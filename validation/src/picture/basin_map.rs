@@ -15,12 +15,12 @@ pub struct BasinMap {
     pub title: String,
     /// How it was made, and what is assumed.
     pub note: String,
-    /// From and to, of p and of y.
+    /// The ranges of p and of y, from and to.
     pub window: [[f64; 2]; 2],
     /// Cells along p.
     pub columns: usize,
-    /// Where each cell leads, row by row from the lowest y on: an attractor by its place in
-    /// `attractors`.
+    /// The place to which each cell leads, row by row from the lowest y on: an attractor by its
+    /// place in `attractors`.
     pub cells: Vec<Label>,
     /// The attractors.
     pub attractors: Vec<Shown>,
@@ -31,9 +31,9 @@ pub struct BasinMap {
 pub struct Shown {
     /// What it is, for the key.
     pub name: String,
-    /// Its colours, by their place in a palette of [`BASIN_COLOURS`].
+    /// The attractor's colours, by their place in a palette of [`BASIN_COLOURS`].
     pub colour: usize,
-    /// Its strobes in (p, y).
+    /// The attractor's strobes in (p, y).
     pub points: Vec<[f64; 2]>,
     /// Drawn point by point as large markers.
     pub is_orbit: bool,

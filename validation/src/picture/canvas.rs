@@ -15,7 +15,7 @@ pub(super) struct Canvas<'a, B: DrawingBackend> {
     pub scale: u32,
 }
 
-/// Where a text stands from its place.
+/// The side of its place on which a text stands.
 #[derive(Clone, Copy)]
 pub(super) enum Side {
     Left,

@@ -10,12 +10,12 @@ use plotters::prelude::*;
 const SIZE: (u32, u32) = (1500, 900);
 const TEXT: f64 = 20.0;
 
-/// One curve.
+/// A curve with its name, its colour and its points.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// Its name; without one it is not in the key.
+    /// The curve's name; without one it is not in the key.
     pub name: String,
-    /// Its colour.
+    /// The curve's colour.
     pub colour: RGBColor,
     /// The shape of its points; without one it is a line only.
     pub marker: Option<Marker>,
@@ -23,7 +23,7 @@ pub struct Curve {
     pub width: f64,
     /// How the line is broken.
     pub stroke: Stroke,
-    /// Its points; those that are not finite are left out.
+    /// The curve's points; those that are not finite are left out.
     pub points: Vec<(f64, f64)>,
 }
 

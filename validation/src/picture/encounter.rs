@@ -11,7 +11,7 @@ use plotters::prelude::*;
 /// A picture of an event.
 #[derive(Clone, Debug)]
 pub struct Encounter {
-    /// Whose event it is.
+    /// The title, which says whose event it is.
     pub title: String,
     /// What is wrong with it.
     pub subtitle: String,
@@ -23,16 +23,16 @@ pub struct Encounter {
     pub guard: String,
     /// The time from which times are counted.
     pub centre: f64,
-    /// From the wide one to the close one.
+    /// The stretches, from the wide one to the close one.
     pub stretches: Vec<Stretch>,
 }
 
 /// A stretch of time.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// Where it begins.
+    /// The time at which the stretch begins.
     pub from: f64,
-    /// Where it ends.
+    /// The time at which the stretch ends.
     pub to: f64,
     /// The truth.
     pub truth: Trail,
@@ -40,7 +40,7 @@ pub struct Stretch {
     pub engine: Trail,
     /// Ends of the engine's steps.
     pub steps: Vec<f64>,
-    /// Where its root finder evaluated the guard, and what it found.
+    /// The times at which the engine's root finder evaluated the guard, and what it found.
     pub looks: Vec<[f64; 2]>,
 }
 

@@ -9,7 +9,7 @@ use plotters::prelude::DrawingBackend;
 pub enum Scale {
     /// Evenly.
     Linear,
-    /// By powers of ten; what is not above zero stands at its lower end.
+    /// The axis goes by powers of ten; what is not above zero stands at its lower end.
     Logarithmic,
 }
 
@@ -76,7 +76,7 @@ impl Ruler {
         Self { scale, from, to, ticks: ticks.collect() }
     }
 
-    /// Where a value stands, from 0 to 1.
+    /// The place of a value on the axis, from 0 to 1.
     pub fn place(&self, value: f64) -> f64 {
         let placed = match self.scale {
             Scale::Linear => value,
@@ -86,7 +86,7 @@ impl Ruler {
         self.share(placed)
     }
 
-    /// Where a tick stands.
+    /// The place of a tick on the axis, from 0 to 1.
     pub fn share(&self, placed: f64) -> f64 {
         (placed - self.from) / (self.to - self.from)
     }
@@ -119,14 +119,14 @@ pub(super) struct Panel {
 }
 
 impl Panel {
-    /// Where a point stands; `None` if it does not.
+    /// The place of a point; `None` if it lies outside.
     pub fn at(&self, (x, y): At) -> Option<At> {
         let inside = |share: f64| (-1e-6..=1.0 + 1e-6).contains(&share);
         let is_inside = inside(self.x.place(x)) && inside(self.y.place(y));
         is_inside.then(|| self.place((x, y)))
     }
 
-    /// Where a point stands, inside the panel or not.
+    /// The place of a point, inside the panel or not.
     pub fn place(&self, (x, y): At) -> At {
         let across = self.from.0 + self.x.place(x) * (self.to.0 - self.from.0);
         let down = self.to.1 - self.y.place(y) * (self.to.1 - self.from.1);

@@ -18,11 +18,11 @@ pub enum Tint {
     Good,
     /// Right, with a remark.
     Fair,
-    /// Not quite.
+    /// The cell is not quite good.
     Poor,
     /// Wrong.
     Bad,
-    /// Nothing to say.
+    /// There is nothing to say.
     None,
 }
 
@@ -31,7 +31,7 @@ pub enum Tint {
 pub struct HeatCell {
     /// What stands in it.
     pub text: String,
-    /// Its tint.
+    /// The cell's tint.
     pub tint: Tint,
 }
 

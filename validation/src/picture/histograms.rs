@@ -13,12 +13,12 @@ const TEXT: f64 = 19.0;
 const LEFT: f64 = 350.0;
 const RIGHT: f64 = 1470.0;
 
-/// One histogram.
+/// A histogram with its name and its colour.
 #[derive(Clone, Debug)]
 pub struct HistogramRow {
-    /// Its name.
+    /// The histogram's name.
     pub name: String,
-    /// Its colour.
+    /// The histogram's colour.
     pub colour: RGBColor,
     /// Edges of the bins as exponents of ten, one more than counts.
     pub edges: Vec<f64>,
@@ -33,7 +33,7 @@ pub struct Histograms {
     pub title: String,
     /// The axis's name.
     pub label: String,
-    /// From top to bottom.
+    /// The histograms from top to bottom.
     pub strips: Vec<HistogramRow>,
 }
 

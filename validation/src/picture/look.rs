@@ -7,9 +7,9 @@ use plotters::style::RGBColor;
 /// How an engine is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
-    /// On white.
+    /// The colour on white.
     pub light: RGBColor,
-    /// On black.
+    /// The colour on black.
     pub dark: RGBColor,
     /// The shape of its points.
     pub marker: Marker,
@@ -46,7 +46,7 @@ const FAMILIES: [(&str, f64, f64); 3] = [
     ("ode_solvers", 8.0, 42.0),
     ("differential-equations", 128.0, 172.0),
 ];
-/// For whatever else there is.
+/// The hues of engines of any other library.
 const OTHERS: (f64, f64) = (282.0, 336.0);
 
 /// The looks of engines given as (name, library), in their order.

@@ -2,7 +2,7 @@
 
 use percuss::{Phase, Segment};
 
-/// One phase's motion, sampled.
+/// The sampled motion of one phase.
 #[derive(Clone, Debug)]
 pub struct Piece {
     /// The phase.

@@ -30,7 +30,7 @@ pub fn annotations(report: &Report, evidence: &Evidence, require: bool) -> Vec<S
     cases.chain(worse(&evidence.worse)).collect()
 }
 
-/// One line for all that got worse than in the baseline.
+/// An annotation for all that got worse than in the baseline.
 fn worse(worse: &[String]) -> Option<String> {
     let count = worse.len();
     let title = property(&format!("{count} figures are worse than in the baseline"));

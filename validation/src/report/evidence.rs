@@ -34,7 +34,7 @@ pub struct Evidence {
 /// What a case says of itself.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct CaseNote {
-    /// Its name.
+    /// The engine's name.
     pub name: String,
     /// The file it stands in, as seen from the repository's root for cases inside the binary.
     pub file: String,
@@ -55,7 +55,7 @@ pub struct ErrorGrowth {
     pub case: String,
     /// The engine.
     pub engine: String,
-    /// Its tolerance, where it has one.
+    /// The engine's tolerance, where it has one.
     pub tolerance: Option<f64>,
     /// Instants, in forcing periods since the start.
     pub periods: Vec<f64>,
@@ -74,7 +74,7 @@ pub struct RestartHistogram {
     pub case: String,
     /// The engine.
     pub engine: String,
-    /// Its tolerance, where it has one.
+    /// The engine's tolerance, where it has one.
     pub tolerance: Option<f64>,
     /// Edges of the bins, one more than counts: log10 of the error in `unit`.
     pub edges: Vec<f64>,
@@ -93,7 +93,7 @@ pub struct Graze {
     pub margin: f64,
     /// The engine.
     pub engine: String,
-    /// Its tolerance, where it has one.
+    /// The engine's tolerance, where it has one.
     pub tolerance: Option<f64>,
     /// Switches of the truth that it does not have.
     pub missed: usize,
@@ -101,16 +101,16 @@ pub struct Graze {
     pub spurious: usize,
 }
 
-/// One attractor twice, as points (p, y) of its Poincare section.
+/// An attractor twice, as points (p, y) of its Poincare section.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct SectionPair {
     /// Forcing frequency.
     pub omega: f64,
     /// Damping ratio.
     pub xi: f64,
-    /// By the exact solver.
+    /// The points of the exact solver.
     pub exact: Vec<[f64; 2]>,
-    /// By direct integration.
+    /// The points of a direct integration.
     pub direct: Vec<[f64; 2]>,
     /// The engine that integrated.
     pub direct_engine: String,

@@ -12,8 +12,8 @@ pub(super) enum Seen {
     Right,
     /// Events were missed.
     Missed,
-    /// Events were invented.
-    Invented,
+    /// Events are spurious.
+    Spurious,
     /// Events of the graze differ, which the method's bounds leave undecided.
     Either,
     /// The run had no result, or nothing of it is scored.
@@ -26,7 +26,7 @@ pub(super) type Touches = Vec<(String, Seen)>;
 /// Engines by margins; in each cell what was seen from the coarse to the fine settings.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Grazing {
-    /// From the widest miss to the deepest touch, as (margin, label).
+    /// The margins from the widest miss to the deepest touch, as (margin, label).
     pub margins: Vec<(f64, String)>,
     /// Engine and cells.
     pub lines: Vec<(String, Vec<Touches>)>,
@@ -41,7 +41,7 @@ struct Entry {
 }
 
 impl Grazing {
-    /// From the evidence, or from the rows of cases that state a margin.
+    /// The table that follows from the evidence, or from the rows of cases that state a margin.
     pub fn of(report: &Report, evidence: &Evidence) -> Self {
         let mut entries =
             if evidence.grazes.is_empty() { of_rows(report, evidence) } else { given(evidence) };
@@ -82,7 +82,7 @@ fn label(margin: f64) -> String {
 fn seen(missed: usize, spurious: usize) -> Seen {
     match (missed, spurious) {
         (0, 0) => Seen::Right,
-        (0, _) => Seen::Invented,
+        (0, _) => Seen::Spurious,
         _ => Seen::Missed,
     }
 }

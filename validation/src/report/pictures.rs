@@ -104,7 +104,7 @@ pub(super) struct Palette {
 }
 
 impl Palette {
-    /// Of the engines of the report, and of those that only the evidence knows.
+    /// The looks of the engines of the report, and of those that only the evidence knows.
     fn of(report: &Report, evidence: &Evidence) -> Self {
         let mut names: Vec<(&str, &str)> =
             report.engines.iter().map(|it| (it.name, it.library)).collect();
@@ -219,7 +219,7 @@ fn touches(grazing: Grazing) -> HeatMap {
         let sign = |(_, seen): &(String, Seen)| match seen {
             Seen::Right => '\u{25cf}',
             Seen::Missed => '\u{25cb}',
-            Seen::Invented => '\u{d7}',
+            Seen::Spurious => '\u{d7}',
             Seen::Either => '\u{25d0}',
             Seen::Nothing => '\u{2013}',
         };

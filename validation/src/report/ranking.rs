@@ -13,12 +13,12 @@ use serde::Serialize;
 /// The error of event times at which costs are compared, units of time.
 pub const COMPARED_AT: f64 = 1e-6;
 
-/// One engine's place.
+/// An engine's place in the ranking.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Ranked {
     /// The engine.
     pub engine: &'static str,
-    /// Its place among the integrators, from 1; 0 for the exact reference.
+    /// The engine's place among the integrators, from 1; 0 for the exact reference.
     pub rank: usize,
     /// The truth's events that it has, of those that were scored.
     pub events_found: usize,
@@ -28,7 +28,7 @@ pub struct Ranked {
     pub events_total: usize,
     /// Scored events that it does not have.
     pub events_missed: usize,
-    /// Its events that the truth does not have.
+    /// The engine's events that the truth does not have.
     pub events_spurious: usize,
     /// Cases with a row that fails or errs, a known shortcoming included.
     pub fails_on: Vec<String>,
@@ -89,7 +89,7 @@ fn place(engines: Vec<(Ranked, bool)>) -> Vec<Ranked> {
     exact.into_iter().map(|it| it.0).chain(numbered).collect()
 }
 
-/// One engine without its place, and whether it is exact.
+/// An engine's figures without its place, and whether it is exact.
 fn one(engine: &'static str, rows: Vec<(&Scored, &Row)>) -> (Ranked, bool) {
     let exact = rows.iter().all(|(scored, _)| scored.is_exact());
     let counted = || rows.iter().filter_map(|(scored, row)| Counted::of(scored, row));
@@ -127,7 +127,7 @@ struct Counted {
 impl Counted {
     fn of(scored: &Scored, row: &Row) -> Option<Self> {
         let Status::Ok(measures, _) = &scored.status else { return None };
-        // A row that is not scored finds nothing, but what it invents is invented.
+        // A row that is not scored finds nothing, but its spurious events count.
         let judged = row.verdict != Verdict::NotScored;
         let count = |count: usize| if judged { count } else { 0 };
         Some(Self {
@@ -207,12 +207,12 @@ mod tests {
             ranked("covers-little", 20, 0, 1.0),
             ranked("dear", 90, 0, 200.0),
             ranked("cheap", 90, 0, 100.0),
-            ranked("invents", 95, 10, 50.0),
+            ranked("spurious", 95, 10, 50.0),
             ranked("exact", 100, 0, 1.0),
         ];
         let placed: Vec<_> = place(engines).into_iter().map(|it| (it.rank, it.engine)).collect();
         let expected =
-            [(0, "exact"), (1, "cheap"), (2, "dear"), (3, "invents"), (4, "covers-little")];
+            [(0, "exact"), (1, "cheap"), (2, "dear"), (3, "spurious"), (4, "covers-little")];
         assert_eq!(placed, expected);
     }
 

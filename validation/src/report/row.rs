@@ -30,7 +30,7 @@ pub struct Report {
 /// An engine as it declares itself.
 #[derive(Clone, Debug, Serialize)]
 pub struct EngineEntry {
-    /// Its name.
+    /// The name of the class.
     pub name: &'static str,
     /// The library it is of.
     pub library: &'static str,
@@ -58,7 +58,7 @@ pub struct Summary {
     pub error: usize,
     /// Beyond the suite's budget.
     pub not_run: usize,
-    /// Not installed.
+    /// The number of rows of engines that are not installed.
     pub unavailable: usize,
 }
 

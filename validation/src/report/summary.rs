@@ -4,18 +4,18 @@ use super::{Report, Row};
 use crate::score::Verdict;
 use serde::Serialize;
 
-/// One engine over all cases.
+/// The figures of one engine over all cases.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EngineSummary {
     /// How many rows came to each class, in the order of [`Verdict::ALL`].
     counts: [usize; 8],
-    /// From coarse to fine.
+    /// The settings from coarse to fine.
     pub settings: Vec<SettingSummary>,
 }
 
-/// One engine at one setting over all cases. A typical figure is the median over the cases of the
-/// row's largest error; a run without a result counts as infinitely wrong, so that failing on hard
-/// cases does not look like accuracy.
+/// The figures of one engine at one setting over all cases. A typical figure is the median over the
+/// cases of the row's largest error; a run without a result counts as infinitely wrong, so that
+/// failing on hard cases does not look like accuracy.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct SettingSummary {
     pub setting: String,

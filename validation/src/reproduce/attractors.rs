@@ -49,7 +49,7 @@ pub(super) fn strange(all: &[Attractor]) -> Result<&Attractor, Failure> {
         .ok_or_else(missing)
 }
 
-/// In words.
+/// An attractor in words.
 pub(super) fn described(attractor: &Attractor) -> String {
     match &attractor.orbit {
         Some(orbit) => {

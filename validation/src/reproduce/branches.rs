@@ -61,7 +61,7 @@ fn rows(period: u32, point: &BranchPoint) -> impl Iterator<Item = Vec<String>> +
     })
 }
 
-/// One line a strobe and stretch of equal stability, up to where that changes.
+/// One line per strobe and stretch of equal stability, up to where that changes.
 fn lines(branch: &Branch, colour: RGBColor) -> Vec<Layer> {
     let alike = |a: &BranchPoint, b: &BranchPoint| {
         a.orbit.is_stable() == b.orbit.is_stable() && a.orbit.points.len() == b.orbit.points.len()

@@ -25,10 +25,10 @@ pub struct Evidence {
     pub finding: String,
 }
 
-/// One claim, settled.
+/// A claim of the paper with its verdict.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Claim {
-    /// Its name.
+    /// The claim's name.
     pub id: String,
     /// What the paper says.
     pub paper: String,
@@ -64,14 +64,14 @@ impl Claim {
         })
     }
 
-    /// With a note.
+    /// Adds a note.
     #[must_use]
     pub fn note(mut self, note: impl Into<String>) -> Self {
         self.note = note.into();
         self
     }
 
-    /// With one more method and its finding.
+    /// Adds one more method and its finding.
     #[must_use]
     pub fn evidence(mut self, method: impl Into<String>, finding: impl Into<String>) -> Self {
         self.evidence.push(Evidence { method: method.into(), finding: finding.into() });
@@ -86,7 +86,7 @@ impl Verdict {
         if holds { Self::Reproduced } else { Self::Differs }
     }
 
-    /// As in files.
+    /// The verdict's word, as in files.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {

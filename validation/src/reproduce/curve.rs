@@ -63,5 +63,5 @@ pub(super) fn rows(pieces: &[Piece]) -> impl Iterator<Item = Vec<String>> {
     })
 }
 
-/// Their header.
+/// The header of the rows.
 pub(super) const HEADER: [&str; 6] = ["phase", "tau", "p", "y", "q", "v"];

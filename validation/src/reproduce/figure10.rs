@@ -13,7 +13,8 @@ use percuss::dynamics::continuation::{Bifurcation, Kind};
 use percuss::dynamics::diagram::{Diagram, Follow, Step};
 use percuss::dynamics::strobe::Point;
 
-/// Where the period-four attractor is taken up, and how far it is followed to both sides.
+/// The frequency at which the period-four attractor is taken up, and how far it is followed to both
+/// sides.
 const BEGIN: f64 = 1.4;
 const RANGE: (f64, f64) = (1.35, 1.62);
 /// Values over the range, forcing periods left out and shown at each.
@@ -84,14 +85,14 @@ fn corrected(four: Point) -> Result<Vec<Step>, Failure> {
 
 /// Between what an orbit is stable.
 struct Stable {
-    /// Where it loses its stability downwards.
+    /// The flip in which it loses its stability downwards.
     flip: Bifurcation,
-    /// Where it ends upwards.
+    /// The fold in which it ends upwards.
     fold: Bifurcation,
 }
 
 impl Stable {
-    /// Of an orbit at some frequency, as far as the range goes.
+    /// The window of an orbit at some frequency, as far as the range goes.
     fn of(orbit: &Attractor, omega: f64) -> Result<Self, Failure> {
         let flip = first(Kind::Flip, orbit, omega, RANGE.0)?;
         let fold = first(Kind::Fold, orbit, omega, RANGE.1)?;

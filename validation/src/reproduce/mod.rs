@@ -29,13 +29,13 @@ pub use work::{Findings, Parts, Size, Work};
 
 use crate::engine::Failure;
 
-/// One piece of the reproduction.
+/// An item of the reproduction: a figure, a table or a claim.
 pub struct Item {
-    /// Its name.
+    /// The item's name.
     pub id: &'static str,
     /// The claims that it settles.
     pub claims: &'static [&'static str],
-    /// In how many steps of about a second it tells of its progress.
+    /// The number of steps, of about a second each, in which it tells of its progress.
     pub parts: u32,
     /// Names of what it keeps of its work before it is finished.
     pub kept: &'static [&'static str],

@@ -7,7 +7,7 @@ use std::collections::BTreeMap;
 
 const FILE: &str = include_str!("../../paper.toml");
 
-/// One row of Table 1 as printed.
+/// A row of Table 1 as printed.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PrintedRow {
@@ -17,17 +17,17 @@ pub struct PrintedRow {
     pub tau: f64,
     /// Displacement of the mass.
     pub p: f64,
-    /// Its velocity.
+    /// The velocity of the mass.
     pub y: f64,
     /// Displacement of the slider's top.
     pub q: f64,
 }
 
-/// One claim as the paper makes it.
+/// A claim as the paper makes it.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Printed {
-    /// In words.
+    /// The claim in words.
     pub says: String,
     /// A printed number.
     pub value: Option<f64>,

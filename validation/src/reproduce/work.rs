@@ -23,13 +23,13 @@ pub struct Work<'a> {
     pub paper: Paper,
     /// How large.
     pub size: Size,
-    /// To be called as often as the item has parts, whenever one is done.
+    /// Tells of progress: to be called as often as the item has parts, whenever one is done.
     pub step: &'a (dyn Fn() + Sync),
     /// Parts of items that are kept when work is interrupted.
     pub parts: &'a dyn Parts,
 }
 
-/// Where finished parts of an item are kept.
+/// A store in which finished parts of an item are kept.
 pub trait Parts: Sync {
     /// A part of an earlier run of the same program.
     fn recall(&self, name: &str) -> Option<Vec<u8>>;

@@ -59,7 +59,7 @@ struct Scan<'a> {
     growth: &'a Growth,
 }
 
-/// One segment's closed form with its guards.
+/// The closed form of one segment with its guards.
 struct GuardedSegment {
     phase: Phase,
     began: f64,

@@ -37,11 +37,11 @@ type Times = SMatrix<f64, 1, DIRECTIONS>;
 /// Growth at every switch and sample, at least 1.
 #[derive(Clone, Debug)]
 pub struct Growth {
-    /// At each switch: of tau, p, y, q and v.
+    /// The growth at each event: of tau, p, y, q and v.
     pub switches: Vec<[f64; 5]>,
-    /// At each sample: of p, y, q and v.
+    /// The growth at each sample: of p, y, q and v.
     pub samples: Vec<[f64; 4]>,
-    /// At the horizon: of p, y, q and v.
+    /// The growth at the horizon: of p, y, q and v.
     pub end: [f64; 4],
 }
 

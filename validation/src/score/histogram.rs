@@ -9,7 +9,7 @@ pub struct Histogram {
     pub counts: Vec<usize>,
 }
 
-/// From a thousandth of a unit.
+/// The lowest bin, which begins at a thousandth of a unit.
 const LOWEST: i32 = -10;
 /// Up to 2^53 units: no digit is right.
 const BINS: usize = 64;

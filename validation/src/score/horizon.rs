@@ -24,7 +24,7 @@ const BEYOND: f64 = 1e3;
 /// The truth counts while its own error is below this.
 const TRUSTED: f64 = SCORED_ERROR / 100.0;
 
-/// One run with its truth, once a forcing period.
+/// A run with its truth, once per forcing period.
 struct HorizonRun {
     problem: Problem,
     truth: Truth,
@@ -56,7 +56,7 @@ pub struct ValidHorizon {
 /// The score of an engine.
 #[derive(Clone, Debug)]
 pub struct Horizons {
-    /// One run after the other.
+    /// The valid horizons, one run after the other.
     pub runs: Vec<ValidHorizon>,
     /// Runs that gave no result.
     pub failed: usize,

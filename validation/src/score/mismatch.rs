@@ -129,7 +129,7 @@ mod tests {
     }
 
     #[test]
-    fn events_invented_at_the_end_and_in_the_middle_are_spurious() {
+    fn events_at_the_end_and_in_the_middle_are_spurious() {
         let truth = [(1.0, Contact), (2.0, NoContact)];
         let end = [(1.0, Contact), (2.0, NoContact), (3.0, Contact), (3.1, NoContact)];
         let (found, rows, own) = mismatch(&truth, &end);
@@ -159,7 +159,7 @@ mod tests {
     }
 
     #[test]
-    fn a_pair_invented_at_a_near_miss_is_excused_once() {
+    fn a_spurious_pair_at_a_near_miss_is_excused_once() {
         let own = [(1.0, Contact), (1.01, NoContact), (1.02, Contact), (1.03, NoContact)];
         let (found, _, own) = mismatch(&[], &own);
         let grazes = [graze(1.0, -1e-6, 0..0)];

@@ -4,7 +4,7 @@
 //! steps are prescribed or chosen by a tolerance. So the slope of log(error) against log(steps)
 //! over a ladder is the order in practice: a method below the order it claims is shown as such.
 
-/// One rung: steps taken, error reached.
+/// A rung: steps taken, error reached.
 pub type Rung = (f64, f64);
 
 /// Errors below this are rounding, above [`LARGEST`] no convergence yet.

@@ -11,7 +11,8 @@ pub struct Probed {
     pub restart: Option<Restart>,
     /// Valid horizons.
     pub horizons: Option<Horizons>,
-    /// The same-attractor test; without a comparison where the engine failed, with its reason.
+    /// The result of the same-attractor test; without a comparison where the engine failed, with
+    /// its reason.
     pub attractor: Option<Result<Comparison, String>>,
 }
 

@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 /// A run ends at the latest at this strobe.
 pub const MOST_PERIODS: u64 = 8;
 
-/// One run with its truth.
+/// A run with its truth.
 pub struct RestartRun {
     /// What an engine is asked.
     pub task: Task,
@@ -71,9 +71,9 @@ pub struct Restart {
     pub wrong_words: usize,
     /// Errors at the strobe in units of error x (1 + |value|) x growth.
     pub units: Spread,
-    /// Of the drift alone.
+    /// The errors of the drift alone, in units.
     pub drift_units: Spread,
-    /// Of the switch times, over the runs with the right phases.
+    /// The errors of event times, over the runs with the right phases, in units.
     pub time_units: Spread,
     /// Errors at the strobe themselves.
     pub absolute: Spread,

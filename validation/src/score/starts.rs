@@ -21,7 +21,7 @@ pub fn on_attractor(problem: &Problem, count: usize) -> Vec<Problem> {
     far_apart(problem, count, 0)
 }
 
-/// The same, each this many forcing periods further from the last: for long runs, which from
+/// The starts, each this many forcing periods further from the last: for long runs, which from
 /// neighbouring states would pass through the same stretch of the orbit and say the same.
 #[must_use]
 pub fn far_apart(problem: &Problem, count: usize, periods: u64) -> Vec<Problem> {

@@ -14,7 +14,7 @@ pub struct Spread {
 }
 
 impl Spread {
-    /// Nothing was measured.
+    /// The statistics where nothing was measured.
     pub const NONE: Self = Self { median: f64::NAN, q99: f64::NAN, max: f64::NAN };
 
     /// The spread of some errors, by nearest rank; a NaN among them is the largest.

@@ -49,7 +49,7 @@ impl Verdict {
         Self::Pass,
     ];
 
-    /// Its word in every table, file and page.
+    /// The class's word in every table, file and page.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
         match self {

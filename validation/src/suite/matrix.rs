@@ -18,11 +18,11 @@ use std::time::{Duration, Instant};
 pub struct Prepared {
     /// The case.
     pub case: Case,
-    /// Its truth.
+    /// The case's truth.
     pub truth: Truth,
     /// How errors grow along it.
     pub growth: Growth,
-    /// Where its guards come close to a threshold.
+    /// The places at which the case's guards come close to a threshold.
     pub grazes: Vec<Graze>,
     task: Task,
     probes: Probes,
@@ -31,7 +31,7 @@ pub struct Prepared {
 /// How a run ended.
 #[derive(Clone, Debug)]
 pub enum Status {
-    /// With a result.
+    /// The run has a result.
     Ok(Box<Measures>, Outcome),
     /// Without one.
     Failed(Failure),
@@ -41,7 +41,7 @@ pub enum Status {
     NotRun,
 }
 
-/// One row of the report.
+/// A row of the report with what was measured.
 #[derive(Clone, Debug)]
 pub struct Scored {
     /// The case's name.
@@ -50,7 +50,7 @@ pub struct Scored {
     pub engine: &'static str,
     /// What it was asked for.
     pub accuracy: Accuracy,
-    /// Its unit of error.
+    /// The row's unit of error.
     pub unit: f64,
     /// The truth's events on the case's horizon.
     pub events: usize,

@@ -7,7 +7,7 @@ use crate::engine::{Accuracy, Engine, Limits, answer, contain};
 use crate::score::attractor::{AttractorTest, Calibrated};
 use crate::score::{HorizonTest, Probed, RestartTest};
 
-/// One engine a library: those that restart and run for long in the quick suite too.
+/// One engine per library: those that restart and run for long in the quick suite too.
 const REPRESENTATIVES: [&str; 3] =
     ["diffsol-bdf", "ode_solvers-dopri5", "differential-equations-rkv655e"];
 

@@ -13,7 +13,7 @@ use percuss::{Constants, Instant, Parameters, Phase, State, angle};
 
 /// How a phase begins: what is known exactly at that instant.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Onset<T> {
+pub(super) enum ModeEntry<T> {
     /// No contact, the mass away from the slider.
     Apart,
     /// No contact, on the surface with this rate of h; zero at a separation.
@@ -59,32 +59,32 @@ impl Forms {
         &self,
         instant: &Instant,
         entry: State<DoubleDouble>,
-        onset: Onset<DoubleDouble>,
+        mode: ModeEntry<DoubleDouble>,
     ) -> Motion<DoubleDouble> {
         let radians = DoubleDouble::from(instant.angle_two_word()) + self.phi;
         let (sin, cos) = radians.sin_cos();
-        motion(self.constants, entry, EntryAngle { radians, sin, cos }, onset)
+        motion(self.constants, entry, EntryAngle { radians, sin, cos }, mode)
     }
 
-    /// The same phase with everything rounded to f64.
+    /// The phase with everything rounded to f64.
     pub(super) fn rounded(&self, exact: &Motion<DoubleDouble>) -> Motion<f64> {
         let f = |x: DoubleDouble| x.to_f64();
         let (state, angle) = exact.entry();
         let entry = State { p: f(state.p), y: f(state.y), q: f(state.q) };
-        let onset = match exact {
+        let mode = match exact {
             Motion::NoContact(it) => {
-                it.surface.map_or(Onset::Apart, |rate| Onset::Surface { h_rate: f(rate) })
+                it.surface.map_or(ModeEntry::Apart, |rate| ModeEntry::Surface { h_rate: f(rate) })
             }
             Motion::Contact(it) => {
-                Onset::Contact { offset: f(it.offset), reference: f(it.reference) }
+                ModeEntry::Contact { offset: f(it.offset), reference: f(it.reference) }
             }
             Motion::Progression(it) => {
-                Onset::Progression { drift_rate: f(it.drift_rate), closing: f(it.closing) }
+                ModeEntry::Progression { drift_rate: f(it.drift_rate), closing: f(it.closing) }
             }
         };
         let [radians, sin, cos] = [angle.radians, angle.sin, angle.cos].map(f);
         let angle = EntryAngle { radians, sin, cos };
-        motion(self.rounded, entry, angle, onset)
+        motion(self.rounded, entry, angle, mode)
     }
 }
 
@@ -92,17 +92,17 @@ fn motion<T: Number>(
     constants: Constants<T>,
     entry: State<T>,
     angle: EntryAngle<T>,
-    onset: Onset<T>,
+    mode: ModeEntry<T>,
 ) -> Motion<T> {
-    match onset {
-        Onset::Apart => Motion::NoContact(NoContact { constants, entry, angle, surface: None }),
-        Onset::Surface { h_rate } => {
+    match mode {
+        ModeEntry::Apart => Motion::NoContact(NoContact { constants, entry, angle, surface: None }),
+        ModeEntry::Surface { h_rate } => {
             Motion::NoContact(NoContact { constants, entry, angle, surface: Some(h_rate) })
         }
-        Onset::Contact { offset, reference } => {
+        ModeEntry::Contact { offset, reference } => {
             Motion::Contact(Contact { constants, entry, angle, offset, reference })
         }
-        Onset::Progression { drift_rate, closing } => {
+        ModeEntry::Progression { drift_rate, closing } => {
             Motion::Progression(Progression { constants, entry, angle, drift_rate, closing })
         }
     }

@@ -1,7 +1,7 @@
 //! What begins where a phase ends, and where a run starts, with what is known there imposed.
 
 use super::DoubleDouble;
-use super::forms::{Forms, Motion, Onset};
+use super::forms::{Forms, ModeEntry, Motion};
 use percuss::flow::Point;
 use percuss::number::Number;
 use percuss::{Entry, Phase, State};
@@ -21,14 +21,14 @@ impl Forms {
         &self,
         entry: &Entry,
         [p, y, q]: [DoubleDouble; 3],
-    ) -> (State<DoubleDouble>, Onset<DoubleDouble>) {
+    ) -> (State<DoubleDouble>, ModeEntry<DoubleDouble>) {
         let (one, zero) = (DoubleDouble::one(), DoubleDouble::zero());
         let (g, rate, damper) = (self.constants.g, self.constants.rate, self.constants.two_xi * y);
         let size = |x: DoubleDouble| x.abs().to_f64();
         let largest = size(p).max(size(q)).max(size(g));
         let phase = entry.phase();
         if phase == Phase::NoContact && size(p - q - g) > FOUR_ULPS * largest {
-            return (State { p, y, q }, Onset::Apart);
+            return (State { p, y, q }, ModeEntry::Apart);
         }
         let f = damper + q;
         let largest = size(damper).max(size(q));
@@ -38,17 +38,19 @@ impl Forms {
             (size(f - one) <= FOUR_ULPS * largest.max(1.0)).then_some(one)
         };
         let q = threshold.map_or(q, |threshold| threshold - damper);
-        let onset = match (phase, threshold) {
-            (Phase::NoContact, Some(_)) => Onset::Surface { h_rate: zero },
-            (Phase::NoContact, None) => Onset::Surface { h_rate: f * rate },
-            (Phase::Contact, Some(reference)) => Onset::Contact { offset: zero, reference },
-            (Phase::Contact, None) => Onset::Contact { offset: f, reference: zero },
-            (Phase::Progression, Some(_)) => Onset::Progression { drift_rate: zero, closing: y },
+        let mode = match (phase, threshold) {
+            (Phase::NoContact, Some(_)) => ModeEntry::Surface { h_rate: zero },
+            (Phase::NoContact, None) => ModeEntry::Surface { h_rate: f * rate },
+            (Phase::Contact, Some(reference)) => ModeEntry::Contact { offset: zero, reference },
+            (Phase::Contact, None) => ModeEntry::Contact { offset: f, reference: zero },
+            (Phase::Progression, Some(_)) => {
+                ModeEntry::Progression { drift_rate: zero, closing: y }
+            }
             (Phase::Progression, None) => {
-                Onset::Progression { drift_rate: (f - one) * rate, closing: (one - q) * rate }
+                ModeEntry::Progression { drift_rate: (f - one) * rate, closing: (one - q) * rate }
             }
         };
-        (State { p: q + g, y, q }, onset)
+        (State { p: q + g, y, q }, mode)
     }
 
     /// What begins at the crossing `at` that ends `motion`; `None` if an impact's force is too near
@@ -58,7 +60,7 @@ impl Forms {
         motion: &Motion<DoubleDouble>,
         at: &Point<DoubleDouble>,
         rises: bool,
-    ) -> Option<(State<DoubleDouble>, Onset<DoubleDouble>)> {
+    ) -> Option<(State<DoubleDouble>, ModeEntry<DoubleDouble>)> {
         let (one, zero) = (DoubleDouble::one(), DoubleDouble::zero());
         let (g, rate, two_xi) = (self.constants.g, self.constants.rate, self.constants.two_xi);
         let on_surface = |y: DoubleDouble, q: DoubleDouble| State { p: q + g, y, q };
@@ -70,26 +72,26 @@ impl Forms {
                 if excess.to_f64().abs() <= UNDECIDED {
                     return None;
                 }
-                let onset = if excess > zero {
-                    Onset::Progression { drift_rate: excess * rate, closing: (one - q) * rate }
+                let mode = if excess > zero {
+                    ModeEntry::Progression { drift_rate: excess * rate, closing: (one - q) * rate }
                 } else {
-                    Onset::Contact { offset: f, reference: zero }
+                    ModeEntry::Contact { offset: f, reference: zero }
                 };
-                (on_surface(y, q), onset)
+                (on_surface(y, q), mode)
             }
             Motion::Contact(_) if rises => {
                 let y = at.state.y;
-                let onset = Onset::Progression { drift_rate: zero, closing: y };
-                (on_surface(y, one - two_xi * y), onset)
+                let mode = ModeEntry::Progression { drift_rate: zero, closing: y };
+                (on_surface(y, one - two_xi * y), mode)
             }
             Motion::Contact(_) => {
                 let y = at.state.y;
-                (on_surface(y, -(two_xi * y)), Onset::Surface { h_rate: zero })
+                (on_surface(y, -(two_xi * y)), ModeEntry::Surface { h_rate: zero })
             }
             Motion::Progression(_) => {
                 let y = at.slider_velocity;
-                let onset = Onset::Contact { offset: zero, reference: one };
-                (on_surface(y, one - two_xi * y), onset)
+                let mode = ModeEntry::Contact { offset: zero, reference: one };
+                (on_surface(y, one - two_xi * y), mode)
             }
         })
     }

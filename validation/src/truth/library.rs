@@ -57,8 +57,8 @@ impl Library {
         })
     }
 
-    /// The same, but cases without tables are run again in 106 bits instead of being refused: for
-    /// cases of a user's own, before their tables are made.
+    /// The truths of cases, where cases without tables are run again in 106 bits instead of being
+    /// refused: for cases of a user's own, before their tables are made.
     #[must_use]
     pub fn replaying(self) -> Self {
         Self { replays: true, ..self }

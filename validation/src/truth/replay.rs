@@ -7,7 +7,7 @@
 
 use super::DoubleDouble;
 use super::cautious::crossing;
-use super::forms::{Forms, Motion, Onset};
+use super::forms::{Forms, ModeEntry, Motion};
 use super::landing::UNDECIDED;
 use percuss::crossing::{Crossing, Root};
 use percuss::flow::Point;
@@ -24,7 +24,7 @@ pub struct Undecided {
     pub elapsed: f64,
 }
 
-/// Where a phase begins.
+/// The state at which a phase begins.
 #[derive(Clone, Copy, Debug)]
 pub struct Beginning {
     /// When.
@@ -36,12 +36,12 @@ pub struct Beginning {
     motion: Motion<DoubleDouble>,
 }
 
-/// One phase of the run.
+/// A phase of the run.
 #[derive(Clone, Copy, Debug)]
 pub struct Passage {
-    /// Where it begins.
+    /// The state at which the phase begins.
     pub begin: Beginning,
-    /// Where the next one begins; `None` at the horizon.
+    /// The state at which the next phase begins; `None` at the horizon.
     pub next: Option<Beginning>,
     omega: f64,
 }
@@ -93,7 +93,7 @@ impl Replay {
         Self::varied(parameters, entry, state, horizon)
     }
 
-    /// The same start with its state given in two words: for differences of neighbouring runs.
+    /// A start with its state given in two words: for differences of neighbouring runs.
     #[must_use]
     pub fn varied(
         parameters: &Parameters,
@@ -102,9 +102,9 @@ impl Replay {
         horizon: Instant,
     ) -> Self {
         let forms = Forms::new(parameters);
-        let (state, onset) = forms.start(entry, state);
+        let (state, mode) = forms.start(entry, state);
         let drift = entry.drift.into();
-        let first = begin(&forms, entry.instant, state, drift, onset);
+        let first = begin(&forms, entry.instant, state, drift, mode);
         Self { forms, start: entry.instant, horizon, next: Some(first) }
     }
 
@@ -126,13 +126,13 @@ impl Replay {
                     return passage(None);
                 }
                 let landing = self.forms.landing(&begin.motion, &at, root.rises());
-                let (state, onset) = landing.ok_or("the force of an impact")?;
+                let (state, mode) = landing.ok_or("the force of an impact")?;
                 passage(Some(self::begin(
                     &self.forms,
                     instant,
                     state,
                     begin.drift + at.drift,
-                    onset,
+                    mode,
                 )))
             }
         }
@@ -158,9 +158,9 @@ fn begin(
     instant: Instant,
     state: State<DoubleDouble>,
     drift: DoubleDouble,
-    onset: Onset<DoubleDouble>,
+    mode: ModeEntry<DoubleDouble>,
 ) -> Beginning {
-    Beginning { instant, state, drift, motion: forms.motion(&instant, state, onset) }
+    Beginning { instant, state, drift, motion: forms.motion(&instant, state, mode) }
 }
 
 /// The crossing that f64 found, to 106 bits: Newton's method on the guard less its threshold.

@@ -8,7 +8,7 @@ use percuss::two_word::TwoWord;
 /// The phase of an event table's last row.
 const END: &str = "end";
 
-/// One row of a table.
+/// A row of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct Row {
     /// The phase that begins, or holds; `None` on the row at the horizon.
@@ -33,7 +33,7 @@ pub struct Truth {
 }
 
 impl Row {
-    /// Its state, rounded.
+    /// The row's state, rounded.
     #[must_use]
     pub fn rounded(&self) -> [f64; 4] {
         self.state.map(TwoWord::value)

@@ -92,7 +92,7 @@ pub fn quotients(
     Ok(benches.iter().enumerate().map(quotient).collect())
 }
 
-/// Both sides, alive.
+/// The running processes of both sides.
 struct Sides {
     old: Worker,
     new: Worker,

@@ -4,15 +4,15 @@
 //! is seldom noise and 2 % hardly ever; but among a dozen workloads something rare happens now and
 //! then. A whole second measurement, of processes started anew, has to say the same.
 
-/// From here on it is said.
+/// The quotient from which on a slowdown is said.
 pub const WARN: f64 = 1.01;
-/// From here on, twice in a row, it fails.
+/// The quotient from which on a slowdown, seen twice in a row, fails.
 pub const FAIL: f64 = 1.02;
 
 /// What is said of a workload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// As fast as before, or faster.
+    /// The new version is as fast as the old one, or faster.
     Pass,
     /// Slower by 1 % or more, or by 2 % once.
     Warn,
@@ -33,7 +33,7 @@ impl Verdict {
         }
     }
 
-    /// Its word.
+    /// The verdict's word.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {

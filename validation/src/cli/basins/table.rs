@@ -7,7 +7,7 @@ use percuss::dynamics::attractor::{Attractor, Basins, Label};
 const COLUMNS: [&str; 9] =
     ["id", "kind", "period", "% of starts", "drift/period", "exponent/period", "p", "y", "q"];
 
-/// At most 100 columns; p, y and q are the attractor's first point.
+/// A table of at most 100 columns; p, y and q are the attractor's first point.
 pub(super) fn text(basins: &Basins) -> String {
     let mut table = Table::new();
     table.load_preset(NOTHING).set_header(COLUMNS);

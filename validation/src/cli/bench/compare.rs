@@ -22,7 +22,7 @@ pub(in super::super) struct Arguments {
     /// more
     #[arg(value_name = "OLD")]
     old: String,
-    /// The same
+    /// The version that is held against it, named in the same ways
     #[arg(value_name = "NEW")]
     new: String,
     /// Only workloads whose name matches; several are alternatives

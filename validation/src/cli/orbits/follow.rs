@@ -20,10 +20,10 @@ pub(crate) struct Arguments {
     /// The parameter that varies: a, b, xi, omega, g or phi
     #[arg(long, value_name = "NAME", value_parser = parse::parameter)]
     parameter: Parameter,
-    /// Its first value
+    /// The parameter's first value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
     from: Typed<f64>,
-    /// Its last value
+    /// The parameter's last value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
     to: Typed<f64>,
     /// Forcing periods of the orbit

@@ -19,7 +19,7 @@ pub(super) struct Found {
     pub(super) phases: Vec<&'static str>,
     pub(super) multipliers: Vec<[f64; 2]>,
     pub(super) stable: Option<bool>,
-    /// As small as it got; null where it is not finite.
+    /// The smallest residual that was reached; null where it is not finite.
     pub(super) residual: f64,
     pub(super) drift_per_period: Option<f64>,
 }

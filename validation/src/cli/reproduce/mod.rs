@@ -52,7 +52,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     finish(arguments, &chosen, done, &store)
 }
 
-/// One item: from an earlier run that was interrupted, or computed and kept.
+/// Settles an item: takes it from an earlier run that was interrupted, or computes and keeps it.
 fn settle(item: &Item, work: &Work, store: &Store) -> Result<Vec<Claim>, Failure> {
     if let Some(claims) = store.claims(item) {
         (0..item.parts).for_each(|_| (work.step)());

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Where they are kept: a folder that is gone when all is done.
+/// The folder in which parts are kept, which is gone when all is done.
 const FOLDER: &str = ".unfinished";
 
 pub(super) struct Store {

@@ -19,7 +19,7 @@ const MAX_PICTURE_PERIODS: f64 = 5000.0;
 /// A run to be made.
 pub(super) struct Plan {
     pub(super) problem: Problem,
-    /// Where it ends at the latest.
+    /// The instant at which the run ends at the latest.
     pub(super) horizon: Instant,
     /// It ends after so many switches, if that is sooner.
     pub(super) events: Option<u64>,
@@ -72,7 +72,8 @@ impl Plan {
         )
     }
 
-    /// Where the last of a run's phases is cut: by the horizon, or where it is no longer decided.
+    /// The instant at which the last of a run's phases is cut: by the horizon, or where it is no
+    /// longer decided.
     pub(super) fn end_of(&self, last: &Segment) -> Instant {
         if *last.exit() == Exit::Undecidable {
             last.entry().instant.after(last.duration_two_word(), self.omega())
@@ -88,11 +89,9 @@ impl Plan {
         });
         match (self.events, found) {
             (Some(wanted), _) if switches >= wanted => None,
-            (Some(wanted), Some(found)) => {
-                Some(format!("{found}: {switches} of {wanted} switches"))
-            }
+            (Some(wanted), Some(found)) => Some(format!("{found}: {switches} of {wanted} events")),
             (Some(wanted), None) => Some(format!(
-                "stopped after {} forcing periods with {switches} of {wanted} switches",
+                "stopped after {} forcing periods with {switches} of {wanted} events",
                 self.max_periods
             )),
             (None, Some(found)) => Some(format!("{found}: the run ends at its horizon")),
@@ -133,7 +132,7 @@ impl Plan {
         Ok((segments, ending))
     }
 
-    /// Where the last of these phases ends.
+    /// The instant at which the last of these phases ends.
     pub(super) fn last_instant(&self, segments: &[Segment]) -> Instant {
         if let Some(last) = segments.last().filter(|segment| *segment.exit() == Exit::Undecidable) {
             return self.end_of(last);
@@ -194,9 +193,9 @@ impl Ending {
     pub(super) fn lines(&self) -> impl Iterator<Item = String> {
         let touches = match self.touches {
             0 => None,
-            1 => Some("1 touch lies within rounding of its threshold: counted as no switch".into()),
+            1 => Some("1 touch lies within rounding of its threshold: counted as no event".into()),
             n => Some(format!(
-                "{n} touches lie within rounding of their thresholds: counted as no switches"
+                "{n} touches lie within rounding of their thresholds: counted as no events"
             )),
         };
         touches.into_iter().chain(self.how.clone())

@@ -4,7 +4,7 @@ use super::plan::{Ending, Plan};
 use anyhow::Result;
 use percuss::{Exit, Instant, Sample, Segment};
 
-/// One row.
+/// A row of the output.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row {
     /// Counts the rows of switches from 0.

@@ -34,15 +34,16 @@ const ON_A_RUNG: f64 = 1e-9;
 /// How a state inside a step is had.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum Inside {
-    /// From the library's interpolant.
+    /// States inside a step come from the library's interpolant.
     Interpolant,
-    /// By the method again, from the step's beginning.
+    /// States inside a step come from the method again, from the step's beginning.
     Again,
-    /// From Hermite's cubic between the step's ends: a multistep method cannot begin there again.
+    /// States inside a step come from Hermite's cubic between its ends: a multistep method cannot
+    /// begin there again.
     Cubic,
 }
 
-/// One of the methods.
+/// A method of the library.
 pub(in super::super) trait Method {
     const DESCRIPTION: &'static str;
     const INSIDE: Inside;

@@ -28,11 +28,11 @@ pub(super) struct Watch<'a, M, E> {
     method: PhantomData<M>,
 }
 
-/// Where inside a step the guards are looked at.
+/// The places inside a step at which the guards are looked at.
 enum Looks<'a, E> {
-    /// At instants inside it: its interpolant costs nothing.
+    /// The guards are looked at inside the step, whose interpolant costs nothing.
     Inside(Search<'a, E>),
-    /// At its ends, and inside only where these show something.
+    /// The guards are looked at at the step's ends, and inside only where these show something.
     Ends(Walk<'a, E>),
 }
 

@@ -19,7 +19,7 @@ impl<E> Problem for E where
 {
 }
 
-/// One of the methods.
+/// A method of the library.
 pub(in super::super) trait Method: Sync {
     const NAME: &'static str;
     const DESCRIPTION: &'static str;

@@ -43,7 +43,7 @@ struct Field<'a, E> {
     equations: E,
     phase: Phase,
     meter: &'a Meter,
-    /// Where it began: on the surface, and no way out of the phase.
+    /// The state at the phase's beginning: on the surface, and no way out of the phase.
     from: [f64; 4],
     /// A time at which another phase's derivative is taken: the fault of a restart that keeps the
     /// old one. No engine that is scored has it.

@@ -23,7 +23,7 @@ use walk::{Fault, Walk};
 pub struct Wrong {
     /// The engine.
     pub engine: &'static dyn Engine,
-    /// Its fault, in a phrase.
+    /// The engine's fault, in a phrase.
     pub fault: &'static str,
 }
 

@@ -32,7 +32,7 @@ pub(super) struct Walk {
 
 /// Steps a forcing period.
 const FINE: f64 = 512.0;
-/// As an integrator's longest steps.
+/// The number of steps per forcing period, as coarse as an integrator's longest steps.
 const COARSE: f64 = 24.0;
 
 impl Engine for Walk {

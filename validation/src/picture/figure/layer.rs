@@ -9,7 +9,7 @@ use plotters::style::RGBColor;
 /// How a line is broken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
-    /// Not at all.
+    /// The line is not dashed.
     Solid,
     /// Into dashes.
     Dashed,
@@ -49,25 +49,25 @@ pub struct Raster {
     pub rows: Vec<Vec<RGBColor>>,
 }
 
-/// One layer of a panel.
+/// A layer of a panel.
 #[derive(Clone, Debug)]
 pub enum Layer {
     /// A line.
     Line {
-        /// Its points.
+        /// The curve's points.
         points: Vec<[f64; 2]>,
-        /// Its colour.
+        /// The curve's colour.
         colour: RGBColor,
-        /// Its width in pixels.
+        /// The curve's width in pixels.
         width: f64,
         /// How it is broken.
         stroke: Stroke,
     },
     /// Points.
     Dots {
-        /// Where they are.
+        /// The points' places.
         points: Vec<[f64; 2]>,
-        /// Their colour.
+        /// The points' colour.
         colour: RGBColor,
         /// Half their width in pixels.
         size: f64,
@@ -82,7 +82,7 @@ pub enum Layer {
         at: [f64; 2],
         /// The words.
         text: String,
-        /// Their colour.
+        /// The colour of the marks.
         colour: RGBColor,
     },
     /// The panel's key, above it where it hides nothing: names in a row.

@@ -35,7 +35,7 @@ pub fn event_pictures(cases: &[Prepared], rows: &[Scored], suite: Suite) -> Vec<
     chosen.filter_map(|it| it.picture(&limits)).collect()
 }
 
-/// As many as can be shown, in the order of the rows.
+/// Chooses as many as can be shown, in the order of the rows.
 fn chosen(candidates: Vec<Candidate<'_>>) -> Vec<Candidate<'_>> {
     let key = |i: &usize| {
         let row = candidates[*i].row;

@@ -26,7 +26,7 @@ impl Guarded {
         }
     }
 
-    /// Its name on an axis.
+    /// The guard's name on an axis.
     pub(super) fn label(self) -> &'static str {
         match self {
             Self::Gap => "gap p \u{2212} q \u{2212} g",
@@ -35,7 +35,7 @@ impl Guarded {
         }
     }
 
-    /// Its value where p, y and q are known to 106 bits.
+    /// The guard's value where p, y and q are known to 106 bits.
     pub(super) fn of_truth(self, it: &Parameters, [p, y, q]: [DoubleDouble; 3]) -> f64 {
         let exact = DoubleDouble::exact;
         let force = || exact(2.0 * it.xi) * y + q;
@@ -47,7 +47,7 @@ impl Guarded {
         value.to_f64()
     }
 
-    /// Its value at an engine's state.
+    /// The guard's value at an engine's state.
     pub(super) fn of_state(self, it: &Parameters, [p, y, q, _]: &[f64; 4]) -> f64 {
         match self {
             Self::Gap => p - q - it.g,
@@ -56,7 +56,7 @@ impl Guarded {
         }
     }
 
-    /// Its value where a search looked at the guard that belongs to it; `None` at other guards.
+    /// The guard's value where a search looked at it; `None` where it looked at other guards.
     pub(super) fn of_look(self, look: &Look) -> Option<f64> {
         match (self, look.phase, look.guard) {
             (Self::Gap, Phase::NoContact, 0) | (Self::SlidingForce, Phase::Contact, 0) => {

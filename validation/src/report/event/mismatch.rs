@@ -17,7 +17,8 @@ pub enum Kind {
     Missed,
     /// The engine has it and the truth does not.
     Spurious,
-    /// Both have it, and of all events its time is the worst for what errors have grown to there.
+    /// Truth and engine have the event, and of all events its time is the worst for what errors
+    /// have grown to there.
     Displaced,
 }
 

@@ -24,9 +24,9 @@ pub struct EventPicture {
     pub case: String,
     /// The engine.
     pub engine: String,
-    /// Its tolerance, where it has one.
+    /// The engine's tolerance, where it has one.
     pub tolerance: Option<f64>,
-    /// Its step, where that is fixed.
+    /// The engine's step, where that is fixed.
     pub step: Option<f64>,
     /// What is wrong with the event.
     pub kind: Kind,
@@ -36,7 +36,7 @@ pub struct EventPicture {
     pub guard: &'static str,
     /// The time about which all views are drawn, since the start.
     pub centre: f64,
-    /// From the widest view to the closest.
+    /// The views, from the widest to the closest.
     pub views: Vec<View>,
     /// The closest view in which the truth's shape still shows beside the engine's error.
     pub telling: usize,
@@ -45,9 +45,9 @@ pub struct EventPicture {
 /// The guard over a stretch of time, in times since [`EventPicture::centre`].
 #[derive(Clone, Debug, Serialize)]
 pub struct View {
-    /// Where it begins.
+    /// The time at which the view begins.
     pub from: f64,
-    /// Where it ends.
+    /// The time at which the view ends.
     pub to: f64,
     /// What is true.
     pub truth: Course,
@@ -55,11 +55,11 @@ pub struct View {
     pub engine: Course,
     /// Ends of the engine's accepted steps.
     pub steps: Vec<f64>,
-    /// Where the engine's root finder evaluated the guard, and what it found.
+    /// The times at which the engine's root finder evaluated the guard, and what it found.
     pub looks: Vec<[f64; 2]>,
 }
 
-/// One run through a view.
+/// The course of a run through a view.
 #[derive(Clone, Debug, Serialize)]
 pub struct Course {
     /// The phase that holds where the view begins.

@@ -20,7 +20,7 @@ const ZOOM: f64 = 8.0;
 /// Half a view is at least so many roundings of the time it stands at.
 const ROUNDINGS: f64 = 2048.0 * f64::EPSILON;
 
-/// From and to of each view, times since the start, from the widest to the closest.
+/// The ranges of the views, times since the start, from the widest to the closest.
 pub(super) struct Scales {
     pub(super) spans: Vec<[f64; 2]>,
     centre: f64,
@@ -37,7 +37,7 @@ impl Scales {
         Self { spans: halves.into_iter().map(view).collect(), centre }
     }
 
-    /// From and to of all views together.
+    /// The range of all views together.
     pub(super) fn window(&self) -> [f64; 2] {
         self.spans.first().copied().unwrap_or([self.centre; 2])
     }

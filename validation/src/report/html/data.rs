@@ -43,7 +43,7 @@ pub(super) fn json(
     inside_a_script(&data.to_string())
 }
 
-/// Nothing in it ends the script element or begins a comment.
+/// Escapes JSON so that nothing in it ends the script element or begins a comment.
 fn inside_a_script(json: &str) -> String {
     json.replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }

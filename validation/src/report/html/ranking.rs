@@ -5,7 +5,7 @@ use super::view::{count, glyph};
 use crate::number::brief;
 use crate::picture::Look;
 
-/// One engine's line.
+/// A line of the ranking, for one engine.
 pub(super) struct RankedLine {
     pub place: usize,
     /// The rank, or nothing for the reference.

@@ -36,7 +36,7 @@ pub(super) struct RecallCell {
     pub setting: String,
     pub text: String,
     pub note: String,
-    /// From 0, nothing found, to 4, everything found and nothing spurious.
+    /// The level from 0, nothing found, to 4, everything found and nothing spurious.
     pub level: u8,
 }
 
@@ -188,7 +188,7 @@ pub(super) fn grazing(report: &Report, evidence: &Evidence) -> GrazingTable {
         let (class, glyph, words) = match seen {
             Seen::Right => ("right", "\u{25cf}", "right"),
             Seen::Missed => ("missed", "\u{25cb}", "missed events"),
-            Seen::Invented => ("invented", "\u{00d7}", "spurious events"),
+            Seen::Spurious => ("spurious", "\u{00d7}", "spurious events"),
             Seen::Either => ("either", "\u{25d0}", "undecidable: either answer is right"),
             Seen::Nothing => ("nothing", "\u{2013}", "no result, or nothing scored"),
         };

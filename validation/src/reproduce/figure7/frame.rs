@@ -44,7 +44,7 @@ const STEPS: u64 = 10;
 const UNRESOLVED: RGBColor = RGBColor(150, 150, 150);
 
 impl Frame {
-    /// From an interrupted run, or computed and kept.
+    /// Takes a frame from an interrupted run, or computes and keeps it.
     pub(super) fn kept(
         work: &Work<'_>,
         letter: &str,

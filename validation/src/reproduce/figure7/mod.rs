@@ -146,7 +146,7 @@ fn agrees(frame: &Frame, printed: &Printed) -> bool {
     periods == printed.periods && printed.chaotic == Some(chaotic)
 }
 
-/// In what they are not.
+/// In what a frame and the printed one differ.
 fn difference(frame: &Frame, printed: &Printed) -> String {
     let said = |periods: &[u32], chaotic: usize| {
         let periods: Vec<_> = periods.iter().map(u32::to_string).collect();

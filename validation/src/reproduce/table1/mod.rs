@@ -26,7 +26,7 @@ struct Told {
     rest: Entry,
     /// The phases whose beginnings are the table's rows.
     segments: Vec<Segment>,
-    /// Where the last row begins.
+    /// The instant at which the last row begins.
     end: Instant,
 }
 

@@ -22,8 +22,9 @@ use std::collections::BTreeMap;
 /// Runs from which the limits of a case are taken.
 pub const NULL_RUNS: u32 = 20_000;
 
-/// Where reference runs agree exactly, as where nothing drifts, an integrator need not: a length
-/// below a tenth of the error up to which runs are scored, or this many periods, do not count.
+/// The least scale of a distance. Where reference runs agree exactly, as where nothing drifts, an
+/// integrator need not: a length below a tenth of the error up to which runs are scored, or this
+/// many periods, do not count.
 const SMALLEST: f64 = 1e-4;
 const ODD_PERIODS: f64 = 5.0;
 
@@ -59,7 +60,7 @@ pub fn calibrate(case: &Case, plan: Plan, runs: u32) -> Result<Calibration, Fail
     Ok(Calibration { calibrated, z: farthest.0, farthest: farthest.1 })
 }
 
-/// One run against the reference.
+/// The distances of one run from the reference.
 struct Null {
     distances: Distances,
     /// The two differences that have a sign, with it.

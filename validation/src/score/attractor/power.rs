@@ -25,7 +25,7 @@ impl Changed {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::Xi, Self::Omega, Self::B];
 
-    /// Its symbol.
+    /// The parameter's symbol.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
