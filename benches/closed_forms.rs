@@ -31,7 +31,7 @@ fn evaluations(criterion: &mut Criterion) {
                 continue;
             };
             let middle = 0.5 * segment.duration();
-            let name = format!("{}, xi {xi}", phase.token());
+            let name = format!("{}, xi {xi}", phase.as_str());
             group.bench_function(BenchmarkId::new("state", &name), |bencher| {
                 bencher.iter(|| segment.at(black_box(middle)));
             });

@@ -11,6 +11,7 @@ use crate::variation::{IDENTITY, Matrix, P, Q, SwitchDerivative, V, Y, product, 
 
 /// The growth of tau, p, y, q and v at one switch or sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Growth {
     /// The growth of errors of the event's time; 1 for a sample.
     pub tau: f64,

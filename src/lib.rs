@@ -17,15 +17,15 @@
 //! # Ok::<(), percuss::InputError>(())
 //! ```
 
-pub mod angle;
+mod angle;
 mod circle;
 mod constants;
-pub mod crossing;
+mod crossing;
 pub mod dynamics;
 mod entry;
 mod error;
 mod exponential;
-pub mod flow;
+mod flow;
 mod growth;
 mod instant;
 mod judgement;
@@ -35,7 +35,7 @@ mod model;
 pub mod number;
 mod parameters;
 mod phase;
-pub mod remainders;
+mod remainders;
 mod segment;
 mod stages;
 mod start;
@@ -43,20 +43,49 @@ mod state;
 mod surface;
 mod switch;
 mod trajectory;
-pub mod two_word;
+mod two_word;
 pub mod variation;
 
-pub use constants::Constants;
 pub use crossing::Counters;
 pub use entry::Entry;
 pub use error::InputError;
 pub use growth::{Growth, GrowthRecorder};
 pub use instant::Instant;
-pub use judgement::{Effort, Judgement};
-pub use model::{Model, Motion};
-pub use parameters::{Parameter, Parameters};
+pub use model::Model;
+pub use parameters::{Parameter, Parameters, UnknownParameter};
 pub use phase::{Phase, UnknownPhase};
 pub use segment::{Endless, Exit, Sample, Segment};
 pub use start::Start;
 pub use state::State;
 pub use trajectory::{Step, Trajectory};
+pub use two_word::TwoWord;
+
+/// What the harness needs of the solver's insides. Nothing in here is covered by semantic
+/// versioning.
+#[doc(hidden)]
+pub mod insides {
+    pub use crate::constants::Constants;
+    pub use crate::judgement::{Effort, Judgement};
+    pub use crate::model::Motion;
+
+    pub mod angle {
+        pub use crate::angle::*;
+    }
+    pub mod crossing {
+        pub use crate::crossing::*;
+    }
+    pub mod flow {
+        pub use crate::flow::*;
+    }
+    pub mod remainders {
+        pub use crate::remainders::*;
+    }
+    pub mod two_word {
+        pub use crate::two_word::*;
+    }
+}
+
+/// The code of the README is compiled and run as the documentation's is.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;

@@ -68,6 +68,12 @@ impl Model {
         Ok(Self { parameters, constants, steps, phi })
     }
 
+    /// The time tau of an instant, rounded to one word.
+    #[must_use]
+    pub fn time(&self, instant: &Instant) -> f64 {
+        instant.tau(self.parameters.omega)
+    }
+
     /// The parameters as given.
     #[must_use]
     pub fn parameters(&self) -> &Parameters {

@@ -1,11 +1,15 @@
 //! The six parameters of the model and their ranges.
 
 use crate::error::InputError;
+use std::fmt;
+use std::str::FromStr;
 
 /// The model's parameters, all non-dimensional (Section 2 of the paper).
 ///
 /// Forces are in units of the dry-friction threshold d, lengths in d/k, time in sqrt(m/k).
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
 pub struct Parameters {
     /// Amplitude of the harmonic force, 0 to 1e9.
     pub a: f64,
@@ -45,6 +49,8 @@ impl Parameters {
 
 /// A parameter, named by the paper's symbol.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Parameter {
     /// Amplitude of the harmonic force.
     A,
@@ -66,7 +72,7 @@ impl Parameter {
 
     /// The name used in files and on the command line.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub const fn as_str(self) -> &'static str {
         match self {
             Self::A => "a",
             Self::B => "b",
@@ -75,12 +81,6 @@ impl Parameter {
             Self::G => "g",
             Self::Phi => "phi",
         }
-    }
-
-    /// The parameter of that name.
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|parameter| parameter.name() == name)
     }
 
     /// The parameter's value.
@@ -108,6 +108,33 @@ impl Parameter {
             Self::Phi => parameters.phi = value,
         }
         parameters
+    }
+}
+
+impl fmt::Display for Parameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+/// A text that names no parameter.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct UnknownParameter(pub String);
+
+impl fmt::Display for UnknownParameter {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{:?} is no parameter: accepted are a, b, xi, omega, g, phi", self.0)
+    }
+}
+
+impl std::error::Error for UnknownParameter {}
+
+impl FromStr for Parameter {
+    type Err = UnknownParameter;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        let named = Self::ALL.into_iter().find(|parameter| parameter.as_str() == name);
+        named.ok_or_else(|| UnknownParameter(name.to_owned()))
     }
 }
 

@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 /// The three ways in which the oscillator moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum Phase {
     /// Mass and slider top move separately, p < q + g (Eq. 11).
     NoContact,
@@ -20,7 +22,7 @@ impl Phase {
 
     /// The name used in files and on the command line.
     #[must_use]
-    pub const fn token(self) -> &'static str {
+    pub const fn as_str(self) -> &'static str {
         match self {
             Self::NoContact => "no-contact",
             Self::Contact => "contact",
@@ -31,11 +33,11 @@ impl Phase {
 
 impl fmt::Display for Phase {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(self.token())
+        f.pad(self.as_str())
     }
 }
 
-/// The token that names no phase.
+/// A text that names no phase.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownPhase(pub String);
 
@@ -53,7 +55,7 @@ impl FromStr for Phase {
     fn from_str(token: &str) -> Result<Self, Self::Err> {
         Self::ALL
             .into_iter()
-            .find(|phase| phase.token() == token)
+            .find(|phase| phase.as_str() == token)
             .ok_or_else(|| UnknownPhase(token.to_owned()))
     }
 }

@@ -15,9 +15,11 @@ use crate::state::State;
 use crate::surface::{self, FOUR_ULPS};
 use crate::switch::{Begun, End, Passed, pass};
 use crate::two_word::TwoWord;
+use std::fmt;
 
 /// The motion at some instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Sample {
     /// Bounded co-ordinates.
     pub state: State,
@@ -41,6 +43,24 @@ pub enum Endless {
     RestsForEver,
 }
 
+impl Endless {
+    /// The name in words.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::NeverReturns => "never returns",
+            Self::NeverStops => "never stops",
+            Self::RestsForEver => "rests for ever",
+        }
+    }
+}
+
+impl fmt::Display for Endless {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
 /// How a phase ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
@@ -52,9 +72,9 @@ pub enum Exit {
     Horizon,
     /// Never: proved.
     Endless(Endless),
-    /// It is not decided how the phase ends: the search has taken more work than its limit
-    /// ([`crate::crossing::limit`]) because rounding hides what the phase does. It is proved to
-    /// last for [`Segment::duration`]; nothing is known of what follows.
+    /// It is not decided how the phase ends: the search has taken more work than its limit because
+    /// rounding hides what the phase does. It is proved to last for [`Segment::duration`]; nothing
+    /// is known of what follows.
     Undecidable,
 }
 
@@ -101,6 +121,7 @@ impl Segment {
 
     /// The closed form from which the end of the phase was found, with all that is known exactly at
     /// its entry.
+    #[doc(hidden)]
     #[must_use]
     pub fn motion(&self) -> Motion<'_> {
         Motion::new(&self.constants, &self.entry, self.angle)

@@ -12,6 +12,8 @@ use crate::two_word::TwoWord;
 
 /// A start: `cycle` forcing periods after `tau`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Start {
     /// Time, -1e15 to 1e15.
     pub tau: f64,

@@ -134,6 +134,34 @@ mod tests {
         assert_eq!(pulled, ModeEntry::Separation { h_rate: 0.0 });
     }
 
+    /// Nothing is rounded where mass and slider are at rest without a force: the rate decides.
+    #[test]
+    fn a_slider_at_rest_is_left_by_a_mass_that_is_pulled() {
+        let parameters = Parameters { b: 0.0, ..Parameters::default() };
+        let constants = Constants::new(&parameters);
+        let rest = State { p: 0.02, y: 0.0, q: 0.0 };
+        let (_, pulled) = mode_entry(&constants, rest, None, [-0.1, 0.0, 0.0]);
+        assert_eq!(pulled, ModeEntry::Separation { h_rate: 0.0 });
+        let (_, pushed) = mode_entry(&constants, rest, None, [0.1, 0.0, 0.0]);
+        assert_eq!(pushed, ModeEntry::Contact { offset: 0.0, reference: 0.0 });
+    }
+
+    /// The room next to f = 1 is four units of one, where no term is larger.
+    #[test]
+    fn a_force_six_units_below_one_is_a_contact_under_way() {
+        let constants = Constants::new(&Parameters::default());
+        let at = |units: f64| {
+            let q = 1.0 - units * f64::EPSILON;
+            let (state, mode) =
+                mode_entry(&constants, State { p: q + 0.02, y: 0.0, q }, None, [-0.3, 0.0, 0.0]);
+            (state.q - q, mode)
+        };
+        let (q, under_way) = (1.0 - 6.0 * f64::EPSILON, at(6.0));
+        assert_eq!(under_way, (0.0, ModeEntry::Contact { offset: q, reference: 0.0 }));
+        let imposed = ModeEntry::Contact { offset: 0.0, reference: 1.0 };
+        assert_eq!(at(3.0), (3.0 * f64::EPSILON, imposed));
+    }
+
     /// A start in mid-slip at 1/(2 xi) = 5000: (f - 1)/(2 xi) was wrong by thousands of eps.
     #[test]
     fn a_slip_under_way_keeps_the_digits_of_its_drift_velocity() {

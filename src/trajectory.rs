@@ -2,11 +2,14 @@
 
 use crate::crossing::Counters;
 use crate::entry::Entry;
+use crate::error::InputError;
 use crate::instant::Instant;
 use crate::model::Model;
+use crate::parameters::within;
 use crate::segment::Segment;
 use crate::switch::{Begun, End, Passed, pass};
 use crate::two_word::TwoWord;
+use std::iter::FusedIterator;
 
 /// An iterator over the phases of a run; memory does not grow with its length.
 ///
@@ -66,6 +69,24 @@ impl Trajectory {
         self
     }
 
+    /// Ends the run at the time tau, which is taken as the f64 value that it is.
+    ///
+    /// # Errors
+    /// [`InputError::OutOfRange`] if tau is not within -1e15 and 1e15.
+    pub fn until_time(self, tau: f64) -> Result<Self, InputError> {
+        within("tau", tau, -1e15, 1e15, "-1e15 <= tau <= 1e15")?;
+        let horizon = Instant::at(self.model.parameters().omega, tau, 0);
+        Ok(self.until(horizon))
+    }
+
+    /// Ends the run this many forcing periods after the beginning of the phase that comes next.
+    #[must_use]
+    pub fn for_periods(self, periods: u64) -> Self {
+        let begun = if self.second { &self.begun[1] } else { &self.begun[0] };
+        let horizon = begun.entry.instant.after_periods(periods, 1);
+        self.until(horizon)
+    }
+
     /// What the run has cost and met so far.
     #[must_use]
     pub fn counters(&self) -> Counters {
@@ -112,6 +133,8 @@ impl Trajectory {
         &self.model
     }
 }
+
+impl FusedIterator for Trajectory {}
 
 impl Iterator for Trajectory {
     type Item = Segment;

@@ -6,9 +6,9 @@
 use crate::double_double::DoubleDouble;
 use crate::support::draws::{Pair, REGIMES};
 use crate::support::random::Draw;
-use percuss::Constants;
-use percuss::flow::Point;
-use percuss::flow::damped::Damping;
+use percuss::insides::Constants;
+use percuss::insides::flow::Point;
+use percuss::insides::flow::damped::Damping;
 use percuss::number::Number;
 use percuss::{Phase, State};
 

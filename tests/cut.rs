@@ -1,6 +1,6 @@
 //! Where a horizon cuts a run: at the entry, and next to a switch.
 
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use percuss::{Exit, Model, Parameters, Start, Step};
 
 fn from_rest(parameters: Parameters, p: f64) -> (Model, percuss::Entry) {

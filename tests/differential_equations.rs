@@ -7,7 +7,7 @@ use crate::double_double::{DoubleDouble, UNIT};
 use crate::support::draws::{Form, REGIMES};
 use crate::support::random::Draw;
 use crate::support::taylor::{STEP, fastest_rate, series};
-use percuss::flow::Point;
+use percuss::insides::flow::Point;
 use percuss::number::Number;
 use percuss::{Phase, State};
 

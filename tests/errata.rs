@@ -3,12 +3,13 @@
 
 use crate::support::random::Draw;
 use approx::{assert_abs_diff_eq, assert_abs_diff_ne, assert_relative_eq};
-use percuss::flow::contact::Contact;
-use percuss::flow::forcing::EntryAngle;
-use percuss::flow::no_contact::NoContact;
-use percuss::flow::progression::Progression;
-use percuss::flow::{Flow, Point};
-use percuss::{Constants, Model, Parameters, Phase, Start, State};
+use percuss::insides::Constants;
+use percuss::insides::flow::contact::Contact;
+use percuss::insides::flow::forcing::EntryAngle;
+use percuss::insides::flow::no_contact::NoContact;
+use percuss::insides::flow::progression::Progression;
+use percuss::insides::flow::{Flow, Point};
+use percuss::{Model, Parameters, Phase, Start, State};
 
 use crate::support::printed::{Begun, Phases, arctan, arctan2};
 

@@ -4,13 +4,14 @@
 //! The search hands a certificate the first crossing nearly always, and so hardly tests what it
 //! refuses.
 
-use percuss::crossing::certificate::{Ends, Verdict};
-use percuss::crossing::guarded::Guarded;
-use percuss::flow::forcing::EntryAngle;
-use percuss::flow::no_contact::NoContact;
-use percuss::flow::progression::Progression;
-use percuss::flow::steps::Steps;
-use percuss::{Constants, Parameters, State};
+use percuss::insides::Constants;
+use percuss::insides::crossing::certificate::{Ends, Verdict};
+use percuss::insides::crossing::guarded::Guarded;
+use percuss::insides::flow::forcing::EntryAngle;
+use percuss::insides::flow::no_contact::NoContact;
+use percuss::insides::flow::progression::Progression;
+use percuss::insides::flow::steps::Steps;
+use percuss::{Parameters, State};
 use std::f64::consts::TAU;
 
 use crate::support::random::Draw;

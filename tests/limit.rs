@@ -1,8 +1,8 @@
 //! The work of a search has a limit, and contacts that die out next to a threshold are decided
 //! within it.
 
-use percuss::crossing::guarded::SLACK;
-use percuss::crossing::limit::{GRANTED, LAST_ROOT, MOST};
+use percuss::insides::crossing::guarded::SLACK;
+use percuss::insides::crossing::limit::{GRANTED, LAST_ROOT, MOST};
 use percuss::{Counters, Endless, Exit, Model, Parameters, Phase, Segment, Start};
 
 fn first(parameters: Parameters, start: &Start) -> (Segment, Counters) {

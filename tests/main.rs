@@ -17,6 +17,8 @@ mod cut;
 mod diagram;
 mod differential_equations;
 mod errata;
+mod examples;
+mod face;
 mod flow_properties;
 mod fuzz_regressions;
 mod judge;

@@ -1,7 +1,7 @@
 //! The solver against the proved tables of `reference_data/`.
 
 use crate::support::reference::{self, Row, Table, tables};
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use percuss::{Entry, GrowthRecorder, Instant, Model, Segment, Trajectory};
 
 /// k of the bound |error| <= k eps (1 + |value|) growth switches. Ten roundings a switch is the

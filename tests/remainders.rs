@@ -4,8 +4,8 @@
 
 use crate::double_double::DoubleDouble;
 use crate::support::random::Draw;
+use percuss::insides::remainders::{Circular, Decay, circular, circular_of, decay};
 use percuss::number::Number;
-use percuss::remainders::{Circular, Decay, circular, circular_of, decay};
 
 const DRAWS: usize = 200_000;
 

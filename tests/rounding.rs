@@ -1,6 +1,7 @@
 //! What the proofs in interval arithmetic (docs/ROUNDING.md) have found.
 
-use percuss::{Model, Motion, Parameters, Start};
+use percuss::insides::Motion;
+use percuss::{Model, Parameters, Start};
 
 fn start(p: f64, y: f64, q: f64, tau: f64) -> Start {
     Start { tau, p, y, q: Some(q), ..Start::default() }

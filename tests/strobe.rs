@@ -45,7 +45,7 @@ fn a_phase_taken_up_again_ends_where_it_would_have() {
             let cut = segment
                 .entry()
                 .instant
-                .after(percuss::two_word::TwoWord::new(share * segment.duration()), omega);
+                .after(percuss::TwoWord::new(share * segment.duration()), omega);
             if segment.ends_by(&cut) {
                 continue;
             }

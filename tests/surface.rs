@@ -7,7 +7,7 @@
 
 use crate::support::original::Equations;
 use crate::support::random::Draw;
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use percuss::{Entry, Exit, Model, Parameters, Phase, Start};
 use std::f64::consts::PI;
 

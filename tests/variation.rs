@@ -1,6 +1,6 @@
 //! The derivative of the motion over impacts and other switches, against differences of the motion.
 
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use percuss::variation::{ANGLE, IDENTITY, Matrix, P, Q, V, Y, product};
 use percuss::{Exit, Model, Parameters, Phase, Start};
 

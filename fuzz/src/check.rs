@@ -2,8 +2,9 @@
 
 use crate::double_double::{DoubleDouble, UNIT};
 use crate::{Case, Family};
-use percuss::crossing::limit::{GRANTED, LAST_ROOT, MOST, PER_RADIAN};
-use percuss::{Effort, Exit, Judgement, Segment, Model, Parameters, Phase, State};
+use percuss::insides::crossing::limit::{GRANTED, LAST_ROOT, MOST, PER_RADIAN};
+use percuss::insides::{Effort, Judgement};
+use percuss::{Exit, Segment, Model, Parameters, Phase, State};
 
 /// Phases followed in one run.
 const SEGMENTS: usize = 20;

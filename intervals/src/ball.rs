@@ -6,7 +6,7 @@
 //! takes four and eight. It is itself computed in f64 and enlarged by more than its own roundings.
 //! No function of a library is called but the square root of an f64, whose result is checked.
 
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// All numbers within `radius` of `high + low`.

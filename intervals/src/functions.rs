@@ -1,7 +1,7 @@
 //! Sine, cosine and exponential of intervals, by Taylor's series with its remainder.
 
 use crate::ball::Ball;
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 
 /// Terms of every series: the most that one here needs.
 const TERMS: usize = 24;

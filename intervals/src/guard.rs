@@ -10,7 +10,8 @@
 use crate::ball::Ball;
 use crate::frame::{Damping, Frame};
 use crate::functions::{INVERSE_FACTORIALS, exp, sin_cos};
-use percuss::{Instant, Motion};
+use percuss::insides::{Motion};
+use percuss::{Instant};
 
 /// Derivatives in an expansion, that of order zero included.
 pub const ORDERS: usize = 12;

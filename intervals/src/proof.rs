@@ -11,8 +11,8 @@
 use crate::ball::Ball;
 use crate::guard::{Expansion, Guard};
 use crate::hull::{Between, Piecewise, holds};
-use percuss::crossing::certificate::Corridor;
-use percuss::two_word::TwoWord;
+use percuss::insides::crossing::certificate::Corridor;
+use percuss::TwoWord;
 
 /// What is claimed about a phase.
 #[derive(Clone, Copy, Debug)]

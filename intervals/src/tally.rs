@@ -5,8 +5,9 @@ use crate::frame::Frame;
 use crate::guard::Guard;
 use crate::proof::{Claim, GRANTED, Verdict, examine};
 use crate::regimes::{Chance, Regime, Run};
-use percuss::crossing::guarded::{Guarded, slack};
-use percuss::{Exit, Model, Motion, Phase, Segment};
+use percuss::insides::crossing::guarded::{Guarded, slack};
+use percuss::insides::{Motion};
+use percuss::{Exit, Model, Phase, Segment};
 
 /// Examples kept of a regime's switches that were not proved.
 const MOST_EXAMPLES: usize = 20;

@@ -2,7 +2,7 @@
 //! against intervals.
 
 use percuss::number::Number;
-use percuss::remainders::{circular, decay};
+use percuss::insides::remainders::{circular, decay};
 use percuss_intervals::ball::Ball;
 use percuss_intervals::functions::{exp, exp_less_1, sin_cos};
 use percuss_intervals::regimes::Chance;

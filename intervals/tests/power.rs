@@ -3,9 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a panic is a failed test")]
 
-use percuss::crossing::guarded::Guarded;
-use percuss::two_word::TwoWord;
-use percuss::{Model, Motion, Parameters};
+use percuss::insides::crossing::guarded::Guarded;
+use percuss::TwoWord;
+use percuss::insides::{Motion};
+use percuss::{Model, Parameters};
 use percuss_intervals::frame::Frame;
 use percuss_intervals::proof::{Claim, GRANTED, Verdict, examine};
 use percuss_intervals::regimes::{Chance, REGIMES};

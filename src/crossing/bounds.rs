@@ -111,3 +111,28 @@ fn the_room_of_a_long_contact_has_the_weights_of_its_coefficients() {
         assert!((room - expected).abs() <= 1e-12 * expected, "{length}: {room:e} {expected:e}");
     }
 }
+
+/// Clearly above critical damping the derivatives are computed from the equation of motion as long
+/// as the fast part lives, for one of its decay times, and from the parts afterwards.
+#[test]
+fn the_room_of_a_long_contact_is_wide_while_its_fast_part_lives() {
+    let (xi, omega, length) = (5.0, 0.7, 12.0);
+    let constants = Constants::new(&Parameters { xi, omega, ..Parameters::default() });
+    let angle = EntryAngle { radians: 1.0, sin: 1.0_f64.sin(), cos: 1.0_f64.cos() };
+    let entry = State { p: 0.32, y: 0.01, q: 0.3 };
+    let contact = Contact { constants, entry, angle, offset: 0.4, reference: 0.0 };
+    let fast = xi + (xi * xi - 1.0_f64).sqrt();
+    for (decay_times, rate) in [(0.2, 2.0 * xi), (0.9, 2.0 * xi), (1.1, omega), (5.0, omega)] {
+        let left = contact.at(decay_times / fast);
+        let right = contact.at(left.elapsed + length);
+        let reach = rate * length;
+        let weights = reach * (3.0 / 8.0 + reach * (3.0 / 56.0 + reach / 336.0));
+        let largest = left.guard.largest_term.max(right.guard.largest_term);
+        let (room, expected) =
+            (contact.room_of_length(&left, &right), f64::EPSILON * weights * largest);
+        assert!(
+            (room - expected).abs() <= 1e-12 * expected,
+            "{decay_times}: {room:e} {expected:e}"
+        );
+    }
+}

@@ -109,6 +109,7 @@ impl Root {
 
 /// What the search has cost and met so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counters {
     /// Switches found.
     pub switches: u64,

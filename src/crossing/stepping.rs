@@ -177,4 +177,27 @@ mod tests {
         // The top is the threshold itself: rounding decides, and it is counted once.
         assert_eq!(parabola(0.0), (None, 1));
     }
+
+    /// The second derivative of h is negative until the third one, at most a omega + q0/(2 xi)^3,
+    /// may have brought it to zero; h stays negative three times as long. From a separation, where
+    /// h and its slope are zero, no step leads on: the steps begin at the head start.
+    #[test]
+    fn a_separation_has_a_head_start() {
+        let parameters = Parameters { b: -0.5, xi: 0.5, omega: 2.0, ..Parameters::default() };
+        let constants = Constants::new(&parameters);
+        let angle = EntryAngle { radians: 0.0, sin: 0.0, cos: 1.0 };
+        let entry = State { p: 0.27, y: -0.25, q: 0.25 };
+        let at = |surface| {
+            let flight = NoContact { constants, entry, angle, surface };
+            let mut counters = Counters::default();
+            assert!(first_crossing(&flight, 3.0, 0, &mut counters).is_none());
+            (flight.head_start(&flight.entry()), counters.evaluations)
+        };
+        let (head_start, evaluations) = at(Some(0.0));
+        // a + b - q0/(2 xi)^2 = 0.3 - 0.5 - 0.25, and a omega + q0/(2 xi)^3 = 0.6 + 0.25.
+        assert!((head_start - 3.0 * 0.45 / 0.85).abs() <= 1e-14, "{head_start}");
+        assert_eq!(evaluations, 1);
+        assert_eq!(at(Some(-0.1)), (0.0, 0));
+        assert_eq!(at(None), (0.0, 0));
+    }
 }

@@ -2,13 +2,14 @@
 
 use super::random::Draw;
 use crate::double_double::DoubleDouble;
-use percuss::flow::contact::Contact;
-use percuss::flow::forcing::EntryAngle;
-use percuss::flow::no_contact::NoContact;
-use percuss::flow::progression::Progression;
-use percuss::flow::{Flow, Point};
+use percuss::insides::Constants;
+use percuss::insides::flow::contact::Contact;
+use percuss::insides::flow::forcing::EntryAngle;
+use percuss::insides::flow::no_contact::NoContact;
+use percuss::insides::flow::progression::Progression;
+use percuss::insides::flow::{Flow, Point};
 use percuss::number::Number;
-use percuss::{Constants, Parameters, Phase, State};
+use percuss::{Parameters, Phase, State};
 
 /// A range of damping and frequency in which the forms behave alike.
 pub struct Regime {

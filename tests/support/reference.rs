@@ -1,6 +1,6 @@
 //! Reads the proved tables of `reference_data/`.
 
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use percuss::{Parameters, Phase, Start};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};

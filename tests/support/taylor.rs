@@ -3,8 +3,9 @@
 //! Nothing here knows a closed form: the coefficients follow from the right-hand sides alone.
 
 use crate::double_double::DoubleDouble;
+use percuss::insides::Constants;
 use percuss::number::Number;
-use percuss::{Constants, Phase, State};
+use percuss::{Phase, State};
 
 /// Coefficients carried: at a step of a quarter of the fastest time the first one left out is
 /// 0.25^24/24!, 6e-39 of the largest.

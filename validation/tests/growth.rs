@@ -4,8 +4,8 @@
 //! phases; the solver multiplies the derivatives of its closed forms.
 
 use crate::exact;
+use percuss::TwoWord;
 use percuss::number::Number;
-use percuss::two_word::TwoWord;
 use percuss::variation::{ANGLE, IDENTITY, Matrix, P, Q, V, Y, product, times};
 use percuss::{Entry, Exit, GrowthRecorder, Instant, Segment};
 use percuss_validation::case::Case;

@@ -4,7 +4,7 @@
 
 use crate::exact;
 use percuss::Start;
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use percuss_validation::case::{Case, Given, embedded};
 use percuss_validation::engine::{Grid, Task};
 use percuss_validation::score::Growth;

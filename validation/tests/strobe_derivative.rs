@@ -1,10 +1,10 @@
 //! The strobe map's derivative, held against differences in 106 bits: over several periods, for
 //! both targets of an impact, and on both sides of the corner at a graze.
 
+use percuss::TwoWord;
 use percuss::dynamics::linear::norm;
 use percuss::dynamics::strobe::{Jacobian, Point, StrobeMap};
 use percuss::number::Number;
-use percuss::two_word::TwoWord;
 use percuss::variation::{IDENTITY, Matrix, P, Q, Y, product};
 use percuss::{Entry, Exit, Instant, Model, Parameters, Phase, Segment};
 use percuss_validation::truth::{DoubleDouble, Replay};

@@ -33,6 +33,7 @@ use super::lyapunov::Spectrum;
 use super::orbit::Orbit;
 use super::strobe::{Point, StrobeMap};
 use std::cmp::Ordering;
+use std::fmt;
 
 /// Standard errors by which a positive exponent must differ from zero.
 pub const ERRORS: f64 = 4.0;
@@ -55,13 +56,19 @@ pub enum Kind {
 impl Kind {
     /// The name used in files.
     #[must_use]
-    pub const fn token(self) -> &'static str {
+    pub const fn as_str(self) -> &'static str {
         match self {
             Self::Periodic => "periodic",
             Self::Chaotic => "chaotic",
             Self::QuasiPeriodic => "quasi-periodic",
             Self::Unidentified => "unidentified",
         }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
     }
 }
 

@@ -84,13 +84,19 @@ pub enum Kind {
 impl Kind {
     /// The name used in files.
     #[must_use]
-    pub const fn token(self) -> &'static str {
+    pub const fn as_str(self) -> &'static str {
         match self {
             Self::Fold => "fold",
             Self::Flip => "flip",
             Self::NeimarkSacker => "neimark-sacker",
             Self::Grazing => "grazing",
         }
+    }
+}
+
+impl fmt::Display for Kind {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
     }
 }
 

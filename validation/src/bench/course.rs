@@ -4,7 +4,7 @@
 use crate::case::{Case, FileError, Given};
 use crate::engine::{Event, Failure, Grid, Outcome, Task};
 use crate::number::brief;
-use crate::score::{Matching, SCORED_ERROR, WINDOW};
+use crate::score::{Matching, SCORED_ERROR, WINDOW, worst};
 use crate::truth::{Library, Row, Truth};
 use percuss::{Parameters, Start};
 
@@ -130,11 +130,6 @@ fn state_error(row: &Row, state: &[f64; 4]) -> f64 {
     worst((0..3).map(|k| off(row.state[k], state[k])))
 }
 
-fn off(truth: percuss::two_word::TwoWord, value: f64) -> f64 {
-    truth.minus(percuss::two_word::TwoWord::new(value)).value().abs()
-}
-
-/// A maximum that keeps a NaN.
-fn worst(errors: impl Iterator<Item = f64>) -> f64 {
-    errors.fold(0.0, |worst: f64, it| if it > worst || it.is_nan() { it } else { worst })
+fn off(truth: percuss::TwoWord, value: f64) -> f64 {
+    truth.minus(percuss::TwoWord::new(value)).value().abs()
 }

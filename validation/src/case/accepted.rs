@@ -14,7 +14,7 @@ pub fn accepted(name: &str) -> Option<&'static str> {
         "margin" => Some("a finite number"),
         "limit" | "at_least" | "at_most" => Some("a number"),
         "engine" | "case" => Some("a string, a regular expression of whole names"),
-        name => Parameter::named(name).map_or_else(|| of_start(name), of_parameter),
+        name => name.parse().map_or_else(|_| of_start(name), of_parameter),
     }
 }
 

@@ -66,7 +66,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<()> {
     let steps = work::pool(threads)?.install(|| diagram.steps(|| bar.inc(1)));
     bar.finish_and_clear();
     let steps =
-        steps.map_err(|error| anyhow!("--parameter {}: {error}", diagram.parameter.name()))?;
+        steps.map_err(|error| anyhow!("--parameter {}: {error}", diagram.parameter.as_str()))?;
     arguments.output.destination().write(|out| match format {
         Format::Csv => write_csv(&steps, out),
         Format::Png => Ok(out.write_all(&picture::png(&drawing(&diagram, &steps))?)?),

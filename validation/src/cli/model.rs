@@ -82,7 +82,7 @@ impl ModelFlags {
         if let Some((parameter, flag, value)) = stated {
             // The value that is replaced has to be one, too.
             given.parameters.check().map_err(|error| anyhow!(given.origins.explain(&error)))?;
-            given.origins.set(parameter.name(), flag.to_owned(), &value.text);
+            given.origins.set(parameter.as_str(), flag.to_owned(), &value.text);
             given.parameters = parameter.set(given.parameters, value.value);
         }
         let is_given = ["p", "y", "q", "phase"].iter().any(|name| given.origins.is_set(name));
@@ -125,7 +125,7 @@ impl ModelFlags {
             start.cycle = *value;
         }
         if let Some(phase) = self.phase {
-            given.origins.set("phase", "--phase".to_owned(), phase.token());
+            given.origins.set("phase", "--phase".to_owned(), phase.as_str());
             start.phase = Some(phase);
         }
     }

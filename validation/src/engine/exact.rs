@@ -2,7 +2,7 @@
 
 use super::meter::{Failure, Limits};
 use super::{Accuracy, Declaration, Engine, Event, Location, Outcome, Stepping, Task, Work, pins};
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use percuss::{Entry, Exit, Phase, Sample, Segment, Step, Trajectory};
 
 /// The closed forms, joined at proved first crossings.

@@ -43,8 +43,9 @@ pub(crate) use wrong::Closed;
 pub use wrong::{CONTROL, FAULTY_CONTROL, SOUND, Wrong, faulty, wrong};
 
 use crate::case::{Case, Horizon, Problem};
-use percuss::two_word::TwoWord;
-use percuss::{Instant, Parameters, Phase, angle};
+use percuss::TwoWord;
+use percuss::insides::angle;
+use percuss::{Instant, Parameters, Phase};
 
 /// How an engine finds its switches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]

@@ -9,7 +9,7 @@ pub const fn symbol(parameter: Parameter) -> &'static str {
         Parameter::Xi => "\u{3be}",
         Parameter::Omega => "\u{3c9}",
         Parameter::Phi => "\u{3c6}",
-        other => other.name(),
+        other => other.as_str(),
     }
 }
 

@@ -220,7 +220,7 @@ impl Trail {
             let to = starts.get(i + 1).map_or(right, |next| next.0);
             let to = to.max(from + 1.0).min(right);
             canvas.fill((*from, top), (to, top + BAND), palette::phase(*phase))?;
-            let name = phase.token().replace('-', " ");
+            let name = phase.as_str().replace('-', " ");
             if to - from > 11.0 * name.len() as f64 {
                 let colour = if *phase == Phase::Contact { palette::INK } else { WHITE };
                 let middle = ((from + to) / 2.0, top + BAND / 2.0);

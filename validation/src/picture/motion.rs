@@ -112,7 +112,7 @@ impl Motion {
         for phase in Phase::ALL {
             let key = Rectangle::new([at(x, 56), at(x + 36, 61)], palette::phase(phase).filled());
             area.draw(&key).map_err(DrawError::new)?;
-            let token = phase.token().replace('-', " ");
+            let token = phase.as_str().replace('-', " ");
             area.draw_text(&token, &text, at(x + 46, 58)).map_err(DrawError::new)?;
             x += 90 + 13 * i32::try_from(token.len()).unwrap_or(0);
         }

@@ -58,7 +58,7 @@ pub(super) fn described(attractor: &Attractor) -> String {
         }
         None => format!(
             "{}, exponent {:.4} +- {:.4} per period",
-            attractor.kind.token(),
+            attractor.kind.as_str(),
             attractor.lyapunov_per_period,
             attractor.lyapunov_error
         ),

@@ -58,7 +58,7 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
 /// A bifurcation in words.
 fn said(met: &Bifurcation) -> String {
     let Bifurcation { kind, value, error, orbit, .. } = met;
-    let (kind, period) = (kind.token(), orbit.period());
+    let (kind, period) = (kind.as_str(), orbit.period());
     format!("{kind} of period {period} at omega = {value:.10} +- {error:.0e}")
 }
 

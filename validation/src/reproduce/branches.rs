@@ -46,7 +46,7 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     let met = branches.iter().flat_map(|(period, _, branch)| {
         branch.bifurcations.iter().map(move |it| {
             let numbers = [it.value, it.error].map(|number| number.to_string());
-            [period.to_string(), it.kind.token().to_owned()].into_iter().chain(numbers).collect()
+            [period.to_string(), it.kind.as_str().to_owned()].into_iter().chain(numbers).collect()
         })
     });
     findings.csv("figure-10-bifurcations", &["family", "type", "omega", "error"], met)?;

@@ -29,6 +29,6 @@ pub(super) fn first(
     let period = orbit.period().ok_or_else(|| Failure::new("it is no orbit"))?;
     let met = branch(orbit.points[0], period, from, to)?.bifurcations;
     let missing =
-        || Failure::new(format!("period {period} meets no {} from {from} to {to}", kind.token()));
+        || Failure::new(format!("period {period} meets no {} from {from} to {to}", kind.as_str()));
     met.into_iter().find(|it| it.kind == kind).ok_or_else(missing)
 }

@@ -46,7 +46,7 @@ pub(super) fn lines(pieces: &[Piece], of: impl Fn(&[f64; 5]) -> [f64; 2]) -> Vec
 /// The phases' key.
 pub(super) fn key() -> Layer {
     let entry = |phase: Phase| KeyEntry {
-        name: phase.token().replace('-', " "),
+        name: phase.as_str().replace('-', " "),
         colour: phase_colour(phase),
         stroke: Some(stroke(phase)),
     };
@@ -58,7 +58,7 @@ pub(super) fn rows(pieces: &[Piece]) -> impl Iterator<Item = Vec<String>> {
     pieces.iter().flat_map(|piece| {
         piece.points.iter().map(|point| {
             let numbers = point.iter().map(f64::to_string);
-            std::iter::once(piece.phase.token().to_owned()).chain(numbers).collect()
+            std::iter::once(piece.phase.as_str().to_owned()).chain(numbers).collect()
         })
     })
 }

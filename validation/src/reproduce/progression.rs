@@ -58,7 +58,7 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     for rate in &RATES {
         let steps = rate.steps()?;
         findings.picture(rate.name, &rate.sheet(&steps))?;
-        let header = [rate.parameter.name(), "drift_per_period", "drift_per_time", "period"];
+        let header = [rate.parameter.as_str(), "drift_per_period", "drift_per_time", "period"];
         let row = |step: &Step| {
             let period = period(step).map_or(String::new(), |period| period.to_string());
             let numbers = [step.value, step.drift_per_period, rate.per_time(step)];

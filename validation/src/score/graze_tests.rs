@@ -70,3 +70,23 @@ fn all_near_misses_of_a_segment_are_found() {
         assert!(steps.into_iter().all(|it| (it - apart).abs() < 1e-2 * apart), "{name}: {found:?}");
     }
 }
+
+/// Guards are looked at 128 times in a period of the forcing, or in one of the contact where that
+/// is shorter.
+#[test]
+fn looks_follow_the_faster_of_forcing_and_contact() {
+    for (omega, expected) in [(0.1, 2.0 * PI / 128.0), (5.0, 2.0 * PI / 5.0 / 128.0)] {
+        let parameters = Parameters { omega, ..Parameters::default() };
+        let Ok(problem) = (Given { parameters, ..Given::default() }).check() else {
+            unreachable!("the parameters are in range")
+        };
+        let horizon = problem.entry.instant.after_periods(1, 1);
+        let task = Task::until(parameters, problem, horizon, Grid { per_period: 8, count: 9 });
+        let Ok(truth) = Truth::replayed(&parameters, &problem.entry, horizon, (9, 8)) else {
+            unreachable!("106 bits decide it")
+        };
+        let growth = Growth::along(&truth, &parameters, task.forcing_angle);
+        let step = Scan { task: &task, truth: &truth, growth: &growth }.step();
+        assert!((step - expected).abs() <= 1e-14, "{step} {expected}");
+    }
+}

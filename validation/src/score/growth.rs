@@ -11,7 +11,7 @@
 
 use crate::truth::{Row, Truth};
 use nalgebra::{SMatrix, SVector};
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use percuss::{Parameters, Phase};
 
 /// Errors above this, in units of displacement, measure the growth and not the engine.

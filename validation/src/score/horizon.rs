@@ -13,7 +13,7 @@ use super::statistics::Spread;
 use crate::case::Problem;
 use crate::engine::{Failure, Grid, Outcome, Task};
 use crate::truth::{Truth, UNIT};
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use rayon::prelude::*;
 
 /// An engine's run is made until its unit of error times the growth passes this many times 1e-3.
@@ -214,3 +214,7 @@ impl HorizonRun {
         within.saturating_sub(1) as u32
     }
 }
+
+#[cfg(test)]
+#[path = "horizon_tests.rs"]
+mod tests;

@@ -63,7 +63,7 @@ mod tests {
     use super::*;
     use percuss::Phase;
     use percuss::Phase::{Contact, NoContact, Progression};
-    use percuss::two_word::TwoWord;
+    use percuss::TwoWord;
 
     fn rows(switches: &[(f64, Phase)]) -> Vec<Row> {
         let row = |(t, phase): &(f64, Phase)| Row {

@@ -10,7 +10,7 @@ use crate::case::{Quantity, Statistic};
 use crate::engine::{Event, Outcome, Task};
 use crate::truth::{Row, Truth};
 use percuss::Phase;
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 
 /// What a run measured, up to the scored horizon.
 #[derive(Clone, Debug)]
@@ -178,8 +178,8 @@ fn time_error(row: &Row, event: &Event) -> f64 {
     off(row.elapsed, event.elapsed)
 }
 
-/// A maximum that keeps a NaN.
-fn worst(errors: impl Iterator<Item = f64>) -> f64 {
+/// The largest error, at least 0; a NaN among them is the largest.
+pub(crate) fn worst(errors: impl Iterator<Item = f64>) -> f64 {
     errors
         .fold(0.0, |worst: f64, error| if error > worst || error.is_nan() { error } else { worst })
 }
@@ -263,3 +263,7 @@ fn state_constant(
 fn relative(truth: TwoWord, value: f64) -> f64 {
     off(truth, value) / (1.0 + truth.value().abs())
 }
+
+#[cfg(test)]
+#[path = "measure_tests.rs"]
+mod tests;

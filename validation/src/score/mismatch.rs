@@ -105,7 +105,7 @@ impl Mismatch {
 mod tests {
     use super::*;
     use percuss::Phase::{self, Contact, NoContact};
-    use percuss::two_word::TwoWord;
+    use percuss::TwoWord;
 
     const WINDOW: f64 = 0.1;
 

@@ -24,6 +24,7 @@ pub use growth::{Growth, SCORED_ERROR, SCORED_FACTOR};
 pub use histogram::Histogram;
 pub use horizon::{HorizonTest, Horizons, ValidHorizon};
 pub use matching::{Matching, WINDOW};
+pub(crate) use measure::worst;
 pub use measure::{Measures, measure, sample_errors};
 pub use mismatch::{Excused, Mismatch};
 pub use order::order;

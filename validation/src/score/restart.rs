@@ -8,12 +8,13 @@
 
 use super::growth::Growth;
 use super::histogram::Histogram;
+use super::measure::worst;
 use super::starts::on_attractor;
 use super::statistics::Spread;
 use crate::case::Problem;
 use crate::engine::{Failure, Grid, Outcome, Task};
 use crate::truth::{Row, Truth};
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use percuss::{Instant, Phase};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -181,10 +182,10 @@ impl RestartRun {
             self::off(truth.elapsed, found.elapsed) / scale(unit, truth.elapsed, growth[0])
         });
         RestartError {
-            units: largest((0..4).map(units)),
+            units: worst((0..4).map(units)),
             drift_units: units(3),
-            time_units: if same_word { largest(late) } else { f64::NAN },
-            absolute: largest((0..4).map(off)),
+            time_units: if same_word { worst(late) } else { f64::NAN },
+            absolute: worst((0..4).map(off)),
             same_word,
         }
     }
@@ -201,11 +202,6 @@ fn off(truth: TwoWord, found: f64) -> f64 {
 
 fn scale(unit: f64, truth: TwoWord, growth: f64) -> f64 {
     unit * (1.0 + truth.value().abs()) * growth
-}
-
-/// A maximum that keeps a NaN.
-fn largest(errors: impl Iterator<Item = f64>) -> f64 {
-    errors.fold(0.0, |largest, error| if error <= largest { largest } else { error })
 }
 
 /// Whether a run has an impact, and the separation that follows it.
@@ -230,3 +226,7 @@ pub(super) fn task(problem: Problem, horizon: Instant) -> Task {
     let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 };
     Task::until(*problem.model.parameters(), problem, horizon, grid)
 }
+
+#[cfg(test)]
+#[path = "restart_tests.rs"]
+mod tests;

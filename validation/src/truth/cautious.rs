@@ -6,13 +6,13 @@
 //! phase in 106 bits too; where one does not, the search counts it, and the run is undecided.
 
 use super::forms::Motion;
-use percuss::crossing::certificate::{Corridor, Ends, Verdict};
-use percuss::crossing::guarded::{Guarded, SearchHint};
-use percuss::crossing::search::first_crossing;
-use percuss::crossing::series::Series;
-use percuss::crossing::{Counters, Crossing};
-use percuss::flow::steps::Steps;
-use percuss::flow::{Flow, Point};
+use percuss::insides::crossing::certificate::{Corridor, Ends, Verdict};
+use percuss::insides::crossing::guarded::{Guarded, SearchHint};
+use percuss::insides::crossing::search::first_crossing;
+use percuss::insides::crossing::series::Series;
+use percuss::insides::crossing::{Counters, Crossing};
+use percuss::insides::flow::steps::Steps;
+use percuss::insides::flow::{Flow, Point};
 
 /// Rounding an entry to f64 moves the guard by a unit or two of its largest term; its own rounding
 /// is within the four that the search sets aside. Sixteen times those four leaves a factor of ten.

@@ -1,6 +1,6 @@
 //! Decimals of 25 digits as two words.
 
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 
 /// 10^22 is the largest power of ten that is an f64.
 const LARGEST_EXACT_POWER: i32 = 22;

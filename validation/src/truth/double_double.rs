@@ -4,8 +4,8 @@
 //! Popescu 2017: a few units of 2^-106 each). Its sine reduces the argument by two words of pi/2
 //! and is used inside one quadrant only; the reduction is done here, in three words.
 
+use percuss::TwoWord;
 use percuss::number::Number;
-use percuss::two_word::TwoWord;
 use std::fmt;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use xprec::Df64;

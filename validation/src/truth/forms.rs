@@ -1,15 +1,17 @@
 //! The closed forms of the three phases in 106 bits, and rounded for the search of first crossings.
 
 use super::DoubleDouble;
-use percuss::flow::contact::Contact;
-use percuss::flow::forcing::EntryAngle;
-use percuss::flow::no_contact::NoContact;
-use percuss::flow::progression::Progression;
-use percuss::flow::steps::Steps;
-use percuss::flow::{Flow, Point};
+use percuss::TwoWord;
+use percuss::insides::Constants;
+use percuss::insides::angle;
+use percuss::insides::flow::contact::Contact;
+use percuss::insides::flow::forcing::EntryAngle;
+use percuss::insides::flow::no_contact::NoContact;
+use percuss::insides::flow::progression::Progression;
+use percuss::insides::flow::steps::Steps;
+use percuss::insides::flow::{Flow, Point};
 use percuss::number::Number;
-use percuss::two_word::TwoWord;
-use percuss::{Constants, Instant, Parameters, Phase, State, angle};
+use percuss::{Instant, Parameters, Phase, State};
 
 /// How a phase begins: what is known exactly at that instant.
 #[derive(Clone, Copy, Debug)]

@@ -2,7 +2,7 @@
 
 use super::DoubleDouble;
 use super::forms::{Forms, ModeEntry, Motion};
-use percuss::flow::Point;
+use percuss::insides::flow::Point;
 use percuss::number::Number;
 use percuss::{Entry, Phase, State};
 

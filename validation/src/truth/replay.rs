@@ -9,8 +9,8 @@ use super::DoubleDouble;
 use super::cautious::crossing;
 use super::forms::{Forms, ModeEntry, Motion};
 use super::landing::UNDECIDED;
-use percuss::crossing::{Crossing, Root};
-use percuss::flow::Point;
+use percuss::insides::crossing::{Crossing, Root};
+use percuss::insides::flow::Point;
 use percuss::number::Number;
 use percuss::{Entry, Instant, Parameters, Phase, State};
 

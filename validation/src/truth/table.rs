@@ -3,7 +3,7 @@
 use super::decimal;
 use crate::case::{Case, FileError, Horizon};
 use percuss::Phase;
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 
 /// The phase of an event table's last row.
 const END: &str = "end";

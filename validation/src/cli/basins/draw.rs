@@ -43,7 +43,7 @@ fn colours(attractors: &[Attractor]) -> Vec<usize> {
 fn shown_as(basins: &Basins, id: usize, attractor: &Attractor, colour: usize) -> Shown {
     let what = match attractor.period() {
         Some(period) => format!("{id}: period {period}"),
-        None => format!("{id}: {}", attractor.kind.token()),
+        None => format!("{id}: {}", attractor.kind.as_str()),
     };
     let share = 100.0 * basins.fraction(Label::Attractor(id));
     Shown {

@@ -98,7 +98,7 @@ impl AttractorJson {
         let from = if attractor.orbit.is_some() { 0 } else { points.len().saturating_sub(POINTS) };
         Self {
             id: label.number(),
-            kind: attractor.kind.token(),
+            kind: attractor.kind.as_str(),
             period: attractor.period(),
             fraction: basins.fraction(label),
             fraction_error: basins.fraction_error(label),

@@ -35,7 +35,7 @@ fn row(basins: &Basins, id: usize, attractor: &Attractor) -> Vec<String> {
     let number = |value: f64| format!("{value:.6}");
     let mut row = vec![
         id.to_string(),
-        attractor.kind.token().to_owned(),
+        attractor.kind.as_str().to_owned(),
         attractor.period().map(|it| it.to_string()).unwrap_or_default(),
         share(basins, Label::Attractor(id)),
         if attractor.drift_per_period.is_finite() {

@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     arguments.output.destination().json(&followed)?;
     match branch {
         Ok(branch) if !complete => {
-            say(&format!("--parameter {}: {}", parameter.name(), branch.ending))
+            say(&format!("--parameter {}: {}", parameter.as_str(), branch.ending))
         }
         Err(why) => say(&why),
         _ => {}

@@ -44,7 +44,7 @@ impl Found {
 }
 
 fn tokens(orbit: &Orbit) -> Vec<&'static str> {
-    orbit.phases.iter().copied().map(Phase::token).collect()
+    orbit.phases.iter().copied().map(Phase::as_str).collect()
 }
 
 /// What `continue` writes.
@@ -126,8 +126,8 @@ impl Place {
 impl Special {
     fn of(found: &Bifurcation, parameter: Parameter) -> Self {
         Self {
-            r#type: found.kind.token(),
-            parameter: parameter.name(),
+            r#type: found.kind.as_str(),
+            parameter: parameter.as_str(),
             value: found.value,
             error: found.error,
             period: found.orbit.period(),

@@ -80,7 +80,7 @@ impl Sink for Json<'_> {
             q: state.q,
             v: given.v,
             cycle: given.cycle,
-            phase: given.phase.map(Phase::token),
+            phase: given.phase.map(Phase::as_str),
         })?;
         Ok(write!(self.out, ",\"rows\":[")?)
     }

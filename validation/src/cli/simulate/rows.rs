@@ -49,7 +49,7 @@ pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<Ending> {
             plan,
             &Row {
                 index,
-                phase: entry.phase().token(),
+                phase: entry.phase().as_str(),
                 instant: entry.instant,
                 state,
                 co_ordinates: None,
@@ -91,7 +91,7 @@ pub(super) fn samples(plan: &Plan, per_period: u32, sink: &mut dyn Sink) -> Resu
                 break;
             }
             plan.progress.at(&instant);
-            sink.row(plan, &sample(k, segment.phase().token(), &segment, instant))?;
+            sink.row(plan, &sample(k, segment.phase().as_str(), &segment, instant))?;
             k += 1;
         }
         last = Some(segment);

@@ -1,12 +1,13 @@
 //! One phase's closed form from a plain state (p, y, q, v) at a forcing angle.
 
 use super::printed;
-use percuss::flow::Flow;
-use percuss::flow::contact::Contact;
-use percuss::flow::forcing::EntryAngle;
-use percuss::flow::no_contact::NoContact;
-use percuss::flow::progression::Progression;
-use percuss::{Constants, Parameters, Phase, State};
+use percuss::insides::Constants;
+use percuss::insides::flow::Flow;
+use percuss::insides::flow::contact::Contact;
+use percuss::insides::flow::forcing::EntryAngle;
+use percuss::insides::flow::no_contact::NoContact;
+use percuss::insides::flow::progression::Progression;
+use percuss::{Parameters, Phase, State};
 
 /// A phase that began in a state at a forcing angle.
 pub(crate) struct Closed {

@@ -8,7 +8,7 @@ use crate::engine::{Engine, Limits, Outcome, Task, Trace, Watched, contain};
 use crate::suite::{Prepared, Scored};
 use crate::truth::{Replay, Truth};
 use percuss::Phase;
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 
 /// Marks of steps and looks nearer to each other than this share of a view are shown as one.
 const APART: f64 = 1.0 / 120.0;

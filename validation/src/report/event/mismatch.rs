@@ -6,7 +6,7 @@ use crate::score::{Growth, Matching, Measures, Verdict, WINDOW};
 use crate::suite::{Prepared, Scored, Status};
 use crate::truth::{Row, Truth};
 use percuss::Phase;
-use percuss::two_word::TwoWord;
+use percuss::TwoWord;
 use serde::Serialize;
 
 /// What is wrong with an event.

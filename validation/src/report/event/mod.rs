@@ -85,5 +85,5 @@ pub struct Mark {
 }
 
 fn token<S: Serializer>(phase: &Phase, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(phase.token())
+    serializer.serialize_str(phase.as_str())
 }

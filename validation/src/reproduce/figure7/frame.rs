@@ -74,7 +74,7 @@ impl Frame {
         let kept = |(place, it): (usize, &Attractor)| {
             let label = Label::Attractor(place);
             Kept {
-                kind: it.kind.token().to_owned(),
+                kind: it.kind.as_str().to_owned(),
                 period: it.period(),
                 said: described(it),
                 share: format!("{:.2} +- {:.2} %", share(label), error(label)),

@@ -136,7 +136,7 @@ fn settle(
 fn census(frame: &Frame) -> (Vec<u32>, usize) {
     let mut periods: Vec<_> = frame.attractors.iter().filter_map(|it| it.period).collect();
     periods.sort_unstable();
-    let chaotic = frame.attractors.iter().filter(|it| it.kind == Kind::Chaotic.token()).count();
+    let chaotic = frame.attractors.iter().filter(|it| it.kind == Kind::Chaotic.as_str()).count();
     (periods, chaotic)
 }
 

@@ -92,7 +92,7 @@ fn rows(work: &Work<'_>, told: &Told) -> Result<Claim, Failure> {
         .segments
         .iter()
         .zip(printed)
-        .all(|(segment, row)| segment.phase().token() == row.phase);
+        .all(|(segment, row)| segment.phase().as_str() == row.phase);
     let mut differences = Vec::new();
     for (i, (segment, row)) in told.segments.iter().zip(printed).enumerate() {
         let [p, y, q] = segment.entry().point();

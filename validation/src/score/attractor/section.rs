@@ -142,6 +142,26 @@ fn apart(found: &[f64; 3], image: &[f64; 3]) -> f64 {
 mod tests {
     use super::*;
 
+    /// An event belongs to the period in which it lies; one at the section's first strobe begins
+    /// the first word, and one before it belongs to none.
+    #[test]
+    fn words_are_spelled_by_the_events_of_each_period() {
+        let event = |elapsed: f64, phase| Event { phase, elapsed, state: [0.0; 4] };
+        let events = [
+            event(3.9, Phase::Progression),
+            event(4.0, Phase::Contact),
+            event(5.9, Phase::NoContact),
+            event(6.0, Phase::Contact),
+            event(7.0, Phase::Progression),
+            event(10.5, Phase::NoContact),
+            event(12.0, Phase::Contact),
+        ];
+        let shares = words(&events, 2.0, 2, 4);
+        let expected = [("", 0.25), ("cn", 0.25), ("cp", 0.25), ("n", 0.25)];
+        let expected = expected.map(|(word, share)| (word.to_owned(), share));
+        assert_eq!(shares, BTreeMap::from(expected));
+    }
+
     #[test]
     fn differences_count_against_one_and_the_size_of_the_image() {
         assert_eq!(apart(&[0.5, 0.0, 0.0], &[0.0, 0.0, 0.0]), 0.5);

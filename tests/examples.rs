@@ -1,0 +1,84 @@
+//! The programs of `examples/` write what they say.
+
+#[allow(dead_code, reason = "main is the program's")]
+#[path = "../examples/basin_labels.rs"]
+mod basin_labels;
+#[allow(dead_code, reason = "main is the program's")]
+#[path = "../examples/dense_output.rs"]
+mod dense_output;
+#[allow(dead_code, reason = "main is the program's")]
+#[path = "../examples/orbit_multipliers.rs"]
+mod orbit_multipliers;
+#[allow(dead_code, reason = "main is the program's")]
+#[path = "../examples/poincare_npy.rs"]
+mod poincare_npy;
+#[allow(dead_code, reason = "main is the program's")]
+#[path = "../examples/trajectory_csv.rs"]
+mod trajectory_csv;
+
+use std::error::Error;
+
+/// What a program writes, as text.
+fn text(write: impl FnOnce(&mut Vec<u8>) -> Result<(), Box<dyn Error>>) -> String {
+    let mut out = Vec::new();
+    write(&mut out).unwrap();
+    String::from_utf8(out).unwrap()
+}
+
+fn numbers(row: &str) -> Vec<f64> {
+    row.split(',').filter_map(|cell| cell.parse().ok()).collect()
+}
+
+#[test]
+fn the_events_of_table_1_are_written() {
+    let csv = text(|out| trajectory_csv::write(out));
+    let rows: Vec<&str> = csv.lines().collect();
+    assert_eq!(rows[0], "phase,tau,p,y,q,v");
+    // The paper's first impact is at tau = 0.650 (Table 1), read at three digits.
+    assert!(rows[1].starts_with("no-contact,0,0,0,"), "{}", rows[1]);
+    assert!(rows[2].starts_with("contact,"), "{}", rows[2]);
+    let times: Vec<f64> = rows[1..].iter().map(|row| numbers(row)[0]).collect();
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]) && times[times.len() - 1] < 200.0);
+}
+
+#[test]
+fn dense_output_begins_where_the_phase_before_ends() {
+    let csv = text(|out| dense_output::write(out));
+    let rows: Vec<Vec<f64>> = csv.lines().skip(1).map(numbers).collect();
+    assert_eq!(rows.len() % 8, 0);
+    let last = rows[rows.len() - 1][0];
+    let end = 20.0 * std::f64::consts::TAU / 1.4;
+    assert!(last < end && last > end - std::f64::consts::TAU / 1.4, "{last}");
+    assert!(rows.windows(2).all(|pair| pair[0][0] < pair[1][0]));
+}
+
+#[test]
+fn a_section_is_an_array_of_two_columns() {
+    let mut out = Vec::new();
+    poincare_npy::write(&mut out, 50).unwrap();
+    let array = npyz::NpyFile::new(&out[..]).unwrap();
+    assert_eq!(array.shape(), [50, 2]);
+    let points: Vec<f64> = array.into_vec().unwrap();
+    assert!(points.iter().all(|it| it.abs() < 10.0) && points[0] != points[2]);
+}
+
+#[test]
+fn orbits_are_written_with_their_multipliers() {
+    let lines = text(|out| orbit_multipliers::write(out));
+    assert!(lines.starts_with("period 1, "), "{lines}");
+    assert!(lines.contains("unstable") && lines.contains("0.000000]"), "{lines}");
+}
+
+#[test]
+fn basins_are_drawn_and_add_up() {
+    let lines = text(|out| basin_labels::write(out));
+    let drawn: Vec<&str> = lines.lines().take(24).collect();
+    assert!(drawn.iter().all(|row| row.chars().count() == 60), "{lines}");
+    let shares = lines.lines().skip(24).filter_map(|line| line.split(", ").nth(1));
+    let shares = shares.filter_map(|it| it.split(' ').next()?.parse::<f64>().ok());
+    let labelled = drawn.concat().chars().filter(|it| it.is_alphabetic()).count() as f64;
+    let expected = 100.0 * labelled / (24.0 * 60.0);
+    let sum: f64 = shares.sum();
+    // Each share is rounded to a tenth.
+    assert!((sum - expected).abs() <= 0.05 * lines.lines().skip(24).count() as f64, "{lines}");
+}

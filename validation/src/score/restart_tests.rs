@@ -1,0 +1,129 @@
+use super::*;
+use crate::case::Given;
+use percuss::Phase::{Contact, NoContact, Progression};
+use percuss::Start;
+
+const UNIT: f64 = 1e-9;
+
+fn problem() -> Problem {
+    let given = Given { start: Start::default(), ..Given::default() };
+    let Ok(problem) = given.check() else { unreachable!("the defaults are in range") };
+    problem
+}
+
+fn run() -> RestartRun {
+    let Some(run) = RestartRun::new(problem()) else { unreachable!("106 bits decide it") };
+    run
+}
+
+fn perfect(run: &RestartRun) -> Outcome {
+    let event = |row: &Row| crate::engine::Event {
+        phase: row.phase.unwrap_or(NoContact),
+        elapsed: row.elapsed.value(),
+        state: row.rounded(),
+    };
+    Outcome {
+        events: run.truth.switches.iter().map(event).collect(),
+        end: run.truth.end.rounded(),
+        ..Outcome::default()
+    }
+}
+
+fn truth(start: Phase, phases: &[Phase]) -> Truth {
+    let row = |(k, phase): (usize, &Phase)| Row {
+        phase: Some(*phase),
+        elapsed: TwoWord::new(k as f64),
+        state: [TwoWord::ZERO; 4],
+    };
+    let switches: Vec<Row> = phases.iter().enumerate().map(|(k, it)| row((k + 1, it))).collect();
+    Truth { start: row((0, &start)), end: row((9, &start)), samples: Vec::new(), switches }
+}
+
+fn near(found: f64, expected: f64) {
+    assert!((found - expected).abs() <= 1e-6 * expected.abs(), "{found:e} {expected:e}");
+}
+
+#[test]
+fn a_passage_is_an_impact_and_the_separation_after_it() {
+    let separation = |start, phases: &[Phase]| {
+        let (impact, row) = passage(&truth(start, phases));
+        (impact, row.map(|row| row.elapsed.value()))
+    };
+    assert_eq!(separation(NoContact, &[Contact, NoContact, Contact]), (true, Some(2.0)));
+    assert_eq!(separation(NoContact, &[Progression, Contact, NoContact]), (true, Some(3.0)));
+    // The separation before the impact ends no passage.
+    assert_eq!(separation(Contact, &[NoContact, Contact, NoContact]), (true, Some(3.0)));
+    assert_eq!(separation(Contact, &[Progression, Contact, NoContact]), (false, None));
+    assert_eq!(separation(NoContact, &[Contact, Progression]), (true, None));
+}
+
+#[test]
+fn an_error_counts_over_its_size_and_growth() {
+    let run = run();
+    assert!(run.impact && run.truth.switches.len() >= 2);
+    for k in 0..4 {
+        let mut outcome = perfect(&run);
+        outcome.end[k] += 1e-5;
+        let off = off(run.truth.end.state[k], outcome.end[k]);
+        let found = run.error(&outcome, UNIT);
+        let size = 1.0 + run.truth.end.rounded()[k].abs();
+        near(found.units, off / (UNIT * size * run.growth.end[k]));
+        near(found.absolute, off);
+        near(found.drift_units, if k == 3 { found.units } else { 0.0 });
+        assert!(found.same_word && found.time_units < 1e-3);
+    }
+}
+
+#[test]
+fn a_time_counts_where_the_phases_are_right() {
+    let run = run();
+    let mut outcome = perfect(&run);
+    outcome.events[1].elapsed += 1e-5;
+    let found = run.error(&outcome, UNIT);
+    let row = &run.truth.switches[1];
+    let off = off(row.elapsed, outcome.events[1].elapsed);
+    near(found.time_units, off / (UNIT * (1.0 + row.elapsed.value()) * run.growth.switches[1][0]));
+    outcome.events.truncate(1);
+    let found = run.error(&outcome, UNIT);
+    assert!(!found.same_word && found.time_units.is_nan());
+}
+
+#[test]
+fn an_end_that_is_no_number_is_the_largest_error() {
+    let run = run();
+    let mut outcome = perfect(&run);
+    outcome.end[0] = f64::NAN;
+    outcome.end[1] += 1.0;
+    let found = run.error(&outcome, UNIT);
+    assert!(found.units.is_nan() && found.absolute.is_nan());
+}
+
+#[test]
+fn runs_that_fail_or_go_another_way_are_counted() {
+    let test = RestartTest::new(&problem(), 12);
+    let with_impact = test.runs.iter().filter(|run| run.impact).count();
+    assert!(with_impact >= 4 && test.runs.len() == 12 && test.undecided == 0);
+    let at = |task: &Task| test.runs.iter().position(|run| run.task.state == task.state);
+    let impacts: Vec<usize> = (0..12).filter(|k| test.runs[*k].impact).collect();
+    let answer = |task: &Task| {
+        let number = at(task).unwrap_or(0);
+        let mut outcome = perfect(&test.runs[number]);
+        if number == impacts[0] {
+            return Err(Failure::new("on purpose"));
+        }
+        if number == impacts[1] {
+            outcome.events.pop();
+        }
+        Ok(outcome)
+    };
+    let found = test.score(UNIT, answer);
+    assert_eq!((found.runs, found.with_impact), (12, with_impact));
+    assert_eq!((found.failed, found.wrong_words, found.undecided), (1, 1, 0));
+    assert!(found.units.max.is_nan() && found.units.median < 1e-3);
+    let counted: usize = found.by_switches.values().map(|(count, _)| count).sum();
+    assert_eq!(counted, with_impact);
+    assert_eq!(test.score_first(3, UNIT, answer).runs, 3);
+    // A run counts its events after those of the runs before it.
+    let before: u64 = test.runs[..5].iter().map(|run| run.truth.switches.len() as u64).sum();
+    assert_eq!(test.runs[5].task.events_before, before);
+}
