@@ -4,7 +4,7 @@ use crate::double_double::{DoubleDouble, UNIT};
 use crate::{Case, Family};
 use percuss::insides::crossing::limit::{GRANTED, LAST_ROOT, MOST, PER_RADIAN};
 use percuss::insides::{Effort, Judgement};
-use percuss::{Exit, Segment, Model, Parameters, Phase, State};
+use percuss::{Exit, Model, Parameters, Phase, Segment, State};
 
 /// Phases followed in one run.
 const SEGMENTS: usize = 20;
@@ -98,7 +98,8 @@ pub fn check_counted(case: &Case, tally: &mut Tally) -> Result<(), String> {
         let touched = counters.undecidable > before.undecidable;
         if number == 0 {
             tally.endless += 1;
-            without_horizon(&model, &segment, segment.elapsed_at(&horizon), touched).map_err(named)?;
+            without_horizon(&model, &segment, segment.elapsed_at(&horizon), touched)
+                .map_err(named)?;
         }
         let undecidable = *segment.exit() == Exit::Undecidable;
         tally.undecidable += u64::from(undecidable);
@@ -113,7 +114,12 @@ pub fn check_counted(case: &Case, tally: &mut Tally) -> Result<(), String> {
 
 /// Holds a phase to itself without a horizon, `left` after it begins: the same end, unless a touch
 /// was counted, and no more work than the limit of a search.
-fn without_horizon(model: &Model, segment: &Segment, left: f64, touched: bool) -> Result<(), String> {
+fn without_horizon(
+    model: &Model,
+    segment: &Segment,
+    left: f64,
+    touched: bool,
+) -> Result<(), String> {
     /// What an end may be off next to the horizon.
     const APART: f64 = 1e-3;
     /// A contact that is taken up in stages is granted the limit by its first search, by its stages

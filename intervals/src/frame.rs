@@ -3,7 +3,8 @@
 use crate::ball::Ball;
 use crate::functions::{exp, exp_less_1, sin_cos};
 use crate::guard::{Free, Guard, energy};
-use percuss::{Parameters, angle, two_word::TwoWord};
+use percuss::insides::angle;
+use percuss::{Parameters, TwoWord};
 
 /// What the guards of a model have in common.
 pub struct Frame {

@@ -10,8 +10,8 @@
 use crate::ball::Ball;
 use crate::frame::{Damping, Frame};
 use crate::functions::{INVERSE_FACTORIALS, exp, sin_cos};
-use percuss::insides::{Motion};
-use percuss::{Instant};
+use percuss::Instant;
+use percuss::insides::Motion;
 
 /// Derivatives in an expansion, that of order zero included.
 pub const ORDERS: usize = 12;

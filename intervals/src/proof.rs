@@ -11,8 +11,8 @@
 use crate::ball::Ball;
 use crate::guard::{Expansion, Guard};
 use crate::hull::{Between, Piecewise, holds};
-use percuss::insides::crossing::certificate::Corridor;
 use percuss::TwoWord;
+use percuss::insides::crossing::certificate::Corridor;
 
 /// What is claimed about a phase.
 #[derive(Clone, Copy, Debug)]

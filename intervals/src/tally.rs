@@ -5,8 +5,8 @@ use crate::frame::Frame;
 use crate::guard::Guard;
 use crate::proof::{Claim, GRANTED, Verdict, examine};
 use crate::regimes::{Chance, Regime, Run};
+use percuss::insides::Motion;
 use percuss::insides::crossing::guarded::{Guarded, slack};
-use percuss::insides::{Motion};
 use percuss::{Exit, Model, Phase, Segment};
 
 /// Examples kept of a regime's switches that were not proved.

@@ -1,8 +1,8 @@
 //! What the library's sine, cosine, exponential and remainders promise (docs/ROUNDING.md), measured
 //! against intervals.
 
-use percuss::number::Number;
 use percuss::insides::remainders::{circular, decay};
+use percuss::number::Number;
 use percuss_intervals::ball::Ball;
 use percuss_intervals::functions::{exp, exp_less_1, sin_cos};
 use percuss_intervals::regimes::Chance;

@@ -3,9 +3,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a panic is a failed test")]
 
-use percuss::insides::crossing::guarded::Guarded;
 use percuss::TwoWord;
-use percuss::insides::{Motion};
+use percuss::insides::Motion;
+use percuss::insides::crossing::guarded::Guarded;
 use percuss::{Model, Parameters};
 use percuss_intervals::frame::Frame;
 use percuss_intervals::proof::{Claim, GRANTED, Verdict, examine};
