@@ -59,6 +59,7 @@ struct Judged<'a, P, B> {
 
 impl Segment {
     /// How the phase ends by one-sided steps in the arithmetic `T`.
+    #[doc(hidden)]
     #[must_use]
     pub fn judged_in<T: Number>(&self, model: &Model, effort: &Effort) -> Judgement {
         let constants = Constants::<T>::new(model.parameters());

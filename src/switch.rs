@@ -231,7 +231,7 @@ fn guess(model: &Model, entry: &Entry, angle: EntryAngle<f64>) -> Option<f64> {
         Motion::Contact(contact) => contact.hint(steps, &contact.entry(), f64::INFINITY),
         Motion::Progression(slip) => slip.hint(steps, &slip.entry(), f64::INFINITY),
     };
-    // What an hint proves is not to be proved from a rough angle.
+    // What a hint proves is not to be proved from a rough angle.
     match hint {
         SearchHint::Root(time) => Some(time),
         _ => None,

@@ -5,7 +5,7 @@
 /// third machine.
 const BETWEEN_MACHINES: f64 = 16.0;
 
-/// By how much a count may exceed its record, where that is more than [`BETWEEN_MACHINES`].
+/// By how much a count may exceed its record, where that is more than `BETWEEN_MACHINES`.
 #[derive(Clone, Copy, Debug)]
 pub enum Grain {
     /// One thing done once or a few times: half a per cent.

@@ -117,7 +117,7 @@ pub fn first_crossing_and<G: Guarded>(
 /// A guess that has been followed: to a root, or in vain.
 type Followed = Result<Root, Point<f64>>;
 
-/// The walk in pieces, from an hint whose guess may have been followed already.
+/// The walk in pieces, from a hint whose guess may have been followed already.
 #[cold]
 fn search<G: Guarded>(
     (phase, steps): (&G, &Steps),

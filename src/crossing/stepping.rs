@@ -3,7 +3,7 @@
 //! If a guard's excess e is negative and M bounds e'' from above from here on, no crossing lies
 //! closer than the smallest r > 0 with e + e' r + M r^2/2 = 0. Stepping by r never passes a
 //! crossing, needs no grid and no guess, and converges quadratically on a transversal crossing. It
-//! takes about nine evaluations a switch where [`crate::crossing::search`] takes two or three, and
+//! takes about nine evaluations a switch where [`crate::crossing::search`] takes one mostly, and
 //! shares with it nothing but the closed forms.
 
 use crate::constants::Constants;
