@@ -8,7 +8,8 @@ use percuss::{Model, Parameters, Start};
 use std::error::Error;
 use std::io::Write;
 
-/// A letter per start, rows from the highest velocity down, and a line per attractor.
+/// A letter per start (`>` escapes, `?` is unresolved, `#` is beyond Z), p from -3 to 1.2 to the
+/// right, y from 1.5 at the top to -1.5; then a line per attractor.
 pub fn write(mut out: impl Write) -> Result<(), Box<dyn Error>> {
     let model = Model::new(Parameters { omega: 1.6, xi: 0.1, ..Parameters::default() })?;
     let map = StrobeMap::new(model, model.start(&Start::default())?.instant);

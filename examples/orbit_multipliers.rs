@@ -1,5 +1,5 @@
-//! Finds the periodic orbits of one, two and five forcing periods at omega = 1.6 and says which are
-//! stable; the stable one is that of Fig. 7e.
+//! Finds periodic orbits of one, two and five forcing periods at omega = 1.6, xi = 0.1 and says
+//! which are stable: that of period five, one of the three attractors of Fig. 7e.
 //!
 //! `cargo run --release --example orbit_multipliers`
 

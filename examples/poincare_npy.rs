@@ -9,7 +9,8 @@ use percuss::{Model, Parameters, Start};
 use std::error::Error;
 use std::io::Write;
 
-/// The section at the forcing angle zero, after a transient of 100 forcing periods.
+/// The section at omega tau = 0 mod 2 pi (phi not included), after a transient of 100 forcing
+/// periods.
 pub fn write(out: impl Write, strobes: u64) -> Result<(), Box<dyn Error>> {
     let model = Model::new(Parameters::default())?;
     let rest = model.start(&Start::default())?;

@@ -110,8 +110,8 @@ impl Constants<f64> {
     }
 }
 
-/// The coefficients of eight derivations by x'' + 2 xi x' + x = 0, which holds for every derivative
-/// of x.
+/// The coefficients of x and x' in the eighth derivative of x, and in the ninth, by x'' + 2 xi x' +
+/// x = 0.
 fn free_eighth<T: Number>(two_xi: T) -> [[T; 2]; 2] {
     let of = |mut x: T, mut rate: T| {
         for _ in 0..8 {

@@ -26,7 +26,11 @@ struct Cycle(i128);
 impl Instant {
     /// The instant `cycle` forcing periods after `tau`.
     ///
-    /// Exact for `omega |tau| <= 1e21`: both are taken as the f64 values they are.
+    /// Exact for `omega |tau| <= 1e21`: both are taken as the f64 values they are. Nothing is
+    /// checked: beyond that, or for numbers that are not finite, the instant means nothing
+    /// ([`Model::start`] checks).
+    ///
+    /// [`Model::start`]: crate::Model::start
     #[must_use]
     pub fn at(omega: f64, tau: f64, cycle: i64) -> Self {
         let (turns, angle) = angle::reduce(TwoWord::product(omega, tau));
@@ -118,6 +122,9 @@ impl Instant {
     }
 
     /// The instant `numerator / denominator` forcing periods later.
+    ///
+    /// # Panics
+    /// If `denominator` is zero.
     #[must_use]
     pub fn after_periods(&self, numerator: u64, denominator: u64) -> Self {
         let (whole, rest) = (numerator / denominator, numerator % denominator);

@@ -16,6 +16,13 @@
 //! }
 //! # Ok::<(), percuss::InputError>(())
 //! ```
+//!
+//! # Features
+//!
+//! - `parallel`: diagrams, attractors and basins on all threads; results are the same without.
+//! - `lanes`: ensembles in the processor's vectors.
+//! - `serde`: parameters, starts, states, samples, growths, counters and names are read and
+//!   written. With `serde_json` enable its `float_roundtrip`: its usual parser may be a unit off.
 
 mod angle;
 mod circle;

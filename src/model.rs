@@ -34,7 +34,7 @@ pub enum Motion<'a> {
 }
 
 impl<'a> Motion<'a> {
-    /// That begins so, at this forcing angle.
+    /// The motion that begins so, at this forcing angle.
     #[inline]
     pub(crate) fn new(
         constants: &'a Constants<f64>,
@@ -68,7 +68,8 @@ impl Model {
         Ok(Self { parameters, constants, steps, phi })
     }
 
-    /// The time tau of an instant, rounded to one word.
+    /// The time tau of an instant of this model (instants count forcing cycles of its omega),
+    /// rounded to one word.
     #[must_use]
     pub fn time(&self, instant: &Instant) -> f64 {
         instant.tau(self.parameters.omega)
@@ -104,7 +105,7 @@ impl Model {
         instant.forcing(self.phi)
     }
 
-    /// The instant a time `elapsed` later, with the same there.
+    /// The instant a time `elapsed` later, with the forcing angle there.
     #[inline(always)]
     pub(crate) fn instant_after(
         &self,

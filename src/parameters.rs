@@ -6,10 +6,12 @@ use std::str::FromStr;
 
 /// The model's parameters, all non-dimensional (Section 2 of the paper).
 ///
-/// Forces are in units of the dry-friction threshold d, lengths in d/k, time in sqrt(m/k).
+/// Forces are in units of the dry-friction threshold d, lengths in d/k, time in sqrt(m/k). Ranges
+/// are checked by [`Model::new`](crate::Model::new), not when parameters are read with `serde`;
+/// what is not given there has its default.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(deny_unknown_fields))]
+#[cfg_attr(feature = "serde", serde(default, deny_unknown_fields))]
 pub struct Parameters {
     /// Amplitude of the harmonic force, 0 to 1e9.
     pub a: f64,

@@ -255,6 +255,7 @@ impl Segment {
 
     /// How long the phase lasts by plain one-sided stepping (the judge): infinite if it does not
     /// end within `horizon`, none if that takes more than `evaluations`.
+    #[doc(hidden)]
     #[must_use]
     pub fn judged_duration(&self, horizon: f64, evaluations: u64) -> Option<f64> {
         let mut counters = Counters::default();

@@ -161,7 +161,8 @@ fn pass_late<P: Landing>(
         }
         Found::Never if left() > 0.0 => ended(End::Endless(P::NONE), f64::INFINITY),
         Found::Undecided(elapsed) if elapsed < left() => ended(End::Undecidable, elapsed),
-        _ => ended(End::Horizon, left()),
+        // A horizon that is past leaves a phase of no length.
+        _ => ended(End::Horizon, left().max(0.0)),
     }
 }
 

@@ -62,24 +62,33 @@ impl Model {
 }
 
 impl Trajectory {
-    /// Ends the run at `horizon`: the last phase is cut there.
+    /// Ends the run at `horizon`: the last phase is cut there, unless it is proved to be endless
+    /// ([`Exit::Endless`]), or undecidable before.
+    ///
+    /// A horizon that is not after the beginning of the phase that comes next leaves one phase of
+    /// no length ([`Exit::Horizon`]). A run that is over stays over; to go on, begin a run at
+    /// [`Segment::entry_at`] the horizon.
+    ///
+    /// [`Exit::Endless`]: crate::Exit::Endless
+    /// [`Exit::Horizon`]: crate::Exit::Horizon
     #[must_use]
     pub fn until(mut self, horizon: Instant) -> Self {
         self.horizon = Some(horizon);
         self
     }
 
-    /// Ends the run at the time tau, which is taken as the f64 value that it is.
+    /// Ends the run at the time tau, which is taken as the f64 value that it is ([`Self::until`]).
     ///
     /// # Errors
-    /// [`InputError::OutOfRange`] if tau is not within -1e15 and 1e15.
+    /// [`InputError::OutOfRange`] if tau is not between -1e15 and 1e15, or not a number.
     pub fn until_time(self, tau: f64) -> Result<Self, InputError> {
         within("tau", tau, -1e15, 1e15, "-1e15 <= tau <= 1e15")?;
         let horizon = Instant::at(self.model.parameters().omega, tau, 0);
         Ok(self.until(horizon))
     }
 
-    /// Ends the run this many forcing periods after the beginning of the phase that comes next.
+    /// Ends the run this many forcing periods after the beginning of the phase that comes next
+    /// ([`Self::until`]).
     #[must_use]
     pub fn for_periods(self, periods: u64) -> Self {
         let begun = if self.second { &self.begun[1] } else { &self.begun[0] };

@@ -16,6 +16,7 @@ mod poincare_npy;
 #[path = "../examples/trajectory_csv.rs"]
 mod trajectory_csv;
 
+use percuss::{Model, Parameters, Start};
 use std::error::Error;
 
 /// What a program writes, as text.
@@ -34,18 +35,31 @@ fn the_events_of_table_1_are_written() {
     let csv = text(|out| trajectory_csv::write(out));
     let rows: Vec<&str> = csv.lines().collect();
     assert_eq!(rows[0], "phase,tau,p,y,q,v");
-    // The paper's first impact is at tau = 0.650 (Table 1), read at three digits.
+    assert_eq!(rows.len(), 1 + 80);
     assert!(rows[1].starts_with("no-contact,0,0,0,"), "{}", rows[1]);
-    assert!(rows[2].starts_with("contact,"), "{}", rows[2]);
+    assert!((numbers(rows[2])[0] - 0.654_212).abs() < 1e-6, "{}", rows[2]);
+    // The first row of Table 1, as printed: tau, p, y.
+    let first = rows[rows.len() - 9];
+    assert!(first.starts_with("contact,"), "{first}");
+    let printed = [1142.28514, 0.02, 4.58005];
+    assert!(numbers(first).iter().zip(printed).all(|(a, b)| (a - b).abs() <= 5e-6), "{first}");
     let times: Vec<f64> = rows[1..].iter().map(|row| numbers(row)[0]).collect();
-    assert!(times.windows(2).all(|pair| pair[0] < pair[1]) && times[times.len() - 1] < 200.0);
+    assert!(times.windows(2).all(|pair| pair[0] < pair[1]) && times[79] < 1268.0);
 }
 
 #[test]
 fn dense_output_begins_where_the_phase_before_ends() {
     let csv = text(|out| dense_output::write(out));
     let rows: Vec<Vec<f64>> = csv.lines().skip(1).map(numbers).collect();
-    assert_eq!(rows.len() % 8, 0);
+    let model = Model::new(Parameters::default()).unwrap();
+    let rest = model.start(&Start::default()).unwrap();
+    let segments: Vec<_> = model.trajectory(rest).for_periods(20).collect();
+    assert_eq!(rows.len(), 8 * segments.len());
+    for (before, first) in segments.iter().zip(rows.iter().skip(8).step_by(8)) {
+        let end = before.at(before.duration());
+        let end = [end.state.p, end.state.y, end.state.q, end.v];
+        assert!(end.iter().zip(&first[1..]).all(|(a, b)| (a - b).abs() <= 1e-12), "{first:?}");
+    }
     let last = rows[rows.len() - 1][0];
     let end = 20.0 * std::f64::consts::TAU / 1.4;
     assert!(last < end && last > end - std::f64::consts::TAU / 1.4, "{last}");
@@ -66,6 +80,8 @@ fn a_section_is_an_array_of_two_columns() {
 fn orbits_are_written_with_their_multipliers() {
     let lines = text(|out| orbit_multipliers::write(out));
     assert!(lines.starts_with("period 1, "), "{lines}");
+    let stable: Vec<_> = lines.lines().filter(|line| line.contains(", stable:")).collect();
+    assert!(stable.len() == 1 && stable[0].starts_with("period 5"), "{lines}");
     assert!(lines.contains("unstable") && lines.contains("0.000000]"), "{lines}");
 }
 

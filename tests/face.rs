@@ -2,7 +2,7 @@
 //! periods, names, and serialized parameters.
 
 use percuss::dynamics::{attractor, continuation};
-use percuss::{Endless, InputError, Instant, Model, Parameter, Parameters, Phase, Start};
+use percuss::{Endless, Exit, InputError, Instant, Model, Parameter, Parameters, Phase, Start};
 
 fn model() -> Model {
     Model::new(Parameters::default()).unwrap()
@@ -48,6 +48,22 @@ fn a_time_that_is_none_is_refused() {
 }
 
 #[test]
+fn a_horizon_that_is_past_leaves_a_phase_of_no_length() {
+    let model = model();
+    let rest = model.start(&Start { tau: 3.0, ..Start::default() }).unwrap();
+    let mut begun = model.trajectory(rest);
+    begun.by_ref().take(5).for_each(drop);
+    for run in [
+        model.trajectory(rest).until_time(-50.0).unwrap(),
+        model.trajectory(rest).for_periods(0),
+        begun.until_time(3.0).unwrap(),
+    ] {
+        let left: Vec<_> = run.collect();
+        assert_eq!((left.len(), left[0].duration(), *left[0].exit()), (1, 0.0, Exit::Horizon));
+    }
+}
+
+#[test]
 fn a_run_that_is_over_stays_over() {
     fn is_fused(_: &impl std::iter::FusedIterator) {}
     let model = model();
@@ -61,7 +77,8 @@ fn a_run_that_is_over_stays_over() {
 #[test]
 fn the_time_of_an_instant_is_its_tau() {
     let instant = Instant::at(1.4, 2.75, 3);
-    assert_eq!(model().time(&instant), instant.tau(1.4));
+    let expected = 2.75 + 3.0 * model().period();
+    assert!((model().time(&instant) - expected).abs() <= 4.0 * f64::EPSILON * expected);
 }
 
 #[test]
@@ -104,5 +121,8 @@ fn what_is_serialized_is_read_back() {
     }
     let start: Start = serde_json::from_str("{\"p\": 0.5}").unwrap();
     assert_eq!(start, Start { p: 0.5, ..Start::default() });
-    assert!(serde_json::from_str::<Parameters>("{\"zeta\": 1}").is_err());
+    let refused = serde_json::from_str::<Parameters>("{\"zeta\": 1}").unwrap_err().to_string();
+    assert!(refused.contains("zeta"), "{refused}");
+    let parameters: Parameters = serde_json::from_str("{\"omega\": 1.6}").unwrap();
+    assert_eq!(parameters, Parameters { omega: 1.6, ..Parameters::default() });
 }

@@ -116,8 +116,8 @@ pub struct Counters {
     /// Closed-form evaluations spent on finding them: each takes a sine-cosine pair and an
     /// exponential (in contact one more of either), or their series where the arguments are small.
     /// Not counted are the sine and cosine of the forcing angle at which a phase begins, one pair a
-    /// phase, and the exponential of a [`slow_envelope`] that is asked about whole futures because
-    /// nothing is guessed. Guesses, series and certificates call none.
+    /// phase, and the exponential of a bound that is asked about whole futures because nothing is
+    /// guessed. Guesses, series and certificates call none.
     pub evaluations: u64,
     /// Touches and near misses whose margin is below the rounding error.
     pub undecidable: u64,

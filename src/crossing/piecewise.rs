@@ -21,7 +21,7 @@ pub struct Parts {
     pub elapsed: f64,
     /// Parabola and harmonic.
     pub value: f64,
-    /// The slope of the lasting parts.
+    /// The slope of parabola and harmonic.
     pub slope: f64,
     /// The harmonic's second derivative.
     pub bow: f64,
@@ -130,7 +130,7 @@ pub struct PiecewiseCertificate<'a> {
 
 /// How high the harmonic's crests may be between two places.
 struct Crests {
-    /// The line's value at the left place.
+    /// How high a crest may be at the left place.
     here: f64,
     /// Anywhere between.
     most: f64,

@@ -105,7 +105,7 @@ pub struct Push {
 }
 
 impl Push {
-    /// The series that follows from the harmonic force at the evaluation.
+    /// The push over a `step` from an evaluation with this harmonic force and its derivatives.
     #[inline]
     pub fn new(constants: &Constants<f64>, force: &[f64; 3], step: f64) -> Self {
         let Constants { b, omega, .. } = *constants;

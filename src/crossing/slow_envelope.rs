@@ -217,7 +217,7 @@ impl SlowEnvelope {
         Place { elapsed: 0.0, sin: self.sin, cos: self.cos, lasting: self.exponential }
     }
 
-    /// The place at this time, where sine and cosine of the forcing angle are known.
+    /// The place at this time, at which omega d + angle has this sine and cosine.
     pub fn place(&self, elapsed: f64, (sin, cos): (f64, f64)) -> Place {
         let lasting = self.exponential * quick_decay(self.rate * elapsed);
         Place { elapsed, sin, cos, lasting }

@@ -40,7 +40,8 @@ pub struct StrobeMap {
 /// What some forcing periods do to a point of the section.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Passage {
-    /// The image of the strobe, ready to go on: its drift goes on from where it began.
+    /// The motion after these forcing periods, ready to go on: its drift goes on from where it
+    /// began.
     pub image: Entry,
     /// Derivative of the image with respect to (angle, p, y, q, v) where it began.
     pub derivative: Matrix,

@@ -111,7 +111,7 @@ pub struct End {
     pub drift: Column,
     /// The velocity of the slider's top at a strobe in progression.
     pub closing: Column,
-    /// and the largest term of its guard.
+    /// The largest term of the guard at a strobe in progression.
     pub terms: Column,
 }
 

@@ -28,8 +28,8 @@ impl Forms {
 /// places errs by 1/384 of the amplitude, which the series puts right.
 const SWING: f64 = 0.8;
 
-/// The length of a certificate's pieces: the interpolant errs by 3^8/2822400 = 0.002 of the
-/// amplitude.
+/// The length of a certificate's pieces, radians of the faster of forcing and free oscillation: the
+/// interpolant errs by 2^8/2822400 = 1e-4 of the amplitude.
 const PIECE: f64 = 2.0;
 
 /// Each step rounds its parts a few times.

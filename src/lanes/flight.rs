@@ -184,8 +184,9 @@ impl<S: Simd> Flight<'_, S> {
         }
     }
 
-    /// Proves it by three tangents more in between: at forcing angles whose sine and cosine are
-    /// constants. Those before the place where the stretch is entered do not count.
+    /// Proves that h stays below zero in a stretch by three tangents more in between: at forcing
+    /// angles whose sine and cosine are constants. Those before the place where the stretch is
+    /// entered do not count.
     #[inline(always)]
     fn stays_below_between(
         &self,

@@ -21,7 +21,7 @@ pub struct SlowEnvelope<'a, S: Simd> {
     pub amplitude: Wide<S>,
     /// Sine of `angle`.
     pub sin: Wide<S>,
-    /// Cosine of the forcing angle.
+    /// Cosine of `angle`.
     pub cos: Wide<S>,
     /// e
     pub exponential: Wide<S>,

@@ -77,7 +77,7 @@ pub struct Push<S: Simd> {
 }
 
 impl<S: Simd> Push<S> {
-    /// The step that follows from the force less b and its rate at an evaluation.
+    /// The push over a `step` from an evaluation, from the force less b and its rate there.
     #[inline(always)]
     pub fn new(shape: &Shape<Wide<S>>, [u, v]: [Wide<S>; 2], step: Wide<S>) -> Self {
         let omega2 = shape.omega2;

@@ -172,7 +172,7 @@ shape! {
     early_piece_s_rate,
     /// What the steps may round off, in eps of the parts' size.
     roundings,
-    /// What the steps may round off besides.
+    /// What counts with the parts' size there: |b|, and a as well clearly above critical damping.
     pulls,
 }
 

@@ -152,7 +152,7 @@ pub struct Swings<S: Simd> {
 }
 
 impl<S: Simd> Swings<S> {
-    /// The step of a guess.
+    /// The strides of a guess.
     #[inline(always)]
     pub fn of_guess(shape: &Shape<Wide<S>>, forms: Forms) -> Self {
         let Shape { swing, swing_sin, swing_cos, swing_c, swing_s, swing_s_rate, .. } = *shape;
@@ -164,7 +164,7 @@ impl<S: Simd> Swings<S> {
         Self::new(shape, forms, full, early)
     }
 
-    /// The step of the pieces of a certificate.
+    /// The strides from piece to piece of a certificate.
     #[inline(always)]
     pub fn of_pieces(shape: &Shape<Wide<S>>, forms: Forms) -> Self {
         let Shape { piece, piece_sin, piece_cos, piece_c, piece_s, piece_s_rate, .. } = *shape;
@@ -176,7 +176,7 @@ impl<S: Simd> Swings<S> {
         Self::new(shape, forms, full, early)
     }
 
-    /// The step that follows from the full one, and from sine, cosine, C and S' of the early one.
+    /// The strides up to the full one, from the early one's sine, cosine, C and S'.
     #[inline(always)]
     fn new(
         shape: &Shape<Wide<S>>,

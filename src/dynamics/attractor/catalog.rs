@@ -43,15 +43,15 @@ impl AttractorCatalog {
         self.known.iter().map(|it| &it.attractor)
     }
 
-    /// The attractor to which a start leads, as far as the attractors met so far tell.
+    /// The label of a start, as far as the attractors met so far tell.
     #[must_use]
     pub fn label(&self, start: Point) -> Label {
         let Ok(entry) = self.map.entry(start) else { return Label::Unresolved };
         self.extended(entry, Result::ok).unwrap_or(Label::Unresolved)
     }
 
-    /// The attractors to which many starts lead; attractors not met before are added. `seen` is
-    /// told how many starts more are done.
+    /// The labels of many starts; attractors not met before are added. `seen` is told how many
+    /// starts more are done.
     pub fn label_all(&mut self, starts: &[Point], seen: &(dyn Fn(u64) + Sync)) -> Vec<Label> {
         let mut labels = vec![Label::Unresolved; starts.len()];
         let mut open = Vec::new();

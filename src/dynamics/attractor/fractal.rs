@@ -23,7 +23,7 @@ pub struct Uncertainty {
     pub scales: Vec<Scale>,
     /// The exponent alpha; NaN where fewer than three scales tell.
     pub exponent: f64,
-    /// The standard error of the dimension, larger where the scales scatter by more than chance.
+    /// The standard error of the exponent, larger where the scales scatter by more than chance.
     pub error: f64,
 }
 
@@ -108,9 +108,9 @@ pub fn uncertainty_of(
     Uncertainty::fitted(seen, saturation(&counts))
 }
 
-/// The share of uncertain starts from the labels of a grid, at distances of 1, 2, 4... up to an
-/// eighth of its columns. Starts that lack neighbours at the largest distance are not compared at
-/// any: what is near the window's sides would count more the smaller the distance.
+/// The uncertainty exponent from the labels of a grid, at distances of 1, 2, 4... up to an eighth
+/// of its columns. Starts that lack neighbours at the largest distance are not compared at any:
+/// what is near the window's sides would count more the smaller the distance.
 #[must_use]
 pub fn uncertainty(basins: &Basins) -> Uncertainty {
     let columns = basins.grid.columns as usize;

@@ -7,7 +7,8 @@ use super::trap::Trap;
 /// The place to which a start leads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Label {
-    /// The start leads to the attractor at this place in the catalog.
+    /// The start leads to the attractor at this place: in the catalog or, among the labels of
+    /// [`super::Basins`], in its attractors.
     Attractor(usize),
     /// The start leads to a phase that never ends: the mass never returns or the slider never
     /// stops.

@@ -32,7 +32,7 @@ const MOST: usize = 64;
 
 /// What became of a motion.
 pub(super) enum Settled {
-    /// The attractor was known, or it stays unknown.
+    /// The motion leads to a known attractor or escapes, or it is not known where it leads.
     Label(Label),
     /// The motion leads to an attractor that was not met before.
     New(Box<Known>),

@@ -20,8 +20,9 @@ const CHANGE: f64 = 0.3;
 /// A branch being followed.
 pub(super) struct Walk<'a> {
     curve: Curve,
-    /// The value at which the parameter begins, and below it the value to which it is to go.
+    /// The value at which the parameter begins.
     from: f64,
+    /// The value to which it is to go.
     to: f64,
     told: &'a mut dyn FnMut(f64),
     points: Vec<BranchPoint>,

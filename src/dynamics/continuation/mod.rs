@@ -113,7 +113,7 @@ pub struct Bifurcation {
     pub turns: bool,
     /// The orbit there; at a corner as the branch comes to it.
     pub orbit: Orbit,
-    /// The first orbit beyond a corner.
+    /// The first orbit beyond a corner; `None` where this is no corner.
     pub beyond: Option<Orbit>,
 }
 

@@ -30,7 +30,7 @@ pub struct Floors {
 /// What a workload costs.
 #[derive(Clone, Debug)]
 pub struct Cost {
-    /// The name of the floor.
+    /// The workload's name.
     pub name: String,
     /// Closed-form evaluations a unit.
     pub evaluations: f64,

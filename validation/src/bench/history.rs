@@ -36,7 +36,7 @@ pub struct Record {
     pub floor_ns: f64,
     /// Floors a unit: the quotient of least times in the first half of the rounds.
     pub floors: f64,
-    /// The time of the floor in the second half of the rounds.
+    /// Floors a unit in the second half of the rounds: the quotient of least times.
     pub floors_again: f64,
     /// Closed-form evaluations a switch.
     pub evaluations_per_switch: f64,

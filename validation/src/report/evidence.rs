@@ -34,7 +34,7 @@ pub struct Evidence {
 /// What a case says of itself.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct CaseNote {
-    /// The engine's name.
+    /// The case's name.
     pub name: String,
     /// The file it stands in, as seen from the repository's root for cases inside the binary.
     pub file: String,

@@ -30,7 +30,7 @@ pub struct Report {
 /// An engine as it declares itself.
 #[derive(Clone, Debug, Serialize)]
 pub struct EngineEntry {
-    /// The name of the class.
+    /// The engine's name.
     pub name: &'static str,
     /// The library it is of.
     pub library: &'static str,

@@ -250,7 +250,7 @@ fn state_constant(
         return f64::NAN;
     }
     let mut switches = 0;
-    worst((0..scored).map(|n| {
+    worst((1..scored).map(|n| {
         let (row, growth) = (&truth.samples[n], &growth.samples[n]);
         let state = outcome.samples.get(n).copied().unwrap_or([f64::NAN; 4]);
         let passed = |switch: &&Row| switch.elapsed.minus(row.elapsed).value() <= 0.0;

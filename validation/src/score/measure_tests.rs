@@ -141,7 +141,8 @@ fn a_number_that_is_none_is_the_largest_error() {
 fn the_start_is_given() {
     let mut planted = Planted::new();
     planted.outcome.samples[0][0] += 1e-4;
-    assert_eq!(planted.measures().state.max, 0.0);
+    let found = planted.measures();
+    assert_eq!((found.state.max, found.state_constant), (0.0, 0.0));
 }
 
 #[test]

@@ -93,7 +93,8 @@ impl Replay {
         Self::varied(parameters, entry, state, horizon)
     }
 
-    /// A start with its state given in two words: for differences of neighbouring runs.
+    /// The run again from a start whose state is given in two words: for differences of
+    /// neighbouring runs.
     #[must_use]
     pub fn varied(
         parameters: &Parameters,

@@ -54,11 +54,11 @@ pub struct Raster {
 pub enum Layer {
     /// A line.
     Line {
-        /// The curve's points.
+        /// The line's points.
         points: Vec<[f64; 2]>,
-        /// The curve's colour.
+        /// The line's colour.
         colour: RGBColor,
-        /// The curve's width in pixels.
+        /// The line's width in pixels.
         width: f64,
         /// How it is broken.
         stroke: Stroke,
@@ -82,7 +82,7 @@ pub enum Layer {
         at: [f64; 2],
         /// The words.
         text: String,
-        /// The colour of the marks.
+        /// The colour of the words.
         colour: RGBColor,
     },
     /// The panel's key, above it where it hides nothing: names in a row.

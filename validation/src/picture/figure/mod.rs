@@ -66,7 +66,7 @@ impl Figure {
         self.plots.iter().flat_map(|plot| &plot.layers).map(Layer::points).sum()
     }
 
-    /// Draws all panels over the same ranges.
+    /// The figure with all panels over the same ranges.
     #[must_use]
     pub fn on_the_same_axes(mut self) -> Self {
         let extent = |axis: usize| {
