@@ -161,7 +161,7 @@ fn search_and_plain_stepping_agree() {
 }
 
 #[test]
-#[ignore = "a million switches; CONTRIBUTING.md names the command"]
+#[ignore = "a million switches; docs/LONG_TESTS.md names the command"]
 fn search_and_plain_stepping_agree_on_a_million_switches() {
     let score = agree(60_000, 20_000, 50);
     assert!(score.switches > 1_000_000, "{}", score.switches);

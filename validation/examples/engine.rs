@@ -5,8 +5,8 @@
 
 use percuss::Phase;
 use percuss_validation::engine::{
-    Accuracy, Declaration, Engine, Equations, Event, Failure, Limits, Location, Oscillator,
-    Outcome, Stepping, Task, Work, shortest_time,
+    Accuracy, Colours, Declaration, Engine, Equations, Event, Failure, Limits, Location,
+    Oscillator, Outcome, Role, Stepping, Task, Work, shortest_time,
 };
 use std::process::ExitCode;
 
@@ -20,9 +20,12 @@ impl Engine for Heun {
             library: "an example",
             version: "1.0.0".to_owned(),
             method: "Heun, fixed steps",
+            order: Some(2),
             events: Location::Harness,
             dense_output: false,
             stepping: Stepping::Fixed { order: 2 },
+            role: Role::Rows,
+            colours: Colours::OTHERS,
         }
     }
 

@@ -105,7 +105,7 @@ fn a_binary_is_compared_with_itself() {
     let own = binary();
     let output = run(&[&["bench", "compare", &own, &own], &ONE[..]].concat());
     let said = text(&output.stdout);
-    // Whether it passes is for a check that takes its time: CONTRIBUTING.md.
+    // Whether it passes is for a check that takes its time: docs/PERFORMANCE.md.
     assert!(matches!(output.status.code(), Some(0 | 1)), "{}", text(&output.stderr));
     let lines: Vec<_> = said.lines().collect();
     assert!(lines[0].starts_with("old ") && lines[1].starts_with("new "), "{said}");

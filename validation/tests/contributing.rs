@@ -102,7 +102,7 @@ fn the_tables_of_a_case_are_made_as_is_said() {
 #[test]
 fn adding_an_engine() {
     let section = section("Add an engine");
-    assert_eq!(block(&section, "rust"), read("validation/examples/engine.rs"));
+    assert!(section.contains("(validation/examples/engine.rs)"), "{section}");
     let commands = console(&section);
     let [(command, _)] = &commands[..] else { panic!("one command: {commands:?}") };
     assert!(command.starts_with("cargo run --release -p percuss-validation --example engine -- "));

@@ -66,7 +66,7 @@ fn the_readmes_blocks_are_what_their_commands_print() {
     }
 }
 
-/// The block of the bench is written by the commands that CONTRIBUTING.md names; times are not
+/// The block of the bench is written by the commands that docs/LONG_TESTS.md names; times are not
 /// asserted. It must be of the cases that are raced today.
 #[test]
 fn the_readmes_bench_is_of_todays_cases() {
@@ -82,7 +82,7 @@ fn the_readmes_bench_is_of_todays_cases() {
     assert_eq!(cases, percuss_validation::bench::cases::USUAL);
 }
 
-/// The summary is written by the command that CONTRIBUTING.md names. It must be of a run that was
+/// The summary is written by the command that docs/LONG_TESTS.md names. It must be of a run that was
 /// clean, of today's engines and of as many rows as the suite has today.
 #[test]
 fn the_readmes_summary_is_of_todays_suite() {
@@ -152,28 +152,49 @@ fn every_file_of_tests_is_in_its_program() {
     }
 }
 
-/// The relative links of a page, without the anchors in them.
-fn links(page: &str) -> Vec<String> {
+/// The relative links of a page: a path from the page's folder, and the anchor in it.
+fn links(page: &str) -> Vec<(String, String)> {
     let ends = page.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
-    let paths = ends.map(|(link, _)| link.split('#').next().unwrap_or_default().to_owned());
-    paths.filter(|path| !path.is_empty() && !path.contains("://")).collect()
+    let own = ends.filter(|(link, _)| !link.contains("://"));
+    own.map(|(link, _)| link.split_once('#').unwrap_or((link, "")))
+        .map(|(path, anchor)| (path.to_owned(), anchor.to_owned()))
+        .collect()
+}
+
+/// The anchors of a page's headings, as the places that show pages make them.
+fn anchors(page: &str) -> Vec<String> {
+    let headings = page.lines().filter(|line| line.starts_with('#'));
+    let word = |c: &char| c.is_alphanumeric() || " -_".contains(*c);
+    let anchor = |line: &str| {
+        let text = line.trim_start_matches('#').trim().to_lowercase();
+        text.chars().filter(word).map(|c| if c == ' ' { '-' } else { c }).collect()
+    };
+    headings.map(anchor).collect()
+}
+
+/// The pages of the repository's root and of `docs/`.
+fn pages() -> Vec<PathBuf> {
+    let folders = [root(), root().join("docs")];
+    let files = folders.iter().flat_map(|it| std::fs::read_dir(it).expect("a folder"));
+    let paths = files.map(|file| file.expect("a file").path());
+    paths.filter(|path| path.extension().is_some_and(|it| it == "md")).collect()
 }
 
 #[test]
 fn links_lead_somewhere() {
-    for page in [
-        "ARCHITECTURE.md",
-        "BIAS.md",
-        "CHANGELOG.md",
-        "CONTRIBUTING.md",
-        "ERRATA.md",
-        "METHODOLOGY.md",
-        "README.md",
-    ] {
-        let text = read(page);
-        for link in links(&text) {
-            assert!(root().join(&link).exists(), "{page} links {link}");
+    let pages = pages();
+    assert!(pages.len() > 15, "{pages:?}");
+    for page in pages {
+        let text = std::fs::read_to_string(&page).expect("a page");
+        for (path, anchor) in links(&text) {
+            let folder = page.parent().expect("a folder");
+            let target = if path.is_empty() { page.clone() } else { folder.join(&path) };
+            assert!(target.exists(), "{} links {path}", page.display());
+            if !anchor.is_empty() && target.extension().is_some_and(|it| it == "md") {
+                let there = anchors(&std::fs::read_to_string(&target).expect("a page"));
+                assert!(there.contains(&anchor), "{} links {path}#{anchor}", page.display());
+            }
         }
     }
-    assert!(links(&read("ARCHITECTURE.md")).len() > 30);
+    assert!(links(&read("ARCHITECTURE.md")).len() > 50);
 }

@@ -7,7 +7,7 @@
 use super::alone::alone;
 use super::course::{Course, Score};
 use super::rounds::Benchmark;
-use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Stepping, Work, contain};
+use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Role, Stepping, Work, contain};
 use crate::number::brief;
 
 /// Calls (right-hand sides, Jacobians, guards) beyond which a run is given up: a second or less.
@@ -20,6 +20,9 @@ pub trait Contestant: Sync {
 
     /// The library it is of.
     fn library(&self) -> &'static str;
+
+    /// What it is run for beside its rows.
+    fn role(&self) -> Role;
 
     /// How it chooses its steps: what an answer is asked for in.
     fn stepping(&self) -> Stepping;
@@ -75,6 +78,10 @@ impl Contestant for Entered {
 
     fn library(&self) -> &'static str {
         self.0.declaration().library
+    }
+
+    fn role(&self) -> Role {
+        self.0.declaration().role
     }
 
     fn stepping(&self) -> Stepping {

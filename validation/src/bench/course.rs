@@ -57,7 +57,7 @@ impl Course {
         let problem = given.check().map_err(FileError)?;
         Ok(Self {
             name: case.name.clone(),
-            regime: case.regime.clone(),
+            regime: case.regime.to_string(),
             task: Task::of(case, problem, NO_SAMPLES),
             truth: library.truth(case)?,
         })

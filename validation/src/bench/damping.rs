@@ -4,7 +4,7 @@
 use super::contest::{Finisher, contest_at};
 use super::contestant::Contestant;
 use super::course::Course;
-use crate::engine::{Accuracy, Failure, Stepping};
+use crate::engine::{Accuracy, Failure, Role, Stepping};
 use percuss::Parameters;
 
 const XI: [f64; 9] = [1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4];
@@ -13,17 +13,6 @@ const OMEGA: f64 = 1.2;
 const PERIODS: u64 = 20;
 /// Tight enough that most are right all the way, loose enough that stability chooses their steps.
 const TOLERANCE: f64 = 1e-9;
-/// A second is enough for one curve: what is dear at every xi says nothing about xi.
-const SHOWN: [&str; 8] = [
-    "diffsol-bdf",
-    "diffsol-tsit45",
-    "ode_solvers-dopri5",
-    "ode_solvers-dop853-time",
-    "differential-equations-rkv655e",
-    "differential-equations-rkv767e",
-    "differential-equations-radau5",
-    "differential-equations-bdf",
-];
 
 /// All contestants at one damping ratio.
 #[derive(Clone, Debug)]
@@ -61,7 +50,7 @@ pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
 fn asked<'a>(contestants: &[&'a dyn Contestant]) -> Vec<(&'a dyn Contestant, Accuracy)> {
     let setting = |it: &&'a dyn Contestant| match it.stepping() {
         Stepping::Exact => Some((*it, Accuracy::Exact)),
-        _ => SHOWN.contains(&it.name()).then_some((*it, Accuracy::Tolerance(TOLERANCE))),
+        _ => (it.role() >= Role::Damping).then_some((*it, Accuracy::Tolerance(TOLERANCE))),
     };
     contestants.iter().filter_map(setting).collect()
 }

@@ -7,7 +7,7 @@
 use super::contestant::{Contestant, TimedRun};
 use super::course::{Course, Score};
 use super::rounds::Benchmark;
-use crate::engine::{Accuracy, Failure, Outcome, Stepping, Work, contain, run_in_lanes};
+use crate::engine::{Accuracy, Failure, Outcome, Role, Stepping, Work, contain, run_in_lanes};
 use percuss::lanes::Instructions;
 
 /// Runs a call: several times as many as are under way at once in the widest vectors.
@@ -23,6 +23,10 @@ impl Contestant for Lanes {
 
     fn library(&self) -> &'static str {
         "percuss"
+    }
+
+    fn role(&self) -> Role {
+        Role::Representative
     }
 
     fn stepping(&self) -> Stepping {

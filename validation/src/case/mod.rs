@@ -8,6 +8,7 @@ mod library;
 mod located;
 mod probed;
 mod problem;
+mod regime;
 mod wire;
 
 pub use accepted::accepted;
@@ -17,6 +18,7 @@ pub use library::{defaults, defaults_of_own_cases, embedded, from_directory};
 pub use located::{FileError, Origins};
 pub use probed::Probed;
 pub use problem::{Given, Problem};
+pub use regime::Regime;
 pub use wire::{parse_case, parse_problem, read_problem};
 
 use percuss::{Parameters, Start};
@@ -40,7 +42,7 @@ pub struct Case {
     /// The text of that file.
     pub text: String,
     /// The regime it stands for.
-    pub regime: String,
+    pub regime: Regime,
     /// Why it is here.
     pub why: String,
     /// The margin of a near miss or light touch: how far the gap's first maximum reaches beyond the

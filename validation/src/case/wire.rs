@@ -4,7 +4,7 @@ use super::expectations::{BoundTable, ShortcomingTable};
 use super::located::{FileError, Source};
 use super::probed::ProbesTable;
 use super::problem::Given;
-use super::{Case, Horizon};
+use super::{Case, Horizon, Regime};
 use percuss::{Instant, Phase};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -55,7 +55,7 @@ struct ProblemFile {
 #[serde(deny_unknown_fields, expecting = "a table, [case]")]
 struct CaseTable {
     name: Spanned<String>,
-    regime: String,
+    regime: Regime,
     why: String,
     margin: Option<Spanned<f64>>,
 }

@@ -2,7 +2,7 @@
 
 use super::format::OutputFlags;
 use super::list::{self, Format};
-use crate::case::{self, Case, FileError, Horizon};
+use crate::case::{self, Case, FileError, Horizon, Regime};
 use crate::truth::Library;
 use anyhow::{Context, Result};
 use clap::Args;
@@ -26,7 +26,7 @@ const SYSTEM: &str = "oscillator";
 #[derive(Serialize)]
 struct Line {
     name: String,
-    regime: String,
+    regime: Regime,
     system: &'static str,
     events: usize,
     periods: f64,

@@ -1,7 +1,8 @@
 //! The exact solver, as an engine among others.
 
 use super::meter::{Failure, Limits};
-use super::{Accuracy, Declaration, Engine, Event, Location, Outcome, Stepping, Task, Work, pins};
+use super::{Accuracy, Colours, Declaration, Engine, Event, Location, Outcome, Role, Stepping};
+use super::{Task, Work, pins};
 use percuss::TwoWord;
 use percuss::{Entry, Exit, Phase, Sample, Segment, Step, Trajectory};
 
@@ -15,9 +16,12 @@ impl Engine for Exact {
             library: "percuss",
             version: pins::version("percuss"),
             method: "closed forms, certified first crossing",
+            order: None,
             events: Location::Proved,
             dense_output: true,
             stepping: Stepping::Exact,
+            role: Role::Representative,
+            colours: Colours::Ink,
         }
     }
 

@@ -8,6 +8,7 @@ mod accuracy;
 mod alone;
 mod answer;
 mod cubic;
+mod declaration;
 mod differential_equations;
 mod diffsol;
 mod exact;
@@ -19,7 +20,6 @@ mod meter;
 #[cfg(test)]
 mod odd_input;
 mod ode_solvers;
-mod order;
 mod original;
 mod pins;
 mod registry;
@@ -33,10 +33,10 @@ mod wrong;
 pub use accuracy::{Accuracy, Stepping, shortest_time};
 pub use alone::Script;
 pub use answer::answer;
+pub use declaration::{Colours, Declaration, Location, Role};
 pub use field::{Equations, GUARDS, Oscillator};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
-pub use order::claimed_order;
 pub use registry::{add, all, exact, select};
 pub use trace::{Look, Trace, Watched};
 pub(crate) use wrong::Closed;
@@ -46,37 +46,6 @@ use crate::case::{Case, Horizon, Problem};
 use percuss::TwoWord;
 use percuss::insides::angle;
 use percuss::{Instant, Parameters, Phase};
-
-/// How an engine finds its switches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum Location {
-    /// Events are located in closed form and proved to be the first.
-    Proved,
-    /// Events are located by the library's own event location.
-    Library,
-    /// Events are located by this harness on the library's dense output.
-    Harness,
-}
-
-/// What an engine says of itself.
-#[derive(Clone, Debug)]
-pub struct Declaration {
-    /// The engine's name, as in `-e`.
-    pub name: &'static str,
-    /// The library it is of.
-    pub library: &'static str,
-    /// That library's version, pinned.
-    pub version: String,
-    /// The method.
-    pub method: &'static str,
-    /// How it finds switches.
-    pub events: Location,
-    /// Whether it has dense output of its own.
-    pub dense_output: bool,
-    /// How its accuracy is chosen.
-    pub stepping: Stepping,
-}
 
 /// Instants at which the state is compared: `k / per_period` forcing periods after the start.
 #[derive(Clone, Copy, Debug)]

@@ -1,7 +1,7 @@
 //! The look of an engine: a family of colours a library, a shade and a marker an engine, the same
 //! in every picture and on every page.
 
-use crate::engine;
+use crate::engine::{self, Colours};
 use plotters::style::RGBColor;
 
 /// How an engine is drawn.
@@ -39,16 +39,6 @@ const MARKERS: [Marker; 7] = [
     Marker::Nabla,
 ];
 
-/// Hues of the libraries, from and to in degrees: apart for eyes of every kind with their
-/// lightness.
-const FAMILIES: [(&str, f64, f64); 3] = [
-    ("diffsol", 196.0, 250.0),
-    ("ode_solvers", 8.0, 42.0),
-    ("differential-equations", 128.0, 172.0),
-];
-/// The hues of engines of any other library.
-const OTHERS: (f64, f64) = (282.0, 336.0);
-
 /// The looks of engines given as (name, library), in their order.
 ///
 /// Shades are given by the place among all engines that the program has, so that a selection of
@@ -56,36 +46,42 @@ const OTHERS: (f64, f64) = (282.0, 336.0);
 #[must_use]
 pub fn looks(engines: &[(&str, &str)]) -> Vec<Look> {
     let known: Vec<_> = engine::all().iter().map(|engine| engine.declaration()).collect();
-    let mut all: Vec<(&str, &str)> = known.iter().map(|it| (it.name, it.library)).collect();
-    all.extend(engines.iter().filter(|(name, _)| known.iter().all(|it| it.name != *name)));
-    engines.iter().map(|engine| look(engine, &all)).collect()
+    let colours_of = |library: &str| {
+        let kin = known.iter().find(|it| it.library == library);
+        kin.map_or(Colours::OTHERS, |it| it.colours)
+    };
+    let mut all: Vec<_> = known.iter().map(|it| (it.name, it.colours)).collect();
+    let others = engines.iter().filter(|(name, _)| known.iter().all(|it| it.name != *name));
+    all.extend(others.map(|(name, library)| (*name, colours_of(library))));
+    engines.iter().map(|(name, _)| look(name, &all)).collect()
 }
 
-fn look((name, library): &(&str, &str), all: &[(&str, &str)]) -> Look {
-    if *name == "exact-lanes" {
-        let [light, dark] = [RGBColor(125, 125, 125), RGBColor(150, 150, 150)];
-        return Look { light, dark, marker: Marker::Diamond };
+fn look(name: &str, all: &[(&str, Colours)]) -> Look {
+    let colours = all.iter().find(|it| it.0 == name).map_or(Colours::OTHERS, |it| it.1);
+    let kin: Vec<_> = all.iter().filter(|it| it.1 == colours).collect();
+    let place = kin.iter().position(|it| it.0 == name).unwrap_or(0);
+    match colours {
+        Colours::Ink => ink(place),
+        Colours::Hues(from, to) => {
+            let share = place as f64 / kin.len().saturating_sub(1).max(1) as f64;
+            let hue = from + share * (to - from);
+            let lift = if place % 2 == 0 { 0.0 } else { 0.13 };
+            Look {
+                light: colour(hue, 0.85, 0.34 + lift),
+                dark: colour(hue, 0.75, 0.62 + lift),
+                marker: MARKERS[place % MARKERS.len()],
+            }
+        }
     }
-    if name.starts_with("exact") {
-        let [light, dark] = [RGBColor(20, 20, 20), RGBColor(245, 245, 245)];
-        return Look { light, dark, marker: Marker::Circle };
-    }
-    let family = FAMILIES.iter().find(|family| family.0 == *library);
-    let is_kin = |(other, of): &&(&str, &str)| match family {
-        Some(_) => of == library,
-        None => !other.starts_with("exact") && FAMILIES.iter().all(|family| family.0 != *of),
+}
+
+/// The first is black or white, all others of the family are grey.
+fn ink(place: usize) -> Look {
+    let (light, dark, marker) = match place {
+        0 => (RGBColor(20, 20, 20), RGBColor(245, 245, 245), Marker::Circle),
+        _ => (RGBColor(125, 125, 125), RGBColor(150, 150, 150), Marker::Diamond),
     };
-    let kin: Vec<_> = all.iter().filter(is_kin).collect();
-    let place = kin.iter().position(|(other, _)| other == name).unwrap_or(0);
-    let (from, to) = family.map_or(OTHERS, |(_, from, to)| (*from, *to));
-    let share = place as f64 / kin.len().saturating_sub(1).max(1) as f64;
-    let hue = from + share * (to - from);
-    let lift = if place % 2 == 0 { 0.0 } else { 0.13 };
-    Look {
-        light: colour(hue, 0.85, 0.34 + lift),
-        dark: colour(hue, 0.75, 0.62 + lift),
-        marker: MARKERS[place % MARKERS.len()],
-    }
+    Look { light, dark, marker }
 }
 
 /// Hue in degrees, saturation and lightness from 0 to 1.

@@ -138,7 +138,7 @@ impl CaseNote {
             name: case.name.clone(),
             file: format!("{folder}{}", case.file),
             toml: case.text.clone(),
-            regime: case.regime.clone(),
+            regime: case.regime.to_string(),
             why: case.why.clone(),
             margin: case.margin,
         }

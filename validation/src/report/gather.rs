@@ -6,9 +6,6 @@ use crate::score::attractor::{AttractorTest, Comparison};
 use crate::score::{Histogram, Measures, sample_errors};
 use crate::suite::{Prepared, Scored, Status, is_shown};
 
-/// Cases whose name says so are chaotic: their growth of errors is shown.
-const CHAOTIC: &str = "chaos";
-
 impl Evidence {
     /// Collects it; `embedded`: the cases stand inside the binary.
     #[must_use]
@@ -27,8 +24,8 @@ impl Evidence {
             let Status::Ok(measures, _) = &row.status else { continue };
             let Some(prepared) = cases.iter().find(|it| it.case.name == row.case) else { continue };
             // Fifty curves in one picture say nothing.
-            let shown = is_shown(row.engine, row.accuracy);
-            if row.case.contains(CHAOTIC) && shown {
+            let shown = is_shown(row.role, row.accuracy);
+            if prepared.case.regime.is_chaotic() && shown {
                 evidence.growth.extend(growth(prepared, row));
             }
             evidence.restarts.extend(restarts(row, measures));

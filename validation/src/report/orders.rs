@@ -1,7 +1,6 @@
 //! The order at which each engine converges, beside the one it claims.
 
-use super::Row;
-use crate::engine::claimed_order;
+use super::{EngineEntry, Row};
 use crate::score::Spread;
 
 /// An engine's order.
@@ -38,18 +37,12 @@ const ENOUGH: usize = 10;
 
 /// The orders of all engines that claim one and have ladders.
 #[must_use]
-pub fn orders(rows: &[Row]) -> Vec<Order> {
-    let mut engines: Vec<&'static str> = Vec::new();
-    for row in rows {
-        if !engines.contains(&row.engine) {
-            engines.push(row.engine);
-        }
-    }
-    engines.into_iter().filter_map(|engine| of(engine, rows)).collect()
+pub fn orders(engines: &[EngineEntry], rows: &[Row]) -> Vec<Order> {
+    engines.iter().filter_map(|engine| of(engine, rows)).collect()
 }
 
-fn of(engine: &'static str, rows: &[Row]) -> Option<Order> {
-    let claimed = claimed_order(engine)?;
+fn of(entry: &EngineEntry, rows: &[Row]) -> Option<Order> {
+    let (engine, claimed) = (entry.name, entry.order?);
     let mut own: Vec<_> = rows
         .iter()
         .filter(|row| row.engine == engine)

@@ -38,6 +38,9 @@ pub struct EngineEntry {
     pub version: String,
     /// The method.
     pub method: &'static str,
+    /// The order of convergence that it claims, where it has one.
+    #[serde(skip)]
+    pub order: Option<u32>,
 }
 
 /// How many rows came to which verdict.
@@ -173,8 +176,8 @@ fn fill_orders(rows: &mut [Row]) {
 
 impl EngineEntry {
     fn of(declaration: &Declaration) -> Self {
-        let Declaration { name, library, version, method, .. } = declaration.clone();
-        Self { name, library, version, method }
+        let Declaration { name, library, version, method, order, .. } = declaration.clone();
+        Self { name, library, version, method, order }
     }
 }
 

@@ -24,7 +24,7 @@ pub fn screen(report: &Report, evidence: &Evidence, with_rows: bool) -> String {
         failing_cases(report),
         reasons(&report.results),
         not_run(&report.results),
-        short_orders(&report.results),
+        short_orders(report),
         valid_horizons(&report.results),
         power(evidence),
         worse(evidence),
@@ -132,14 +132,18 @@ fn not_run(rows: &[Row]) -> String {
     counts.into_iter().map(line).collect()
 }
 
-fn short_orders(rows: &[Row]) -> String {
+fn short_orders(report: &Report) -> String {
     let line = |order: &Order| {
         let Order { engine, claimed, found, cases } = order;
         format!(
             "order: {engine} converges at {found:.1}, claims {claimed} (median over {cases} cases)\n"
         )
     };
-    orders(rows).iter().filter(|order| order.falls_short()).map(line).collect()
+    orders(&report.engines, &report.results)
+        .iter()
+        .filter(|order| order.falls_short())
+        .map(line)
+        .collect()
 }
 
 /// How long the exact solver stays right in chaos; the report has the integrators' horizons too.

@@ -3,7 +3,7 @@
 use super::probes::{Extent, Probes};
 use super::scope::Suite;
 use crate::case::{Case, Defaults, FileError};
-use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Task, answer};
+use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Role, Task, answer};
 use crate::number::brief;
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
 use crate::score::{
@@ -48,6 +48,8 @@ pub struct Scored {
     pub case: String,
     /// The engine's name.
     pub engine: &'static str,
+    /// What the engine is run for beside its rows.
+    pub role: Role,
     /// What it was asked for.
     pub accuracy: Accuracy,
     /// The row's unit of error.
@@ -179,6 +181,7 @@ fn one(
     let row = |status, wall, judgement| Scored {
         case: case.name.clone(),
         engine: declaration.name,
+        role: declaration.role,
         accuracy,
         unit,
         events: prepared.truth.switches.len(),
@@ -204,7 +207,7 @@ fn one(
     let expected =
         Expected { bounds: &bounds, of_classes: &defaults.bounds, shortcomings: &shortcomings };
     let asked = (accuracy, unit);
-    let extent = |work| prepared.probes.extent(suite, case, declaration.name, asked, work);
+    let extent = |work| prepared.probes.extent(suite, case, declaration.role, asked, work);
     match prepared.measured(engine, accuracy, unit, &suite.limits(), extent) {
         Ok((measures, outcome, wall)) => {
             let judgement = judge(&subject, &prepared.as_run(&measures, &outcome), &expected);

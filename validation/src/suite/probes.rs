@@ -3,29 +3,20 @@
 
 use super::scope::Suite;
 use crate::case::{Case, FileError, Problem};
-use crate::engine::{Accuracy, Engine, Limits, answer, contain};
+use crate::engine::{Accuracy, Engine, Limits, Role, answer, contain};
 use crate::score::attractor::{AttractorTest, Calibrated};
 use crate::score::{HorizonTest, Probed, RestartTest};
 
-/// One engine per library: those that restart and run for long in the quick suite too.
-const REPRESENTATIVES: [&str; 3] =
-    ["diffsol-bdf", "ode_solvers-dopri5", "differential-equations-rkv655e"];
-
-/// Whether an engine stands for its library where all of them would be too many.
-fn is_representative(engine: &str) -> bool {
-    engine == "exact" || REPRESENTATIVES.contains(&engine)
-}
-
-/// The tolerance at which they do so in the quick suite, and those of the full one.
+/// The tolerance at which integrators are probed in the quick suite, and those of the full one.
 const TOLERANCE: f64 = 1e-9;
 const TOLERANCES: [f64; 3] = [1e-6, 1e-9, 1e-12];
 
 /// Whether a row is shown where all would be too many: one engine a library, as accurate as one
 /// that is asked for everything.
 #[must_use]
-pub fn is_shown(engine: &str, accuracy: Accuracy) -> bool {
+pub fn is_shown(role: Role, accuracy: Accuracy) -> bool {
     let among = |it: f64| TOLERANCES.contains(&it);
-    is_representative(engine) && accuracy.tolerance().is_none_or(among)
+    role == Role::Representative && accuracy.tolerance().is_none_or(among)
 }
 
 /// The probes of one case, made ready once and shared by all engines.
@@ -95,7 +86,7 @@ impl Probes {
         &self,
         suite: Suite,
         case: &Case,
-        engine: &str,
+        role: Role,
         (accuracy, unit): (Accuracy, f64),
         work_a_period: f64,
     ) -> Extent {
@@ -106,14 +97,14 @@ impl Probes {
             attractor: self.long_run() <= budget,
         };
         let lasting = self.horizons.as_ref().is_some_and(|it| it.length(unit) as f64 <= budget);
-        let horizons = if lasting && is_representative(engine) { HORIZONS } else { 0 };
+        let horizons = if lasting && role == Role::Representative { HORIZONS } else { 0 };
         let listed = case.probed.integrators;
         match (suite, accuracy) {
             (_, Accuracy::Exact) => {
                 Extent { restarts: restarts(suite), horizons: HORIZONS, attractor: true }
             }
             (Suite::Quick, Accuracy::Tolerance(it))
-                if listed && it == TOLERANCE && REPRESENTATIVES.contains(&engine) =>
+                if listed && it == TOLERANCE && role == Role::Representative =>
             {
                 affordable
             }

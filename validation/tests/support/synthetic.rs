@@ -169,6 +169,7 @@ pub fn report() -> Report {
         library,
         version: "1.2.3".to_owned(),
         method: "a method of order 5(4) & its \"dense output\"",
+        order: None,
     };
     Report {
         build: Build {

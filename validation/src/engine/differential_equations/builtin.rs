@@ -8,13 +8,13 @@
 //!   tolerance: times are good to 1e-4 or 1e-5 only.
 
 use super::method::{Method, Rkv655e};
-use super::{Field, LIBRARY, LONGEST_STEP, reason};
+use super::{COLOURS, Field, LIBRARY, LONGEST_STEP, reason};
 use crate::engine::field::{Equations, GUARDS, Oscillator};
 use crate::engine::joining::{Ended, Moment, join};
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::trace::Look;
-use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins};
+use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::ode::solve_ode;
@@ -31,9 +31,12 @@ impl Engine for BuiltIn {
             library: LIBRARY,
             version: pins::version(LIBRARY),
             method: "Verner 6(5), built-in events",
+            order: Rkv655e::ORDER,
             events: Location::Library,
             dense_output: true,
             stepping: Stepping::Adaptive,
+            role: Role::Rows,
+            colours: COLOURS,
         }
     }
 

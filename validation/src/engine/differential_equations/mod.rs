@@ -37,7 +37,9 @@ use super::field::{Equations, Oscillator};
 use super::joining::join;
 use super::meter::{Failure, Limits, Meter};
 use super::original::OriginalOscillator;
-use super::{Accuracy, Declaration, Engine, Location, Outcome, Task, pins, shortest_time};
+use super::{
+    Accuracy, Colours, Declaration, Engine, Location, Outcome, Role, Task, pins, shortest_time,
+};
 use differential_equations::error::Error;
 use differential_equations::linalg::Matrix;
 use differential_equations::ode::{ODE, solve_ode};
@@ -49,28 +51,36 @@ use watch::Watch;
 pub(super) use builtin::BuiltIn;
 
 const LIBRARY: &str = "differential-equations";
+/// Green.
+const COLOURS: Colours = Colours::Hues(128.0, 172.0);
 /// The longest step, in forcing periods.
 const LONGEST_STEP: f64 = 0.125;
 
 /// The library with one of its methods, on some equations.
 pub(super) struct Stepped<M, E> {
     name: &'static str,
+    role: Role,
     kind: PhantomData<fn() -> (M, E)>,
 }
 
-const fn stepped<M, E>(name: &'static str) -> Stepped<M, E> {
-    Stepped { name, kind: PhantomData }
+const fn stepped<M, E>(name: &'static str, role: Role) -> Stepped<M, E> {
+    Stepped { name, role, kind: PhantomData }
 }
 
-pub(super) static RKV655E: Stepped<Rkv655e, Oscillator> = stepped("differential-equations-rkv655e");
+pub(super) static RKV655E: Stepped<Rkv655e, Oscillator> =
+    stepped("differential-equations-rkv655e", Role::Representative);
 pub(super) static RKV655E_ORIGINAL: Stepped<Rkv655e, OriginalOscillator> =
-    stepped("differential-equations-rkv655e-original");
-pub(super) static RKV767E: Stepped<Rkv767e, Oscillator> = stepped("differential-equations-rkv767e");
-pub(super) static DOP853: Stepped<Dop853, Oscillator> = stepped("differential-equations-dop853");
-pub(super) static RADAU5: Stepped<Radau5, Oscillator> = stepped("differential-equations-radau5");
+    stepped("differential-equations-rkv655e-original", Role::Rows);
+pub(super) static RKV767E: Stepped<Rkv767e, Oscillator> =
+    stepped("differential-equations-rkv767e", Role::Damping);
+pub(super) static DOP853: Stepped<Dop853, Oscillator> =
+    stepped("differential-equations-dop853", Role::Rows);
+pub(super) static RADAU5: Stepped<Radau5, Oscillator> =
+    stepped("differential-equations-radau5", Role::Damping);
 pub(super) static KVAERNO745: Stepped<Kvaerno745, Oscillator> =
-    stepped("differential-equations-kvaerno745");
-pub(super) static BDF: Stepped<Bdf, Oscillator> = stepped("differential-equations-bdf");
+    stepped("differential-equations-kvaerno745", Role::Rows);
+pub(super) static BDF: Stepped<Bdf, Oscillator> =
+    stepped("differential-equations-bdf", Role::Damping);
 
 impl<M: Method, E: Equations> Engine for Stepped<M, E> {
     fn declaration(&self) -> Declaration {
@@ -79,9 +89,12 @@ impl<M: Method, E: Equations> Engine for Stepped<M, E> {
             library: LIBRARY,
             version: pins::version(LIBRARY),
             method: M::DESCRIPTION,
+            order: M::ORDER,
             events: Location::Harness,
             dense_output: true,
             stepping: M::STEPPING,
+            role: self.role,
+            colours: COLOURS,
         }
     }
 

@@ -1,7 +1,7 @@
 //! The library's methods: how a solver of each is started, all else being the same.
 
 use super::{Lu, Matrix, Vect};
-use crate::engine::Stepping;
+use crate::engine::{Role, Stepping};
 use diffsol::error::DiffsolError;
 use diffsol::{
     NalgebraContext, OdeEquationsImplicit, OdeSolverMethod, OdeSolverProblem, OdeSolverState,
@@ -24,8 +24,10 @@ pub(in super::super) trait Method: Sync {
     const NAME: &'static str;
     const DESCRIPTION: &'static str;
     const STEPPING: Stepping;
-    /// The order for which the first step is chosen.
-    const ORDER: usize;
+    /// The order that the method's authors state; none where it varies from 1 on.
+    const ORDER: Option<u32>;
+    /// What its engine is run for beside its rows.
+    const ROLE: Role = Role::Rows;
     /// Whether the step may be shortened without loss: a multistep method would begin anew.
     const ONE_STEP: bool;
     /// Linear systems solved for each estimate of a step's error, beside those of Newton's
@@ -51,9 +53,8 @@ fn begun<S: OdeSolverState<Vect>>(
 pub(in super::super) struct Bdf;
 /// Trapezoidal rule, then second-order backward differentiation.
 pub(in super::super) struct TrBdf2;
-/// Diagonally implicit, with an explicit first stage. The solution that is continued with is of
-/// order 3: it meets the conditions up to that order and none of order 4, which the embedded one
-/// meets.
+/// Diagonally implicit, with an explicit first stage: "a third order ESDIRK method", as its library
+/// says. The 4 of its name is the order of the solution that only estimates the error.
 pub(in super::super) struct Esdirk34;
 /// Tsitouras's pair.
 pub(in super::super) struct Tsit45;
@@ -62,7 +63,8 @@ impl Method for Bdf {
     const NAME: &'static str = "diffsol-bdf";
     const DESCRIPTION: &'static str = "BDF, orders 1 to 5";
     const STEPPING: Stepping = Stepping::PerStep { order: 5 };
-    const ORDER: usize = 1;
+    const ORDER: Option<u32> = None;
+    const ROLE: Role = Role::Representative;
     const ONE_STEP: bool = false;
 
     fn solver<'a, E: Problem + 'a>(
@@ -77,7 +79,7 @@ impl Method for TrBdf2 {
     const NAME: &'static str = "diffsol-tr_bdf2";
     const DESCRIPTION: &'static str = "TR-BDF2, order 2";
     const STEPPING: Stepping = Stepping::PerStep { order: 2 };
-    const ORDER: usize = 2;
+    const ORDER: Option<u32> = Some(2);
     const ONE_STEP: bool = true;
     const SOLVES_AN_ESTIMATE: usize = 1;
 
@@ -94,7 +96,7 @@ impl Method for Esdirk34 {
     const NAME: &'static str = "diffsol-esdirk34";
     const DESCRIPTION: &'static str = "ESDIRK 3(4), order 3";
     const STEPPING: Stepping = Stepping::PerStep { order: 3 };
-    const ORDER: usize = 3;
+    const ORDER: Option<u32> = Some(3);
     const ONE_STEP: bool = true;
     const SOLVES_AN_ESTIMATE: usize = 1;
 
@@ -111,7 +113,8 @@ impl Method for Tsit45 {
     const NAME: &'static str = "diffsol-tsit45";
     const DESCRIPTION: &'static str = "Tsitouras 5(4)";
     const STEPPING: Stepping = Stepping::Adaptive;
-    const ORDER: usize = 5;
+    const ORDER: Option<u32> = Some(5);
+    const ROLE: Role = Role::Damping;
     const ONE_STEP: bool = true;
 
     fn solver<'a, E: Problem + 'a>(

@@ -23,7 +23,7 @@ mod phase;
 use super::field::{Equations, GUARDS, Oscillator};
 use super::joining::join;
 use super::meter::{Failure, Limits, Meter};
-use super::{Accuracy, Declaration, Engine, Location, Outcome, Task, pins};
+use super::{Accuracy, Colours, Declaration, Engine, Location, Outcome, Task, pins};
 use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder};
 use method::{Bdf, Esdirk34, Method, TrBdf2, Tsit45};
 use phase::Run;
@@ -42,6 +42,8 @@ pub(super) static TR_BDF2: Diffsol<TrBdf2> = Diffsol(PhantomData);
 pub(super) static ESDIRK34: Diffsol<Esdirk34> = Diffsol(PhantomData);
 pub(super) static TSIT45: Diffsol<Tsit45> = Diffsol(PhantomData);
 
+/// Blue.
+const COLOURS: Colours = Colours::Hues(196.0, 250.0);
 /// The first step tried, in forcing periods; the library then chooses by its own rule.
 const FIRST_STEP: f64 = 1e-3;
 /// The longest step, in forcing periods.
@@ -54,9 +56,12 @@ impl<M: Method> Engine for Diffsol<M> {
             library: "diffsol",
             version: pins::version("diffsol"),
             method: M::DESCRIPTION,
+            order: M::ORDER,
             events: Location::Library,
             dense_output: true,
             stepping: M::STEPPING,
+            role: M::ROLE,
+            colours: COLOURS,
         }
     }
 

@@ -92,7 +92,8 @@ impl Run<'_> {
         self.meter.rhs(&derivatives);
         state.dy.batch_as_mut_slice(0).copy_from_slice(&derivatives);
         *state.t = from.t;
-        state.set_step_size(problem.h0, &problem.atol, problem.rtol, &problem.eqn, M::ORDER);
+        let order = M::ORDER.unwrap_or(1) as usize;
+        state.set_step_size(problem.h0, &problem.atol, problem.rtol, &problem.eqn, order);
     }
 }
 

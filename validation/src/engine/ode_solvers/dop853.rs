@@ -9,7 +9,7 @@
 //! - Steps are at most an eighth of a turn of the elastic contact too: guards are looked at at
 //!   their ends, where their rates show a peak inside.
 
-use super::{Field, LIBRARY, NEVER_STIFF, STEPS, packed, plain};
+use super::{COLOURS, Field, LIBRARY, NEVER_STIFF, STEPS, packed, plain};
 use crate::engine::cubic::Point;
 use crate::engine::field::{Equations, Oscillator};
 use crate::engine::joining::{Ended, Moment, join};
@@ -17,7 +17,7 @@ use crate::engine::location::Search;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::{longest_step, walk};
-use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins};
+use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
 use ::ode_solvers::OutputType;
 use percuss::Phase;
 
@@ -33,6 +33,7 @@ const TINY: f64 = 1e-10;
 /// ode_solvers' `Dop853` on N states: p, y, q, v and, where N is 5, time.
 pub(in super::super) struct Dop853<const N: usize> {
     pub(super) name: &'static str,
+    pub(super) role: Role,
 }
 
 impl<const N: usize> Engine for Dop853<N> {
@@ -46,9 +47,12 @@ impl<const N: usize> Engine for Dop853<N> {
             } else {
                 "Dormand-Prince 8(5,3), time as a state"
             },
+            order: Some(8),
             events: Location::Harness,
             dense_output: false,
             stepping: Stepping::Adaptive,
+            role: self.role,
+            colours: COLOURS,
         }
     }
 

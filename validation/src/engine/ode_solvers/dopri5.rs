@@ -3,12 +3,12 @@
 //! It is run with `integrate_with_continuous_output_model`: in continuous mode `solout` gets the
 //! right state; in dense mode it does not.
 
-use super::{Field, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, packed, plain};
+use super::{COLOURS, Field, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, packed, plain};
 use crate::engine::field::Equations;
 use crate::engine::joining::{Ended, Moment, join};
 use crate::engine::location::{Crossing, Search};
 use crate::engine::meter::{Failure, Limits, Meter};
-use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins};
+use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
 use ::ode_solvers::continuous_output_model::ContinuousOutputModel;
 use ::ode_solvers::{OutputType, SVector};
 use percuss::Phase;
@@ -17,12 +17,13 @@ use std::marker::PhantomData;
 /// ode_solvers' `Dopri5` on some equations.
 pub(in super::super) struct Dopri5<E> {
     name: &'static str,
+    role: Role,
     equations: PhantomData<fn() -> E>,
 }
 
 impl<E> Dopri5<E> {
-    pub(super) const fn new(name: &'static str) -> Self {
-        Self { name, equations: PhantomData }
+    pub(super) const fn new(name: &'static str, role: Role) -> Self {
+        Self { name, role, equations: PhantomData }
     }
 }
 
@@ -33,9 +34,12 @@ impl<E: Equations> Engine for Dopri5<E> {
             library: LIBRARY,
             version: pins::version(LIBRARY),
             method: "Dormand-Prince 5(4)",
+            order: Some(5),
             events: Location::Harness,
             dense_output: true,
             stepping: Stepping::Adaptive,
+            role: self.role,
+            colours: COLOURS,
         }
     }
 

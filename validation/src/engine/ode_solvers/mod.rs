@@ -16,6 +16,7 @@ mod rk4;
 use super::field::{Equations, Oscillator};
 use super::meter::Meter;
 use super::original::OriginalOscillator;
+use super::{Colours, Role};
 use ::ode_solvers::{SVector, System};
 use percuss::Phase;
 
@@ -23,13 +24,17 @@ pub(super) use dop853::Dop853;
 pub(super) use dopri5::Dopri5;
 pub(super) use rk4::Rk4;
 
-pub(super) static DOPRI5: Dopri5<Oscillator> = Dopri5::new("ode_solvers-dopri5");
+pub(super) static DOPRI5: Dopri5<Oscillator> =
+    Dopri5::new("ode_solvers-dopri5", Role::Representative);
 pub(super) static DOPRI5_ORIGINAL: Dopri5<OriginalOscillator> =
-    Dopri5::new("ode_solvers-dopri5-original");
-pub(super) static DOP853: Dop853<4> = Dop853 { name: "ode_solvers-dop853" };
-pub(super) static DOP853_TIME: Dop853<5> = Dop853 { name: "ode_solvers-dop853-time" };
+    Dopri5::new("ode_solvers-dopri5-original", Role::Rows);
+pub(super) static DOP853: Dop853<4> = Dop853 { name: "ode_solvers-dop853", role: Role::Rows };
+pub(super) static DOP853_TIME: Dop853<5> =
+    Dop853 { name: "ode_solvers-dop853-time", role: Role::Damping };
 
 const LIBRARY: &str = "ode_solvers";
+/// Red to orange.
+const COLOURS: Colours = Colours::Hues(8.0, 42.0);
 /// The longest step, in forcing periods.
 const LONGEST_STEP: f64 = 0.125;
 /// Instead of the library's limit of steps: the meter's is the one that counts.

@@ -7,7 +7,7 @@
 //!
 //! [`shortest_time`]: crate::engine::shortest_time
 
-use super::{Field, LIBRARY, packed, plain};
+use super::{COLOURS, Field, LIBRARY, packed, plain};
 use crate::engine::cubic::Cubic;
 use crate::engine::field::{Equations, Oscillator};
 use crate::engine::joining::{Ended, Moment, join};
@@ -16,7 +16,7 @@ use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::walk;
 use crate::engine::{
-    Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins, shortest_time,
+    Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins, shortest_time,
 };
 
 /// ode_solvers' `Rk4`.
@@ -34,9 +34,12 @@ impl Engine for Rk4 {
             library: LIBRARY,
             version: pins::version(LIBRARY),
             method: "classical Runge-Kutta 4, fixed steps",
+            order: Some(ORDER as u32),
             events: Location::Harness,
             dense_output: false,
             stepping: Stepping::Fixed { order: ORDER },
+            role: Role::Rows,
+            colours: COLOURS,
         }
     }
 

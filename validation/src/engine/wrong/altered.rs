@@ -1,7 +1,7 @@
 //! The exact solver on a model that is slightly different, or with a drift that is.
 
 use super::super::exact::Exact;
-use super::super::{Accuracy, Declaration, Engine, Failure, Limits, Outcome, Task};
+use super::super::{Accuracy, Declaration, Engine, Failure, Limits, Outcome, Role, Task};
 use crate::case::Problem;
 use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
 
@@ -25,7 +25,8 @@ pub(super) struct Altered {
 
 impl Engine for Altered {
     fn declaration(&self) -> Declaration {
-        Declaration { name: self.name, method: "wrong on purpose", ..Exact.declaration() }
+        let method = "wrong on purpose";
+        Declaration { name: self.name, method, role: Role::Rows, ..Exact.declaration() }
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {

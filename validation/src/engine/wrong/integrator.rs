@@ -8,8 +8,9 @@ use super::super::field::{Equations, GUARDS, Oscillator};
 use super::super::joining::{Ended, Moment, join};
 use super::super::location::Crossing;
 use super::super::meter::{Failure, Limits, Meter};
+use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{Run, Stretch, evaluate};
-use super::super::{Accuracy, Declaration, Engine, Location, Outcome, Stepping, Task, pins};
+use super::super::{Accuracy, Declaration, Engine, Outcome, Role, Task};
 use percuss::{Parameters, Phase};
 
 /// What is wrong.
@@ -48,15 +49,8 @@ pub(super) struct Faulty {
 
 impl Engine for Faulty {
     fn declaration(&self) -> Declaration {
-        Declaration {
-            name: self.name,
-            library: "ode_solvers",
-            version: pins::version("ode_solvers"),
-            method: "Dormand-Prince 5(4), wrong on purpose",
-            events: Location::Harness,
-            dense_output: true,
-            stepping: Stepping::Adaptive,
-        }
+        let method = "Dormand-Prince 5(4), wrong on purpose";
+        Declaration { name: self.name, method, role: Role::Rows, ..DOPRI5.declaration() }
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {

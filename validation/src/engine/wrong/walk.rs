@@ -4,10 +4,11 @@
 //! Without a fault it looks finely enough for what the power test asks of it. It is no peer: it has
 //! no proof, and its steps miss what is shorter than they are.
 
+use super::super::exact::Exact;
 use super::super::field::{Equations, GUARDS, Oscillator};
 use super::super::sampler::Sampler;
 use super::super::{Accuracy, Declaration, Engine, Event, Failure, Limits, Location, Outcome};
-use super::super::{Stepping, Task, Work, pins};
+use super::super::{Role, Task, Work};
 use super::closed::Closed;
 use percuss::Phase;
 
@@ -39,12 +40,10 @@ impl Engine for Walk {
     fn declaration(&self) -> Declaration {
         Declaration {
             name: self.name,
-            library: "percuss",
-            version: pins::version("percuss"),
             method: "closed forms in steps",
             events: Location::Harness,
-            dense_output: true,
-            stepping: Stepping::Exact,
+            role: Role::Rows,
+            ..Exact.declaration()
         }
     }
 
