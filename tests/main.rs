@@ -39,6 +39,6 @@ mod surface;
 mod touches;
 mod variation;
 
-#[path = "../validation/src/truth/double_double.rs"]
+#[path = "../validation/harness/src/truth/double_double.rs"]
 mod double_double;
 mod support;

@@ -21,12 +21,19 @@ const CHOICE: &str = "//! Which fault is chosen.\n\
     pub fn is(number: u32) -> bool { *CHOSEN == number }\n";
 
 /// The packages whose library gets the module, with the folder of their sources.
-const LIBRARIES: [&str; 2] = ["src", "validation/src"];
+pub const LIBRARIES: [&str; 5] = [
+    "src",
+    "validation/engines/src",
+    "validation/harness/src",
+    "validation/pictures/src",
+    "validation/src",
+];
 
 /// The package of the solver.
-pub const SOLVER: &str = "percuss";
-/// The package of the harness.
-pub const VALIDATION: &str = "percuss-validation";
+pub const SOLVER: &[&str] = &["percuss"];
+/// The packages of the harness; the last one compiles all of them.
+pub const VALIDATION: &[&str] =
+    &["percuss-engines", "percuss-pictures", "percuss-harness", "percuss-validation"];
 /// Everything that the solver can do is tested.
 const FEATURES: [&str; 2] = ["--features", "lanes,parallel"];
 
@@ -109,7 +116,7 @@ fn rejected(
 ) -> Result<BTreeSet<u32>> {
     let in_validation = |number: &u32| catalogue.faults[*number as usize - 1].is_in_validation();
     let last = if drawn.iter().any(in_validation) { VALIDATION } else { SOLVER };
-    let mut arguments = vec!["test", "--no-run", "--lib", "--package", last];
+    let mut arguments = vec!["test", "--no-run", "--lib", "--package", last[last.len() - 1]];
     if last == SOLVER {
         arguments.extend(FEATURES);
     }
@@ -141,10 +148,11 @@ fn rejected(
     Ok(rejected)
 }
 
-/// Builds the test programs of a package.
-pub fn programs(scratch: &Path, package: &str) -> Result<Vec<Program>> {
-    let mut arguments = vec!["test", "--no-run", "--package", package];
-    if package == SOLVER {
+/// Builds the test programs of some packages.
+pub fn programs(scratch: &Path, packages: &[&str]) -> Result<Vec<Program>> {
+    let mut arguments = vec!["test", "--no-run"];
+    arguments.extend(packages.iter().flat_map(|it| ["--package", it]));
+    if packages == SOLVER {
         arguments.extend(FEATURES);
     }
     let messages = cargo(scratch, &arguments)?;
@@ -167,7 +175,7 @@ pub fn programs(scratch: &Path, package: &str) -> Result<Vec<Program>> {
         }
     }
     if programs.is_empty() {
-        bail!("{package} has no test programs");
+        bail!("{} has no test programs", packages.join(", "));
     }
     Ok(programs)
 }

@@ -39,7 +39,7 @@ struct Arguments {
     /// Tries these faults only, of the sample that `--count` and `--seed` draw.
     #[arg(long, value_delimiter = ',')]
     only: Vec<u32>,
-    /// Asks the tests of the validation package about a fault in the solver that the solver's own
+    /// Asks the tests of the validation packages about a fault in the solver that the solver's own
     /// tests pass.
     #[arg(long)]
     thorough: bool,
@@ -54,8 +54,13 @@ struct Arguments {
     out: PathBuf,
 }
 
-const DEFAULT_TARGETS: [&str; 5] =
-    ["src/crossing", "src/switch.rs", "src/surface.rs", "src/variation.rs", "validation/src/score"];
+const DEFAULT_TARGETS: [&str; 5] = [
+    "src/crossing",
+    "src/switch.rs",
+    "src/surface.rs",
+    "src/variation.rs",
+    "validation/harness/src/score",
+];
 
 fn main() -> Result<()> {
     let arguments = Arguments::parse();

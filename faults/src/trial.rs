@@ -1,6 +1,6 @@
 //! Tries one fault after the other.
 
-use crate::compile::{Program, SOLVER, VALIDATION, programs};
+use crate::compile::{LIBRARIES, Program, SOLVER, VALIDATION, programs};
 use crate::execute::{Outcome, run};
 use crate::fault::Fault;
 use crate::record::{Table, Verdict};
@@ -10,7 +10,7 @@ use std::time::Duration;
 
 /// How faults are tried.
 pub struct Plan {
-    /// Whether the validation package is asked about faults in the solver.
+    /// Whether the validation packages are asked about faults in the solver.
     pub thorough: bool,
     /// How many times its time without a fault a test program may take.
     pub patience: f64,
@@ -69,18 +69,14 @@ fn try_one(fault: &Fault, programs: &[&Timed]) -> Result<Verdict> {
     Ok(Verdict::Survived)
 }
 
-/// The test programs of a package, quickest first. All have to pass without a fault.
-fn timed(scratch: &Path, package: &str, plan: &Plan) -> Result<Vec<Timed>> {
+/// The test programs of some packages, quickest first. All have to pass without a fault.
+fn timed(scratch: &Path, packages: &[&str], plan: &Plan) -> Result<Vec<Timed>> {
     let mut timed = Vec::new();
     let asked = |program: &Program| !plan.skip.contains(&program.name);
-    for program in programs(scratch, package)?.into_iter().filter(asked) {
+    for program in programs(scratch, packages)?.into_iter().filter(asked) {
         match run(&program, 0, None)? {
             Outcome::Passed(took) => {
-                eprintln!(
-                    "without a fault: {package} {} {:.2} s",
-                    program.name,
-                    took.as_secs_f64()
-                );
+                eprintln!("without a fault: {} {:.2} s", program.name, took.as_secs_f64());
                 timed.push((took, program));
             }
             other => bail!("{} fails without a fault: {other:?}", program.name),
@@ -96,9 +92,7 @@ fn timed(scratch: &Path, package: &str, plan: &Plan) -> Result<Vec<Timed>> {
 
 /// Removes the seeds that failed property tests have left for the next run.
 fn forget_seeds(folder: &Path) -> Result<()> {
-    const KEPT_IN: [&str; 6] =
-        ["", "src", "tests", "validation", "validation/src", "validation/tests"];
-    for part in KEPT_IN {
+    for part in LIBRARIES.into_iter().chain(["", "tests", "validation", "validation/tests"]) {
         for entry in std::fs::read_dir(folder.join(part))? {
             let path = entry?.path();
             if path.to_string_lossy().ends_with("proptest-regressions") {

@@ -3,7 +3,7 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use percuss_validation::case::{parse_case, parse_problem};
+use percuss_engines::case::{parse_case, parse_problem};
 
 fuzz_target!(|bytes: &[u8]| {
     let text = String::from_utf8_lossy(bytes);

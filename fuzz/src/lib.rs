@@ -3,7 +3,7 @@
 
 mod case;
 mod check;
-#[path = "../../validation/src/truth/double_double.rs"]
+#[path = "../../validation/harness/src/truth/double_double.rs"]
 #[allow(dead_code, reason = "the judge takes a part of it")]
 mod double_double;
 

@@ -2,6 +2,7 @@
 //! derivative itself, which the guard's Taylor series gives at any later time.
 
 use crate::constants::Constants;
+use crate::crossing::contact::Split;
 use crate::crossing::stepping::Bending;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
@@ -95,20 +96,53 @@ proptest! {
 /// k.
 #[test]
 fn the_room_of_a_long_contact_has_the_weights_of_its_coefficients() {
-    let constants = Constants::new(&Parameters { xi: 1.1, omega: 0.05, ..Parameters::default() });
+    // A derivative repeats the rounding of the one below it times 2 xi under strong damping, and
+    // times 1, the rate of the elastic contact, under light damping.
+    for (xi, rate) in [(1.1, 2.2), (0.05, 1.0)] {
+        let constants = Constants::new(&Parameters { xi, omega: 0.05, ..Parameters::default() });
+        let angle = EntryAngle { radians: 1.0, sin: 1.0_f64.sin(), cos: 1.0_f64.cos() };
+        let entry = State { p: 0.32, y: 0.01, q: 0.3 };
+        let contact = Contact { constants, entry, angle, offset: 0.322, reference: 0.0 };
+        let left = contact.at(40.0);
+        for length in [1.0, 1.8, 2.0, 5.0, 12.0_f64] {
+            let right = contact.at(40.0 + length);
+            let reach: f64 = rate * length;
+            let share = [3.0 / 8.0, 3.0 / 28.0 / 2.0, 1.0 / 56.0 / 6.0];
+            let weights: f64 = (1..4).map(|k| share[k - 1] * reach.powi(k as i32)).sum();
+            let largest = left.guard.largest_term.max(right.guard.largest_term);
+            let expected = if reach > 4.0 { f64::EPSILON * weights * largest } else { 0.0 };
+            let room = contact.room_of_length(&left, &right);
+            let off = (room - expected).abs();
+            assert!(off <= 1e-12 * expected, "{xi}, {length}: {room:e} {expected:e}");
+        }
+    }
+}
+
+/// What dies out from critical damping on keeps its sign if x and x' + fast x have the same one.
+/// Both are sums: a sign is believed from sixteen roundings of the terms on, each of which counts
+/// with its size.
+#[test]
+fn a_contact_rests_on_one_side_where_both_signs_are_beyond_rounding() {
+    const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
+    // The faster decay has the rate 2.
+    let (a, b, xi, omega, fast) = (0.01, 0.5, 1.25, 0.7, 2.0);
+    let constants = Constants::new(&Parameters { a, b, xi, omega, ..Parameters::default() });
     let angle = EntryAngle { radians: 1.0, sin: 1.0_f64.sin(), cos: 1.0_f64.cos() };
-    let entry = State { p: 0.32, y: 0.01, q: 0.3 };
-    let contact = Contact { constants, entry, angle, offset: 0.322, reference: 0.0 };
-    let left = contact.at(40.0);
-    for length in [1.0, 1.8, 2.0, 5.0, 12.0_f64] {
-        let right = contact.at(40.0 + length);
-        let reach: f64 = 2.2 * length;
-        let share = [3.0 / 8.0, 3.0 / 28.0 / 2.0, 1.0 / 56.0 / 6.0];
-        let weights: f64 = (1..4).map(|k| share[k - 1] * reach.powi(k as i32)).sum();
-        let largest = left.guard.largest_term.max(right.guard.largest_term);
-        let expected = if reach > 4.0 { f64::EPSILON * weights * largest } else { 0.0 };
-        let room = contact.room_of_length(&left, &right);
-        assert!((room - expected).abs() <= 1e-12 * expected, "{length}: {room:e} {expected:e}");
+    let entry = State { p: 0.32, y: 2.0, q: 0.3 };
+    let contact = Contact { constants, entry, angle, offset: 0.8, reference: 0.0 };
+    let left = contact.at(0.0);
+    let amplitude = contact.split(&left).amplitude;
+    let terms = left.guard.largest_term + left.guard.orders[0].abs() + b + a + amplitude;
+    let rates = 2.0 * xi * terms + 2.0 + omega * amplitude;
+    let rests = |x: f64, rate: f64| {
+        contact.rests_on_one_side(&left, &Split { free: [x, rate, 0.0, 0.0], amplitude })
+    };
+    for sign in [1.0, -1.0] {
+        let x = 0.01 * sign;
+        let rate = |share: f64| -fast * x + share * sign * ROUNDINGS * rates;
+        assert!(!rests(x, rate(0.97)) && rests(x, rate(1.03)), "the rate, {sign}");
+        let x = |share: f64| share * sign * ROUNDINGS * terms;
+        assert!(!rests(x(0.97), 1e-3 * sign) && rests(x(1.03), 1e-3 * sign), "the value, {sign}");
     }
 }
 

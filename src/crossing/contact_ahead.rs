@@ -60,7 +60,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// the forced part, u = x' + fast x obeys u' = -slow u; where x and u are positive they stay
     /// so, because x' < 0 would need x > 0. Then the trial force stays on one side of its steady
     /// state.
-    fn rests_on_one_side(&self, left: &Point<f64>, split: &Split) -> bool {
+    pub(super) fn rests_on_one_side(&self, left: &Point<f64>, split: &Split) -> bool {
         const ROUNDINGS: f64 = 16.0 * f64::EPSILON;
         let Constants { a, b, xi, two_xi, omega, .. } = *self.constants.borrow();
         if xi < 1.0 {

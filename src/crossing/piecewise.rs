@@ -311,3 +311,45 @@ impl<'a> PiecewiseCertificate<'a> {
         [parts.value, parts.slope, curvature + parts.bow, omega * parts.quarter]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::Parameters;
+
+    /// A sum rounds by the sizes of its terms: it is the same for a guard that rises to its right
+    /// end as for one that falls from its left end.
+    #[test]
+    fn the_rounding_of_crests_has_no_direction() {
+        let (omega, strength) = (0.7, 0.2);
+        let steps = Steps::new(&Parameters { omega, ..Parameters::default() });
+        let shape = Shape {
+            curvature: 0.1,
+            grain: 0.3,
+            strength,
+            omega,
+            omega6: omega.powi(6),
+            per_omega2: 1.0 / (omega * omega),
+            rate: 1.0,
+            rate8: 1.0,
+        };
+        let line = Some(Line { end: 2.0, value: 0.0, slope: 0.0 });
+        let certificate = PiecewiseCertificate { shape: &shape, steps: &steps, line };
+        let at = |elapsed, slope| Parts {
+            elapsed,
+            value: -0.1,
+            slope,
+            bow: 0.0,
+            quarter: 0.0,
+            lasting: 0.0,
+            room: 0.0,
+        };
+        let rounding =
+            |from, to| certificate.crests(&at(0.0, from), &at(2.0, to)).rounding / f64::EPSILON;
+        let expected = 8.0 * (0.1 + 2.0 * (5.0 + 0.3) + strength * shape.per_omega2);
+        for (from, to) in [(5.0, 0.5), (-5.0, 0.5), (0.5, 5.0), (0.5, -5.0)] {
+            let found = rounding(from, to);
+            assert!((found - expected).abs() < 1e-12 * expected, "{from} {to}: {found} {expected}");
+        }
+    }
+}

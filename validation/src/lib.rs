@@ -1,19 +1,13 @@
-//! The `percuss` command and what stands behind it: engines, cases, truth, scores and reports.
+//! The `percuss` command, and all that stands behind it under one name: engines, cases, truth,
+//! scores and reports.
 //!
 //! The exact solver lives in the crate `percuss` and knows nothing of this one. Here it is one
 //! [`engine::Engine`] among others, held against tables ([`truth`]) that none of them knows.
 
-pub mod arrays;
-pub mod bench;
 pub mod build;
-pub mod case;
 pub mod cli;
-pub mod engine;
-pub mod number;
-pub mod picture;
-pub mod power;
 pub mod report;
-pub mod reproduce;
-pub mod score;
-pub mod suite;
-pub mod truth;
+
+pub use percuss_engines::{case, engine, number};
+pub use percuss_harness::{arrays, bench, power, reproduce, score, suite, truth};
+pub use percuss_pictures as picture;

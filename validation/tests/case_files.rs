@@ -93,7 +93,7 @@ fn reference_data_that_were_altered() {
     for name in ["manifest.json", "events/small-b.csv", "samples/small-b.csv"] {
         let target = folder.path().join(name);
         fs::create_dir_all(target.parent().expect("a parent")).expect("made");
-        fs::copy(package().join("reference_data").join(name), target).expect("copied");
+        fs::copy(package().join("../reference_data").join(name), target).expect("copied");
     }
     let reference = folder.path().display().to_string();
     let validate = ["validate", "-c", "^small-b$", "-e", "^exact$", "--reference", &reference];

@@ -88,7 +88,7 @@ fn the_programs_are_of_the_libraries_that_the_engines_use() {
             .map(|(name, value)| format!("{name} {}", version(value)))
             .collect()
     };
-    let (here, there) = (pins("validation/Cargo.toml"), pins("docs/findings/Cargo.toml"));
+    let (here, there) = (pins("validation/engines/Cargo.toml"), pins("docs/findings/Cargo.toml"));
     assert_eq!(here.len(), LIBRARIES.len());
     assert_eq!(here, there);
 }

@@ -82,8 +82,8 @@ fn the_readmes_bench_is_of_todays_cases() {
     assert_eq!(cases, percuss_validation::bench::cases::USUAL);
 }
 
-/// The summary is written by the command that docs/LONG_TESTS.md names. It must be of a run that was
-/// clean, of today's engines and of as many rows as the suite has today.
+/// The summary is written by the command that docs/LONG_TESTS.md names. It must be of a run that
+/// was clean, of today's engines and of as many rows as the suite has today.
 #[test]
 fn the_readmes_summary_is_of_todays_suite() {
     let readme = read("README.md");

@@ -3,8 +3,8 @@
 use super::ErrorGrowth;
 use super::pictures::{GREY, Palette};
 use super::setting::{setting, who};
+use crate::picture::RGBColor;
 use crate::picture::{Axis, Curve, Curves, Scale, Stroke};
-use plotters::style::RGBColor;
 
 const INK: RGBColor = RGBColor(20, 20, 20);
 

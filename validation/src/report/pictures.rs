@@ -5,12 +5,12 @@ use super::setting::{setting, who};
 use super::summary::{self, EngineSummary, SettingSummary};
 use super::{Evidence, Report, RestartHistogram, SectionPair};
 use crate::number::brief;
+use crate::picture::RGBColor;
 use crate::picture::{
     self, Axis, Curve, Curves, DrawError, Drawing, Encounter, Figure, HeatCell, HeatMap,
     HistogramRow, Histograms, Layer, Look, Marker, Plot, Scale, Stroke, Tint, looks, png, svg,
 };
 use percuss::Phase;
-use plotters::style::RGBColor;
 use rayon::prelude::*;
 
 /// Two clouds of more points together are no SVG.

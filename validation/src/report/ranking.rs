@@ -6,6 +6,7 @@
 //! above, as the reference.
 
 use super::Row;
+use crate::engine::Accuracy;
 use crate::score::{Spread, Verdict};
 use crate::suite::{Scored, Status};
 use serde::Serialize;
@@ -91,7 +92,7 @@ fn place(engines: Vec<(Ranked, bool)>) -> Vec<Ranked> {
 
 /// An engine's figures without its place, and whether it is exact.
 fn one(engine: &'static str, rows: Vec<(&Scored, &Row)>) -> (Ranked, bool) {
-    let exact = rows.iter().all(|(scored, _)| scored.is_exact());
+    let exact = rows.iter().all(|(scored, _)| scored.accuracy == Accuracy::Exact);
     let counted = || rows.iter().filter_map(|(scored, row)| Counted::of(scored, row));
     let sum = |count: fn(&Counted) -> usize| counted().map(|it| count(&it)).sum();
     let units: Vec<f64> = counted().flat_map(|it| it.units).collect();
@@ -172,13 +173,6 @@ fn at_error(mut curve: Vec<(f64, f64)>, error: f64) -> Option<f64> {
     let [(e0, c0), (e1, c1)] = [pair[0], pair[1]];
     let share = if e0 == e1 { 0.0 } else { (e0 / error).ln() / (e0 / e1).ln() };
     Some((c0.ln() + share * (c1 / c0).ln()).exp())
-}
-
-impl Scored {
-    /// Whether the engine solves in closed form.
-    fn is_exact(&self) -> bool {
-        self.accuracy == crate::engine::Accuracy::Exact
-    }
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! What a report holds: the keys of `report.json`.
 
 use super::ranking::{Ranked, ranking};
-use crate::build::Build;
+use crate::build::{self, Build};
 use crate::engine::Declaration;
 use crate::score::attractor::Comparison;
 use crate::score::{Checked, Horizons, Restart, Spread, Verdict, order};
@@ -149,7 +149,7 @@ impl Report {
         let mut results: Vec<Row> = rows.iter().map(Row::of).collect();
         fill_orders(&mut results);
         Self {
-            build: Build::this(),
+            build: build::this(),
             suite,
             engines: engines.iter().map(EngineEntry::of).collect(),
             summary: Summary::of(&results),

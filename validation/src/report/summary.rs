@@ -1,7 +1,7 @@
 //! An engine at a setting over all cases of the report: recall, typical errors, typical cost.
 
 use super::{Report, Row};
-use crate::score::Verdict;
+use crate::score::{Spread, Verdict};
 use serde::Serialize;
 
 /// The figures of one engine over all cases.
@@ -45,10 +45,11 @@ impl SettingSummary {
         let sum = |count: fn(&Row) -> Option<usize>| ran.iter().filter_map(|row| count(row)).sum();
         let error = |figure: fn(&Row) -> f64| {
             let of = |row: &&Row| if row.status == "ok" { figure(row) } else { f64::INFINITY };
-            median(ran.iter().map(of).filter(|error| !error.is_nan()).collect())
+            Spread::of(ran.iter().map(of).filter(|error| !error.is_nan()).collect()).median
         };
         let work = |figure: fn(&Row) -> Option<u64>| {
-            median(ran.iter().filter_map(|row| figure(row)).map(|work| work as f64).collect())
+            Spread::of(ran.iter().filter_map(|row| figure(row)).map(|work| work as f64).collect())
+                .median
         };
         Self {
             setting: rows.first().map_or(String::new(), |row| row.setting()),
@@ -83,22 +84,4 @@ fn one(report: &Report, engine: &str) -> EngineSummary {
     rows.sort_by(|a, b| fineness(b).total_cmp(&fineness(a)));
     let same = |a: &&Row, b: &&Row| a.setting() == b.setting();
     EngineSummary { counts, settings: rows.chunk_by(same).map(SettingSummary::of).collect() }
-}
-
-/// The middle value, by nearest rank; NaN of nothing.
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len().saturating_sub(1) / 2).copied().unwrap_or(f64::NAN)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_middle_value() {
-        assert_eq!(median(vec![3.0, 1.0, f64::INFINITY]), 3.0);
-        assert_eq!(median(vec![2.0, 1.0]), 1.0);
-        assert!(median(Vec::new()).is_nan());
-    }
 }

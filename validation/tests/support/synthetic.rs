@@ -178,6 +178,7 @@ pub fn report() -> Report {
             commit: None,
             rustc: "rustc".to_owned(),
             cpu: "a <processor>".to_owned(),
+            target_cpu: "any".to_owned(),
         },
         suite: Suite::Quick,
         engines: ENGINES.iter().map(engine).collect(),

@@ -13,6 +13,7 @@ use crate::bench::contestant::Contestant;
 use crate::bench::course::Course;
 use crate::bench::report::Measured;
 use crate::bench::{Bench, cases, damping, floor, length, pictures, registry, table};
+use crate::build;
 use crate::case::{self, Case};
 use crate::engine::{Stepping, hush_contained_panics};
 use crate::truth::Library;
@@ -104,7 +105,7 @@ fn measured(
     let damping = if whole { damping::ladder(contestants, rounds, &done)? } else { Vec::new() };
     bar.finish_and_clear();
     let measured = Measured { contests: &contests, floors: &floors, length, damping: &damping };
-    Ok(Bench::new(rounds, measured))
+    Ok(Bench::new(build::this(), rounds, measured))
 }
 
 /// The floor takes milliseconds a round.

@@ -8,6 +8,7 @@ use crate::bench::floor::{self, Floors};
 use crate::bench::history::{self, Figures, History, Record};
 use crate::bench::rounds::Series;
 use crate::bench::{instructions, workload};
+use crate::build;
 use crate::engine::{Accuracy, Failure, exact};
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
@@ -81,7 +82,7 @@ fn records(arguments: &Arguments, courses: &[Course]) -> Result<Vec<Record>> {
             None
         };
         let figures = Figures { instructions, ..figures(course, &halves, i)? };
-        Ok(Record::of_this(&name, figures))
+        Ok(Record::of(build::this(), &name, figures))
     };
     let records = courses.iter().enumerate().map(record).collect();
     bar.finish_and_clear();

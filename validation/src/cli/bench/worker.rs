@@ -3,10 +3,12 @@
 use super::{cases_by_default, courses};
 use crate::bench::compare::worker::serve;
 use crate::bench::workload;
+use crate::build;
 use anyhow::{Context, Result};
 use std::io;
 
 pub(super) fn run() -> Result<()> {
     let courses = courses(&cases_by_default()?)?;
-    serve(&workload::all(&courses), io::stdin().lock(), io::stdout().lock()).context("worker")
+    serve(&build::this(), &workload::all(&courses), io::stdin().lock(), io::stdout().lock())
+        .context("worker")
 }

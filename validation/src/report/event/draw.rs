@@ -2,8 +2,8 @@
 
 use super::super::setting::{setting, who};
 use super::{Course, EventPicture, View};
+use crate::picture::RGBColor;
 use crate::picture::{Encounter, Stretch, Trail};
-use plotters::style::RGBColor;
 
 impl EventPicture {
     /// The file it is drawn to, without its ending: the folder, case, engine and setting.

@@ -1,0 +1,115 @@
+//! Engines that are wrong on purpose, one fault each: what no fault trips is no gate.
+//!
+//! [`wrong`] are held to the exact solver's bounds, [`faulty`] to those of a good integrator.
+//!
+//! They never run beside the others; the power test runs them and asks which bounds notice. Three
+//! are the exact solver on something slightly different; the others are a plain solver that walks
+//! along the closed forms ([`walk`]), which without a fault stays within the bounds it is held to.
+
+mod altered;
+mod closed;
+mod integrator;
+mod printed;
+mod walk;
+
+use super::Engine;
+use altered::{Altered, Change};
+pub use closed::Closed;
+use integrator::{Faulty, Slip};
+use walk::{Fault, Walk};
+
+/// A wrong engine and what is wrong with it.
+#[derive(Clone, Copy)]
+pub struct Wrong {
+    /// The engine.
+    pub engine: &'static dyn Engine,
+    /// The engine's fault, in a phrase.
+    pub fault: &'static str,
+}
+
+/// The walking solver without a fault: the control of the power test.
+pub static CONTROL: &dyn Engine = &Walk { name: "walk-control", fault: Fault::None };
+
+/// How rarely an engine drops an event.
+pub const DROPPED: [u64; 2] = [100, 1000];
+
+static WRONG: [Wrong; 9] = [
+    Wrong {
+        engine: &Walk { name: "wrong-dropped-100", fault: Fault::Dropped(DROPPED[0]) },
+        fault: "every hundredth event is dropped",
+    },
+    Wrong {
+        engine: &Walk { name: "wrong-dropped-1000", fault: Fault::Dropped(DROPPED[1]) },
+        fault: "every thousandth event is dropped",
+    },
+    Wrong {
+        engine: &Altered { name: "wrong-omega", change: Change::Frequency },
+        fault: "omega is larger by 0.002",
+    },
+    Wrong {
+        engine: &Altered { name: "wrong-xi", change: Change::Damping },
+        fault: "xi is larger by 1 %",
+    },
+    Wrong {
+        engine: &Altered { name: "wrong-drift", change: Change::Drift },
+        fault: "Eq. (20) as printed, with + before the exponential",
+    },
+    Wrong {
+        engine: &Walk { name: "wrong-arctan", fault: Fault::Arctangent },
+        fault: "Eqs. (15) to (17) as printed, with arctan for beta and delta",
+    },
+    Wrong {
+        engine: &Walk { name: "wrong-sign-change", fault: Fault::SignChange },
+        fault: "guards are looked at only where a step ends, for a change of sign",
+    },
+    Wrong {
+        engine: &Walk { name: "wrong-impact", fault: Fault::ContactAtImpact },
+        fault: "every impact goes into contact, none straight into progression",
+    },
+    Wrong {
+        engine: &Altered { name: "wrong-clock", change: Change::Clock },
+        fault: "time is one number: omega tau loses digits late in a run",
+    },
+];
+
+/// All of them.
+#[must_use]
+pub fn wrong() -> &'static [Wrong] {
+    &WRONG
+}
+
+/// The integrator of [`faulty`] without a fault: the control of its power test.
+pub static FAULTY_CONTROL: &dyn Engine = &Faulty { name: "dopri5-control", slip: Slip::None };
+
+/// How rarely an integrator drops an event.
+const SELDOM: u64 = 20;
+
+macro_rules! faulty {
+    ($name:literal, $slip:expr, $fault:literal) => {
+        Wrong { engine: &Faulty { name: $name, slip: $slip }, fault: $fault }
+    };
+}
+
+static FAULTY: [Wrong; 8] = [
+    faulty!("dopri5-drops", Slip::Dropped(SELDOM), "every twentieth event is not noticed"),
+    faulty!("dopri5-at-step-end", Slip::AtStepEnd, "an event is put at its step's end"),
+    faulty!("dopri5-sign-at-ends", Slip::SignAtEnds, "guards are looked at only at steps' ends"),
+    faulty!("dopri5-late", Slip::Late, "an event is found thirty tolerances late"),
+    faulty!(
+        "dopri5-old-derivative",
+        Slip::OldDerivative,
+        "a restart begins with the derivative of the phase before"
+    ),
+    faulty!("dopri5-any-direction", Slip::AnyDirection, "the direction of a guard is ignored"),
+    faulty!("dopri5-low-order", Slip::LowOrder, "the interpolant is of order 3 instead of 4"),
+    faulty!("dopri5-parameters", Slip::Parameters, "b and xi are larger by 1e-4 of themselves"),
+];
+
+/// Integrators with one fault each, held to the bounds of the engine without it, [`SOUND`].
+#[must_use]
+pub fn faulty() -> &'static [Wrong] {
+    &FAULTY
+}
+
+/// The engine whose bounds [`faulty`] integrators are held to.
+pub const SOUND: &str = "ode_solvers-dopri5";

@@ -1,0 +1,241 @@
+//! How far the exact solver is ahead of its closest competitor, at its most accurate and at equal
+//! accuracy.
+
+use super::report::{Bench, EventCost, Row};
+use crate::number::{brief, shortest};
+use std::fmt;
+
+/// How many times as long the closest competitor is to take, on every case.
+pub const ASKED: f64 = 100.0;
+
+/// A ratio in whole numbers, rounded down: it is at least so many times.
+#[must_use]
+pub fn times(ratio: f64) -> String {
+    format!("{:.0}", ratio.floor())
+}
+
+/// What the engines are compared at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Basis {
+    /// Each engine at its most accurate setting.
+    MostAccurate,
+    /// Each engine where its work-precision curve has errors of at most [`TIGHT`].
+    Tight,
+    /// Each engine where its work-precision curve has errors of at most [`LOOSE`].
+    Loose,
+}
+
+/// The smaller error at which engines are compared.
+pub const TIGHT: f64 = 1e-9;
+/// The larger error at which engines are compared.
+pub const LOOSE: f64 = 1e-6;
+
+/// Every basis, in the order of tables.
+pub const BASES: [Basis; 3] = [Basis::MostAccurate, Basis::Tight, Basis::Loose];
+
+/// The closest competitor of the exact solver on a case.
+#[derive(Clone, Debug)]
+pub struct Lead<'a> {
+    /// What the engines are compared at.
+    pub basis: Basis,
+    /// The adaptive engine that takes least: its most accurate setting, or its fastest setting
+    /// whose error is at most that of the basis.
+    pub next: &'a Row,
+    /// How many times as long it takes.
+    pub ratio: f64,
+}
+
+impl Lead<'_> {
+    /// The accuracy that the competitor is timed at, for a table.
+    #[must_use]
+    pub fn accuracy(&self) -> String {
+        match self.basis {
+            Basis::MostAccurate => {
+                format!("least: {}", self.next.state_error_max.map(brief).unwrap_or_default())
+            }
+            Basis::Tight => format!("<= {}", shortest(TIGHT)),
+            Basis::Loose => format!("<= {}", shortest(LOOSE)),
+        }
+    }
+}
+
+/// The exact solver's lead on a case; nothing where no adaptive engine is as accurate as the basis
+/// asks.
+#[must_use]
+pub fn lead<'a>(bench: &'a Bench, case: &str, basis: Basis) -> Option<Lead<'a>> {
+    let rows = bench.results.iter().filter(|row| row.case == case && row.adaptive);
+    let ahead = |row: &'a Row| Some((row, row.ratio(basis)?));
+    // Of an engine's settings that share a ratio the fastest comes first.
+    let order = |(row, ratio): &(&Row, f64)| (*ratio, row.ns_per_period.unwrap_or(f64::INFINITY));
+    let least = rows.filter(|row| row.meets(basis)).filter_map(ahead).min_by(|a, b| {
+        let ((a, time), (b, other)) = (order(a), order(b));
+        a.total_cmp(&b).then(time.total_cmp(&other))
+    });
+    least.map(|(next, ratio)| Lead { basis, next, ratio })
+}
+
+/// Whether the exact solver errs less on a case than every adaptive engine at any tolerance.
+#[must_use]
+pub fn errs_least(bench: &Bench, case: &str) -> bool {
+    let error = |row: &Row| row.state_error_max.unwrap_or(f64::INFINITY);
+    let rows = || bench.results.iter().filter(|row| row.case == case);
+    let exact = rows().find(|row| row.engine == "exact").map_or(f64::INFINITY, error);
+    rows().filter(|row| row.adaptive).all(|row| exact <= error(row))
+}
+
+/// A lead of less than [`ASKED`], in terms of one event.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shortfall<'a> {
+    /// The case.
+    pub case: &'a str,
+    /// The closest competitor.
+    pub engine: &'a str,
+    /// How many times as long it takes.
+    pub ratio: f64,
+    /// Time of the exact solver's run for each event of it, ns.
+    pub ns_per_event: f64,
+    /// The competitor's right-hand sides for each event.
+    pub right_hand_sides: f64,
+    /// The least time of one evaluation, ns.
+    pub floor: f64,
+}
+
+impl<'a> Shortfall<'a> {
+    /// What is missing on a case to a lead of [`ASKED`]; nothing where the lead is large enough, or
+    /// the run has no event.
+    #[must_use]
+    pub fn of(bench: &'a Bench, case: &'a str) -> Option<Self> {
+        let Lead { next, ratio, .. } = lead(bench, case, Basis::MostAccurate)?;
+        let entry = bench.cases.iter().find(|it| it.case == case)?;
+        let cost: &EventCost = bench.events.iter().find(|it| it.case == case)?;
+        let it = Self {
+            case,
+            engine: &next.engine,
+            ratio,
+            ns_per_event: cost.ns_per_event?,
+            right_hand_sides: entry.per_event(next.rhs_per_period?)?,
+            floor: bench.floor.chained_ns,
+        };
+        Some(it).filter(|it| it.ratio < ASKED)
+    }
+}
+
+impl fmt::Display for Shortfall<'_> {
+    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { case, engine, ratio, ns_per_event, right_hand_sides, floor } = *self;
+        let asked = ns_per_event * ratio / ASKED;
+        writeln!(
+            out,
+            "{case}: a lead of {ASKED}x would need {asked:.0} ns per event ({:.1} floors); \
+             measured: {ns_per_event:.0} ns ({:.1} floors)",
+            asked / floor,
+            ns_per_event / floor,
+        )?;
+        write!(
+            out,
+            "  {engine} takes {right_hand_sides:.0} right-hand sides per event, {:.0} ns each",
+            ns_per_event * ratio / right_hand_sides,
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::report::{CaseEntry, Floor};
+    use super::*;
+    use crate::build::Build;
+
+    const CASE: &str = "fast";
+
+    fn row(engine: &str, ns_per_period: f64, ratio: f64, error: f64) -> Row {
+        Row {
+            case: CASE.to_owned(),
+            engine: engine.to_owned(),
+            tolerance: (engine != "exact").then_some(1e-12),
+            step: None,
+            ns_per_period: Some(ns_per_period),
+            state_error_max: Some(error),
+            event_time_error_max: Some(error),
+            ratio_to_exact: Some(ratio),
+            ratio_at_1e_6: Some(0.5 * ratio),
+            ratio_at_1e_9: None,
+            harness_share: Some(0.25),
+            rhs_per_period: Some(400.0),
+            most_accurate: true,
+            adaptive: engine != "exact",
+            why: None,
+        }
+    }
+
+    /// Two events a period.
+    fn bench(ratio: f64, events: usize) -> Bench {
+        let exact = row("exact", 320.0, 1.0, 1e-15);
+        let engine = row("an-engine", 320.0 * ratio, ratio, 1e-12);
+        let (entry, floor) = (
+            CaseEntry { case: CASE.to_owned(), regime: String::new(), periods: 10.0, events },
+            Floor { chained_ns: 40.0, independent_ns: 20.0 },
+        );
+        Bench {
+            build: Build::of("", "rustc", "any"),
+            rounds: 1,
+            events: vec![EventCost::of(&entry, Some(&exact), floor)],
+            cases: vec![entry],
+            results: vec![exact, engine, row("another", 1e9, 1e6, 1e-9)],
+            floor,
+            length: Vec::new(),
+            damping: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn a_lead_that_is_too_small_is_told_in_the_tables_own_time_of_an_event() {
+        let bench = bench(50.0, 20);
+        assert_eq!(bench.events[0].ns_per_event, Some(160.0));
+        assert_eq!(bench.events[0].floors_per_event, Some(4.0));
+        assert_eq!(
+            Shortfall::of(&bench, CASE).map(|it| it.to_string()).as_deref(),
+            Some(
+                "fast: a lead of 100x would need 80 ns per event (2.0 floors); \
+                 measured: 160 ns (4.0 floors)\n  \
+                 an-engine takes 200 right-hand sides per event, 40 ns each"
+            )
+        );
+        let table = crate::bench::summary(&bench);
+        let line = table.lines().find(|line| line.starts_with(CASE)).unwrap_or_default();
+        let cells: Vec<_> = line.split_whitespace().collect();
+        assert_eq!(cells[..4], [CASE, "20", "160", "4.0"], "{table}");
+    }
+
+    #[test]
+    fn a_lead_is_large_enough_or_not_whatever_it_is_rounded_to() {
+        for (ratio, said, enough) in [(99.9, "99", false), (100.0, "100", true)] {
+            let bench = bench(ratio, 20);
+            let lead = lead(&bench, CASE, Basis::MostAccurate);
+            let lead = lead.map(|it| (it.next.engine.clone(), times(it.ratio)));
+            assert_eq!(lead, Some(("an-engine".to_owned(), said.to_owned())));
+            assert_eq!(Shortfall::of(&bench, CASE).is_none(), enough);
+        }
+        assert_eq!(Shortfall::of(&bench(50.0, 0), CASE), None);
+    }
+
+    #[test]
+    fn competitors_are_compared_at_equal_accuracy() {
+        let mut bench = bench(50.0, 20);
+        // Fast but inaccurate at this setting: it counts where its curve reaches the error.
+        let quick = Row { most_accurate: false, ..row("quick", 320.0, 1.0, 1e-5) };
+        let reaches =
+            Row { ratio_at_1e_6: quick.ratio_at_1e_6, ..row("quick", 6400.0, 20.0, 1e-8) };
+        bench.results.extend([quick, reaches]);
+        let at = |basis| {
+            lead(&bench, CASE, basis).map(|it| (it.next.engine.as_str(), it.ratio, it.accuracy()))
+        };
+        assert_eq!(at(Basis::MostAccurate), Some(("quick", 20.0, "least: 1.0e-8".to_owned())));
+        assert_eq!(at(Basis::Loose), Some(("quick", 0.5, "<= 1e-6".to_owned())));
+        assert_eq!(at(Basis::Tight), None);
+        let reached = lead(&bench, CASE, Basis::Loose).and_then(|it| it.next.ns_per_period);
+        assert_eq!(reached, Some(6400.0));
+        assert!(errs_least(&bench, CASE));
+        bench.results.push(row("lucky", 1e9, 1e6, 1e-16));
+        assert!(!errs_least(&bench, CASE));
+    }
+}

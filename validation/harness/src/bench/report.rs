@@ -1,0 +1,273 @@
+//! What a `bench` holds: the keys of `bench.json`.
+
+use super::contest::{Finisher, exact, most_accurate};
+use super::course::Course;
+use super::damping::Rung;
+use super::equal_accuracy::{Corner, time_at};
+use super::floor::Floors;
+use super::lead::{Basis, LOOSE, TIGHT};
+use super::length::Length;
+use crate::build::Build;
+use crate::engine::Stepping;
+use crate::number::shortest;
+use serde::{Deserialize, Serialize};
+
+/// A whole bench.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Bench {
+    /// The format's number, and what was run where.
+    #[serde(flatten)]
+    pub build: Build,
+    /// Interleaved rounds.
+    pub rounds: usize,
+    /// The courses.
+    pub cases: Vec<CaseEntry>,
+    /// A row for each case, contestant and setting.
+    pub results: Vec<Row>,
+    /// What one evaluation costs at the least.
+    pub floor: Floor,
+    /// What the exact solver takes for an event of each case's run.
+    pub events: Vec<EventCost>,
+    /// Cost against length; empty where only some cases were asked for.
+    pub length: Vec<Length>,
+    /// Cost against xi; empty alike.
+    pub damping: Vec<Damped>,
+}
+
+/// A course.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[allow(missing_docs, reason = "the keys are explained in the schema")]
+pub struct CaseEntry {
+    pub case: String,
+    pub regime: String,
+    pub periods: f64,
+    pub events: usize,
+}
+
+impl CaseEntry {
+    /// A figure of a forcing period as one of an event; nothing for a run without events.
+    #[must_use]
+    pub fn per_event(&self, per_period: f64) -> Option<f64> {
+        (self.events > 0).then(|| per_period * self.periods / self.events as f64)
+    }
+}
+
+/// One contestant at one setting on one case. What there is not is null.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[allow(missing_docs, reason = "the keys are those of the command line's contract")]
+pub struct Row {
+    pub case: String,
+    pub engine: String,
+    pub tolerance: Option<f64>,
+    pub step: Option<f64>,
+    pub ns_per_period: Option<f64>,
+    pub state_error_max: Option<f64>,
+    pub event_time_error_max: Option<f64>,
+    pub ratio_to_exact: Option<f64>,
+    /// Ratio of times at errors of at most 1e-6, read off this engine's work-precision curve on
+    /// this case.
+    #[serde(rename = "ratio_at_1e-6")]
+    pub ratio_at_1e_6: Option<f64>,
+    /// Ratio of times at errors of at most 1e-9.
+    #[serde(rename = "ratio_at_1e-9")]
+    pub ratio_at_1e_9: Option<f64>,
+    /// Share of the time that is the harness's own ([`super::alone`]).
+    pub harness_share: Option<f64>,
+    pub rhs_per_period: Option<f64>,
+    /// Whether this is the setting at which this engine errs least here.
+    pub most_accurate: bool,
+    /// Whether its steps are chosen by a tolerance.
+    pub adaptive: bool,
+    /// Why there is no time.
+    pub why: Option<String>,
+}
+
+impl Row {
+    /// The tolerance or the step, as tables show it.
+    #[must_use]
+    pub fn setting(&self) -> String {
+        match (self.tolerance, self.step) {
+            (Some(tolerance), _) => shortest(tolerance),
+            (_, Some(step)) => format!("h {step}"),
+            _ => "-".to_owned(),
+        }
+    }
+
+    /// How many times as long as the exact solver its engine takes on this basis.
+    #[must_use]
+    pub fn ratio(&self, basis: Basis) -> Option<f64> {
+        match basis {
+            Basis::MostAccurate => self.ratio_to_exact,
+            Basis::Tight => self.ratio_at_1e_9,
+            Basis::Loose => self.ratio_at_1e_6,
+        }
+    }
+
+    /// Whether this setting is as accurate as the basis asks.
+    #[must_use]
+    pub fn meets(&self, basis: Basis) -> bool {
+        let errs_at_most = |most| self.state_error_max.is_some_and(|error| error <= most);
+        match basis {
+            Basis::MostAccurate => self.most_accurate,
+            Basis::Tight => errs_at_most(TIGHT),
+            Basis::Loose => errs_at_most(LOOSE),
+        }
+    }
+}
+
+/// The floor, ns an evaluation.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[allow(missing_docs, reason = "the keys are explained in the schema")]
+pub struct Floor {
+    pub chained_ns: f64,
+    pub independent_ns: f64,
+}
+
+/// What the exact solver takes for an event of a case's run, everything that is timed divided by
+/// its events.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[allow(missing_docs, reason = "the keys are explained in the schema")]
+pub struct EventCost {
+    pub case: String,
+    pub evaluations_per_event: Option<f64>,
+    pub ns_per_event: Option<f64>,
+    /// The time per event in units of the floor of dependent evaluations, and below in units of the
+    /// floor of independent ones.
+    pub floors_per_event: Option<f64>,
+    pub independent_floors_per_event: Option<f64>,
+    pub why: Option<String>,
+}
+
+impl EventCost {
+    /// The cost by the exact solver's row on a case.
+    #[must_use]
+    pub fn of(case: &CaseEntry, exact: Option<&Row>, floor: Floor) -> Self {
+        let per_event = |it: Option<f64>| it.and_then(|it| case.per_event(it));
+        let ns = per_event(exact.and_then(|row| row.ns_per_period));
+        let without = (case.events == 0).then(|| "the run has no event".to_owned());
+        Self {
+            case: case.case.clone(),
+            evaluations_per_event: per_event(exact.and_then(|row| row.rhs_per_period)),
+            ns_per_event: ns,
+            floors_per_event: ns.map(|it| it / floor.chained_ns),
+            independent_floors_per_event: ns.map(|it| it / floor.independent_ns),
+            why: exact.and_then(|row| row.why.clone()).or(without),
+        }
+    }
+}
+
+/// A contestant at one xi.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[allow(missing_docs, reason = "the keys are explained in the schema")]
+pub struct Damped {
+    pub xi: f64,
+    pub engine: String,
+    pub tolerance: Option<f64>,
+    pub ns_per_period: Option<f64>,
+    pub state_error_max: Option<f64>,
+    pub why: Option<String>,
+}
+
+/// What was measured.
+pub struct Measured<'a> {
+    /// The courses and who ran on each.
+    pub contests: &'a [(&'a Course, Vec<Finisher>)],
+    /// The floor.
+    pub floors: &'a Floors,
+    /// The lengths.
+    pub length: Vec<Length>,
+    /// The ladder of xi.
+    pub damping: &'a [Rung],
+}
+
+impl Bench {
+    /// The bench of what was measured.
+    #[must_use]
+    pub fn new(build: Build, rounds: usize, measured: Measured<'_>) -> Self {
+        let Measured { contests, floors, length, damping } = measured;
+        let cases: Vec<_> = contests.iter().map(|(course, _)| entry(course)).collect();
+        let results: Vec<_> = contests.iter().flat_map(|(course, all)| rows(course, all)).collect();
+        let floor =
+            Floor { chained_ns: floors.chained.best(), independent_ns: floors.independent.best() };
+        let exact = |case: &str| results.iter().find(|it| it.case == case && it.engine == "exact");
+        let cost = |it: &CaseEntry| EventCost::of(it, exact(&it.case), floor);
+        Self {
+            build,
+            rounds,
+            events: cases.iter().map(cost).collect(),
+            cases,
+            results,
+            floor,
+            length,
+            damping: damping.iter().flat_map(damped).collect(),
+        }
+    }
+}
+
+fn entry(course: &Course) -> CaseEntry {
+    CaseEntry {
+        case: course.name.clone(),
+        regime: course.regime.clone(),
+        periods: course.periods(),
+        events: course.truth.switches.len(),
+    }
+}
+
+fn rows(course: &Course, finishers: &[Finisher]) -> Vec<Row> {
+    let unit = exact(finishers).map(|it| it.series.clone()).unwrap_or_default();
+    let row = |it: &Finisher| {
+        let timed = it.result.as_ref().ok();
+        let best = most_accurate(finishers, it.name).is_some_and(|best| std::ptr::eq(best, it));
+        Row {
+            case: course.name.clone(),
+            engine: it.name.to_owned(),
+            tolerance: it.setting.tolerance(),
+            step: it.setting.step(),
+            ns_per_period: timed.map(|it| it.series.typical()),
+            state_error_max: timed.map(|it| it.score.state_error),
+            event_time_error_max: timed.map(|it| it.score.event_time_error),
+            ratio_to_exact: timed.map(|it| it.series.ratio_to(&unit)).filter(|it| it.is_finite()),
+            ratio_at_1e_6: None,
+            ratio_at_1e_9: None,
+            harness_share: timed.and_then(|it| it.harness_share),
+            rhs_per_period: timed
+                .map(|it| it.work.rhs_evaluations)
+                .filter(|it| *it > 0)
+                .map(|it| it as f64 / course.periods()),
+            most_accurate: best,
+            adaptive: !matches!(it.stepping, Stepping::Exact | Stepping::Fixed { .. }),
+            why: it.result.as_ref().err().map(ToString::to_string),
+        }
+    };
+    at_equal_accuracy(finishers.iter().map(row).collect())
+}
+
+/// Reads each engine's work-precision curve at [`LOOSE`] and [`TIGHT`]. Its times are ratios to the
+/// exact solver's, so that what the machine did otherwise in a round is out of them already.
+fn at_equal_accuracy(mut rows: Vec<Row>) -> Vec<Row> {
+    for own in rows.chunk_by_mut(|a, b| a.engine == b.engine) {
+        let corner =
+            |row: &Row| Some(Corner { error: row.state_error_max?, time: row.ratio_to_exact? });
+        let curve: Vec<_> = own.iter().map(corner).collect();
+        for row in own {
+            row.ratio_at_1e_6 = time_at(&curve, LOOSE);
+            row.ratio_at_1e_9 = time_at(&curve, TIGHT);
+        }
+    }
+    rows
+}
+
+fn damped(rung: &Rung) -> Vec<Damped> {
+    let row = |it: &Finisher| {
+        let timed = it.result.as_ref().ok();
+        Damped {
+            xi: rung.xi,
+            engine: it.name.to_owned(),
+            tolerance: it.setting.tolerance(),
+            ns_per_period: timed.map(|it| it.series.typical()),
+            state_error_max: timed.map(|it| it.score.state_error),
+            why: it.result.as_ref().err().map(ToString::to_string),
+        }
+    };
+    rung.finishers.iter().map(row).collect()
+}

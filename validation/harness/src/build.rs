@@ -1,0 +1,44 @@
+//! Which program this is, and where it runs.
+
+use serde::{Deserialize, Serialize};
+
+/// What every report and every file of a bench begins with.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Build {
+    /// The format's number.
+    pub schema: u32,
+    /// The program's version.
+    pub percuss: String,
+    /// The commit it was built from, where that is known.
+    pub commit: Option<String>,
+    /// The compiler.
+    pub rustc: String,
+    /// The processor that runs it.
+    pub cpu: String,
+    /// The processor it was compiled for.
+    #[serde(skip)]
+    pub target_cpu: String,
+}
+
+impl Build {
+    /// A program that was built from this commit (empty where it is not known), by this compiler
+    /// and for this processor, here.
+    #[must_use]
+    pub fn of(commit: &str, rustc: &str, target_cpu: &str) -> Self {
+        Self {
+            schema: 1,
+            percuss: env!("CARGO_PKG_VERSION").to_owned(),
+            commit: Some(commit.to_owned()).filter(|it| !it.is_empty()),
+            rustc: rustc.to_owned(),
+            cpu: cpu(),
+            target_cpu: target_cpu.to_owned(),
+        }
+    }
+}
+
+/// The processor's name where the system tells it, else its architecture.
+fn cpu() -> String {
+    let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = info.lines().find_map(|line| line.strip_prefix("model name")?.split_once(':'));
+    model.map_or(std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
+}

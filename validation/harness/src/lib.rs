@@ -1,0 +1,15 @@
+//! The harness: what is true ([`truth`]), how an engine's answer is scored ([`score`]), what is run
+//! ([`suite`], [`power`]), how fast it is ([`bench`]), and what the paper says ([`reproduce`]).
+
+// Modules here name those of the packages below as if they were their own.
+use percuss_engines::{case, engine, number};
+use percuss_pictures as picture;
+
+pub mod arrays;
+pub mod bench;
+pub mod build;
+pub mod power;
+pub mod reproduce;
+pub mod score;
+pub mod suite;
+pub mod truth;
