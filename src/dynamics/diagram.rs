@@ -58,6 +58,9 @@ pub struct Step {
     pub drift_per_period: f64,
     /// Why the motion ends in a phase that never ends, where it does.
     pub endless: Option<Endless>,
+    /// Whether rounding hides how a phase ends before the last strobe; the points are those before
+    /// it.
+    pub undecidable: bool,
 }
 
 /// Values that are looked at in one go: their models and strobes are held in memory meanwhile.
@@ -151,11 +154,12 @@ impl Diagram {
     fn step(&self, model: &Model, step: u32, strobes: &[Entry]) -> Step {
         let shown = self.periods as usize;
         let drift_per_period = match strobes {
-            [first, .., last] => (last.v() - first.v()) / shown as f64,
+            [first, .., last] if strobes.len() > shown => (last.v() - first.v()) / shown as f64,
             _ => f64::NAN,
         };
         let points = strobes.iter().take(shown).map(Entry::point).collect();
         let endless = strobes.last().and_then(|last| Section::endless_at(model, last));
-        Step { value: self.value(step), points, drift_per_period, endless }
+        let undecidable = strobes.len() <= shown;
+        Step { value: self.value(step), points, drift_per_period, endless, undecidable }
     }
 }

@@ -63,6 +63,9 @@ pub struct Spectrum {
     pub drift_per_period: f64,
     /// Why the motion ends in a phase that never ends, where it does.
     pub endless: Option<Endless>,
+    /// Whether rounding hides how a phase ends before the last period does; nothing else is known
+    /// then.
+    pub undecidable: bool,
 }
 
 impl Spectrum {
@@ -190,9 +193,11 @@ impl Run {
 
     fn spectrum(&self, model: &Model) -> Spectrum {
         let periods = self.periods as f64;
-        let (Some(first), Some(end)) = (self.marks.first(), self.marks.last()) else {
+        // A motion that is decided to its end has a mark at either end of every batch.
+        let [first, .., end] = self.marks.as_slice() else { return Spectrum::UNKNOWN };
+        if self.marks.len() as u64 <= self.batches {
             return Spectrum::UNKNOWN;
-        };
+        }
         let drift_per_period = (end.drift - first.drift) / periods;
         let third =
             if self.touched { f64::NEG_INFINITY } else { -model.period() * model.constants().rate };
@@ -226,6 +231,7 @@ impl Run {
             contraction_per_period: self.contraction / periods,
             drift_per_period,
             endless: None,
+            undecidable: false,
         }
     }
 
@@ -283,16 +289,18 @@ fn endless_spectrum(model: &Model, endless: Endless, third: f64, drift: f64) -> 
         contraction_per_period: contraction,
         drift_per_period: drift,
         endless: Some(endless),
+        undecidable: false,
     }
 }
 
 impl Spectrum {
-    /// A spectrum of which nothing is known.
+    /// The spectrum of a motion that is not decided to its end.
     const UNKNOWN: Self = Self {
         exponents_per_period: [f64::NAN; 3],
         standard_error: [f64::NAN; 3],
         contraction_per_period: f64::NAN,
         drift_per_period: f64::NAN,
         endless: None,
+        undecidable: true,
     };
 }

@@ -11,7 +11,7 @@ use percuss_validation::engine::{
 use std::process::ExitCode;
 
 /// Heun's method: a step of Euler, then one by the trapezoidal rule.
-struct Heun;
+pub struct Heun;
 
 impl Engine for Heun {
     fn declaration(&self) -> Declaration {

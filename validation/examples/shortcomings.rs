@@ -66,17 +66,20 @@ fn collect(row: &Value, defects: &mut BTreeMap<String, BTreeMap<Key, (f64, f64)>
         let quantity = text(&bound["quantity"])?;
         let key = (text(&row["case"])?, setting, quantity.clone(), text(&bound["statistic"])?);
         let own = defects.entry(text(&row["engine"])?).or_default();
-        own.insert(key, range(&quantity, value, limit));
+        let most = if quantity == "events_missed" { row["events_expected"].as_f64() } else { None };
+        own.insert(key, range(&quantity, value, limit, most));
     }
     Ok(())
 }
 
-/// Floor and ceiling around a figure.
-fn range(quantity: &str, value: f64, limit: f64) -> (f64, f64) {
+/// Floor and ceiling around a figure. One that cannot exceed `most` stays below it by half of what
+/// there is to it, because a ceiling above it would bound nothing.
+fn range(quantity: &str, value: f64, limit: f64, most: Option<f64>) -> (f64, f64) {
     if quantity == "phase_word" {
         (1.0, 1.0)
     } else if COUNTS.contains(&quantity) {
-        ((value / 2.0).ceil(), 2.0 * value)
+        let halfway = most.map_or(f64::INFINITY, |most| (0.5 * (value + most)).floor());
+        ((value / 2.0).ceil(), (2.0 * value).min(halfway.max(value)))
     } else {
         let digits = |value: f64| format!("{value:.1e}").parse().unwrap_or(value);
         (digits(value / FACTOR).max(limit), digits(value * FACTOR))

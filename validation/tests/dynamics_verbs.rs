@@ -71,6 +71,27 @@ fn a_section_that_is_not_decided_to_its_end_says_so() {
 }
 
 #[test]
+fn exponents_and_diagrams_that_are_not_decided_to_their_end_say_so() {
+    let start = "--b 0.5 --xi 1e-8 --omega 2 --p 0.8 --y 0.56 --q 0.78";
+    let ran = |line: &str| {
+        let words: Vec<_> = line.split_whitespace().chain(start.split_whitespace()).collect();
+        let output = run(&words);
+        let said = text(&output.stderr);
+        assert_eq!(output.status.code(), Some(1), "{line}: {said}");
+        assert!(said.contains("undecidable: rounding hides how a phase ends"), "{said}");
+        text(&output.stdout)
+    };
+    // The phase is undecided in the transient, and in the last of two halves.
+    for (transient, periods) in [(999_999_980_u64, 10_u64), (0, 4_000_000)] {
+        let shown = ran(&format!("lyapunov --a 0.84 --transient {transient} --periods {periods}"));
+        assert!(shown.contains("\"drift_per_period\": null"), "{shown}");
+    }
+    let values = "--parameter a --from 0.84 --to 0.84 --steps 1";
+    let rows = ran(&format!("bifurcation {values} --transient 999999990 --periods 2"));
+    assert_eq!(rows.lines().count(), 1, "{rows}");
+}
+
+#[test]
 fn a_section_is_the_table() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("s.npy");

@@ -8,7 +8,9 @@
 #[path = "../examples/engine.rs"]
 mod engine;
 
-use percuss_validation::engine as engines;
+use percuss_validation::engine::{
+    self as engines, Accuracy, Declaration, Engine, Failure, Limits, Outcome, Task,
+};
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, ExitCode, Output};
@@ -16,6 +18,10 @@ use std::process::{Command, ExitCode, Output};
 fn main() -> ExitCode {
     match std::env::args().nth(1).as_deref() {
         Some("validate" | "engines" | "bench") => return engine::main(),
+        Some("absent") => {
+            let arguments = std::iter::once("percuss".into()).chain(std::env::args_os().skip(2));
+            return percuss_validation::cli::run_with(&[&Absent], arguments);
+        }
         // A test runner asks what tests there are.
         Some("--list") => return ExitCode::SUCCESS,
         _ => {}
@@ -24,8 +30,37 @@ fn main() -> ExitCode {
     the_report_is_whole();
     it_is_an_engine_of_every_verb();
     its_accuracy_is_held_to_a_baseline();
+    an_engine_that_is_not_installed_is_unavailable();
     the_pages_show_what_it_does();
     ExitCode::SUCCESS
+}
+
+/// An engine that needs what is not there.
+struct Absent;
+
+impl Engine for Absent {
+    fn declaration(&self) -> Declaration {
+        Declaration { name: "absent", ..engine::Heun.declaration() }
+    }
+
+    fn available(&self) -> Result<(), String> {
+        Err("it needs a library that is not installed".to_owned())
+    }
+
+    fn run(&self, _: &Task, _: Accuracy, _: &Limits) -> Result<Outcome, Failure> {
+        panic!("an engine that is not there is not run");
+    }
+}
+
+/// Its rows are `unavailable`, which is no failure unless every engine is required.
+fn an_engine_that_is_not_installed_is_unavailable() {
+    let asked = ["absent", "validate", "-e", "^(exact|absent)$", "-c", "^impact-into-progression$"];
+    let output = example(&asked);
+    let said = text(&output.stdout);
+    assert_eq!(output.status.code(), Some(0), "{said}{}", text(&output.stderr));
+    assert!(said.contains("3 unavailable") && said.contains("0 error"), "{said}");
+    let required = example(&[&asked[..], &["--require"]].concat());
+    assert_eq!(required.status.code(), Some(1), "{}", text(&required.stdout));
 }
 
 fn example(arguments: &[&str]) -> Output {

@@ -114,9 +114,15 @@ fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
     let chosen = cases.filter(|case| INTEGRATED.contains(&case.name.as_str())).collect();
     let cases = prepare(chosen, &library, Suite::Quick).expect("the cases are made ready");
     for standard in Standard::of_faulty() {
-        for finding in findings(faulty(), &cases, standard) {
+        let found = findings(faulty(), &cases, standard);
+        for finding in &found {
+            println!("{} ({}): {:?}", finding.engine, finding.fault, finding.gates);
             let caught = finding.gates.values().any(|trip| trip.failed > 0);
             assert!(caught, "{}: {}", finding.engine, finding.fault);
+        }
+        for gate in Gate::ALL {
+            let trips = found.iter().any(|finding| finding.gates[&gate].failed > 0);
+            assert!(trips, "no fault of an integrator trips {}", gate.name());
         }
         let control = Wrong { engine: FAULTY_CONTROL, fault: "none" };
         for finding in findings(&[control], &cases, standard) {

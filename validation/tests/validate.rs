@@ -140,26 +140,34 @@ fn a_report_is_no_worse_than_itself_and_worse_than_a_better_one() {
     assert!(!said.contains("baseline: small-b exact"), "{said}");
 }
 
-/// A report of two rows of one case, and what a baseline with changed rows makes of it.
+/// A report of two engines on one case, and what a baseline with changed rows makes of it.
 fn against_changed(
+    change: impl Fn(&mut Vec<serde_json::Value>),
+    more: &[&str],
+) -> (Option<i32>, String) {
+    changed(&["validate", "-c", "^small-b$", "-e", "exact|dopri5$"], change, more)
+}
+
+/// A report of chosen rows, and what a baseline with changed rows makes of it.
+fn changed(
+    chosen: &[&str],
     change: impl Fn(&mut Vec<serde_json::Value>),
     more: &[&str],
 ) -> (Option<i32>, String) {
     let folder = tempfile::tempdir().expect("a folder");
     let out = folder.path().display().to_string();
-    let chosen = ["validate", "-c", "^small-b$", "-e", "exact|dopri5$"];
-    run(&[&chosen[..], &["--out", &out]].concat());
+    run(&[chosen, &["--out", &out]].concat());
     let report = fs::read_to_string(folder.path().join("report.json")).expect("read");
     let mut earlier: serde_json::Value = serde_json::from_str(&report).expect("JSON");
     change(earlier["results"].as_array_mut().expect("rows"));
     let path = folder.path().join("earlier.json").display().to_string();
     fs::write(&path, earlier.to_string()).expect("written");
-    let output = run(&[&chosen[..], &["--baseline", &path], more].concat());
+    let output = run(&[chosen, &["--baseline", &path], more].concat());
     (output.status.code(), text(&output.stdout) + &text(&output.stderr))
 }
 
 #[test]
-fn an_error_over_twice_as_large_and_one_more_miss_are_worse() {
+fn an_error_over_twice_as_large_is_worse() {
     let scaled = |factor: f64| {
         move |rows: &mut Vec<serde_json::Value>| {
             for row in rows.iter_mut().filter(|row| row["engine"] != "exact") {
@@ -172,6 +180,25 @@ fn an_error_over_twice_as_large_and_one_more_miss_are_worse() {
     assert_eq!(against_changed(scaled(2.1), &[]).0, Some(1));
     let failed_before = |rows: &mut Vec<serde_json::Value>| rows[0]["verdict"] = "error".into();
     assert_eq!(against_changed(failed_before, &[]).0, Some(0));
+}
+
+#[test]
+fn one_more_missed_or_spurious_event_is_worse() {
+    for (case, key, word) in [
+        ("^graze-overlap-1e-9$", "events_missed", "missed"),
+        ("^graze-miss-1e-9$", "events_spurious", "spurious"),
+    ] {
+        let chosen = ["validate", "-c", case, "-e", "^diffsol-"];
+        let one_less = |rows: &mut Vec<serde_json::Value>| {
+            let wrong = rows.iter_mut().find(|row| row[key].as_u64() > Some(0));
+            let wrong = wrong.unwrap_or_else(|| panic!("{case}: no event is {word}"));
+            wrong[key] = (wrong[key].as_u64().expect("a count") - 1).into();
+        };
+        assert_eq!(changed(&chosen, |_| (), &[]).0, Some(0), "{case}");
+        let (code, said) = changed(&chosen, one_less, &[]);
+        assert_eq!(code, Some(1), "{said}");
+        assert!(said.contains(&format!("events {word}, ")), "{said}");
+    }
 }
 
 #[test]
@@ -209,6 +236,16 @@ fn a_row_without_a_result_is_exit_1() {
     let table = text(&output.stdout);
     assert_eq!(output.status.code(), Some(1), "{table}");
     assert!(table.contains("3 error") && table.contains("error: stiff"), "{table}");
+    // An error is worse than anything but an error.
+    let chosen = ["validate", "--cases", &folder, "-e", "^ode_solvers-dopri5$"];
+    let was = |verdict: &'static str| {
+        let change = move |rows: &mut Vec<serde_json::Value>| rows[0]["verdict"] = verdict.into();
+        changed(&chosen, change, &[]).1
+    };
+    for verdict in ["pass", "known", "fail"] {
+        assert!(was(verdict).contains(&format!("error, was {verdict}")), "{verdict}");
+    }
+    assert!(!was("error").contains("worse than the baseline"));
 }
 
 #[test]

@@ -58,7 +58,8 @@ const MAX_ROWS: u64 = 10_000_000;
 /// An SVG of more points is not small.
 const MAX_SVG: u64 = 20_000;
 
-pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<()> {
+/// Writes the diagram; whether the motion was decided to its end at every value.
+pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     let format = arguments.output.format(Format::Csv)?;
     let diagram = diagram(arguments)?;
     check_size(arguments, format)?;
@@ -73,7 +74,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<()> {
         Format::Svg => Ok(out.write_all(picture::svg(&drawing(&diagram, &steps))?.as_bytes())?),
     })?;
     tell_endless(&steps);
-    Ok(())
+    Ok(tell_undecidable(diagram.parameter, &steps))
 }
 
 fn diagram(arguments: &Arguments) -> Result<Diagram> {
@@ -157,6 +158,21 @@ fn drawing(diagram: &Diagram, steps: &[Step]) -> Figure {
             plot("drift per period", drift.collect()),
         ],
     }
+}
+
+/// One line where rounding hides how a phase ends; whether there is no such value.
+fn tell_undecidable(parameter: Parameter, steps: &[Step]) -> bool {
+    let hidden = || steps.iter().filter(|step| step.undecidable);
+    let Some(first) = hidden().next() else { return true };
+    note(&format!(
+        "undecidable: rounding hides how a phase ends at {} of {} values (first: {} = {}); simulate \
+         with that value shows the phase",
+        hidden().count(),
+        steps.len(),
+        parameter.as_str(),
+        shortest(first.value)
+    ));
+    false
 }
 
 /// One line where motions end in a phase without end.

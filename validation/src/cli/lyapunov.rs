@@ -41,7 +41,8 @@ struct Json {
     drift_per_period: f64,
 }
 
-pub(super) fn run(arguments: &Arguments) -> Result<()> {
+/// Writes the exponents; whether the motion was decided to its end.
+pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     arguments.output.format(Format::Json)?;
     let problem = arguments.model.problem()?;
     work::check_horizon(arguments.transient, arguments.periods)?;
@@ -57,10 +58,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         drift_per_period: found.drift_per_period,
     };
     arguments.output.destination().json(&json)?;
-    if let Some(endless) = found.endless {
+    if found.undecidable {
+        note(
+            "undecidable: rounding hides how a phase ends, no exponent is known; simulate with the \
+             same flags shows the phase",
+        );
+    } else if let Some(endless) = found.endless {
         note(&notice(endless));
     }
-    Ok(())
+    Ok(!found.undecidable)
 }
 
 fn spectrum(arguments: &Arguments, problem: &Problem) -> Spectrum {

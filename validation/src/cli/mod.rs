@@ -119,8 +119,8 @@ fn dispatch(arguments: &Arguments) -> u8 {
     let result = match &arguments.verb {
         Verb::Simulate(simulate) => simulate::run(simulate).map(code),
         Verb::Poincare(poincare) => poincare::run(poincare).map(code),
-        Verb::Lyapunov(lyapunov) => lyapunov::run(lyapunov).map(|()| DONE),
-        Verb::Bifurcation(it) => bifurcation::run(it, arguments.threads).map(|()| DONE),
+        Verb::Lyapunov(lyapunov) => lyapunov::run(lyapunov).map(code),
+        Verb::Bifurcation(it) => bifurcation::run(it, arguments.threads).map(code),
         Verb::Attractors(it) => basins::attractors(it, arguments.threads).map(|()| DONE),
         Verb::Basins(it) => basins::basins(it, arguments.threads).map(|()| DONE),
         Verb::Engines(engines) => engines::run(engines).map(|()| DONE),

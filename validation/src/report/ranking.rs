@@ -2,7 +2,7 @@
 //!
 //! The rule: by (events found - spurious events) as a share of all events of all cases and
 //! settings, where events that were not run or not scored count as not found; of equals the one
-//! that needs fewer right-hand sides an event at an error of 1e-6 comes first. Exact engines stand
+//! that needs fewer right-hand sides per event at an error of 1e-6 comes first. Exact engines stand
 //! above, as the reference.
 
 use super::Row;
@@ -36,7 +36,7 @@ pub struct Ranked {
     /// Errors of event times over tolerance x (1 + |value|) x growth x events so far; eps stands in
     /// for the tolerance of the exact solver, and step^p/(p + 1)! for that of a fixed step.
     pub event_time_error_units: Units,
-    /// Right-hand sides an event where the largest event-time error is [`COMPARED_AT`]: the median
+    /// Right-hand sides per event where the largest event-time error is [`COMPARED_AT`]: the median
     /// over the cases on which its settings reach that error.
     pub rhs_per_event: Option<f64>,
 }

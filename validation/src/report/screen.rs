@@ -80,8 +80,10 @@ fn ranking_table(ranking: &[Ranked]) -> String {
     let legend = format!(
         "rank: (found - spurious) of all events, over all cases and settings; what was not run or not \
          scored counts as not found. median, worst: error of event times in units of tolerance x \
-         growth x events so far (eps for exact, the step's own error for fixed steps). rhs: right-hand sides an event at an event-time error of {COMPARED_AT:e}, which \
-         decides between equals. exact is the reference."
+         growth x events so far (eps for exact, the step's own error for fixed steps). rhs: right-hand \
+         sides per event at an event-time error of {COMPARED_AT:e}, which decides between equals. \
+         Missed or spurious events of a graze that a method's own error hides are undecidable, which \
+         is no failure. exact is the reference; `percuss engines` says what each engine is."
     );
     text(&table) + &wrapped(&legend) + "\n"
 }

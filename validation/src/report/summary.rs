@@ -42,7 +42,9 @@ impl EngineSummary {
 impl SettingSummary {
     fn of(rows: &[&Row]) -> Self {
         let ran: Vec<&Row> = rows.iter().copied().filter(|row| row.was_run()).collect();
-        let sum = |count: fn(&Row) -> Option<usize>| ran.iter().filter_map(|row| count(row)).sum();
+        // As in the ranking: what is not scored counts as not found.
+        let scored = || ran.iter().filter(|row| row.verdict != Verdict::NotScored);
+        let sum = |count: fn(&Row) -> Option<usize>| scored().filter_map(|row| count(row)).sum();
         let error = |figure: fn(&Row) -> f64| {
             let of = |row: &&Row| if row.status == "ok" { figure(row) } else { f64::INFINITY };
             Spread::of(ran.iter().map(of).filter(|error| !error.is_nan()).collect()).median

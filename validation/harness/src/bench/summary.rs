@@ -18,6 +18,10 @@ pub fn summary(bench: &Bench) -> String {
     text.push_str(&events(bench));
     text.push('\n');
     text.push_str(&competitors(bench));
+    text.push_str(
+        "times exact: at an error <= 1e-9 and <= 1e-6 interpolated on the work-precision curve;\n\
+         harness: share of the engine's time that is the harness's own\n",
+    );
     text.push_str(&least_error(bench));
     let short = bench.cases.iter().filter_map(|it| Shortfall::of(bench, &it.case));
     let short: Vec<_> = short.map(|it| format!("{it}\n")).collect();

@@ -137,7 +137,7 @@ pub fn measure(
     let expected = prefix(rows, |row| row.elapsed.value() <= horizon).len();
     let counted = prefix(found, |event| event.elapsed <= horizon).len();
     let pairs: Vec<_> = matching.pairs.iter().copied().filter(|(i, _)| *i < expected).collect();
-    let mismatch = Mismatch::of(&matching, expected, counted);
+    let mismatch = Mismatch::of(&matching, (rows.len(), expected), (found.len(), counted));
     let state_errors = sample_errors(truth, outcome);
     Measures {
         horizon_periods: horizon / period,

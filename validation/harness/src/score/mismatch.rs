@@ -12,6 +12,10 @@ pub struct Mismatch {
     pub missed: Vec<usize>,
     /// Indices of the engine's events that the truth does not have.
     pub spurious: Vec<usize>,
+    /// Indices of the truth's events that the engine does not have, at any time.
+    lost: Vec<usize>,
+    /// Indices of the engine's events that the truth does not have, at any time.
+    extra: Vec<usize>,
     /// How many of the truth's events are before the scored horizon.
     expected: usize,
     /// Indices of the engine's events that are before it, or matched to one that is.
@@ -30,10 +34,15 @@ pub struct Excused {
 }
 
 impl Mismatch {
-    /// What a matching leaves over of the first `expected` of the truth's events and of the first
-    /// `counted` of the engine's.
+    /// What a matching of `rows` events of the truth and `found` of the engine leaves over of the
+    /// first `expected` and the first `counted` of them.
     #[must_use]
-    pub fn of(matching: &Matching, expected: usize, counted: usize) -> Self {
+    pub fn of(
+        matching: &Matching,
+        (rows, expected): (usize, usize),
+        (found, counted): (usize, usize),
+    ) -> Self {
+        let all = found;
         let partner = |j: usize| matching.pairs.iter().find(|(_, own)| *own == j).map(|it| it.0);
         let found = |i: &usize| matching.pairs.iter().any(|(truth, _)| truth == i);
         // An event just past the horizon may be the partner of one just before it.
@@ -45,6 +54,8 @@ impl Mismatch {
         Self {
             missed: (0..expected).filter(|i| !found(i)).collect(),
             spurious: (0..counted).filter(|j| partner(*j).is_none()).collect(),
+            lost: (0..rows).filter(|i| !found(i)).collect(),
+            extra: (0..all).filter(|j| partner(*j).is_none()).collect(),
             expected,
             counted: own.collect(),
         }
@@ -60,13 +71,14 @@ impl Mismatch {
 
     /// What the grazes excuse that an engine which may err by `allowed` units need not decide: all
     /// events of a touch together, or a pair of spurious ones within `window` of a near miss that
-    /// leaves the phase and comes back to it.
+    /// leaves the phase and comes back to it. The scored horizon may lie between the two.
     #[must_use]
     pub fn excused(&self, grazes: &[Graze], found: &[Event], window: f64, allowed: f64) -> Excused {
         let mut excused = Excused::default();
         for graze in grazes.iter().filter(|it| it.is_undecidable(allowed)) {
             let missed: Vec<_> = graze.events.clone().filter(|i| self.missed.contains(i)).collect();
-            let touch = graze.events.len() == 2 && missed.len() == 2;
+            let whole = graze.events.clone().all(|i| self.lost.contains(&i));
+            let touch = graze.events.len() == 2 && whole && !missed.is_empty();
             let pair = if graze.events.is_empty() {
                 self.spurious_pair(graze, found, window, &excused)
             } else {
@@ -76,12 +88,14 @@ impl Mismatch {
                 excused.grazes.push((graze.elapsed, graze.margin));
             }
             excused.missed.extend(missed.into_iter().filter(|_| touch));
-            excused.spurious.extend(pair.into_iter().flatten());
+            let scored = |j: &usize| self.spurious.contains(j);
+            excused.spurious.extend(pair.into_iter().flatten().filter(scored));
         }
         excused
     }
 
-    /// Two spurious events in a row near a near miss: out of its phase and back into it.
+    /// Two spurious events in a row near a near miss: out of its phase and back into it. The second
+    /// may lie beyond the scored horizon.
     fn spurious_pair(
         &self,
         graze: &Graze,
@@ -91,8 +105,9 @@ impl Mismatch {
     ) -> Option<[usize; 2]> {
         let near = |j: usize| (found[j].elapsed - graze.elapsed).abs() <= window;
         let free = |j: usize| near(j) && !excused.spurious.contains(&j);
-        let pair = self.spurious.windows(2).find(|pair| {
-            pair[1] == pair[0] + 1
+        let pair = self.extra.windows(2).find(|pair| {
+            self.spurious.contains(&pair[0])
+                && pair[1] == pair[0] + 1
                 && pair.iter().all(|j| free(*j))
                 && found[pair[0]].phase != graze.phase
                 && found[pair[1]].phase == graze.phase
@@ -125,7 +140,8 @@ mod tests {
         let rows: Vec<_> = truth.iter().copied().map(row).collect();
         let found: Vec<_> = own.iter().copied().map(event).collect();
         let matching = Matching::of(&rows, &found, WINDOW);
-        (Mismatch::of(&matching, rows.len(), found.len()), rows, found)
+        let (all, own) = (rows.len(), found.len());
+        (Mismatch::of(&matching, (all, all), (own, own)), rows, found)
     }
 
     #[test]
@@ -156,6 +172,33 @@ mod tests {
         let (other, _, own) = mismatch(&truth, &truth[3..]);
         assert_eq!(other.excused(&grazes, &own, WINDOW, 1.0).missed, [0, 1]);
         assert_eq!(other.missed, [0, 1, 2]);
+    }
+
+    #[test]
+    fn a_graze_on_the_scored_horizon_is_excused_as_one_before_it_is() {
+        // The horizon lies between the two events of the pair, then of the touch.
+        let pair = [(1.0, Contact), (1.01, NoContact)];
+        let found: Vec<_> = pair.into_iter().map(event).collect();
+        let spurious = Mismatch::of(&Matching::of(&[], &found, WINDOW), (0, 0), (2, 1));
+        assert_eq!(spurious.spurious, [0]);
+        let near_miss = [graze(1.0, -1e-6, 0..0)];
+        let excused = spurious.excused(&near_miss, &found, WINDOW, 1e-6);
+        assert_eq!(excused.spurious, [0]);
+        assert!(spurious.same_word(&[], &found, &excused));
+        let rows: Vec<_> = pair.into_iter().map(row).collect();
+        let missed = Mismatch::of(&Matching::of(&rows, &[], WINDOW), (2, 1), (0, 0));
+        let excused = missed.excused(&[graze(1.005, 1e-6, 0..2)], &[], WINDOW, 1e-6);
+        assert_eq!((excused.missed.as_slice(), excused.grazes.len()), (&[0][..], 1));
+        // One that comes back otherwise is none, nor is half of a touch.
+        let other: Vec<_> = [(1.0, Contact), (1.5, NoContact)].into_iter().map(event).collect();
+        let late = Mismatch::of(&Matching::of(&[], &other, WINDOW), (0, 0), (2, 1));
+        assert_eq!(late.excused(&near_miss, &other, WINDOW, 1.0), Excused::default());
+        let half = Mismatch::of(&Matching::of(&rows, &found[1..], WINDOW), (2, 1), (1, 0));
+        assert_eq!(half.missed, [0]);
+        assert_eq!(
+            half.excused(&[graze(1.005, 1e-6, 0..2)], &found[1..], WINDOW, 1.0),
+            Excused::default()
+        );
     }
 
     #[test]

@@ -66,7 +66,7 @@ pub struct Restart {
     pub with_impact: usize,
     /// Runs that the truth leaves undecided, which are not made.
     pub undecided: usize,
-    /// Runs that gave no result; their error is no number, which is larger than any.
+    /// Runs that gave no result. They are bounded by themselves and are in none of the errors.
     pub failed: usize,
     /// Runs with a result whose phases follow each other otherwise than in the truth.
     pub wrong_words: usize,
@@ -119,9 +119,10 @@ impl RestartTest {
         let runs = &self.runs[..most.min(self.runs.len())];
         let measured = |it: &RestartRun| run(&it.task).map(|outcome| it.error(&outcome, unit));
         let errors: Vec<_> = runs.par_iter().map(measured).collect();
-        let results = || runs.iter().zip(&errors).filter(|(run, _)| run.impact);
+        let with_impact = || runs.iter().zip(&errors).filter(|(run, _)| run.impact);
+        let results = || with_impact().filter_map(|(run, error)| Some((run, error.as_ref().ok()?)));
         let figures = |figure: fn(&RestartError) -> f64| -> Vec<f64> {
-            results().map(|(_, error)| error.as_ref().map_or(f64::NAN, figure)).collect()
+            results().map(|(_, error)| figure(error)).collect()
         };
         let units = figures(|error| error.units);
         let mut by_switches: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
@@ -130,7 +131,7 @@ impl RestartTest {
         }
         Restart {
             runs: runs.len(),
-            with_impact: units.len(),
+            with_impact: with_impact().count(),
             undecided: self.undecided,
             failed: errors.iter().filter(|error| error.is_err()).count(),
             wrong_words: errors.iter().flatten().filter(|error| !error.same_word).count(),

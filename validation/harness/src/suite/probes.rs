@@ -142,8 +142,9 @@ impl Extent {
     /// What is asked of an integrator with a fault.
     #[must_use]
     pub fn of_faulty(case: &Case) -> Self {
-        let restarts = if case.probed.integrators { FEWEST } else { 0 };
-        Self { restarts, ..Self::default() }
+        let listed = case.probed.integrators;
+        let restarts = if listed { FEWEST } else { 0 };
+        Self { restarts, horizons: HORIZONS_OF_WRONG, attractor: listed }
     }
 }
 

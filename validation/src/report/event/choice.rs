@@ -11,7 +11,7 @@ use crate::truth::Truth;
 use rayon::prelude::*;
 
 /// Rows that get a picture: a page stays quick, and so does the run, with that many.
-const MOST_PICTURES: usize = 60;
+const MOST_PICTURES: usize = 200;
 /// A run that took more right-hand sides is not made again for a picture.
 const MOST_WORK: u64 = 10_000_000;
 

@@ -33,6 +33,8 @@ pub(super) enum Slip {
     LowOrder,
     /// b and xi are larger by 1e-4 of themselves.
     Parameters,
+    /// One run in so many ends without a result.
+    GivesUp(u64),
 }
 
 /// How late a late event is, in tolerances.
@@ -55,6 +57,11 @@ impl Engine for Faulty {
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let tolerance = accuracy.wanted_tolerance()?;
+        if let Slip::GivesUp(every) = self.slip
+            && task.events_before % every == every - 1
+        {
+            return Err(Failure::new("gave up, on purpose"));
+        }
         let meter = Meter::new(limits);
         let equations = Oscillator::of(&self.parameters(task), task.forcing_angle);
         let mut run = Run::new(task, tolerance, &meter, equations);

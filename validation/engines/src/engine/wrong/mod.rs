@@ -81,7 +81,7 @@ pub fn wrong() -> &'static [Wrong] {
 /// The integrator of [`faulty`] without a fault: the control of its power test.
 pub static FAULTY_CONTROL: &dyn Engine = &Faulty { name: "dopri5-control", slip: Slip::None };
 
-/// How rarely an integrator drops an event.
+/// How rarely an integrator drops an event, or gives up a run.
 const SELDOM: u64 = 20;
 
 macro_rules! faulty {
@@ -90,7 +90,7 @@ macro_rules! faulty {
     };
 }
 
-static FAULTY: [Wrong; 8] = [
+static FAULTY: [Wrong; 9] = [
     faulty!("dopri5-drops", Slip::Dropped(SELDOM), "every twentieth event is not noticed"),
     faulty!("dopri5-at-step-end", Slip::AtStepEnd, "an event is put at its step's end"),
     faulty!("dopri5-sign-at-ends", Slip::SignAtEnds, "guards are looked at only at steps' ends"),
@@ -103,6 +103,7 @@ static FAULTY: [Wrong; 8] = [
     faulty!("dopri5-any-direction", Slip::AnyDirection, "the direction of a guard is ignored"),
     faulty!("dopri5-low-order", Slip::LowOrder, "the interpolant is of order 3 instead of 4"),
     faulty!("dopri5-parameters", Slip::Parameters, "b and xi are larger by 1e-4 of themselves"),
+    faulty!("dopri5-gives-up", Slip::GivesUp(SELDOM), "some restarts end without a result"),
 ];
 
 /// Integrators with one fault each, held to the bounds of the engine without it, [`SOUND`].
