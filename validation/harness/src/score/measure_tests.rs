@@ -217,6 +217,16 @@ fn a_twentieth_of_the_events_is_enough() {
 }
 
 #[test]
+fn one_event_has_errors_and_none_has_none() {
+    let mut found = Planted::new().measures();
+    for (total, concerned) in [(1, true), (0, false)] {
+        found.total = total;
+        assert_eq!(found.concerns(Quantity::EventTimeError), concerned);
+        assert_eq!(found.concerns(Quantity::EventConstant), concerned);
+    }
+}
+
+#[test]
 fn what_no_event_and_no_horizon_measures_is_lacking() {
     let mut found = Planted::new().measures();
     found.matched = 0;

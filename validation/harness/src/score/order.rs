@@ -43,6 +43,12 @@ mod tests {
     }
 
     #[test]
+    fn any_number_of_steps_counts() {
+        let ladder: Vec<Rung> = [0.25, 0.5, 1.0].map(|n: f64| (n, 1e-6 * n.powi(-3))).to_vec();
+        assert!(order(&ladder).is_some_and(|order| (order - 3.0).abs() < 1e-12));
+    }
+
+    #[test]
     fn rounding_and_divergence_do_not_count() {
         let ladder = [(10.0, 1.0), (100.0, 1e-4), (200.0, 1e-4 / 16.0), (1e5, 1e-15)];
         assert_eq!(order(&ladder), None);

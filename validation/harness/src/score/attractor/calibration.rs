@@ -145,8 +145,22 @@ mod tests {
         values.iter().map(null).collect()
     }
 
-    /// Of the logarithms 1, 2 and 3 the mean is 2 and the deviation 1; of the differences 0.1, 0.2
-    /// and 0.3 they are 0.2 and 0.1.
+    #[test]
+    fn drift_and_exponent_differ_with_their_signs() {
+        let section = |drift: f64, lyapunov: f64| Section {
+            points: vec![[0.0; 3]; 3],
+            words: BTreeMap::new(),
+            drift,
+            lyapunov,
+            map_errors: vec![0.0; 3],
+            sorted: std::array::from_fn(|_| vec![0.0, 1.0]),
+        };
+        let null = Null::of(&section(0.25, 0.5), &section(0.75, 0.125));
+        assert_eq!((null.value("drift"), null.value("lyapunov")), (-0.5, 0.375));
+    }
+
+    /// The logarithms 1, 2 and 3 have the mean 2 and the deviation 1; the differences 0.1, 0.2 and
+    /// 0.3 have 0.2 and 0.1.
     #[test]
     fn a_run_so_many_deviations_off_has_the_limit_of_so_many() {
         let logarithms = [1.0_f64, 2.0, 3.0].map(f64::exp);
