@@ -102,9 +102,25 @@ impl Catalogue {
         let number = self.faults.len() as u32 + 1;
         let text = self.sources.get(file).map_or("", |source| source.text.as_str());
         let line = text[..place.start].matches('\n').count() + 1;
+        let context = one_line(text.lines().nth(line - 1).unwrap_or_default());
         let original = one_line(&text[place]);
         let (file, replacement) = (file.to_owned(), one_line(replacement));
-        self.faults.push(Fault { number, file, line, operator, original, replacement });
+        let alike = |it: &&Fault| {
+            (&it.file, it.operator) == (&file, operator)
+                && (&it.original, &it.replacement) == (&original, &replacement)
+                && it.context == context
+        };
+        let alike = self.faults.iter().filter(alike).count();
+        self.faults.push(Fault {
+            number,
+            file,
+            line,
+            operator,
+            original,
+            replacement,
+            context,
+            alike,
+        });
         number
     }
 }

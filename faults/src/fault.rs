@@ -18,9 +18,23 @@ pub struct Fault {
     pub original: String,
     /// The text with it.
     pub replacement: String,
+    /// The line it is in, as text.
+    pub context: String,
+    /// How many faults before it are alike in all of that but the line's number.
+    pub alike: usize,
 }
 
 impl Fault {
+    /// The fault's place in the shuffled list of a seed. It depends on what the fault is and on the
+    /// line around it alone: a change of the sources draws the faults of the changed lines anew and
+    /// leaves the rest of a sample.
+    pub fn place(&self, seed: u64) -> u64 {
+        let Self { file, operator, original, replacement, context, alike, .. } = self;
+        let name = file.rsplit('/').next().unwrap_or(file);
+        let text = format!("{name}|{}|{original}|{replacement}|{context}|{alike}", operator.name());
+        fastrand::Rng::with_seed(seed ^ hash(text.as_bytes())).u64(..)
+    }
+
     /// Whether it is in the harness, not in the solver.
     pub fn is_in_validation(&self) -> bool {
         self.file.starts_with("validation/")
@@ -29,10 +43,17 @@ impl Fault {
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { number, file, line, operator, original, replacement } = self;
+        let Self { number, file, line, operator, original, replacement, .. } = self;
         let name = operator.name();
         write!(f, "{number:5} {file}:{line} {name}: {original} -> {replacement}")
     }
+}
+
+/// The hash of Fowler, Noll and Vo (1a, 64 bits): the same on every platform and for ever.
+fn hash(bytes: &[u8]) -> u64 {
+    const BASIS: u64 = 0xcbf2_9ce4_8422_2325;
+    const PRIME: u64 = 0x0100_0000_01b3;
+    bytes.iter().fold(BASIS, |hash, byte| (hash ^ u64::from(*byte)).wrapping_mul(PRIME))
 }
 
 /// Kinds of faults.

@@ -67,7 +67,7 @@ impl Table {
 
     /// Adds a line, which can be read at once.
     pub fn add(&mut self, fault: &Fault, verdict: &Verdict) -> Result<()> {
-        let Fault { number, file, line, operator, original, replacement } = fault;
+        let Fault { number, file, line, operator, original, replacement, .. } = fault;
         let (number, line) = (number.to_string(), line.to_string());
         self.0.write_record([
             number.as_str(),

@@ -28,7 +28,7 @@
 //! on the curvature. It is several times dearer and serves as the judge in the tests.
 
 #[cfg(test)]
-mod bounds;
+mod bounds_tests;
 pub mod certificate;
 pub mod contact;
 mod contact_ahead;

@@ -1,5 +1,5 @@
 //! The harness: what is true ([`truth`]), how an engine's answer is scored ([`score`]), what is run
-//! ([`suite`], [`power`]), how fast it is ([`bench`]), and what the paper says ([`reproduce`]).
+//! ([`suite`], [`power`]), how fast it is ([`mod@bench`]), and what the paper says ([`reproduce`]).
 
 // Modules here name those of the packages below as if they were their own.
 use percuss_engines::{case, engine, number};
