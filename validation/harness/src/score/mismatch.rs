@@ -34,30 +34,31 @@ pub struct Excused {
 }
 
 impl Mismatch {
-    /// What a matching of `rows` events of the truth and `found` of the engine leaves over of the
+    /// What a matching of `rows` events of the truth and `own` of the engine leaves over of the
     /// first `expected` and the first `counted` of them.
     #[must_use]
     pub fn of(
         matching: &Matching,
         (rows, expected): (usize, usize),
-        (found, counted): (usize, usize),
+        (own, counted): (usize, usize),
     ) -> Self {
-        let all = found;
         let partner = |j: usize| matching.pairs.iter().find(|(_, own)| *own == j).map(|it| it.0);
         let found = |i: &usize| matching.pairs.iter().any(|(truth, _)| truth == i);
         // An event just past the horizon may be the partner of one just before it.
         let last = matching.pairs.iter().filter(|(i, _)| *i < expected).map(|(_, j)| j + 1).max();
-        let own = (0..counted.max(last.unwrap_or(0))).filter(|j| match partner(*j) {
+        let before = (0..counted.max(last.unwrap_or(0))).filter(|j| match partner(*j) {
             Some(i) => i < expected,
             None => *j < counted,
         });
+        let lost: Vec<_> = (0..rows).filter(|i| !found(i)).collect();
+        let extra: Vec<_> = (0..own).filter(|j| partner(*j).is_none()).collect();
         Self {
-            missed: (0..expected).filter(|i| !found(i)).collect(),
-            spurious: (0..counted).filter(|j| partner(*j).is_none()).collect(),
-            lost: (0..rows).filter(|i| !found(i)).collect(),
-            extra: (0..all).filter(|j| partner(*j).is_none()).collect(),
+            missed: lost.iter().copied().filter(|i| *i < expected).collect(),
+            spurious: extra.iter().copied().filter(|j| *j < counted).collect(),
+            lost,
+            extra,
             expected,
-            counted: own.collect(),
+            counted: before.collect(),
         }
     }
 
