@@ -24,71 +24,50 @@
 //! - `serde`: parameters, starts, states, samples, growths, counters and names are read and
 //!   written. With `serde_json` enable its `float_roundtrip`: its usual parser may be a unit off.
 
-mod angle;
-mod circle;
-mod constants;
 mod crossing;
 pub mod dynamics;
-mod entry;
 mod error;
-mod exponential;
 mod flow;
-mod growth;
-mod instant;
-mod judgement;
 #[cfg(feature = "lanes")]
 pub mod lanes;
 mod model;
-pub mod number;
+mod numeric;
 mod parameters;
 mod phase;
-mod remainders;
-mod segment;
-mod stages;
-mod start;
+mod run;
 mod state;
-mod surface;
-mod switch;
-mod trajectory;
-mod two_word;
-pub mod variation;
 
 pub use crossing::Counters;
-pub use entry::Entry;
 pub use error::InputError;
-pub use growth::{Growth, GrowthRecorder};
-pub use instant::Instant;
 pub use model::Model;
+pub use model::entry::Entry;
+pub use model::instant::Instant;
+pub use model::start::Start;
+pub use numeric::number;
+pub use numeric::two_word::TwoWord;
 pub use parameters::{Parameter, Parameters, UnknownParameter};
 pub use phase::{Phase, UnknownPhase};
-pub use segment::{Endless, Exit, Sample, Segment};
-pub use start::Start;
+pub use run::exit::{Endless, Exit};
+pub use run::growth::{Growth, GrowthRecorder};
+pub use run::segment::{Sample, Segment};
+pub use run::trajectory::{Step, Trajectory};
+pub use run::variation;
 pub use state::State;
-pub use trajectory::{Step, Trajectory};
-pub use two_word::TwoWord;
 
 /// What the harness needs of the solver's insides. Nothing in here is covered by semantic
 /// versioning.
 #[doc(hidden)]
 pub mod insides {
-    pub use crate::constants::Constants;
-    pub use crate::judgement::{Effort, Judgement};
+    pub use crate::flow::constants::Constants;
     pub use crate::model::Motion;
+    pub use crate::numeric::{angle, remainders, two_word};
+    pub use crate::run::judgement::{Effort, Judgement};
 
-    pub mod angle {
-        pub use crate::angle::*;
-    }
     pub mod crossing {
         pub use crate::crossing::*;
     }
     pub mod flow {
         pub use crate::flow::*;
-    }
-    pub mod remainders {
-        pub use crate::remainders::*;
-    }
-    pub mod two_word {
-        pub use crate::two_word::*;
     }
 }
 

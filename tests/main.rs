@@ -25,6 +25,7 @@ mod judge;
 #[cfg(feature = "lanes")]
 mod lanes;
 mod later_roots;
+mod layers;
 mod limit;
 mod long_phases;
 mod lyapunov;

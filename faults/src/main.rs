@@ -56,9 +56,9 @@ struct Arguments {
 
 const DEFAULT_TARGETS: [&str; 5] = [
     "src/crossing",
-    "src/switch.rs",
-    "src/surface.rs",
-    "src/variation.rs",
+    "src/run/switch.rs",
+    "src/model/surface.rs",
+    "src/run/variation.rs",
     "validation/harness/src/score",
 ];
 

@@ -1,9 +1,9 @@
 //! Tests of the bounds on which certificates and one-sided steps rest: each is held against the
 //! derivative itself, which the guard's Taylor series gives at any later time.
 
-use crate::constants::Constants;
 use crate::crossing::contact::Split;
 use crate::crossing::stepping::Bending;
+use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;

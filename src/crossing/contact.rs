@@ -1,11 +1,11 @@
 //! The guards of a contact: the trial force rises to 1 (progression) or falls to 0 (separation).
 
-use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::contact_parts::{Parts, Shape};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::series::{Push, SHORT_REACH, Series};
 use crate::crossing::slow_envelope::quick_decay;
+use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::damped::Damping;
 use crate::flow::forcing::EntryAngle;

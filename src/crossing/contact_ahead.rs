@@ -1,10 +1,10 @@
 //! Where a contact may end, guessed, or proved to go on.
 
-use crate::constants::Constants;
 use crate::crossing::contact::Split;
 use crate::crossing::guarded::{Guarded, SearchHint};
 use crate::crossing::slow_envelope::first_root;
 use crate::flow::Point;
+use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::damped::Damping;
 use crate::flow::steps::Steps;

@@ -50,7 +50,7 @@ pub trait Guarded: Flow<f64> {
         f64::INFINITY
     }
 
-    /// Rounding room for products that underflow ([`crate::constants::Constants::underflow`]).
+    /// Rounding room for products that underflow ([`crate::flow::constants::Constants::underflow`]).
     fn underflow(&self) -> f64;
 
     /// The guard's Taylor series at an evaluation.

@@ -46,7 +46,7 @@ pub mod stepping;
 pub mod tangents;
 
 use crate::flow::Point;
-use crate::two_word::TwoWord;
+use crate::numeric::two_word::TwoWord;
 
 /// How a phase ends.
 #[derive(Clone, Copy, Debug)]

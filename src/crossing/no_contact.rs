@@ -1,12 +1,12 @@
 //! The guard of a flight: h rises to zero at the impact.
 
-use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::piecewise::{End, Parts, PiecewiseCertificate, Shape};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::slow_envelope::{Place, SlowEnvelope, first_root};
 use crate::crossing::tangents::stays_below;
+use crate::flow::constants::Constants;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
 use crate::flow::steps::{PULLING, Steps, Turning};

@@ -1,11 +1,11 @@
 //! The guard of a progression: the drift velocity w falls to zero when the slider's bottom stops.
 
-use crate::constants::Constants;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::piecewise::{End, Parts, PiecewiseCertificate, Shape};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::slow_envelope::SlowEnvelope;
+use crate::flow::constants::Constants;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::progression::Progression;
 use crate::flow::steps::{PUSHING, Steps};

@@ -5,7 +5,7 @@ use crate::crossing::guarded::{Guarded, SLACK, slack};
 use crate::crossing::series::{SHORT_TERMS, Series, TERMS};
 use crate::crossing::{Counters, Root, Side};
 use crate::flow::Point;
-use crate::two_word::TwoWord;
+use crate::numeric::two_word::TwoWord;
 
 /// Evaluates with counting.
 #[inline(always)]

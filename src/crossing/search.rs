@@ -7,7 +7,6 @@ use crate::crossing::root::{bracketed, evaluate_again, follow, middle};
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::Point;
 use crate::flow::steps::Steps;
-use crate::two_word::TwoWord;
 
 /// The right end of a piece.
 #[derive(Clone, Copy)]
@@ -42,156 +41,211 @@ pub fn first_crossing<G: Guarded>(
     }
     let left = phase.entry();
     let hint = phase.hint(steps, &left, horizon);
-    search((phase, steps), left, (hint, None), horizon, counters)
+    Search::new((phase, steps), (left, hint, None), horizon, counters).run(counters)
 }
 
-/// How a search has ended whose crossing has been told already.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Found {
-    /// The phase ends by a crossing after this time.
-    At(TwoWord),
-    /// There is no crossing before the horizon.
-    Horizon,
-    /// There is never a crossing, which is proved.
-    Never,
-    /// There is no crossing until this time, when the motion is to be taken up again
-    /// ([`Guarded::stage`]).
-    Stage(f64),
-    /// There is no crossing until this time, and no decision after it within the [`Limit`].
-    Undecided(f64),
-}
-
-/// Finds the first crossing and tells it to `next`.
+/// Where the first guess leads: mostly the phase's end, but nothing is proved as yet.
 ///
-/// Mostly the first guess, which may have been made already, leads to the root, and one certificate
-/// says that it is the first. What comes next waits for the root but not for the certificate: it is
-/// begun before that, so that the processor works on both. If the certificate fails, `next` is told
-/// the right one after; if none counts, what it was told counts for nothing.
-#[inline]
-pub fn first_crossing_and<G: Guarded>(
-    (phase, steps): (&G, &Steps),
-    guess: Option<f64>,
-    horizon: f64,
-    counters: &mut Counters,
-    mut next: impl FnMut(&Root),
-) -> Found {
-    if horizon <= 0.0 {
-        return Found::Horizon;
-    }
-    let left = phase.entry();
-    let hint = match guess {
-        Some(time) => SearchHint::Root(time),
-        None => phase.hint(steps, &left, horizon),
-    };
-    let mut tried = None;
-    if let SearchHint::Root(time) = hint
-        && time > 0.0
-        && time < horizon
-    {
-        match follow(phase, 0.0, time, horizon, counters) {
-            Ok(root) => {
-                next(&root);
-                let ends = Ends { right: true, ..phase.imposed() };
-                if root.elapsed().high <= horizon
-                    && phase.certify(steps, &left, &root.point, ends) == Verdict::Inside
-                {
-                    return Found::At(root.elapsed());
-                }
-                tried = Some(Ok(root));
-            }
-            Err(point) => tried = Some(Err(point)),
-        }
-    }
-    match search((phase, steps), left, (hint, tried), horizon, counters) {
-        Crossing::At(root) => {
-            next(&root);
-            Found::At(root.elapsed())
-        }
-        Crossing::Horizon => Found::Horizon,
-        Crossing::Never => Found::Never,
-        Crossing::Stage(elapsed) => Found::Stage(elapsed),
-        Crossing::Undecided(elapsed) => Found::Undecided(elapsed),
-    }
+/// The search has two stages, so that what follows an event can begin between them: it waits for
+/// the candidate's root but not for the verdict, and the processor works on both.
+pub struct Candidate {
+    left: Point<f64>,
+    hint: SearchHint,
+    followed: Option<Followed>,
 }
 
 /// A guess that has been followed: to a root, or in vain.
 type Followed = Result<Root, Point<f64>>;
 
-/// The walk in pieces, from a hint whose guess may have been followed already.
-#[cold]
-fn search<G: Guarded>(
-    (phase, steps): (&G, &Steps),
-    mut left: Point<f64>,
-    (mut hint, mut tried): (SearchHint, Option<Followed>),
-    horizon: f64,
-    counters: &mut Counters,
-) -> Crossing {
-    let limit = Limit::new(steps, counters);
-    let stage = phase.stage();
-    let (horizon, over) = match stage < horizon {
-        true => (stage, Crossing::Stage(stage)),
-        false => (horizon, Crossing::Horizon),
-    };
-    let mut ends = phase.imposed();
-    let mut stride = STRIDE / phase.fastest_rate();
-    loop {
-        if limit.is_passed(left.elapsed, counters) {
-            return Crossing::Undecided(left.elapsed);
-        }
-        let target = match onwards(hint, left.elapsed, &mut stride) {
-            SearchHint::ClearFrom(time) if time <= left.elapsed => {
-                counters.undecidable += u64::from(phase.touches_for_ever());
-                return Crossing::Never;
+impl Candidate {
+    /// The candidate that a guess, or a hint of the phase where there is none, leads to before the
+    /// horizon.
+    #[inline(always)]
+    pub fn new<G: Guarded>(
+        (phase, steps): (&G, &Steps),
+        guess: Option<f64>,
+        horizon: f64,
+        counters: &mut Counters,
+    ) -> Self {
+        let left = phase.entry();
+        let hint = match guess {
+            Some(time) => SearchHint::Root(time),
+            None => phase.hint(steps, &left, horizon),
+        };
+        let followed = match hint {
+            SearchHint::Root(time) if time > 0.0 && time < horizon => {
+                Some(follow(phase, 0.0, time, horizon, counters))
             }
+            _ => None,
+        };
+        Self { left, hint, followed }
+    }
+
+    /// The candidate's root, if the guess has led to one.
+    #[inline(always)]
+    pub const fn root(&self) -> Option<&Root> {
+        match &self.followed {
+            Some(Ok(root)) => Some(root),
+            _ => None,
+        }
+    }
+
+    /// Whether one certificate says that this root of the candidate is the first crossing, and the
+    /// root is not after the horizon.
+    #[inline(always)]
+    pub fn is_first<G: Guarded>(
+        &self,
+        (phase, steps): (&G, &Steps),
+        root: &Root,
+        horizon: f64,
+    ) -> bool {
+        let ends = Ends { right: true, ..phase.imposed() };
+        root.elapsed().high <= horizon
+            && phase.certify(steps, &self.left, &root.point, ends) == Verdict::Inside
+    }
+
+    /// The first crossing, where one certificate does not say that it is the candidate.
+    #[cold]
+    pub fn searched<G: Guarded>(
+        self,
+        solved: (&G, &Steps),
+        horizon: f64,
+        counters: &mut Counters,
+    ) -> Crossing {
+        if horizon <= 0.0 {
+            return Crossing::Horizon;
+        }
+        let Self { left, hint, followed } = self;
+        Search::new(solved, (left, hint, followed), horizon, counters).run(counters)
+    }
+}
+
+/// The walk through a phase, piece by piece.
+struct Search<'a, G> {
+    phase: &'a G,
+    steps: &'a Steps,
+    /// Everything up to here is proved to be clear.
+    left: Point<f64>,
+    /// What is known of the ends of the piece that begins there.
+    ends: Ends,
+    /// The advice where to go on from there.
+    hint: SearchHint,
+    /// What the advice has led to, if it has been followed already.
+    followed: Option<Followed>,
+    /// The least step that gets on.
+    stride: f64,
+    /// The time after which it is over, and what it ends with there.
+    horizon: f64,
+    over: Crossing,
+    limit: Limit,
+}
+
+/// What is to be done next.
+enum Proposal {
+    /// Nothing: the search is over.
+    Over(Crossing),
+    /// To go on from a point before which the advice itself excludes a crossing.
+    Clear(Point<f64>),
+    /// To certify everything up to here.
+    Target(Target),
+}
+
+impl<'a, G: Guarded> Search<'a, G> {
+    #[cold]
+    fn new(
+        (phase, steps): (&'a G, &'a Steps),
+        (left, hint, followed): (Point<f64>, SearchHint, Option<Followed>),
+        horizon: f64,
+        counters: &Counters,
+    ) -> Self {
+        let stage = phase.stage();
+        let (horizon, over) = match stage < horizon {
+            true => (stage, Crossing::Stage(stage)),
+            false => (horizon, Crossing::Horizon),
+        };
+        let (ends, stride) = (phase.imposed(), STRIDE / phase.fastest_rate());
+        let limit = Limit::new(steps, counters);
+        Self { phase, steps, left, ends, hint, followed, stride, horizon, over, limit }
+    }
+
+    #[cold]
+    fn run(mut self, counters: &mut Counters) -> Crossing {
+        loop {
+            if self.limit.is_passed(self.left.elapsed, counters) {
+                return Crossing::Undecided(self.left.elapsed);
+            }
+            let reached = match self.proposal(counters) {
+                Proposal::Over(crossing) => return crossing,
+                Proposal::Clear(point) => point,
+                Proposal::Target(target) => match self.settled(target, counters) {
+                    Ok(point) => point,
+                    Err(crossing) => return crossing,
+                },
+            };
+            self.left = reached;
+            self.ends = Ends::FREE;
+            self.hint = self.phase.hint(self.steps, &self.left, self.horizon);
+        }
+    }
+
+    /// What the advice comes to.
+    fn proposal(&mut self, counters: &mut Counters) -> Proposal {
+        let (phase, horizon) = (self.phase, self.horizon);
+        match onwards(self.hint, self.left.elapsed, &mut self.stride) {
+            SearchHint::ClearFrom(time) if time <= self.left.elapsed => {
+                counters.undecidable += u64::from(phase.touches_for_ever());
+                Proposal::Over(Crossing::Never)
+            }
+            SearchHint::ClearUntil(time) if time >= horizon => Proposal::Over(self.over),
             SearchHint::ClearUntil(time) => {
-                if time >= horizon {
-                    return over;
+                let point = Target::Point(evaluate_again(phase, time, counters));
+                match inside_or_root(phase, &self.left, point, counters) {
+                    Target::Point(point) => Proposal::Clear(point),
+                    earlier @ Target::Root(_) => Proposal::Target(earlier),
                 }
-                let point = evaluate_again(phase, time, counters);
-                let target = inside_or_root(phase, &left, Target::Point(point), counters);
-                if !target.is_root() {
-                    left = point;
-                    ends = Ends::FREE;
-                    hint = phase.hint(steps, &left, horizon);
-                    continue;
-                }
-                target
             }
             SearchHint::Root(time) if time < horizon => {
-                let followed = tried
-                    .take()
-                    .unwrap_or_else(|| follow(phase, left.elapsed, time, horizon, counters));
-                match followed {
-                    Ok(root) => Target::Root(root),
-                    Err(point) => {
-                        // A guess that led nowhere: the next ones must lead further.
-                        stride *= 2.0;
-                        let least = (left.elapsed + stride).min(horizon);
-                        let near = point.elapsed < least;
-                        Target::Point(if near {
-                            evaluate_again(phase, least, counters)
-                        } else {
-                            point
-                        })
-                    }
-                }
+                Proposal::Target(self.followed(time, counters))
             }
             SearchHint::Root(time) | SearchHint::Onward(time) | SearchHint::ClearFrom(time) => {
                 let time = time.min(horizon);
-                if !time.is_finite() {
-                    return over;
+                if time.is_finite() {
+                    Proposal::Target(Target::Point(evaluate_again(phase, time, counters)))
+                } else {
+                    Proposal::Over(self.over)
                 }
-                Target::Point(evaluate_again(phase, time, counters))
             }
-        };
-        match settle((phase, steps), left, ends, target, (&limit, counters)) {
-            Ok(Target::Root(root)) if root.elapsed().high <= horizon => return Crossing::At(root),
-            Ok(Target::Point(point)) if point.elapsed < horizon => left = point,
-            Ok(_) => return over,
-            Err(elapsed) => return Crossing::Undecided(elapsed),
         }
-        ends = Ends::FREE;
-        hint = phase.hint(steps, &left, horizon);
+    }
+
+    /// The root that a guess leads to, or a point further on.
+    fn followed(&mut self, time: f64, counters: &mut Counters) -> Target {
+        let (phase, horizon, left) = (self.phase, self.horizon, self.left.elapsed);
+        let followed = self.followed.take();
+        match followed.unwrap_or_else(|| follow(phase, left, time, horizon, counters)) {
+            Ok(root) => Target::Root(root),
+            Err(point) => {
+                // A guess that led nowhere: the next ones must lead further.
+                self.stride *= 2.0;
+                let least = (left + self.stride).min(horizon);
+                let near = point.elapsed < least;
+                Target::Point(if near { evaluate_again(phase, least, counters) } else { point })
+            }
+        }
+    }
+
+    /// The point up to which everything is certified, on the way to a target; an error is the end
+    /// of the search.
+    fn settled(&self, target: Target, counters: &mut Counters) -> Result<Point<f64>, Crossing> {
+        let solved = (self.phase, self.steps);
+        match settle(solved, self.left, self.ends, target, (&self.limit, counters)) {
+            Ok(Target::Root(root)) if root.elapsed().high <= self.horizon => {
+                Err(Crossing::At(root))
+            }
+            Ok(Target::Point(point)) if point.elapsed < self.horizon => Ok(point),
+            Ok(_) => Err(self.over),
+            Err(elapsed) => Err(Crossing::Undecided(elapsed)),
+        }
     }
 }
 

@@ -9,7 +9,7 @@
 //! guesses come closer than [`SHORT_REACH`]: there five terms leave SHORT_REACH^5/5! = 8e-18 of the
 //! slope, and the higher derivatives follow from the equation of motion.
 
-use crate::constants::Constants;
+use crate::flow::constants::Constants;
 
 /// The longest step against the fastest rate of the motion.
 pub const REACH: f64 = 0.03;

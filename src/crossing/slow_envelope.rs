@@ -11,8 +11,8 @@ use crate::crossing::contact_parts::meeting;
 use crate::crossing::guarded::SearchHint;
 use crate::crossing::stepping::safe_step;
 use crate::flow::steps::{FreeStep, Steps};
-use crate::remainders::decay;
-use crate::two_word::ROUNDER;
+use crate::numeric::remainders::decay;
+use crate::numeric::two_word::ROUNDER;
 use std::f64::consts::TAU;
 
 /// See the module's text.

@@ -6,16 +6,16 @@
 //! takes about nine evaluations a switch where [`crate::crossing::search`] takes one mostly, and
 //! shares with it nothing but the closed forms.
 
-use crate::constants::Constants;
 use crate::crossing::certificate::Corridor;
 use crate::crossing::guarded::{Guarded, slack};
 use crate::crossing::root::evaluate;
 use crate::crossing::{Counters, Crossing, Root, Side};
 use crate::flow::Point;
+use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
-use crate::two_word::TwoWord;
+use crate::numeric::two_word::TwoWord;
 use std::borrow::Borrow;
 
 /// A guard with one-sided bounds of its curvature.

@@ -13,9 +13,9 @@
 //! times, q0 (exp(-z) - 1 + z) >= [`GRIP`] q0 z^2/2 outweighs the force, if GRIP q0 rate^2 exceeds
 //! the largest force. What neither serves is left to [`crate::crossing::piecewise`].
 
-use crate::constants::Constants;
 use crate::crossing::guarded::slack;
 use crate::flow::Point;
+use crate::flow::constants::Constants;
 use crate::flow::no_contact::NoContact;
 use crate::flow::steps::{GRIP, Steps, Turning};
 use std::borrow::Borrow;

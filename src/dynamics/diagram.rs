@@ -7,13 +7,13 @@
 use super::ensemble::{self, Motion};
 use super::section::{Kept, Section};
 use super::strobe::{Point, StrobeMap};
-use crate::entry::Entry;
 use crate::error::InputError;
-use crate::instant::Instant;
 use crate::model::Model;
+use crate::model::entry::Entry;
+use crate::model::instant::Instant;
+use crate::model::start::Start;
 use crate::parameters::{Parameter, Parameters};
-use crate::segment::Endless;
-use crate::start::Start;
+use crate::run::exit::Endless;
 
 /// How each value is started.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -38,11 +38,12 @@
 
 use super::section::Section;
 use super::tangent::{Tangent, contact_rates};
-use crate::entry::Entry;
-use crate::instant::Instant;
+use crate::model::entry::Entry;
+use crate::model::instant::Instant;
 use crate::model::{Model, Motion};
 use crate::phase::Phase;
-use crate::segment::{Endless, Exit, Segment};
+use crate::run::exit::{Endless, Exit};
+use crate::run::segment::Segment;
 
 /// Batches for the standard error.
 pub const BATCHES: u64 = 32;
@@ -86,15 +87,14 @@ impl Spectrum {
         periods: u64,
         seen: &mut dyn FnMut(&Segment),
     ) -> Self {
-        let periods = periods.max(1);
-        let mut run = Run::new(model, from, transient, periods);
-        let begin = from.instant.after_periods(transient, 1);
-        let end = begin.after_periods(periods, 1);
-        for segment in model.trajectory(from).until(end) {
-            run.pass(&segment);
-            seen(&segment);
-        }
-        run.spectrum(model)
+        Run::new(model, from, transient, periods).told(model, from, seen)
+    }
+
+    /// [`Spectrum::of`] without a transient, but the last phase is not solved beyond `horizon` to
+    /// see whether it ends.
+    pub(super) fn within(model: &Model, from: Entry, periods: u64, horizon: Instant) -> Self {
+        let run = Run::new(model, from, 0, periods);
+        Run { last_horizon: Some(horizon), ..run }.told(model, from, &mut |_| ())
     }
 
     /// Whether the largest exponent is above zero by more than `errors` standard errors.
@@ -125,10 +125,13 @@ struct Run {
     contraction: f64,
     touched: bool,
     last: Option<Segment>,
+    /// How far the last phase is solved to see whether it ends.
+    last_horizon: Option<Instant>,
 }
 
 impl Run {
     fn new(model: &Model, from: Entry, transient: u64, periods: u64) -> Self {
+        let periods = periods.max(1);
         Self {
             tangent: Tangent::new(model),
             two_xi: model.constants().two_xi,
@@ -141,7 +144,18 @@ impl Run {
             contraction: 0.0,
             touched: false,
             last: None,
+            last_horizon: None,
         }
+    }
+
+    /// The exponents of the run from its first phase on, of which `seen` is told.
+    fn told(mut self, model: &Model, from: Entry, seen: &mut dyn FnMut(&Segment)) -> Spectrum {
+        let end = self.next.after_periods(self.periods, 1);
+        for segment in model.trajectory(from).until(end) {
+            self.pass(&segment);
+            seen(&segment);
+        }
+        self.spectrum(model)
     }
 
     fn observing(&self) -> bool {
@@ -241,7 +255,13 @@ impl Run {
 
     /// Why the last phase has no end, if it has none.
     fn endless(&self, model: &Model) -> Option<Endless> {
-        Section::endless_at(model, self.last?.entry())
+        let entry = *self.last.as_ref()?.entry();
+        let begun = model.trajectory(entry);
+        let solved = match self.last_horizon {
+            Some(horizon) => begun.until(horizon),
+            None => begun,
+        };
+        Section::along(solved, entry.instant).endless()
     }
 }
 

@@ -1,11 +1,12 @@
 //! Stroboscopic sections: the motion at successive instants with one forcing angle.
 
 use super::ensemble::{self, Motion, Watcher};
-use crate::entry::Entry;
-use crate::instant::Instant;
 use crate::model::Model;
-use crate::segment::{Endless, Exit, Segment};
-use crate::trajectory::Trajectory;
+use crate::model::entry::Entry;
+use crate::model::instant::Instant;
+use crate::run::exit::{Endless, Exit};
+use crate::run::segment::Segment;
+use crate::run::trajectory::Trajectory;
 use std::ops::ControlFlow;
 
 /// The strobes of one motion from some instant on: one pass over its phases, in constant memory.

@@ -18,14 +18,14 @@
 use super::linear;
 pub use super::linear::{Jacobian, Point};
 use super::section::Section;
-use crate::entry::Entry;
 use crate::error::InputError;
-use crate::instant::Instant;
 use crate::model::Model;
+use crate::model::entry::Entry;
+use crate::model::instant::Instant;
 use crate::phase::Phase;
-use crate::segment::Exit;
+use crate::run::exit::Exit;
+use crate::run::variation::{IDENTITY, Matrix, P, Q, V, Y, product};
 use crate::state::State;
-use crate::variation::{IDENTITY, Matrix, P, Q, V, Y, product};
 
 /// The derivative of a state on the slider, where q moves with p.
 const TOGETHER: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [1.0, 0.0, 0.0]];

@@ -7,8 +7,8 @@
 //! kept: of a phase on the slider exactly, from its duration.
 
 use crate::model::{Model, Motion};
-use crate::segment::Segment;
-use crate::variation::{Matrix, P, Q, Y};
+use crate::run::segment::Segment;
+use crate::run::variation::{Matrix, P, Q, Y};
 
 /// A contact is passed in pieces in which its slowest part shrinks by at most exp(-PIECE).
 const PIECE: f64 = 300.0;

@@ -1,6 +1,6 @@
 //! A complex number over any [`Number`], with the three operations that the forced response needs.
 
-use crate::number::Number;
+use crate::numeric::number::Number;
 use std::ops::{Add, Mul, Sub};
 
 /// re + i im

@@ -1,11 +1,11 @@
 //! Contact without progression: Eqs. (15)-(17), for every damping ratio and through resonance.
 
-use crate::constants::Constants;
 use crate::flow::complex::Complex;
+use crate::flow::constants::Constants;
 use crate::flow::damped::{Damping, Free};
 use crate::flow::forcing::EntryAngle;
 use crate::flow::{Flow, Jet, Point};
-use crate::number::Number;
+use crate::numeric::number::Number;
 use crate::state::State;
 use std::borrow::Borrow;
 

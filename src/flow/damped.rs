@@ -4,8 +4,8 @@
 //! (15)-(17) have sqrt(1 - xi^2) in a denominator and exist below critical damping only; C and S
 //! are entire functions of 1 - xi^2 and exist everywhere. C' = -S and S' = C - 2 xi S.
 
-use crate::number::Number;
-use crate::remainders::{Circular, Decay, circular_of, decay};
+use crate::numeric::number::Number;
+use crate::numeric::remainders::{Circular, Decay, circular_of, decay};
 
 /// How the free oscillation is computed at this damping ratio.
 #[derive(Clone, Copy, Debug)]

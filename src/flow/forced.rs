@@ -12,8 +12,8 @@
 
 use crate::flow::complex::Complex;
 use crate::flow::damped::{Free, Rotation};
-use crate::number::Number;
-use crate::remainders::{Circular, circular};
+use crate::numeric::number::Number;
+use crate::numeric::remainders::{Circular, circular};
 
 /// How the forced oscillation is computed at this frequency and damping.
 #[derive(Clone, Copy, Debug)]

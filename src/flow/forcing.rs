@@ -1,8 +1,8 @@
 //! The external force a cos(omega tau + phi) + b and its integrals over elapsed time.
 
-use crate::constants::Constants;
-use crate::number::Number;
-use crate::remainders::{Circular, circular_of};
+use crate::flow::constants::Constants;
+use crate::numeric::number::Number;
+use crate::numeric::remainders::{Circular, circular_of};
 use std::f64::consts::TAU;
 
 /// The forcing angle `omega tau + phi` when the phase begins.

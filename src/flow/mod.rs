@@ -5,6 +5,7 @@
 //! there: the double zero of the gap at separation, and the threshold at a switch of force.
 
 pub mod complex;
+pub mod constants;
 pub mod contact;
 pub mod damped;
 pub mod forced;
@@ -14,7 +15,7 @@ pub mod progression;
 pub mod steady;
 pub mod steps;
 
-use crate::number::Number;
+use crate::numeric::number::Number;
 use crate::state::State;
 
 /// A guard and its first three derivatives with respect to elapsed time.

@@ -1,10 +1,10 @@
 //! No contact: Eq. (14). The mass flies, the slider's top returns to its rest.
 
-use crate::constants::Constants;
+use crate::flow::constants::Constants;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::{Flow, Jet, Point};
-use crate::number::Number;
-use crate::remainders::decay;
+use crate::numeric::number::Number;
+use crate::numeric::remainders::decay;
 use crate::state::State;
 use std::borrow::Borrow;
 

@@ -4,7 +4,7 @@
 //! is Re((F - b) H) with H = (1 + 2 i xi omega)/(1 - omega^2 + 2 i xi omega).
 
 use crate::flow::forced::Forced;
-use crate::number::Number;
+use crate::numeric::number::Number;
 
 /// The complex H in parts that apply to F - b and to F', and the amplitude of the forced part.
 #[derive(Clone, Copy, Debug)]

@@ -5,8 +5,8 @@
 
 use crate::flow::damped::Damping;
 use crate::flow::steady::Steady;
+use crate::numeric::remainders::{Circular, circular};
 use crate::parameters::Parameters;
-use crate::remainders::{Circular, circular};
 use std::f64::consts::{PI, TAU};
 
 /// A step of fixed length outside contact.
@@ -209,7 +209,7 @@ impl Steps {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::remainders::decay;
+    use crate::numeric::remainders::decay;
 
     #[test]
     fn the_grip_is_least_at_parting() {

@@ -2,7 +2,7 @@
 
 use super::shape::Shape;
 use super::wide::Wide;
-use crate::constants::Constants;
+use crate::flow::constants::Constants;
 use crate::flow::damped::Damping;
 use crate::flow::forced::Forced;
 use pulp::Simd;

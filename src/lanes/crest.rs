@@ -1,11 +1,7 @@
 //! An upper bound of a flight's guard, and what its tangents prove ([`super::flight`]).
 
-use super::flight::Flight;
-use super::harmonic::Angle;
-use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use pulp::Simd;
-use std::f64::consts::TAU;
 
 /// A concave function at one place.
 pub struct Tangent<S: Simd> {
@@ -33,34 +29,19 @@ impl<S: Simd> Tangent<S> {
 
 /// E: the flight without its exponential, and with the tangent of that at the root.
 pub struct Bound<S: Simd> {
-    offset: Wide<S>,
-    slope: Wide<S>,
-    curvature: Wide<S>,
-    amplitude: Wide<S>,
-    speed: Wide<S>,
+    /// Its constant.
+    pub offset: Wide<S>,
+    /// The rate of its linear part.
+    pub slope: Wide<S>,
+    /// The second derivative of its parabola.
+    pub curvature: Wide<S>,
+    /// What the cosine of the forcing angle is taken from it with.
+    pub amplitude: Wide<S>,
+    /// The amplitude times the forcing frequency.
+    pub speed: Wide<S>,
 }
 
 impl<S: Simd> Bound<S> {
-    /// The bound, raised by what its terms may round off.
-    #[inline(always)]
-    pub fn new(flight: &Flight<'_, S>, root: Wide<S>, q: Wide<S>) -> Self {
-        const ROOM: f64 = 16.0 * f64::EPSILON;
-        let Shape { b, rate, a_over_omega, a_over_omega2, .. } = *flight.shape;
-        let spring = q * rate;
-        let Angle { sin, cos, .. } = flight.angle;
-        let slope = a_over_omega.times_from(sin, flight.y) + spring;
-        let offset = a_over_omega2.times_plus(cos, flight.q) - spring.times_plus(root, q);
-        let speeds = flight.y.abs() + a_over_omega + b.abs() * root + spring;
-        let terms = flight.q + a_over_omega2 * TAU + q + speeds * root;
-        Self {
-            offset: offset + terms * ROOM,
-            slope,
-            curvature: b,
-            amplitude: a_over_omega2,
-            speed: a_over_omega,
-        }
-    }
-
     /// Value and slope where the forcing angle has this sine and cosine.
     #[inline(always)]
     pub fn at(&self, d: Wide<S>, sin: Wide<S>, cos: Wide<S>) -> (Wide<S>, Wide<S>) {

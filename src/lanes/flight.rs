@@ -184,6 +184,26 @@ impl<S: Simd> Flight<'_, S> {
         }
     }
 
+    /// The bound of the guard up to the root, raised by what its terms may round off.
+    #[inline(always)]
+    fn bound(&self, root: Wide<S>, q: Wide<S>) -> Bound<S> {
+        const ROOM: f64 = 16.0 * f64::EPSILON;
+        let Shape { b, rate, a_over_omega, a_over_omega2, .. } = *self.shape;
+        let spring = q * rate;
+        let Angle { sin, cos, .. } = self.angle;
+        let slope = a_over_omega.times_from(sin, self.y) + spring;
+        let offset = a_over_omega2.times_plus(cos, self.q) - spring.times_plus(root, q);
+        let speeds = self.y.abs() + a_over_omega + b.abs() * root + spring;
+        let terms = self.q + a_over_omega2 * TAU + q + speeds * root;
+        Bound {
+            offset: offset + terms * ROOM,
+            slope,
+            curvature: b,
+            amplitude: a_over_omega2,
+            speed: a_over_omega,
+        }
+    }
+
     /// Proves that h stays below zero in a stretch by three tangents more in between: at forcing
     /// angles whose sine and cosine are constants. Those before the place where the stretch is
     /// entered do not count.
@@ -257,7 +277,7 @@ impl<S: Simd> Flight<'_, S> {
         let Shape { a, b, omega, rate, turning, turning_sin, turning_cos, .. } = *self.shape;
         let Angle { value: angle, sin, cos } = self.angle;
         let zero = root.same(0.0);
-        let bound = Bound::new(self, root, q);
+        let bound = self.bound(root, q);
 
         let concave_at_first = !angle.less(turning) & !(-turning + TAU).less(angle);
         let settled = rate.same(SEPARATION_INTERVAL) / rate;

@@ -1,12 +1,12 @@
-//! Sine, cosine and exponential of all lanes at once, and their remainders ([`crate::remainders`]).
+//! Sine, cosine and exponential of all lanes at once, and their remainders ([`crate::numeric::remainders`]).
 //!
 //! The argument is reduced by Cody and Waite's method with fused products and a tail of its own
 //! (two words of pi/2: up to [`FURTHEST`] the third would be 1e-28); the kernels are those of
 //! fdlibm. Errors are below one unit in the last place.
 
 use super::wide::{Mask, Wide};
-use crate::exponential;
-use crate::two_word::ROUNDER;
+use crate::numeric::exponential;
+use crate::numeric::two_word::ROUNDER;
 use pulp::Simd;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, LN_2, LOG2_E};
 

@@ -3,7 +3,7 @@
 use super::super::instructions::{Instructions, Permit};
 use super::super::wide::{Column, WIDEST};
 use super::*;
-use crate::remainders::{Circular, circular, circular_of, decay};
+use crate::numeric::remainders::{Circular, circular, circular_of, decay};
 use proptest::prelude::*;
 use pulp::WithSimd;
 

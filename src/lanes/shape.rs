@@ -1,7 +1,7 @@
 //! What the lanes need of the parameters: of one model, and of as many as there are lanes.
 
 use super::wide::{Column, Wide};
-use crate::constants::Constants;
+use crate::flow::constants::Constants;
 use crate::flow::steps::Steps;
 use crate::model::Model;
 use pulp::Simd;

@@ -113,7 +113,7 @@ impl<S: Simd> Wide<S> {
         Mask { simd: self.simd, value: self.simd.equal_f64s(self.value, other) }
     }
 
-    /// The bits of a sum with [`crate::two_word::ROUNDER`], whose lowest ones are those of a whole
+    /// The bits of a sum with [`crate::numeric::two_word::ROUNDER`], whose lowest ones are those of a whole
     /// number: where this one of them is set.
     #[inline(always)]
     pub fn has_bit(self, bit: u64) -> Mask<S> {
@@ -123,7 +123,7 @@ impl<S: Simd> Wide<S> {
         Mask { simd, value: simd.greater_than_u64s(found, simd.splat_u64s(0)) }
     }
 
-    /// 2^n of a sum n + [`crate::two_word::ROUNDER`], for the exponents of normal numbers.
+    /// 2^n of a sum n + [`crate::numeric::two_word::ROUNDER`], for the exponents of normal numbers.
     #[inline(always)]
     pub fn power_of_two(self) -> Self {
         const BIAS: u64 = 1023;

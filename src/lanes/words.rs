@@ -1,7 +1,7 @@
-//! Numbers in two words, all lanes at once ([`crate::two_word`]).
+//! Numbers in two words, all lanes at once ([`crate::numeric::two_word`]).
 
 use super::wide::Wide;
-use crate::two_word::{ROUNDER, TWO_PI};
+use crate::numeric::two_word::{ROUNDER, TWO_PI};
 use pulp::Simd;
 
 /// An unevaluated sum.

@@ -1,13 +1,13 @@
 //! The attractors that are known so far, and where starts lead.
 
-use super::Attractor;
 use super::known::{Known, Label};
 use super::recognition::Recognition;
 use super::settle::{Search, Settled};
+use super::{Attractor, horizon};
 use crate::dynamics::ensemble::{self, Motion};
 use crate::dynamics::parallel;
 use crate::dynamics::strobe::{Point, StrobeMap};
-use crate::entry::Entry;
+use crate::model::entry::Entry;
 
 /// The attractors of a strobe map that have been met.
 #[derive(Clone, Debug)]
@@ -145,7 +145,7 @@ impl AttractorCatalog {
         let recognitions = ensemble::follow(motions.len(), |number| {
             let from = motions[number].1;
             let watcher = Recognition::new(&self.known, from, self.transient, seen);
-            self.motion(from, watcher)
+            self.motion(from, self.transient, watcher)
         });
         let mut open = Vec::new();
         for ((place, _), recognition) in motions.into_iter().zip(recognitions) {
@@ -161,11 +161,13 @@ impl AttractorCatalog {
     /// is not.
     fn recognised(&self, from: Entry, strobes: u64) -> Result<Label, Entry> {
         let watcher = Recognition::new(&self.known, from, strobes, &|_| {});
-        ensemble::follow_alone(self.motion(from, watcher)).outcome()
+        ensemble::follow_alone(self.motion(from, strobes, watcher)).outcome()
     }
 
-    fn motion<W>(&self, from: Entry, watcher: W) -> Motion<'_, W> {
+    /// The motion from here on, of which so many strobes after the first are looked at.
+    fn motion<W>(&self, from: Entry, strobes: u64, watcher: W) -> Motion<'_, W> {
         let model = self.map.model();
-        Motion { model, entry: from, first: from.instant, horizon: None, watcher }
+        let first = from.instant;
+        Motion { model, entry: from, first, horizon: Some(horizon(&first, strobes)), watcher }
     }
 }

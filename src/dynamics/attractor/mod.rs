@@ -32,6 +32,7 @@ pub use known::Label;
 use super::lyapunov::Spectrum;
 use super::orbit::Orbit;
 use super::strobe::{Point, StrobeMap};
+use crate::model::instant::Instant;
 use std::cmp::Ordering;
 use std::fmt;
 
@@ -87,6 +88,17 @@ pub struct Attractor {
     pub lyapunov_per_period: f64,
     /// The standard error of the exponent; zero for an orbit.
     pub lyapunov_error: f64,
+}
+
+/// Forcing periods that a motion is solved ahead, at least, so that an escape shows early: it is
+/// proved where the drift away exceeds the swing, which a slow drift takes so long to do.
+const AHEAD: u64 = 1 << 14;
+
+/// The instant up to which a motion is solved of which so many strobes after `from` are looked at.
+///
+/// Without it a contact of millions of periods would be solved whole for every start.
+fn horizon(from: &Instant, strobes: u64) -> Instant {
+    from.after_periods(strobes.max(AHEAD), 1)
 }
 
 /// Strobes that are kept of an attractor that is no orbit.

@@ -5,8 +5,8 @@ use super::known::{AT_REST, Evidence, Known, Label};
 use super::trap::Trap;
 use crate::dynamics::ensemble::Watcher;
 use crate::dynamics::strobe::Point;
-use crate::entry::Entry;
-use crate::segment::Endless;
+use crate::model::entry::Entry;
+use crate::run::exit::Endless;
 use std::ops::ControlFlow;
 
 /// How many turns in a row have to bring a motion in a trap closer.

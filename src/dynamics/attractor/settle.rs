@@ -4,12 +4,12 @@ use super::cells::{Cells, REFERENCE};
 use super::known::{Evidence, Known, Label};
 use super::recognition::{Watch, escapes};
 use super::trap::Trap;
-use super::{Attractor, ERRORS, Kind};
+use super::{Attractor, ERRORS, Kind, horizon};
 use crate::dynamics::lyapunov::Spectrum;
 use crate::dynamics::orbit::Orbit;
 use crate::dynamics::section::Section;
 use crate::dynamics::strobe::{Point, StrobeMap};
-use crate::entry::Entry;
+use crate::model::entry::Entry;
 
 /// The longest period that is looked for.
 const LONGEST: usize = 128;
@@ -47,11 +47,12 @@ pub(super) struct Search<'a> {
 impl Search<'_> {
     /// What a motion settles on; none where that does not show so early.
     pub fn identified(&self, from: Entry) -> Option<Settled> {
-        let strobes: Vec<Entry> = self.section(from).take(2 * LONGEST).collect();
+        let strobes: Vec<Entry> =
+            self.section(from, 2 * LONGEST as u64).take(2 * LONGEST).collect();
         if let Some(orbit) = self.orbit(&strobes) {
             return Some(orbit);
         }
-        let glance = Spectrum::of(self.map.model(), from, 0, GLANCE);
+        let glance = self.spectrum(from, GLANCE);
         // What clearly contracts is an orbit on the way, or a long one.
         let full = self.known.len() >= MOST;
         let contracts =
@@ -59,8 +60,15 @@ impl Search<'_> {
         if contracts || full { None } else { self.reference(from) }
     }
 
-    fn section(&self, from: Entry) -> Section {
-        Section::along(self.map.model().trajectory(from), from.instant)
+    /// The motion's strobes, of which so many are looked at.
+    fn section(&self, from: Entry, strobes: u64) -> Section {
+        let trajectory = self.map.model().trajectory(from);
+        Section::along(trajectory.until(horizon(&from.instant, strobes)), from.instant)
+    }
+
+    /// The motion's exponents over so many forcing periods.
+    fn spectrum(&self, from: Entry, periods: u64) -> Spectrum {
+        Spectrum::within(self.map.model(), from, periods, horizon(&from.instant, periods))
     }
 
     /// The stable orbit that some strobes repeat, if the motion is seen to enter its trap.
@@ -77,7 +85,7 @@ impl Search<'_> {
         let new = Known { attractor, evidence: Evidence::Traps(traps) };
         let known = std::slice::from_ref(&new);
         let mut watch = Watch::new(known);
-        let mut ahead = self.section(*last);
+        let mut ahead = self.section(*last, TURNS * period);
         let arrives = (0..TURNS * period)
             .any(|n| ahead.next().is_some_and(|it| watch.see(n, &it.point()).is_some()));
         arrives.then(|| Settled::New(Box::new(new)))
@@ -85,7 +93,7 @@ impl Search<'_> {
 
     /// A long run that may turn out to be on an attractor without period.
     fn reference(&self, from: Entry) -> Option<Settled> {
-        let mut section = self.section(from);
+        let mut section = self.section(from, REFERENCE);
         let mut watch = Watch::new(self.known);
         let mut run = Vec::with_capacity(REFERENCE as usize);
         for n in 0..REFERENCE {
@@ -101,7 +109,7 @@ impl Search<'_> {
         if let Some(orbit) = self.orbit(&run[run.len() - 2 * LONGEST..]) {
             return Some(orbit);
         }
-        let spectrum = Spectrum::of(self.map.model(), *run.last()?, 0, DECISION);
+        let spectrum = self.spectrum(*run.last()?, DECISION);
         let points: Vec<Point> = run.iter().map(Entry::point).collect();
         let kind = kind_of(&spectrum, repeats(&points).is_some());
         let attractor = Attractor::of_run(kind, &points, &spectrum);

@@ -92,7 +92,7 @@ impl Trap {
             }
             let Ok(entry) = map.entry(start) else { return false };
             let after = entry.instant.after_periods(period, 1);
-            let image = Section::along(map.model().trajectory(entry), after).next();
+            let image = Section::along(map.model().trajectory(entry).until(after), after).next();
             let before = self.distance(&start);
             image.is_some_and(|image| self.distance(&image.point()) <= shrinks * before)
         })

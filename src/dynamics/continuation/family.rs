@@ -3,8 +3,8 @@
 use crate::dynamics::orbit::ShootingIterate;
 use crate::dynamics::strobe::{Point, StrobeMap};
 use crate::error::InputError;
-use crate::instant::Instant;
 use crate::model::Model;
+use crate::model::instant::Instant;
 use crate::parameters::{Parameter, Parameters};
 
 /// The strobe maps at one forcing angle, one for each value of a parameter.

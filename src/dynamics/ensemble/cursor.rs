@@ -2,11 +2,12 @@
 
 use super::{Motion, Watcher};
 use crate::crossing::Counters;
-use crate::entry::Entry;
-use crate::instant::Instant;
 use crate::model::Model;
-use crate::segment::{Endless, Exit, Segment};
-use crate::switch::Begun;
+use crate::model::entry::Entry;
+use crate::model::instant::Instant;
+use crate::run::exit::{Endless, Exit};
+use crate::run::segment::Segment;
+use crate::run::switch::Begun;
 use std::ops::ControlFlow;
 
 /// A motion and where it is.

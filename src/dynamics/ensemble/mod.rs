@@ -12,12 +12,12 @@ mod scheduler;
 #[cfg(feature = "lanes")]
 mod slot;
 
-use crate::entry::Entry;
-use crate::instant::Instant;
 #[cfg(feature = "lanes")]
 use crate::lanes::Instructions;
 use crate::model::Model;
-use crate::segment::Endless;
+use crate::model::entry::Entry;
+use crate::model::instant::Instant;
+use crate::run::exit::Endless;
 use cursor::Cursor;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -2,13 +2,13 @@
 
 use super::cursor::Cursor;
 use super::{Tally, Watcher};
-use crate::entry::{Entry, ModeEntry};
-use crate::instant::Instant;
 use crate::lanes::{Begin, Column, End, Shape, Stage};
 use crate::model::Model;
+use crate::model::entry::{Entry, ModeEntry};
+use crate::model::instant::Instant;
+use crate::model::surface::{self, FOUR_ULPS};
+use crate::numeric::two_word::TwoWord;
 use crate::state::State;
-use crate::surface::{self, FOUR_ULPS};
-use crate::two_word::TwoWord;
 use std::ops::ControlFlow;
 
 /// A motion, what the lanes need of its model, and what begins when its phase ends, if that is
@@ -137,7 +137,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
         self.next_stage()
     }
 
-    /// What begins at a switch, with what is known there imposed ([`crate::switch`]).
+    /// What begins at a switch, with what is known there imposed ([`crate::run::switch`]).
     #[inline]
     fn landed(&self, stage: Stage, lane: usize, end: &End) -> Entry {
         let Entry { instant, drift, .. } = self.cursor.entry;

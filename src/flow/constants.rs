@@ -3,7 +3,7 @@
 use crate::flow::damped::Damping;
 use crate::flow::forced::Forced;
 use crate::flow::steady::Steady;
-use crate::number::Number;
+use crate::numeric::number::Number;
 use crate::parameters::Parameters;
 
 /// The parameters and the constants derived from them, in one arithmetic.

@@ -5,16 +5,17 @@
 //! derivative is that of the closed form. The field is continuous at f = 0 and at f = 1, so only an
 //! impact has a saltation: there the contact surface swallows the direction A = dp - dq.
 
-use crate::constants::Constants;
-use crate::entry::ModeEntry;
+use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::{EntryAngle, Harmonic};
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
 use crate::model::Motion;
+use crate::model::entry::ModeEntry;
+use crate::numeric::remainders::decay;
 use crate::phase::Phase;
-use crate::remainders::decay;
-use crate::segment::{Exit, Segment};
+use crate::run::exit::Exit;
+use crate::run::segment::Segment;
 
 /// Index of the forcing angle in a [`Matrix`].
 pub const ANGLE: usize = 0;

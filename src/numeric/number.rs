@@ -3,9 +3,9 @@
 //! The formulas are written once and evaluated in f64, in double-double for the truth, and in any
 //! other arithmetic that wraps itself in this trait.
 
-use crate::circle;
-use crate::exponential;
-use crate::two_word::TwoWord;
+use crate::numeric::circle;
+use crate::numeric::exponential;
+use crate::numeric::two_word::TwoWord;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 

@@ -4,7 +4,7 @@
 //! tau0) sin(omega tau0) lose every digit in short phases. In the elapsed time d they are
 //! combinations of the remainders below, each computed to within a few units in the last place.
 
-use crate::number::Number;
+use crate::numeric::number::Number;
 
 /// Sine and cosine of x with their remainders.
 #[derive(Clone, Copy, Debug)]

@@ -6,8 +6,8 @@
 //! start). The start alone would not do: on a stable orbit its influence dies out while every step
 //! still rounds.
 
-use crate::segment::Segment;
-use crate::variation::{IDENTITY, Matrix, P, Q, SwitchDerivative, V, Y, product, times};
+use crate::run::segment::Segment;
+use crate::run::variation::{IDENTITY, Matrix, P, Q, SwitchDerivative, V, Y, product, times};
 
 /// The growth of tau, p, y, q and v at one switch or sample.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -6,26 +6,24 @@
 //! left. So the search goes in stages: after a few decay times what is left is computed by itself,
 //! with all its digits, and the contact goes on from there.
 
-use crate::constants::Constants;
 use crate::crossing::limit::Limit;
-use crate::crossing::search::{Found, first_crossing};
+use crate::crossing::search::first_crossing;
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::Point;
+use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
-use crate::instant::Instant;
 use crate::model::Model;
+use crate::model::instant::Instant;
+use crate::numeric::two_word::TwoWord;
 use crate::state::State;
-use crate::two_word::TwoWord;
 
 /// The contact as a phase of its own from which a root is taken, and how the search in stages ends.
 pub(crate) struct Staged<'a> {
     /// The contact as taken up last.
     pub contact: Contact<f64, &'a Constants<f64>>,
     /// How the search ends, in time since the phase began.
-    pub found: Found,
-    /// The root, in the same time, if it ends by a crossing.
-    pub root: Option<Root>,
+    pub crossing: Crossing,
 }
 
 /// Searches on from `first`, a time after the contact's beginning at `instant`, up to `horizon`.
@@ -46,25 +44,23 @@ pub(crate) fn search_in_stages<'a>(
     let mut contact = taken_up(contact, first, since);
     loop {
         let elapsed = since.value();
-        let ended = |found| Staged { contact, found, root: None };
+        let ended = |crossing| Staged { contact, crossing };
         if limit.is_passed(elapsed, counters) {
-            return ended(Found::Undecided(elapsed));
+            return ended(Crossing::Undecided(elapsed));
         }
         match first_crossing(&contact, model.steps(), horizon - elapsed, counters) {
             Crossing::At(root) => {
                 let total = since.plus(root.elapsed());
                 let point = Point { elapsed: total.high, ..root.point };
-                let root = Some(Root { point, low: total.low, ..root });
-                return Staged { contact, found: Found::At(total), root };
+                return ended(Crossing::At(Root { point, low: total.low, ..root }));
             }
             Crossing::Stage(stage) => {
                 counters.evaluations += 1;
                 since = since.plus(TwoWord::new(stage));
                 contact = taken_up(&contact, stage, since);
             }
-            Crossing::Horizon => return ended(Found::Horizon),
-            Crossing::Never => return ended(Found::Never),
-            Crossing::Undecided(stage) => return ended(Found::Undecided(elapsed + stage)),
+            Crossing::Undecided(stage) => return ended(Crossing::Undecided(elapsed + stage)),
+            over @ (Crossing::Horizon | Crossing::Never) => return ended(over),
         }
     }
 }

@@ -1,14 +1,14 @@
 //! The run: phases joined at their switches (the method of Section 3), as an iterator.
 
 use crate::crossing::Counters;
-use crate::entry::Entry;
 use crate::error::InputError;
-use crate::instant::Instant;
 use crate::model::Model;
+use crate::model::entry::Entry;
+use crate::model::instant::Instant;
+use crate::numeric::two_word::TwoWord;
 use crate::parameters::within;
-use crate::segment::Segment;
-use crate::switch::{Begun, End, Passed, pass};
-use crate::two_word::TwoWord;
+use crate::run::segment::Segment;
+use crate::run::switch::{Begun, End, Passed, pass};
 use std::iter::FusedIterator;
 
 /// An iterator over the phases of a run; memory does not grow with its length.

@@ -1,14 +1,14 @@
 //! Start states as users give them, and the phase in which they begin.
 
-use crate::entry::{Entry, ModeEntry};
 use crate::error::InputError;
-use crate::instant::Instant;
 use crate::model::Model;
+use crate::model::entry::{Entry, ModeEntry};
+use crate::model::instant::Instant;
+use crate::model::surface::{self, FOUR_ULPS};
+use crate::numeric::two_word::TwoWord;
 use crate::parameters::within;
 use crate::phase::Phase;
 use crate::state::State;
-use crate::surface::{self, FOUR_ULPS};
-use crate::two_word::TwoWord;
 
 /// A start: `cycle` forcing periods after `tau`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

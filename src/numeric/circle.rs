@@ -6,7 +6,7 @@
 //! of one of 1: three fifths of a unit where the value is large, more units where it is small. Only
 //! additions and multiplications, hence the same bits on every platform.
 
-use crate::two_word::{ROUNDER, TWO_PI, TwoWord, cut};
+use crate::numeric::two_word::{ROUNDER, TWO_PI, TwoWord, cut};
 
 /// Parts of a turn.
 const PARTS: usize = 64;

@@ -1,11 +1,11 @@
-//! The exponential of an f64 by a table of the doubling's 64th parts, as [`crate::circle`] has its
+//! The exponential of an f64 by a table of the doubling's 64th parts, as [`crate::numeric::circle`] has its
 //! sines.
 //!
 //! The library divides, and its steps wait for one another; here a short series is multiplied to an
 //! entry of the table, which is held in two words. The error is half a unit in the last place and
 //! two hundredths. Only additions and multiplications, hence the same bits on every platform.
 
-use crate::two_word::{ROUNDER, TwoWord, cut};
+use crate::numeric::two_word::{ROUNDER, TwoWord, cut};
 
 /// Parts of a doubling.
 const PARTS: usize = 64;

@@ -1,17 +1,22 @@
-//! A validated model, ready to be started.
+//! A validated model, how it is started, and the instants and entries of its motion.
 
-use crate::angle;
-use crate::constants::Constants;
-use crate::entry::{Entry, ModeEntry};
+pub mod entry;
+pub mod instant;
+pub mod start;
+pub mod surface;
+
 use crate::error::InputError;
+use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
 use crate::flow::steps::Steps;
-use crate::instant::Instant;
+use crate::model::entry::{Entry, ModeEntry};
+use crate::model::instant::Instant;
+use crate::numeric::angle;
+use crate::numeric::two_word::TwoWord;
 use crate::parameters::Parameters;
-use crate::two_word::TwoWord;
 
 /// Parameters that have been checked, with the constants of the closed forms.
 #[derive(Clone, Copy, Debug)]

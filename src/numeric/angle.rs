@@ -4,7 +4,7 @@
 //! of the two f64 values is known exactly in two words; so is its rest after division by 2 pi, if
 //! 1/(2 pi) is taken to enough bits (Payne and Hanek 1983).
 
-use crate::two_word::{TWO_PI, TwoWord, cut};
+use crate::numeric::two_word::{TWO_PI, TwoWord, cut};
 
 /// The bits of 1/(2 pi) behind the binary point, most significant word first.
 const TURNS_PER_RADIAN: [u64; 9] = [

@@ -4,22 +4,22 @@
 //! to wait where a call has written words that are read back in pairs, and such calls cost a sixth
 //! of a switch's time. What few switches take is kept out of the way.
 
-use crate::constants::Constants;
 use crate::crossing::guarded::{Guarded, SearchHint};
-use crate::crossing::search::{Found, first_crossing_and};
-use crate::crossing::{Counters, Root};
-use crate::entry::{Entry, ModeEntry};
+use crate::crossing::search::Candidate;
+use crate::crossing::{Counters, Crossing, Root};
+use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
-use crate::instant::Instant;
+use crate::model::entry::{Entry, ModeEntry};
+use crate::model::instant::Instant;
+use crate::model::surface;
 use crate::model::{Model, Motion};
-use crate::segment::Endless;
-use crate::stages::{Staged, search_in_stages};
+use crate::numeric::two_word::TwoWord;
+use crate::run::exit::Endless;
+use crate::run::stages::{Staged, search_in_stages};
 use crate::state::State;
-use crate::surface;
-use crate::two_word::TwoWord;
 
 /// How a phase begins.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +53,22 @@ pub(crate) struct Passed {
     /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless, as far as
     /// it is proved if it is undecidable.
     pub duration: TwoWord,
+}
+
+/// What the search of a phase's end has found; a crossing leads to the next phase.
+#[derive(Clone, Copy, Debug)]
+enum Found {
+    /// The phase ends by a crossing after this time.
+    At(TwoWord),
+    /// There is no crossing before the horizon.
+    Horizon,
+    /// There is never a crossing, which is proved.
+    Never,
+    /// There is no crossing until this time, when the motion is to be taken up again
+    /// ([`Guarded::stage`]).
+    Stage(f64),
+    /// There is no crossing until this time, and no decision after it within the limit of work.
+    Undecided(f64),
 }
 
 /// The forcing angle by which a phase is cut that has no horizon: in two words nothing is known of
@@ -119,15 +135,41 @@ fn pass_by<P: Landing>(
         let (certain, limit) = h.since_roughly(instant, omega);
         (certain - beyond, limit + beyond)
     });
-    let land = |root: &Root| *next = begun.after(model, phase, root);
-    let found = first_crossing_and((phase, model.steps()), begun.guess, limit, counters, land);
-    match found {
+    match found(phase, model, (begun, next), limit, counters) {
         Found::At(elapsed) if elapsed.high <= certain => {
             counters.switches += 1;
             Passed { end: End::Switch, duration: elapsed }
         }
-        _ => pass_late(phase, model, (begun, next), (horizon, limit, found), counters),
+        found => pass_late(phase, model, (begun, next), (horizon, limit, found), counters),
     }
+}
+
+/// Searches a phase's end in two stages: candidate, then verdict.
+///
+/// The next phase begins at the candidate's root, before the verdict, so that the processor works
+/// on both. If the verdict is another root, the phase begins there; if it is none, what has begun
+/// counts for nothing.
+#[inline(always)]
+fn found<P: Landing>(
+    phase: &P,
+    model: &Model,
+    (begun, next): (&Begun, &mut Begun),
+    limit: f64,
+    counters: &mut Counters,
+) -> Found {
+    let solved = (phase, model.steps());
+    let candidate = Candidate::new(solved, begun.guess, limit, counters);
+    if let Some(root) = candidate.root() {
+        *next = begun.after(model, phase, root);
+        if candidate.is_first(solved, root, limit) {
+            return Found::At(root.elapsed());
+        }
+    }
+    let verdict = candidate.searched(solved, limit, counters);
+    if let Crossing::At(root) = &verdict {
+        *next = begun.after(model, phase, root);
+    }
+    Found::of(&verdict)
 }
 
 /// Next to a horizon, and where no switch was found as yet.
@@ -176,10 +218,8 @@ fn found_later<P: Landing>(
     counters: &mut Counters,
 ) -> Option<TwoWord> {
     let mut again = *begun;
-    let land = |root: &Root| again = begun.after(model, phase, root);
     let mut counted = Counters::default();
-    let steps = model.steps();
-    let found = match first_crossing_and((phase, steps), begun.guess, limit, &mut counted, land) {
+    let found = match found(phase, model, (begun, &mut again), limit, &mut counted) {
         Found::Stage(from) => {
             phase.in_stages(model, (begun, &mut again), (from, limit), &mut counted)
         }
@@ -189,6 +229,18 @@ fn found_later<P: Landing>(
     let Found::At(elapsed) = found else { return None };
     *next = again;
     Some(elapsed)
+}
+
+impl Found {
+    fn of(crossing: &Crossing) -> Self {
+        match crossing {
+            Crossing::At(root) => Self::At(root.elapsed()),
+            Crossing::Horizon => Self::Horizon,
+            Crossing::Never => Self::Never,
+            Crossing::Stage(elapsed) => Self::Stage(*elapsed),
+            Crossing::Undecided(elapsed) => Self::Undecided(*elapsed),
+        }
+    }
 }
 
 impl Begun {
@@ -279,12 +331,12 @@ impl Landing for Contact<f64, &Constants<f64>> {
         span: (f64, f64),
         counters: &mut Counters,
     ) -> Found {
-        let Staged { contact, found, root } =
+        let Staged { contact, crossing } =
             search_in_stages(model, self, &begun.entry.instant, span, counters);
-        if let Some(root) = root {
-            *next = begun.after(model, &contact, &root);
+        if let Crossing::At(root) = &crossing {
+            *next = begun.after(model, &contact, root);
         }
-        found
+        Found::of(&crossing)
     }
 }
 
@@ -307,8 +359,8 @@ mod tests {
     use super::*;
     use crate::crossing::guarded::SLACK;
     use crate::flow::Flow;
+    use crate::model::start::Start;
     use crate::parameters::Parameters;
-    use crate::start::Start;
     use proptest::prelude::*;
 
     /// What rounding of the guard moves a root by: each of two searches has a room of its own.

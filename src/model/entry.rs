@@ -1,9 +1,9 @@
 //! The state at which a phase begins: what a row of Table 1 holds.
 
-use crate::instant::Instant;
+use crate::model::instant::Instant;
+use crate::numeric::two_word::TwoWord;
 use crate::phase::Phase;
 use crate::state::State;
-use crate::two_word::TwoWord;
 
 /// The state and the instant at which a phase begins.
 #[derive(Clone, Copy, Debug, PartialEq)]

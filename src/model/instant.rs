@@ -4,10 +4,10 @@
 //! depends on tau through `omega tau mod 2 pi` alone, so that is what is carried, in two words:
 //! one word would lose half a unit at every switch, always in the same direction.
 
-use crate::angle;
-use crate::circle;
 use crate::flow::forcing::EntryAngle;
-use crate::two_word::{TWO_PI, TwoWord};
+use crate::numeric::angle;
+use crate::numeric::circle;
+use crate::numeric::two_word::{TWO_PI, TwoWord};
 
 /// An instant: `omega tau = cycle 2 pi + angle` with `0 <= angle < 2 pi` (phi is not included).
 #[derive(Clone, Copy, Debug, PartialEq)]

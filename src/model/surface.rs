@@ -4,8 +4,8 @@
 //! the contact sees it f' = 2 xi (F - f) + y, f'' = 2 xi (F' - f') + F - f; the other phases'
 //! guards have these derivatives divided by 2 xi, so the two sides cannot contradict each other.
 
-use crate::constants::Constants;
-use crate::entry::ModeEntry;
+use crate::flow::constants::Constants;
+use crate::model::entry::ModeEntry;
 use crate::state::State;
 
 /// A sum within this of its largest term counts as zero: four units in the last place.
@@ -117,8 +117,8 @@ fn ladder(constants: &Constants<f64>, y: f64, f: f64, force: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::two_word::TwoWord;
     use crate::parameters::Parameters;
-    use crate::two_word::TwoWord;
 
     /// Its speed f/(2 xi) is zero in f64: a separation under a force that pushes back would never
     /// have ended.

@@ -4,16 +4,16 @@
 //! more digits, in which the phase begins with the same f64 values and is decided with its own
 //! rounding room.
 
-use crate::constants::Constants;
 use crate::crossing::stepping::safe_step;
+use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
 use crate::flow::{Flow, Point};
 use crate::model::{Model, Motion};
-use crate::number::Number;
-use crate::segment::Segment;
+use crate::numeric::number::Number;
+use crate::run::segment::Segment;
 use crate::state::State;
 
 /// How a phase ends.

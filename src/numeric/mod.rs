@@ -1,0 +1,8 @@
+//! Arithmetic beyond that of f64: two words, angles, elementary functions and their remainders.
+
+pub mod angle;
+pub mod circle;
+pub mod exponential;
+pub mod number;
+pub mod remainders;
+pub mod two_word;
