@@ -44,56 +44,52 @@ pub fn first_crossing<G: Guarded>(
     Search::new((phase, steps), (left, hint, None), horizon, counters).run(counters)
 }
 
-/// Where the first guess leads: mostly the phase's end, but nothing is proved as yet.
-///
-/// The search has two stages, so that what follows an event can begin between them: it waits for
-/// the candidate's root but not for the verdict, and the processor works on both.
-pub struct Candidate {
+/// A search in two stages, so that what follows an event can begin between them: it waits for the
+/// candidate's root but not for the verdict, and the processor works on both.
+pub struct Stages {
     left: Point<f64>,
     hint: SearchHint,
-    followed: Option<Followed>,
 }
 
-/// A guess that has been followed: to a root, or in vain.
-type Followed = Result<Root, Point<f64>>;
+/// Where a guess leads: to a root, which is mostly the phase's end, or in vain.
+pub type Candidate = Result<Root, Point<f64>>;
 
-impl Candidate {
-    /// The candidate that a guess, or a hint of the phase where there is none, leads to before the
-    /// horizon.
+impl Stages {
+    /// The search of a phase whose end is guessed; without a guess the phase gives a hint.
     #[inline(always)]
-    pub fn new<G: Guarded>(
-        (phase, steps): (&G, &Steps),
-        guess: Option<f64>,
-        horizon: f64,
-        counters: &mut Counters,
-    ) -> Self {
+    pub fn new<G: Guarded>((phase, steps): (&G, &Steps), guess: Option<f64>, horizon: f64) -> Self {
         let left = phase.entry();
         let hint = match guess {
             Some(time) => SearchHint::Root(time),
             None => phase.hint(steps, &left, horizon),
         };
-        let followed = match hint {
-            SearchHint::Root(time) if time > 0.0 && time < horizon => {
-                Some(follow(phase, 0.0, time, horizon, counters))
-            }
-            _ => None,
-        };
-        Self { left, hint, followed }
+        Self { left, hint }
     }
 
-    /// The candidate's root, if the guess has led to one.
+    /// The guess, if there is one before the horizon.
     #[inline(always)]
-    pub const fn root(&self) -> Option<&Root> {
-        match &self.followed {
-            Some(Ok(root)) => Some(root),
+    pub fn guess(&self, horizon: f64) -> Option<f64> {
+        match self.hint {
+            SearchHint::Root(time) if time > 0.0 && time < horizon => Some(time),
             _ => None,
         }
     }
 
-    /// Whether one certificate says that this root of the candidate is the first crossing, and the
-    /// root is not after the horizon.
+    /// The first stage: where the guess leads.
     #[inline(always)]
-    pub fn is_first<G: Guarded>(
+    pub fn candidate<G: Guarded>(
+        phase: &G,
+        guess: f64,
+        horizon: f64,
+        counters: &mut Counters,
+    ) -> Candidate {
+        follow(phase, 0.0, guess, horizon, counters)
+    }
+
+    /// The second stage, as it mostly ends: one certificate says that the candidate's root is the
+    /// first crossing.
+    #[inline(always)]
+    pub fn confirm<G: Guarded>(
         &self,
         (phase, steps): (&G, &Steps),
         root: &Root,
@@ -104,19 +100,21 @@ impl Candidate {
             && phase.certify(steps, &self.left, &root.point, ends) == Verdict::Inside
     }
 
-    /// The first crossing, where one certificate does not say that it is the candidate.
+    /// The second stage where that is not confirmed: the whole search, which takes the candidate
+    /// for the end of its first piece.
     #[cold]
-    pub fn searched<G: Guarded>(
+    pub fn search<G: Guarded>(
         self,
         solved: (&G, &Steps),
+        candidate: Option<Candidate>,
         horizon: f64,
         counters: &mut Counters,
     ) -> Crossing {
         if horizon <= 0.0 {
             return Crossing::Horizon;
         }
-        let Self { left, hint, followed } = self;
-        Search::new(solved, (left, hint, followed), horizon, counters).run(counters)
+        let Self { left, hint } = self;
+        Search::new(solved, (left, hint, candidate), horizon, counters).run(counters)
     }
 }
 
@@ -131,7 +129,7 @@ struct Search<'a, G> {
     /// The advice where to go on from there.
     hint: SearchHint,
     /// What the advice has led to, if it has been followed already.
-    followed: Option<Followed>,
+    followed: Option<Candidate>,
     /// The least step that gets on.
     stride: f64,
     /// The time after which it is over, and what it ends with there.
@@ -154,7 +152,7 @@ impl<'a, G: Guarded> Search<'a, G> {
     #[cold]
     fn new(
         (phase, steps): (&'a G, &'a Steps),
-        (left, hint, followed): (Point<f64>, SearchHint, Option<Followed>),
+        (left, hint, followed): (Point<f64>, SearchHint, Option<Candidate>),
         horizon: f64,
         counters: &Counters,
     ) -> Self {

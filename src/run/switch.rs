@@ -5,7 +5,7 @@
 //! of a switch's time. What few switches take is kept out of the way.
 
 use crate::crossing::guarded::{Guarded, SearchHint};
-use crate::crossing::search::Candidate;
+use crate::crossing::search::Stages;
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
@@ -158,14 +158,21 @@ fn found<P: Landing>(
     counters: &mut Counters,
 ) -> Found {
     let solved = (phase, model.steps());
-    let candidate = Candidate::new(solved, begun.guess, limit, counters);
-    if let Some(root) = candidate.root() {
-        *next = begun.after(model, phase, root);
-        if candidate.is_first(solved, root, limit) {
-            return Found::At(root.elapsed());
-        }
+    let stages = Stages::new(solved, begun.guess, limit);
+    let mut candidate = None;
+    if let Some(guess) = stages.guess(limit) {
+        candidate = Some(match Stages::candidate(phase, guess, limit, counters) {
+            Ok(root) => {
+                *next = begun.after(model, phase, &root);
+                if stages.confirm(solved, &root, limit) {
+                    return Found::At(root.elapsed());
+                }
+                Ok(root)
+            }
+            Err(point) => Err(point),
+        });
     }
-    let verdict = candidate.searched(solved, limit, counters);
+    let verdict = stages.search(solved, candidate, limit, counters);
     if let Crossing::At(root) = &verdict {
         *next = begun.after(model, phase, root);
     }
