@@ -1,6 +1,6 @@
-//! A complex number over any [`Number`], with the three operations that the forced response needs.
+//! A complex number over any [`Real`], with what the forced response needs.
 
-use crate::numeric::number::Number;
+use crate::numeric::real::Real;
 use std::ops::{Add, Mul, Sub};
 
 /// re + i im
@@ -12,45 +12,60 @@ pub struct Complex<T> {
     pub im: T,
 }
 
-impl<T: Number> Complex<T> {
+impl<T: Real> Complex<T> {
     /// re + i im
+    #[inline(always)]
     pub fn new(re: T, im: T) -> Self {
         Self { re, im }
     }
 
     /// re - i im
+    #[inline(always)]
     pub fn conjugate(self) -> Self {
         Self::new(self.re, -self.im)
     }
 
     /// Times a real factor.
+    #[inline(always)]
     pub fn scale(self, factor: T) -> Self {
         Self::new(self.re * factor, self.im * factor)
     }
 
     /// The inverse of the number.
     pub fn inverse(self) -> Self {
-        self.conjugate().scale(T::one() / (self.re * self.re + self.im * self.im))
+        self.conjugate().scale(self.re.same(1.0) / (self.re * self.re + self.im * self.im))
+    }
+
+    /// One number where the mask holds, the other elsewhere.
+    #[inline(always)]
+    pub fn choose(mask: T::Mask, yes: Self, no: Self) -> Self {
+        Self::new(T::choose(mask, yes.re, no.re), T::choose(mask, yes.im, no.im))
     }
 }
 
-impl<T: Number> Add for Complex<T> {
+impl<T: Real> Add for Complex<T> {
     type Output = Self;
+    #[inline(always)]
     fn add(self, other: Self) -> Self {
         Self::new(self.re + other.re, self.im + other.im)
     }
 }
 
-impl<T: Number> Sub for Complex<T> {
+impl<T: Real> Sub for Complex<T> {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, other: Self) -> Self {
         Self::new(self.re - other.re, self.im - other.im)
     }
 }
 
-impl<T: Number> Mul for Complex<T> {
+impl<T: Real> Mul for Complex<T> {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, other: Self) -> Self {
-        Self::new(self.re * other.re - self.im * other.im, self.re * other.im + self.im * other.re)
+        Self::new(
+            self.im.times_from(other.im, self.re * other.re),
+            self.im.times_plus(other.re, self.re * other.im),
+        )
     }
 }

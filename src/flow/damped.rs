@@ -5,6 +5,7 @@
 //! are entire functions of 1 - xi^2 and exist everywhere. C' = -S and S' = C - 2 xi S.
 
 use crate::numeric::number::Number;
+use crate::numeric::real::Real;
 use crate::numeric::remainders::{Circular, Decay, circular_of, decay};
 
 /// How the free oscillation is computed at this damping ratio.
@@ -63,16 +64,6 @@ pub struct Rotation<T> {
     pub turn: Circular<T>,
 }
 
-impl<T: Number> Rotation<T> {
-    fn none() -> Self {
-        let zero = T::zero();
-        Self {
-            shrink: Decay { exp: zero, minus_1: zero, remainder: zero },
-            turn: Circular { sin: zero, cos_minus_1: zero, sin_minus_x: zero },
-        }
-    }
-}
-
 /// |1 - xi^2| below which the series may serve.
 const NEAR_CRITICAL: f64 = 0.5;
 
@@ -123,13 +114,10 @@ fn under<T: Number>(xi: T, nu: T, nu_low: T, d: T) -> Free<T> {
     let shrink = decay(xi * d);
     let s = shrink.exp * turn.sin / nu;
     let s_minus_d = (shrink.minus_1 * turn.sin + turn.sin_minus_x) / nu;
-    let c_minus_1 = c_minus_1(xi, d, &shrink, turn.cos_minus_1, s, s_minus_d);
-    let s_rate_minus_1 = c_minus_1 - (xi + xi) * s;
     let rotation = Rotation { shrink, turn };
-    Free { s, s_minus_d, c_minus_1, s_rate_minus_1, quick: T::zero(), rotation }
+    Free { rotation, ..Free::shrunk(xi, d, &shrink, turn.cos_minus_1, [s, s_minus_d]) }
 }
 
-/// With m = (1 - xi^2) d^2: S = d exp(-xi d) (1 - m/3! + m^2/5! - ...), C alike.
 #[inline]
 fn near_critical<T: Number>(xi: T, m: T, d: T) -> Free<T> {
     let (mut cosine, mut sine) = (T::zero(), T::zero());
@@ -137,48 +125,72 @@ fn near_critical<T: Number>(xi: T, m: T, d: T) -> Free<T> {
         cosine = T::inverse_factorial(2 * k + 2) - m * cosine;
         sine = T::inverse_factorial(2 * k + 3) - m * sine;
     }
-    let (cosine_minus_1, sine_over_x_minus_1) = (-(m * cosine), -(m * sine));
-    let shrink = decay(xi * d);
-    let s = shrink.exp * d * (T::one() + sine_over_x_minus_1);
-    let s_minus_d = d * (shrink.minus_1 + shrink.exp * sine_over_x_minus_1);
-    let c_minus_1 = c_minus_1(xi, d, &shrink, cosine_minus_1, s, s_minus_d);
-    let s_rate_minus_1 = c_minus_1 - (xi + xi) * s;
-    let rotation = Rotation::none();
-    Free { s, s_minus_d, c_minus_1, s_rate_minus_1, quick: T::zero(), rotation }
+    Free::of_series(xi, d, &decay(xi * d), [-(m * cosine), -(m * sine)])
 }
 
-/// C - 1 = exp(-xi d) cos - 1 + xi S, in short times without the xi d that two of its parts share.
-#[inline]
-fn c_minus_1<T: Number>(
-    xi: T,
-    d: T,
-    shrink: &Decay<T>,
-    cosine_minus_1: T,
-    s: T,
-    s_minus_d: T,
-) -> T {
-    let turned = shrink.exp * cosine_minus_1;
-    if xi * d < T::exact(0.5) {
-        shrink.remainder + turned + xi * s_minus_d
-    } else {
-        shrink.minus_1 + turned + xi * s
+impl<T: Real> Free<T> {
+    /// With m = (1 - xi^2) d^2: S = d exp(-xi d) (1 - m/3! + m^2/5! - ...), C alike; the series
+    /// without their ones are given.
+    #[inline(always)]
+    pub fn of_series(
+        xi: T,
+        d: T,
+        shrink: &Decay<T>,
+        [cosine_minus_1, sine_over_x_minus_1]: [T; 2],
+    ) -> Self {
+        let s = shrink.exp * d * (d.same(1.0) + sine_over_x_minus_1);
+        let s_minus_d = d * shrink.exp.times_plus(sine_over_x_minus_1, shrink.minus_1);
+        Self::shrunk(xi, d, shrink, cosine_minus_1, [s, s_minus_d])
+    }
+
+    /// C - 1 = exp(-xi d) cos - 1 + xi S, in short times without the xi d that two of its parts
+    /// share.
+    #[inline(always)]
+    pub fn shrunk(
+        xi: T,
+        d: T,
+        shrink: &Decay<T>,
+        cosine_minus_1: T,
+        [s, s_minus_d]: [T; 2],
+    ) -> Self {
+        let turned = shrink.exp * cosine_minus_1;
+        let weak = (xi * d).less(d.same(0.5));
+        let rest = T::choose(weak, shrink.remainder, shrink.minus_1);
+        let c_minus_1 = xi.times_plus(T::choose(weak, s_minus_d, s), rest + turned);
+        let s_rate_minus_1 = (xi + xi).times_from(s, c_minus_1);
+        Self { s, s_minus_d, c_minus_1, s_rate_minus_1, ..Self::nothing(d) }
+    }
+
+    /// With S = exp(-slow d) (1 - exp(-spread d))/spread nothing cancels, however small the spread;
+    /// C = exp(-slow d) + slow S and S' = exp(-fast d) - slow S. The exponentials are given.
+    #[inline(always)]
+    pub fn of_exponentials(slow: T, spread: T, lasting: &Decay<T>, ratio: &Decay<T>) -> Self {
+        let bare = -(ratio.minus_1 / spread);
+        let s = lasting.exp * bare;
+        let quick_minus_1 = lasting.exp.times_plus(ratio.minus_1, lasting.minus_1);
+        Self {
+            s,
+            s_minus_d: lasting.minus_1.times_plus(bare, -(ratio.remainder / spread)),
+            c_minus_1: slow.times_plus(s, lasting.minus_1),
+            s_rate_minus_1: slow.times_from(s, quick_minus_1),
+            quick: lasting.exp * ratio.exp,
+            ..Self::nothing(s)
+        }
+    }
+
+    /// All zero, in the lanes of a number.
+    #[inline(always)]
+    pub fn nothing(number: T) -> Self {
+        let zero = number.same(0.0);
+        let shrink = Decay { exp: zero, minus_1: zero, remainder: zero };
+        let turn = Circular { sin: zero, cos_minus_1: zero, sin_minus_x: zero };
+        let rotation = Rotation { shrink, turn };
+        let quick = zero;
+        Self { s: zero, s_minus_d: zero, c_minus_1: zero, s_rate_minus_1: zero, quick, rotation }
     }
 }
 
-/// With S = exp(-slow d) (1 - exp(-spread d))/spread nothing cancels, however small the spread;
-/// C = exp(-slow d) + slow S and S' = exp(-fast d) - slow S.
 #[inline]
 fn over<T: Number>(slow: T, spread: T, d: T) -> Free<T> {
-    let (lasting, ratio) = (decay(slow * d), decay(spread * d));
-    let bare = -(ratio.minus_1 / spread);
-    let s = lasting.exp * bare;
-    let quick_minus_1 = lasting.minus_1 + lasting.exp * ratio.minus_1;
-    Free {
-        s,
-        s_minus_d: lasting.minus_1 * bare - ratio.remainder / spread,
-        c_minus_1: lasting.minus_1 + slow * s,
-        s_rate_minus_1: quick_minus_1 - slow * s,
-        quick: lasting.exp * ratio.exp,
-        rotation: Rotation::none(),
-    }
+    Free::of_exponentials(slow, spread, &decay(slow * d), &decay(spread * d))
 }

@@ -13,6 +13,7 @@
 use crate::flow::complex::Complex;
 use crate::flow::damped::{Free, Rotation};
 use crate::numeric::number::Number;
+use crate::numeric::real::Real;
 use crate::numeric::remainders::{Circular, circular};
 
 /// How the forced oscillation is computed at this frequency and damping.
@@ -102,14 +103,16 @@ impl<T: Number> Forced<T> {
                 } else {
                     turn.sin - omega * free.s
                 };
-                plain(two_xi, omega, inverse, sines, turn, free)
+                Response::plain(two_xi, omega, inverse, sines, turn, free)
             }
             Self::Resonant { xi, half_over_nu, delta, slow, in_step, quick } => {
+                let together = Together { turn, rotation: &free.rotation, inverses: [slow, quick] };
                 let parts = if d < T::one() {
-                    Parts::short(d, (slow, quick), &circular(delta * d), turn, &free.rotation)
+                    together.short(d, &circular(delta * d))
+                } else if d < in_step {
+                    together.long(together.lag_by_beat(&circular(delta * d)))
                 } else {
-                    let beat = (d < in_step).then(|| circular(delta * d));
-                    Parts::long((slow, quick), beat, turn, &free.rotation)
+                    together.long(together.lag())
                 };
                 parts.response(xi, half_over_nu)
             }
@@ -117,79 +120,116 @@ impl<T: Number> Forced<T> {
     }
 }
 
-#[inline]
-fn plain<T: Number>(
-    two_xi: T,
-    omega: T,
-    inverse: Complex<T>,
-    sines: T,
-    turn: &Circular<T>,
-    free: &Free<T>,
-) -> Response<T> {
-    let displacement = Complex::new(turn.cos_minus_1 - free.c_minus_1, sines);
-    let rate =
-        Complex::new(free.s - omega * turn.sin, omega * (turn.cos_minus_1 - free.s_rate_minus_1));
-    let force = Complex::new(
-        turn.cos_minus_1 - free.s_rate_minus_1 - two_xi * omega * turn.sin,
-        displacement.im + two_xi * rate.im,
-    );
-    Response { rate: rate * inverse, force: force * inverse, displacement: displacement * inverse }
+impl<T: Real> Response<T> {
+    /// Divides by P: `inverse` is 1/P, `sines` what is left of exp(i omega d) - C - i omega S in
+    /// its imaginary part.
+    #[inline(always)]
+    pub fn plain(
+        two_xi: T,
+        omega: T,
+        inverse: Complex<T>,
+        sines: T,
+        turn: &Circular<T>,
+        free: &Free<T>,
+    ) -> Self {
+        let displacement = Complex::new(turn.cos_minus_1 - free.c_minus_1, sines);
+        let bent = turn.cos_minus_1 - free.s_rate_minus_1;
+        let rate = Complex::new(omega.times_from(turn.sin, free.s), omega * bent);
+        let force = Complex::new(
+            (two_xi * omega).times_from(turn.sin, bent),
+            two_xi.times_plus(rate.im, displacement.im),
+        );
+        Self { rate: rate * inverse, force: force * inverse, displacement: displacement * inverse }
+    }
+}
+
+/// Forced and free oscillation near resonance.
+pub struct Together<'a, T> {
+    /// The forcing's.
+    pub turn: &'a Circular<T>,
+    /// The free oscillation's.
+    pub rotation: &'a Rotation<T>,
+    /// 1/(i omega - lambda+) and 1/(i omega - lambda-).
+    pub inverses: [Complex<T>; 2],
 }
 
 /// D+ and D- of the divided difference.
-struct Parts<T> {
-    sum: Complex<T>,
-    difference: Complex<T>,
+pub struct Parts<T> {
+    /// D+ + D-
+    pub sum: Complex<T>,
+    /// D+ - D-
+    pub difference: Complex<T>,
 }
 
-impl<T: Number> Parts<T> {
-    /// With the beat as long as the two oscillations are in step, and without where they are not:
-    /// then their difference no longer cancels, and delta d would carry the rounding of delta.
-    #[inline]
-    fn long(
-        (inverse_slow, inverse_quick): (Complex<T>, Complex<T>),
-        beat: Option<Circular<T>>,
-        turn: &Circular<T>,
-        Rotation { shrink, turn: free }: &Rotation<T>,
-    ) -> Self {
-        let one = T::one();
-        let damped = Complex::new(one + free.cos_minus_1, free.sin);
-        let forcing = Complex::new(one + turn.cos_minus_1, turn.sin);
-        let lag = match beat {
-            Some(beat) => damped * Complex::new(beat.cos_minus_1 - shrink.minus_1, beat.sin),
-            None => forcing - damped.scale(shrink.exp),
-        };
-        let slow = lag * inverse_slow;
-        let quick = (forcing - damped.conjugate().scale(shrink.exp)) * inverse_quick;
-        Self { sum: slow + quick, difference: slow - quick }
+impl<T: Real> Together<'_, T> {
+    /// exp(i omega d) - exp(lambda+ d) by the beat, which does not cancel as long as the two
+    /// oscillations are in step.
+    #[inline(always)]
+    pub fn lag_by_beat(&self, beat: &Circular<T>) -> Complex<T> {
+        let shrink = &self.rotation.shrink;
+        self.damped() * Complex::new(beat.cos_minus_1 - shrink.minus_1, beat.sin)
     }
 
-    /// D+ - d and D- - d, both of the order of d^2.
-    #[inline]
-    fn short(
-        d: T,
-        (inverse_slow, inverse_quick): (Complex<T>, Complex<T>),
-        beat: &Circular<T>,
-        turn: &Circular<T>,
-        Rotation { shrink, turn: free }: &Rotation<T>,
-    ) -> Self {
+    /// exp(i omega d) - exp(lambda+ d) where they are out of step: their difference no longer
+    /// cancels, and the beat would carry the rounding of delta.
+    #[inline(always)]
+    pub fn lag(&self) -> Complex<T> {
+        self.forcing() - self.damped().scale(self.rotation.shrink.exp)
+    }
+
+    /// D+ and D- in long times, from exp(i omega d) - exp(lambda+ d).
+    #[inline(always)]
+    pub fn long(&self, lag: Complex<T>) -> Parts<T> {
+        let [inverse_slow, inverse_quick] = self.inverses;
+        let slow = lag * inverse_slow;
+        let conjugate = self.damped().conjugate().scale(self.rotation.shrink.exp);
+        let quick = (self.forcing() - conjugate) * inverse_quick;
+        Parts { sum: slow + quick, difference: slow - quick }
+    }
+
+    /// D+ and D- in short times, by D+ - d and D- - d, which are both of the order of d^2.
+    #[inline(always)]
+    pub fn short(&self, d: T, beat: &Circular<T>) -> Parts<T> {
+        let (turn, Rotation { shrink, turn: free }) = (self.turn, self.rotation);
+        let [inverse_slow, inverse_quick] = self.inverses;
         let beating = Complex::new(beat.cos_minus_1 - shrink.remainder, beat.sin_minus_x);
         let lag = beating * inverse_slow;
         let turned = Complex::new(free.cos_minus_1, free.sin);
         let slow = lag + turned * Complex::new(d + lag.re, lag.im);
-        let cosines = turn.cos_minus_1 - (shrink.remainder + shrink.exp * free.cos_minus_1);
-        let sines = turn.sin_minus_x + (free.sin_minus_x + shrink.minus_1 * free.sin);
+        let cosines = turn.cos_minus_1 - shrink.exp.times_plus(free.cos_minus_1, shrink.remainder);
+        let sines = turn.sin_minus_x + shrink.minus_1.times_plus(free.sin, free.sin_minus_x);
         let quick = Complex::new(cosines, sines) * inverse_quick;
         let sum = slow + quick;
-        Self { sum: Complex::new(sum.re + (d + d), sum.im), difference: slow - quick }
+        Parts { sum: Complex::new(sum.re + (d + d), sum.im), difference: slow - quick }
     }
 
-    #[inline]
-    fn response(&self, xi: T, half_over_nu: T) -> Response<T> {
+    /// exp(i nu d)
+    #[inline(always)]
+    fn damped(&self) -> Complex<T> {
+        let free = &self.rotation.turn;
+        Complex::new(free.cos_minus_1.same(1.0) + free.cos_minus_1, free.sin)
+    }
+
+    /// exp(i omega d)
+    #[inline(always)]
+    fn forcing(&self) -> Complex<T> {
+        Complex::new(self.turn.cos_minus_1.same(1.0) + self.turn.cos_minus_1, self.turn.sin)
+    }
+}
+
+impl<T: Real> Parts<T> {
+    /// The response that D+ and D- make.
+    #[inline(always)]
+    pub fn response(&self, xi: T, half_over_nu: T) -> Response<T> {
         let Self { sum, difference } = self;
         // 1/(2 i nu) = -i/(2 nu)
         let displacement = Complex::new(difference.im, -difference.re).scale(half_over_nu);
-        let rate = sum.scale(T::exact(0.5)) - displacement.scale(xi);
-        Response { rate, force: displacement + rate.scale(xi + xi), displacement }
+        let rate = sum.scale(xi.same(0.5)) - displacement.scale(xi);
+        let two_xi = xi + xi;
+        let force = Complex::new(
+            two_xi.times_plus(rate.re, displacement.re),
+            two_xi.times_plus(rate.im, displacement.im),
+        );
+        Response { rate, force, displacement }
     }
 }

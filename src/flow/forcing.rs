@@ -2,6 +2,7 @@
 
 use crate::flow::constants::Constants;
 use crate::numeric::number::Number;
+use crate::numeric::real::Real;
 use crate::numeric::remainders::{Circular, circular_of};
 use std::f64::consts::TAU;
 
@@ -42,15 +43,38 @@ impl<T: Number> EntryAngle<T> {
         let Constants { a, omega, a_over_omega, a_over_omega2, .. } = *constants;
         let angle = omega * d;
         let turn = circular_of(angle, omega.product_error(d));
+        self.turned(&Drive { a, omega, a_over_omega, a_over_omega2 }, turn)
+    }
+}
+
+/// What the harmonic force needs of the parameters.
+pub struct Drive<T> {
+    /// a
+    pub a: T,
+    /// omega
+    pub omega: T,
+    /// a/omega
+    pub a_over_omega: T,
+    /// a/omega^2
+    pub a_over_omega2: T,
+}
+
+impl<T: Real> EntryAngle<T> {
+    /// The harmonic force and its integrals when the forcing has turned so far.
+    #[inline(always)]
+    pub fn turned(&self, drive: &Drive<T>, turn: Circular<T>) -> Harmonic<T> {
+        let Drive { a, omega, a_over_omega, a_over_omega2 } = *drive;
         let Circular { sin, cos_minus_1, sin_minus_x } = turn;
-        let cosine = self.cos + (self.cos * cos_minus_1 - self.sin * sin);
-        let sine = self.sin + (self.sin * cos_minus_1 + self.cos * sin);
+        let fallen = self.sin.times_from(sin, self.cos * cos_minus_1);
+        let risen = self.cos.times_plus(sin, self.sin * cos_minus_1);
+        let (cosine, sine) = (self.cos + fallen, self.sin + risen);
+        let sunk = self.sin.times_from(sin_minus_x, self.cos * cos_minus_1);
         Harmonic {
             force: [a * cosine, -(a * omega * sine), -(a * omega * omega * cosine)],
-            impulse: a_over_omega * (self.sin * cos_minus_1 + self.cos * sin),
-            displacement: -(a_over_omega2 * (self.cos * cos_minus_1 - self.sin * sin_minus_x)),
-            displacement_terms: a_over_omega2 * (sin_minus_x.abs() - cos_minus_1),
-            impulse_terms: a_over_omega * (sin.abs() - cos_minus_1),
+            impulse: a_over_omega * risen,
+            displacement: -(a_over_omega2 * sunk),
+            displacement_terms: a_over_omega2 * (sin_minus_x.magnitude() - cos_minus_1),
+            impulse_terms: a_over_omega * (sin.magnitude() - cos_minus_1),
             turn,
         }
     }

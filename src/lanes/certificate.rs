@@ -1,6 +1,7 @@
 //! The proof that a guard stays inside its corridor in a piece: [`crate::crossing::certificate`].
 
 use super::wide::{Mask, Wide};
+use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// A guard on a piece.

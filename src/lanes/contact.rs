@@ -1,17 +1,19 @@
 //! Contacts ([`crate::flow::contact`]): evaluation and landing; guess and certificate are in
 //! [`super::contact_ahead`].
 
-use super::complex::Complex;
 use super::contact_shape::Forms;
-use super::damped::Free;
-use super::forced::Response;
-use super::harmonic::{Angle, Harmonic, Push, short_decay};
+use super::harmonic::{Angle, Push, short_decay};
 use super::root::{Care, Found, Phase, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::swing::{Parts, each};
 use super::wide::{Mask, Wide};
 use crate::crossing::series::REACH;
+use crate::flow::complex::Complex;
+use crate::flow::damped::Free;
+use crate::flow::forced::Response;
+use crate::flow::forcing::Harmonic;
+use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// Contacts; their guard is the trial force less `reference`.
@@ -98,7 +100,7 @@ impl<S: Simd> Phase<S> for Leaving<'_, '_, S> {
 
     #[inline(always)]
     fn is_short(&self, _: Wide<S>, step: Wide<S>) -> Mask<S> {
-        (step.abs() * self.contact.shape.quickest).below(REACH)
+        (step.magnitude() * self.contact.shape.quickest).below(REACH)
     }
 }
 
@@ -111,10 +113,11 @@ impl<S: Simd> Contact<'_, S> {
         let free = Free::after(self.shape, self.forms, d);
         let Free { s, c_minus_1, s_rate_minus_1, .. } = free;
         let response = Response::after(self.shape, self.forms, d, &turn, &free);
-        let steady = |it: Complex<S>| a * self.angle.sin.times_from(it.im, self.angle.cos * it.re);
+        let steady =
+            |it: Complex<Wide<S>>| a * self.angle.sin.times_from(it.im, self.angle.cos * it.re);
         let (driven, y_driven) = (steady(response.force), steady(response.rate));
         let q_driven = steady(response.displacement);
-        let driven_bound = a * (response.force.re.abs() + response.force.im.abs());
+        let driven_bound = a * (response.force.re.magnitude() + response.force.im.magnitude());
 
         let level = self.offset + (self.reference - b);
         let relaxing = level * s_rate_minus_1;
@@ -124,11 +127,11 @@ impl<S: Simd> Contact<'_, S> {
         let excess = self.offset + f_change;
         let y = self.y + y_change;
         let one = d.same(1.0);
-        let pulls = force[0].abs() + (b - self.reference).abs();
-        let carried = self.y.abs() * d.smaller(one)
-            + level.abs() * (d * d).smaller(one)
+        let pulls = force[0].magnitude() + (b - self.reference).magnitude();
+        let carried = self.y.magnitude() * d.smaller(one)
+            + level.magnitude() * (d * d).smaller(one)
             + (pulls + pulls) * (two_xi * d).smaller(one);
-        let terms = self.offset.abs() + relaxing.abs() + carried + driven_bound;
+        let terms = self.offset.magnitude() + relaxing.magnitude() + carried + driven_bound;
         let f = self.one_by_one(d, self.orders(force, excess, y), force, free.quick);
         Pressed { f, force, y, q: self.q + q_change, quick: free.quick, terms }
     }

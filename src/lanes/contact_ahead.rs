@@ -12,6 +12,7 @@ use super::root::Care;
 use super::shape::Shape;
 use super::swing::{Parts, Swings, each};
 use super::wide::{Mask, Wide};
+use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// Pieces of a certificate, after which a lane is left to the scalar solver,
@@ -121,7 +122,7 @@ impl<S: Simd> Contact<'_, S> {
     #[inline(always)]
     fn slack(&self, parts: &Parts<S>, terms: Wide<S>) -> Wide<S> {
         let size = parts.size() + self.shape.pulls;
-        (terms.larger(self.offset.abs()) + 1.0) * (4.0 * f64::EPSILON)
+        (terms.larger(self.offset.magnitude()) + 1.0) * (4.0 * f64::EPSILON)
             + size * (self.shape.roundings * f64::EPSILON)
     }
 }

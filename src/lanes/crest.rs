@@ -1,6 +1,7 @@
 //! An upper bound of a flight's guard, and what its tangents prove ([`super::flight`]).
 
 use super::wide::{Mask, Wide};
+use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// A concave function at one place.

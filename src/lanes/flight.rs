@@ -11,13 +11,15 @@ use super::certificate::Piece;
 use super::crest::{Bound, Tangent};
 use super::functions::shrink;
 use super::guess::SlowEnvelope;
-use super::harmonic::{Angle, Harmonic, Push, short_decay};
+use super::harmonic::{Angle, Push, short_decay};
 use super::root::{Care, Found, Phase, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::series::REACH;
+use crate::flow::forcing::Harmonic;
 use crate::flow::steps::{GRIP, SEPARATION_INTERVAL};
+use crate::numeric::real::Real;
 use pulp::Simd;
 use std::f64::consts::TAU;
 
@@ -120,7 +122,7 @@ impl<S: Simd> Phase<S> for Flight<'_, S> {
     #[inline(always)]
     fn is_short(&self, d: Wide<S>, step: Wide<S>) -> Mask<S> {
         let Shape { pace, rate, .. } = *self.shape;
-        let step = step.abs();
+        let step = step.magnitude();
         (step * pace).below(REACH) & ((step * rate).below(REACH) | (rate * (d - step)).above(DEAD))
     }
 }
@@ -141,9 +143,9 @@ impl<S: Simd> Flight<'_, S> {
         let lost = at.q * short_decay(rate * step);
         let (y, q) = (at.y + b.times_plus(step, push.impulse), at.q + lost);
         let f = two_xi * slope;
-        let largest = (two_xi * y).abs().larger(q.abs());
-        let clear =
-            (largest * TIE).less(f) & (largest.larger(y.same(1.0)) * TIE).less((f - 1.0).abs());
+        let largest = (two_xi * y).magnitude().larger(q.magnitude());
+        let clear = (largest * TIE).less(f)
+            & (largest.larger(y.same(1.0)) * TIE).less((f - 1.0).magnitude());
         let root = elapsed + step;
         let certified = match care {
             Care::Usual => self.stays_below(root, q, care),
@@ -193,7 +195,7 @@ impl<S: Simd> Flight<'_, S> {
         let Angle { sin, cos, .. } = self.angle;
         let slope = a_over_omega.times_from(sin, self.y) + spring;
         let offset = a_over_omega2.times_plus(cos, self.q) - spring.times_plus(root, q);
-        let speeds = self.y.abs() + a_over_omega + b.abs() * root + spring;
+        let speeds = self.y.magnitude() + a_over_omega + b.magnitude() * root + spring;
         let terms = self.q + a_over_omega2 * TAU + q + speeds * root;
         Bound {
             offset: offset + terms * ROOM,
@@ -264,7 +266,7 @@ impl<S: Simd> Flight<'_, S> {
             double: everywhere,
             to_root: everywhere,
         };
-        let terms = (a + b.abs()) * root * root + self.q * (rate * root + 1.0);
+        let terms = (a + b.magnitude()) * root * root + self.q * (rate * root + 1.0);
         let short = (root * rate).below(LIFE) & (root * omega).below(ANGLE);
         let lowest = zero.same(f64::NEG_INFINITY);
         short & piece.stays_between(lowest, zero, terms * (4.0 * f64::EPSILON))
@@ -275,7 +277,7 @@ impl<S: Simd> Flight<'_, S> {
     #[inline(always)]
     fn stays_below(&self, root: Wide<S>, q: Wide<S>, care: Care) -> Mask<S> {
         let Shape { a, b, omega, rate, turning, turning_sin, turning_cos, .. } = *self.shape;
-        let Angle { value: angle, sin, cos } = self.angle;
+        let Angle { radians: angle, sin, cos } = self.angle;
         let zero = root.same(0.0);
         let bound = self.bound(root, q);
 
@@ -288,7 +290,7 @@ impl<S: Simd> Flight<'_, S> {
         // The largest force until then: at either end, unless a crest lies between.
         let no_crest = settled.times_plus(omega, angle).below(TAU);
         let crest = no_crest.choose(cos.larger(settled_cos), cos.same(1.0));
-        let strongest = a.times_plus(crest, b) + (a + b.abs()) * 1e-12;
+        let strongest = a.times_plus(crest, b) + (a + b.magnitude()) * 1e-12;
         let sinks = strongest.less(self.q * rate * rate * GRIP);
         let by_sinking = sinks & !(concave_at_first & settled.less(concave_until));
         let start = by_sinking.choose(settled, concave_until);

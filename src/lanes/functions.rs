@@ -6,6 +6,8 @@
 
 use super::wide::{Mask, Wide};
 use crate::numeric::exponential;
+use crate::numeric::real::{Real, polynomial};
+use crate::numeric::remainders::{Circular, Decay};
 use crate::numeric::two_word::ROUNDER;
 use pulp::Simd;
 use std::f64::consts::{FRAC_2_PI, FRAC_PI_2, LN_2, LOG2_E};
@@ -17,38 +19,6 @@ pub const FURTHEST: f64 = 1e5;
 const FRAC_PI_2_LOW: f64 = 6.123_233_995_736_766e-17;
 /// What one word leaves of ln 2.
 const LN_2_LOW: f64 = exponential::LN_2.low;
-
-/// Sine and cosine with their remainders.
-#[derive(Clone, Copy)]
-pub struct Turn<S: Simd> {
-    /// sin x
-    pub sin: Wide<S>,
-    /// cos x - 1
-    pub cos_minus_1: Wide<S>,
-    /// sin x - x
-    pub sin_minus_x: Wide<S>,
-}
-
-/// exp(-z) with its remainders.
-#[derive(Clone, Copy)]
-pub struct Shrink<S: Simd> {
-    /// exp(-z)
-    pub exp: Wide<S>,
-    /// exp(-z) - 1
-    pub minus_1: Wide<S>,
-    /// exp(-z) - 1 + z
-    pub remainder: Wide<S>,
-}
-
-/// A polynomial, lowest coefficient first.
-#[inline(always)]
-pub fn polynomial<S: Simd, const N: usize>(x: Wide<S>, coefficients: [f64; N]) -> Wide<S> {
-    let mut sum = x.same(coefficients[N - 1]);
-    for coefficient in coefficients.into_iter().rev().skip(1) {
-        sum = sum.times_plus(x, x.same(coefficient));
-    }
-    sum
-}
 
 /// Sine and cosine, radians.
 #[inline(always)]
@@ -166,36 +136,34 @@ pub fn cosines<S: Simd>(square: Wide<S>) -> (Wide<S>, Wide<S>) {
 
 /// Circular functions of `x` up to 1; beyond nothing is promised.
 #[inline(always)]
-pub fn short_turn<S: Simd>(x: Wide<S>) -> Turn<S> {
+pub fn short_turn<S: Simd>(x: Wide<S>) -> Circular<Wide<S>> {
     let (cos_minus_1, sine) = cosines(x * x);
     let sin_minus_x = x * sine;
-    Turn { sin: x + sin_minus_x, cos_minus_1, sin_minus_x }
+    Circular { sin: x + sin_minus_x, cos_minus_1, sin_minus_x }
 }
 
 /// Circular functions of `rate * time` (`x`), where `correction` is what rounding took from it.
 #[inline(always)]
-pub fn turn<S: Simd>(x: Wide<S>, correction: Wide<S>) -> Turn<S> {
+pub fn turn<S: Simd>(x: Wide<S>, correction: Wide<S>) -> Circular<Wide<S>> {
     let (s, c) = sin_cos(x * 0.5);
     let sin = (s + s) * c;
     let cos_minus_1 = -((s + s) * s);
-    let short = x.abs().below(1.0);
+    let short = x.magnitude().below(1.0);
     let mut sin_minus_x = sin - x;
     if short.any() {
         let square = x * x;
         sin_minus_x = short.choose(x * square * polynomial(square, SINE), sin_minus_x);
     }
-    let more = correction.times_plus(cos_minus_1, correction);
-    let cos_minus_1 = correction.times_from(sin, cos_minus_1);
-    Turn {
-        sin: sin + more,
-        cos_minus_1,
-        sin_minus_x: correction.times_plus(cos_minus_1, sin_minus_x),
-    }
+    Circular { sin, cos_minus_1, sin_minus_x }.corrected(correction)
 }
 
 /// Circular functions of `rate * time`, the product taken exactly and `rate` with a second word.
 #[inline(always)]
-pub fn turn_of<S: Simd>(rate: Wide<S>, rate_low: Option<Wide<S>>, time: Wide<S>) -> Turn<S> {
+pub fn turn_of<S: Simd>(
+    rate: Wide<S>,
+    rate_low: Option<Wide<S>>,
+    time: Wide<S>,
+) -> Circular<Wide<S>> {
     let x = rate * time;
     let error = rate.times_plus(time, -x);
     turn(x, rate_low.map_or(error, |low| low.times_plus(time, error)))
@@ -203,13 +171,13 @@ pub fn turn_of<S: Simd>(rate: Wide<S>, rate_low: Option<Wide<S>>, time: Wide<S>)
 
 /// exp(-z) and its remainders, z >= 0.
 #[inline(always)]
-pub fn shrink<S: Simd>(z: Wide<S>) -> Shrink<S> {
+pub fn shrink<S: Simd>(z: Wide<S>) -> Decay<Wide<S>> {
     let short: Mask<S> = z.below(0.5);
-    let mut all = Shrink { exp: z, minus_1: z, remainder: z };
+    let mut all = Decay { exp: z, minus_1: z, remainder: z };
     if (!short).any() {
         let exp = exp_of_minus(z);
         let minus_1 = exp - 1.0;
-        all = Shrink { exp, minus_1, remainder: minus_1 + z };
+        all = Decay { exp, minus_1, remainder: minus_1 + z };
     }
     if short.any() {
         let square = z * z;

@@ -3,6 +3,7 @@
 use super::super::instructions::{Instructions, Permit};
 use super::super::wide::{Column, WIDEST};
 use super::*;
+use crate::numeric::real::Real;
 use crate::numeric::remainders::{Circular, circular, circular_of, decay};
 use proptest::prelude::*;
 use pulp::WithSimd;
@@ -22,7 +23,7 @@ impl WithSimd for All<'_> {
         let x = Wide::load(simd, self.x);
         let (sin, cos) = sin_cos(x);
         let turn = turn_of(x.same(self.rate), None, x);
-        let shrink = shrink(x.abs());
+        let shrink = shrink(x.magnitude());
         let beat = short_turn(x);
         let values = [
             sin,

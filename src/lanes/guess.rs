@@ -4,6 +4,7 @@
 use super::functions::{FURTHEST, sin_cos};
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
+use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// The guard, counted so that it rises to zero: c + s d + k d^2/2 - K cos(omega d + angle) - e

@@ -1,34 +1,15 @@
 //! The external force over an elapsed time ([`crate::flow::forcing`]).
 
-use super::functions::{Turn, polynomial, sin_cos, turn_of};
+use super::functions::{sin_cos, turn_of};
 use super::shape::Shape;
 use super::wide::Wide;
 use super::words::Words;
+use crate::flow::forcing::{Drive, EntryAngle, Harmonic};
+use crate::numeric::real::{Real, polynomial};
 use pulp::Simd;
 
 /// The forcing angle when a phase begins.
-#[derive(Clone, Copy)]
-pub struct Angle<S: Simd> {
-    /// omega tau0 + phi within `[0, 2 pi)`, rounded.
-    pub value: Wide<S>,
-    /// Sine of the forcing angle.
-    pub sin: Wide<S>,
-    /// Cosine of the forcing angle.
-    pub cos: Wide<S>,
-}
-
-/// The harmonic force after some time.
-#[derive(Clone, Copy)]
-pub struct Harmonic<S: Simd> {
-    /// a cos(omega tau + phi) and its first two derivatives.
-    pub force: [Wide<S>; 3],
-    /// The integral of the force.
-    pub impulse: Wide<S>,
-    /// The second integral of the force.
-    pub displacement: Wide<S>,
-    /// Circular functions of omega d.
-    pub turn: Turn<S>,
-}
+pub type Angle<S> = EntryAngle<Wide<S>>;
 
 impl<S: Simd> Angle<S> {
     /// The forcing angle that follows from omega tau0.
@@ -38,7 +19,7 @@ impl<S: Simd> Angle<S> {
         let (sine, cosine) = sin_cos(angle.high);
         let sin = angle.low.times_plus(cosine, sine);
         let cos = angle.low.times_from(sine, cosine);
-        Self { value: angle.high, sin, cos }
+        Self { radians: angle.high, sin, cos }
     }
 
     /// The force less b and its first two derivatives at the beginning.
@@ -50,20 +31,10 @@ impl<S: Simd> Angle<S> {
 
     /// The force and its integrals after `d`.
     #[inline(always)]
-    pub fn after(&self, shape: &Shape<Wide<S>>, d: Wide<S>) -> Harmonic<S> {
-        let Shape { a, omega, omega2, a_over_omega, a_over_omega2, .. } = *shape;
-        let turn = turn_of(omega, None, d);
-        let Turn { sin, cos_minus_1, sin_minus_x } = turn;
-        let fallen = self.sin.times_from(sin, self.cos * cos_minus_1);
-        let risen = self.cos.times_plus(sin, self.sin * cos_minus_1);
-        let (cosine, sine) = (self.cos + fallen, self.sin + risen);
-        Harmonic {
-            force: [a * cosine, -(a * omega * sine), -(a * omega2 * cosine)],
-            impulse: a_over_omega * risen,
-            displacement: -(a_over_omega2
-                * self.sin.times_from(sin_minus_x, self.cos * cos_minus_1)),
-            turn,
-        }
+    pub fn after(&self, shape: &Shape<Wide<S>>, d: Wide<S>) -> Harmonic<Wide<S>> {
+        let Shape { a, omega, a_over_omega, a_over_omega2, .. } = *shape;
+        let drive = Drive { a, omega, a_over_omega, a_over_omega2 };
+        self.turned(&drive, turn_of(omega, None, d))
     }
 }
 

@@ -12,7 +12,6 @@
 
 mod batch;
 mod certificate;
-mod complex;
 mod contact;
 mod contact_ahead;
 mod contact_shape;

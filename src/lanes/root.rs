@@ -2,6 +2,7 @@
 
 use super::series::{LATER, Series};
 use super::wide::{Mask, Wide};
+use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// A phase whose guard can be evaluated.
@@ -74,9 +75,9 @@ pub fn find<S: Simd, P: Phase<S>>(phase: &P, guess: Wide<S>, guessed: Mask<S>) -
         let next = elapsed + step;
         alive = alive & zero.less(next);
         // Next to a crest that misses, Newton's method may stop anywhere.
-        let settled = cubic(excess, step).abs().less(excess[0].abs() * RESIDUAL + TINY);
+        let settled = cubic(excess, step).magnitude().less(excess[0].magnitude() * RESIDUAL + TINY);
         // So much nearer to the start than the evaluation its rounding would show.
-        let far = step.abs().less(next * NEAR);
+        let far = step.magnitude().less(next * NEAR);
         let short = phase.is_short(elapsed, step) & settled & far;
         if attempt == ATTEMPTS || !(alive & !short).any() {
             let series = Series::new(excess, phase.later(&at));

@@ -2,6 +2,7 @@
 
 use super::wide::{Mask, Wide};
 use crate::crossing::series::{INVERSE_FACTORIALS, TERMS};
+use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// Orders that an evaluation does not give by itself.
@@ -55,7 +56,7 @@ impl<S: Simd> Series<S> {
         let inverse = slope.same(1.0) / slope;
         let change = -(value * inverse);
         let gain = change * change.times_plus(third * 0.5, bend);
-        let settled = gain.abs().less(slope.abs() * SETTLED);
+        let settled = gain.magnitude().less(slope.magnitude() * SETTLED);
         let bent = (gain * 0.5) * inverse;
         (step + bent.times_from(change, change), slope + gain, settled)
     }

@@ -9,12 +9,14 @@
 
 use super::functions::shrink;
 use super::guess::SlowEnvelope;
-use super::harmonic::{Angle, Harmonic, short_decay};
+use super::harmonic::{Angle, short_decay};
 use super::root::{Found, Phase, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::series::REACH;
+use crate::flow::forcing::Harmonic;
+use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// Progressions.
@@ -81,9 +83,10 @@ impl<S: Simd> Phase<S> for Slip<'_, S> {
 
     #[inline(always)]
     fn at(&self, d: Wide<S>) -> Sliding<S> {
-        let Shape { b, rate, two_xi, a_over_omega, .. } = *self.shape;
+        let Shape { b, rate, two_xi, .. } = *self.shape;
         let Self { y: y0, q: q0, drift_rate: w0, closing, .. } = *self;
-        let Harmonic { force, impulse, displacement, turn } = self.angle.after(self.shape, d);
+        let Harmonic { force, impulse, displacement, impulse_terms, .. } =
+            self.angle.after(self.shape, d);
         let decay = shrink(rate * d);
         let push = (b - 1.0) * d;
         let y_change = push + impulse;
@@ -96,10 +99,10 @@ impl<S: Simd> Phase<S> for Slip<'_, S> {
         let drift = early.choose(w0 * d + pushed + settling, y0 * d + pushed + two_xi * moved);
         let w = early.choose(w0 + (y_change - moved), y - lag);
         let q = early.choose(two_xi.times_from(moved, q0), two_xi.times_from(lag, d.same(1.0)));
-        let late_terms = y0.abs() + lag.abs() * (rate * d + 1.0);
-        let terms = early.choose(w0.abs() + moved.abs(), late_terms)
-            + push.abs()
-            + a_over_omega * (turn.sin.abs() - turn.cos_minus_1);
+        let late_terms = y0.magnitude() + lag.magnitude() * (rate * d + 1.0);
+        let terms = early.choose(w0.magnitude() + moved.magnitude(), late_terms)
+            + push.magnitude()
+            + impulse_terms;
         let lag_rate = lag * rate;
         let y_rate = force[0] + (b - 1.0);
         let turned = lag_rate * rate;
@@ -137,7 +140,7 @@ impl<S: Simd> Phase<S> for Slip<'_, S> {
     #[inline(always)]
     fn is_short(&self, _: Wide<S>, step: Wide<S>) -> Mask<S> {
         let Shape { pace, rate, .. } = *self.shape;
-        (step.abs() * pace.larger(rate)).below(REACH)
+        (step.magnitude() * pace.larger(rate)).below(REACH)
     }
 }
 

@@ -7,6 +7,7 @@
 use super::contact_shape::Forms;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
+use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// The trial force in parts.
@@ -117,14 +118,14 @@ impl<S: Simd> Parts<S> {
     #[inline(always)]
     pub fn eighth_of_exponentials(&self, shape: &Shape<Wide<S>>) -> Wide<S> {
         let [slowly, quickly] = self.free;
-        slowly.abs().times_plus(shape.lasting8, quickly.abs() * shape.fast8)
+        slowly.magnitude().times_plus(shape.lasting8, quickly.magnitude() * shape.fast8)
     }
 
     /// The size of all parts.
     #[inline(always)]
     pub fn size(&self) -> Wide<S> {
         let [x, rate] = self.free;
-        x.abs() + rate.abs() + self.forced.abs() + self.quarter.abs()
+        x.magnitude() + rate.magnitude() + self.forced.magnitude() + self.quarter.magnitude()
     }
 }
 

@@ -1,8 +1,9 @@
 //! One f64 a lane, with the arithmetic of a number.
 //!
-//! A product and a sum are fused only where [`Wide::times_plus`] says so, and no operation looks at
+//! A product and a sum are fused only where [`Real::times_plus`] says so, and no operation looks at
 //! a neighbouring lane: every instruction set gives the same bits, whatever its width.
 
+use crate::numeric::real::Real;
 use pulp::Simd;
 use pulp::bytemuck::cast_slice_mut;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
@@ -46,30 +47,6 @@ impl<S: Simd> Wide<S> {
         S::as_mut_simd_f64s(column).0[0] = self.value;
     }
 
-    /// One number in all lanes, on the same processor.
-    #[inline(always)]
-    pub fn same(self, value: f64) -> Self {
-        Self::splat(self.simd, value)
-    }
-
-    /// `self * factor + term`, rounded once.
-    #[inline(always)]
-    pub fn times_plus(self, factor: Self, term: Self) -> Self {
-        Self { value: self.simd.mul_add_f64s(self.value, factor.value, term.value), ..self }
-    }
-
-    /// `term - self * factor`, rounded once.
-    #[inline(always)]
-    pub fn times_from(self, factor: Self, term: Self) -> Self {
-        (-self).times_plus(factor, term)
-    }
-
-    /// The absolute value.
-    #[inline(always)]
-    pub fn abs(self) -> Self {
-        Self { value: self.simd.abs_f64s(self.value), ..self }
-    }
-
     /// The square root.
     #[inline(always)]
     pub fn sqrt(self) -> Self {
@@ -86,12 +63,6 @@ impl<S: Simd> Wide<S> {
     #[inline(always)]
     pub fn smaller(self, other: Self) -> Self {
         other.less(self).choose(other, self)
-    }
-
-    /// The lanes in which it is less; not those in which either is a NaN.
-    #[inline(always)]
-    pub fn less(self, other: Self) -> Mask<S> {
-        Mask { simd: self.simd, value: self.simd.less_than_f64s(self.value, other.value) }
     }
 
     /// The lanes in which it is less than a number.
@@ -132,6 +103,40 @@ impl<S: Simd> Wide<S> {
             *word = word.wrapping_add(BIAS) << 52;
         }
         Self { value: value[0], ..self }
+    }
+}
+
+impl<S: Simd> Real for Wide<S> {
+    type Mask = Mask<S>;
+
+    #[inline(always)]
+    fn same(self, value: f64) -> Self {
+        Self::splat(self.simd, value)
+    }
+
+    #[inline(always)]
+    fn times_plus(self, factor: Self, term: Self) -> Self {
+        Self { value: self.simd.mul_add_f64s(self.value, factor.value, term.value), ..self }
+    }
+
+    #[inline(always)]
+    fn times_from(self, factor: Self, term: Self) -> Self {
+        (-self).times_plus(factor, term)
+    }
+
+    #[inline(always)]
+    fn magnitude(self) -> Self {
+        Self { value: self.simd.abs_f64s(self.value), ..self }
+    }
+
+    #[inline(always)]
+    fn less(self, other: Self) -> Mask<S> {
+        Mask { simd: self.simd, value: self.simd.less_than_f64s(self.value, other.value) }
+    }
+
+    #[inline(always)]
+    fn choose(mask: Mask<S>, yes: Self, no: Self) -> Self {
+        mask.choose(yes, no)
     }
 }
 

@@ -1,6 +1,7 @@
 //! Numbers in two words, all lanes at once ([`crate::numeric::two_word`]).
 
 use super::wide::Wide;
+use crate::numeric::real::Real;
 use crate::numeric::two_word::{ROUNDER, TWO_PI};
 use pulp::Simd;
 

@@ -10,6 +10,7 @@ use super::shape::Shape;
 use super::slip::{Slip, Slipping, Stop};
 use super::wide::{Column, Mask, Wide};
 use super::words::Words;
+use crate::numeric::real::Real;
 use pulp::{Simd, WithSimd};
 
 /// A batch to be worked off.

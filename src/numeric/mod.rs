@@ -4,5 +4,6 @@ pub mod angle;
 pub mod circle;
 pub mod exponential;
 pub mod number;
+pub mod real;
 pub mod remainders;
 pub mod two_word;

@@ -5,6 +5,7 @@
 //! combinations of the remainders below, each computed to within a few units in the last place.
 
 use crate::numeric::number::Number;
+use crate::numeric::real::Real;
 
 /// Sine and cosine of x with their remainders.
 #[derive(Clone, Copy, Debug)]
@@ -46,13 +47,22 @@ pub fn circular<T: Number>(x: T) -> Circular<T> {
 /// Circular functions of the product `rate * time`, whose rounding error is known and put back.
 #[inline(always)]
 pub fn circular_of<T: Number>(x: T, correction: T) -> Circular<T> {
-    let mut it = circular(x);
-    // First order in the correction, which is below eps |x|.
-    let d_sin = correction + correction * it.cos_minus_1;
-    it.cos_minus_1 = it.cos_minus_1 - correction * it.sin;
-    it.sin_minus_x = it.sin_minus_x + correction * it.cos_minus_1;
-    it.sin = it.sin + d_sin;
-    it
+    circular(x).corrected(correction)
+}
+
+impl<T: Real> Circular<T> {
+    /// The same of an argument that is larger by so much, to first order: the correction is below
+    /// eps of the argument.
+    #[inline(always)]
+    pub fn corrected(self, correction: T) -> Self {
+        let Self { sin, cos_minus_1, sin_minus_x } = self;
+        let cos_minus_1_then = correction.times_from(sin, cos_minus_1);
+        Self {
+            sin: sin + correction.times_plus(cos_minus_1, correction),
+            cos_minus_1: cos_minus_1_then,
+            sin_minus_x: correction.times_plus(cos_minus_1_then, sin_minus_x),
+        }
+    }
 }
 
 /// exp(-z) and its remainders: relative error of a few eps where `|z| <= 1/2`, absolute beyond.
