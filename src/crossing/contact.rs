@@ -271,7 +271,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         }
     }
 
-    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
+    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<f64, N> {
         let Constants { two_xi, omega, .. } = *self.constants.borrow();
         // f'' + 2 xi f' + f = F + 2 xi F'
         let (u, v) = (at.force[0], at.force[1]);
@@ -290,12 +290,13 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         &self,
         at: &Point<f64>,
         step: f64,
-        series: &Series<N>,
+        series: &Series<f64, N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
-        let Constants { b, g, two_xi, damping, .. } = *self.constants.borrow();
-        let Push { force, impulse } = Push::new(self.constants.borrow(), &at.force, step);
-        let y = at.state.y + (impulse - (self.reference * step + series.integral(step)));
+        let Constants { b, g, omega, two_xi, damping, .. } = *self.constants.borrow();
+        let Push { force, impulse } = Push::new(omega, [at.force[0], at.force[1]], step);
+        let y =
+            at.state.y + ((b * step + impulse) - (self.reference * step + series.integral(step)));
         let (bend, third) = if matches!(damping, Damping::Over { .. }) {
             series.bend_and_third(step)
         } else {

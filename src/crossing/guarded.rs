@@ -54,7 +54,7 @@ pub trait Guarded: Flow<f64> {
     fn underflow(&self) -> f64;
 
     /// The guard's Taylor series at an evaluation.
-    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N>;
+    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<f64, N>;
 
     /// How far that reaches with few terms, against the fastest rate: not at all where
     /// [`Self::continued`] takes the higher derivatives from it.
@@ -73,7 +73,7 @@ pub trait Guarded: Flow<f64> {
         &self,
         at: &Point<f64>,
         step: f64,
-        series: &Series<N>,
+        series: &Series<f64, N>,
         guard: (f64, f64),
     ) -> Point<f64>;
 

@@ -186,7 +186,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         })
     }
 
-    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
+    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<f64, N> {
         let Constants { rate, omega, .. } = *self.constants.borrow();
         let mut spring = at.state.q * (rate * rate * rate);
         let (mut force, mut next) = (at.force[0], at.force[1]);
@@ -202,12 +202,12 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         &self,
         at: &Point<f64>,
         step: f64,
-        _: &Series<N>,
+        _: &Series<f64, N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
-        let Constants { b, g, rate, .. } = *self.constants.borrow();
-        let Push { force, impulse } = Push::new(self.constants.borrow(), &at.force, step);
-        let y = at.state.y + impulse;
+        let Constants { b, g, omega, rate, .. } = *self.constants.borrow();
+        let Push { force, impulse } = Push::new(omega, [at.force[0], at.force[1]], step);
+        let y = at.state.y + (b * step + impulse);
         let q = at.state.q + at.state.q * short_decay(rate * step);
         let spring = q * rate;
         let pull = (b + force[0]) - spring * rate;

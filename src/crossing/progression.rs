@@ -130,7 +130,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         })
     }
 
-    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
+    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<f64, N> {
         let Constants { rate, omega, .. } = *self.constants.borrow();
         let mut lag = at.slider_velocity * (rate * rate * rate);
         let [_, mut force, mut next] = at.force;
@@ -146,13 +146,13 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         &self,
         at: &Point<f64>,
         step: f64,
-        series: &Series<N>,
+        series: &Series<f64, N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
-        let Constants { g, rate, two_xi, .. } = *self.constants.borrow();
+        let Constants { g, omega, rate, two_xi, .. } = *self.constants.borrow();
         let lag = at.slider_velocity + at.slider_velocity * short_decay(rate * step);
         let q = 1.0 - two_xi * lag;
-        let force = Push::new(self.constants.borrow(), &at.force, step).force;
+        let force = Push::new(omega, [at.force[0], at.force[1]], step).force;
         let turn = lag * rate * rate;
         let orders = [value, slope, force[1] - turn, force[2] + turn * rate];
         Point {

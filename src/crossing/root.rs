@@ -117,7 +117,7 @@ fn polished_by<G: Guarded, const N: usize>(
     phase: &G,
     point: &Point<f64>,
     cubic: &CubicStep,
-    series: &Series<N>,
+    series: &Series<f64, N>,
 ) -> Option<Root> {
     const ATTEMPTS: usize = 5;
     /// What Newton's last step may change the slope by: it is put right to fifth order, which

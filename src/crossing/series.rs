@@ -9,7 +9,7 @@
 //! guesses come closer than [`SHORT_REACH`]: there five terms leave SHORT_REACH^5/5! = 8e-18 of the
 //! slope, and the higher derivatives follow from the equation of motion.
 
-use crate::flow::constants::Constants;
+use crate::numeric::real::{Real, polynomial};
 
 /// The longest step against the fastest rate of the motion.
 pub const REACH: f64 = 0.03;
@@ -36,9 +36,9 @@ pub const INVERSE_FACTORIALS: [f64; TERMS + 1] = {
 
 /// The derivatives of orders 0 and on at an evaluation.
 #[derive(Clone, Copy, Debug)]
-pub struct Series<const N: usize>(pub [f64; N]);
+pub struct Series<T, const N: usize>(pub [T; N]);
 
-impl<const N: usize> Series<N> {
+impl<const N: usize> Series<f64, N> {
     /// The guard's own orders, completed by its derivatives of orders four and on, one by one.
     #[inline]
     pub fn new(orders: &[f64; 4], mut next: impl FnMut() -> f64) -> Self {
@@ -48,29 +48,6 @@ impl<const N: usize> Series<N> {
             *derivative = next();
         }
         Self(derivatives)
-    }
-
-    /// Value and slope a time `step` later; even and odd powers apart, so that the chains run side
-    /// by side.
-    #[inline]
-    pub fn value_and_slope(&self, step: f64) -> (f64, f64) {
-        let square = step * step;
-        let (mut value, mut slope) = ([0.0; 2], [0.0; 2]);
-        for k in (1..N).rev() {
-            let side = k % 2;
-            value[side] = self.0[k] * INVERSE_FACTORIALS[k] + square * value[side];
-            slope[side] = self.0[k] * INVERSE_FACTORIALS[k - 1] + square * slope[side];
-        }
-        let [even, odd] = value;
-        let [odd_slope, even_slope] = slope;
-        (self.0[0] + (step * odd + square * even), even_slope + step * odd_slope)
-    }
-
-    /// Second derivative a time `step` later, without terms above order five.
-    #[inline]
-    pub fn bend(&self, step: f64) -> f64 {
-        let [third, fourth, fifth] = [self.0[3], self.0[4], self.0[5]];
-        self.0[2] + step * (third + step * (0.5 * fourth + step * (1.0 / 6.0) * fifth))
     }
 
     /// Second and third derivative a time `step` later.
@@ -83,64 +60,91 @@ impl<const N: usize> Series<N> {
         }
         (self.0[2] + step * bend, third)
     }
+}
+
+impl<T: Real, const N: usize> Series<T, N> {
+    /// Value and slope a time `step` later; even and odd powers apart, so that the chains run side
+    /// by side.
+    #[inline(always)]
+    pub fn value_and_slope(&self, step: T) -> (T, T) {
+        let square = step * step;
+        let zero = step.same(0.0);
+        let (mut value, mut slope) = ([zero; 2], [zero; 2]);
+        for k in (1..N).rev() {
+            let (side, order) = (k % 2, self.0[k]);
+            let [now, before] =
+                [step.same(INVERSE_FACTORIALS[k]), step.same(INVERSE_FACTORIALS[k - 1])];
+            value[side] = value[side].times_plus(square, order * now);
+            slope[side] = slope[side].times_plus(square, order * before);
+        }
+        let [even, odd] = value;
+        let [odd_slope, even_slope] = slope;
+        let change = step.times_plus(odd, square * even);
+        (self.0[0] + change, step.times_plus(odd_slope, even_slope))
+    }
+
+    /// Second derivative a time `step` later, without terms above order five.
+    #[inline(always)]
+    pub fn bend(&self, step: T) -> T {
+        let [second, third, fourth, fifth] = [self.0[2], self.0[3], self.0[4], self.0[5]];
+        let higher = (step * step.same(1.0 / 6.0)).times_plus(fifth, fourth * step.same(0.5));
+        step.times_plus(step.times_plus(higher, third), second)
+    }
 
     /// Integral from the evaluation to a time `step` later.
-    #[inline]
-    pub fn integral(&self, step: f64) -> f64 {
-        let mut sum = 0.0;
+    #[inline(always)]
+    pub fn integral(&self, step: T) -> T {
+        let mut sum = step.same(0.0);
         for k in (0..N).rev() {
-            sum = self.0[k] * INVERSE_FACTORIALS[k + 1] + step * sum;
+            sum = sum.times_plus(step, self.0[k] * step.same(INVERSE_FACTORIALS[k + 1]));
         }
         step * sum
     }
 }
 
-/// The harmonic force after a short step, and what the external force has done to the velocity.
+/// The harmonic force after a short step, and what it has done to the velocity.
 #[derive(Clone, Copy, Debug)]
-pub struct Push {
+pub struct Push<T> {
     /// The harmonic force with its first two derivatives.
-    pub force: [f64; 3],
-    /// The integral of the external force over the step.
-    pub impulse: f64,
+    pub force: [T; 3],
+    /// The integral of the harmonic force over the step.
+    pub impulse: T,
 }
 
-impl Push {
-    /// The push over a `step` from an evaluation with this harmonic force and its derivatives.
-    #[inline]
-    pub fn new(constants: &Constants<f64>, force: &[f64; 3], step: f64) -> Self {
-        let Constants { b, omega, .. } = *constants;
+impl<T: Real> Push<T> {
+    /// The push over a `step` from an evaluation with this harmonic force and its rate.
+    #[inline(always)]
+    pub fn new(omega: T, [u, v]: [T; 2], step: T) -> Self {
         let x = omega * step;
         let square = x * x;
-        let sin_over_x =
-            1.0 - square * (1.0 / 6.0 - square * (1.0 / 120.0 - square * (1.0 / 5040.0)));
-        let one_less_cos =
-            0.5 - square * (1.0 / 24.0 - square * (1.0 / 720.0 - square * (1.0 / 40320.0)));
+        let sin_over_x = polynomial(square, [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0]);
+        let one_less_cos = polynomial(square, [0.5, -1.0 / 24.0, 1.0 / 720.0, -1.0 / 40320.0]);
         let (time, area) = (step * sin_over_x, step * step * one_less_cos);
         // u'' = -omega^2 u for the harmonic force u.
         let omega2 = omega * omega;
-        let (u, v) = (force[0], force[1]);
-        let harmonic = u - omega2 * area * u + time * v;
-        let rate = v - omega2 * area * v - omega2 * time * u;
+        let harmonic = time.times_plus(v, (omega2 * area).times_from(u, u));
+        let rate = (omega2 * time).times_from(u, (omega2 * area).times_from(v, v));
         Self {
             force: [harmonic, rate, -(omega2 * harmonic)],
-            impulse: b * step + (time * u + area * v),
+            impulse: time.times_plus(u, area * v),
         }
     }
 }
 
 /// exp(-z) - 1 for |z| up to [`REACH`].
-#[inline]
-pub fn short_decay(z: f64) -> f64 {
+#[inline(always)]
+pub fn short_decay<T: Real>(z: T) -> T {
     let square = z * z;
-    let even = 0.5 + square * (1.0 / 24.0 + square * (1.0 / 720.0 + square * (1.0 / 40320.0)));
-    let odd = 1.0 / 6.0 + square * (1.0 / 120.0 + square * (1.0 / 5040.0));
-    square * (even - z * odd) - z
+    let even = polynomial(square, [0.5, 1.0 / 24.0, 1.0 / 720.0, 1.0 / 40320.0]);
+    let odd = polynomial(square, [1.0 / 6.0, 1.0 / 120.0, 1.0 / 5040.0]);
+    square.times_plus(z.times_from(odd, even), -z)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::crossing::guarded::Guarded;
+    use crate::flow::constants::Constants;
     use crate::flow::contact::Contact;
     use crate::flow::forcing::EntryAngle;
     use crate::flow::no_contact::NoContact;

@@ -2,13 +2,13 @@
 //! [`super::contact_ahead`].
 
 use super::contact_shape::Forms;
-use super::harmonic::{Angle, Push, short_decay};
+use super::harmonic::Angle;
 use super::root::{Care, Found, Phase, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::swing::{Parts, each};
 use super::wide::{Mask, Wide};
-use crate::crossing::series::REACH;
+use crate::crossing::series::{Push, REACH, short_decay};
 use crate::flow::complex::Complex;
 use crate::flow::damped::Free;
 use crate::flow::forced::Response;
@@ -188,7 +188,7 @@ impl<S: Simd> Contact<'_, S> {
             find(&Leaving { contact: self, threshold }, guess, guessed);
         // y' = F - f
         let [u, v, _] = at.force;
-        let Push { force, impulse } = Push::new(self.shape, [u, v], step);
+        let Push { force, impulse } = Push::new(self.shape.omega, [u, v], step);
         let rest = (self.shape.b - self.reference) - threshold;
         let y = at.y + (rest.times_plus(step, impulse) - series.integral(step));
         let quick = at.quick + at.quick * short_decay(self.shape.fast * step);

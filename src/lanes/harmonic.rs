@@ -5,7 +5,7 @@ use super::shape::Shape;
 use super::wide::Wide;
 use super::words::Words;
 use crate::flow::forcing::{Drive, EntryAngle, Harmonic};
-use crate::numeric::real::{Real, polynomial};
+use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// The forcing angle when a phase begins.
@@ -36,39 +36,4 @@ impl<S: Simd> Angle<S> {
         let drive = Drive { a, omega, a_over_omega, a_over_omega2 };
         self.turned(&drive, turn_of(omega, None, d))
     }
-}
-
-/// The harmonic force after a short step, and what it has done to the velocity
-/// ([`crate::crossing::series`]).
-pub struct Push<S: Simd> {
-    /// The force less b with its first two derivatives.
-    pub force: [Wide<S>; 3],
-    /// The integral of the force over the step.
-    pub impulse: Wide<S>,
-}
-
-impl<S: Simd> Push<S> {
-    /// The push over a `step` from an evaluation, from the force less b and its rate there.
-    #[inline(always)]
-    pub fn new(shape: &Shape<Wide<S>>, [u, v]: [Wide<S>; 2], step: Wide<S>) -> Self {
-        let omega2 = shape.omega2;
-        let square = omega2 * step * step;
-        let time = step * polynomial(square, [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0]);
-        let area =
-            step * step * polynomial(square, [0.5, -1.0 / 24.0, 1.0 / 720.0, -1.0 / 40320.0]);
-        // u'' = -omega^2 u
-        let force = time.times_plus(v, (omega2 * area).times_from(u, u));
-        let rate = (omega2 * time).times_from(u, (omega2 * area).times_from(v, v));
-        let impulse = time.times_plus(u, area * v);
-        Self { force: [force, rate, -(omega2 * force)], impulse }
-    }
-}
-
-/// exp(-z) - 1 of a short z, of either sign.
-#[inline(always)]
-pub fn short_decay<S: Simd>(z: Wide<S>) -> Wide<S> {
-    let square = z * z;
-    let even = polynomial(square, [0.5, 1.0 / 24.0, 1.0 / 720.0, 1.0 / 40320.0]);
-    let odd = polynomial(square, [1.0 / 6.0, 1.0 / 120.0, 1.0 / 5040.0]);
-    square.times_plus(z.times_from(odd, even), -z)
 }

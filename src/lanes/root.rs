@@ -1,7 +1,8 @@
 //! From a guess to the root of a guard: one evaluation mostly, and the guard's series from there.
 
-use super::series::{LATER, Series};
+use super::series::LATER;
 use super::wide::{Mask, Wide};
+use crate::crossing::series::{Series, TERMS};
 use crate::numeric::real::Real;
 use pulp::Simd;
 
@@ -41,7 +42,7 @@ pub struct Found<S: Simd, A> {
     /// When.
     pub elapsed: Wide<S>,
     /// The guard's excess as a series from there.
-    pub series: Series<S>,
+    pub series: Series<Wide<S>, TERMS>,
     /// The step from the evaluation to the root.
     pub step: Wide<S>,
     /// The guard's slope at the root.
@@ -80,7 +81,7 @@ pub fn find<S: Simd, P: Phase<S>>(phase: &P, guess: Wide<S>, guessed: Mask<S>) -
         let far = step.magnitude().less(next * NEAR);
         let short = phase.is_short(elapsed, step) & settled & far;
         if attempt == ATTEMPTS || !(alive & !short).any() {
-            let series = Series::new(excess, phase.later(&at));
+            let series = Series::of_orders(excess, phase.later(&at));
             let (step, slope, polished) = series.polished(step);
             return Found { at, elapsed, series, step, slope, fine: alive & short & polished };
         }

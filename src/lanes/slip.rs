@@ -9,12 +9,12 @@
 
 use super::functions::shrink;
 use super::guess::SlowEnvelope;
-use super::harmonic::{Angle, short_decay};
+use super::harmonic::Angle;
 use super::root::{Found, Phase, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
-use crate::crossing::series::REACH;
+use crate::crossing::series::{REACH, short_decay};
 use crate::flow::forcing::Harmonic;
 use crate::numeric::real::Real;
 use pulp::Simd;

@@ -53,18 +53,6 @@ impl<S: Simd> Wide<S> {
         Self { value: self.simd.sqrt_f64s(self.value), ..self }
     }
 
-    /// The larger one; of a NaN nothing is promised.
-    #[inline(always)]
-    pub fn larger(self, other: Self) -> Self {
-        self.less(other).choose(other, self)
-    }
-
-    /// The smaller one; of a NaN nothing is promised.
-    #[inline(always)]
-    pub fn smaller(self, other: Self) -> Self {
-        other.less(self).choose(other, self)
-    }
-
     /// The lanes in which it is less than a number.
     #[inline(always)]
     pub fn below(self, other: f64) -> Mask<S> {

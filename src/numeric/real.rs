@@ -46,6 +46,20 @@ pub trait Real:
     /// One value where the mask holds, the other elsewhere.
     #[must_use]
     fn choose(mask: Self::Mask, yes: Self, no: Self) -> Self;
+
+    /// The larger one; of a NaN nothing is promised.
+    #[inline(always)]
+    #[must_use]
+    fn larger(self, other: Self) -> Self {
+        Self::choose(self.less(other), other, self)
+    }
+
+    /// The smaller one; of a NaN nothing is promised.
+    #[inline(always)]
+    #[must_use]
+    fn smaller(self, other: Self) -> Self {
+        Self::choose(other.less(self), other, self)
+    }
 }
 
 impl<T: Number> Real for T {

@@ -66,7 +66,7 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
         self.0.short_reach()
     }
 
-    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<N> {
+    fn series<const N: usize>(&self, at: &Point<f64>) -> Series<f64, N> {
         self.0.series(at)
     }
 
@@ -74,7 +74,7 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
         &self,
         at: &Point<f64>,
         step: f64,
-        series: &Series<N>,
+        series: &Series<f64, N>,
         (value, slope): (f64, f64),
     ) -> Point<f64> {
         self.0.continued(at, step, series, (value, slope))
