@@ -10,8 +10,10 @@
 //! threshold, they may equal it. With L small the hull is as narrow as the guard itself, so halving
 //! always decides, up to rounding.
 
+use crate::numeric::real::Real;
+
 /// 8! * C(8, 4): the middle Bernstein coefficient of s^4 (1 - s)^4/8!.
-const MIDDLE: f64 = 2_822_400.0;
+pub const MIDDLE: f64 = 2_822_400.0;
 
 /// Between which values a guard stays as long as its phase lasts.
 #[derive(Clone, Copy, Debug)]
@@ -136,38 +138,10 @@ impl Piece {
         (middle + smaller(least, 0.0) * scale, middle + larger(most, 0.0) * scale)
     }
 
-    /// Bernstein coefficients of degree eight of the Hermite interpolant: in pairs from both ends
-    /// inwards, which are computed side by side, and the middle one.
+    /// Bernstein coefficients of degree eight of the Hermite interpolant.
     #[inline]
-    fn coefficients(&self) -> ([[f64; 2]; 4], f64) {
-        let [a, b, c, d] = self.next_to_ends();
-        let mixed = |from: [f64; 2], to: [f64; 2], share: f64| {
-            let keep = 1.0 - share;
-            [keep * from[0] + share * to[0], keep * from[1] + share * to[1]]
-        };
-        let pairs = [a, mixed(a, b, 0.875), mixed(b, c, 0.75), mixed(c, d, 0.625)];
-        (pairs, 0.5 * (d[0] + d[1]))
-    }
-
-    /// The four Bernstein coefficients of degree seven next to the left end, and to the right one.
-    #[inline]
-    fn next_to_ends(&self) -> [[f64; 2]; 4] {
-        let [value, slope, bend, third] = [0, 1, 2, 3].map(|k| [self.left[k], self.right[k]]);
-        let seventh = self.length * (1.0 / 7.0);
-        let steps = [seventh, -seventh];
-        let square = seventh * self.length * (1.0 / 6.0);
-        let fifth = self.length * (1.0 / 5.0);
-        let cubes = [square * fifth, -(square * fifth)];
-        let sides = |of: fn([f64; 4]) -> f64| {
-            [0, 1]
-                .map(|k| of([value[k], slope[k] * steps[k], bend[k] * square, third[k] * cubes[k]]))
-        };
-        [
-            value,
-            sides(|[value, first, ..]| value + first),
-            sides(|[value, first, second, _]| value + (2.0 * first + second)),
-            sides(|[value, first, second, third]| value + (3.0 * (first + second) + third)),
-        ]
+    fn coefficients(&self) -> Coefficients<f64> {
+        coefficients(&self.left, &self.right, self.length)
     }
 
     /// The time at which a piece is divided: at the place of the largest excess, so that a near
@@ -203,6 +177,48 @@ impl Piece {
         let crest = places.max_by(|s, t| excess(s).total_cmp(&excess(t)));
         self.length * crest.unwrap_or(0.5)
     }
+}
+
+/// Bernstein coefficients of degree eight: in pairs from both ends inwards, which are computed side
+/// by side, and the middle one.
+pub type Coefficients<T> = ([[T; 2]; 4], T);
+
+/// The coefficients of the Hermite interpolant of a guard that has these values and derivatives at
+/// the ends of a piece.
+#[inline(always)]
+pub fn coefficients<T: Real>(left: &[T; 4], right: &[T; 4], length: T) -> Coefficients<T> {
+    let seventh = length * length.same(1.0 / 7.0);
+    let square = seventh * length * length.same(1.0 / 6.0);
+    let cube = square * (length * length.same(1.0 / 5.0));
+    let [a, b, c, d] = next_to_an_end(left, [seventh, square, cube]);
+    let [h, g, f, e] = next_to_an_end(right, [-seventh, square, -cube]);
+    // Degree seven, raised to eight.
+    let pairs = [
+        [a, h],
+        [mixed(a, b, 0.875), mixed(h, g, 0.875)],
+        [mixed(b, c, 0.75), mixed(g, f, 0.75)],
+        [mixed(c, d, 0.625), mixed(f, e, 0.625)],
+    ];
+    (pairs, length.same(0.5) * (d + e))
+}
+
+/// The four coefficients of degree seven next to an end, with the powers of the length there.
+#[inline(always)]
+fn next_to_an_end<T: Real>(orders: &[T; 4], [seventh, square, cube]: [T; 3]) -> [T; 4] {
+    let [value, slope, bend, third] = *orders;
+    let (first, second, third) = (slope * seventh, bend * square, third * cube);
+    [
+        value,
+        value + first,
+        value + value.same(2.0).times_plus(first, second),
+        value + value.same(3.0).times_plus(first + second, third),
+    ]
+}
+
+/// A share of the way from one number to another.
+#[inline(always)]
+fn mixed<T: Real>(from: T, to: T, share: f64) -> T {
+    from.same(1.0 - share).times_plus(from, from.same(share) * to)
 }
 
 /// How often a bounding polynomial is divided: each time its hull comes four times nearer to it.
