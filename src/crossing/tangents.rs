@@ -18,6 +18,7 @@ use crate::flow::Point;
 use crate::flow::constants::Constants;
 use crate::flow::no_contact::NoContact;
 use crate::flow::steps::{GRIP, Steps, Turning};
+use crate::numeric::real::Real;
 use std::borrow::Borrow;
 use std::f64::consts::TAU;
 
@@ -26,48 +27,73 @@ const MOST_STRETCHES: usize = 8;
 
 /// A concave function at one place.
 #[derive(Clone, Copy)]
-struct Tangent {
-    from: f64,
-    value: f64,
-    slope: f64,
+pub struct Tangent<T> {
+    /// Where.
+    pub from: T,
+    /// Value there.
+    pub value: T,
+    /// Slope there.
+    pub slope: T,
 }
 
-impl Tangent {
+impl<T: Real> Tangent<T> {
     /// Whether the function is negative up to a place further on, by the tangents at both: where
     /// they meet, times the difference of their slopes, if that lies between.
-    #[inline]
-    fn stays_below_to(&self, end: &Self) -> bool {
-        let ends = (self.value < 0.0) & (end.value < 0.0);
-        let peaks = (self.slope > 0.0) & (end.slope < 0.0);
-        let back = end.value - end.slope * (end.from - self.from);
-        ends & (!peaks | (self.slope * back < end.slope * self.value))
+    #[inline(always)]
+    pub fn stays_below_to(&self, end: &Self) -> T::Mask {
+        let zero = self.value.same(0.0);
+        let ends = self.value.less(zero) & end.value.less(zero);
+        let peaks = zero.less(self.slope) & end.slope.less(zero);
+        let back = end.slope.times_from(end.from - self.from, end.value);
+        ends & (!peaks | (self.slope * back).less(end.slope * self.value))
     }
 }
 
 /// E, raised by what its terms may round off.
-struct Bound {
-    offset: f64,
-    slope: f64,
-    curvature: f64,
-    amplitude: f64,
-    speed: f64,
+pub struct Bound<T> {
+    offset: T,
+    slope: T,
+    curvature: T,
+    amplitude: T,
+    speed: T,
 }
 
-impl Bound {
-    #[inline]
-    fn new<C: Borrow<Constants<f64>>>(flight: &NoContact<f64, C>, root: &Point<f64>) -> Self {
+/// A flight and the root that ends it, as E needs them.
+pub struct Ended<T> {
+    /// b
+    pub b: T,
+    /// a/omega
+    pub a_over_omega: T,
+    /// a/omega^2
+    pub a_over_omega2: T,
+    /// Sine and cosine of the forcing angle at the separation.
+    pub sin_cos: [T; 2],
+    /// Velocity of the mass, and displacement of the slider's top, at the separation.
+    pub begin: [T; 2],
+    /// When the root is, the displacement of the slider's top there, and the rate at which it
+    /// returns.
+    pub root: [T; 3],
+    /// Rounding room of the guard at the root.
+    pub slack: T,
+}
+
+impl<T: Real> Bound<T> {
+    /// The bound of a flight up to its root.
+    #[inline(always)]
+    pub fn new(flight: &Ended<T>) -> Self {
         /// Eight roundings of terms that are counted twice.
         const ROOM: f64 = 16.0 * f64::EPSILON;
-        let Constants { b, a_over_omega, a_over_omega2, .. } = *flight.constants.borrow();
-        let (y, q) = (flight.entry.y, flight.entry.q);
-        let spring = -root.slider_velocity;
-        let slope = (y - a_over_omega * flight.angle.sin) + spring;
-        let at_start = root.state.q + spring * root.elapsed;
-        let speeds = y.abs() + a_over_omega + b.abs() * root.elapsed + spring;
-        let terms = q + root.state.q + a_over_omega2 * TAU + speeds * root.elapsed;
+        let Ended { b, a_over_omega, a_over_omega2, slack, .. } = *flight;
+        let ([sin, cos], [y, q]) = (flight.sin_cos, flight.begin);
+        let [elapsed, last_q, spring] = flight.root;
+        let slope = a_over_omega.times_from(sin, y) + spring;
+        let at_start = spring.times_plus(elapsed, last_q);
+        let speeds = b.magnitude().times_plus(elapsed, y.magnitude() + a_over_omega) + spring;
+        let turn = a_over_omega2.times_plus(a_over_omega2.same(TAU), q + last_q);
+        let terms = speeds.times_plus(elapsed, turn);
         Self {
-            offset: (q + a_over_omega2 * flight.angle.cos - at_start)
-                + (terms * ROOM + slack(flight, root, root)),
+            offset: (a_over_omega2.times_plus(cos, q) - at_start)
+                + terms.times_plus(terms.same(ROOM), slack),
             slope,
             curvature: b,
             amplitude: a_over_omega2,
@@ -75,13 +101,30 @@ impl Bound {
         }
     }
 
-    /// Value and slope where the forcing angle has this sine and cosine.
-    #[inline]
-    fn at(&self, from: f64, (sin, cos): (f64, f64)) -> Tangent {
+    /// E where the forcing angle has this sine and cosine.
+    #[inline(always)]
+    pub fn at(&self, from: T, [sin, cos]: [T; 2]) -> Tangent<T> {
         let Self { offset, slope, curvature, amplitude, speed } = *self;
-        let value = offset + from * (slope + 0.5 * curvature * from) - amplitude * cos;
-        Tangent { from, value, slope: slope + curvature * from + speed * sin }
+        let bent = (curvature * from.same(0.5)).times_plus(from, slope);
+        let value = amplitude.times_from(cos, from.times_plus(bent, offset));
+        let rise = curvature.times_plus(from, slope);
+        Tangent { from, value, slope: speed.times_plus(sin, rise) }
     }
+}
+
+/// E of a flight up to its root.
+#[inline(always)]
+fn bound<C: Borrow<Constants<f64>>>(flight: &NoContact<f64, C>, root: &Point<f64>) -> Bound<f64> {
+    let Constants { b, a_over_omega, a_over_omega2, .. } = *flight.constants.borrow();
+    Bound::new(&Ended {
+        b,
+        a_over_omega,
+        a_over_omega2,
+        sin_cos: [flight.angle.sin, flight.angle.cos],
+        begin: [flight.entry.y, flight.entry.q],
+        root: [root.elapsed, root.state.q, -root.slider_velocity],
+        slack: slack(flight, root, root),
+    })
 }
 
 /// Whether h is negative between the separation that begins the flight and this root: proved, or
@@ -94,7 +137,7 @@ pub fn stays_below<C: Borrow<Constants<f64>>>(
 ) -> bool {
     let Turning { angle, sin, cos, length, period } = steps.turning;
     let omega = flight.constants.borrow().omega;
-    let bound = Bound::new(flight, root);
+    let bound = bound(flight, root);
     let Some(start) = off_the_surface(flight, steps, &bound) else { return false };
     // Written so that a NaN proves nothing.
     if !(start.from < root.elapsed && start.value < 0.0 && flight.entry.q > 0.0) {
@@ -108,9 +151,9 @@ pub fn stays_below<C: Borrow<Constants<f64>>>(
         if ends >= root.elapsed {
             return true;
         }
-        let begun = bound.at(begins, (sin, cos));
+        let begun = bound.at(begins, [sin, cos]);
         let near = if begins < start.from { start } else { begun };
-        let below = near.stays_below_to(&bound.at(ends, (-sin, cos)));
+        let below = near.stays_below_to(&bound.at(ends, [-sin, cos]));
         // One jump for both: which of them holds cannot be foretold.
         if !(below | (ends <= start.from)) {
             return false;
@@ -125,8 +168,8 @@ pub fn stays_below<C: Borrow<Constants<f64>>>(
 fn off_the_surface<C: Borrow<Constants<f64>>>(
     flight: &NoContact<f64, C>,
     steps: &Steps,
-    bound: &Bound,
-) -> Option<Tangent> {
+    bound: &Bound<f64>,
+) -> Option<Tangent<f64>> {
     let Constants { a, b, omega, rate, .. } = *flight.constants.borrow();
     let Turning { sin, cos, .. } = steps.turning;
     let entry = flight.angle;
@@ -135,13 +178,13 @@ fn off_the_surface<C: Borrow<Constants<f64>>>(
     let concave_until = (negative_until.unwrap_or(entry.radians) - entry.radians) / omega;
     let sinks = (a + b.max(0.0)) * (1.0 + 1e-9) < flight.entry.q * (rate * rate) * GRIP;
     if sinks && parting.length > concave_until {
-        let turned = (
+        let turned = [
             entry.sin * parting.cos + entry.cos * parting.sin,
             entry.cos * parting.cos - entry.sin * parting.sin,
-        );
+        ];
         return Some(bound.at(parting.length, turned));
     }
-    (concave_until > 0.0).then(|| bound.at(concave_until, (-sin, cos)))
+    (concave_until > 0.0).then(|| bound.at(concave_until, [-sin, cos]))
 }
 
 #[cfg(test)]
@@ -153,7 +196,7 @@ mod tests {
     use crate::state::State;
 
     /// e(x) = top - bend x^2 at a place.
-    fn tangent(top: f64, bend: f64, from: f64) -> Tangent {
+    fn tangent(top: f64, bend: f64, from: f64) -> Tangent<f64> {
         Tangent { from, value: top - bend * from * from, slope: -2.0 * bend * from }
     }
 
@@ -192,8 +235,8 @@ mod tests {
             let flight = NoContact { constants, entry, angle, surface: Some(0.0) };
             for d in [0.5, 2.0, 11.0] {
                 let root = flight.at(d);
-                let there = (radians + omega * d).sin_cos();
-                let raised = Bound::new(&flight, &root).at(d, there).value - root.guard.orders[0];
+                let there = (radians + omega * d).sin_cos().into();
+                let raised = bound(&flight, &root).at(d, there).value - root.guard.orders[0];
                 let terms = [q, y * d, parameters.b * d * d, parameters.a / (omega * omega)];
                 for term in terms {
                     assert!(raised > 8.0 * f64::EPSILON * term.abs(), "{d}: {raised:e} {term}");

@@ -8,7 +8,6 @@
 //! stretch or as the scalar solver certifies short ones ([`crate::crossing::no_contact`]).
 
 use super::certificate::Piece;
-use super::crest::{Bound, Tangent};
 use super::functions::shrink;
 use super::guess::SlowEnvelope;
 use super::harmonic::Angle;
@@ -16,7 +15,9 @@ use super::root::{Care, Found, Phase, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
+use crate::crossing::guarded::SLACK;
 use crate::crossing::series::{Push, REACH, short_decay};
+use crate::crossing::tangents::{Bound, Ended, Tangent};
 use crate::flow::forcing::Harmonic;
 use crate::flow::steps::{GRIP, SEPARATION_INTERVAL};
 use crate::numeric::real::Real;
@@ -186,24 +187,24 @@ impl<S: Simd> Flight<'_, S> {
         }
     }
 
-    /// The bound of the guard up to the root, raised by what its terms may round off.
+    /// E up to the root, at which the slider's top is `q`.
     #[inline(always)]
-    fn bound(&self, root: Wide<S>, q: Wide<S>) -> Bound<S> {
-        const ROOM: f64 = 16.0 * f64::EPSILON;
+    fn bound(&self, root: Wide<S>, q: Wide<S>) -> Bound<Wide<S>> {
         let Shape { b, rate, a_over_omega, a_over_omega2, .. } = *self.shape;
-        let spring = q * rate;
         let Angle { sin, cos, .. } = self.angle;
-        let slope = a_over_omega.times_from(sin, self.y) + spring;
-        let offset = a_over_omega2.times_plus(cos, self.q) - spring.times_plus(root, q);
-        let speeds = self.y.magnitude() + a_over_omega + b.magnitude() * root + spring;
-        let terms = self.q + a_over_omega2 * TAU + q + speeds * root;
-        Bound {
-            offset: offset + terms * ROOM,
-            slope,
-            curvature: b,
-            amplitude: a_over_omega2,
-            speed: a_over_omega,
-        }
+        // No term of the guard is larger than these: its terms at the root.
+        let sunk = self.q * rate * root;
+        let turned = a_over_omega.times_plus(root, a_over_omega2 * 3.0);
+        let lifted = b.magnitude() * root * root * 0.5;
+        Bound::new(&Ended {
+            b,
+            a_over_omega,
+            a_over_omega2,
+            sin_cos: [sin, cos],
+            begin: [self.y, self.q],
+            root: [root, q, q * rate],
+            slack: (sunk + turned + lifted) * SLACK,
+        })
     }
 
     /// Proves that h stays below zero in a stretch by three tangents more in between: at forcing
@@ -212,9 +213,9 @@ impl<S: Simd> Flight<'_, S> {
     #[inline(always)]
     fn stays_below_between(
         &self,
-        bound: &Bound<S>,
-        near: &Tangent<S>,
-        far: &Tangent<S>,
+        bound: &Bound<Wide<S>>,
+        near: &Tangent<Wide<S>>,
+        far: &Tangent<Wide<S>>,
         length: Wide<S>,
     ) -> Mask<S> {
         let Shape { halfway_sin, halfway_cos, .. } = *self.shape;
@@ -228,13 +229,8 @@ impl<S: Simd> Flight<'_, S> {
         let mut below = !zero.less(zero);
         for (rest, sin, cos) in inner {
             let from = length.times_from(length.same(rest), far.from);
-            let (value, slope) = bound.at(from, sin, cos);
             let ahead = last.from.less(from);
-            let next = Tangent {
-                from: ahead.choose(from, last.from),
-                value: ahead.choose(value, last.value),
-                slope: ahead.choose(slope, last.slope),
-            };
+            let next = last.or_where(ahead, bound.at(from, [sin, cos]));
             below = below & (last.stays_below_to(&next) | !ahead);
             last = next;
         }
@@ -296,8 +292,8 @@ impl<S: Simd> Flight<'_, S> {
         let start = by_sinking.choose(settled, concave_until);
         let start_sin = by_sinking.choose(settled_sin, -turning_sin);
         let start_cos = by_sinking.choose(settled_cos, turning_cos);
-        let (start_value, start_slope) = bound.at(start, start_sin, start_cos);
-        let mut fine = (sinks | concave_at_first) & start.less(root) & start_value.less(zero);
+        let first = bound.at(start, [start_sin, start_cos]);
+        let mut fine = (sinks | concave_at_first) & start.less(root) & first.value.less(zero);
 
         // The stretch of negative force that the flight begins in, or the first one after that.
         let late = (-turning + TAU).less(angle);
@@ -312,16 +308,9 @@ impl<S: Simd> Flight<'_, S> {
             if !open.any() {
                 return fine;
             }
-            let clipped = begins.less(start);
-            let from = clipped.choose(start, begins);
-            let (left, left_slope) = bound.at(begins, turning_sin, turning_cos);
-            let left = clipped.choose(start_value, left);
-            let rise = clipped.choose(start_slope, left_slope);
-            let (right, fall) = bound.at(ends, -turning_sin, turning_cos);
-            let (near, far) = (
-                Tangent { from, value: left, slope: rise },
-                Tangent { from: ends, value: right, slope: fall },
-            );
+            let near = bound.at(begins, [turning_sin, turning_cos]);
+            let near = near.or_where(begins.less(start), first);
+            let far = bound.at(ends, [-turning_sin, turning_cos]);
             let below = match care {
                 Care::Usual => near.stays_below_to(&far),
                 Care::Great => self.stays_below_between(&bound, &near, &far, length),
@@ -331,5 +320,17 @@ impl<S: Simd> Flight<'_, S> {
             open = open & fine;
         }
         fine & !open
+    }
+}
+
+impl<S: Simd> Tangent<Wide<S>> {
+    /// Another tangent where the mask holds.
+    #[inline(always)]
+    fn or_where(self, mask: Mask<S>, other: Self) -> Self {
+        Self {
+            from: mask.choose(other.from, self.from),
+            value: mask.choose(other.value, self.value),
+            slope: mask.choose(other.slope, self.slope),
+        }
     }
 }

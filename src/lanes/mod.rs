@@ -15,7 +15,6 @@ mod certificate;
 mod contact;
 mod contact_ahead;
 mod contact_shape;
-mod crest;
 mod damped;
 mod flight;
 mod forced;
