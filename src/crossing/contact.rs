@@ -6,7 +6,7 @@ use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::series::{Push, SHORT_REACH, Series};
 use crate::crossing::slow_envelope::quick_decay;
 use crate::flow::constants::Constants;
-use crate::flow::contact::Contact;
+use crate::flow::contact::{Contact, orders};
 use crate::flow::damped::Damping;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::steps::Steps;
@@ -184,11 +184,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         let EntryAngle { sin, cos, .. } = self.angle;
         let [u, v, w] = [a * cos, -(a * omega * sin), -(a * omega2 * cos)];
         let y = self.entry.y;
-        let pull = (u + (b - self.reference)) - self.offset;
-        let rate = two_xi * pull + y;
-        let pull_rate = v - rate;
-        let rate2 = two_xi * pull_rate + pull;
-        let orders = [self.offset, rate, rate2, two_xi * (w - rate2) + pull_rate];
+        let orders = orders(two_xi, b - self.reference, &[u, v, w], (self.offset, y));
         Point {
             elapsed: 0.0,
             state: self.entry,

@@ -3,9 +3,11 @@
 use crate::flow::complex::Complex;
 use crate::flow::constants::Constants;
 use crate::flow::damped::{Damping, Free};
+use crate::flow::forced::Response;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::{Flow, Jet, Point};
 use crate::numeric::number::Number;
+use crate::numeric::real::Real;
 use crate::state::State;
 use std::borrow::Borrow;
 
@@ -33,29 +35,17 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Contact<T, C> {
         let harmonic = self.angle.harmonic(self.constants.borrow(), d);
         let free = damping.at(d);
         let response = forced.at(d, &harmonic.turn, &free);
-        let steady = |r: Complex<T>| a * (self.angle.cos * r.re - self.angle.sin * r.im);
 
-        let f_less_b = self.offset + (self.reference - b);
-        let q_less_b = q0 - b;
-        let driven_force = steady(response.force);
-        let (relaxing, swinging) = (f_less_b * free.s_rate_minus_1, y0 * free.s);
-        let f_change = (relaxing + swinging) + driven_force;
-        let y_change = (y0 * free.c_minus_1 - f_less_b * free.s) + steady(response.rate);
-        let q_change = (q_less_b * free.c_minus_1 + swinging) + steady(response.displacement);
-        let (y, q) = (y0 + y_change, q0 + q_change);
-
-        let excess = self.offset + f_change;
+        let begin = Pressing {
+            parameters: [a, b, two_xi],
+            angle: self.angle,
+            state: [y0, q0],
+            offset: self.offset,
+            reference: self.reference,
+        };
+        let Pressed { excess, y, q, largest_term } =
+            begin.after(d, &harmonic.force, &free, &response);
         let orders = self.orders(d, &harmonic.force, &free, excess, y);
-        let driven_bound = a * (response.force.re.abs() + response.force.im.abs());
-        // The slopes count as well, times the length of a certificate: they carry the rounding of
-        // y0 and of f - b even where the oscillation passes through zero or has died out, and that
-        // of 2 xi (F - f), twice for the up to four times of decay.
-        let at_most_one = |x: T| if x < T::one() { x } else { T::one() };
-        let pulls = harmonic.force[0].abs() + (b - self.reference).abs();
-        let carried = y0.abs() * at_most_one(d)
-            + f_less_b.abs() * at_most_one(d * d)
-            + (pulls + pulls) * at_most_one(two_xi * d);
-        let largest_term = self.offset.abs() + relaxing.abs() + carried + driven_bound;
         Point {
             elapsed: d,
             state: State { p: q + g, y, q },
@@ -64,6 +54,91 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Contact<T, C> {
             force: harmonic.force,
             guard: Jet { orders, largest_term },
         }
+    }
+}
+
+/// The guard, which counts from a threshold, with three derivatives, from its value and the velocity
+/// of the mass: y' = F - f and f' = 2 xi (F - f) + y, differentiated twice more.
+///
+/// F and f may both be near the threshold, so that is taken off first: `level` is b less the
+/// threshold, `force` F - b, F', F''.
+#[inline(always)]
+pub fn orders<T: Real>(two_xi: T, level: T, force: &[T; 3], (excess, y): (T, T)) -> [T; 4] {
+    let pull = (force[0] + level) - excess;
+    let rate = two_xi.times_plus(pull, y);
+    let pull_rate = force[1] - rate;
+    let rate2 = two_xi.times_plus(pull_rate, pull);
+    let pull_rate2 = force[2] - rate2;
+    [excess, rate, rate2, two_xi.times_plus(pull_rate2, pull_rate)]
+}
+
+/// A contact as it begins.
+pub struct Pressing<T> {
+    /// a, b and 2 xi.
+    pub parameters: [T; 3],
+    /// Forcing angle.
+    pub angle: EntryAngle<T>,
+    /// Velocity of the mass, and displacement of the slider's top.
+    pub state: [T; 2],
+    /// The guard.
+    pub offset: T,
+    /// The threshold from which the guard counts.
+    pub reference: T,
+}
+
+/// A contact some time later.
+pub struct Pressed<T> {
+    /// The guard.
+    pub excess: T,
+    /// Velocity of the mass.
+    pub y: T,
+    /// Displacement of the slider's top.
+    pub q: T,
+    /// The largest term that went into the guard.
+    pub largest_term: T,
+}
+
+impl<T: Real> Pressing<T> {
+    /// The contact after a time `d`, from the harmonic force, the free oscillation and the response
+    /// to the forcing then.
+    #[inline(always)]
+    pub fn after(
+        &self,
+        d: T,
+        force: &[T; 3],
+        free: &Free<T>,
+        response: &Response<T>,
+    ) -> Pressed<T> {
+        let Self { parameters: [a, b, two_xi], state: [y0, q0], offset, reference, .. } = *self;
+        let (driven, y_driven) = (self.driven(response.force), self.driven(response.rate));
+        let q_driven = self.driven(response.displacement);
+        let f_less_b = offset + (reference - b);
+        let relaxing = f_less_b * free.s_rate_minus_1;
+        let f_change = y0.times_plus(free.s, relaxing) + driven;
+        let y_change = f_less_b.times_from(free.s, y0 * free.c_minus_1) + y_driven;
+        let q_change = (q0 - b).times_plus(free.c_minus_1, y0 * free.s) + q_driven;
+        let driven_bound = a * (response.force.re.magnitude() + response.force.im.magnitude());
+        // The slopes count as well, times the length of a certificate: they carry the rounding of
+        // y0 and of f - b even where the oscillation passes through zero or has died out, and that
+        // of 2 xi (F - f), twice for the up to four times of decay.
+        let one = d.same(1.0);
+        let pulls = force[0].magnitude() + (b - reference).magnitude();
+        let carried = y0.magnitude() * d.smaller(one)
+            + f_less_b.magnitude() * (d * d).smaller(one)
+            + (pulls + pulls) * (two_xi * d).smaller(one);
+        Pressed {
+            excess: offset + f_change,
+            y: y0 + y_change,
+            q: q0 + q_change,
+            largest_term: offset.magnitude() + relaxing.magnitude() + carried + driven_bound,
+        }
+    }
+
+    /// What the forcing does, from the response to exp(i omega d).
+    #[inline(always)]
+    fn driven(&self, response: Complex<T>) -> T {
+        let [a, ..] = self.parameters;
+        a * self.angle.sin.times_from(response.im, self.angle.cos * response.re)
     }
 }
 
@@ -77,14 +152,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Contact<T, C> {
         {
             return self.slow_and_fast(force, [fast, slow, spread], free.quick, excess);
         }
-        // y' = F - f and f' = 2 xi (F - f) + y, differentiated twice more. F and f may both be near
-        // the threshold: it is taken off first.
-        let pull = (force[0] + (b - self.reference)) - excess;
-        let rate = two_xi * pull + y;
-        let pull_rate = force[1] - rate;
-        let rate2 = two_xi * pull_rate + pull;
-        let pull_rate2 = force[2] - rate2;
-        [excess, rate, rate2, two_xi * pull_rate2 + pull_rate]
+        orders(two_xi, b - self.reference, force, (excess, y))
     }
 
     /// Above critical damping, once the fast exponential has begun to die out: the equations of

@@ -1,10 +1,11 @@
 //! No contact: Eq. (14). The mass flies, the slider's top returns to its rest.
 
 use crate::flow::constants::Constants;
-use crate::flow::forcing::EntryAngle;
+use crate::flow::forcing::{EntryAngle, Harmonic};
 use crate::flow::{Flow, Jet, Point};
 use crate::numeric::number::Number;
-use crate::numeric::remainders::decay;
+use crate::numeric::real::Real;
+use crate::numeric::remainders::{Decay, decay};
 use crate::state::State;
 use std::borrow::Borrow;
 
@@ -40,14 +41,9 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
         let harmonic = self.angle.harmonic(self.constants.borrow(), d);
         let decay = decay(rate * d);
 
-        let lift = b * d * d * T::exact(0.5);
-        let y_change = b * d + harmonic.impulse;
-        let p_change = y0 * d + (lift + harmonic.displacement);
+        let flying = Flying::new([b, rate], [y0, q0], d, &harmonic, &decay);
+        let Flying { lift, y_change, p_change, q, spring, sink, bends: [bend, third] } = flying;
         let y = y0 + y_change;
-        let q = q0 * decay.exp;
-
-        let force = b + harmonic.force[0];
-        let spring = q * rate;
         // q carries the rounding of its exponent, z times: it dies out with q.
         let q_terms = q.abs() + (spring * d).abs();
         let height = self.height();
@@ -57,7 +53,6 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
             // where its linear term is the flight's own.
             Some(h_rate) if h_rate == T::zero() || rate * d < T::one() => {
                 // h = h' d - q0 (exp(-z) - 1 + z) + b d^2/2 + ..., because p0 = q0 + g.
-                let sink = q0 * decay.remainder;
                 let h = (h_rate * d + (lift - sink)) + harmonic.displacement;
                 let terms = (h_rate * d).abs() + lift.abs() + sink.abs();
                 (h, h_rate + (y_change + q0 * rate * decay.minus_1), terms)
@@ -65,7 +60,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
             _ => ((height + p_change) - q, y + spring, direct_terms),
         };
         let largest_term = terms + harmonic.displacement_terms;
-        let orders = [h, h_rate, force - spring * rate, harmonic.force[1] + spring * rate * rate];
+        let orders = [h, h_rate, bend, third];
         Point {
             elapsed: d,
             state: State { p: p0 + p_change, y, q },
@@ -73,6 +68,50 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
             drift: T::zero(),
             force: harmonic.force,
             guard: Jet { orders, largest_term },
+        }
+    }
+}
+
+/// What a flight does in a time, however it began.
+pub struct Flying<T> {
+    /// What the static force lifts the mass by.
+    pub lift: T,
+    /// What the velocity of the mass changes by.
+    pub y_change: T,
+    /// What the displacement of the mass changes by.
+    pub p_change: T,
+    /// Displacement of the slider's top.
+    pub q: T,
+    /// The rate at which the slider's top returns.
+    pub spring: T,
+    /// q0 (exp(-z) - 1 + z)
+    pub sink: T,
+    /// The second and the third derivative of h.
+    pub bends: [T; 2],
+}
+
+impl<T: Real> Flying<T> {
+    /// The flight after a time `d`, from b and 1/(2 xi), and from y and q when it began.
+    #[inline(always)]
+    pub fn new(
+        [b, rate]: [T; 2],
+        [y0, q0]: [T; 2],
+        d: T,
+        harmonic: &Harmonic<T>,
+        decay: &Decay<T>,
+    ) -> Self {
+        let lift = b * d * d * d.same(0.5);
+        let q = q0 * decay.exp;
+        let spring = q * rate;
+        let returns = spring * rate;
+        Self {
+            lift,
+            y_change: b.times_plus(d, harmonic.impulse),
+            p_change: y0.times_plus(d, lift + harmonic.displacement),
+            q,
+            spring,
+            sink: q0 * decay.remainder,
+            bends: [(b + harmonic.force[0]) - returns, returns.times_plus(rate, harmonic.force[1])],
         }
     }
 }

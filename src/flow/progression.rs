@@ -1,10 +1,11 @@
 //! Contact with progression: Eqs. (18) and (20), the latter with its sign put right.
 
 use crate::flow::constants::Constants;
-use crate::flow::forcing::EntryAngle;
+use crate::flow::forcing::{EntryAngle, Harmonic};
 use crate::flow::{Flow, Jet, Point};
 use crate::numeric::number::Number;
-use crate::numeric::remainders::decay;
+use crate::numeric::real::Real;
+use crate::numeric::remainders::{Decay, decay};
 use crate::state::State;
 use std::borrow::Borrow;
 
@@ -31,38 +32,12 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Progression<T, C> {
         let Self { entry: State { y: y0, q: q0, .. }, drift_rate: w0, closing, .. } = *self;
         let harmonic = self.angle.harmonic(self.constants.borrow(), d);
         let decay = decay(rate * d);
-        let one = T::one();
-
-        let push = (b - one) * d;
-        let y_change = push + harmonic.impulse;
-        let y = y0 + y_change;
-        // 1 - q decays; (1 - q)/(2 xi) = y - w at all times. Early everything is taken by its
-        // change, late by what is left of 1 - q0: else the digits of a large q0 are lost.
-        let lag = closing * decay.exp;
-        let moved = closing * decay.minus_1;
-        let pushed = push * d * T::exact(0.5) + harmonic.displacement;
-        let push_terms = push.abs() + harmonic.impulse_terms;
-        let early = decay.exp > T::exact(0.5);
-        // Eq. (20) with - (p0 - g - 1) exp(..), its linear terms collected: y0 - (1 - q0)/(2 xi) =
-        // w0. 1 - q0 as 2 xi times the closing velocity keeps the digits that q0 near 1 has lost.
-        let (q, w, drift, terms) = if early {
-            let settling = two_xi * closing * decay.remainder;
-            let drift = w0 * d + pushed + settling;
-            (q0 - two_xi * moved, w0 + (y_change - moved), drift, w0.abs() + moved.abs())
-        } else {
-            let drift = y0 * d + pushed + two_xi * moved;
-            // The exponential has the rounding of its argument, z times its own.
-            let terms = y0.abs() + lag.abs() * (one + rate * d);
-            (one - two_xi * lag, y - lag, drift, terms)
-        };
-
-        let lag_rate = lag * rate;
-        let orders = [
-            w,
-            (harmonic.force[0] + (b - one)) + lag_rate,
-            harmonic.force[1] - lag_rate * rate,
-            harmonic.force[2] + lag_rate * rate * rate,
-        ];
+        let slipping =
+            Slipping::new([b, rate, two_xi], [y0, q0, w0, closing], d, &harmonic, &decay);
+        let Slipped { q, w, drift, terms } =
+            if decay.exp > T::exact(0.5) { slipping.early() } else { slipping.late() };
+        let Slipping { y, lag, bends: [slope, bend, third], push_terms, .. } = slipping;
+        let orders = [w, slope, bend, third];
         let largest_term = terms + push_terms;
         Point {
             elapsed: d,
@@ -71,6 +46,108 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Progression<T, C> {
             drift,
             force: harmonic.force,
             guard: Jet { orders, largest_term },
+        }
+    }
+}
+
+/// A progression some time after it began, in what early and late times share.
+pub struct Slipping<T> {
+    begin: [T; 4],
+    two_xi: T,
+    /// The time, and that times 1/(2 xi).
+    times: [T; 2],
+    y_change: T,
+    moved: T,
+    pushed: T,
+    remainder: T,
+    /// Velocity of the mass.
+    pub y: T,
+    /// Velocity of the slider's top, (1 - q)/(2 xi).
+    pub lag: T,
+    /// The first three derivatives of w.
+    pub bends: [T; 3],
+    /// An upper bound of the terms of what has pushed the mass.
+    pub push_terms: T,
+}
+
+/// What is computed in one way in early times and in another in late ones.
+pub struct Slipped<T> {
+    /// Displacement of the slider's top.
+    pub q: T,
+    /// Drift velocity.
+    pub w: T,
+    /// Drift since the progression began.
+    pub drift: T,
+    /// The largest terms of w but for those of what has pushed the mass.
+    pub terms: T,
+}
+
+impl<T: Real> Slipping<T> {
+    /// The progression after a time `d`, from b, 1/(2 xi) and 2 xi, and from y, q, w and (1 - q)/(2
+    /// xi) when it began.
+    #[inline(always)]
+    pub fn new(
+        [b, rate, two_xi]: [T; 3],
+        begin: [T; 4],
+        d: T,
+        harmonic: &Harmonic<T>,
+        decay: &Decay<T>,
+    ) -> Self {
+        let [y0, _, _, closing] = begin;
+        let pull = b - b.same(1.0);
+        let push = pull * d;
+        let y_change = push + harmonic.impulse;
+        // 1 - q decays; (1 - q)/(2 xi) = y - w at all times.
+        let lag = closing * decay.exp;
+        let lag_rate = lag * rate;
+        let turn = lag_rate * rate;
+        Self {
+            begin,
+            two_xi,
+            times: [d, rate * d],
+            y_change,
+            moved: closing * decay.minus_1,
+            pushed: (push * d).times_plus(d.same(0.5), harmonic.displacement),
+            remainder: decay.remainder,
+            y: y0 + y_change,
+            lag,
+            bends: [
+                (harmonic.force[0] + pull) + lag_rate,
+                harmonic.force[1] - turn,
+                turn.times_plus(rate, harmonic.force[2]),
+            ],
+            push_terms: push.magnitude() + harmonic.impulse_terms,
+        }
+    }
+
+    /// Everything by its change.
+    ///
+    /// The drift is Eq. (20) with - (p0 - g - 1) exp(..), its linear terms collected: y0 - (1 -
+    /// q0)/(2 xi) = w0. 1 - q0 as 2 xi times the closing velocity keeps the digits that q0 near 1
+    /// has lost.
+    #[inline(always)]
+    pub fn early(&self) -> Slipped<T> {
+        let ([_, q0, w0, closing], [d, _]) = (self.begin, self.times);
+        let settling = self.two_xi * closing * self.remainder;
+        Slipped {
+            q: self.two_xi.times_from(self.moved, q0),
+            w: w0 + (self.y_change - self.moved),
+            drift: w0 * d + self.pushed + settling,
+            terms: w0.magnitude() + self.moved.magnitude(),
+        }
+    }
+
+    /// Everything by what is left of 1 - q0: else the digits of a large q0 are lost.
+    #[inline(always)]
+    pub fn late(&self) -> Slipped<T> {
+        let ([y0, ..], [d, z]) = (self.begin, self.times);
+        let one = d.same(1.0);
+        Slipped {
+            q: self.two_xi.times_from(self.lag, one),
+            w: self.y - self.lag,
+            drift: y0 * d + self.pushed + self.two_xi * self.moved,
+            // The exponential has the rounding of its argument, z times its own.
+            terms: y0.magnitude() + self.lag.magnitude() * (one + z),
         }
     }
 }

@@ -9,7 +9,7 @@ use super::shape::Shape;
 use super::swing::{Parts, each};
 use super::wide::{Mask, Wide};
 use crate::crossing::series::{Push, REACH, short_decay};
-use crate::flow::complex::Complex;
+use crate::flow::contact::{Pressed, Pressing, orders};
 use crate::flow::damped::Free;
 use crate::flow::forced::Response;
 use crate::flow::forcing::Harmonic;
@@ -36,7 +36,7 @@ pub struct Contact<'a, S: Simd> {
 
 /// A contact at some time.
 #[derive(Clone, Copy)]
-pub struct Pressed<S: Simd> {
+pub struct Evaluated<S: Simd> {
     /// The guard and its first three derivatives.
     f: [Wide<S>; 4],
     /// F - b and its first two derivatives.
@@ -68,21 +68,21 @@ struct Leaving<'a, 'b, S: Simd> {
 }
 
 impl<S: Simd> Phase<S> for Leaving<'_, '_, S> {
-    type At = Pressed<S>;
+    type At = Evaluated<S>;
 
     #[inline(always)]
-    fn at(&self, d: Wide<S>) -> Pressed<S> {
+    fn at(&self, d: Wide<S>) -> Evaluated<S> {
         self.contact.at(d)
     }
 
     #[inline(always)]
-    fn excess(&self, at: &Pressed<S>) -> [Wide<S>; 4] {
+    fn excess(&self, at: &Evaluated<S>) -> [Wide<S>; 4] {
         let [value, slope, bend, third] = at.f;
         [value - self.threshold, slope, bend, third]
     }
 
     #[inline(always)]
-    fn later(&self, at: &Pressed<S>) -> [Wide<S>; LATER] {
+    fn later(&self, at: &Evaluated<S>) -> [Wide<S>; LATER] {
         let Shape { two_xi, omega2, .. } = *self.contact.shape;
         // f'' + 2 xi f' + f = F + 2 xi F'
         let [u, v, _] = at.force;
@@ -107,45 +107,29 @@ impl<S: Simd> Phase<S> for Leaving<'_, '_, S> {
 impl<S: Simd> Contact<'_, S> {
     /// The motion after `d`.
     #[inline(always)]
-    fn at(&self, d: Wide<S>) -> Pressed<S> {
+    fn at(&self, d: Wide<S>) -> Evaluated<S> {
         let Shape { a, b, two_xi, .. } = *self.shape;
         let Harmonic { force, turn, .. } = self.angle.after(self.shape, d);
         let free = Free::after(self.shape, self.forms, d);
-        let Free { s, c_minus_1, s_rate_minus_1, .. } = free;
         let response = Response::after(self.shape, self.forms, d, &turn, &free);
-        let steady =
-            |it: Complex<Wide<S>>| a * self.angle.sin.times_from(it.im, self.angle.cos * it.re);
-        let (driven, y_driven) = (steady(response.force), steady(response.rate));
-        let q_driven = steady(response.displacement);
-        let driven_bound = a * (response.force.re.magnitude() + response.force.im.magnitude());
-
-        let level = self.offset + (self.reference - b);
-        let relaxing = level * s_rate_minus_1;
-        let f_change = self.y.times_plus(s, relaxing) + driven;
-        let q_change = (self.q - b).times_plus(c_minus_1, self.y * s) + q_driven;
-        let y_change = level.times_from(s, self.y * c_minus_1) + y_driven;
-        let excess = self.offset + f_change;
-        let y = self.y + y_change;
-        let one = d.same(1.0);
-        let pulls = force[0].magnitude() + (b - self.reference).magnitude();
-        let carried = self.y.magnitude() * d.smaller(one)
-            + level.magnitude() * (d * d).smaller(one)
-            + (pulls + pulls) * (two_xi * d).smaller(one);
-        let terms = self.offset.magnitude() + relaxing.magnitude() + carried + driven_bound;
+        let begin = Pressing {
+            parameters: [a, b, two_xi],
+            angle: self.angle,
+            state: [self.y, self.q],
+            offset: self.offset,
+            reference: self.reference,
+        };
+        let Pressed { excess, y, q, largest_term: terms } =
+            begin.after(d, &force, &free, &response);
         let f = self.one_by_one(d, self.orders(force, excess, y), force, free.quick);
-        Pressed { f, force, y, q: self.q + q_change, quick: free.quick, terms }
+        Evaluated { f, force, y, q, quick: free.quick, terms }
     }
 
     /// The guard and its derivatives; `force` is F - b, F', F''.
     #[inline(always)]
     fn orders(&self, force: [Wide<S>; 3], excess: Wide<S>, y: Wide<S>) -> [Wide<S>; 4] {
         let Shape { b, two_xi, .. } = *self.shape;
-        let pull = (force[0] + (b - self.reference)) - excess;
-        let rate = two_xi.times_plus(pull, y);
-        let pull_rate = force[1] - rate;
-        let bend = two_xi.times_plus(pull_rate, pull);
-        let pull_bend = force[2] - bend;
-        [excess, rate, bend, two_xi.times_plus(pull_bend, pull_rate)]
+        orders(two_xi, b - self.reference, &force, (excess, y))
     }
 
     /// The first four orders of the guard at the start.

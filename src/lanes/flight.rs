@@ -19,6 +19,7 @@ use crate::crossing::guarded::SLACK;
 use crate::crossing::series::{Push, REACH, short_decay};
 use crate::crossing::tangents::{Bound, Ended, Tangent};
 use crate::flow::forcing::Harmonic;
+use crate::flow::no_contact::Flying;
 use crate::flow::steps::{GRIP, SEPARATION_INTERVAL};
 use crate::numeric::real::Real;
 use pulp::Simd;
@@ -77,24 +78,17 @@ impl<S: Simd> Phase<S> for Flight<'_, S> {
     #[inline(always)]
     fn at(&self, d: Wide<S>) -> Aloft<S> {
         let Shape { b, rate, .. } = *self.shape;
-        let Harmonic { force, impulse, displacement, .. } = self.angle.after(self.shape, d);
+        let harmonic = self.angle.after(self.shape, d);
         let decay = shrink(rate * d);
-        let y_change = b.times_plus(d, impulse);
-        let lift = b * d * d * 0.5;
-        let q = self.q * decay.exp;
-        let spring = q * rate;
-        let h = (lift - self.q * decay.remainder) + displacement;
+        let flying = Flying::new([b, rate], [self.y, self.q], d, &harmonic, &decay);
+        let Flying { lift, y_change, p_change, q, sink, bends: [bend, third], .. } = flying;
+        let Harmonic { force, displacement, .. } = harmonic;
+        let h = (lift - sink) + displacement;
         let h_rate = y_change + self.q * rate * decay.minus_1;
-        let total = b + force[0];
         Aloft {
-            h: [
-                h,
-                h_rate,
-                rate.times_from(spring, total),
-                (rate * rate).times_plus(spring, force[1]),
-            ],
-            force: [total, force[1], force[2]],
-            risen: self.y.times_plus(d, lift + displacement),
+            h: [h, h_rate, bend, third],
+            force: [b + force[0], force[1], force[2]],
+            risen: p_change,
             y: self.y + y_change,
             q,
         }

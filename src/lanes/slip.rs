@@ -15,7 +15,7 @@ use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::series::{REACH, short_decay};
-use crate::flow::forcing::Harmonic;
+use crate::flow::progression::{Slipped, Slipping};
 use crate::numeric::real::Real;
 use pulp::Simd;
 
@@ -54,7 +54,7 @@ pub struct Sliding<S: Simd> {
 }
 
 /// A progression as strobes show it.
-pub struct Slipping<S: Simd> {
+pub struct SlipStrobe<S: Simd> {
     /// Displacement of the slider's top, velocity of the mass, drift since the start, drift
     /// velocity.
     pub values: [Wide<S>; 4],
@@ -84,37 +84,24 @@ impl<S: Simd> Phase<S> for Slip<'_, S> {
     #[inline(always)]
     fn at(&self, d: Wide<S>) -> Sliding<S> {
         let Shape { b, rate, two_xi, .. } = *self.shape;
-        let Self { y: y0, q: q0, drift_rate: w0, closing, .. } = *self;
-        let Harmonic { force, impulse, displacement, impulse_terms, .. } =
-            self.angle.after(self.shape, d);
+        let Self { y, q, drift_rate, closing, .. } = *self;
+        let harmonic = self.angle.after(self.shape, d);
         let decay = shrink(rate * d);
-        let push = (b - 1.0) * d;
-        let y_change = push + impulse;
-        let y = y0 + y_change;
-        let lag = closing * decay.exp;
-        let moved = closing * decay.minus_1;
-        let pushed = (push * d).times_plus(d.same(0.5), displacement);
-        let early = decay.exp.above(0.5);
-        let settling = two_xi * closing * decay.remainder;
-        let drift = early.choose(w0 * d + pushed + settling, y0 * d + pushed + two_xi * moved);
-        let w = early.choose(w0 + (y_change - moved), y - lag);
-        let q = early.choose(two_xi.times_from(moved, q0), two_xi.times_from(lag, d.same(1.0)));
-        let late_terms = y0.magnitude() + lag.magnitude() * (rate * d + 1.0);
-        let terms = early.choose(w0.magnitude() + moved.magnitude(), late_terms)
-            + push.magnitude()
-            + impulse_terms;
-        let lag_rate = lag * rate;
-        let y_rate = force[0] + (b - 1.0);
-        let turned = lag_rate * rate;
+        let begin = [y, q, drift_rate, closing];
+        let slipping = Slipping::new([b, rate, two_xi], begin, d, &harmonic, &decay);
+        let Slipped { q, w, drift, terms } =
+            slipping.late().or_where(decay.exp.above(0.5), slipping.early());
+        let Slipping { y, lag, bends: [slope, bend, third], push_terms, .. } = slipping;
+        let [force, first, second] = harmonic.force;
         Sliding {
-            w: [w, y_rate + lag_rate, force[1] - turned, rate.times_plus(turned, force[2])],
+            w: [w, slope, bend, third],
             lag,
             y,
             q,
-            y_rate,
-            force: [force[1], force[2]],
+            y_rate: force + (b - 1.0),
+            force: [first, second],
             drift,
-            terms,
+            terms: terms + push_terms,
         }
     }
 
@@ -166,9 +153,9 @@ impl<S: Simd> Slip<'_, S> {
 
     /// The progressions at some time.
     #[inline(always)]
-    pub fn state(&self, d: Wide<S>) -> Slipping<S> {
+    pub fn state(&self, d: Wide<S>) -> SlipStrobe<S> {
         let Sliding { w, lag, y, q, y_rate, drift, terms, .. } = self.at(d);
-        Slipping { values: [q, y, drift, w[0]], rates: [lag, y_rate, w[0], w[1]], lag, terms }
+        SlipStrobe { values: [q, y, drift, w[0]], rates: [lag, y_rate, w[0], w[1]], lag, terms }
     }
 
     #[inline(always)]
@@ -186,6 +173,19 @@ impl<S: Simd> Slip<'_, S> {
             cos: sin,
             exponential: -self.closing,
             first: look_decay.is(0.0).choose(-self.y, -self.drift_rate),
+        }
+    }
+}
+
+impl<S: Simd> Slipped<Wide<S>> {
+    /// Another's values where the mask holds.
+    #[inline(always)]
+    fn or_where(self, mask: Mask<S>, other: Self) -> Self {
+        Self {
+            q: mask.choose(other.q, self.q),
+            w: mask.choose(other.w, self.w),
+            drift: mask.choose(other.drift, self.drift),
+            terms: mask.choose(other.terms, self.terms),
         }
     }
 }

@@ -7,7 +7,7 @@ use super::flight::{Flight, Impact};
 use super::harmonic::Angle;
 use super::root::Care;
 use super::shape::Shape;
-use super::slip::{Slip, Slipping, Stop};
+use super::slip::{Slip, SlipStrobe, Stop};
 use super::wide::{Column, Mask, Wide};
 use super::words::Words;
 use crate::numeric::real::Real;
@@ -176,7 +176,7 @@ impl<'a, S: Simd> Lanes<'a, S> {
     #[inline(always)]
     fn slip_strobe(&self, end: &mut End) {
         let elapsed = self.until_due(end);
-        let Slipping { values, rates, lag, terms } = self.slips().state(elapsed.high);
+        let SlipStrobe { values, rates, lag, terms } = self.slips().state(elapsed.high);
         let [q, y, drift, guard] = moved(values, rates, elapsed.low);
         (q + self.shape.g).store(&mut end.p);
         y.store(&mut end.y);
