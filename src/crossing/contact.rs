@@ -1,7 +1,7 @@
 //! The guards of a contact: the trial force rises to 1 (progression) or falls to 0 (separation).
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
-use crate::crossing::contact_parts::{Parts, Shape};
+use crate::crossing::contact_parts::{ContactParts, Shape};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::series::{Push, SHORT_REACH, Series};
 use crate::crossing::slow_envelope::quick_decay;
@@ -154,11 +154,11 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     }
 
     /// The parts of the trial force, from their split.
-    pub(super) fn parts(&self, at: &Point<f64>, split: &Split) -> Parts {
+    pub(super) fn parts(&self, at: &Point<f64>, split: &Split) -> ContactParts<f64> {
         let [free, free_rate, ..] = split.free;
         let [f, f1, ..] = at.guard.orders;
         let level = self.constants.borrow().b - self.reference;
-        Parts {
+        ContactParts {
             elapsed: at.elapsed,
             free,
             free_rate,

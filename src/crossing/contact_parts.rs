@@ -6,20 +6,56 @@
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::flow::steps::ContactStep;
+use crate::numeric::real::Real;
 
 /// The trial force in parts, at some place.
 #[derive(Clone, Copy, Debug)]
-pub struct Parts {
+pub struct ContactParts<T> {
     /// When.
-    pub elapsed: f64,
+    pub elapsed: T,
     /// Free part.
-    pub free: f64,
+    pub free: T,
     /// The rate of the free part.
-    pub free_rate: f64,
+    pub free_rate: T,
     /// Forced part.
-    pub forced: f64,
+    pub forced: T,
     /// The rate of the forced part over omega.
-    pub quarter: f64,
+    pub quarter: T,
+}
+
+impl<T: Real> ContactParts<T> {
+    /// The parts after a step.
+    #[inline(always)]
+    pub fn after(&self, step: &ContactStep<T>) -> Self {
+        let ContactStep { length, sin, cos, c, s, s_rate } = *step;
+        Self {
+            elapsed: self.elapsed + length,
+            free: self.free.times_plus(c, self.free_rate * s),
+            free_rate: self.free.times_from(s, self.free_rate * s_rate),
+            forced: self.forced.times_plus(cos, self.quarter * sin),
+            quarter: self.forced.times_from(sin, self.quarter * cos),
+        }
+    }
+
+    /// The free part and its first three derivatives, by x'' + 2 xi x' + x = 0.
+    #[inline(always)]
+    pub fn free_orders(&self, two_xi: T) -> [T; 4] {
+        let bend = -two_xi.times_plus(self.free_rate, self.free);
+        [self.free, self.free_rate, bend, -two_xi.times_plus(bend, self.free_rate)]
+    }
+
+    /// The guard and its first three derivatives, from those of the free part; `level` is b less
+    /// the guard's reference.
+    #[inline(always)]
+    pub fn orders(&self, level: T, omega: T, [free, rate, bend, third]: [T; 4]) -> [T; 4] {
+        let omega2 = omega * omega;
+        [
+            level + free + self.forced,
+            omega.times_plus(self.quarter, rate),
+            omega2.times_from(self.forced, bend),
+            (omega * omega2).times_from(self.quarter, third),
+        ]
+    }
 }
 
 /// What the parts have in common at all places.
@@ -39,32 +75,9 @@ pub struct Shape {
     pub slack: f64,
 }
 
-impl Parts {
-    fn after(&self, swing: &ContactStep) -> Self {
-        let ContactStep { length, sin, cos, c, s, s_rate } = *swing;
-        Self {
-            elapsed: self.elapsed + length,
-            free: self.free * c + self.free_rate * s,
-            free_rate: self.free_rate * s_rate - self.free * s,
-            forced: self.forced * cos + self.quarter * sin,
-            quarter: self.quarter * cos - self.forced * sin,
-        }
-    }
-
-    /// The guard and its first three derivatives.
-    fn orders(&self, shape: &Shape) -> [f64; 4] {
-        let Shape { level, two_xi, omega, .. } = *shape;
-        let Self { free, free_rate, forced, quarter, .. } = *self;
-        // x'' + 2 xi x' + x = 0
-        let free2 = -(two_xi * free_rate + free);
-        let free3 = -(two_xi * free2 + free_rate);
-        let omega2 = omega * omega;
-        [
-            level + free + forced,
-            free_rate + omega * quarter,
-            free2 - omega2 * forced,
-            free3 - omega * omega2 * quarter,
-        ]
+impl ContactParts<f64> {
+    fn guard(&self, shape: &Shape) -> [f64; 4] {
+        self.orders(shape.level, shape.omega, self.free_orders(shape.two_xi))
     }
 
     fn value_and_rate(&self, shape: &Shape) -> (f64, f64) {
@@ -76,7 +89,7 @@ impl Parts {
     pub fn first_exit(
         &self,
         shape: &Shape,
-        swing: &ContactStep,
+        swing: &ContactStep<f64>,
         steps: usize,
     ) -> Result<f64, Self> {
         let corridor = shape.corridor;
@@ -103,7 +116,7 @@ impl Parts {
         (right, right_orders): (f64, &[f64; 4]),
         ends: Ends,
         shape: &Shape,
-        swing: &ContactStep,
+        swing: &ContactStep<f64>,
     ) -> bool {
         const MOST_PIECES: usize = 8;
         /// The last piece may be this much longer than a stride.
@@ -126,7 +139,7 @@ impl Parts {
                 return inside(&orders, right_orders, rest, ends);
             }
             let next = here.after(swing);
-            let next_orders = next.orders(shape);
+            let next_orders = next.guard(shape);
             if !inside(&orders, &next_orders, swing.length, left_ends) {
                 return false;
             }

@@ -2,7 +2,7 @@
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
-use crate::crossing::piecewise::{End, Parts, PiecewiseCertificate, Shape};
+use crate::crossing::piecewise::{End, FreeParts, PiecewiseCertificate, Shape};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::slow_envelope::{Place, SlowEnvelope, first_root};
 use crate::crossing::tangents::stays_below;
@@ -235,9 +235,9 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
     }
 
     /// h = (p - g) - q, where p'' = F.
-    fn parts(&self, at: &Point<f64>) -> Parts {
+    fn parts(&self, at: &Point<f64>) -> FreeParts {
         let Constants { omega, .. } = *self.constants.borrow();
-        Parts {
+        FreeParts {
             elapsed: at.elapsed,
             value: at.guard.orders[0] + at.state.q,
             slope: at.state.y,

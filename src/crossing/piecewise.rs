@@ -16,7 +16,7 @@ use crate::flow::steps::{FreeStep, GRIP, PULLING, PUSHING, Steps};
 
 /// A guard's excess in parts, at some place.
 #[derive(Clone, Copy, Debug)]
-pub struct Parts {
+pub struct FreeParts {
     /// When.
     pub elapsed: f64,
     /// Parabola and harmonic.
@@ -60,10 +60,10 @@ pub struct End {
     /// Value and three derivatives of the excess.
     pub orders: [f64; 4],
     /// The guard at this end in parts.
-    pub parts: Parts,
+    pub parts: FreeParts,
 }
 
-impl Parts {
+impl FreeParts {
     fn after(&self, stride: &FreeStep, shape: &Shape) -> Self {
         const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
         let Shape { curvature, strength, grain, .. } = *shape;
@@ -105,7 +105,7 @@ struct Line {
 
 impl Line {
     /// A straight line that is nowhere below the exponential between the two places.
-    fn above(from: &Parts, to: &Parts, rate: f64) -> Self {
+    fn above(from: &FreeParts, to: &FreeParts, rate: f64) -> Self {
         // At the right end it may have sunk below the smallest number: the left one has its sign.
         let slope = if from.lasting > 0.0 {
             (to.lasting - from.lasting) / (to.elapsed - from.elapsed)
@@ -202,7 +202,7 @@ impl<'a> PiecewiseCertificate<'a> {
     /// Whether a flight that begins with value and slope zero stays inside until z =
     /// [`SEPARATION_INTERVAL`]: its guard is at most the largest force times d^2/2 less q0 (exp(-z)
     /// - 1 + z).
-    fn parts_for_certain(&self, left: &Parts) -> bool {
+    fn parts_for_certain(&self, left: &FreeParts) -> bool {
         let Shape { curvature, strength, rate, .. } = *self.shape;
         -left.lasting * (rate * rate) * GRIP > (strength + curvature.max(0.0)) * (1.0 + 1e-9)
     }
@@ -248,7 +248,7 @@ impl<'a> PiecewiseCertificate<'a> {
     }
 
     /// How high the harmonic's crests may be.
-    fn crests(&self, near: &Parts, far: &Parts) -> Crests {
+    fn crests(&self, near: &FreeParts, far: &FreeParts) -> Crests {
         /// The sums of values, and of slopes over the length, round a few times. An evaluation's
         /// own room leaves that out: its parts have cancelled before they were rounded.
         const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
@@ -285,7 +285,7 @@ impl<'a> PiecewiseCertificate<'a> {
         piece.verdict(&BELOW_ZERO, ends, slack)
     }
 
-    fn end(&self, parts: Parts) -> End {
+    fn end(&self, parts: FreeParts) -> End {
         let orders = match &self.line {
             Some(line) => self.above(&parts, line),
             None => {
@@ -300,13 +300,13 @@ impl<'a> PiecewiseCertificate<'a> {
     }
 
     /// The orders with a line in place of the exponential.
-    fn above(&self, parts: &Parts, line: &Line) -> [f64; 4] {
+    fn above(&self, parts: &FreeParts, line: &Line) -> [f64; 4] {
         let [value, slope, bend, third] = self.bare(parts);
         [value + line.at(parts.elapsed), slope + line.slope, bend, third]
     }
 
     /// The orders without the exponential.
-    fn bare(&self, parts: &Parts) -> [f64; 4] {
+    fn bare(&self, parts: &FreeParts) -> [f64; 4] {
         let Shape { omega, curvature, .. } = *self.shape;
         [parts.value, parts.slope, curvature + parts.bow, omega * parts.quarter]
     }
@@ -335,7 +335,7 @@ mod tests {
         };
         let line = Some(Line { end: 2.0, value: 0.0, slope: 0.0 });
         let certificate = PiecewiseCertificate { shape: &shape, steps: &steps, line };
-        let at = |elapsed, slope| Parts {
+        let at = |elapsed, slope| FreeParts {
             elapsed,
             value: -0.1,
             slope,

@@ -2,7 +2,7 @@
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
-use crate::crossing::piecewise::{End, Parts, PiecewiseCertificate, Shape};
+use crate::crossing::piecewise::{End, FreeParts, PiecewiseCertificate, Shape};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::slow_envelope::SlowEnvelope;
 use crate::flow::constants::Constants;
@@ -10,6 +10,7 @@ use crate::flow::forcing::EntryAngle;
 use crate::flow::progression::Progression;
 use crate::flow::steps::{PUSHING, Steps};
 use crate::flow::{Jet, Point};
+use crate::numeric::real::Real;
 use crate::state::State;
 use std::borrow::Borrow;
 
@@ -170,6 +171,28 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
     }
 }
 
+/// Whether w, not negative at the start, has no root before one: proved, or not known. It takes a,
+/// b, omega and 1/(2 xi); the velocity of the slider's top and w at the start; and that velocity at
+/// the root.
+///
+/// w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's lag only decays. With c = 1 - a -
+/// b and a omega < c rate, w is concave as long as lag rate >= c and falls from then on; it falls
+/// all the time if lag rate < c at the start; and it is concave up to a root at which a omega < lag
+/// rate^2.
+#[inline(always)]
+pub fn stops_once<T: Real>([a, b, omega, rate]: [T; 4], [closing, w]: [T; 2], lag: T) -> T::Mask {
+    /// The inequalities round a few times.
+    const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;
+    let room = a.same(ROOM);
+    let zero = a.same(0.0);
+    let steepest = a * omega * room;
+    let fall = (a.same(1.0) - b) - a * room;
+    let rises_once = steepest.less(fall * rate);
+    let falls = (closing.larger(zero) * rate * room).less(fall);
+    let bends = steepest.less(lag * rate * rate);
+    !w.less(zero) & (rises_once | falls | bends)
+}
+
 impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
     /// A lower bound of the eighth derivative of w from `at` on. Its upper bound is of no use,
     /// because the corridor has no upper threshold.
@@ -179,21 +202,10 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
         -a * omega * omega6 - at.slider_velocity.max(0.0) * rate8
     }
 
-    /// Whether w, not negative at the start, has no root before this one: proved, or not known.
-    ///
-    /// w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's lag only decays. With c = 1 -
-    /// a - b and a omega < c rate, w is concave as long as lag rate >= c and falls from then on; it
-    /// falls all the time if lag rate < c at the start; and it is concave up to a root at which a
-    /// omega < lag rate^2.
     fn stops_once(&self, root: &Point<f64>) -> bool {
-        /// The inequalities round a few times.
-        const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;
         let Constants { a, b, omega, rate, .. } = *self.constants.borrow();
-        let steepest = a * omega * ROOM;
-        let fall = (1.0 - b) - a * ROOM;
-        let falls = self.closing.max(0.0) * rate * ROOM < fall;
-        let bends = steepest < root.slider_velocity * rate * rate;
-        self.drift_rate >= 0.0 && (steepest < fall * rate || falls || bends)
+        let begin = [self.closing, self.drift_rate];
+        stops_once([a, b, omega, rate], begin, root.slider_velocity)
     }
 
     fn shape(&self) -> Shape {
@@ -205,9 +217,9 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
     }
 
     /// -w = -y + q', where y' = F - 1.
-    fn parts(&self, at: &Point<f64>) -> Parts {
+    fn parts(&self, at: &Point<f64>) -> FreeParts {
         let Constants { b, omega, .. } = *self.constants.borrow();
-        Parts {
+        FreeParts {
             elapsed: at.elapsed,
             value: -at.state.y,
             slope: (1.0 - b) - at.force[0],

@@ -154,7 +154,7 @@ pub struct Together<'a, T> {
 }
 
 /// D+ and D- of the divided difference.
-pub struct Parts<T> {
+pub struct Differences<T> {
     /// D+ + D-
     pub sum: Complex<T>,
     /// D+ - D-
@@ -179,17 +179,17 @@ impl<T: Real> Together<'_, T> {
 
     /// D+ and D- in long times, from exp(i omega d) - exp(lambda+ d).
     #[inline(always)]
-    pub fn long(&self, lag: Complex<T>) -> Parts<T> {
+    pub fn long(&self, lag: Complex<T>) -> Differences<T> {
         let [inverse_slow, inverse_quick] = self.inverses;
         let slow = lag * inverse_slow;
         let conjugate = self.damped().conjugate().scale(self.rotation.shrink.exp);
         let quick = (self.forcing() - conjugate) * inverse_quick;
-        Parts { sum: slow + quick, difference: slow - quick }
+        Differences { sum: slow + quick, difference: slow - quick }
     }
 
     /// D+ and D- in short times, by D+ - d and D- - d, which are both of the order of d^2.
     #[inline(always)]
-    pub fn short(&self, d: T, beat: &Circular<T>) -> Parts<T> {
+    pub fn short(&self, d: T, beat: &Circular<T>) -> Differences<T> {
         let (turn, Rotation { shrink, turn: free }) = (self.turn, self.rotation);
         let [inverse_slow, inverse_quick] = self.inverses;
         let beating = Complex::new(beat.cos_minus_1 - shrink.remainder, beat.sin_minus_x);
@@ -200,7 +200,7 @@ impl<T: Real> Together<'_, T> {
         let sines = turn.sin_minus_x + shrink.minus_1.times_plus(free.sin, free.sin_minus_x);
         let quick = Complex::new(cosines, sines) * inverse_quick;
         let sum = slow + quick;
-        Parts { sum: Complex::new(sum.re + (d + d), sum.im), difference: slow - quick }
+        Differences { sum: Complex::new(sum.re + (d + d), sum.im), difference: slow - quick }
     }
 
     /// exp(i nu d)
@@ -217,7 +217,7 @@ impl<T: Real> Together<'_, T> {
     }
 }
 
-impl<T: Real> Parts<T> {
+impl<T: Real> Differences<T> {
     /// The response that D+ and D- make.
     #[inline(always)]
     pub fn response(&self, xi: T, half_over_nu: T) -> Response<T> {

@@ -58,22 +58,22 @@ impl FreeStep {
 
 /// A step of fixed length in contact.
 #[derive(Clone, Copy, Debug)]
-pub struct ContactStep {
+pub struct ContactStep<T> {
     /// How long it is.
-    pub length: f64,
+    pub length: T,
     /// Sine of omega times that.
-    pub sin: f64,
+    pub sin: T,
     /// Cosine of omega times that.
-    pub cos: f64,
+    pub cos: T,
     /// C of the free oscillation ([`crate::flow::damped`]).
-    pub c: f64,
+    pub c: T,
     /// S
-    pub s: f64,
+    pub s: T,
     /// S'
-    pub s_rate: f64,
+    pub s_rate: T,
 }
 
-impl ContactStep {
+impl ContactStep<f64> {
     fn new(length: f64, omega: f64, damping: &Damping<f64>) -> Self {
         let (sin, cos) = libm::sincos(omega * length);
         let free = damping.at(length);
@@ -167,13 +167,13 @@ pub struct Steps {
     /// The step from place to place of a guess.
     pub look: FreeStep,
     /// The step from piece to piece of a contact's certificate.
-    pub contact_piece: ContactStep,
+    pub contact_piece: ContactStep<f64>,
     /// The step of a contact's guess while a fast part lives, above critical damping.
-    pub quick_look: ContactStep,
+    pub quick_look: ContactStep<f64>,
     /// The step from place to place of a contact's guess.
-    pub contact_look: ContactStep,
+    pub contact_look: ContactStep<f64>,
     /// The step of a contact's guess above critical damping, when the fast part has died out.
-    pub slow_look: ContactStep,
+    pub slow_look: ContactStep<f64>,
     /// The forcing angles at which the force changes its sign.
     pub turning: Turning,
 }

@@ -6,8 +6,9 @@ use super::harmonic::Angle;
 use super::root::{Care, Found, Phase, find};
 use super::series::LATER;
 use super::shape::Shape;
-use super::swing::{Parts, each};
+use super::swing::{LaneParts, each};
 use super::wide::{Mask, Wide};
+use crate::crossing::contact_parts::ContactParts;
 use crate::crossing::series::{Push, REACH, short_decay};
 use crate::flow::contact::{Pressed, Pressing, orders};
 use crate::flow::damped::Free;
@@ -154,11 +155,12 @@ impl<S: Simd> Contact<'_, S> {
         if self.forms == Forms::Usual || !dying.any() {
             return orders;
         }
-        let quickly = self.parts(self.first()).free[1] * quick;
+        let quickly = self.parts(self.first()).parts.free_rate * quick;
         let forced = steady_rate.times_plus(v, steady * u);
         let quarter = steady_rate.times_plus(w, steady * v) / omega;
         let slowly = ((orders[0] - (b - self.reference)) - forced) - quickly;
-        let parts = Parts { free: [slowly, quickly], forced, quarter, forms: self.forms };
+        let parts = ContactParts { elapsed, free: slowly, free_rate: quickly, forced, quarter };
+        let parts = LaneParts { parts, forms: self.forms };
         let [_, rate, bend, third] = parts.orders(self.shape, self.reference);
         each(dying, [orders[0], rate, bend, third], orders)
     }
@@ -193,13 +195,15 @@ impl<S: Simd> Contact<'_, S> {
 
     /// The force in parts at the start, from its orders there.
     #[inline(always)]
-    pub fn parts(&self, [f, f1, ..]: [Wide<S>; 4]) -> Parts<S> {
+    pub fn parts(&self, [f, f1, ..]: [Wide<S>; 4]) -> LaneParts<S> {
         let Shape { b, omega, steady, steady_rate, .. } = *self.shape;
         let [u, v, w] = self.angle.force(self.shape);
         let level = b - self.reference;
         let free = (f - level) - steady_rate.times_plus(v, steady * u);
         let free_rate = f1 - steady_rate.times_plus(w, steady * v);
         let (forced, quarter) = ((f - level) - free, (f1 - free_rate) / omega);
-        Parts::new(self.shape, self.forms, [free, free_rate], forced, quarter)
+        let elapsed = f.same(0.0);
+        let parts = ContactParts { elapsed, free, free_rate, forced, quarter };
+        LaneParts::new(self.shape, self.forms, parts)
     }
 }

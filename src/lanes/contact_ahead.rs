@@ -10,7 +10,7 @@ use super::contact_shape::Forms;
 use super::guess::meeting;
 use super::root::Care;
 use super::shape::Shape;
-use super::swing::{Parts, Swings, each};
+use super::swing::{LaneParts, Swings, each};
 use super::wide::{Mask, Wide};
 use crate::numeric::real::Real;
 use pulp::Simd;
@@ -41,7 +41,7 @@ impl<S: Simd> Contact<'_, S> {
         for _ in 0..STRIDES {
             let stride = swings.now.length;
             here = here.after(&swings.now);
-            let (next, next_rate) = here.value_and_rate(self.shape, self.reference);
+            let [next, next_rate, ..] = here.orders(self.shape, self.reference);
             let over = !next.less(high);
             let leaves = open & (over | !low.less(next));
             let threshold = over.choose(high, low);
@@ -120,7 +120,7 @@ impl<S: Simd> Contact<'_, S> {
 
     /// Rounding room: four eps of the guard's terms, and what the strides round.
     #[inline(always)]
-    fn slack(&self, parts: &Parts<S>, terms: Wide<S>) -> Wide<S> {
+    fn slack(&self, parts: &LaneParts<S>, terms: Wide<S>) -> Wide<S> {
         let size = parts.size() + self.shape.pulls;
         (terms.larger(self.offset.magnitude()) + 1.0) * (4.0 * f64::EPSILON)
             + size * (self.shape.roundings * f64::EPSILON)

@@ -7,7 +7,7 @@ use super::shape::Shape;
 use super::wide::Wide;
 use crate::flow::complex::Complex;
 use crate::flow::damped::Free;
-use crate::flow::forced::{Parts, Response, Together};
+use crate::flow::forced::{Differences, Response, Together};
 use crate::numeric::real::Real;
 use crate::numeric::remainders::Circular;
 use pulp::Simd;
@@ -71,7 +71,7 @@ impl<S: Simd> Response<Wide<S>> {
         let short = d.below(1.0);
         if short.any() {
             let early = together.short(d, &beat);
-            parts = Parts {
+            parts = Differences {
                 sum: Complex::choose(short, early.sum, parts.sum),
                 difference: Complex::choose(short, early.difference, parts.difference),
             };

@@ -1,11 +1,7 @@
 //! Progressions ([`crate::flow::progression`]): guess, evaluation, certificate, landing.
 //!
-//! The drift velocity w begins at zero or above, w' = F - 1 + lag rate, w'' = F' - lag rate^2, and
-//! the slider's lag only decays. Let c = 1 - a - b be positive and a omega < c rate. As long as lag
-//! rate >= c, w is concave; from then on it falls. So it is positive between its start and its only
-//! root. Nor has it another one where it falls from the start, lag rate < c there, as under strong
-//! damping; or where it is concave up to the root, a omega < lag rate^2 there. Other progressions
-//! are left to the scalar solver.
+//! The certificate is the solver's inequality ([`crate::crossing::progression::stops_once`]); other
+//! progressions are left to the scalar solver.
 
 use super::functions::shrink;
 use super::guess::SlowEnvelope;
@@ -14,6 +10,7 @@ use super::root::{Found, Phase, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
+use crate::crossing::progression::stops_once;
 use crate::crossing::series::{REACH, short_decay};
 use crate::flow::progression::{Slipped, Slipping};
 use crate::numeric::real::Real;
@@ -140,14 +137,9 @@ impl<S: Simd> Slip<'_, S> {
         let Found { at, elapsed, series, step, slope, fine } = find(self, guess, guessed);
         let lag = at.lag + at.lag * short_decay(rate * step);
         let drift = at.drift + series.integral(step);
-        const ROOM: f64 = 1.0 + 64.0 * f64::EPSILON;
-        let steepest = a * omega * ROOM;
-        let least = (-b + 1.0) - a * ROOM;
-        let rises_once = steepest.less(least * rate);
-        let falls = (self.closing.larger(b.same(0.0)) * (rate * ROOM)).less(least);
-        let certified = rises_once | falls | steepest.less(lag * rate * rate);
-        let begins = !self.drift_rate.below(0.0);
-        let fine = fine & certified & begins & slope.below(0.0);
+        let begin = [self.closing, self.drift_rate];
+        let certified = stops_once([a, b, omega, rate], begin, lag);
+        let fine = fine & certified & slope.below(0.0);
         Stop { elapsed: (elapsed, step), y: lag, drift, fine }
     }
 
