@@ -23,21 +23,26 @@ type Uses = BTreeMap<String, Vec<String>>;
 
 /// Every file of the library by its module path, with the module paths that it uses.
 fn uses() -> Uses {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let files = texts(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    let names: Vec<String> = files.keys().cloned().collect();
+    files.iter().map(|(module, text)| (module.clone(), used(module, text, &names))).collect()
+}
+
+/// Every file of the library by its module path.
+fn texts(root: &Path) -> BTreeMap<String, String> {
     let mut files = BTreeMap::new();
-    let mut folders = vec![root.clone()];
+    let mut folders = vec![root.to_owned()];
     while let Some(folder) = folders.pop() {
         for file in std::fs::read_dir(folder).unwrap() {
             let path = file.unwrap().path();
             if path.is_dir() {
                 folders.push(path);
-            } else if let Some(module) = module(&root, &path) {
+            } else if let Some(module) = module(root, &path) {
                 files.insert(module, std::fs::read_to_string(path).unwrap());
             }
         }
     }
-    let names: Vec<String> = files.keys().cloned().collect();
-    files.iter().map(|(module, text)| (module.clone(), used(module, text, &names))).collect()
+    files
 }
 
 /// The module of a file: `run::switch`; none of tests and of the root, which exports them all.
@@ -102,4 +107,36 @@ fn no_two_files_use_each_other() {
             assert!(!(back && uses[it].contains(module)), "{module} and {it} use each other");
         }
     }
+}
+
+/// The solver and the lanes take what they allow themselves from one table.
+#[test]
+fn what_a_search_allows_itself_stands_in_one_place() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let texts = texts(&root);
+    let table = &texts["crossing::allowances"];
+    let constants = table.lines().filter_map(|line| line.strip_prefix("pub const "));
+    let names: Vec<&str> = constants.filter_map(|it| it.split(':').next()).collect();
+    assert!(names.len() >= 10, "{names:?}");
+    for name in names {
+        let uses = |folder: &str| {
+            let within = |it: &&String| it.starts_with(folder) && *it != "crossing::allowances";
+            let named = |it: &String| words(&texts[it]).any(|word| word == name);
+            texts.keys().filter(within).any(named)
+        };
+        assert!(uses("lanes") || uses("dynamics"), "no lane takes {name} from the table");
+        let solver = uses("crossing::") || uses("model::") || uses("run::");
+        assert!(solver || name.starts_with("LANE_"), "the solver does not take {name}");
+        for (module, text) in &texts {
+            let declared = text.contains(&format!("const {name}:"));
+            let proves =
+                ["crossing", "lanes", "run", "model"].iter().any(|it| module.starts_with(it));
+            let elsewhere = module != "crossing::allowances" && proves;
+            assert!(!(declared && elsewhere), "{module} has its own {name}");
+        }
+    }
+}
+
+fn words(text: &str) -> impl Iterator<Item = &str> {
+    text.split(|c: char| !(c.is_alphanumeric() || c == '_'))
 }

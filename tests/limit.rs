@@ -1,7 +1,7 @@
 //! The work of a search has a limit, and contacts that die out next to a threshold are decided
 //! within it.
 
-use percuss::insides::crossing::guarded::SLACK;
+use percuss::insides::crossing::allowances::SLACK;
 use percuss::insides::crossing::limit::{GRANTED, LAST_ROOT, MOST};
 use percuss::{Counters, Endless, Exit, Model, Parameters, Phase, Segment, Start};
 

@@ -1,5 +1,6 @@
 //! The guards of a contact: the trial force rises to 1 (progression) or falls to 0 (separation).
 
+use crate::crossing::allowances::STEP_ROUNDINGS;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::crossing::contact_parts::{ContactParts, Shape};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
@@ -44,7 +45,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// no derivative.
     pub(super) fn free_eighth(&self, at: &Point<f64>, split: &Split) -> f64 {
         /// The recurrence rounds in each of its eight steps, and the sums here round as well.
-        const ROUNDINGS: f64 = 16.0;
+        const RECURRENCE: f64 = 16.0;
         /// The squares of two numbers whose sum is smaller may underflow.
         const SQUARABLE: f64 = 1e-140;
         let [[a, b], [c, d]] = self.constants.borrow().free_eighth;
@@ -52,7 +53,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         let [ax, br, cx, dr] = [a * x, b * rate, c * x, d * rate];
         let (eighth, ninth) = (ax + br, cx + dr);
         let terms = (ax.abs() + br.abs()) + (cx.abs() + dr.abs());
-        let room = ROUNDINGS * f64::EPSILON * terms;
+        let room = RECURRENCE * f64::EPSILON * terms;
         // The norm of two numbers without squares is at most their sum.
         let norm = if terms > SQUARABLE {
             (eighth * eighth + ninth * ninth).sqrt()
@@ -329,8 +330,6 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         right: &Point<f64>,
         (ends, room): (Ends, f64),
     ) -> Verdict {
-        /// Each step rounds its parts a few times.
-        const ROUNDINGS: f64 = 16.0;
         /// Under stronger damping the free part's derivatives would multiply its rounding.
         const MILD: f64 = 4.0;
         let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
@@ -339,7 +338,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         let length = right.elapsed - left.elapsed;
         if two_xi < MILD {
             let size = split.amplitude + x.abs() + x1.abs();
-            let stepped = slack + ROUNDINGS * f64::EPSILON * (size + b.abs());
+            let stepped = slack + STEP_ROUNDINGS * f64::EPSILON * (size + b.abs());
             let shape = self.shape(self.eighth(free), stepped);
             let right = (right.elapsed, &right.guard.orders);
             let swing = &steps.contact_piece;

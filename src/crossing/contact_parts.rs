@@ -4,6 +4,7 @@
 //! The force less b is a free oscillation and a forced one. A stride of the model's own length
 //! turns both by known factors, so that places around an evaluation need none of their own.
 
+use crate::crossing::allowances::{PIECES, REST};
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::flow::steps::ContactStep;
 use crate::numeric::real::Real;
@@ -118,9 +119,6 @@ impl ContactParts<f64> {
         shape: &Shape,
         swing: &ContactStep<f64>,
     ) -> bool {
-        const MOST_PIECES: usize = 8;
-        /// The last piece may be this much longer than a stride.
-        const REST: f64 = 1.3;
         let inside = |left: &[f64; 4], right: &[f64; 4], length: f64, ends: Ends| {
             let eighth = (-shape.eighth, shape.eighth);
             let piece = Piece { left: *left, right: *right, length, eighth };
@@ -132,7 +130,7 @@ impl ContactParts<f64> {
         };
         let (mut here, mut orders) = (*self, *orders);
         let mut left_ends = Ends { right: false, ..ends };
-        for _ in 0..MOST_PIECES {
+        for _ in 0..PIECES {
             let rest = right - here.elapsed;
             if rest < REST * swing.length {
                 let ends = Ends { right: ends.right, ..left_ends };

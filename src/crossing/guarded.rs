@@ -1,5 +1,6 @@
 //! What the search asks of a phase.
 
+use crate::crossing::allowances::SLACK;
 use crate::crossing::certificate::{Corridor, Ends, Verdict};
 use crate::crossing::series::{REACH, SHORT_REACH, Series};
 use crate::flow::steps::Steps;
@@ -81,9 +82,6 @@ pub trait Guarded: Flow<f64> {
     /// inverse.
     fn fastest_rate(&self) -> f64;
 }
-
-/// Four eps times the largest term: three roundings in the guard, one in the coefficients.
-pub const SLACK: f64 = 4.0 * f64::EPSILON;
 
 /// Rounding room of a piece: the guard's terms and those of its coefficients, and what underflows.
 #[inline]

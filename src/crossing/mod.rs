@@ -27,6 +27,7 @@
 //! [`stepping`] is the same question answered in the plainest way, by one-sided steps with a bound
 //! on the curvature. It is several times dearer and serves as the judge in the tests.
 
+pub mod allowances;
 #[cfg(test)]
 mod bounds_tests;
 pub mod certificate;

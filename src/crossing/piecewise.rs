@@ -11,6 +11,7 @@
 //! beginning; what is left is replaced by a line above it: by its tangent at the right end where it
 //! pulls inwards (it is concave then), else by its chord.
 
+use crate::crossing::allowances::REST;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
 use crate::flow::steps::{FreeStep, GRIP, PULLING, PUSHING, Steps};
 
@@ -140,9 +141,6 @@ struct Crests {
 
 /// Pieces after which the stretch is left to divisions.
 const MOST_PIECES: usize = 12;
-
-/// The last piece may be this much longer than a stride.
-const REST: f64 = 1.3;
 
 const BELOW_ZERO: Corridor = Corridor { low: f64::NEG_INFINITY, high: 0.0 };
 

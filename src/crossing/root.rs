@@ -1,7 +1,8 @@
 //! From a guess or a bracket to a root, with a closed-form evaluation a step and a series at the
 //! end.
 
-use crate::crossing::guarded::{Guarded, SLACK, slack};
+use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL, SLACK};
+use crate::crossing::guarded::{Guarded, slack};
 use crate::crossing::series::{SHORT_TERMS, Series, TERMS};
 use crate::crossing::{Counters, Root, Side};
 use crate::flow::Point;
@@ -30,7 +31,7 @@ fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> CubicStep {
     let over = if rises { above } else { below };
     let cubic = Cubic { over, slope, bend, third };
     let step = cubic.near_zero().unwrap_or_else(|| cubic.zero());
-    let room = SLACK * point.guard.largest_term + 1e-6 * over.abs();
+    let room = SLACK * point.guard.largest_term + RESIDUAL * over.abs();
     CubicStep { step, rises, settled: cubic.at(step).abs() <= room }
 }
 
@@ -67,10 +68,10 @@ impl Cubic {
     /// graze it only halves at first.
     #[cold]
     fn zero(&self) -> f64 {
-        const ATTEMPTS: usize = 40;
+        const STEPS: usize = 40;
         let Self { over, slope, bend, third } = *self;
         let mut step = -over / slope;
-        for _ in 0..ATTEMPTS {
+        for _ in 0..STEPS {
             let change = self.at(step) / (slope + step * (bend + step * 0.5 * third));
             step -= change;
             if change.abs() <= 1e-6 * step.abs() || change.is_nan() {
@@ -94,9 +95,8 @@ impl CubicStep {
     /// Whether the series reaches the root with all its digits, and the root is not so much closer
     /// to `left` than the point is that the point's rounding would show.
     fn is_short(&self, point: &Point<f64>, left: f64, reach: f64) -> bool {
-        const NEAR: f64 = 0.25;
         let root = point.elapsed + self.step;
-        self.settled && self.step.abs() <= reach && self.step.abs() <= NEAR * (root - left)
+        self.settled && self.step.abs() <= reach && self.step.abs() <= LONGEST_STEP * (root - left)
     }
 }
 
@@ -119,7 +119,6 @@ fn polished_by<G: Guarded, const N: usize>(
     cubic: &CubicStep,
     series: &Series<f64, N>,
 ) -> Option<Root> {
-    const ATTEMPTS: usize = 5;
     /// What Newton's last step may change the slope by: it is put right to fifth order, which
     /// leaves REACH^4/24 = 3e-8 of that, so that the force of an impact keeps its digits; the time
     /// is settled by twice as many.
@@ -192,7 +191,6 @@ pub fn follow<G: Guarded>(
     limit: f64,
     counters: &mut Counters,
 ) -> Result<Root, Point<f64>> {
-    const ATTEMPTS: usize = 5;
     let [_, reach] = phase.reaches();
     let mut point = evaluate(phase, guess, counters);
     let mut last_step = f64::INFINITY;

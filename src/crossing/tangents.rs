@@ -13,6 +13,7 @@
 //! times, q0 (exp(-z) - 1 + z) >= [`GRIP`] q0 z^2/2 outweighs the force, if GRIP q0 rate^2 exceeds
 //! the largest force. What neither serves is left to [`crate::crossing::piecewise`].
 
+use crate::crossing::allowances::STRETCHES;
 use crate::crossing::guarded::slack;
 use crate::flow::Point;
 use crate::flow::constants::Constants;
@@ -21,9 +22,6 @@ use crate::flow::steps::{GRIP, Steps, Turning};
 use crate::numeric::real::Real;
 use std::borrow::Borrow;
 use std::f64::consts::TAU;
-
-/// Stretches of negative force after which a flight is left to the other certificate.
-const MOST_STRETCHES: usize = 8;
 
 /// A concave function at one place.
 #[derive(Clone, Copy)]
@@ -146,7 +144,7 @@ pub fn stays_below<C: Borrow<Constants<f64>>>(
     // The stretch of negative force that the flight begins in, or the first one after that.
     let late = flight.angle.radians > TAU - angle;
     let mut begins = (angle - flight.angle.radians) / omega + if late { period } else { 0.0 };
-    for _ in 0..MOST_STRETCHES {
+    for _ in 0..STRETCHES {
         let ends = begins + length;
         if ends >= root.elapsed {
             return true;

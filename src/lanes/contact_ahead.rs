@@ -12,15 +12,10 @@ use super::root::Care;
 use super::shape::Shape;
 use super::swing::{LaneParts, Swings, each};
 use super::wide::{Mask, Wide};
+use crate::crossing::allowances::{LANE_FINE_PIECES, PIECES, REST, SLACK};
 use crate::numeric::real::Real;
 use pulp::Simd;
 
-/// Pieces of a certificate, after which a lane is left to the scalar solver,
-const PIECES: usize = 8;
-/// the same with great care,
-const FINE_PIECES: usize = 16;
-/// and how much longer than a stride the last one may be.
-const REST: f64 = 1.3;
 /// Steps of a guess, after which a lane is left to the scalar solver.
 const STRIDES: usize = 24;
 
@@ -86,7 +81,7 @@ impl<S: Simd> Contact<'_, S> {
         let slack = self.slack(&here, terms);
         let (mut swings, pieces) = match care {
             Care::Usual => (Swings::of_pieces(self.shape, self.forms), PIECES),
-            Care::Great => (Swings::of_guess(self.shape, self.forms), FINE_PIECES),
+            Care::Great => (Swings::of_guess(self.shape, self.forms), LANE_FINE_PIECES),
         };
         let mut left = first;
         // The start's own value does not count where it is a threshold by the switch that began the
@@ -118,11 +113,11 @@ impl<S: Simd> Contact<'_, S> {
         fine & !open
     }
 
-    /// Rounding room: four eps of the guard's terms, and what the strides round.
+    /// Rounding room: that of the guard's terms, and what the steps round.
     #[inline(always)]
     fn slack(&self, parts: &LaneParts<S>, terms: Wide<S>) -> Wide<S> {
         let size = parts.size() + self.shape.pulls;
-        (terms.larger(self.offset.magnitude()) + 1.0) * (4.0 * f64::EPSILON)
+        (terms.larger(self.offset.magnitude()) + 1.0) * SLACK
             + size * (self.shape.roundings * f64::EPSILON)
     }
 }

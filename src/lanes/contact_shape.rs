@@ -2,6 +2,7 @@
 
 use super::shape::Shape;
 use super::wide::Wide;
+use crate::crossing::allowances::STEP_ROUNDINGS;
 use crate::flow::constants::Constants;
 use crate::flow::damped::Damping;
 use crate::flow::forced::Forced;
@@ -31,9 +32,6 @@ const SWING: f64 = 0.8;
 /// The length of a certificate's pieces, radians of the faster of forcing and free oscillation: the
 /// interpolant errs by 2^8/2822400 = 1e-4 of the amplitude.
 const PIECE: f64 = 2.0;
-
-/// Each step rounds its parts a few times.
-const ROUNDINGS: f64 = 16.0;
 
 /// The first stride is at least this much of all others: each doubling doubles what it has rounded
 /// off.
@@ -98,8 +96,8 @@ impl Shape<f64> {
         // Clearly above critical damping the exponentials come from the whole force at the start,
         // and after n doublings the strides have lost less than 2^(n + 2) eps.
         let (roundings, pulls) = match damping {
-            Damping::Over { .. } => (ROUNDINGS + 4.0 / pace.early, b.abs() + a),
-            _ => (ROUNDINGS, b.abs()),
+            Damping::Over { .. } => (STEP_ROUNDINGS + 4.0 / pace.early, b.abs() + a),
+            _ => (STEP_ROUNDINGS, b.abs()),
         };
         Self {
             steady: steady.orders([1.0, 0.0, 0.0])[0],

@@ -15,7 +15,7 @@ use super::root::{Care, Found, Phase, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
-use crate::crossing::guarded::SLACK;
+use crate::crossing::allowances::{LANE_TIE, SLACK, STRETCHES};
 use crate::crossing::series::{Push, REACH, short_decay};
 use crate::crossing::tangents::{Bound, Ended, Tangent};
 use crate::flow::forcing::Harmonic;
@@ -65,13 +65,6 @@ pub struct Impact<S: Simd> {
 
 /// Decay times after which an exponential is less than 1e-19 of what it was.
 const DEAD: f64 = 45.0;
-/// Certified stretches in which the force is negative, after which a lane is left to the scalar
-/// solver.
-const STRETCHES: usize = 6;
-/// Nearer to a threshold than this, in units of the largest term, the scalar solver decides: it
-/// takes 4 eps.
-pub const TIE: f64 = 64.0 * f64::EPSILON;
-
 impl<S: Simd> Phase<S> for Flight<'_, S> {
     type At = Aloft<S>;
 
@@ -139,8 +132,8 @@ impl<S: Simd> Flight<'_, S> {
         let (y, q) = (at.y + b.times_plus(step, push.impulse), at.q + lost);
         let f = two_xi * slope;
         let largest = (two_xi * y).magnitude().larger(q.magnitude());
-        let clear = (largest * TIE).less(f)
-            & (largest.larger(y.same(1.0)) * TIE).less((f - 1.0).magnitude());
+        let clear = (largest * LANE_TIE).less(f)
+            & (largest.larger(y.same(1.0)) * LANE_TIE).less((f - 1.0).magnitude());
         let root = elapsed + step;
         let certified = match care {
             Care::Usual => self.stays_below(root, q, care),
@@ -259,7 +252,7 @@ impl<S: Simd> Flight<'_, S> {
         let terms = (a + b.magnitude()) * root * root + self.q * (rate * root + 1.0);
         let short = (root * rate).below(LIFE) & (root * omega).below(ANGLE);
         let lowest = zero.same(f64::NEG_INFINITY);
-        short & piece.stays_between(lowest, zero, terms * (4.0 * f64::EPSILON))
+        short & piece.stays_between(lowest, zero, terms * SLACK)
     }
 
     /// The lanes in which h is negative from the start to the root, at which the slider's top is

@@ -5,6 +5,11 @@
 //! only where a certificate proves it to be the first; the scalar solver takes every phase for
 //! which that fails, which comes near a tie or a graze, or which begins away from the slider.
 //!
+//! Closed forms, series, tangents, certificates and inequalities are the scalar solver's own text,
+//! written over [`crate::numeric::real::Real`], and so is what they allow for rounding
+//! ([`crate::crossing::allowances`]). The functions, the guesses and the order of the steps are of
+//! their own.
+//!
 //! Every operation is one of IEEE 754 in each lane by itself, and products and sums are fused where
 //! they are written so, on every instruction set: a motion's bits depend neither on its neighbours
 //! nor on the width of the vectors. The scalar solver, which fuses nothing, differs in the last

@@ -2,6 +2,7 @@
 
 use super::series::LATER;
 use super::wide::{Mask, Wide};
+use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL};
 use crate::crossing::series::{Series, TERMS};
 use crate::numeric::real::Real;
 use pulp::Simd;
@@ -51,16 +52,8 @@ pub struct Found<S: Simd, A> {
     pub fine: Mask<S>,
 }
 
-/// What may be left of an excess where its cubic is zero: the series puts it right,
-const RESIDUAL: f64 = 1e-6;
-/// and where it is zero itself.
+/// What may be left of an excess that is zero itself.
 const TINY: f64 = 1e-300;
-
-/// The longest step against the time of the root.
-const NEAR: f64 = 0.25;
-
-/// Evaluations after which a lane is left to the scalar solver.
-const ATTEMPTS: usize = 5;
 
 /// Follows guesses.
 #[inline(always)]
@@ -78,7 +71,7 @@ pub fn find<S: Simd, P: Phase<S>>(phase: &P, guess: Wide<S>, guessed: Mask<S>) -
         // Next to a crest that misses, Newton's method may stop anywhere.
         let settled = cubic(excess, step).magnitude().less(excess[0].magnitude() * RESIDUAL + TINY);
         // So much nearer to the start than the evaluation its rounding would show.
-        let far = step.magnitude().less(next * NEAR);
+        let far = step.magnitude().less(next * LONGEST_STEP);
         let short = phase.is_short(elapsed, step) & settled & far;
         if attempt == ATTEMPTS || !(alive & !short).any() {
             let series = Series::of_orders(excess, phase.later(&at));

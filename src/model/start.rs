@@ -1,10 +1,11 @@
 //! Start states as users give them, and the phase in which they begin.
 
+use crate::crossing::allowances::FOUR_ULPS;
 use crate::error::InputError;
 use crate::model::Model;
 use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
-use crate::model::surface::{self, FOUR_ULPS};
+use crate::model::surface;
 use crate::numeric::two_word::TwoWord;
 use crate::parameters::within;
 use crate::phase::Phase;

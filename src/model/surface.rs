@@ -4,12 +4,10 @@
 //! the contact sees it f' = 2 xi (F - f) + y, f'' = 2 xi (F' - f') + F - f; the other phases'
 //! guards have these derivatives divided by 2 xi, so the two sides cannot contradict each other.
 
+use crate::crossing::allowances::FOUR_ULPS;
 use crate::flow::constants::Constants;
 use crate::model::entry::ModeEntry;
 use crate::state::State;
-
-/// A sum within this of its largest term counts as zero: four units in the last place.
-pub(crate) const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
 
 /// The state with its force imposed where it lies on a threshold, and the phase that begins.
 ///

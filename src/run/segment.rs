@@ -1,5 +1,6 @@
 //! One phase of a run: where it begins, how long it lasts, and anything inside it on demand.
 
+use crate::crossing::allowances::FOUR_ULPS;
 use crate::crossing::stepping;
 use crate::crossing::{Counters, Crossing};
 use crate::flow::constants::Constants;
@@ -9,7 +10,7 @@ use crate::flow::progression::Progression;
 use crate::flow::{Flow, Point};
 use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
-use crate::model::surface::{self, FOUR_ULPS};
+use crate::model::surface;
 use crate::model::{Model, Motion};
 use crate::numeric::two_word::TwoWord;
 use crate::phase::Phase;

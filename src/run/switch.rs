@@ -364,7 +364,7 @@ impl Landing for Progression<f64, &Constants<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::crossing::guarded::SLACK;
+    use crate::crossing::allowances::SLACK;
     use crate::flow::Flow;
     use crate::model::start::Start;
     use crate::parameters::Parameters;

@@ -2,11 +2,12 @@
 
 use super::cursor::Cursor;
 use super::{Tally, Watcher};
+use crate::crossing::allowances::FOUR_ULPS;
 use crate::lanes::{Begin, Column, End, Shape, Stage};
 use crate::model::Model;
 use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
-use crate::model::surface::{self, FOUR_ULPS};
+use crate::model::surface;
 use crate::numeric::two_word::TwoWord;
 use crate::state::State;
 use std::ops::ControlFlow;

@@ -1,0 +1,42 @@
+//! What a search allows itself, in rounding and in work: one table for the solver and the lanes.
+//!
+//! Where lanes are stricter their row stands beside the solver's, with its reason: what no lane
+//! proves is left to the scalar solver, so that a stricter row costs time and no event.
+
+/// Rounding room of a guard, in its largest term: three roundings in the guard, one in the
+/// coefficients of its certificate.
+pub const SLACK: f64 = 4.0 * f64::EPSILON;
+
+/// A sum within this of its largest term counts as zero, four units in the last place: so a trial
+/// force, or a gap, that near to a threshold is taken to be on it.
+pub const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
+
+/// A trial force in lanes this near to a threshold is left to the scalar solver: it is rounded in
+/// another order, and the decision is not to depend on that.
+pub const LANE_TIE: f64 = 16.0 * FOUR_ULPS;
+
+/// What each step of a contact that is followed in steps may round off, in eps of its parts.
+pub const STEP_ROUNDINGS: f64 = 16.0;
+
+/// How much longer than a step the last one may be.
+pub const REST: f64 = 1.3;
+
+/// Pieces in which a contact is certified before its search divides it.
+pub const PIECES: usize = 8;
+
+/// The same of the shorter pieces that lanes take where these do not prove a contact: the solver
+/// divides there.
+pub const LANE_FINE_PIECES: usize = 16;
+
+/// Stretches of negative force in which a flight is certified by tangents.
+pub const STRETCHES: usize = 8;
+
+/// Evaluations in which a guess has to lead to a root.
+pub const ATTEMPTS: usize = 5;
+
+/// The longest step from an evaluation to a root, against the time of the root: over a longer one
+/// the rounding of the evaluation would show.
+pub const LONGEST_STEP: f64 = 0.25;
+
+/// What may be left of an excess where its cubic is zero: the series puts it right.
+pub const RESIDUAL: f64 = 1e-6;
