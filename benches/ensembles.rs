@@ -7,7 +7,7 @@
 
 #![allow(clippy::expect_used, reason = "a panic is a failed bench")]
 
-use percuss::dynamics::ensemble::{Motion, Watcher, follow_by};
+use percuss::dynamics::ensemble::{Member, Watcher, follow_by};
 use percuss::dynamics::section::section;
 use percuss::lanes::Instructions;
 use percuss::{Endless, Entry, Model, Parameters, Start};
@@ -72,7 +72,7 @@ impl Ensemble {
             let entry = self.starts[number];
             let watcher = Count { left: PERIODS, switches: 0 };
             let first = entry.instant.after_periods(1, 1);
-            Motion { model: &self.model, entry, first, horizon: None, watcher }
+            Member { model: &self.model, entry, first, horizon: None, watcher }
         });
         counts.iter().map(|count| count.switches).sum()
     }

@@ -1,11 +1,11 @@
 //! Attractors and basins: the paper's cases, and what must hold of any labelling.
 
 use percuss::dynamics::attractor::{
-    Attractor, AttractorCatalog, Basins, Grid, Kind, Label, Window,
+    Attractor, AttractorCatalog, AttractorKind, Basins, Grid, Label, Window,
 };
 use percuss::dynamics::lyapunov::Spectrum;
 use percuss::dynamics::section::Section;
-use percuss::dynamics::strobe::{Point, StrobeMap};
+use percuss::dynamics::strobe::{StrobeMap, StrobePoint};
 use percuss::{Instant, Model, Parameters};
 
 /// Holds every attractor of the paper's Fig. 7.
@@ -24,11 +24,11 @@ fn survey(map: &StrobeMap, columns: u32, rows: u32) -> Basins {
     Basins::of(map, &Grid { window: WINDOW, columns, rows, q: 0.0 }, 400, &|_| {})
 }
 
-fn kinds(basins: &Basins) -> Vec<(Kind, Option<u32>)> {
+fn kinds(basins: &Basins) -> Vec<(AttractorKind, Option<u32>)> {
     basins.attractors.iter().map(|it| (it.kind, it.period())).collect()
 }
 
-fn after(map: &StrobeMap, start: Point, periods: u64) -> Point {
+fn after(map: &StrobeMap, start: StrobePoint, periods: u64) -> StrobePoint {
     let entry = map.entry(start).unwrap();
     let first = entry.instant.after_periods(periods, 1);
     Section::along(map.model().trajectory(entry), first).next().unwrap().point()
@@ -38,8 +38,8 @@ fn after(map: &StrobeMap, start: Point, periods: u64) -> Point {
 /// smaller one is a stable orbit of period 24, whose strobes repeat from period to period 24.
 #[test]
 fn the_attractors_of_fig_7() {
-    let orbit = |period| (Kind::Periodic, Some(period));
-    let chaos = (Kind::Chaotic, None);
+    let orbit = |period| (AttractorKind::Periodic, Some(period));
+    let chaos = (AttractorKind::Chaotic, None);
     let expected = [
         (1.4, vec![orbit(4), chaos]),
         (1.45, vec![orbit(4), orbit(12), chaos]),
@@ -151,7 +151,7 @@ fn regimes_beyond_the_papers() {
     let paper = Parameters::default();
     let rests = Parameters { a: 0.05, b: 0.5, xi: 0.1, omega: 0.7, ..paper };
     let basins = survey(&map_at(rests, 0), 9, 9);
-    assert_eq!(kinds(&basins), [(Kind::Periodic, Some(1))]);
+    assert_eq!(kinds(&basins), [(AttractorKind::Periodic, Some(1))]);
     let decay = -0.1 * std::f64::consts::TAU / 0.7;
     assert!((basins.attractors[0].lyapunov_per_period - decay).abs() < 1e-9);
     for b in [-0.1, 1.5] {
@@ -161,7 +161,7 @@ fn regimes_beyond_the_papers() {
     }
     // The orbit of Table 1: period two, with drift.
     let table1 = survey(&map_at(Parameters { omega: 0.1, ..paper }, 0), 9, 9);
-    assert_eq!(kinds(&table1), [(Kind::Periodic, Some(2))]);
+    assert_eq!(kinds(&table1), [(AttractorKind::Periodic, Some(2))]);
     assert!((table1.attractors[0].drift_per_period - 13.910_576).abs() < 1e-5);
 }
 
@@ -170,7 +170,10 @@ fn regimes_beyond_the_papers() {
 #[test]
 fn what_cannot_be_told_is_unresolved() {
     let basins = survey(&fig7(1.57), 20, 20);
-    assert_eq!(kinds(&basins), [(Kind::Periodic, Some(4)), (Kind::Chaotic, None)]);
+    assert_eq!(
+        kinds(&basins),
+        [(AttractorKind::Periodic, Some(4)), (AttractorKind::Chaotic, None)]
+    );
     let unresolved = basins.fraction(Label::Unresolved);
     assert!(unresolved > 0.01 && unresolved < 0.1, "{unresolved}");
 }

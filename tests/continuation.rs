@@ -2,11 +2,11 @@
 //! and theory.
 
 use percuss::dynamics::continuation::{
-    Bifurcation, Branch, Criticality, Doubling, Ending, Family, Kind,
+    Bifurcation, BifurcationKind, Branch, BranchEnding, Criticality, Doubling, Family,
 };
 use percuss::dynamics::linear::modulus;
 use percuss::dynamics::orbit::{Orbit, scan};
-use percuss::dynamics::strobe::{Point, StrobeMap};
+use percuss::dynamics::strobe::{StrobeMap, StrobePoint};
 use percuss::{Instant, Parameter, Parameters};
 
 fn family(angle: f64) -> Family {
@@ -26,7 +26,7 @@ fn follow(family: &Family, period: u32, from: f64, to: f64) -> Branch {
     Branch::follow(family, guess, period, from, to, &mut |_| {}).unwrap()
 }
 
-fn only(branch: &Branch, kind: Kind) -> &Bifurcation {
+fn only(branch: &Branch, kind: BifurcationKind) -> &Bifurcation {
     let mut found = branch.bifurcations.iter().filter(|it| it.kind == kind);
     let first = found.next().unwrap();
     assert!(found.next().is_none(), "{:?}", branch.bifurcations);
@@ -34,7 +34,7 @@ fn only(branch: &Branch, kind: Kind) -> &Bifurcation {
 }
 
 /// After how many forcing periods, at most 64, the motion that has settled from a point closes.
-fn settled_period(map: &StrobeMap, start: Point, periods: u64) -> Option<usize> {
+fn settled_period(map: &StrobeMap, start: StrobePoint, periods: u64) -> Option<usize> {
     let entry = map.entry(start).unwrap();
     let last: Vec<_> =
         map.strobes(entry, periods + 64).skip(periods as usize).map(|it| it.point()).collect();
@@ -43,7 +43,7 @@ fn settled_period(map: &StrobeMap, start: Point, periods: u64) -> Option<usize> 
 
 /// The stable one of the two orbits next to a fold: Newton's method goes from there to either, and
 /// the other one lies as far on the other side.
-fn stable_beside(map: &StrobeMap, fold: Point, period: u32) -> Orbit {
+fn stable_beside(map: &StrobeMap, fold: StrobePoint, period: u32) -> Orbit {
     let found = Orbit::find(map, fold, period).unwrap();
     if found.is_stable() {
         return found;
@@ -62,8 +62,8 @@ fn period_four_ends_in_a_fold_and_runs_agree_on_both_sides() {
     let family = family(0.0);
     let branch = follow(&family, 4, 1.56, 1.6);
     // It comes back unstable.
-    assert_eq!(branch.ending, Ending::Left);
-    let fold = only(&branch, Kind::Fold);
+    assert_eq!(branch.ending, BranchEnding::Left);
+    let fold = only(&branch, BifurcationKind::Fold);
     assert_sharp(fold);
     let leading = fold.orbit.multipliers[0];
     // The multiplier is one to the root of what the parameter's value is off by.
@@ -89,7 +89,7 @@ fn period_six_doubles_supercritically_and_runs_agree_on_both_sides() {
     let family = family(0.0);
     let branch = follow(&family, 6, 1.6, 1.56);
     assert!(branch.is_complete());
-    let flip = only(&branch, Kind::Flip);
+    let flip = only(&branch, BifurcationKind::Flip);
     assert_sharp(flip);
     let doubling = Doubling::of(&family, flip, 1.6, 1.56, &mut |_| {}).unwrap();
     assert_eq!(doubling.criticality, Criticality::Supercritical);
@@ -106,25 +106,28 @@ fn period_six_is_born_at_the_flip_of_period_three_from_either_side() {
     let family = family(0.0);
     let six = follow(&family, 6, 1.6, 1.7);
     let three = follow(&family, 3, 1.7, 1.6);
-    let flip = only(&three, Kind::Flip);
+    let flip = only(&three, BifurcationKind::Flip);
     assert_sharp(flip);
-    let Ending::Halved { value } = six.ending else { panic!("{:?}", six.ending) };
-    let merged = only(&six, Kind::Flip);
+    let BranchEnding::Halved { value } = six.ending else { panic!("{:?}", six.ending) };
+    let merged = only(&six, BifurcationKind::Flip);
     assert!((value - flip.value).abs() <= flip.error + merged.error, "{value} {flip:?}");
     let doubling = Doubling::of(&family, flip, 1.7, 1.6, &mut |_| {}).unwrap();
     assert_eq!(doubling.criticality, Criticality::Supercritical);
     let last = doubling.branch.points.last().unwrap();
     let direct = &six.points[0];
     assert_eq!((last.value, direct.value), (1.6, 1.6));
-    let near = |a: &Point, b: &Point| (0..3).all(|i| (a[i] - b[i]).abs() <= 1e-12);
+    let near = |a: &StrobePoint, b: &StrobePoint| (0..3).all(|i| (a[i] - b[i]).abs() <= 1e-12);
     assert!(last.orbit.points.iter().any(|it| near(it, &direct.orbit.points[0])));
 }
 
 /// The values do not depend on where the orbits are looked at, within their errors.
 #[test]
 fn another_section_finds_the_same_values() {
-    let wanted =
-        [(4, 1.56, 1.6, Kind::Fold), (6, 1.6, 1.56, Kind::Flip), (5, 1.6, 1.59, Kind::Flip)];
+    let wanted = [
+        (4, 1.56, 1.6, BifurcationKind::Fold),
+        (6, 1.6, 1.56, BifurcationKind::Flip),
+        (5, 1.6, 1.59, BifurcationKind::Flip),
+    ];
     for (period, from, to, kind) in wanted {
         let found = [0.0, 1.3, 2.9, 4.4].map(|angle| {
             let branch = follow(&family(angle), period, from, to);
@@ -162,7 +165,11 @@ fn at_a_graze_a_branch_may_turn_back_with_other_multipliers() {
     };
     let (family, branch) = corner(parameters, Parameter::A, 0.5 * parameters.a, 1);
     assert!(branch.is_complete(), "{}", branch.ending);
-    let turn = branch.bifurcations.iter().find(|it| it.kind == Kind::Grazing && it.turns).unwrap();
+    let turn = branch
+        .bifurcations
+        .iter()
+        .find(|it| it.kind == BifurcationKind::Grazing && it.turns)
+        .unwrap();
     assert_sharp(turn);
     let beyond = turn.beyond.as_ref().unwrap();
     // No multiplier has passed one: it has leapt from one side of it to the other.
@@ -208,7 +215,7 @@ fn there_and_back_again() {
     let back = Branch::follow(&family, last.orbit.points[0], 5, 1.5, 1.6, &mut |_| {}).unwrap();
     let (a, b) = (&there.points[0].orbit.points[0], &back.points.last().unwrap().orbit.points[0]);
     assert!((0..3).all(|i| (a[i] - b[i]).abs() <= 1e-13), "{a:?} {b:?}");
-    let (a, b) = (only(&there, Kind::Flip), only(&back, Kind::Flip));
+    let (a, b) = (only(&there, BifurcationKind::Flip), only(&back, BifurcationKind::Flip));
     assert!((a.value - b.value).abs() <= a.error + b.error, "{a:?} {b:?}");
 }
 
@@ -224,6 +231,6 @@ fn an_interval_of_no_length_is_its_orbit() {
 fn a_branch_without_end_says_where_it_was_lost() {
     let parameters = Parameters { xi: 0.1, omega: 0.9, a: 0.1, b: 0.5, ..Parameters::default() };
     let (_, branch) = corner(parameters, Parameter::B, 1.2, 1);
-    let Ending::Lost { value } = branch.ending else { panic!("{}", branch.ending) };
+    let BranchEnding::Lost { value } = branch.ending else { panic!("{}", branch.ending) };
     assert!((value - 1.0).abs() <= 1e-6, "{value}");
 }

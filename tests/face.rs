@@ -92,8 +92,8 @@ fn names_are_read_back() {
     let unknown = "zeta".parse::<Parameter>().unwrap_err().to_string();
     assert_eq!(unknown, "\"zeta\" is no parameter: accepted are a, b, xi, omega, g, phi");
     assert_eq!(format!("{:>14}|", Endless::NeverStops), "   never stops|");
-    assert_eq!(attractor::Kind::QuasiPeriodic.to_string(), "quasi-periodic");
-    assert_eq!(continuation::Kind::NeimarkSacker.to_string(), "neimark-sacker");
+    assert_eq!(attractor::AttractorKind::QuasiPeriodic.to_string(), "quasi-periodic");
+    assert_eq!(continuation::BifurcationKind::NeimarkSacker.to_string(), "neimark-sacker");
 }
 
 #[cfg(feature = "serde")]

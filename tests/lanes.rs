@@ -3,7 +3,7 @@
 //! A phase is begun by both from the same entry, so that errors do not add up: their results differ
 //! by what both round in one phase, in units of eps (1 + |value|) x growth.
 
-use percuss::dynamics::ensemble::{Motion, Tally, Watcher, follow_by};
+use percuss::dynamics::ensemble::{Member, Tally, Watcher, follow_by};
 use percuss::lanes::Instructions;
 use percuss::{Endless, Entry, Exit, Growth, GrowthRecorder, Instant, Model, Parameters, Start};
 use proptest::prelude::*;
@@ -43,7 +43,7 @@ fn diaries(by: Instructions, motions: &[(Model, Entry)], wanted: usize) -> (Vec<
         let first = entry.instant.first_at_angle(1.0);
         let horizon = first.after_periods(wanted as u64, 1);
         let watcher = Diary { phases: vec![*entry], wanted, ..Diary::default() };
-        Motion { model, entry: *entry, first, horizon: Some(horizon), watcher }
+        Member { model, entry: *entry, first, horizon: Some(horizon), watcher }
     })
 }
 
@@ -333,7 +333,7 @@ fn long_flights_are_those_of_the_scalar_solver() {
             let Exit::Switch(landing) = flight.exit() else { unreachable!("it lands") };
             let first = landing.instant.after_periods(3, 1);
             let watcher = Diary { phases: vec![entry], wanted: 1, ..Diary::default() };
-            Motion { model: &model, entry, first, horizon: Some(first), watcher }
+            Member { model: &model, entry, first, horizon: Some(first), watcher }
         });
         for diary in diaries {
             assert!(diary.phases.len() > 1);
@@ -382,7 +382,7 @@ fn motions_without_end_are_seen_to_be_so() {
             let start = Start { p: -0.1 * number as f64, ..Start::default() };
             let entry = model.start(&start).expect("a start");
             let first: Instant = entry.instant;
-            Motion { model: &model, entry, first, horizon: None, watcher: Until(None, 0) }
+            Member { model: &model, entry, first, horizon: None, watcher: Until(None, 0) }
         });
         for Until(endless, strobes) in seen {
             assert_eq!((endless, strobes), (Some(Endless::RestsForEver), 50), "{}", set.name());

@@ -5,7 +5,7 @@
 //! refuses.
 
 use percuss::insides::Constants;
-use percuss::insides::crossing::certificate::{Ends, Verdict};
+use percuss::insides::crossing::certificate::{Ends, Proof};
 use percuss::insides::crossing::guarded::Guarded;
 use percuss::insides::flow::forcing::EntryAngle;
 use percuss::insides::flow::no_contact::NoContact;
@@ -54,7 +54,7 @@ fn ask<G: Guarded>(phase: &G, steps: &Steps, until: f64, about: &impl std::fmt::
     for root in &roots {
         let ends = Ends { right: true, ..phase.imposed() };
         let verdict = phase.certify(steps, &phase.entry(), &phase.at(*root), ends);
-        assert_ne!(verdict, Verdict::Inside, "{about:?}: {root:e} is not the first crossing");
+        assert_ne!(verdict, Proof::Inside, "{about:?}: {root:e} is not the first crossing");
     }
     roots.len()
 }

@@ -2,7 +2,7 @@
 
 use percuss::dynamics::linear::{eigenvalues, modulus};
 use percuss::dynamics::orbit::{LARGEST_PERIOD, Orbit, Reason, scan};
-use percuss::dynamics::strobe::{Jacobian, Point, StrobeMap};
+use percuss::dynamics::strobe::{Jacobian, StrobeMap, StrobePoint};
 use percuss::{Instant, Model, Parameters, Phase};
 use std::sync::OnceLock;
 
@@ -19,11 +19,11 @@ fn map(xi: f64, omega: f64) -> StrobeMap {
     map_of(Parameters { xi, omega, ..Parameters::default() }, 0.0)
 }
 
-fn image(map: &StrobeMap, point: Point, periods: u64) -> Point {
+fn image(map: &StrobeMap, point: StrobePoint, periods: u64) -> StrobePoint {
     map.passage(&map.entry(point).unwrap(), periods).point()
 }
 
-fn apart(a: Point, b: Point) -> f64 {
+fn apart(a: StrobePoint, b: StrobePoint) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs() / (1.0 + b.abs())).fold(0.0, f64::max)
 }
 
@@ -94,7 +94,7 @@ fn multipliers_are_those_of_differences_and_contract() {
             // Areas contract where the slider comes to rest between contacts, as it does here.
             let area = first[0] * second[0] - first[1] * second[1];
             assert!(area.abs() < 1.0, "{orbit:?}");
-            let in_flight = |it: &Point| map.entry(*it).unwrap().phase() == Phase::NoContact;
+            let in_flight = |it: &StrobePoint| map.entry(*it).unwrap().phase() == Phase::NoContact;
             // Where all sides of a strobe are in the section; growth spoils the differences of
             // others.
             let Some(point) = orbit.points.iter().find(|it| in_flight(it)) else { continue };

@@ -54,7 +54,7 @@ pub struct Piece {
 
 /// What a certificate says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Verdict {
+pub enum Proof {
     /// Proved: inside.
     Inside,
     /// Inside but for a touch that is smaller than the rounding error.
@@ -82,7 +82,7 @@ impl Ends {
 impl Piece {
     /// Checks all Bernstein coefficients against the corridor, with `slack` for rounding.
     #[inline]
-    pub fn verdict(&self, corridor: &Corridor, ends: Ends, slack: f64) -> Verdict {
+    pub fn verdict(&self, corridor: &Corridor, ends: Ends, slack: f64) -> Proof {
         let (pairs, middle) = self.coefficients();
         let mut excesses = pairs.map(|pair| pair.map(|coefficient| corridor.excess(coefficient)));
         let (lowest, highest) = self.bounds(middle);
@@ -105,11 +105,11 @@ impl Piece {
         let slack = slack + f64::EPSILON * size;
         // The middle coefficient holds all orders of both ends: any NaN is one there.
         if worst < -slack && !middle.is_nan() {
-            Verdict::Inside
+            Proof::Inside
         } else if worst <= slack && !middle.is_nan() {
-            Verdict::Touches
+            Proof::Touches
         } else {
-            Verdict::Open
+            Proof::Open
         }
     }
 

@@ -1,8 +1,8 @@
 //! The guards of a contact: the trial force rises to 1 (progression) or falls to 0 (separation).
 
 use crate::crossing::allowances::STEP_ROUNDINGS;
-use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
-use crate::crossing::contact_parts::{ContactParts, Shape};
+use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
+use crate::crossing::contact_parts::{ContactParts, ContactShape};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::series::{Push, SHORT_REACH, Series};
 use crate::crossing::slow_envelope::quick_decay;
@@ -107,13 +107,13 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     /// A touch in a piece whose room is wide is none yet: the piece is divided first, unless the
     /// guard is within rounding of its threshold at both ends, where shorter pieces touch as well.
     #[inline(always)]
-    fn near(&self, verdict: Verdict, room: f64, ends: [&Point<f64>; 2]) -> Verdict {
-        if verdict != Verdict::Touches || room == 0.0 {
+    fn near(&self, verdict: Proof, room: f64, ends: [&Point<f64>; 2]) -> Proof {
+        if verdict != Proof::Touches || room == 0.0 {
             return verdict;
         }
         let corridor = self.corridor();
         let on_it = |at: &Point<f64>| corridor.excess(at.guard.orders[0]) >= -slack(self, at, at);
-        if ends.into_iter().all(on_it) { verdict } else { Verdict::Open }
+        if ends.into_iter().all(on_it) { verdict } else { Proof::Open }
     }
 
     /// A bound of the size of the trial force's eighth derivative, from that of its free part.
@@ -169,9 +169,16 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     }
 
     /// What the parts have in common.
-    pub(super) fn shape(&self, eighth: f64, slack: f64) -> Shape {
+    pub(super) fn shape(&self, eighth: f64, slack: f64) -> ContactShape {
         let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
-        Shape { level: b - self.reference, two_xi, omega, corridor: self.corridor(), eighth, slack }
+        ContactShape {
+            level: b - self.reference,
+            two_xi,
+            omega,
+            corridor: self.corridor(),
+            eighth,
+            slack,
+        }
     }
 }
 
@@ -209,7 +216,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         self.rests_by_rounding()
     }
 
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
+    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof {
         let corridor = self.corridor();
         let room = self.room_of_length(left, right);
         let slack = slack(self, left, right) + room;
@@ -224,12 +231,12 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
             eighth: (-eighth, eighth),
         };
         let verdict = self.near(whole.verdict(&corridor, ends, slack), room, [left, right]);
-        if verdict != Verdict::Open {
+        if verdict != Proof::Open {
             return verdict;
         }
         if length * self.constants.borrow().omega.max(1.0) < SHORT {
             let inside = whole.stays_inside_in_parts(&corridor, ends, slack);
-            return if inside { Verdict::Inside } else { verdict };
+            return if inside { Proof::Inside } else { verdict };
         }
         self.certify_long(steps, (left, &split, free), right, (ends, room))
     }
@@ -329,7 +336,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         (left, split, free): (&Point<f64>, &Split, f64),
         right: &Point<f64>,
         (ends, room): (Ends, f64),
-    ) -> Verdict {
+    ) -> Proof {
         /// Under stronger damping the free part's derivatives would multiply its rounding.
         const MILD: f64 = 4.0;
         let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
@@ -344,11 +351,11 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             let swing = &steps.contact_piece;
             let parts = self.parts(left, split);
             if parts.stays_inside(&left.guard.orders, right, ends, &shape, swing) {
-                return Verdict::Inside;
+                return Proof::Inside;
             }
         }
         if length * omega < 2.0 {
-            return Verdict::Open;
+            return Proof::Open;
         }
         let level = b - self.reference;
         let [z, z1, z2, z3] = self.split(right).free;

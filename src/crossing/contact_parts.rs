@@ -5,7 +5,7 @@
 //! turns both by known factors, so that places around an evaluation need none of their own.
 
 use crate::crossing::allowances::{PIECES, REST};
-use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
+use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
 use crate::flow::steps::ContactStep;
 use crate::numeric::real::Real;
 
@@ -61,7 +61,7 @@ impl<T: Real> ContactParts<T> {
 
 /// What the parts have in common at all places.
 #[derive(Clone, Copy, Debug)]
-pub struct Shape {
+pub struct ContactShape {
     /// b less the guard's reference.
     pub level: f64,
     /// 2 xi
@@ -77,11 +77,11 @@ pub struct Shape {
 }
 
 impl ContactParts<f64> {
-    fn guard(&self, shape: &Shape) -> [f64; 4] {
+    fn guard(&self, shape: &ContactShape) -> [f64; 4] {
         self.orders(shape.level, shape.omega, self.free_orders(shape.two_xi))
     }
 
-    fn value_and_rate(&self, shape: &Shape) -> (f64, f64) {
+    fn value_and_rate(&self, shape: &ContactShape) -> (f64, f64) {
         (shape.level + self.free + self.forced, self.free_rate + shape.omega * self.quarter)
     }
 
@@ -89,7 +89,7 @@ impl ContactParts<f64> {
     #[inline(always)]
     pub fn first_exit(
         &self,
-        shape: &Shape,
+        shape: &ContactShape,
         swing: &ContactStep<f64>,
         steps: usize,
     ) -> Result<f64, Self> {
@@ -116,16 +116,16 @@ impl ContactParts<f64> {
         orders: &[f64; 4],
         (right, right_orders): (f64, &[f64; 4]),
         ends: Ends,
-        shape: &Shape,
+        shape: &ContactShape,
         swing: &ContactStep<f64>,
     ) -> bool {
         let inside = |left: &[f64; 4], right: &[f64; 4], length: f64, ends: Ends| {
             let eighth = (-shape.eighth, shape.eighth);
             let piece = Piece { left: *left, right: *right, length, eighth };
             match piece.verdict(&shape.corridor, ends, shape.slack) {
-                Verdict::Inside => true,
-                Verdict::Touches => false,
-                Verdict::Open => piece.stays_inside_in_parts(&shape.corridor, ends, shape.slack),
+                Proof::Inside => true,
+                Proof::Touches => false,
+                Proof::Open => piece.stays_inside_in_parts(&shape.corridor, ends, shape.slack),
             }
         };
         let (mut here, mut orders) = (*self, *orders);

@@ -1,7 +1,7 @@
 //! What the search asks of a phase.
 
 use crate::crossing::allowances::SLACK;
-use crate::crossing::certificate::{Corridor, Ends, Verdict};
+use crate::crossing::certificate::{Corridor, Ends, Proof};
 use crate::crossing::series::{REACH, SHORT_REACH, Series};
 use crate::flow::steps::Steps;
 use crate::flow::{Flow, Point};
@@ -39,7 +39,7 @@ pub trait Guarded: Flow<f64> {
     }
 
     /// Tries to prove that the guard stays inside between two evaluations.
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict;
+    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof;
 
     /// The time at which a piece that could not be certified is divided.
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64;

@@ -1,10 +1,10 @@
 //! The guard of a flight: h rises to zero at the impact.
 
-use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
+use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
-use crate::crossing::piecewise::{End, FreeParts, PiecewiseCertificate, Shape};
+use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::series::{Push, Series, short_decay};
-use crate::crossing::slow_envelope::{Place, SlowEnvelope, first_root};
+use crate::crossing::slow_envelope::{EnvelopePlace, SlowEnvelope, first_root};
 use crate::crossing::tangents::stays_below;
 use crate::flow::constants::Constants;
 use crate::flow::forcing::EntryAngle;
@@ -46,7 +46,7 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
     }
 
     /// Until where h is concave after a separation: as long as the force is negative.
-    fn clear_of_the_surface(&self, envelope: &SlowEnvelope, turning: &Turning) -> Place {
+    fn clear_of_the_surface(&self, envelope: &SlowEnvelope, turning: &Turning) -> EnvelopePlace {
         match turning.negative_until(self.angle.radians) {
             Some(angle) => {
                 let elapsed = (angle - self.angle.radians) / self.constants.borrow().omega;
@@ -145,10 +145,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         envelope.hint(steps, left.elapsed, (place, inside), limit)
     }
 
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
+    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof {
         let whole = left.elapsed == 0.0 && ends.left_double && ends.right;
         if whole && stays_below(self, steps, right) {
-            return Verdict::Inside;
+            return Proof::Inside;
         }
         let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
@@ -161,11 +161,11 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
                 eighth: (0.0, self.eighth_most(left)),
             };
             let verdict = piece.verdict(&self.corridor(), ends, slack);
-            if verdict != Verdict::Open || length * omega < 0.5 * SHORT {
+            if verdict != Proof::Open || length * omega < 0.5 * SHORT {
                 return verdict;
             }
         }
-        let end = |at: &Point<f64>| End { orders: at.guard.orders, parts: self.parts(at) };
+        let end = |at: &Point<f64>| PieceEnd { orders: at.guard.orders, parts: self.parts(at) };
         PiecewiseCertificate::new(&self.shape(), steps).decided(end(left), end(right), ends, slack)
     }
 
@@ -228,10 +228,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
 }
 
 impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
-    fn shape(&self) -> Shape {
+    fn shape(&self) -> FreeShape {
         let Constants { a, b, omega, omega6, per_omega2, rate, rate8, .. } =
             *self.constants.borrow();
-        Shape { curvature: b, grain: 0.0, strength: a, omega, omega6, per_omega2, rate, rate8 }
+        FreeShape { curvature: b, grain: 0.0, strength: a, omega, omega6, per_omega2, rate, rate8 }
     }
 
     /// h = (p - g) - q, where p'' = F.

@@ -12,7 +12,7 @@
 //! pulls inwards (it is concave then), else by its chord.
 
 use crate::crossing::allowances::REST;
-use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
+use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
 use crate::flow::steps::{FreeStep, GRIP, PULLING, PUSHING, Steps};
 
 /// A guard's excess in parts, at some place.
@@ -36,7 +36,7 @@ pub struct FreeParts {
 
 /// What the parts have in common at all places.
 #[derive(Clone, Copy, Debug)]
-pub struct Shape {
+pub struct FreeShape {
     /// The parabola's second derivative.
     pub curvature: f64,
     /// The largest terms that cancel in the slope at an evaluation.
@@ -57,7 +57,7 @@ pub struct Shape {
 
 /// An end of a piece: the guard's own orders there, and its parts.
 #[derive(Clone, Copy, Debug)]
-pub struct End {
+pub struct PieceEnd {
     /// Value and three derivatives of the excess.
     pub orders: [f64; 4],
     /// The guard at this end in parts.
@@ -65,9 +65,9 @@ pub struct End {
 }
 
 impl FreeParts {
-    fn after(&self, stride: &FreeStep, shape: &Shape) -> Self {
+    fn after(&self, stride: &FreeStep, shape: &FreeShape) -> Self {
         const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
-        let Shape { curvature, strength, grain, .. } = *shape;
+        let FreeShape { curvature, strength, grain, .. } = *shape;
         let FreeStep { length, sin, cos, decay, speed, sag, fall, drop } = *stride;
         let (lift, gain) = (0.5 * length * curvature, length * curvature);
         let change = length * (self.slope + lift);
@@ -84,12 +84,12 @@ impl FreeParts {
         }
     }
 
-    fn before(&self, stride: &FreeStep, shape: &Shape) -> Self {
+    fn before(&self, stride: &FreeStep, shape: &FreeShape) -> Self {
         self.after(&stride.reversed(), shape)
     }
 
     /// Value and slope of the parabola and a line that stands for the exponential.
-    fn slow(&self, shape: &Shape, line: &Line) -> (f64, f64) {
+    fn slow(&self, shape: &FreeShape, line: &Line) -> (f64, f64) {
         let value = self.value + self.bow * shape.per_omega2;
         let slope = self.slope + self.quarter * (shape.omega * shape.per_omega2);
         (value + line.at(self.elapsed), slope + line.slope)
@@ -123,7 +123,7 @@ impl Line {
 
 /// A stretch of the guard between two evaluations.
 pub struct PiecewiseCertificate<'a> {
-    shape: &'a Shape,
+    shape: &'a FreeShape,
     steps: &'a Steps,
     /// Once the exponential has lived.
     line: Option<Line>,
@@ -146,24 +146,24 @@ const BELOW_ZERO: Corridor = Corridor { low: f64::NEG_INFINITY, high: 0.0 };
 
 impl<'a> PiecewiseCertificate<'a> {
     /// A certificate for guards of this shape, with steps of these lengths.
-    pub fn new(shape: &'a Shape, steps: &'a Steps) -> Self {
+    pub fn new(shape: &'a FreeShape, steps: &'a Steps) -> Self {
         Self { shape, steps, line: None }
     }
 
     /// What can be said about the excess between the two ends, which round it within `slack`. The
     /// parts may be far larger than their sum: a touch that only their rounding hides is left to
     /// shorter pieces, which are certified by evaluations alone.
-    pub fn decided(self, left: End, right: End, ends: Ends, slack: f64) -> Verdict {
+    pub fn decided(self, left: PieceEnd, right: PieceEnd, ends: Ends, slack: f64) -> Proof {
         const MUCH: f64 = 16.0;
         match self.verdict(left, right, ends) {
-            (Verdict::Touches, room) if room > MUCH * slack => Verdict::Open,
+            (Proof::Touches, room) if room > MUCH * slack => Proof::Open,
             (verdict, _) => verdict,
         }
     }
 
     /// What can be said about the excess between the two ends by their parts, and within which
     /// room.
-    fn verdict(mut self, left: End, right: End, ends: Ends) -> (Verdict, f64) {
+    fn verdict(mut self, left: PieceEnd, right: PieceEnd, ends: Ends) -> (Proof, f64) {
         let rate = self.shape.rate;
         let pushes = left.parts.lasting > 0.0;
         let decay_times = if pushes { PUSHING } else { PULLING };
@@ -173,14 +173,14 @@ impl<'a> PiecewiseCertificate<'a> {
             return self.between((left, left_ends), (right, ends.right));
         }
         let (settled, first) = if ends.left_double && self.parts_for_certain(&left.parts) {
-            (left.parts.after(&self.steps.separation_interval, self.shape), Verdict::Inside)
+            (left.parts.after(&self.steps.separation_interval, self.shape), Proof::Inside)
         } else {
             let life = if pushes { &self.steps.pushing } else { &self.steps.pulling };
             let settled = left.parts.after(life, self.shape);
             (settled, self.piece(&left, &self.end(settled), left_ends))
         };
         let room = settled.room;
-        if first == Verdict::Open {
+        if first == Proof::Open {
             return (first, room);
         }
         let line = Line::above(&settled, &right.parts, rate);
@@ -192,8 +192,8 @@ impl<'a> PiecewiseCertificate<'a> {
             orders[0] = right.orders[0];
         }
         self.line = Some(line);
-        let (rest, last_room) =
-            self.between((self.end(settled), Ends::FREE), (End { orders, ..right }, ends.right));
+        let (rest, last_room) = self
+            .between((self.end(settled), Ends::FREE), (PieceEnd { orders, ..right }, ends.right));
         (first.max(rest), room.max(last_room))
     }
 
@@ -201,18 +201,18 @@ impl<'a> PiecewiseCertificate<'a> {
     /// [`SEPARATION_INTERVAL`]: its guard is at most the largest force times d^2/2 less q0 (exp(-z)
     /// - 1 + z).
     fn parts_for_certain(&self, left: &FreeParts) -> bool {
-        let Shape { curvature, strength, rate, .. } = *self.shape;
+        let FreeShape { curvature, strength, rate, .. } = *self.shape;
         -left.lasting * (rate * rate) * GRIP > (strength + curvature.max(0.0)) * (1.0 + 1e-9)
     }
 
     /// Goes from the left end until the amplitude takes over, then back from the right end.
     fn between(
         &self,
-        (mut near, mut near_ends): (End, Ends),
-        (mut far, mut is_root): (End, bool),
-    ) -> (Verdict, f64) {
+        (mut near, mut near_ends): (PieceEnd, Ends),
+        (mut far, mut is_root): (PieceEnd, bool),
+    ) -> (Proof, f64) {
         let stride = &self.steps.piece;
-        let mut worst = Verdict::Inside;
+        let mut worst = Proof::Inside;
         let mut room = 0.0;
         for _ in 0..MOST_PIECES {
             room = near.parts.room.max(far.parts.room);
@@ -236,13 +236,13 @@ impl<'a> PiecewiseCertificate<'a> {
             }
             let verdict = self.piece(&left, &right, ends);
             // A crest that rounding hides stops no pieces short of the whole stretch.
-            if verdict == Verdict::Open || (verdict == Verdict::Touches && most <= room) {
+            if verdict == Proof::Open || (verdict == Proof::Touches && most <= room) {
                 let hidden = most <= room;
-                return (if hidden { Verdict::Touches } else { Verdict::Open }, room);
+                return (if hidden { Proof::Touches } else { Proof::Open }, room);
             }
             worst = worst.max(verdict);
         }
-        (Verdict::Open, room)
+        (Proof::Open, room)
     }
 
     /// How high the harmonic's crests may be.
@@ -250,7 +250,7 @@ impl<'a> PiecewiseCertificate<'a> {
         /// The sums of values, and of slopes over the length, round a few times. An evaluation's
         /// own room leaves that out: its parts have cancelled before they were rounded.
         const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
-        let Shape { curvature, grain, strength, per_omega2, rate, .. } = *self.shape;
+        let FreeShape { curvature, grain, strength, per_omega2, rate, .. } = *self.shape;
         let line = self.line.unwrap_or_else(|| Line::above(near, far, rate));
         let amplitude = strength * per_omega2;
         let (here, rising) = near.slow(self.shape, &line);
@@ -267,8 +267,8 @@ impl<'a> PiecewiseCertificate<'a> {
         Crests { here: here + amplitude, most: most + amplitude, rounding }
     }
 
-    fn piece(&self, left: &End, right: &End, ends: Ends) -> Verdict {
-        let Shape { strength, omega6, rate8, .. } = *self.shape;
+    fn piece(&self, left: &PieceEnd, right: &PieceEnd, ends: Ends) -> Proof {
+        let FreeShape { strength, omega6, rate8, .. } = *self.shape;
         let lift = match self.line {
             None => left.parts.lasting.max(0.0) * rate8,
             Some(_) => 0.0,
@@ -283,7 +283,7 @@ impl<'a> PiecewiseCertificate<'a> {
         piece.verdict(&BELOW_ZERO, ends, slack)
     }
 
-    fn end(&self, parts: FreeParts) -> End {
+    fn end(&self, parts: FreeParts) -> PieceEnd {
         let orders = match &self.line {
             Some(line) => self.above(&parts, line),
             None => {
@@ -294,7 +294,7 @@ impl<'a> PiecewiseCertificate<'a> {
                 [value + parts.lasting, slope - fall, bend + turn, third - rate * turn]
             }
         };
-        End { orders, parts }
+        PieceEnd { orders, parts }
     }
 
     /// The orders with a line in place of the exponential.
@@ -305,7 +305,7 @@ impl<'a> PiecewiseCertificate<'a> {
 
     /// The orders without the exponential.
     fn bare(&self, parts: &FreeParts) -> [f64; 4] {
-        let Shape { omega, curvature, .. } = *self.shape;
+        let FreeShape { omega, curvature, .. } = *self.shape;
         [parts.value, parts.slope, curvature + parts.bow, omega * parts.quarter]
     }
 }
@@ -321,7 +321,7 @@ mod tests {
     fn the_rounding_of_crests_has_no_direction() {
         let (omega, strength) = (0.7, 0.2);
         let steps = Steps::new(&Parameters { omega, ..Parameters::default() });
-        let shape = Shape {
+        let shape = FreeShape {
             curvature: 0.1,
             grain: 0.3,
             strength,

@@ -1,8 +1,8 @@
 //! The guard of a progression: the drift velocity w falls to zero when the slider's bottom stops.
 
-use crate::crossing::certificate::{Corridor, Ends, Piece, Verdict};
+use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
-use crate::crossing::piecewise::{End, FreeParts, PiecewiseCertificate, Shape};
+use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::slow_envelope::SlowEnvelope;
 use crate::flow::constants::Constants;
@@ -88,9 +88,9 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         envelope.hint(steps, left.elapsed, (place, true), limit)
     }
 
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
+    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof {
         if left.elapsed == 0.0 && ends.right && self.stops_once(right) {
-            return Verdict::Inside;
+            return Proof::Inside;
         }
         let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
@@ -103,11 +103,11 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
                 eighth: (self.eighth_least(left), 0.0),
             };
             let verdict = piece.verdict(&self.corridor(), ends, slack);
-            if verdict != Verdict::Open || length * omega < 0.5 * SHORT {
+            if verdict != Proof::Open || length * omega < 0.5 * SHORT {
                 return verdict;
             }
         }
-        let end = |at: &Point<f64>| End {
+        let end = |at: &Point<f64>| PieceEnd {
             orders: at.guard.orders.map(|order| -order),
             parts: self.parts(at),
         };
@@ -208,12 +208,12 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
         stops_once([a, b, omega, rate], begin, root.slider_velocity)
     }
 
-    fn shape(&self) -> Shape {
+    fn shape(&self) -> FreeShape {
         let Constants { a, b, omega, omega6, per_omega2, rate, rate8, .. } =
             *self.constants.borrow();
         // The slope is 1 - b less the harmonic force.
         let (grain, strength) = ((1.0 - b).abs() + a, a * omega);
-        Shape { curvature: 0.0, grain, strength, omega, omega6, per_omega2, rate, rate8 }
+        FreeShape { curvature: 0.0, grain, strength, omega, omega6, per_omega2, rate, rate8 }
     }
 
     /// -w = -y + q', where y' = F - 1.

@@ -29,21 +29,21 @@ fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> CubicStep {
     let (above, below) = (value - corridor.high, value - corridor.low);
     let rises = above.abs() <= below.abs();
     let over = if rises { above } else { below };
-    let cubic = Cubic { over, slope, bend, third };
+    let cubic = ExcessCubic { over, slope, bend, third };
     let step = cubic.near_zero().unwrap_or_else(|| cubic.zero());
     let room = SLACK * point.guard.largest_term + RESIDUAL * over.abs();
     CubicStep { step, rises, settled: cubic.at(step).abs() <= room }
 }
 
 /// A guard's excess around a point.
-struct Cubic {
+struct ExcessCubic {
     over: f64,
     slope: f64,
     bend: f64,
     third: f64,
 }
 
-impl Cubic {
+impl ExcessCubic {
     fn at(&self, step: f64) -> f64 {
         let Self { over, slope, bend, third } = *self;
         over + step * (slope + step * (0.5 * bend + step * (third * (1.0 / 6.0))))

@@ -1,6 +1,8 @@
 //! The first crossing: pieces proposed by guesses, accepted by certificates.
 
-use crate::crossing::certificate::{Ends, Verdict};
+use std::ops::ControlFlow;
+
+use crate::crossing::certificate::{Ends, Proof};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::limit::Limit;
 use crate::crossing::root::{bracketed, evaluate_again, follow, middle};
@@ -97,7 +99,7 @@ impl Stages {
     ) -> bool {
         let ends = Ends { right: true, ..phase.imposed() };
         root.elapsed().high <= horizon
-            && phase.certify(steps, &self.left, &root.point, ends) == Verdict::Inside
+            && phase.certify(steps, &self.left, &root.point, ends) == Proof::Inside
     }
 
     /// The second stage where that is not confirmed: the whole search, which takes the candidate
@@ -176,8 +178,8 @@ impl<'a, G: Guarded> Search<'a, G> {
                 Proposal::Over(crossing) => return crossing,
                 Proposal::Clear(point) => point,
                 Proposal::Target(target) => match self.settled(target, counters) {
-                    Ok(point) => point,
-                    Err(crossing) => return crossing,
+                    ControlFlow::Continue(point) => point,
+                    ControlFlow::Break(crossing) => return crossing,
                 },
             };
             self.left = reached;
@@ -232,17 +234,23 @@ impl<'a, G: Guarded> Search<'a, G> {
         }
     }
 
-    /// The point up to which everything is certified, on the way to a target; an error is the end
-    /// of the search.
-    fn settled(&self, target: Target, counters: &mut Counters) -> Result<Point<f64>, Crossing> {
+    /// The point up to which everything is certified, on the way to a target, where the search
+    /// continues; or what it ends with.
+    fn settled(
+        &self,
+        target: Target,
+        counters: &mut Counters,
+    ) -> ControlFlow<Crossing, Point<f64>> {
         let solved = (self.phase, self.steps);
         match settle(solved, self.left, self.ends, target, (&self.limit, counters)) {
             Ok(Target::Root(root)) if root.elapsed().high <= self.horizon => {
-                Err(Crossing::At(root))
+                ControlFlow::Break(Crossing::At(root))
             }
-            Ok(Target::Point(point)) if point.elapsed < self.horizon => Ok(point),
-            Ok(_) => Err(self.over),
-            Err(elapsed) => Err(Crossing::Undecided(elapsed)),
+            Ok(Target::Point(point)) if point.elapsed < self.horizon => {
+                ControlFlow::Continue(point)
+            }
+            Ok(_) => ControlFlow::Break(self.over),
+            Err(elapsed) => ControlFlow::Break(Crossing::Undecided(elapsed)),
         }
     }
 }
@@ -254,7 +262,7 @@ const STRIDE: f64 = 0.1;
 /// from settling: it is followed in steps.
 const CREEPING: f64 = 1e-3;
 
-/// An hint that gets on. A guess that falls on `left` is no guess; that, or an advice to go on
+/// A hint that gets on. A guess that falls on `left` is no guess; that, or an advice to go on
 /// by less than a stride, is replaced by a stride, longer each time.
 fn onwards(hint: SearchHint, left: f64, stride: &mut f64) -> SearchHint {
     let resolution = 8.0 * f64::EPSILON * left;
@@ -289,7 +297,7 @@ fn settle<G: Guarded>(
 ) -> Result<Target, f64> {
     let target = inside_or_root(phase, &left, target, counters);
     ends.right = target.is_root();
-    if phase.certify(steps, &left, target.point(), ends) == Verdict::Inside {
+    if phase.certify(steps, &left, target.point(), ends) == Proof::Inside {
         return Ok(target);
     }
     divide((phase, steps), left, ends, target, (limit, counters))
@@ -312,13 +320,13 @@ fn divide<G: Guarded>(
         let right = target.point();
         ends.right = target.is_root();
         let mut verdict = phase.certify(steps, &left, right, ends);
-        if verdict == Verdict::Touches && uneven(&left, right) {
-            verdict = Verdict::Open;
+        if verdict == Proof::Touches && uneven(&left, right) {
+            verdict = Proof::Open;
         }
         // Below the smallest normal number halving no longer divides.
         let finest = (8.0 * f64::EPSILON * right.elapsed).max(f64::MIN_POSITIVE);
         let resolvable = right.elapsed - left.elapsed > finest;
-        if verdict == Verdict::Open && resolvable {
+        if verdict == Proof::Open && resolvable {
             counters.divisions += 1;
             let proposed = phase.divide(&left, right);
             let place = between(left.elapsed, proposed, right.elapsed, pending.len());
@@ -329,7 +337,7 @@ fn divide<G: Guarded>(
             }
             continue;
         }
-        counters.undecidable += u64::from(verdict != Verdict::Inside);
+        counters.undecidable += u64::from(verdict != Proof::Inside);
         left = *right;
         ends = Ends::FREE;
         pending.pop();

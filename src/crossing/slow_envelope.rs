@@ -40,7 +40,7 @@ pub struct SlowEnvelope {
 
 /// What the bound says about the time from some instant on.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Bound {
+pub enum EnvelopeBound {
     /// It is positive now, or will be from this elapsed time on at the earliest.
     OpenFrom(f64),
     /// It is negative from now on.
@@ -57,7 +57,7 @@ const ROOM: f64 = 8.0 * f64::EPSILON;
 
 impl SlowEnvelope {
     /// What the bound says from elapsed time `from` on.
-    pub fn bound(&self, from: f64) -> Bound {
+    pub fn bound(&self, from: f64) -> EnvelopeBound {
         let Self { slope, curvature, exponential, .. } = *self;
         let value = self.parabola(from) + self.amplitude;
         let rising = slope + curvature * from;
@@ -71,12 +71,16 @@ impl SlowEnvelope {
         let sinking = self.rate * lasting * (1.0 + ROOM);
         let tangent = self.opening(from, value - lasting, rising + sinking, curvature);
         match (dropped, tangent) {
-            (Bound::OpenFrom(first), Bound::OpenFrom(second)) => Bound::OpenFrom(first.max(second)),
-            (Bound::Never, _) | (_, Bound::Never) => Bound::Never,
-            (Bound::OpenFrom(first), Bound::NeverAfter(second)) => match first > from {
-                true => Bound::OpenFrom(first),
-                false => Bound::NeverAfter(second),
-            },
+            (EnvelopeBound::OpenFrom(first), EnvelopeBound::OpenFrom(second)) => {
+                EnvelopeBound::OpenFrom(first.max(second))
+            }
+            (EnvelopeBound::Never, _) | (_, EnvelopeBound::Never) => EnvelopeBound::Never,
+            (EnvelopeBound::OpenFrom(first), EnvelopeBound::NeverAfter(second)) => {
+                match first > from {
+                    true => EnvelopeBound::OpenFrom(first),
+                    false => EnvelopeBound::NeverAfter(second),
+                }
+            }
             (never_after, _) => never_after,
         }
     }
@@ -84,7 +88,7 @@ impl SlowEnvelope {
     /// When value + rising t + curvature t^2/2, t after `from`, becomes positive or stays negative.
     ///
     /// The parabola's rounding grows with its terms; it is bounded by a parabola of its own.
-    fn opening(&self, from: f64, value: f64, rising: f64, curvature: f64) -> Bound {
+    fn opening(&self, from: f64, value: f64, rising: f64, curvature: f64) -> EnvelopeBound {
         let bent = curvature.abs();
         let size = self.offset.abs() + (self.slope * from).abs() + 2.0 * bent * from * from;
         let value = value + ROOM * (size + self.amplitude + self.exponential.abs());
@@ -93,12 +97,12 @@ impl SlowEnvelope {
         let curvature = curvature + 4.0 * ROOM * bent;
         if value < 0.0 {
             let opens = first_root(value, rising, curvature);
-            return opens.map_or(Bound::Never, |time| Bound::OpenFrom(from + time));
+            return opens.map_or(EnvelopeBound::Never, |time| EnvelopeBound::OpenFrom(from + time));
         }
         let closes = curvature < 0.0 || (curvature == 0.0 && rising < 0.0);
         match closes.then(|| last_root(value, rising, curvature)).flatten() {
-            Some(time) => Bound::NeverAfter(from + time * (1.0 + 1e-6)),
-            None => Bound::OpenFrom(from),
+            Some(time) => EnvelopeBound::NeverAfter(from + time * (1.0 + 1e-6)),
+            None => EnvelopeBound::OpenFrom(from),
         }
     }
 
@@ -109,22 +113,22 @@ impl SlowEnvelope {
         &self,
         steps: &Steps,
         from: f64,
-        (place, inside): (Place, bool),
+        (place, inside): (EnvelopePlace, bool),
         limit: f64,
     ) -> SearchHint {
         if let Some(time) = self.guess(&steps.look, place, inside, limit) {
             return SearchHint::Root(time);
         }
         match self.bound(from) {
-            Bound::OpenFrom(time) if time > from + 4.0 * TAU / self.omega => {
+            EnvelopeBound::OpenFrom(time) if time > from + 4.0 * TAU / self.omega => {
                 SearchHint::ClearUntil(time)
             }
-            Bound::Never => SearchHint::ClearFrom(from),
-            Bound::NeverAfter(time) | Bound::OpenFrom(time) if time > limit => {
+            EnvelopeBound::Never => SearchHint::ClearFrom(from),
+            EnvelopeBound::NeverAfter(time) | EnvelopeBound::OpenFrom(time) if time > limit => {
                 SearchHint::Onward(limit)
             }
-            Bound::NeverAfter(time) => SearchHint::Onward(time),
-            Bound::OpenFrom(_) => SearchHint::Onward(from + TAU / self.omega),
+            EnvelopeBound::NeverAfter(time) => SearchHint::Onward(time),
+            EnvelopeBound::OpenFrom(_) => SearchHint::Onward(from + TAU / self.omega),
         }
     }
 
@@ -145,15 +149,15 @@ impl SlowEnvelope {
         let (now, later) = (self.bound(from), self.bound(from + period));
         // The bound is zero where it opens: a period before that it is negative by a margin.
         let before_opening = |bound| match bound {
-            Bound::OpenFrom(time) => Some(time - period).filter(within),
+            EnvelopeBound::OpenFrom(time) => Some(time - period).filter(within),
             _ => None,
         };
         let turn = before_opening(later).or_else(|| before_opening(now));
         turn.or_else(|| match (now, later) {
             // At the opening itself the proof would meet a zero and count it as a touch.
-            (_, Bound::OpenFrom(time)) if within(&time) => Some(time - 0.25 * period),
-            (Bound::NeverAfter(time), _) if within(&time) => Some(time),
-            (Bound::OpenFrom(_), _) => Some(from + period),
+            (_, EnvelopeBound::OpenFrom(time)) if within(&time) => Some(time - 0.25 * period),
+            (EnvelopeBound::NeverAfter(time), _) if within(&time) => Some(time),
+            (EnvelopeBound::OpenFrom(_), _) => Some(from + period),
             _ => Some(from + 0.5 * length),
         })
     }
@@ -167,7 +171,13 @@ impl SlowEnvelope {
     /// is known to be negative just after it. None if there is none within three periods in which
     /// the bound allows one, or none before `limit`.
     #[inline(always)]
-    fn guess(&self, look: &FreeStep, mut here: Place, mut inside: bool, limit: f64) -> Option<f64> {
+    fn guess(
+        &self,
+        look: &FreeStep,
+        mut here: EnvelopePlace,
+        mut inside: bool,
+        limit: f64,
+    ) -> Option<f64> {
         const STEPS: usize = 40;
         // At larger angles one leap more, with an evaluation, is worth its cost.
         const FURTHEST: f64 = 1e6;
@@ -213,27 +223,27 @@ impl SlowEnvelope {
     }
 
     /// The start of the phase.
-    pub fn start(&self) -> Place {
-        Place { elapsed: 0.0, sin: self.sin, cos: self.cos, lasting: self.exponential }
+    pub fn start(&self) -> EnvelopePlace {
+        EnvelopePlace { elapsed: 0.0, sin: self.sin, cos: self.cos, lasting: self.exponential }
     }
 
     /// The place at this time, at which omega d + angle has this sine and cosine.
-    pub fn place(&self, elapsed: f64, (sin, cos): (f64, f64)) -> Place {
+    pub fn place(&self, elapsed: f64, (sin, cos): (f64, f64)) -> EnvelopePlace {
         let lasting = self.exponential * quick_decay(self.rate * elapsed);
-        Place { elapsed, sin, cos, lasting }
+        EnvelopePlace { elapsed, sin, cos, lasting }
     }
 
     /// Harmonic and exponential to about 1e-7 and a per cent, without a call of a library function.
-    pub fn near(&self, elapsed: f64) -> Place {
+    pub fn near(&self, elapsed: f64) -> EnvelopePlace {
         let (sin, cos) = quick_sin_cos(self.omega * elapsed);
         let turned = (self.sin * cos + self.cos * sin, self.cos * cos - self.sin * sin);
         self.place(elapsed, turned)
     }
 
     /// G and its slope.
-    fn value_and_rate(&self, at: &Place) -> (f64, f64) {
+    fn value_and_rate(&self, at: &EnvelopePlace) -> (f64, f64) {
         let Self { slope, curvature, amplitude, omega, rate, .. } = *self;
-        let Place { elapsed, sin, cos, lasting } = *at;
+        let EnvelopePlace { elapsed, sin, cos, lasting } = *at;
         (
             self.parabola(elapsed) - amplitude * cos - lasting,
             slope + curvature * elapsed + amplitude * omega * sin + rate * lasting,
@@ -243,14 +253,14 @@ impl SlowEnvelope {
 
 /// A place on the way of a guess.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct EnvelopePlace {
     elapsed: f64,
     sin: f64,
     cos: f64,
     lasting: f64,
 }
 
-impl Place {
+impl EnvelopePlace {
     fn after(&self, stride: &FreeStep) -> Self {
         let FreeStep { length, sin, cos, decay, .. } = *stride;
         Self {

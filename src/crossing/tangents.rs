@@ -48,7 +48,7 @@ impl<T: Real> Tangent<T> {
 }
 
 /// E, raised by what its terms may round off.
-pub struct Bound<T> {
+pub struct TangentBound<T> {
     offset: T,
     slope: T,
     curvature: T,
@@ -57,7 +57,7 @@ pub struct Bound<T> {
 }
 
 /// A flight and the root that ends it, as E needs them.
-pub struct Ended<T> {
+pub struct EndedFlight<T> {
     /// b
     pub b: T,
     /// a/omega
@@ -75,13 +75,13 @@ pub struct Ended<T> {
     pub slack: T,
 }
 
-impl<T: Real> Bound<T> {
+impl<T: Real> TangentBound<T> {
     /// The bound of a flight up to its root.
     #[inline(always)]
-    pub fn new(flight: &Ended<T>) -> Self {
+    pub fn new(flight: &EndedFlight<T>) -> Self {
         /// Eight roundings of terms that are counted twice.
         const ROOM: f64 = 16.0 * f64::EPSILON;
-        let Ended { b, a_over_omega, a_over_omega2, slack, .. } = *flight;
+        let EndedFlight { b, a_over_omega, a_over_omega2, slack, .. } = *flight;
         let ([sin, cos], [y, q]) = (flight.sin_cos, flight.begin);
         let [elapsed, last_q, spring] = flight.root;
         let slope = a_over_omega.times_from(sin, y) + spring;
@@ -112,9 +112,12 @@ impl<T: Real> Bound<T> {
 
 /// E of a flight up to its root.
 #[inline(always)]
-fn bound<C: Borrow<Constants<f64>>>(flight: &NoContact<f64, C>, root: &Point<f64>) -> Bound<f64> {
+fn bound<C: Borrow<Constants<f64>>>(
+    flight: &NoContact<f64, C>,
+    root: &Point<f64>,
+) -> TangentBound<f64> {
     let Constants { b, a_over_omega, a_over_omega2, .. } = *flight.constants.borrow();
-    Bound::new(&Ended {
+    TangentBound::new(&EndedFlight {
         b,
         a_over_omega,
         a_over_omega2,
@@ -166,7 +169,7 @@ pub fn stays_below<C: Borrow<Constants<f64>>>(
 fn off_the_surface<C: Borrow<Constants<f64>>>(
     flight: &NoContact<f64, C>,
     steps: &Steps,
-    bound: &Bound<f64>,
+    bound: &TangentBound<f64>,
 ) -> Option<Tangent<f64>> {
     let Constants { a, b, omega, rate, .. } = *flight.constants.borrow();
     let Turning { sin, cos, .. } = steps.turning;

@@ -4,9 +4,9 @@
 //! ([`Follow::Carry`]); Fig. 10b starts every value from the same state ([`Follow::Reset`]) and
 //! jumps wherever that state changes basins.
 
-use super::ensemble::{self, Motion};
-use super::section::{Kept, Section};
-use super::strobe::{Point, StrobeMap};
+use super::ensemble::{self, Member};
+use super::section::{KeptStrobes, Section};
+use super::strobe::{StrobeMap, StrobePoint};
 use crate::error::InputError;
 use crate::model::Model;
 use crate::model::entry::Entry;
@@ -49,11 +49,11 @@ pub struct Diagram {
 
 /// What the diagram shows at one value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Step {
+pub struct DiagramStep {
     /// The parameter's value.
     pub value: f64,
     /// Strobes at the start's `tau` modulo the forcing period.
-    pub points: Vec<Point>,
+    pub points: Vec<StrobePoint>,
     /// Mean drift per forcing period over these strobes.
     pub drift_per_period: f64,
     /// Why the motion ends in a phase that never ends, where it does.
@@ -82,7 +82,7 @@ impl Diagram {
     /// # Errors
     /// [`InputError`] names what is out of range; with [`Follow::Reset`] also a start that some
     /// value does not admit.
-    pub fn steps(&self, seen: impl Fn() + Sync + Send) -> Result<Vec<Step>, InputError> {
+    pub fn steps(&self, seen: impl Fn() + Sync + Send) -> Result<Vec<DiagramStep>, InputError> {
         let steps: Vec<u32> = (0..self.steps).collect();
         match self.follow {
             Follow::Reset => {
@@ -93,7 +93,7 @@ impl Diagram {
                 Ok(done)
             }
             Follow::Carry => {
-                let mut last: Option<Point> = None;
+                let mut last: Option<StrobePoint> = None;
                 let mut done = Vec::with_capacity(steps.len());
                 for step in steps {
                     let model = self.model(step)?;
@@ -123,7 +123,11 @@ impl Diagram {
     }
 
     /// Steps that know nothing of each other.
-    fn reset(&self, steps: &[u32], seen: &(impl Fn() + Sync)) -> Result<Vec<Step>, InputError> {
+    fn reset(
+        &self,
+        steps: &[u32],
+        seen: &(impl Fn() + Sync),
+    ) -> Result<Vec<DiagramStep>, InputError> {
         let begun = |step: &u32| {
             let model = self.model(*step)?;
             let entry = model.start(&self.start)?;
@@ -144,14 +148,14 @@ impl Diagram {
         model: &'a Model,
         entry: Entry,
         seen: &'a (dyn Fn() + Sync),
-    ) -> Motion<'a, Kept<'a>> {
+    ) -> Member<'a, KeptStrobes<'a>> {
         let first = entry.instant.after_periods(self.transient, 1);
         let horizon = Some(first.after_periods(u64::from(self.periods), 1));
-        let watcher = Kept::new(self.periods as usize + 1, seen);
-        Motion { model, entry, first, horizon, watcher }
+        let watcher = KeptStrobes::new(self.periods as usize + 1, seen);
+        Member { model, entry, first, horizon, watcher }
     }
 
-    fn step(&self, model: &Model, step: u32, strobes: &[Entry]) -> Step {
+    fn step(&self, model: &Model, step: u32, strobes: &[Entry]) -> DiagramStep {
         let shown = self.periods as usize;
         let drift_per_period = match strobes {
             [first, .., last] if strobes.len() > shown => (last.v() - first.v()) / shown as f64,
@@ -160,6 +164,6 @@ impl Diagram {
         let points = strobes.iter().take(shown).map(Entry::point).collect();
         let endless = strobes.last().and_then(|last| Section::endless_at(model, last));
         let undecidable = strobes.len() <= shown;
-        Step { value: self.value(step), points, drift_per_period, endless, undecidable }
+        DiagramStep { value: self.value(step), points, drift_per_period, endless, undecidable }
     }
 }

@@ -1,7 +1,7 @@
 //! Linear algebra of a few rows: solving, invariants and eigenvalues of real 3 x 3 matrices.
 
 /// A point of the section, or a step between two: p, y, q.
-pub type Point = [f64; 3];
+pub type StrobePoint = [f64; 3];
 
 /// A derivative with respect to (p, y, q), row by row.
 pub type Jacobian = [[f64; 3]; 3];
@@ -10,7 +10,7 @@ pub type Jacobian = [[f64; 3]; 3];
 pub const IDENTITY: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A complex number: real and imaginary part.
-pub type Complex = [f64; 2];
+pub type ReIm = [f64; 2];
 
 /// `after * before`.
 #[must_use]
@@ -22,7 +22,7 @@ pub fn product(after: &Jacobian, before: &Jacobian) -> Jacobian {
 
 /// `matrix * vector`.
 #[must_use]
-pub fn apply(matrix: &Jacobian, vector: &Point) -> Point {
+pub fn apply(matrix: &Jacobian, vector: &StrobePoint) -> StrobePoint {
     matrix.map(|row| dot(&row, vector))
 }
 
@@ -113,7 +113,7 @@ fn largest<const N: usize>(matrix: &[[f64; N]; N], from: usize) -> (usize, usize
 /// each is that of a matrix that differs by a few eps of the largest entry. NaN where the matrix is
 /// not finite.
 #[must_use]
-pub fn eigenvalues(matrix: &Jacobian) -> [Complex; 3] {
+pub fn eigenvalues(matrix: &Jacobian) -> [ReIm; 3] {
     let size = matrix.iter().flatten().fold(0.0_f64, |size, x| size.max(x.abs()));
     if !matrix.iter().flatten().all(|x| x.is_finite()) {
         return [[f64::NAN, 0.0]; 3];
@@ -129,13 +129,13 @@ pub fn eigenvalues(matrix: &Jacobian) -> [Complex; 3] {
 
 /// |z|
 #[must_use]
-pub fn modulus([re, im]: Complex) -> f64 {
+pub fn modulus([re, im]: ReIm) -> f64 {
     libm::hypot(re, im)
 }
 
 /// The roots of x^2 - sum x + product, larger modulus first, of a complex pair the upper one first.
 #[must_use]
-pub fn roots(sum: f64, product: f64) -> [Complex; 2] {
+pub fn roots(sum: f64, product: f64) -> [ReIm; 2] {
     let half = 0.5 * sum;
     let size = half.abs().max(product.abs().sqrt());
     if size == 0.0 {
@@ -153,7 +153,7 @@ pub fn roots(sum: f64, product: f64) -> [Complex; 2] {
 }
 
 /// The double-shift QR iteration of Francis.
-fn quasi_triangular(mut m: Jacobian) -> [Complex; 3] {
+fn quasi_triangular(mut m: Jacobian) -> [ReIm; 3] {
     reflect(&mut m, hessenberg);
     // Convergence is quadratic; three or four steps do. One in ten is of an odd shift, which breaks
     // cycles.
@@ -187,12 +187,12 @@ fn quasi_triangular(mut m: Jacobian) -> [Complex; 3] {
 }
 
 /// What has to be mirrored for the lower left entry to vanish.
-fn hessenberg(m: &Jacobian) -> Point {
+fn hessenberg(m: &Jacobian) -> StrobePoint {
     [0.0, m[1][0], m[2][0]]
 }
 
 /// The eigenvalues of the 2 x 2 block that begins at `k`.
-fn block(m: &Jacobian, k: usize) -> [Complex; 2] {
+fn block(m: &Jacobian, k: usize) -> [ReIm; 2] {
     let (a, b, c, d) = (m[k][k], m[k][k + 1], m[k + 1][k], m[k + 1][k + 1]);
     let (mean, half) = (0.5 * (a + d), 0.5 * (a - d));
     let discriminant = half * half + b * c;
@@ -207,7 +207,7 @@ fn block(m: &Jacobian, k: usize) -> [Complex; 2] {
 
 /// A similarity by the mirror that takes a vector to the axis of its first entry that is not left
 /// out; the vector is read off the matrix.
-fn reflect(m: &mut Jacobian, vector: impl Fn(&Jacobian) -> Point) {
+fn reflect(m: &mut Jacobian, vector: impl Fn(&Jacobian) -> StrobePoint) {
     let mut v = vector(m);
     let Some(first) = v.iter().position(|x| *x != 0.0) else { return };
     // The mirror of the Hessenberg form leaves the first axis alone.
@@ -217,7 +217,7 @@ fn reflect(m: &mut Jacobian, vector: impl Fn(&Jacobian) -> Point) {
     if square == 0.0 {
         return;
     }
-    let along: Point =
+    let along: StrobePoint =
         std::array::from_fn(|column| m.iter().zip(v).map(|(row, v)| v * row[column]).sum());
     for (row, v) in m.iter_mut().zip(v) {
         row.iter_mut().zip(along).for_each(|(x, along)| *x -= 2.0 * along / square * v);

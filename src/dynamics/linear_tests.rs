@@ -1,7 +1,7 @@
 use super::*;
 use proptest::prelude::*;
 
-fn sorted(mut values: Vec<Complex>) -> Vec<Complex> {
+fn sorted(mut values: Vec<ReIm>) -> Vec<ReIm> {
     values.sort_by(|a, b| modulus(*b).total_cmp(&modulus(*a)).then(b[1].total_cmp(&a[1])));
     values
 }
@@ -31,7 +31,7 @@ proptest! {
         // Sum, sum of pairs and product are continuous in the matrix also where eigenvalues meet.
         let found = eigenvalues(&matrix);
         for at in [[1.0, 0.0], [-1.0, 0.0], [0.5, 1.0]] {
-            let poly = |values: &[Complex]| values.iter().fold([1.0, 0.0], |p: Complex, v| {
+            let poly = |values: &[ReIm]| values.iter().fold([1.0, 0.0], |p: ReIm, v| {
                 let d = [at[0] - v[0], at[1] - v[1]];
                 [p[0] * d[0] - p[1] * d[1], p[0] * d[1] + p[1] * d[0]]
             });

@@ -37,7 +37,7 @@
 //! more than 1e16, which one progression does where xi is small.
 
 use super::section::Section;
-use super::tangent::{Tangent, contact_rates};
+use super::tangent::{TangentVector, contact_rates};
 use crate::model::entry::Entry;
 use crate::model::instant::Instant;
 use crate::model::{Model, Motion};
@@ -87,14 +87,14 @@ impl Spectrum {
         periods: u64,
         seen: &mut dyn FnMut(&Segment),
     ) -> Self {
-        Run::new(model, from, transient, periods).told(model, from, seen)
+        ExponentRun::new(model, from, transient, periods).told(model, from, seen)
     }
 
     /// [`Spectrum::of`] without a transient, but the last phase is not solved beyond `horizon` to
     /// see whether it ends.
     pub(super) fn within(model: &Model, from: Entry, periods: u64, horizon: Instant) -> Self {
-        let run = Run::new(model, from, 0, periods);
-        Run { last_horizon: Some(horizon), ..run }.told(model, from, &mut |_| ())
+        let run = ExponentRun::new(model, from, 0, periods);
+        ExponentRun { last_horizon: Some(horizon), ..run }.told(model, from, &mut |_| ())
     }
 
     /// Whether the largest exponent is above zero by more than `errors` standard errors.
@@ -106,22 +106,22 @@ impl Spectrum {
 
 /// What has been seen so far at the end of a batch.
 #[derive(Clone, Copy, Debug)]
-struct Mark {
+struct BatchMark {
     length: f64,
     size: f64,
     drift: f64,
 }
 
 /// A run that is followed segment by segment.
-struct Run {
-    tangent: Tangent,
+struct ExponentRun {
+    tangent: TangentVector,
     two_xi: f64,
     transient: u64,
     periods: u64,
     batches: u64,
     start: Instant,
     next: Instant,
-    marks: Vec<Mark>,
+    marks: Vec<BatchMark>,
     contraction: f64,
     touched: bool,
     last: Option<Segment>,
@@ -129,11 +129,11 @@ struct Run {
     last_horizon: Option<Instant>,
 }
 
-impl Run {
+impl ExponentRun {
     fn new(model: &Model, from: Entry, transient: u64, periods: u64) -> Self {
         let periods = periods.max(1);
         Self {
-            tangent: Tangent::new(model),
+            tangent: TangentVector::new(model),
             two_xi: model.constants().two_xi,
             transient,
             periods,
@@ -199,8 +199,8 @@ impl Run {
     }
 
     fn mark(&mut self, segment: &Segment, here: f64) {
-        let Tangent { length, size, .. } = self.tangent;
-        self.marks.push(Mark { length, size, drift: segment.at(here).v });
+        let TangentVector { length, size, .. } = self.tangent;
+        self.marks.push(BatchMark { length, size, drift: segment.at(here).v });
         let passed = batch_end(self.marks.len() as u64, self.periods, self.batches);
         self.next = self.start.after_periods(self.transient + passed, 1);
     }
@@ -218,7 +218,7 @@ impl Run {
         if let Some(endless) = self.endless(model) {
             return endless_spectrum(model, endless, third, drift_per_period);
         }
-        let growth = |a: &Mark, b: &Mark| {
+        let growth = |a: &BatchMark, b: &BatchMark| {
             let length = b.length - a.length;
             [length, b.size - a.size - length]
         };

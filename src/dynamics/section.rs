@@ -1,6 +1,6 @@
 //! Stroboscopic sections: the motion at successive instants with one forcing angle.
 
-use super::ensemble::{self, Motion, Watcher};
+use super::ensemble::{self, Member, Watcher};
 use crate::model::Model;
 use crate::model::entry::Entry;
 use crate::model::instant::Instant;
@@ -98,26 +98,26 @@ pub fn sections(
         let entry = starts[number];
         let first = entry.instant.after_periods(transient, 1).first_at_angle(angle);
         let horizon = Some(first.after_periods(count as u64, 1));
-        Motion { model, entry, first, horizon, watcher: Kept::new(count, &|| ()) }
+        Member { model, entry, first, horizon, watcher: KeptStrobes::new(count, &|| ()) }
     });
     kept.into_iter().map(|it| it.strobes).collect()
 }
 
 /// Keeps the first so many strobes.
-pub(super) struct Kept<'a> {
+pub(super) struct KeptStrobes<'a> {
     wanted: usize,
     pub strobes: Vec<Entry>,
     /// Told when it has them.
     done: &'a (dyn Fn() + Sync),
 }
 
-impl<'a> Kept<'a> {
+impl<'a> KeptStrobes<'a> {
     pub fn new(wanted: usize, done: &'a (dyn Fn() + Sync)) -> Self {
         Self { wanted, strobes: Vec::new(), done }
     }
 }
 
-impl Watcher for Kept<'_> {
+impl Watcher for KeptStrobes<'_> {
     fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
         self.strobes.push(*strobe);
         if self.strobes.len() < self.wanted {

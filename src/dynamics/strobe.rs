@@ -16,7 +16,7 @@
 //! through 1 or -1. Where contact grazes f = 1 or f = 0 the field is continuous and nothing jumps.
 
 use super::linear;
-pub use super::linear::{Jacobian, Point};
+pub use super::linear::{Jacobian, StrobePoint};
 use super::section::Section;
 use crate::error::InputError;
 use crate::model::Model;
@@ -73,7 +73,7 @@ impl StrobeMap {
     ///
     /// # Errors
     /// [`InputError::OutOfRange`] for numbers beyond 1e9 or not finite.
-    pub fn entry(&self, [p, y, q]: Point) -> Result<Entry, InputError> {
+    pub fn entry(&self, [p, y, q]: StrobePoint) -> Result<Entry, InputError> {
         let g = self.model.parameters().g;
         let q = if p > q + g { p - g } else { q };
         self.model.entry(self.instant, State { p, y, q })
@@ -133,13 +133,13 @@ impl Passage {
 
     /// Gradient of the drift gained with respect to (p, y, q).
     #[must_use]
-    pub fn drift_gradient(&self) -> Point {
+    pub fn drift_gradient(&self) -> StrobePoint {
         [P, Y, Q].map(|column| self.derivative[V][column])
     }
 
     /// The image as a point of the section.
     #[must_use]
-    pub fn point(&self) -> Point {
+    pub fn point(&self) -> StrobePoint {
         self.image.point()
     }
 }

@@ -15,7 +15,7 @@ const PIECE: f64 = 300.0;
 
 /// Errors of (p, y, q), and the areas dp^dy, dp^dq and dy^dq of a pair of them.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Tangent {
+pub(super) struct TangentVector {
     direction: [f64; 3],
     area: [f64; 3],
     /// Logarithm of the length's growth.
@@ -29,7 +29,7 @@ pub(super) struct Tangent {
 /// dp = dq, the area of one dp ^ dy.
 const ON_SLIDER: [f64; 3] = [1.0, 0.0, -1.0];
 
-impl Tangent {
+impl TangentVector {
     /// Errors as a separation leaves them: with dp = dq.
     pub fn new(model: &Model) -> Self {
         let xi = model.parameters().xi;

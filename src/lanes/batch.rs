@@ -88,7 +88,7 @@ pub struct Begin {
 
 /// How the phases end.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct End {
+pub struct PhaseEnds {
     /// One where the lane's result is proved; where it is not, the lane's other numbers mean
     /// nothing.
     pub fine: Column,
@@ -125,5 +125,5 @@ pub struct Batch {
     /// Beginnings.
     pub begin: Begin,
     /// Ends.
-    pub end: End,
+    pub end: PhaseEnds,
 }

@@ -6,7 +6,7 @@ use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// A guard on a piece.
-pub struct Piece<S: Simd> {
+pub struct LanePiece<S: Simd> {
     /// Value and three derivatives at the left end.
     pub left: [Wide<S>; 4],
     /// Value and three derivatives at the right end.
@@ -23,7 +23,7 @@ pub struct Piece<S: Simd> {
     pub to_root: Mask<S>,
 }
 
-impl<S: Simd> Piece<S> {
+impl<S: Simd> LanePiece<S> {
     /// The lanes in which the guard stays between two values, with this room for rounding and that
     /// of the coefficients' own sums.
     #[inline(always)]

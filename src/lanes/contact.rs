@@ -3,7 +3,7 @@
 
 use super::contact_shape::Forms;
 use super::harmonic::Angle;
-use super::root::{Care, Found, Phase, find};
+use super::root::{Care, LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::swing::{LaneParts, each};
@@ -18,7 +18,7 @@ use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// Contacts; their guard is the trial force less `reference`.
-pub struct Contact<'a, S: Simd> {
+pub struct LaneContact<'a, S: Simd> {
     /// The model.
     pub shape: &'a Shape<Wide<S>>,
     /// Which closed forms it has.
@@ -64,11 +64,11 @@ pub struct Release<S: Simd> {
 
 /// A contact with the threshold that it is guessed to leave through.
 struct Leaving<'a, 'b, S: Simd> {
-    contact: &'b Contact<'a, S>,
+    contact: &'b LaneContact<'a, S>,
     threshold: Wide<S>,
 }
 
-impl<S: Simd> Phase<S> for Leaving<'_, '_, S> {
+impl<S: Simd> LanePhase<S> for Leaving<'_, '_, S> {
     type At = Evaluated<S>;
 
     #[inline(always)]
@@ -105,7 +105,7 @@ impl<S: Simd> Phase<S> for Leaving<'_, '_, S> {
     }
 }
 
-impl<S: Simd> Contact<'_, S> {
+impl<S: Simd> LaneContact<'_, S> {
     /// The motion after `d`.
     #[inline(always)]
     fn at(&self, d: Wide<S>) -> Evaluated<S> {
@@ -170,7 +170,7 @@ impl<S: Simd> Contact<'_, S> {
     pub fn release(&self, care: Care) -> Release<S> {
         let first = self.first();
         let (guess, threshold, guessed) = self.first_exit(first);
-        let Found { at, elapsed, series, step, fine, .. } =
+        let LaneRoot { at, elapsed, series, step, fine, .. } =
             find(&Leaving { contact: self, threshold }, guess, guessed);
         // y' = F - f
         let [u, v, _] = at.force;

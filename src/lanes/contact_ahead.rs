@@ -4,8 +4,8 @@
 //! The certificate is the scalar solver's ([`crate::crossing::certificate`]), in pieces of fixed
 //! length, which are shorter where great care is taken.
 
-use super::certificate::Piece;
-use super::contact::Contact;
+use super::certificate::LanePiece;
+use super::contact::LaneContact;
 use super::contact_shape::Forms;
 use super::guess::meeting;
 use super::root::Care;
@@ -19,7 +19,7 @@ use pulp::Simd;
 /// Steps of a guess, after which a lane is left to the scalar solver.
 const STRIDES: usize = 24;
 
-impl<S: Simd> Contact<'_, S> {
+impl<S: Simd> LaneContact<'_, S> {
     /// When the force may first leave its corridor, through which threshold, and where that is
     /// told.
     #[inline(always)]
@@ -101,7 +101,8 @@ impl<S: Simd> Contact<'_, S> {
             let next = here.orders(self.shape, self.reference);
             let right = each(is_last, last, next);
             let length = is_last.choose(rest, stride);
-            let piece = Piece { left, right, length, eighth, bare, double: none, to_root: is_last };
+            let piece =
+                LanePiece { left, right, length, eighth, bare, double: none, to_root: is_last };
             fine = fine & (piece.stays_between(low, high, slack) | !open);
             open = open & !is_last;
             if !open.any() {

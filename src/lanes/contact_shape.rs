@@ -38,14 +38,14 @@ const PIECE: f64 = 2.0;
 const SHORTEST: f64 = 1.0 / 256.0;
 
 /// The steps of a contact.
-struct Pace {
+struct ContactPace {
     /// Steps are measured by this rate,
     full: f64,
     /// and the first one is this much of them.
     early: f64,
 }
 
-impl Pace {
+impl ContactPace {
     fn new(omega: f64, damping: &Damping<f64>) -> Self {
         let Damping::Over { fast, slow, .. } = *damping else {
             return Self { full: omega.max(1.0), early: 1.0 };
@@ -87,7 +87,7 @@ impl Shape<f64> {
     /// The constants of contacts.
     pub(super) fn of_contact(constants: &Constants<f64>) -> Self {
         let Constants { a, b, omega, damping, steady, forced_eighth, .. } = *constants;
-        let pace = Pace::new(omega, &damping);
+        let pace = ContactPace::new(omega, &damping);
         let stride = |radians: f64| Stride::new(radians / pace.full, omega, &damping);
         let full = [SWING, PIECE].map(stride);
         let first = [SWING * pace.early, PIECE * pace.early];

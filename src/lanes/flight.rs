@@ -7,17 +7,17 @@
 //! neither concavity nor sinking clears are certified with great care, by three tangents more in a
 //! stretch or as the scalar solver certifies short ones ([`crate::crossing::no_contact`]).
 
-use super::certificate::Piece;
+use super::certificate::LanePiece;
 use super::functions::shrink;
-use super::guess::SlowEnvelope;
+use super::guess::LaneEnvelope;
 use super::harmonic::Angle;
-use super::root::{Care, Found, Phase, find};
+use super::root::{Care, LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::allowances::{LANE_TIE, SLACK, STRETCHES};
 use crate::crossing::series::{Push, REACH, short_decay};
-use crate::crossing::tangents::{Bound, Ended, Tangent};
+use crate::crossing::tangents::{EndedFlight, Tangent, TangentBound};
 use crate::flow::forcing::Harmonic;
 use crate::flow::no_contact::Flying;
 use crate::flow::steps::{GRIP, SEPARATION_INTERVAL};
@@ -65,7 +65,7 @@ pub struct Impact<S: Simd> {
 
 /// Decay times after which an exponential is less than 1e-19 of what it was.
 const DEAD: f64 = 45.0;
-impl<S: Simd> Phase<S> for Flight<'_, S> {
+impl<S: Simd> LanePhase<S> for Flight<'_, S> {
     type At = Aloft<S>;
 
     #[inline(always)]
@@ -125,7 +125,7 @@ impl<S: Simd> Flight<'_, S> {
         // leads back.
         let hasty = guess.less(look) & look_decay.is(0.0);
         let guess = hasty.choose(look, guess);
-        let Found { at, elapsed, step, slope, fine, .. } = find(self, guess, guessed);
+        let LaneRoot { at, elapsed, step, slope, fine, .. } = find(self, guess, guessed);
         let [total, v, _] = at.force;
         let push = Push::new(self.shape.omega, [total - b, v], step);
         let lost = at.q * short_decay(rate * step);
@@ -157,11 +157,11 @@ impl<S: Simd> Flight<'_, S> {
     }
 
     #[inline(always)]
-    fn slow_envelope(&self) -> SlowEnvelope<'_, S> {
+    fn slow_envelope(&self) -> LaneEnvelope<'_, S> {
         let Shape { a_over_omega, a_over_omega2, b, .. } = *self.shape;
         let Angle { sin, cos, .. } = self.angle;
         let offset = a_over_omega2.times_plus(cos, self.q);
-        SlowEnvelope {
+        LaneEnvelope {
             shape: self.shape,
             offset,
             slope: a_over_omega.times_from(sin, self.y),
@@ -176,14 +176,14 @@ impl<S: Simd> Flight<'_, S> {
 
     /// E up to the root, at which the slider's top is `q`.
     #[inline(always)]
-    fn bound(&self, root: Wide<S>, q: Wide<S>) -> Bound<Wide<S>> {
+    fn bound(&self, root: Wide<S>, q: Wide<S>) -> TangentBound<Wide<S>> {
         let Shape { b, rate, a_over_omega, a_over_omega2, .. } = *self.shape;
         let Angle { sin, cos, .. } = self.angle;
         // No term of the guard is larger than these: its terms at the root.
         let sunk = self.q * rate * root;
         let turned = a_over_omega.times_plus(root, a_over_omega2 * 3.0);
         let lifted = b.magnitude() * root * root * 0.5;
-        Bound::new(&Ended {
+        TangentBound::new(&EndedFlight {
             b,
             a_over_omega,
             a_over_omega2,
@@ -200,7 +200,7 @@ impl<S: Simd> Flight<'_, S> {
     #[inline(always)]
     fn stays_below_between(
         &self,
-        bound: &Bound<Wide<S>>,
+        bound: &TangentBound<Wide<S>>,
         near: &Tangent<Wide<S>>,
         far: &Tangent<Wide<S>>,
         length: Wide<S>,
@@ -240,7 +240,7 @@ impl<S: Simd> Flight<'_, S> {
         let [bend, third] = orders(self.q * rate, b + u, v);
         let [last_bend, last_third] = orders(spring, force, force_rate);
         let everywhere = !zero.less(zero);
-        let piece = Piece {
+        let piece = LanePiece {
             left: [zero, zero, bend.smaller(zero), third],
             right: [zero, slope, last_bend, last_third],
             length: root,

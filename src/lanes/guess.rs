@@ -9,7 +9,7 @@ use pulp::Simd;
 
 /// The guard, counted so that it rises to zero: c + s d + k d^2/2 - K cos(omega d + angle) - e
 /// exp(-rate d).
-pub struct SlowEnvelope<'a, S: Simd> {
+pub struct LaneEnvelope<'a, S: Simd> {
     /// The model.
     pub shape: &'a Shape<Wide<S>>,
     /// c
@@ -30,7 +30,7 @@ pub struct SlowEnvelope<'a, S: Simd> {
     pub first: Wide<S>,
 }
 
-struct Place<S: Simd> {
+struct LanePlace<S: Simd> {
     elapsed: Wide<S>,
     sin: Wide<S>,
     cos: Wide<S>,
@@ -42,7 +42,7 @@ struct Place<S: Simd> {
 /// Steps after which a lane is left to the scalar solver.
 const STRIDES: usize = 24;
 
-impl<S: Simd> SlowEnvelope<'_, S> {
+impl<S: Simd> LaneEnvelope<'_, S> {
     /// When the guard may first rise to zero, and in which lanes that is told.
     #[inline(always)]
     pub fn first_root(&self) -> (Wide<S>, Mask<S>) {
@@ -87,13 +87,19 @@ impl<S: Simd> SlowEnvelope<'_, S> {
     }
 
     #[inline(always)]
-    fn place(&self, elapsed: Wide<S>, sin: Wide<S>, cos: Wide<S>, lasting: Wide<S>) -> Place<S> {
+    fn place(
+        &self,
+        elapsed: Wide<S>,
+        sin: Wide<S>,
+        cos: Wide<S>,
+        lasting: Wide<S>,
+    ) -> LanePlace<S> {
         let Self { slope, curvature, amplitude, .. } = *self;
         let Shape { omega, rate: decay, .. } = *self.shape;
         let value = self.parabola(elapsed) - amplitude.times_plus(cos, lasting);
         let rise = curvature.times_plus(elapsed, slope);
         let rate = (amplitude * omega).times_plus(sin, decay.times_plus(lasting, rise));
-        Place { elapsed, sin, cos, lasting, value, rate }
+        LanePlace { elapsed, sin, cos, lasting, value, rate }
     }
 
     #[inline(always)]
@@ -104,7 +110,7 @@ impl<S: Simd> SlowEnvelope<'_, S> {
     /// Skips the time in which the parabola lies below minus the amplitude: the place where it no
     /// longer does.
     #[inline(always)]
-    fn skipped(&self, here: Place<S>, closed: Mask<S>) -> Place<S> {
+    fn skipped(&self, here: LanePlace<S>, closed: Mask<S>) -> LanePlace<S> {
         let Shape { omega, look, .. } = *self.shape;
         let value = self.parabola(here.elapsed) + self.amplitude;
         let rising = self.curvature.times_plus(here.elapsed, self.slope);
@@ -124,7 +130,7 @@ impl<S: Simd> SlowEnvelope<'_, S> {
             self.sin.times_from(sin, self.cos * cos),
             opens.same(0.0),
         );
-        Place {
+        LanePlace {
             elapsed: opens,
             sin: further.choose(moved.sin, here.sin),
             cos: further.choose(moved.cos, here.cos),

@@ -1,7 +1,7 @@
 //! The instruction sets, chosen when the program runs.
 
 use super::batch::{Batch, Stage};
-use super::work::Work;
+use super::work::BatchWork;
 use pulp::Simd;
 
 /// How many motions are solved at once, and by which instructions.
@@ -95,7 +95,7 @@ impl Permit {
 
     /// Works a batch off.
     pub(crate) fn work(self, stage: Stage, batch: &mut Batch) {
-        let work = Work { stage, batch };
+        let work = BatchWork { stage, batch };
         match self {
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(simd) => Simd::vectorize(simd, work),

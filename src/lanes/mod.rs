@@ -36,7 +36,7 @@ mod wide;
 mod words;
 mod work;
 
-pub(crate) use batch::{Batch, Begin, End, Stage};
+pub(crate) use batch::{Batch, Begin, PhaseEnds, Stage};
 pub use instructions::Instructions;
 pub(crate) use instructions::Permit;
 pub(crate) use shape::Shape;

@@ -8,7 +8,7 @@ use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// A phase whose guard can be evaluated.
-pub trait Phase<S: Simd> {
+pub trait LanePhase<S: Simd> {
     /// What an evaluation gives.
     type At: Copy;
 
@@ -37,7 +37,7 @@ pub enum Care {
 
 /// A root next to an evaluation.
 #[derive(Clone, Copy)]
-pub struct Found<S: Simd, A> {
+pub struct LaneRoot<S: Simd, A> {
     /// The evaluation.
     pub at: A,
     /// When.
@@ -57,7 +57,11 @@ const TINY: f64 = 1e-300;
 
 /// Follows guesses.
 #[inline(always)]
-pub fn find<S: Simd, P: Phase<S>>(phase: &P, guess: Wide<S>, guessed: Mask<S>) -> Found<S, P::At> {
+pub fn find<S: Simd, P: LanePhase<S>>(
+    phase: &P,
+    guess: Wide<S>,
+    guessed: Mask<S>,
+) -> LaneRoot<S, P::At> {
     let zero = guess.same(0.0);
     let mut elapsed = guess;
     let mut alive = guessed;
@@ -76,7 +80,7 @@ pub fn find<S: Simd, P: Phase<S>>(phase: &P, guess: Wide<S>, guessed: Mask<S>) -
         if attempt == ATTEMPTS || !(alive & !short).any() {
             let series = Series::of_orders(excess, phase.later(&at));
             let (step, slope, polished) = series.polished(step);
-            return Found { at, elapsed, series, step, slope, fine: alive & short & polished };
+            return LaneRoot { at, elapsed, series, step, slope, fine: alive & short & polished };
         }
         elapsed = (alive & !short).choose(next, elapsed);
         attempt += 1;

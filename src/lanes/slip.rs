@@ -4,9 +4,9 @@
 //! progressions are left to the scalar solver.
 
 use super::functions::shrink;
-use super::guess::SlowEnvelope;
+use super::guess::LaneEnvelope;
 use super::harmonic::Angle;
-use super::root::{Found, Phase, find};
+use super::root::{LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
@@ -75,7 +75,7 @@ pub struct Stop<S: Simd> {
     pub fine: Mask<S>,
 }
 
-impl<S: Simd> Phase<S> for Slip<'_, S> {
+impl<S: Simd> LanePhase<S> for Slip<'_, S> {
     type At = Sliding<S>;
 
     #[inline(always)]
@@ -134,7 +134,7 @@ impl<S: Simd> Slip<'_, S> {
     pub fn stop(&self) -> Stop<S> {
         let Shape { a, b, omega, rate, .. } = *self.shape;
         let (guess, guessed) = self.slow_envelope().first_root();
-        let Found { at, elapsed, series, step, slope, fine } = find(self, guess, guessed);
+        let LaneRoot { at, elapsed, series, step, slope, fine } = find(self, guess, guessed);
         let lag = at.lag + at.lag * short_decay(rate * step);
         let drift = at.drift + series.integral(step);
         let begin = [self.closing, self.drift_rate];
@@ -151,11 +151,11 @@ impl<S: Simd> Slip<'_, S> {
     }
 
     #[inline(always)]
-    fn slow_envelope(&self) -> SlowEnvelope<'_, S> {
+    fn slow_envelope(&self) -> LaneEnvelope<'_, S> {
         let Shape { a_over_omega, b, look_decay, .. } = *self.shape;
         let Angle { sin, cos, .. } = self.angle;
         let zero = b.same(0.0);
-        SlowEnvelope {
+        LaneEnvelope {
             shape: self.shape,
             offset: a_over_omega.times_plus(sin, -self.y),
             slope: -b + 1.0,

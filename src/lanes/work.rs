@@ -1,7 +1,7 @@
 //! A batch worked off, from the lanes' beginnings to their ends.
 
-use super::batch::{Batch, Begin, End, Stage};
-use super::contact::{Contact, Release};
+use super::batch::{Batch, Begin, PhaseEnds, Stage};
+use super::contact::{LaneContact, Release};
 use super::contact_shape::Forms;
 use super::flight::{Flight, Impact};
 use super::harmonic::Angle;
@@ -14,20 +14,20 @@ use crate::numeric::real::Real;
 use pulp::{Simd, WithSimd};
 
 /// A batch to be worked off.
-pub struct Work<'a> {
+pub struct BatchWork<'a> {
     /// What it is.
     pub stage: Stage,
     /// The batch.
     pub batch: &'a mut Batch,
 }
 
-impl WithSimd for Work<'_> {
+impl WithSimd for BatchWork<'_> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
         let Batch { shape, begin, end } = self.batch;
-        let lanes = Lanes { shape: &shape.load(simd), begin, simd };
+        let lanes = LoadedLanes { shape: &shape.load(simd), begin, simd };
         match self.stage {
             Stage::Flight => lanes.flight(Care::Usual, end),
             Stage::Contact => lanes.contact(Care::Usual, end),
@@ -41,7 +41,7 @@ impl WithSimd for Work<'_> {
     }
 }
 
-struct Lanes<'a, S: Simd> {
+struct LoadedLanes<'a, S: Simd> {
     shape: &'a Shape<Wide<S>>,
     begin: &'a Begin,
     simd: S,
@@ -50,7 +50,7 @@ struct Lanes<'a, S: Simd> {
 /// Longer phases are left to the scalar solver, whose reduction of the angle knows no bound.
 const LONGEST: f64 = 1e5;
 
-impl<'a, S: Simd> Lanes<'a, S> {
+impl<'a, S: Simd> LoadedLanes<'a, S> {
     #[inline(always)]
     fn load(&self, column: &Column) -> Wide<S> {
         Wide::load(self.simd, column)
@@ -72,8 +72,8 @@ impl<'a, S: Simd> Lanes<'a, S> {
     }
 
     #[inline(always)]
-    fn contacts(&self, forms: Forms) -> Contact<'a, S> {
-        Contact {
+    fn contacts(&self, forms: Forms) -> LaneContact<'a, S> {
+        LaneContact {
             shape: self.shape,
             forms,
             angle: Angle::new(self.shape, self.angle()),
@@ -97,7 +97,7 @@ impl<'a, S: Simd> Lanes<'a, S> {
     }
 
     #[inline(always)]
-    fn flight(&self, care: Care, end: &mut End) {
+    fn flight(&self, care: Care, end: &mut PhaseEnds) {
         let Impact { elapsed, y, q, f, fine } = self.flights().impact(care);
         self.switch(elapsed, fine, end);
         y.store(&mut end.y);
@@ -106,7 +106,7 @@ impl<'a, S: Simd> Lanes<'a, S> {
     }
 
     #[inline(always)]
-    fn contact(&self, care: Care, end: &mut End) {
+    fn contact(&self, care: Care, end: &mut PhaseEnds) {
         let release = match Forms::of(self.shape) {
             Forms::Usual => self.contacts(Forms::Usual).release(care),
             Forms::Any => self.contacts(Forms::Any).release(care),
@@ -118,7 +118,7 @@ impl<'a, S: Simd> Lanes<'a, S> {
     }
 
     #[inline(always)]
-    fn slip(&self, end: &mut End) {
+    fn slip(&self, end: &mut PhaseEnds) {
         let Stop { elapsed, y, drift, fine } = self.slips().stop();
         self.switch(elapsed, fine, end);
         y.store(&mut end.y);
@@ -127,7 +127,7 @@ impl<'a, S: Simd> Lanes<'a, S> {
 
     /// When the phases end.
     #[inline(always)]
-    fn switch(&self, (evaluated, step): (Wide<S>, Wide<S>), fine: Mask<S>, end: &mut End) {
+    fn switch(&self, (evaluated, step): (Wide<S>, Wide<S>), fine: Mask<S>, end: &mut PhaseEnds) {
         let omega = self.shape.omega;
         let elapsed = Words::sum(evaluated, step);
         let (cycles, angle) = self.angle().plus(elapsed.times(omega)).wrapped();
@@ -140,7 +140,7 @@ impl<'a, S: Simd> Lanes<'a, S> {
 
     /// Time from the phase's beginning to the strobe.
     #[inline(always)]
-    fn until_due(&self, end: &mut End) -> Words<S> {
+    fn until_due(&self, end: &mut PhaseEnds) -> Words<S> {
         let due = Words { high: self.load(&self.begin.due), low: self.load(&self.begin.due_low) };
         let Words { high, low } = self.angle();
         let change = due.plus(Words { high: -high, low: -low });
@@ -152,7 +152,7 @@ impl<'a, S: Simd> Lanes<'a, S> {
     }
 
     #[inline(always)]
-    fn flight_strobe(&self, end: &mut End) {
+    fn flight_strobe(&self, end: &mut PhaseEnds) {
         let elapsed = self.until_due(end);
         let (values, rates) = self.flights().state(elapsed.high);
         let [p, y, q] = moved(values, rates, elapsed.low);
@@ -162,7 +162,7 @@ impl<'a, S: Simd> Lanes<'a, S> {
     }
 
     #[inline(always)]
-    fn contact_strobe(&self, end: &mut End) {
+    fn contact_strobe(&self, end: &mut PhaseEnds) {
         let elapsed = self.until_due(end);
         let forms = Forms::of(self.shape);
         let (values, rates) = self.contacts(forms).state(elapsed.high);
@@ -174,7 +174,7 @@ impl<'a, S: Simd> Lanes<'a, S> {
     }
 
     #[inline(always)]
-    fn slip_strobe(&self, end: &mut End) {
+    fn slip_strobe(&self, end: &mut PhaseEnds) {
         let elapsed = self.until_due(end);
         let SlipStrobe { values, rates, lag, terms } = self.slips().state(elapsed.high);
         let [q, y, drift, guard] = moved(values, rates, elapsed.low);

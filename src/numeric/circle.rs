@@ -20,12 +20,12 @@ const SECOND: f64 = (TWO_PI.high / PARTS as f64 - FIRST) + TWO_PI.low / PARTS as
 
 /// Sine and cosine of a part's end.
 #[derive(Clone, Copy)]
-struct End {
+struct PartEnd {
     sin: TwoWord,
     cos: TwoWord,
 }
 
-static ENDS: [End; PARTS] = ends();
+static ENDS: [PartEnd; PARTS] = ends();
 
 /// Sine and cosine of `x`, radians.
 #[inline]
@@ -38,7 +38,7 @@ pub fn sin_cos(x: f64) -> (f64, f64) {
 #[inline]
 fn by_table(x: f64) -> (f64, f64) {
     let rounded = x * (PARTS as f64 / TWO_PI.high) + ROUNDER;
-    let End { sin, cos } = ENDS[rounded.to_bits() as usize % PARTS];
+    let PartEnd { sin, cos } = ENDS[rounded.to_bits() as usize % PARTS];
     let parts = rounded - ROUNDER;
     let near = x - parts * FIRST;
     let second = parts * SECOND;
@@ -57,9 +57,9 @@ fn by_table(x: f64) -> (f64, f64) {
 }
 
 /// The table, from the series at the first eighth of the turn.
-const fn ends() -> [End; PARTS] {
+const fn ends() -> [PartEnd; PARTS] {
     const QUARTER: usize = PARTS / 4;
-    let mut table = [End { sin: TwoWord::ZERO, cos: TwoWord::ZERO }; PARTS];
+    let mut table = [PartEnd { sin: TwoWord::ZERO, cos: TwoWord::ZERO }; PARTS];
     let mut k = 0;
     while k < PARTS {
         let within = k % QUARTER;
@@ -74,7 +74,7 @@ const fn ends() -> [End; PARTS] {
             (sin, cos) = (cos, TwoWord { high: -sin.high, low: -sin.low });
             quarter += 1;
         }
-        table[k] = End { sin, cos };
+        table[k] = PartEnd { sin, cos };
         k += 1;
     }
     table

@@ -57,7 +57,7 @@ pub(crate) struct Passed {
 
 /// What the search of a phase's end has found; a crossing leads to the next phase.
 #[derive(Clone, Copy, Debug)]
-enum Found {
+enum SearchEnd {
     /// The phase ends by a crossing after this time.
     At(TwoWord),
     /// There is no crossing before the horizon.
@@ -97,8 +97,8 @@ trait Landing: Guarded {
         _: (&Begun, &mut Begun),
         (from, _): (f64, f64),
         _: &mut Counters,
-    ) -> Found {
-        Found::Undecided(from)
+    ) -> SearchEnd {
+        SearchEnd::Undecided(from)
     }
 }
 
@@ -136,7 +136,7 @@ fn pass_by<P: Landing>(
         (certain - beyond, limit + beyond)
     });
     match found(phase, model, (begun, next), limit, counters) {
-        Found::At(elapsed) if elapsed.high <= certain => {
+        SearchEnd::At(elapsed) if elapsed.high <= certain => {
             counters.switches += 1;
             Passed { end: End::Switch, duration: elapsed }
         }
@@ -156,7 +156,7 @@ fn found<P: Landing>(
     (begun, next): (&Begun, &mut Begun),
     limit: f64,
     counters: &mut Counters,
-) -> Found {
+) -> SearchEnd {
     let solved = (phase, model.steps());
     let stages = Stages::new(solved, begun.guess, limit);
     let mut candidate = None;
@@ -165,7 +165,7 @@ fn found<P: Landing>(
             Ok(root) => {
                 *next = begun.after(model, phase, &root);
                 if stages.confirm(solved, &root, limit) {
-                    return Found::At(root.elapsed());
+                    return SearchEnd::At(root.elapsed());
                 }
                 Ok(root)
             }
@@ -176,7 +176,7 @@ fn found<P: Landing>(
     if let Crossing::At(root) = &verdict {
         *next = begun.after(model, phase, root);
     }
-    Found::of(&verdict)
+    SearchEnd::of(&verdict)
 }
 
 /// Next to a horizon, and where no switch was found as yet.
@@ -186,18 +186,18 @@ fn pass_late<P: Landing>(
     phase: &P,
     model: &Model,
     (begun, next): (&Begun, &mut Begun),
-    (horizon, limit, found): (Option<&Instant>, f64, Found),
+    (horizon, limit, found): (Option<&Instant>, f64, SearchEnd),
     counters: &mut Counters,
 ) -> Passed {
     let (omega, instant) = (model.parameters().omega, &begun.entry.instant);
     let left = || horizon.map_or(FURTHEST / omega, |h| h.since(instant, omega).value());
     let ended = |end, duration| Passed { end, duration: TwoWord::new(duration) };
     let found = match found {
-        Found::Stage(from) => phase.in_stages(model, (begun, next), (from, limit), counters),
+        SearchEnd::Stage(from) => phase.in_stages(model, (begun, next), (from, limit), counters),
         found => found,
     };
     match found {
-        Found::At(elapsed) => {
+        SearchEnd::At(elapsed) => {
             let elapsed = horizon.map_or(elapsed, |_| {
                 let limit = limit + FURTHER / omega;
                 found_later(phase, model, (begun, next), limit, counters).unwrap_or(elapsed)
@@ -208,8 +208,8 @@ fn pass_late<P: Landing>(
             counters.switches += 1;
             Passed { end: End::Switch, duration: elapsed }
         }
-        Found::Never if left() > 0.0 => ended(End::Endless(P::NONE), f64::INFINITY),
-        Found::Undecided(elapsed) if elapsed < left() => ended(End::Undecidable, elapsed),
+        SearchEnd::Never if left() > 0.0 => ended(End::Endless(P::NONE), f64::INFINITY),
+        SearchEnd::Undecided(elapsed) if elapsed < left() => ended(End::Undecidable, elapsed),
         // A horizon that is past leaves a phase of no length.
         _ => ended(End::Horizon, left().max(0.0)),
     }
@@ -227,18 +227,18 @@ fn found_later<P: Landing>(
     let mut again = *begun;
     let mut counted = Counters::default();
     let found = match found(phase, model, (begun, &mut again), limit, &mut counted) {
-        Found::Stage(from) => {
+        SearchEnd::Stage(from) => {
             phase.in_stages(model, (begun, &mut again), (from, limit), &mut counted)
         }
         found => found,
     };
     counters.evaluations += counted.evaluations;
-    let Found::At(elapsed) = found else { return None };
+    let SearchEnd::At(elapsed) = found else { return None };
     *next = again;
     Some(elapsed)
 }
 
-impl Found {
+impl SearchEnd {
     fn of(crossing: &Crossing) -> Self {
         match crossing {
             Crossing::At(root) => Self::At(root.elapsed()),
@@ -337,13 +337,13 @@ impl Landing for Contact<f64, &Constants<f64>> {
         (begun, next): (&Begun, &mut Begun),
         span: (f64, f64),
         counters: &mut Counters,
-    ) -> Found {
+    ) -> SearchEnd {
         let Staged { contact, crossing } =
             search_in_stages(model, self, &begun.entry.instant, span, counters);
         if let Crossing::At(root) = &crossing {
             *next = begun.after(model, &contact, root);
         }
-        Found::of(&crossing)
+        SearchEnd::of(&crossing)
     }
 }
 

@@ -116,7 +116,7 @@ impl Segment {
     }
 
     /// The field, the guard's gradient and its rate just before the switch that ends the phase.
-    fn landing(&self) -> Option<Landing> {
+    fn landing(&self) -> Option<LandingPoint> {
         let Exit::Switch(_) = self.exit() else { return None };
         let sample = self.point(self.duration());
         let guard_rate = sample.guard.orders[1];
@@ -128,11 +128,11 @@ impl Segment {
             Phase::Progression => ([0.0, 0.0, two_xi, 1.0, 0.0], two_xi * guard_rate),
         };
         let [p, y, q, v] = self.field(&sample);
-        Some(Landing { field: [omega, p, y, q, v], guard, guard_rate })
+        Some(LandingPoint { field: [omega, p, y, q, v], guard, guard_rate })
     }
 }
 
-struct Landing {
+struct LandingPoint {
     field: Gradient,
     guard: Gradient,
     guard_rate: f64,

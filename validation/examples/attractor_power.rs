@@ -8,7 +8,9 @@
 use anyhow::{Context, Result};
 use percuss_validation::case::{Case, embedded};
 use percuss_validation::number::brief;
-use percuss_validation::picture::{Axis, Curve, Curves, Marker, Scale, Stroke, basin_colours, png};
+use percuss_validation::picture::{
+    Axis, AxisScale, Curve, Curves, Marker, Stroke, basin_colours, png,
+};
 use percuss_validation::score::attractor::{
     Alarms, AttractorTest, Calibrated, Changed, calibrated, interval,
 };
@@ -176,8 +178,8 @@ fn picture(power: &[Ladder]) -> Curves {
         title: "Runs caught by the same-attractor test: solid with the errors of single periods, \
                 dashed without"
             .to_owned(),
-        x: Axis { label: "relative change (+)".to_owned(), scale: Scale::Logarithmic },
-        y: Axis { label: "runs caught, %".to_owned(), scale: Scale::Linear },
+        x: Axis { label: "relative change (+)".to_owned(), scale: AxisScale::Logarithmic },
+        y: Axis { label: "runs caught, %".to_owned(), scale: AxisScale::Linear },
         curves,
     }
 }

@@ -3,11 +3,12 @@
 //! `cargo run --release -p percuss-validation --example calibrate > target/attractors.toml`
 
 use percuss_validation::case::embedded;
-use percuss_validation::score::attractor::{NULL_RUNS, Plan, calibrate};
+use percuss_validation::score::attractor::{ComparisonPlan, NULL_RUNS, calibrate};
 
 /// Chaotic cases with one attractor each that every start near theirs reaches.
 const CASES: [&str; 3] = ["chaos-from-rest", "fig7a-chaos", "fig7d-chaos"];
-const PLAN: Plan = Plan { transient: 200, periods: 2000, reference_periods: 20_000 };
+const PLAN: ComparisonPlan =
+    ComparisonPlan { transient: 200, periods: 2000, reference_periods: 20_000 };
 
 fn main() -> anyhow::Result<()> {
     println!(

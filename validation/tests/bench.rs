@@ -6,7 +6,7 @@ use crate::support::{refused, run, stdout, text};
 use percuss_validation::bench::alone::alone;
 use percuss_validation::bench::cases::USUAL;
 use percuss_validation::bench::contest::{contest_at, most_accurate};
-use percuss_validation::bench::contestant::{Contestant, Entered, ladder};
+use percuss_validation::bench::contestant::{Contestant, EnteredEngine, ladder};
 use percuss_validation::bench::course::Course;
 use percuss_validation::engine::{Accuracy, CONTROL, Engine, Limits, Location, Script, all, wrong};
 use percuss_validation::truth::Library;
@@ -30,8 +30,8 @@ fn a_wrong_answer_has_no_time() {
     let course = course("impact-into-progression");
     let faulty = wrong().iter().map(|it| it.engine);
     let faulty = faulty.filter(|it| SHOWN.contains(&it.declaration().name));
-    let engines: Vec<Entered> =
-        [exact_solver(), CONTROL].into_iter().chain(faulty).map(Entered).collect();
+    let engines: Vec<EnteredEngine> =
+        [exact_solver(), CONTROL].into_iter().chain(faulty).map(EnteredEngine).collect();
     assert_eq!(engines.len(), 2 + SHOWN.len());
     let asked: Vec<(&dyn Contestant, Accuracy)> =
         engines.iter().map(|it| (it as &dyn Contestant, Accuracy::Exact)).collect();
@@ -52,7 +52,8 @@ fn a_wrong_answer_has_no_time() {
 fn the_usual_cases_are_there_and_the_exact_solver_is_right_on_them() {
     for name in USUAL {
         let course = course(name);
-        let found = contest_at(&course, &[(&Entered(exact_solver()), Accuracy::Exact)], 1, &|| ());
+        let found =
+            contest_at(&course, &[(&EnteredEngine(exact_solver()), Accuracy::Exact)], 1, &|| ());
         let timed = found[0].result.as_ref().expect("right");
         assert!(timed.score.state_error < 1e-10, "{name}: {:?}", timed.score);
         assert_eq!(timed.work.steps, course.truth.switches.len() as u64 + 1);

@@ -4,7 +4,7 @@ use crate::exact;
 use percuss::Phase;
 use percuss_validation::case::defaults;
 use percuss_validation::engine::select;
-use percuss_validation::report::{EventPicture, Kind, View, event_pictures};
+use percuss_validation::report::{EventPicture, MismatchKind, View, event_pictures};
 use percuss_validation::suite::{self, Suite};
 use percuss_validation::truth::Library;
 use regex::Regex;
@@ -36,7 +36,10 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
 fn a_missed_touch_shows_what_the_root_finder_did_not_see() {
     let all = pictures("graze-overlap-1e-9", "diffsol-bdf");
     let picture = all.iter().find(|it| it.tolerance == Some(1e-9)).expect("it misses the touch");
-    assert_eq!((picture.kind, picture.guard), (Kind::Missed, "gap p \u{2212} q \u{2212} g"));
+    assert_eq!(
+        (picture.kind, picture.guard),
+        (MismatchKind::Missed, "gap p \u{2212} q \u{2212} g")
+    );
     assert!((picture.centre - 0.706_756).abs() < 1e-6, "{}", picture.centre);
     for view in &picture.views {
         assert!(view.truth.events.iter().any(|it| it.t.abs() < 1e-15 && !it.matched));
@@ -61,7 +64,7 @@ fn a_spurious_touch_is_the_engine_s_own() {
     let all = pictures("graze-miss-1e-12", "ode_solvers-dopri5");
     let picture =
         all.iter().find(|it| it.tolerance == Some(1e-6)).expect("it has a touch too many");
-    assert_eq!(picture.kind, Kind::Spurious);
+    assert_eq!(picture.kind, MismatchKind::Spurious);
     let close = &picture.views[picture.telling];
     assert!(close.truth.events.is_empty() && largest(close.truth.values.iter().copied()) < 0.0);
     let events: Vec<_> = close.engine.events.iter().map(|it| (it.phase, it.matched)).collect();

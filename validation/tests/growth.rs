@@ -9,8 +9,8 @@ use percuss::number::Number;
 use percuss::variation::{ANGLE, IDENTITY, Matrix, P, Q, V, Y, product, times};
 use percuss::{Entry, Exit, GrowthRecorder, Instant, Segment};
 use percuss_validation::case::Case;
-use percuss_validation::engine::{Grid, Task};
-use percuss_validation::score::Growth;
+use percuss_validation::engine::{SampleGrid, Task};
+use percuss_validation::score::RunGrowth;
 use percuss_validation::truth::{DoubleDouble, Library, Replay, Truth};
 
 /// Of the largest growth so far: both are products of matrices in f64 (4e-12 is the most in regular
@@ -38,7 +38,7 @@ const CASES: [&str; 12] = [
 fn run(case: &Case) -> (Task, Truth) {
     let library = Library::embedded().expect("the manifest is read");
     let truth = library.truth(case).expect("the tables are there");
-    let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
+    let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
     (Task::of(case, exact::problem(case), grid), truth)
 }
 
@@ -48,7 +48,7 @@ fn products_of_the_solver_agree_with_matrix_exponentials() {
     for name in CASES {
         let case = exact::case(name);
         let (task, truth) = run(&case);
-        let growth = Growth::along(&truth, &case.parameters, task.forcing_angle);
+        let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
         let mut recorder = GrowthRecorder::new();
         let mut largest = 1.0;
         let mut compare = |ours: [f64; 5], theirs: [f64; 5], what: &str| {

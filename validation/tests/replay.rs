@@ -6,8 +6,8 @@ use crate::exact;
 use percuss::Start;
 use percuss::TwoWord;
 use percuss_validation::case::{Case, Given, embedded};
-use percuss_validation::engine::{Grid, Task};
-use percuss_validation::score::Growth;
+use percuss_validation::engine::{SampleGrid, Task};
+use percuss_validation::score::RunGrowth;
 use percuss_validation::truth::{Library, Row, Truth, UNIT, Undecided};
 
 /// The tables hold 25 significant digits, rounded to nearest, and at most 60 decimals.
@@ -29,7 +29,7 @@ fn prepared(case: &Case) -> (Task, Truth) {
     let library = Library::embedded().expect("the manifest is read");
     let truth = library.truth(case).expect("the tables are there");
     let problem = exact::problem(case);
-    let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
+    let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
     (Task::of(case, problem, grid), truth)
 }
 
@@ -78,7 +78,7 @@ fn every_proved_digit_of_every_case_is_met() {
     let (mut switches, mut samples) = (0, 0);
     for case in embedded().expect("the cases are read") {
         let (task, truth) = prepared(&case);
-        let growth = Growth::along(&truth, &case.parameters, task.forcing_angle);
+        let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
         let grid = (task.grid.count, task.grid.per_period);
         let replayed = Truth::replayed(&case.parameters, &task.problem.entry, task.horizon, grid);
         let replayed = replayed.unwrap_or_else(|undecided| panic!("{}: {undecided}", case.name));

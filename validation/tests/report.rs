@@ -2,12 +2,12 @@
 
 use crate::support;
 use crate::support::synthetic::{NASTY, evidence, report};
-use percuss_validation::report::{Evidence, Report, exporters, pictures};
+use percuss_validation::report::{Report, ReportEvidence, exporters, pictures};
 use percuss_validation::score::Verdict;
 use serde_json::Value;
 use std::path::Path;
 
-fn written(name: &str, report: &Report, evidence: &Evidence) -> String {
+fn written(name: &str, report: &Report, evidence: &ReportEvidence) -> String {
     let exporter = exporters().iter().find(|it| it.file_name() == name).expect("the format");
     let mut bytes = Vec::new();
     exporter.write(report, evidence, &mut bytes).expect("written");
@@ -70,7 +70,7 @@ fn nothing_is_loaded_and_nothing_gets_out_of_its_place() {
 
 #[test]
 fn sections_without_data_say_so() {
-    let (full, empty) = (evidence(), Evidence::default());
+    let (full, empty) = (evidence(), ReportEvidence::default());
     let said = |html: &str| html.matches("class=\"empty\">Not run").count();
     assert_eq!(said(&written("report.html", &report(), &full)), 0);
     assert_eq!(said(&written("report.html", &report(), &empty)), 5);
@@ -82,7 +82,7 @@ fn sections_without_data_say_so() {
 #[test]
 fn every_format_takes_every_number() {
     for exporter in exporters() {
-        for evidence in [evidence(), Evidence::default()] {
+        for evidence in [evidence(), ReportEvidence::default()] {
             written(exporter.file_name(), &report(), &evidence);
         }
     }
@@ -127,8 +127,8 @@ fn every_picture_is_one() {
         // A cloud of many points is no SVG.
         assert_eq!(both, [true, name != "attractors-1"], "{name} of {names:?}");
     }
-    let empty = pictures(&report(), &Evidence::default()).expect("drawn");
-    let of_nothing = pictures(&nothing, &Evidence::default()).expect("drawn");
+    let empty = pictures(&report(), &ReportEvidence::default()).expect("drawn");
+    let of_nothing = pictures(&nothing, &ReportEvidence::default()).expect("drawn");
     assert_eq!((empty.len(), of_nothing.len()), (6, 6));
     for (name, bytes) in full.iter().chain(&empty).chain(&of_nothing) {
         if name.ends_with(".png") {

@@ -3,7 +3,7 @@
 
 use percuss::TwoWord;
 use percuss::dynamics::linear::norm;
-use percuss::dynamics::strobe::{Jacobian, Point, StrobeMap};
+use percuss::dynamics::strobe::{Jacobian, StrobeMap, StrobePoint};
 use percuss::number::Number;
 use percuss::variation::{IDENTITY, Matrix, P, Q, Y, product};
 use percuss::{Entry, Exit, Instant, Model, Parameters, Phase, Segment};
@@ -207,13 +207,14 @@ fn the_map_has_a_corner_at_a_graze_and_no_square_root() {
 fn one_sided_differences_at_the_graze_are_the_two_derivatives() {
     let graze = Graze::found();
     let end = graze.start.after_periods(2, 1);
-    let at = |distance: f64| -> Point {
+    let at = |distance: f64| -> StrobePoint {
         let column = image(graze.model.parameters(), &graze.entry(distance), 1, 0.0, end);
         column.map(DoubleDouble::to_f64)
     };
     for (side, width) in [(1.0, 1e-7), (-1.0, 1e-7)] {
         let (near, far) = (at(side * 1e-9), at(side * width));
-        let quotient: Point = std::array::from_fn(|i| (far[i] - near[i]) / (side * (width - 1e-9)));
+        let quotient: StrobePoint =
+            std::array::from_fn(|i| (far[i] - near[i]) / (side * (width - 1e-9)));
         let exact = bounded(&between(&graze.model, graze.entry(side * 0.5 * width), end));
         for (row, quotient) in exact.iter().zip(quotient) {
             // The square root of the width, from what the short contact adds.

@@ -1,11 +1,13 @@
 //! What the engines count: right-hand sides, Jacobians, linear solves and steps belong together.
 
 use crate::exact;
-use percuss_validation::engine::{Accuracy, Engine, Grid, Limits, Outcome, Stepping, Task, all};
+use percuss_validation::engine::{
+    Accuracy, Engine, Limits, Outcome, SampleGrid, Stepping, Task, all,
+};
 
 fn outcome(engine: &dyn Engine) -> Outcome {
     let case = exact::case("chaos-from-rest");
-    let task = Task::of(&case, exact::problem(&case), Grid { per_period: 4, count: 161 });
+    let task = Task::of(&case, exact::problem(&case), SampleGrid { per_period: 4, count: 161 });
     let accuracy = match engine.declaration().stepping {
         Stepping::Exact => Accuracy::Exact,
         Stepping::Fixed { .. } => Accuracy::Step(0.25),

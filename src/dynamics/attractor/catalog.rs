@@ -2,11 +2,11 @@
 
 use super::known::{Known, Label};
 use super::recognition::Recognition;
-use super::settle::{Search, Settled};
+use super::settle::{AttractorSearch, Settled};
 use super::{Attractor, horizon};
-use crate::dynamics::ensemble::{self, Motion};
+use crate::dynamics::ensemble::{self, Member};
 use crate::dynamics::parallel;
-use crate::dynamics::strobe::{Point, StrobeMap};
+use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use crate::model::entry::Entry;
 
 /// The attractors of a strobe map that have been met.
@@ -45,19 +45,19 @@ impl AttractorCatalog {
 
     /// The label of a start, as far as the attractors met so far tell.
     #[must_use]
-    pub fn label(&self, start: Point) -> Label {
+    pub fn label(&self, start: StrobePoint) -> Label {
         let Ok(entry) = self.map.entry(start) else { return Label::Unresolved };
         self.extended(entry, Result::ok).unwrap_or(Label::Unresolved)
     }
 
     /// The labels of many starts; attractors not met before are added. `seen` is told how many
     /// starts more are done.
-    pub fn label_all(&mut self, starts: &[Point], seen: &(dyn Fn(u64) + Sync)) -> Vec<Label> {
+    pub fn label_all(&mut self, starts: &[StrobePoint], seen: &(dyn Fn(u64) + Sync)) -> Vec<Label> {
         let mut labels = vec![Label::Unresolved; starts.len()];
         let mut open = Vec::new();
         for (block, from) in starts.chunks(BLOCK).zip((0..).step_by(BLOCK)) {
             let entry =
-                |(start, place): (&Point, usize)| Some((place, self.map.entry(*start).ok()?));
+                |(start, place): (&StrobePoint, usize)| Some((place, self.map.entry(*start).ok()?));
             let entries: Vec<_> = block.iter().zip(from..).filter_map(entry).collect();
             seen((block.len() - entries.len()) as u64);
             open.extend(self.still_open(entries, &mut labels, seen));
@@ -93,7 +93,7 @@ impl AttractorCatalog {
 
     /// What a motion settles on.
     fn settled(&self, from: Entry) -> Settled {
-        let search = Search { map: &self.map, known: &self.known };
+        let search = AttractorSearch { map: &self.map, known: &self.known };
         let settled = self.extended(from, |recognised| match recognised {
             Ok(label) => Some(Settled::Label(label)),
             Err(last) => search.identified(last),
@@ -165,9 +165,9 @@ impl AttractorCatalog {
     }
 
     /// The motion from here on, of which so many strobes after the first are looked at.
-    fn motion<W>(&self, from: Entry, strobes: u64, watcher: W) -> Motion<'_, W> {
+    fn motion<W>(&self, from: Entry, strobes: u64, watcher: W) -> Member<'_, W> {
         let model = self.map.model();
         let first = from.instant;
-        Motion { model, entry: from, first, horizon: Some(horizon(&first, strobes)), watcher }
+        Member { model, entry: from, first, horizon: Some(horizon(&first, strobes)), watcher }
     }
 }

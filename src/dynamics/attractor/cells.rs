@@ -1,7 +1,7 @@
 //! What an attractor that is no orbit occupies: small cells of (p, y, q) that a long run has
 //! visited.
 
-use crate::dynamics::strobe::Point;
+use crate::dynamics::strobe::StrobePoint;
 use std::collections::HashSet;
 
 /// Cells along the largest extent. An attractor of dimension 1.3 then fills about
@@ -21,7 +21,7 @@ pub(super) struct Cells {
 
 impl Cells {
     /// The cells that some points lie in.
-    pub fn of(points: &[Point]) -> Self {
+    pub fn of(points: &[StrobePoint]) -> Self {
         let extent = |i: usize| {
             let (low, high) =
                 points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), it| {
@@ -36,23 +36,23 @@ impl Cells {
     }
 
     /// Adds the cells of more points.
-    pub fn add(&mut self, points: &[Point]) {
+    pub fn add(&mut self, points: &[StrobePoint]) {
         for point in points {
             self.visited.insert(self.cell(point));
         }
     }
 
     /// Whether a point lies in one of them.
-    pub fn hold(&self, point: &Point) -> bool {
+    pub fn hold(&self, point: &StrobePoint) -> bool {
         self.visited.contains(&self.cell(point))
     }
 
     /// Which share of some points lies in them.
-    pub fn share(&self, points: &[Point]) -> f64 {
+    pub fn share(&self, points: &[StrobePoint]) -> f64 {
         points.iter().filter(|point| self.hold(point)).count() as f64 / points.len() as f64
     }
 
-    fn cell(&self, point: &Point) -> [i64; 3] {
+    fn cell(&self, point: &StrobePoint) -> [i64; 3] {
         point.map(|x| (x / self.width).floor() as i64)
     }
 }

@@ -13,7 +13,7 @@
 use super::grid::{Basins, Window};
 use super::known::Label;
 use crate::dynamics::parallel;
-use crate::dynamics::strobe::Point;
+use crate::dynamics::strobe::StrobePoint;
 use std::collections::{BTreeMap, HashMap};
 
 /// How uncertain starts are.
@@ -83,7 +83,7 @@ impl Entropy {
 /// The uncertainty exponent of any labelling: `starts` fresh starts on each of the scales
 /// 2^-first .. 2^-last of the window's width, evenly spread and the same every time.
 pub fn uncertainty_of(
-    label: impl Fn(Point) -> Label + Sync + Send,
+    label: impl Fn(StrobePoint) -> Label + Sync + Send,
     window: &Window,
     q: f64,
     scales: std::ops::RangeInclusive<u32>,
@@ -211,20 +211,20 @@ mod tests {
 
     const UNIT: Window = Window { p: [0.0, 1.0], y: [0.0, 1.0] };
 
-    fn of_grid(side: u32, label: impl Fn(Point) -> Label) -> Basins {
+    fn of_grid(side: u32, label: impl Fn(StrobePoint) -> Label) -> Basins {
         let grid = Grid { window: UNIT, columns: side, rows: side, q: 0.0 };
         let labels = grid.starts().into_iter().map(label).collect();
         Basins { grid, attractors: Vec::new(), labels }
     }
 
     /// The boundary is a slanted line.
-    fn smooth([p, y, _]: Point) -> Label {
+    fn smooth([p, y, _]: StrobePoint) -> Label {
         Label::Attractor(usize::from(p > 0.3 + 0.4 * y))
     }
 
     /// The boundary is the middle-third Cantor set, of dimension ln 2/ln 3, times a line: labels
     /// alternate from level to level of its gaps.
-    fn cantor([p, _, _]: Point) -> Label {
+    fn cantor([p, _, _]: StrobePoint) -> Label {
         let mut x = p.clamp(0.0, 1.0);
         for level in 0..34 {
             if (1.0 / 3.0..2.0 / 3.0).contains(&x) {

@@ -2,8 +2,8 @@
 
 use super::catalog::AttractorCatalog;
 use super::known::Label;
-use super::{Attractor, Kind};
-use crate::dynamics::strobe::{Point, StrobeMap};
+use super::{Attractor, AttractorKind};
+use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use crate::error::InputError;
 use crate::parameters::within;
 
@@ -75,7 +75,7 @@ impl Grid {
 
     /// All starts, row by row from the lowest y on.
     #[must_use]
-    pub fn starts(&self) -> Vec<Point> {
+    pub fn starts(&self) -> Vec<StrobePoint> {
         let p = self.p();
         self.y().iter().flat_map(|y| p.iter().map(|p| [*p, *y, self.q])).collect()
     }
@@ -121,7 +121,7 @@ impl Basins {
                 reached[*id] = true;
             }
         }
-        let listed = |id: &usize| reached[*id] && known[*id].kind != Kind::Unidentified;
+        let listed = |id: &usize| reached[*id] && known[*id].kind != AttractorKind::Unidentified;
         let mut order: Vec<usize> = (0..known.len()).filter(listed).collect();
         order.sort_by(|a, b| known[*a].order(known[*b]));
         let place = |label: Label| match label {

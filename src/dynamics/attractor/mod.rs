@@ -31,7 +31,7 @@ pub use known::Label;
 
 use super::lyapunov::Spectrum;
 use super::orbit::Orbit;
-use super::strobe::{Point, StrobeMap};
+use super::strobe::{StrobeMap, StrobePoint};
 use crate::model::instant::Instant;
 use std::cmp::Ordering;
 use std::fmt;
@@ -41,7 +41,7 @@ pub const ERRORS: f64 = 4.0;
 
 /// What an attractor is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum AttractorKind {
     /// A stable orbit.
     Periodic,
     /// A positive exponent.
@@ -54,7 +54,7 @@ pub enum Kind {
     Unidentified,
 }
 
-impl Kind {
+impl AttractorKind {
     /// The name used in files.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
@@ -67,7 +67,7 @@ impl Kind {
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for AttractorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.as_str())
     }
@@ -77,11 +77,11 @@ impl fmt::Display for Kind {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Attractor {
     /// What it is.
-    pub kind: Kind,
+    pub kind: AttractorKind,
     /// The orbit, where it is one; its strobes begin at the smallest p.
     pub orbit: Option<Orbit>,
     /// Successive strobes: all of an orbit, the last [`POINTS`] of the reference run otherwise.
-    pub points: Vec<Point>,
+    pub points: Vec<StrobePoint>,
     /// Mean drift per forcing period.
     pub drift_per_period: f64,
     /// The largest exponent per forcing period; of an orbit from its multipliers.
@@ -112,7 +112,7 @@ impl Attractor {
         let orbit = told.filter(|told| told.period() == orbit.period()).unwrap_or(orbit);
         let [re, im] = orbit.multipliers[0];
         Self {
-            kind: Kind::Periodic,
+            kind: AttractorKind::Periodic,
             points: orbit.points.clone(),
             drift_per_period: orbit.drift_per_period,
             lyapunov_per_period: libm::hypot(re, im).ln() / f64::from(orbit.period()),
@@ -121,7 +121,7 @@ impl Attractor {
         }
     }
 
-    fn of_run(kind: Kind, run: &[Point], spectrum: &Spectrum) -> Self {
+    fn of_run(kind: AttractorKind, run: &[StrobePoint], spectrum: &Spectrum) -> Self {
         Self {
             kind,
             orbit: None,

@@ -4,7 +4,7 @@ use super::cells::RECURRENCES;
 use super::known::{AT_REST, Evidence, Known, Label};
 use super::trap::Trap;
 use crate::dynamics::ensemble::Watcher;
-use crate::dynamics::strobe::Point;
+use crate::dynamics::strobe::StrobePoint;
 use crate::model::entry::Entry;
 use crate::run::exit::Endless;
 use std::ops::ControlFlow;
@@ -61,11 +61,11 @@ pub(super) struct Watch<'a> {
     known: &'a [Known],
     /// Strobes in a row in the cells of each.
     streaks: Vec<u32>,
-    entered: Option<Entered<'a>>,
+    entered: Option<EnteredTrap<'a>>,
 }
 
 /// A trap was entered; each turn of the orbit from there on has to bring the motion closer.
-struct Entered<'a> {
+struct EnteredTrap<'a> {
     known: usize,
     trap: &'a Trap,
     due: u64,
@@ -79,7 +79,7 @@ impl<'a> Watch<'a> {
     }
 
     /// Takes the n-th strobe; which attractor it is known to lead to.
-    pub fn see(&mut self, n: u64, point: &Point) -> Option<usize> {
+    pub fn see(&mut self, n: u64, point: &StrobePoint) -> Option<usize> {
         if let Some(entered) = &mut self.entered
             && entered.due == n
         {
@@ -108,12 +108,18 @@ impl<'a> Watch<'a> {
         None
     }
 
-    fn enter(&self, n: u64, point: &Point) -> Option<Entered<'a>> {
+    fn enter(&self, n: u64, point: &StrobePoint) -> Option<EnteredTrap<'a>> {
         self.known.iter().enumerate().find_map(|(known, it)| {
             let Evidence::Traps(traps) = &it.evidence else { return None };
             let inside = |trap: &'a Trap| {
                 let size = trap.size(point);
-                (size <= 1.0).then(|| Entered { known, trap, due: n + it.period(), size, turns: 0 })
+                (size <= 1.0).then(|| EnteredTrap {
+                    known,
+                    trap,
+                    due: n + it.period(),
+                    size,
+                    turns: 0,
+                })
             };
             traps.iter().find_map(inside)
         })
@@ -123,12 +129,12 @@ impl<'a> Watch<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::dynamics::attractor::{Attractor, Kind};
+    use crate::dynamics::attractor::{Attractor, AttractorKind};
 
     /// An attractor of period 1 in the origin, with a ball of radius 1 as its trap.
     fn origin() -> Known {
         let attractor = Attractor {
-            kind: Kind::Periodic,
+            kind: AttractorKind::Periodic,
             orbit: None,
             points: vec![[0.0; 3]],
             drift_per_period: 0.0,

@@ -4,11 +4,11 @@ use super::cells::{Cells, REFERENCE};
 use super::known::{Evidence, Known, Label};
 use super::recognition::{Watch, escapes};
 use super::trap::Trap;
-use super::{Attractor, ERRORS, Kind, horizon};
+use super::{Attractor, AttractorKind, ERRORS, horizon};
 use crate::dynamics::lyapunov::Spectrum;
 use crate::dynamics::orbit::Orbit;
 use crate::dynamics::section::Section;
-use crate::dynamics::strobe::{Point, StrobeMap};
+use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use crate::model::entry::Entry;
 
 /// The longest period that is looked for.
@@ -39,12 +39,12 @@ pub(super) enum Settled {
 }
 
 /// Looks for attractors of a map that are not known yet.
-pub(super) struct Search<'a> {
+pub(super) struct AttractorSearch<'a> {
     pub map: &'a StrobeMap,
     pub known: &'a [Known],
 }
 
-impl Search<'_> {
+impl AttractorSearch<'_> {
     /// What a motion settles on; none where that does not show so early.
     pub fn identified(&self, from: Entry) -> Option<Settled> {
         let strobes: Vec<Entry> =
@@ -73,7 +73,7 @@ impl Search<'_> {
 
     /// The stable orbit that some strobes repeat, if the motion is seen to enter its trap.
     fn orbit(&self, strobes: &[Entry]) -> Option<Settled> {
-        let points: Vec<Point> = strobes.iter().map(Entry::point).collect();
+        let points: Vec<StrobePoint> = strobes.iter().map(Entry::point).collect();
         let last = strobes.last()?;
         let orbit = Orbit::find(self.map, last.point(), repeats(&points)?).ok()?;
         if !orbit.is_stable() {
@@ -110,7 +110,7 @@ impl Search<'_> {
             return Some(orbit);
         }
         let spectrum = self.spectrum(*run.last()?, DECISION);
-        let points: Vec<Point> = run.iter().map(Entry::point).collect();
+        let points: Vec<StrobePoint> = run.iter().map(Entry::point).collect();
         let kind = kind_of(&spectrum, repeats(&points).is_some());
         let attractor = Attractor::of_run(kind, &points, &spectrum);
         let evidence = Evidence::Cells(Cells::of(&points));
@@ -119,19 +119,19 @@ impl Search<'_> {
 }
 
 /// What a motion that is on no orbit known as stable is, by its exponents.
-fn kind_of(spectrum: &Spectrum, repeats: bool) -> Kind {
+fn kind_of(spectrum: &Spectrum, repeats: bool) -> AttractorKind {
     let [largest, ..] = spectrum.exponents_per_period;
     if spectrum.is_chaotic(ERRORS) && largest > NEUTRAL {
-        Kind::Chaotic
+        AttractorKind::Chaotic
     } else if largest.abs().max(spectrum.contraction_per_period.abs()) <= NEUTRAL && !repeats {
-        Kind::QuasiPeriodic
+        AttractorKind::QuasiPeriodic
     } else {
-        Kind::Unidentified
+        AttractorKind::Unidentified
     }
 }
 
 /// The least period with which the last strobes repeat.
-fn repeats(points: &[Point]) -> Option<u32> {
+fn repeats(points: &[StrobePoint]) -> Option<u32> {
     let repeats = |period: usize| {
         let pairs = period.max(PAIRS);
         let end = points.len();
@@ -140,6 +140,6 @@ fn repeats(points: &[Point]) -> Option<u32> {
     (1..=LONGEST).find(|period| repeats(*period)).and_then(|period| u32::try_from(period).ok())
 }
 
-fn near(a: &Point, b: &Point) -> bool {
+fn near(a: &StrobePoint, b: &StrobePoint) -> bool {
     a.iter().zip(b).all(|(a, b)| (a - b).abs() <= CLOSE * (1.0 + b.abs()))
 }

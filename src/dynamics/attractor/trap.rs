@@ -11,13 +11,13 @@
 use crate::dynamics::linear::{IDENTITY, apply, dot, product};
 use crate::dynamics::orbit::Orbit;
 use crate::dynamics::section::Section;
-use crate::dynamics::strobe::{Jacobian, Point, StrobeMap};
+use crate::dynamics::strobe::{Jacobian, StrobeMap, StrobePoint};
 use crate::phase::Phase;
 
 /// An ellipsoid about one strobe of an orbit.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Trap {
-    centre: Point,
+    centre: StrobePoint,
     metric: Jacobian,
     radius: f64,
     /// The gap, where the strobe is on the slider.
@@ -54,11 +54,11 @@ impl Trap {
 
     /// A ball, for tests of what is done with a trap.
     #[cfg(test)]
-    pub const fn ball(centre: Point, radius: f64) -> Self {
+    pub const fn ball(centre: StrobePoint, radius: f64) -> Self {
         Self { centre, metric: IDENTITY, radius, slider: None }
     }
 
-    fn around(map: &StrobeMap, centre: Point, period: u64) -> Option<Self> {
+    fn around(map: &StrobeMap, centre: StrobePoint, period: u64) -> Option<Self> {
         let entry = map.entry(centre).ok()?;
         let turn = map.passage(&entry, period).free_jacobian();
         let on_slider = entry.phase() != Phase::NoContact;
@@ -86,7 +86,7 @@ impl Trap {
     ) -> bool {
         (0..DIRECTIONS).all(|k| {
             let step = on_ellipsoid(upper, direction(k)).map(|x| x * self.radius * shell);
-            let mut start: Point = std::array::from_fn(|i| self.centre[i] + step[i]);
+            let mut start: StrobePoint = std::array::from_fn(|i| self.centre[i] + step[i]);
             if let Some(g) = self.slider {
                 start[2] = start[0] - g;
             }
@@ -99,20 +99,20 @@ impl Trap {
     }
 
     /// The square of the distance in units of the radius: at most 1 inside.
-    pub fn size(&self, point: &Point) -> f64 {
+    pub fn size(&self, point: &StrobePoint) -> f64 {
         // The metric is not below the identity.
         let outside = (0..2).any(|i| (point[i] - self.centre[i]).abs() > self.radius);
         if outside { f64::INFINITY } else { self.distance(point) }
     }
 
-    fn distance(&self, point: &Point) -> f64 {
+    fn distance(&self, point: &StrobePoint) -> f64 {
         if let Some(g) = self.slider {
             let [p, _, q] = *point;
             if (p - q - g).abs() > ON_SLIDER * p.abs().max(q.abs()).max(g) {
                 return f64::INFINITY;
             }
         }
-        let step: Point = std::array::from_fn(|i| (point[i] - self.centre[i]) / self.radius);
+        let step: StrobePoint = std::array::from_fn(|i| (point[i] - self.centre[i]) / self.radius);
         dot(&step, &apply(&self.metric, &step))
     }
 }
@@ -149,7 +149,7 @@ fn upper_factor(metric: &Jacobian) -> Option<Jacobian> {
 }
 
 /// x with x' metric x = 1 and U x = direction.
-fn on_ellipsoid(u: &Jacobian, direction: Point) -> Point {
+fn on_ellipsoid(u: &Jacobian, direction: StrobePoint) -> StrobePoint {
     let mut x = [0.0; 3];
     for i in (0..3).rev() {
         let rest = direction[i] - ((i + 1)..3).map(|k| u[i][k] * x[k]).sum::<f64>();
@@ -159,7 +159,7 @@ fn on_ellipsoid(u: &Jacobian, direction: Point) -> Point {
 }
 
 /// Points spread evenly over the unit sphere: a spiral by the golden angle.
-fn direction(k: u32) -> Point {
+fn direction(k: u32) -> StrobePoint {
     let z = 1.0 - (2.0 * f64::from(k) + 1.0) / f64::from(DIRECTIONS);
     let (sin, cos) = libm::sincos(f64::from(k) * std::f64::consts::PI * (3.0 - 5.0_f64.sqrt()));
     let across = (1.0 - z * z).sqrt();

@@ -1,8 +1,8 @@
 //! From one smooth piece of the map to the next.
 
-use super::point::{ContinuationPoint, Curve, shifted};
+use super::point::{ContinuationPoint, FamilyCurve, shifted};
 use crate::dynamics::orbit::ShootingIterate;
-use crate::dynamics::strobe::Point;
+use crate::dynamics::strobe::StrobePoint;
 
 /// A corner: where the curve leaves a smooth piece, and where it goes on.
 pub(super) struct Corner {
@@ -24,7 +24,7 @@ const BEYOND: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
 /// between two corners may be shorter than the step.
 const SHARP: f64 = 1e-12;
 
-impl Curve {
+impl FamilyCurve {
     /// The corner between a knot and a distance along its tangent at which the piece is another one
     /// or no orbit is found.
     ///
@@ -112,7 +112,7 @@ impl Curve {
         let probed = self.family.map(from.value + step * along.rate).ok().and_then(|map| {
             let points = shifted(&from.chain.points, &along.points, step);
             let chain = ShootingIterate::of(&map, &points)?;
-            let mut images: Vec<Point> = chain.passages.iter().map(|it| it.point()).collect();
+            let mut images: Vec<StrobePoint> = chain.passages.iter().map(|it| it.point()).collect();
             images.rotate_right(1);
             Some([Some(chain), ShootingIterate::of(&map, &images)])
         });

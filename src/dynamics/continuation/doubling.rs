@@ -1,11 +1,11 @@
 //! The orbit of twice the period that branches off at a flip.
 
-use super::follow::Walk;
-use super::point::{ContinuationPoint, Curve, Tangent};
+use super::follow::BranchWalk;
+use super::point::{BranchTangent, ContinuationPoint, FamilyCurve};
 use super::{Bifurcation, Branch, Family};
 use crate::dynamics::linear::{IDENTITY, adjugate, norm};
 use crate::dynamics::orbit::{Around, Orbit, ShootingIterate, size, solved};
-use crate::dynamics::strobe::Point;
+use crate::dynamics::strobe::StrobePoint;
 
 /// The side of a flip on which the doubled orbit exists.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,15 +43,15 @@ impl Doubling {
         to: f64,
         told: &mut dyn FnMut(f64),
     ) -> Option<Self> {
-        let curve = Curve::new(family, from, to);
+        let curve = FamilyCurve::new(family, from, to);
         let doubled = curve.doubled(flip)?;
         let criticality = curve.criticality(flip, &doubled)?;
-        let branch = Walk::new(curve, from, to, told).branch(doubled);
+        let branch = BranchWalk::new(curve, from, to, told).branch(doubled);
         Some(Self { criticality, branch })
     }
 }
 
-impl Curve {
+impl FamilyCurve {
     fn doubled(&self, flip: &Bifurcation) -> Option<ContinuationPoint> {
         let map = self.family.map(flip.value).ok()?;
         let single = ShootingIterate::of(&map, &flip.orbit.points)?;
@@ -60,7 +60,7 @@ impl Curve {
         let there = single.spread(first, &none);
         let back = there.iter().map(|it| it.map(|x| -x));
         let scale = (1.0 + size(&single.points[0])) / size(&first);
-        let points: Vec<Point> =
+        let points: Vec<StrobePoint> =
             there.iter().copied().chain(back).map(|it| it.map(|x| x * scale)).collect();
         let chain =
             ShootingIterate::of(&map, &[&flip.orbit.points[..], &flip.orbit.points].concat())?;
@@ -68,7 +68,7 @@ impl Curve {
         let base = ContinuationPoint {
             value: flip.value,
             chain,
-            tangent: Tangent { points, rate: 0.0 },
+            tangent: BranchTangent { points, rate: 0.0 },
             orbit,
         };
         AMPLITUDES.iter().find_map(|amplitude| {
@@ -95,9 +95,9 @@ impl Curve {
 
 /// The direction that once around turns into its opposite: any column of the adjugate of M + 1, of
 /// which the largest has lost least.
-fn flipped(chain: &ShootingIterate) -> Option<Point> {
+fn flipped(chain: &ShootingIterate) -> Option<StrobePoint> {
     let Around { matrix, .. } = chain.around(&chain.defects);
-    let plus: [Point; 3] =
+    let plus: [StrobePoint; 3] =
         std::array::from_fn(|i| std::array::from_fn(|j| matrix[i][j] + IDENTITY[i][j]));
     let adjugate = adjugate(&plus);
     let columns = (0..3).map(|j| adjugate.map(|row| row[j]));

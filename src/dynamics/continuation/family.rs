@@ -1,7 +1,7 @@
 //! The strobe maps of one parameter's values, and how they change with it.
 
 use crate::dynamics::orbit::ShootingIterate;
-use crate::dynamics::strobe::{Point, StrobeMap};
+use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use crate::error::InputError;
 use crate::model::Model;
 use crate::model::instant::Instant;
@@ -47,11 +47,16 @@ impl Family {
     /// By differences: they steer the corrector and give the tangent, nothing else. A point that is
     /// accepted satisfies the map itself, and its multipliers are those of the exact derivative.
     /// Where a corner is near, the difference is taken on the chain's own side of it.
-    pub(super) fn slopes(&self, value: f64, chain: &ShootingIterate, scale: f64) -> Vec<Point> {
+    pub(super) fn slopes(
+        &self,
+        value: f64,
+        chain: &ShootingIterate,
+        scale: f64,
+    ) -> Vec<StrobePoint> {
         (0..chain.points.len()).map(|k| self.slope(value, chain, k, scale)).collect()
     }
 
-    fn slope(&self, value: f64, chain: &ShootingIterate, k: usize, scale: f64) -> Point {
+    fn slope(&self, value: f64, chain: &ShootingIterate, k: usize, scale: f64) -> StrobePoint {
         let here = &chain.passages[k];
         let beside = |step: f64| {
             let map = self.map(value + step).ok()?;
@@ -62,7 +67,7 @@ impl Family {
         for step in STEPS.map(|relative| relative * value.abs().max(scale)) {
             // What is representable.
             let (up, down) = ((value + step) - value, value - (value - step));
-            let quotient = |a: Point, b: Point, span: f64| -> Point {
+            let quotient = |a: StrobePoint, b: StrobePoint, span: f64| -> StrobePoint {
                 std::array::from_fn(|i| (a[i] - b[i]) / span)
             };
             match (beside(up), beside(-down)) {

@@ -2,8 +2,8 @@
 
 use super::corner::Corner;
 use super::locate::Located;
-use super::point::{ContinuationPoint, Curve};
-use super::{Bifurcation, Branch, BranchPoint, Ending, Kind};
+use super::point::{ContinuationPoint, FamilyCurve};
+use super::{Bifurcation, BifurcationKind, Branch, BranchEnding, BranchPoint};
 use crate::dynamics::orbit::{ShootingIterate, polished};
 
 const FIRST: f64 = 1e-3;
@@ -18,8 +18,8 @@ const TURN: f64 = 0.95;
 const CHANGE: f64 = 0.3;
 
 /// A branch being followed.
-pub(super) struct Walk<'a> {
-    curve: Curve,
+pub(super) struct BranchWalk<'a> {
+    curve: FamilyCurve,
     /// The value at which the parameter begins.
     from: f64,
     /// The value to which it is to go.
@@ -29,8 +29,13 @@ pub(super) struct Walk<'a> {
     bifurcations: Vec<Bifurcation>,
 }
 
-impl<'a> Walk<'a> {
-    pub(super) fn new(curve: Curve, from: f64, to: f64, told: &'a mut dyn FnMut(f64)) -> Self {
+impl<'a> BranchWalk<'a> {
+    pub(super) fn new(
+        curve: FamilyCurve,
+        from: f64,
+        to: f64,
+        told: &'a mut dyn FnMut(f64),
+    ) -> Self {
         Self { curve, from, to, told, points: Vec::new(), bifurcations: Vec::new() }
     }
 
@@ -40,12 +45,12 @@ impl<'a> Walk<'a> {
         Branch { points: self.points, bifurcations: self.bifurcations, ending }
     }
 
-    fn follow(&mut self, first: ContinuationPoint) -> Ending {
+    fn follow(&mut self, first: ContinuationPoint) -> BranchEnding {
         let start = first.clone();
         let mut knot = first;
         self.keep(&knot);
         if self.from == self.to {
-            return Ending::Reached;
+            return BranchEnding::Reached;
         }
         let mut step = FIRST;
         for count in 0..STEPS {
@@ -59,11 +64,11 @@ impl<'a> Walk<'a> {
                 return ending;
             }
             if count > 2 && self.is_back(&knot, &next, &start) {
-                return Ending::Closed;
+                return BranchEnding::Closed;
             }
             knot = next;
         }
-        Ending::Long { value: knot.value }
+        BranchEnding::Long { value: knot.value }
     }
 
     /// The next knot, what lies between being noted, and whether the branch ends there.
@@ -71,7 +76,7 @@ impl<'a> Walk<'a> {
         &mut self,
         knot: &ContinuationPoint,
         step: &mut f64,
-    ) -> Result<(ContinuationPoint, Option<Ending>), Ending> {
+    ) -> Result<(ContinuationPoint, Option<BranchEnding>), BranchEnding> {
         loop {
             let distance = *step;
             let attempt = self.curve.corrected(knot, distance);
@@ -81,7 +86,7 @@ impl<'a> Walk<'a> {
                 let (next, distance, ending) = self.cut(knot, next, distance);
                 if next.is_on_piece_of(knot) {
                     if let Some(flip) = self.curve.halving(knot, &next) {
-                        let ending = Ending::Halved { value: flip.value };
+                        let ending = BranchEnding::Halved { value: flip.value };
                         self.bifurcations.push(flip);
                         return Err(ending);
                     }
@@ -96,7 +101,7 @@ impl<'a> Walk<'a> {
                     return self.turn(knot, corner, step);
                 }
                 if distance <= SHORTEST {
-                    return Err(Ending::Lost { value: knot.value });
+                    return Err(BranchEnding::Lost { value: knot.value });
                 }
             }
             *step = 0.5 * distance;
@@ -109,7 +114,7 @@ impl<'a> Walk<'a> {
         knot: &ContinuationPoint,
         corner: Corner,
         step: &mut f64,
-    ) -> Result<(ContinuationPoint, Option<Ending>), Ending> {
+    ) -> Result<(ContinuationPoint, Option<BranchEnding>), BranchEnding> {
         let Corner { before, beyond, error } = corner;
         if !self.is_inside(before.value) {
             let (end, _, ending) = self.cut(knot, before, 0.0);
@@ -117,7 +122,7 @@ impl<'a> Walk<'a> {
         }
         if before.word() != beyond.word() {
             self.bifurcations.push(Bifurcation {
-                kind: Kind::Grazing,
+                kind: BifurcationKind::Grazing,
                 value: before.value,
                 error,
                 turns: before.tangent.rate * beyond.tangent.rate < 0.0,
@@ -143,12 +148,12 @@ impl<'a> Walk<'a> {
         knot: &ContinuationPoint,
         next: ContinuationPoint,
         distance: f64,
-    ) -> (ContinuationPoint, f64, Option<Ending>) {
+    ) -> (ContinuationPoint, f64, Option<BranchEnding>) {
         if self.is_inside(next.value) {
             return (next, distance, None);
         }
         let ending = self.left(next.value);
-        let bound = if ending == Ending::Reached { self.to } else { self.from };
+        let bound = if ending == BranchEnding::Reached { self.to } else { self.from };
         let share = (bound - knot.value) / (next.value - knot.value);
         let cut = self.at(knot, &next, bound, share);
         (cut.unwrap_or(next), distance * share, Some(ending))
@@ -175,9 +180,9 @@ impl<'a> Walk<'a> {
         (0.0..=1.0).contains(&share)
     }
 
-    fn left(&self, value: f64) -> Ending {
+    fn left(&self, value: f64) -> BranchEnding {
         let share = (value - self.from) / (self.to - self.from);
-        if share > 0.5 { Ending::Reached } else { Ending::Left }
+        if share > 0.5 { BranchEnding::Reached } else { BranchEnding::Left }
     }
 
     /// Whether the step passes where the branch began, in the same direction.
@@ -201,22 +206,22 @@ impl<'a> Walk<'a> {
 
     /// Bifurcations between two points of one piece.
     fn note_between(&mut self, knot: &ContinuationPoint, next: &ContinuationPoint, distance: f64) {
-        let mut found: Vec<(Kind, Located)> = Vec::new();
-        let mut seek = |kind: Kind, test: &dyn Fn(&ContinuationPoint) -> f64| {
+        let mut found: Vec<(BifurcationKind, Located)> = Vec::new();
+        let mut seek = |kind: BifurcationKind, test: &dyn Fn(&ContinuationPoint) -> f64| {
             if test(knot) * test(next) < 0.0 {
                 found.extend(self.curve.located(knot, distance, test).map(|it| (kind, it)));
             }
         };
-        seek(Kind::Fold, &|it| it.tangent.rate);
-        seek(Kind::Flip, &ContinuationPoint::flip);
+        seek(BifurcationKind::Fold, &|it| it.tangent.rate);
+        seek(BifurcationKind::Flip, &ContinuationPoint::flip);
         if knot.torus().is_some() && next.torus().is_some() {
-            seek(Kind::NeimarkSacker, &|it| it.torus().unwrap_or(f64::NAN));
+            seek(BifurcationKind::NeimarkSacker, &|it| it.torus().unwrap_or(f64::NAN));
         }
         found.sort_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
         for (kind, located) in found {
             let error = self.curve.error(&located);
             let Located { knot: ContinuationPoint { value, orbit, .. }, .. } = located;
-            let turns = kind == Kind::Fold;
+            let turns = kind == BifurcationKind::Fold;
             self.bifurcations.push(Bifurcation { kind, value, error, turns, orbit, beyond: None });
         }
     }

@@ -1,16 +1,16 @@
 //! Where a branch ends because its orbits close after half their period.
 
 use super::locate::Located;
-use super::point::{ContinuationPoint, Curve, Tangent};
-use super::{Bifurcation, Kind};
+use super::point::{BranchTangent, ContinuationPoint, FamilyCurve};
+use super::{Bifurcation, BifurcationKind};
 use crate::dynamics::linear::dot;
 use crate::dynamics::orbit::{ShootingIterate, solved};
-use crate::dynamics::strobe::Point;
+use crate::dynamics::strobe::StrobePoint;
 
 /// Distances about the branch's end in which the half's flip is looked for.
 const AROUND: [f64; 8] = [1e-6, 1e-5, 1e-4, 3e-4, 1e-3, 3e-3, 1e-2, 3e-2];
 
-impl Curve {
+impl FamilyCurve {
     /// The flip of an orbit of half the period that the curve runs into between two points. It goes
     /// on beyond: as the same orbits, half a period later, so that the difference of their halves
     /// changes sign.
@@ -27,13 +27,13 @@ impl Curve {
         let map = self.family.map(knot.value).ok()?;
         let half = here.len();
         let (first, second) = knot.chain.points.split_at(half);
-        let middle: Vec<Point> = first
+        let middle: Vec<StrobePoint> = first
             .iter()
             .zip(second)
             .map(|(a, b)| std::array::from_fn(|i| 0.5 * (a[i] + b[i])))
             .collect();
         let chain = solved(&map, ShootingIterate::of(&map, &middle)?).ok()?;
-        let along = Tangent { points: vec![[0.0; 3]; half], rate: self.unit };
+        let along = BranchTangent { points: vec![[0.0; 3]; half], rate: self.unit };
         let single = self.knot(knot.value, chain, &along);
         let located = AROUND.iter().find_map(|distance| {
             let start = self.corrected(&single, -distance)?;
@@ -41,12 +41,19 @@ impl Curve {
         })?;
         let error = self.error(&located);
         let Located { knot: ContinuationPoint { value, orbit, .. }, .. } = located;
-        Some(Bifurcation { kind: Kind::Flip, value, error, turns: true, orbit, beyond: None })
+        Some(Bifurcation {
+            kind: BifurcationKind::Flip,
+            value,
+            error,
+            turns: true,
+            orbit,
+            beyond: None,
+        })
     }
 }
 
 /// The differences of strobes half a period apart; `None` for an odd number of strobes.
-fn differences(chain: &ShootingIterate) -> Option<Vec<Point>> {
+fn differences(chain: &ShootingIterate) -> Option<Vec<StrobePoint>> {
     let count = chain.points.len();
     let (first, second) = chain.points.split_at(count / 2);
     let pairs = first.iter().zip(second);

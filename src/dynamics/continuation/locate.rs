@@ -1,6 +1,6 @@
 //! A sign change of a test along a smooth piece of the curve, found and held against rounding.
 
-use super::point::{ContinuationPoint, Curve};
+use super::point::{ContinuationPoint, FamilyCurve};
 
 /// The orbit at which a test function vanishes.
 pub(super) struct Located {
@@ -19,7 +19,7 @@ const RESOLUTION: f64 = 1e-15;
 /// these its curvature is below rounding.
 const SPREAD: f64 = 1e-6;
 
-impl Curve {
+impl FamilyCurve {
     /// How far the parameter's value there may be off.
     pub(super) fn error(&self, located: &Located) -> f64 {
         located.bracket * located.knot.tangent.rate.abs() + self.uncertainty(&located.knot)

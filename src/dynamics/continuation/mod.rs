@@ -41,11 +41,11 @@ mod locate;
 mod point;
 
 use super::orbit::{NoOrbit, Orbit, ShootingIterate};
-use super::strobe::Point;
+use super::strobe::StrobePoint;
 pub use doubling::{Criticality, Doubling};
 pub use family::Family;
-use follow::Walk;
-use point::{Curve, Tangent};
+use follow::BranchWalk;
+use point::{BranchTangent, FamilyCurve};
 use std::fmt;
 
 /// A branch of orbits.
@@ -56,7 +56,7 @@ pub struct Branch {
     /// What was met on the way, in order.
     pub bifurcations: Vec<Bifurcation>,
     /// How and where the branch ends.
-    pub ending: Ending,
+    pub ending: BranchEnding,
 }
 
 /// An orbit of a branch.
@@ -70,7 +70,7 @@ pub struct BranchPoint {
 
 /// What can happen to an orbit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum BifurcationKind {
     /// A multiplier passes one: the branch turns in the parameter.
     Fold,
     /// A multiplier passes minus one: an orbit of twice the period branches off.
@@ -81,7 +81,7 @@ pub enum Kind {
     Grazing,
 }
 
-impl Kind {
+impl BifurcationKind {
     /// The name used in files.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
@@ -94,7 +94,7 @@ impl Kind {
     }
 }
 
-impl fmt::Display for Kind {
+impl fmt::Display for BifurcationKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.as_str())
     }
@@ -104,7 +104,7 @@ impl fmt::Display for Kind {
 #[derive(Clone, Debug)]
 pub struct Bifurcation {
     /// What happens.
-    pub kind: Kind,
+    pub kind: BifurcationKind,
     /// The parameter's value.
     pub value: f64,
     /// How far that may be off: what the search left, and rounding.
@@ -119,7 +119,7 @@ pub struct Bifurcation {
 
 /// How a branch ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ending {
+pub enum BranchEnding {
     /// The branch ends at the value that was asked for.
     Reached,
     /// Back at the value where it began.
@@ -144,7 +144,7 @@ pub enum Ending {
     },
 }
 
-impl fmt::Display for Ending {
+impl fmt::Display for BranchEnding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Reached => f.write_str("the branch reaches the end of its interval"),
@@ -170,7 +170,7 @@ impl Branch {
     /// [`NoOrbit`] where there is none to begin with.
     pub fn follow(
         family: &Family,
-        guess: Point,
+        guess: StrobePoint,
         period: u32,
         from: f64,
         to: f64,
@@ -180,18 +180,18 @@ impl Branch {
         let orbit = Orbit::find(&map, guess, period)?;
         let chain = ShootingIterate::of(&map, &orbit.points)
             .ok_or(NoOrbit::from(super::orbit::Reason::Escaped))?;
-        let curve = Curve::new(family, from, to);
-        let towards = Tangent {
+        let curve = FamilyCurve::new(family, from, to);
+        let towards = BranchTangent {
             points: vec![[0.0; 3]; chain.points.len()],
             rate: curve.unit * (to - from).signum(),
         };
         let first = curve.knot(from, chain, &towards);
-        Ok(Walk::new(curve, from, to, told).branch(first))
+        Ok(BranchWalk::new(curve, from, to, told).branch(first))
     }
 
     /// Whether it was followed to where it should go.
     #[must_use]
     pub fn is_complete(&self) -> bool {
-        self.ending == Ending::Reached
+        self.ending == BranchEnding::Reached
     }
 }

@@ -3,7 +3,7 @@
 use super::family::Family;
 use crate::dynamics::linear::{IDENTITY, dot, modulus, solve};
 use crate::dynamics::orbit::{Around, Orbit, ShootingIterate, size};
-use crate::dynamics::strobe::Point;
+use crate::dynamics::strobe::StrobePoint;
 use crate::phase::Phase;
 
 /// An orbit on the curve, and the curve's direction there.
@@ -11,20 +11,20 @@ use crate::phase::Phase;
 pub(super) struct ContinuationPoint {
     pub(super) value: f64,
     pub(super) chain: ShootingIterate,
-    pub(super) tangent: Tangent,
+    pub(super) tangent: BranchTangent,
     pub(super) orbit: Orbit,
 }
 
 /// Rates of all strobes and of the parameter with the arc length.
 #[derive(Clone, Debug)]
-pub(super) struct Tangent {
-    pub(super) points: Vec<Point>,
+pub(super) struct BranchTangent {
+    pub(super) points: Vec<StrobePoint>,
     pub(super) rate: f64,
 }
 
 /// The family, and the parameter's unit of arc length.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Curve {
+pub(super) struct FamilyCurve {
     pub(super) family: Family,
     pub(super) unit: f64,
 }
@@ -35,11 +35,11 @@ const ITERATIONS: usize = 10;
 /// The bordered system: orbits next to a chain, and a direction.
 struct Bordered {
     matrix: [[f64; 4]; 4],
-    offset: Point,
-    slopes: Vec<Point>,
+    offset: StrobePoint,
+    slopes: Vec<StrobePoint>,
 }
 
-impl Curve {
+impl FamilyCurve {
     /// The curve of a family whose parameter is followed between two values.
     pub(super) fn new(family: &Family, from: f64, to: f64) -> Self {
         Self { family: *family, unit: if from == to { 1.0 } else { (to - from).abs() } }
@@ -51,7 +51,7 @@ impl Curve {
         base: &ContinuationPoint,
         distance: f64,
     ) -> Option<ContinuationPoint> {
-        let Tangent { points, rate } = &base.tangent;
+        let BranchTangent { points, rate } = &base.tangent;
         let mut value = base.value + distance * rate;
         let mut strobes = shifted(&base.chain.points, points, distance);
         let mut best: Option<(f64, ShootingIterate)> = None;
@@ -83,7 +83,7 @@ impl Curve {
         &self,
         value: f64,
         chain: ShootingIterate,
-        along: &Tangent,
+        along: &BranchTangent,
     ) -> ContinuationPoint {
         let tangent = self.tangent(&chain, value, along);
         let orbit = Orbit::of(&chain);
@@ -91,13 +91,18 @@ impl Curve {
     }
 
     /// The curve's direction at a chain.
-    pub(super) fn tangent(&self, chain: &ShootingIterate, value: f64, along: &Tangent) -> Tangent {
+    pub(super) fn tangent(
+        &self,
+        chain: &ShootingIterate,
+        value: f64,
+        along: &BranchTangent,
+    ) -> BranchTangent {
         let bordered = self.bordered(chain, value, along, chain);
         let [p, y, q, rate] = solve(bordered.matrix, [0.0, 0.0, 0.0, 1.0]);
         let rate = rate * self.unit;
         let none = vec![[0.0; 3]; chain.points.len()];
         let points = chain.spread([p, y, q], &offsets(&none, &bordered.slopes, rate));
-        let mut tangent = Tangent { points, rate };
+        let mut tangent = BranchTangent { points, rate };
         let length = self.product(&tangent, &tangent, chain).sqrt();
         if length > 0.0 && length.is_finite() {
             tangent.rate /= length;
@@ -108,14 +113,20 @@ impl Curve {
 
     /// How far along the tangent of `base` a chain lies.
     fn along(&self, base: &ContinuationPoint, chain: &ShootingIterate, value: f64) -> f64 {
-        let moved: Point = std::array::from_fn(|i| chain.points[0][i] - base.chain.points[0][i]);
+        let moved: StrobePoint =
+            std::array::from_fn(|i| chain.points[0][i] - base.chain.points[0][i]);
         let weight = weight(&base.chain);
-        let Tangent { points, rate } = &base.tangent;
+        let BranchTangent { points, rate } = &base.tangent;
         weight * dot(&points[0], &moved) + rate / self.unit * ((value - base.value) / self.unit)
     }
 
     /// The arc's inner product of two directions.
-    pub(super) fn product(&self, a: &Tangent, b: &Tangent, at: &ShootingIterate) -> f64 {
+    pub(super) fn product(
+        &self,
+        a: &BranchTangent,
+        b: &BranchTangent,
+        at: &ShootingIterate,
+    ) -> f64 {
         weight(at) * dot(&a.points[0], &b.points[0]) + a.rate / self.unit * (b.rate / self.unit)
     }
 
@@ -123,7 +134,7 @@ impl Curve {
         &self,
         chain: &ShootingIterate,
         value: f64,
-        along: &Tangent,
+        along: &BranchTangent,
         weighed: &ShootingIterate,
     ) -> Bordered {
         let slopes = self.family.slopes(value, chain, self.unit.min(1.0));
@@ -161,16 +172,20 @@ fn weight(chain: &ShootingIterate) -> f64 {
     (1.0 + size(&chain.points[0])).powi(-2)
 }
 
-pub(super) fn shifted(points: &[Point], changes: &[Point], share: f64) -> Vec<Point> {
+pub(super) fn shifted(
+    points: &[StrobePoint],
+    changes: &[StrobePoint],
+    share: f64,
+) -> Vec<StrobePoint> {
     let pairs = points.iter().zip(changes);
     pairs.map(|(point, change)| std::array::from_fn(|i| point[i] + share * change[i])).collect()
 }
 
-fn offsets(defects: &[Point], slopes: &[Point], step: f64) -> Vec<Point> {
+fn offsets(defects: &[StrobePoint], slopes: &[StrobePoint], step: f64) -> Vec<StrobePoint> {
     shifted(defects, slopes, step)
 }
 
-impl Tangent {
+impl BranchTangent {
     /// The other way.
     pub(super) fn turned(&self) -> Self {
         let points = self.points.iter().map(|it| it.map(|x| -x)).collect();

@@ -1,6 +1,6 @@
 //! One motion on its way, phase by phase.
 
-use super::{Motion, Watcher};
+use super::{Member, Watcher};
 use crate::crossing::Counters;
 use crate::model::Model;
 use crate::model::entry::Entry;
@@ -25,8 +25,8 @@ pub struct Cursor<'a, W> {
 }
 
 impl<'a, W: Watcher> Cursor<'a, W> {
-    pub fn new(motion: Motion<'a, W>) -> Self {
-        let Motion { model, entry, first, horizon, watcher } = motion;
+    pub fn new(motion: Member<'a, W>) -> Self {
+        let Member { model, entry, first, horizon, watcher } = motion;
         Self { model, entry, begun: None, due: first, horizon, watcher }
     }
 

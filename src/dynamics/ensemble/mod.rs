@@ -35,7 +35,7 @@ pub trait Watcher {
 
 /// One motion of an ensemble.
 #[derive(Clone, Debug)]
-pub struct Motion<'a, W> {
+pub struct Member<'a, W> {
     /// What moves.
     pub model: &'a Model,
     /// The entry at which the motion begins.
@@ -62,7 +62,7 @@ pub struct Tally {
 /// come back in order.
 pub fn follow<'a, W: Watcher + Send>(
     count: usize,
-    begin: impl Fn(usize) -> Motion<'a, W> + Sync,
+    begin: impl Fn(usize) -> Member<'a, W> + Sync,
 ) -> Vec<W> {
     #[cfg(feature = "lanes")]
     return follow_by(Instructions::widest(), count, begin).0;
@@ -76,7 +76,7 @@ pub fn follow<'a, W: Watcher + Send>(
 pub fn follow_by<'a, W: Watcher + Send>(
     instructions: Instructions,
     count: usize,
-    begin: impl Fn(usize) -> Motion<'a, W> + Sync,
+    begin: impl Fn(usize) -> Member<'a, W> + Sync,
 ) -> (Vec<W>, Tally) {
     on_all_threads(count, |next| match instructions.permit() {
         Some(permit) => scheduler::LaneScheduler::new(permit).follow(next, &begin),
@@ -85,7 +85,7 @@ pub fn follow_by<'a, W: Watcher + Send>(
 }
 
 /// Follows one motion by the scalar solver.
-pub fn follow_alone<W: Watcher>(motion: Motion<'_, W>) -> W {
+pub fn follow_alone<W: Watcher>(motion: Member<'_, W>) -> W {
     Cursor::new(motion).watched_alone().0
 }
 
@@ -98,7 +98,7 @@ struct Done<W> {
 
 fn one_by_one<'a, W: Watcher>(
     next: &mut dyn FnMut() -> Option<usize>,
-    begin: &impl Fn(usize) -> Motion<'a, W>,
+    begin: &impl Fn(usize) -> Member<'a, W>,
 ) -> Done<W> {
     let mut done = Done { watchers: Vec::new(), tally: Tally::default() };
     while let Some(number) = next() {

@@ -6,7 +6,7 @@
 
 use super::cursor::Cursor;
 use super::slot::Slot;
-use super::{Done, Motion, Tally, Watcher};
+use super::{Done, Member, Tally, Watcher};
 use crate::lanes::{Batch, Permit, Stage, WIDEST};
 use crate::model::Model;
 
@@ -45,7 +45,7 @@ impl<'a, W: Watcher> LaneScheduler<'a, W> {
     pub fn follow(
         mut self,
         next: &mut dyn FnMut() -> Option<usize>,
-        begin: &impl Fn(usize) -> Motion<'a, W>,
+        begin: &impl Fn(usize) -> Member<'a, W>,
     ) -> Done<W> {
         let mut more = true;
         loop {

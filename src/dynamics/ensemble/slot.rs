@@ -3,7 +3,7 @@
 use super::cursor::Cursor;
 use super::{Tally, Watcher};
 use crate::crossing::allowances::FOUR_ULPS;
-use crate::lanes::{Begin, Column, End, Shape, Stage};
+use crate::lanes::{Begin, Column, PhaseEnds, Shape, Stage};
 use crate::model::Model;
 use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
@@ -101,7 +101,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
 
     /// Takes what a lane has found; what it has not, the scalar solver finds. What to do next.
     #[inline]
-    pub fn advance(&mut self, stage: Stage, lane: usize, end: &End) -> Option<Stage> {
+    pub fn advance(&mut self, stage: Stage, lane: usize, end: &PhaseEnds) -> Option<Stage> {
         if end.fine[lane] != 1.0 {
             return stage.again().or_else(|| self.pass_alone());
         }
@@ -140,7 +140,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
 
     /// What begins at a switch, with what is known there imposed ([`crate::run::switch`]).
     #[inline]
-    fn landed(&self, stage: Stage, lane: usize, end: &End) -> Entry {
+    fn landed(&self, stage: Stage, lane: usize, end: &PhaseEnds) -> Entry {
         let Entry { instant, drift, .. } = self.cursor.entry;
         let constants = self.cursor.model.constants();
         let angle = TwoWord { high: end.angle[lane], low: end.angle_low[lane] };
@@ -177,7 +177,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
 
     /// The phase taken up at the strobe ([`crate::Segment::entry_at`]); none next to a threshold.
     #[inline]
-    fn strobe(&self, stage: Stage, lane: usize, end: &End) -> Option<Entry> {
+    fn strobe(&self, stage: Stage, lane: usize, end: &PhaseEnds) -> Option<Entry> {
         let Entry { drift, mode, .. } = self.cursor.entry;
         let g = self.cursor.model.constants().g;
         let state = State { p: end.p[lane], y: end.y[lane], q: end.q[lane] };

@@ -2,7 +2,7 @@
 
 use super::newton;
 use super::shooting::ShootingIterate;
-use crate::dynamics::strobe::{Point, StrobeMap};
+use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 
 /// Orbits further apart than this are never taken for one: at a flip the residual of the doubled
 /// orbit is cubic in its width, and rounding hides (1e-15)^(1/3).
@@ -28,7 +28,7 @@ fn halved(map: &StrobeMap, chain: &ShootingIterate, divisor: usize) -> Option<Sh
     }
     // Two that differ have something between them that does not close.
     let pairs = chain.points.iter().zip(orbit.points.iter().cycle());
-    let between: Vec<Point> =
+    let between: Vec<StrobePoint> =
         pairs.map(|(a, b)| std::array::from_fn(|i| 0.5 * (a[i] + b[i]))).collect();
     ShootingIterate::of(map, &between)?.is_closed().then_some(orbit)
 }

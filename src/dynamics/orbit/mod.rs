@@ -10,7 +10,7 @@ mod newton;
 mod scan;
 mod shooting;
 
-use super::strobe::{Point, StrobeMap};
+use super::strobe::{StrobeMap, StrobePoint};
 use crate::error::InputError;
 use crate::phase::Phase;
 pub(crate) use newton::{polished, solved};
@@ -25,7 +25,7 @@ pub const LARGEST_PERIOD: u32 = 10_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Orbit {
     /// The orbit's strobes (p, y, q), one per forcing period, as many as the least period.
-    pub points: Vec<Point>,
+    pub points: Vec<StrobePoint>,
     /// The phases met in one whole period of the orbit, in order, from that of the first strobe.
     pub phases: Vec<Phase>,
     /// The orbit's multipliers (real and imaginary part), largest modulus first. With any contact
@@ -44,7 +44,7 @@ impl Orbit {
     ///
     /// # Errors
     /// [`NoOrbit`] says why none was reached and how close it came.
-    pub fn find(map: &StrobeMap, guess: Point, period: u32) -> Result<Self, NoOrbit> {
+    pub fn find(map: &StrobeMap, guess: StrobePoint, period: u32) -> Result<Self, NoOrbit> {
         let chain = ShootingIterate::shot(map, guess, period)?;
         Ok(Self::of(&least::closed(map, solved(map, chain)?)))
     }

@@ -2,7 +2,7 @@
 
 use super::shooting::ShootingIterate;
 use crate::dynamics::linear::{
-    Complex, IDENTITY, Jacobian, adjugate, eigenvalues, product, roots, trace,
+    IDENTITY, Jacobian, ReIm, adjugate, eigenvalues, product, roots, trace,
 };
 use crate::phase::Phase;
 
@@ -26,7 +26,7 @@ impl Invariants {
 
 /// The multipliers of an orbit. With any contact one multiplier is zero and the others follow from
 /// two invariants; without, all three are computed.
-pub(super) fn of(chain: &ShootingIterate) -> [Complex; 3] {
+pub(super) fn of(chain: &ShootingIterate) -> [ReIm; 3] {
     if touches(chain) {
         let Invariants { sum, pairs } = Invariants::of(chain);
         let [first, second] = roots(sum, pairs);

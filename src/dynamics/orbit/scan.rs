@@ -1,7 +1,7 @@
 //! Orbits found without a guess: Newton's method from many starts.
 
 use super::{Orbit, ShootingIterate};
-use crate::dynamics::strobe::{Point, StrobeMap};
+use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use std::cmp::Ordering;
 
 /// Starts along each side of the window, at most and at least.
@@ -58,7 +58,7 @@ fn side(period: u32) -> u32 {
 
 /// Cell centres of a window that holds the settled motion from rest with as much again around it,
 /// at least one on each side of rest.
-fn starts(map: &StrobeMap, side: u32) -> Vec<Point> {
+fn starts(map: &StrobeMap, side: u32) -> Vec<StrobePoint> {
     let mut window = [[-1.0_f64, 1.0_f64]; 2];
     if let Ok(rest) = map.entry([0.0; 3]) {
         for strobe in map.strobes(rest, SETTLING).skip(SETTLING as usize / 2) {
@@ -78,7 +78,7 @@ fn starts(map: &StrobeMap, side: u32) -> Vec<Point> {
 }
 
 /// The start, its settled motion, and where that comes closest to itself.
-fn guesses(map: &StrobeMap, start: Point, period: u32) -> Vec<Point> {
+fn guesses(map: &StrobeMap, start: StrobePoint, period: u32) -> Vec<StrobePoint> {
     let Ok(entry) = map.entry(start) else { return Vec::new() };
     let watched = WATCHED + u64::from(period);
     let settled = map.strobes(entry, SETTLING + watched).skip(SETTLING as usize);
@@ -89,13 +89,14 @@ fn guesses(map: &StrobeMap, start: Point, period: u32) -> Vec<Point> {
     [Some(start), settled, closest.map(|(from, _)| *from)].into_iter().flatten().collect()
 }
 
-fn apart(a: &Point, b: &Point) -> f64 {
+fn apart(a: &StrobePoint, b: &StrobePoint) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 /// Whether two orbits are one, wherever they begin.
 fn is_same(a: &Orbit, b: &Orbit) -> bool {
-    let near = |(a, b): (&Point, &Point)| apart(a, b) <= SAME * (1.0 + apart(a, &[0.0; 3]));
+    let near =
+        |(a, b): (&StrobePoint, &StrobePoint)| apart(a, b) <= SAME * (1.0 + apart(a, &[0.0; 3]));
     let count = b.points.len();
     a.points.len() == count
         && (0..count).any(|turn| a.points.iter().zip(b.points.iter().cycle().skip(turn)).all(near))
@@ -104,7 +105,8 @@ fn is_same(a: &Orbit, b: &Orbit) -> bool {
 /// The orbit from its strobe of least p on: what is found does not depend on which start found it.
 fn from_least(map: &StrobeMap, orbit: Orbit) -> Orbit {
     let mut points = orbit.points.clone();
-    let least = |(_, a): &(usize, &Point), (_, b): &(usize, &Point)| a[0].total_cmp(&b[0]);
+    let least =
+        |(_, a): &(usize, &StrobePoint), (_, b): &(usize, &StrobePoint)| a[0].total_cmp(&b[0]);
     let first = points.iter().enumerate().min_by(least).map_or(0, |(first, _)| first);
     points.rotate_left(first);
     ShootingIterate::of(map, &points).map_or(orbit, |chain| Orbit::of(&chain))

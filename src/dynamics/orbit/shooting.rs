@@ -1,7 +1,7 @@
 //! As many strobes as the period, each with its image one forcing period later.
 
 use super::super::linear::{IDENTITY, apply, norm, product, solve};
-use super::super::strobe::{Jacobian, Passage, Point, StrobeMap};
+use super::super::strobe::{Jacobian, Passage, StrobeMap, StrobePoint};
 use super::{LARGEST_PERIOD, NoOrbit, Reason};
 use crate::phase::Phase;
 
@@ -12,13 +12,13 @@ const ROUNDINGS: f64 = 8.0;
 #[derive(Clone, Debug)]
 pub(crate) struct ShootingIterate {
     /// p, y, q of each strobe.
-    pub(crate) points: Vec<Point>,
+    pub(crate) points: Vec<StrobePoint>,
     /// The passages over one forcing period, one from each strobe.
     pub(crate) passages: Vec<Passage>,
     /// The derivatives of these.
     pub(crate) jacobians: Vec<Jacobian>,
     /// Image of each strobe less the next one.
-    pub(crate) defects: Vec<Point>,
+    pub(crate) defects: Vec<StrobePoint>,
     /// The largest of them over 1 + |strobe|.
     pub(crate) residual: f64,
 }
@@ -26,12 +26,12 @@ pub(crate) struct ShootingIterate {
 /// The chain's linear recurrence from the first strobe once around: d -> `matrix` d + `offset`.
 pub(crate) struct Around {
     pub(crate) matrix: Jacobian,
-    pub(crate) offset: Point,
+    pub(crate) offset: StrobePoint,
 }
 
 impl ShootingIterate {
     /// The motion that begins at a point, for `period` forcing periods.
-    pub(crate) fn shot(map: &StrobeMap, guess: Point, period: u32) -> Result<Self, NoOrbit> {
+    pub(crate) fn shot(map: &StrobeMap, guess: StrobePoint, period: u32) -> Result<Self, NoOrbit> {
         if !(1..=LARGEST_PERIOD).contains(&period) {
             return Err(Reason::Period(period).into());
         }
@@ -42,7 +42,7 @@ impl ShootingIterate {
     }
 
     /// These strobes, each with its own forcing period; none where one is out of range.
-    pub(crate) fn of(map: &StrobeMap, points: &[Point]) -> Option<Self> {
+    pub(crate) fn of(map: &StrobeMap, points: &[StrobePoint]) -> Option<Self> {
         let count = points.len();
         let mut chain = Self {
             points: Vec::with_capacity(count),
@@ -61,7 +61,7 @@ impl ShootingIterate {
         for (k, passage) in chain.passages.iter().enumerate() {
             let next = chain.points[(k + 1) % count];
             let image = passage.point();
-            let defect: Point = std::array::from_fn(|i| image[i] - next[i]);
+            let defect: StrobePoint = std::array::from_fn(|i| image[i] - next[i]);
             let residual = size(&defect) / (1.0 + size(&next));
             if residual > chain.residual || residual.is_nan() {
                 chain.residual = residual;
@@ -88,7 +88,7 @@ impl ShootingIterate {
 
     /// Once around for changes of the first strobe, each strobe's defect (or whatever stands in its
     /// place) being added on the way.
-    pub(crate) fn around(&self, defects: &[Point]) -> Around {
+    pub(crate) fn around(&self, defects: &[StrobePoint]) -> Around {
         let mut around = Around { matrix: IDENTITY, offset: [0.0; 3] };
         for (jacobian, defect) in self.jacobians.iter().zip(defects) {
             around.matrix = product(jacobian, &around.matrix);
@@ -99,7 +99,7 @@ impl ShootingIterate {
     }
 
     /// The changes of all strobes that follow from that of the first.
-    pub(crate) fn spread(&self, first: Point, defects: &[Point]) -> Vec<Point> {
+    pub(crate) fn spread(&self, first: StrobePoint, defects: &[StrobePoint]) -> Vec<StrobePoint> {
         let mut changes = vec![first];
         for (jacobian, defect) in self.jacobians.iter().zip(defects).take(self.points.len() - 1) {
             let carried = apply(jacobian, &changes[changes.len() - 1]);
@@ -109,7 +109,7 @@ impl ShootingIterate {
     }
 
     /// Newton's step for all strobes.
-    pub(crate) fn newton_step(&self) -> Vec<Point> {
+    pub(crate) fn newton_step(&self) -> Vec<StrobePoint> {
         let Around { matrix, offset } = self.around(&self.defects);
         let less_identity = std::array::from_fn(|row| {
             std::array::from_fn(|column| matrix[row][column] - IDENTITY[row][column])
@@ -119,9 +119,14 @@ impl ShootingIterate {
     }
 
     /// The chain with a share of these changes made.
-    pub(crate) fn moved(&self, map: &StrobeMap, changes: &[Point], share: f64) -> Option<Self> {
+    pub(crate) fn moved(
+        &self,
+        map: &StrobeMap,
+        changes: &[StrobePoint],
+        share: f64,
+    ) -> Option<Self> {
         let moved = self.points.iter().zip(changes);
-        let points: Vec<Point> = moved
+        let points: Vec<StrobePoint> = moved
             .map(|(point, change)| std::array::from_fn(|i| point[i] + share * change[i]))
             .collect();
         Self::of(map, &points)
@@ -163,7 +168,7 @@ impl ShootingIterate {
     pub(crate) fn distance(&self, other: &Self) -> f64 {
         let others = other.points.iter().cycle();
         let apart = self.points.iter().zip(others).map(|(a, b)| {
-            let apart: Point = std::array::from_fn(|i| a[i] - b[i]);
+            let apart: StrobePoint = std::array::from_fn(|i| a[i] - b[i]);
             size(&apart) / (1.0 + size(a))
         });
         apart.fold(0.0, f64::max)
@@ -171,6 +176,6 @@ impl ShootingIterate {
 }
 
 /// The largest modulus.
-pub(crate) fn size(point: &Point) -> f64 {
+pub(crate) fn size(point: &StrobePoint) -> f64 {
     point.iter().fold(0.0, |size: f64, x| if size >= x.abs() { size } else { x.abs() })
 }

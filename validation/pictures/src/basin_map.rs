@@ -1,6 +1,6 @@
 //! Basins of attraction: every cell in its attractor's light colour, the attractors on top in dark.
 
-use super::canvas::{At, Canvas, Side};
+use super::canvas::{At, Canvas, TextSide};
 use super::frame::{Panel, Ruler};
 use super::look::Marker;
 use super::{DrawError, Drawing, palette};
@@ -66,10 +66,10 @@ impl Drawing for BasinMap {
     ) -> Result<(), DrawError> {
         let canvas = Canvas { area, scale };
         canvas.paper()?;
-        canvas.text(&self.title, (24.0, 30.0), TEXT + 4.0, Side::Left, palette::INK)?;
+        canvas.text(&self.title, (24.0, 30.0), TEXT + 4.0, TextSide::Left, palette::INK)?;
         for (k, line) in self.note.lines().enumerate() {
             let at = (24.0, 916.0 + 26.0 * k as f64);
-            canvas.text(line, at, TEXT - 2.0, Side::Left, palette::INK)?;
+            canvas.text(line, at, TEXT - 2.0, TextSide::Left, palette::INK)?;
         }
         self.cells(&canvas)?;
         let [[p_from, p_to], [y_from, y_to]] = self.window;
@@ -117,7 +117,7 @@ impl BasinMap {
             canvas.marker(Marker::Circle, (at.0 + 13.0, at.1), 5.0, dark)?;
             for (k, line) in shown.name.lines().enumerate() {
                 let place = (at.0 + 36.0, at.1 + 24.0 * k as f64);
-                canvas.text(line, place, TEXT - 3.0, Side::Left, palette::INK)?;
+                canvas.text(line, place, TEXT - 3.0, TextSide::Left, palette::INK)?;
             }
             at.1 += 20.0 + 24.0 * shown.name.lines().count() as f64;
         }
@@ -128,7 +128,7 @@ impl BasinMap {
         for (cell, name, colour) in others {
             if self.cells.contains(&cell) {
                 canvas.fill((at.0, at.1 - 13.0), (at.0 + 26.0, at.1 + 13.0), colour)?;
-                canvas.text(name, (at.0 + 36.0, at.1), TEXT - 3.0, Side::Left, palette::INK)?;
+                canvas.text(name, (at.0 + 36.0, at.1), TEXT - 3.0, TextSide::Left, palette::INK)?;
                 at.1 += 40.0;
             }
         }

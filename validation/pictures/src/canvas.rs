@@ -17,7 +17,7 @@ pub(super) struct Canvas<'a, B: DrawingBackend> {
 
 /// The side of its place on which a text stands.
 #[derive(Clone, Copy)]
-pub(super) enum Side {
+pub(super) enum TextSide {
     Left,
     Middle,
     Right,
@@ -73,13 +73,13 @@ impl<B: DrawingBackend> Canvas<'_, B> {
         text: &str,
         at: At,
         size: f64,
-        side: Side,
+        side: TextSide,
         colour: RGBColor,
     ) -> Result<(), DrawError> {
         let side = match side {
-            Side::Left => HPos::Left,
-            Side::Middle => HPos::Center,
-            Side::Right => HPos::Right,
+            TextSide::Left => HPos::Left,
+            TextSide::Middle => HPos::Center,
+            TextSide::Right => HPos::Right,
         };
         let font = (FAMILY, size * f64::from(self.scale)).into_font();
         let style = font.color(&colour).pos(Pos::new(side, VPos::Center));

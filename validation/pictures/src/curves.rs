@@ -1,6 +1,6 @@
 //! Curves with markers in one panel, their key beside it.
 
-use super::canvas::{At, Canvas, Side};
+use super::canvas::{At, Canvas, TextSide};
 use super::figure::Stroke;
 use super::frame::{Axis, Panel, Ruler};
 use super::{DrawError, Drawing, Marker, palette};
@@ -52,7 +52,7 @@ impl Drawing for Curves {
     ) -> Result<(), DrawError> {
         let canvas = Canvas { area, scale };
         canvas.paper()?;
-        canvas.text(&self.title, (24.0, 32.0), TEXT + 4.0, Side::Left, palette::INK)?;
+        canvas.text(&self.title, (24.0, 32.0), TEXT + 4.0, TextSide::Left, palette::INK)?;
         let points = || self.curves.iter().flat_map(|curve| &curve.points).filter(|it| finite(it));
         let x = Ruler::over(self.x.scale, points().map(|point| point.0));
         let y = Ruler::over(self.y.scale, points().map(|point| point.1));
@@ -61,7 +61,7 @@ impl Drawing for Curves {
                 "nothing was measured",
                 (130.0, 120.0),
                 TEXT,
-                Side::Left,
+                TextSide::Left,
                 palette::INK,
             );
         };
@@ -119,6 +119,6 @@ impl Curve {
         if let Some(marker) = self.marker {
             canvas.marker(marker, (x + 19.0, y), 6.0, self.colour)?;
         }
-        canvas.text(&self.name, (x + 44.0, y), size, Side::Left, palette::INK)
+        canvas.text(&self.name, (x + 44.0, y), size, TextSide::Left, palette::INK)
     }
 }

@@ -1,8 +1,8 @@
 //! A guard against time around one event, as it truly is and as an engine had it, in a wide panel
 //! and a close one. Steps, evaluations of the guard and events are marks, phases bands above.
 
-use super::canvas::{At, Canvas, Side};
-use super::frame::{Panel, Ruler, Scale, power_of_ten};
+use super::canvas::{At, Canvas, TextSide};
+use super::frame::{AxisScale, Panel, Ruler, power_of_ten};
 use super::{DrawError, Drawing, Marker, palette};
 use percuss::Phase;
 use plotters::coord::Shift;
@@ -24,12 +24,12 @@ pub struct Encounter {
     /// The time from which times are counted.
     pub centre: f64,
     /// The stretches, from the wide one to the close one.
-    pub stretches: Vec<Stretch>,
+    pub stretches: Vec<TimeStretch>,
 }
 
 /// A stretch of time.
 #[derive(Clone, Debug)]
-pub struct Stretch {
+pub struct TimeStretch {
     /// The time at which the stretch begins.
     pub from: f64,
     /// The time at which the stretch ends.
@@ -77,8 +77,8 @@ impl Drawing for Encounter {
     ) -> Result<(), DrawError> {
         let canvas = Canvas { area, scale };
         canvas.paper()?;
-        canvas.text(&self.title, (24.0, 30.0), TEXT + 5.0, Side::Left, palette::INK)?;
-        canvas.text(&self.subtitle, (24.0, 64.0), TEXT, Side::Left, palette::INK)?;
+        canvas.text(&self.title, (24.0, 30.0), TEXT + 5.0, TextSide::Left, palette::INK)?;
+        canvas.text(&self.subtitle, (24.0, 64.0), TEXT, TextSide::Left, palette::INK)?;
         let width = WIDE / self.stretches.len().max(1) as f64;
         for (i, stretch) in self.stretches.iter().enumerate() {
             let left = width * i as f64;
@@ -92,13 +92,13 @@ impl Encounter {
     fn stretch<B: DrawingBackend>(
         &self,
         canvas: &Canvas<'_, B>,
-        it: &Stretch,
+        it: &TimeStretch,
         (left, right): (f64, f64),
     ) -> Result<(), DrawError> {
         let times = Factor::of([it.from, it.to].into_iter());
         let values = Factor::of(it.shown());
         let (from, to) = (times.scaled(it.from), times.scaled(it.to));
-        let vertical = Ruler::over(Scale::Linear, it.shown().map(|v| values.scaled(v)));
+        let vertical = Ruler::over(AxisScale::Linear, it.shown().map(|v| values.scaled(v)));
         let Some(y) = vertical.filter(|_| from < to) else { return Ok(()) };
         let x = Ruler::between(from, to);
         let panel = Panel { from: (left, TOP), to: (right, BOTTOM), x, y };
@@ -111,7 +111,13 @@ impl Encounter {
         let place = |t: f64| panel.place((times.scaled(t), 0.0)).0.clamp(left, right);
         for (trail, name, top) in [(&it.truth, "truth", 96.0), (&it.engine, "engine", 126.0)] {
             trail.band(canvas, place, (left, right, top))?;
-            canvas.text(name, (left - 10.0, top + BAND / 2.0), TEXT, Side::Right, palette::INK)?;
+            canvas.text(
+                name,
+                (left - 10.0, top + BAND / 2.0),
+                TEXT,
+                TextSide::Right,
+                palette::INK,
+            )?;
         }
         let curve = |trail: &Trail| -> Vec<At> {
             trail.places(it.from, it.to).filter_map(|(t, v)| at(t, v)).collect()
@@ -128,7 +134,7 @@ impl Encounter {
     fn events<B: DrawingBackend>(
         &self,
         canvas: &Canvas<'_, B>,
-        it: &Stretch,
+        it: &TimeStretch,
         at: impl Fn(f64) -> Option<At>,
     ) -> Result<(), DrawError> {
         for (t, _, matched) in &it.truth.events {
@@ -175,14 +181,14 @@ impl Encounter {
                 5 => canvas.marker(Marker::Triangle, middle, 6.0, self.colour)?,
                 _ => wrong(canvas, middle, i > 6)?,
             }
-            canvas.text(word, (x + 38.0, y), TEXT - 1.0, Side::Left, ink)?;
+            canvas.text(word, (x + 38.0, y), TEXT - 1.0, TextSide::Left, ink)?;
             x += wide;
         }
         Ok(())
     }
 }
 
-impl Stretch {
+impl TimeStretch {
     /// All values that the vertical axis has to show, the event's zero among them.
     fn shown(&self) -> impl Iterator<Item = f64> + '_ {
         let looks = self.looks.iter().map(|look| look[1]);
@@ -224,7 +230,7 @@ impl Trail {
             if to - from > 11.0 * name.len() as f64 {
                 let colour = if *phase == Phase::Contact { palette::INK } else { WHITE };
                 let middle = ((from + to) / 2.0, top + BAND / 2.0);
-                canvas.text(&name, middle, TEXT - 2.0, Side::Middle, colour)?;
+                canvas.text(&name, middle, TEXT - 2.0, TextSide::Middle, colour)?;
             }
         }
         Ok(())

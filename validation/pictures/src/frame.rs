@@ -1,12 +1,12 @@
 //! A framed panel with ticks on linear or logarithmic axes.
 
-use super::canvas::{At, Canvas, Side};
+use super::canvas::{At, Canvas, TextSide};
 use super::{DrawError, axes, palette};
 use plotters::prelude::DrawingBackend;
 
 /// How an axis runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Scale {
+pub enum AxisScale {
     /// Evenly.
     Linear,
     /// The axis goes by powers of ten; what is not above zero stands at its lower end.
@@ -19,12 +19,12 @@ pub struct Axis {
     /// What it shows.
     pub label: String,
     /// How it runs.
-    pub scale: Scale,
+    pub scale: AxisScale,
 }
 
 /// An axis over data: from, to, and its ticks.
 pub(super) struct Ruler {
-    scale: Scale,
+    scale: AxisScale,
     from: f64,
     to: f64,
     pub ticks: Vec<(f64, String)>,
@@ -36,10 +36,10 @@ const MOST_TICKS: f64 = 8.0;
 
 impl Ruler {
     /// `None` where there is nothing to show.
-    pub fn over(scale: Scale, values: impl Iterator<Item = f64>) -> Option<Self> {
+    pub fn over(scale: AxisScale, values: impl Iterator<Item = f64>) -> Option<Self> {
         let placed = values.filter_map(|value| match scale {
-            Scale::Linear => Some(value),
-            Scale::Logarithmic => (value > 0.0).then(|| value.log10()),
+            AxisScale::Linear => Some(value),
+            AxisScale::Logarithmic => (value > 0.0).then(|| value.log10()),
         });
         let finite: Vec<f64> = placed.filter(|value| value.is_finite()).collect();
         if finite.is_empty() {
@@ -47,8 +47,8 @@ impl Ruler {
         }
         let range = axes::around(finite.iter().copied());
         let (from, to) = match scale {
-            Scale::Linear => (range.start, range.end),
-            Scale::Logarithmic => {
+            AxisScale::Linear => (range.start, range.end),
+            AxisScale::Logarithmic => {
                 let low = finite.iter().copied().fold(f64::INFINITY, f64::min);
                 let high = finite.iter().copied().fold(f64::NEG_INFINITY, f64::max);
                 ((low - 0.05).floor(), (high + 0.05).ceil())
@@ -59,16 +59,16 @@ impl Ruler {
 
     /// A linear axis from one value to another.
     pub fn between(from: f64, to: f64) -> Self {
-        Self::placed(Scale::Linear, from, to)
+        Self::placed(AxisScale::Linear, from, to)
     }
 
-    fn placed(scale: Scale, from: f64, to: f64) -> Self {
+    fn placed(scale: AxisScale, from: f64, to: f64) -> Self {
         let stride = stride((to - from) / MOST_TICKS, scale);
         let first = (from / stride).ceil() as i64;
         let last = (to / stride).floor() as i64;
         let label = |value: f64| match scale {
-            Scale::Linear => axes::label(value, &(from..to)),
-            Scale::Logarithmic => power_of_ten(value.round() as i64),
+            AxisScale::Linear => axes::label(value, &(from..to)),
+            AxisScale::Logarithmic => power_of_ten(value.round() as i64),
         };
         let tick = |k: i64| (k as f64 * stride, label(k as f64 * stride));
         // Where an axis is too narrow for its size its ticks cannot be told apart.
@@ -79,9 +79,9 @@ impl Ruler {
     /// The place of a value on the axis, from 0 to 1.
     pub fn place(&self, value: f64) -> f64 {
         let placed = match self.scale {
-            Scale::Linear => value,
-            Scale::Logarithmic if value > 0.0 => value.log10(),
-            Scale::Logarithmic => self.from,
+            AxisScale::Linear => value,
+            AxisScale::Logarithmic if value > 0.0 => value.log10(),
+            AxisScale::Logarithmic => self.from,
         };
         self.share(placed)
     }
@@ -93,11 +93,11 @@ impl Ruler {
 }
 
 /// The next of 1, 2, 5 times a power of ten.
-fn stride(rough: f64, scale: Scale) -> f64 {
+fn stride(rough: f64, scale: AxisScale) -> f64 {
     let power = 10.0_f64.powf(rough.log10().floor());
     let nice = [1.0, 2.0, 5.0, 10.0].map(|k| k * power).into_iter().find(|k| *k >= rough);
     let nice = nice.unwrap_or(rough);
-    if scale == Scale::Logarithmic { nice.ceil().max(1.0) } else { nice }
+    if scale == AxisScale::Logarithmic { nice.ceil().max(1.0) } else { nice }
 }
 
 /// 10 with its exponent raised.
@@ -162,16 +162,16 @@ impl Panel {
         for (placed, label) in &self.x.ticks {
             let x = from.0 + self.x.share(*placed) * (to.0 - from.0);
             canvas.line((x, to.1), (x, to.1 + 6.0), 1.0, palette::INK)?;
-            canvas.text(label, (x, to.1 + 20.0), TEXT, Side::Middle, palette::INK)?;
+            canvas.text(label, (x, to.1 + 20.0), TEXT, TextSide::Middle, palette::INK)?;
         }
         for (placed, label) in &self.y.ticks {
             let y = to.1 - self.y.share(*placed) * (to.1 - from.1);
             canvas.line((from.0 - 6.0, y), (from.0, y), 1.0, palette::INK)?;
-            canvas.text(label, (from.0 - 10.0, y), TEXT, Side::Right, palette::INK)?;
+            canvas.text(label, (from.0 - 10.0, y), TEXT, TextSide::Right, palette::INK)?;
         }
         canvas.frame(from, to)?;
         let middle = ((from.0 + to.0) / 2.0, to.1 + 52.0);
-        canvas.text(below, middle, TEXT + 2.0, Side::Middle, palette::INK)?;
+        canvas.text(below, middle, TEXT + 2.0, TextSide::Middle, palette::INK)?;
         canvas.upright(beside, (from.0 - 96.0, (from.1 + to.1) / 2.0), TEXT + 2.0)
     }
 }
@@ -183,13 +183,13 @@ mod tests {
     #[test]
     fn a_logarithmic_axis_takes_what_it_is_given() {
         let values = [1e-9, 3e-4, 0.0, f64::NAN, f64::INFINITY, -1.0];
-        let ruler = Ruler::over(Scale::Logarithmic, values.into_iter());
+        let ruler = Ruler::over(AxisScale::Logarithmic, values.into_iter());
         assert!(ruler.is_some());
         let Some(ruler) = ruler else { return };
         assert_eq!((ruler.place(1e-10), ruler.place(0.0)), (0.0, 0.0));
         assert!((ruler.place(1e-3) - 1.0).abs() < 1e-12);
         assert_eq!(ruler.ticks.first().map(|tick| tick.1.as_str()), Some("10⁻¹⁰"));
-        assert!(Ruler::over(Scale::Logarithmic, [0.0, f64::NAN].into_iter()).is_none());
-        assert!(Ruler::over(Scale::Linear, [1e-300, 1e300].into_iter()).is_some());
+        assert!(Ruler::over(AxisScale::Logarithmic, [0.0, f64::NAN].into_iter()).is_none());
+        assert!(Ruler::over(AxisScale::Linear, [1e-300, 1e300].into_iter()).is_some());
     }
 }

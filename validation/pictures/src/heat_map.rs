@@ -1,6 +1,6 @@
 //! A table of tinted cells: engines by something.
 
-use super::canvas::{Canvas, Side};
+use super::canvas::{Canvas, TextSide};
 use super::{DrawError, Drawing, palette};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -76,21 +76,21 @@ impl Drawing for HeatMap {
         let left = margin + label;
         let middle = |i: usize| left + self.cell() * (i as f64 + 0.5);
         canvas.paper()?;
-        canvas.text(&self.title, (margin, 28.0), TEXT + 4.0, Side::Left, palette::INK)?;
-        canvas.text(&self.note, (margin, 58.0), TEXT - 2.0, Side::Left, palette::INK)?;
+        canvas.text(&self.title, (margin, 28.0), TEXT + 4.0, TextSide::Left, palette::INK)?;
+        canvas.text(&self.note, (margin, 58.0), TEXT - 2.0, TextSide::Left, palette::INK)?;
         for (i, name) in self.columns.iter().enumerate() {
-            canvas.text(name, (middle(i), head - 16.0), TEXT, Side::Middle, palette::INK)?;
+            canvas.text(name, (middle(i), head - 16.0), TEXT, TextSide::Middle, palette::INK)?;
         }
         for (j, (name, cells)) in self.rows.iter().enumerate() {
             let top = head + j as f64 * row;
-            canvas.text(name, (margin, top + row / 2.0), TEXT, Side::Left, palette::INK)?;
+            canvas.text(name, (margin, top + row / 2.0), TEXT, TextSide::Left, palette::INK)?;
             for (i, cell) in cells.iter().enumerate() {
                 let from = left + self.cell() * i as f64;
                 let (paper, ink) = colours(cell.tint);
                 let to = (from + self.cell() - 2.0, top + row - 2.0);
                 canvas.fill((from, top), to, paper)?;
                 let at = (middle(i) - 1.0, top + row / 2.0 - 1.0);
-                canvas.text(&cell.text, at, TEXT - 1.0, Side::Middle, ink)?;
+                canvas.text(&cell.text, at, TEXT - 1.0, TextSide::Middle, ink)?;
             }
         }
         Ok(())

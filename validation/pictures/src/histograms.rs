@@ -1,7 +1,7 @@
 //! Histograms below each other on one axis, a strip each.
 
-use super::canvas::{Canvas, Side};
-use super::frame::{Ruler, Scale, power_of_ten};
+use super::canvas::{Canvas, TextSide};
+use super::frame::{AxisScale, Ruler, power_of_ten};
 use super::{DrawError, Drawing, palette};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -60,15 +60,15 @@ impl Drawing for Histograms {
         let canvas = Canvas { area, scale };
         let [head, row] = [HEAD, ROW].map(f64::from);
         canvas.paper()?;
-        canvas.text(&self.title, (24.0, 28.0), TEXT + 4.0, Side::Left, palette::INK)?;
+        canvas.text(&self.title, (24.0, 28.0), TEXT + 4.0, TextSide::Left, palette::INK)?;
         let edges =
             self.strips.iter().flat_map(HistogramRow::bins).flat_map(|(from, to, _)| [from, to]);
-        let Some(ruler) = Ruler::over(Scale::Linear, edges) else {
+        let Some(ruler) = Ruler::over(AxisScale::Linear, edges) else {
             return canvas.text(
                 "nothing was measured",
                 (24.0, head + 20.0),
                 TEXT,
-                Side::Left,
+                TextSide::Left,
                 palette::INK,
             );
         };
@@ -79,14 +79,14 @@ impl Drawing for Histograms {
             let label = if whole { power_of_ten(value.round() as i64) } else { label.clone() };
             let x = across(ruler.share(*value));
             canvas.line((x, head), (x, bottom), 1.0, palette::GRID)?;
-            canvas.text(&label, (x, bottom + 20.0), TEXT, Side::Middle, palette::INK)?;
+            canvas.text(&label, (x, bottom + 20.0), TEXT, TextSide::Middle, palette::INK)?;
         }
         for (i, strip) in self.strips.iter().enumerate() {
             let base = head + (i + 1) as f64 * row;
             let most = strip.bins().map(|bin| bin.2).max().unwrap_or(1) as f64;
             canvas.line((LEFT, base), (RIGHT, base), 1.0, palette::GRID)?;
             let at = (LEFT - 16.0, base - row / 2.0);
-            canvas.text(&strip.name, at, TEXT, Side::Right, palette::INK)?;
+            canvas.text(&strip.name, at, TEXT, TextSide::Right, palette::INK)?;
             for (from, to, count) in strip.bins() {
                 let tall = ((row - 8.0) * count as f64 / most).max(1.0);
                 let [from, to] = [from, to].map(|edge| across(ruler.share(edge)));
@@ -98,6 +98,6 @@ impl Drawing for Histograms {
             }
         }
         let middle = ((LEFT + RIGHT) / 2.0, bottom + 54.0);
-        canvas.text(&self.label, middle, TEXT + 1.0, Side::Middle, palette::INK)
+        canvas.text(&self.label, middle, TEXT + 1.0, TextSide::Middle, palette::INK)
     }
 }

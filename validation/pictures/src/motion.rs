@@ -3,7 +3,7 @@
 
 use super::axes::{around, label};
 use super::font::FAMILY;
-use super::piece::Piece;
+use super::piece::MotionPiece;
 use super::{DrawError, Drawing, palette};
 use percuss::{Exit, Instant, Phase, Segment};
 use percuss_engines::case::Problem;
@@ -21,16 +21,16 @@ const TEXT: u32 = 22;
 const TITLE: u32 = 24;
 
 /// A run ready to be drawn.
-pub struct Motion {
+pub struct DrawnMotion {
     title: String,
-    pieces: Vec<Piece>,
+    pieces: Vec<MotionPiece>,
 }
 
 /// A figure of a point.
 type Measure = fn(&[f64; 5]) -> f64;
 
 /// What one panel shows.
-struct Panel {
+struct MotionPanel {
     below: &'static str,
     beside: &'static str,
     x: Measure,
@@ -39,12 +39,18 @@ struct Panel {
     ticks: usize,
 }
 
-const HISTORIES: [Panel; 3] = [
-    Panel { below: "", beside: "x = p + v", x: |at| at[0], y: |at| at[1] + at[4], ticks: 5 },
-    Panel { below: "", beside: "p", x: |at| at[0], y: |at| at[1], ticks: 5 },
-    Panel { below: "\u{3c4} (time)", beside: "v (drift)", x: |at| at[0], y: |at| at[4], ticks: 5 },
+const HISTORIES: [MotionPanel; 3] = [
+    MotionPanel { below: "", beside: "x = p + v", x: |at| at[0], y: |at| at[1] + at[4], ticks: 5 },
+    MotionPanel { below: "", beside: "p", x: |at| at[0], y: |at| at[1], ticks: 5 },
+    MotionPanel {
+        below: "\u{3c4} (time)",
+        beside: "v (drift)",
+        x: |at| at[0],
+        y: |at| at[4],
+        ticks: 5,
+    },
 ];
-const PHASE_PLANE: Panel = Panel {
+const PHASE_PLANE: MotionPanel = MotionPanel {
     below: "p (displacement)",
     beside: "y (velocity)",
     x: |at| at[1],
@@ -52,7 +58,7 @@ const PHASE_PLANE: Panel = Panel {
     ticks: 10,
 };
 
-impl Drawing for Motion {
+impl Drawing for DrawnMotion {
     fn size(&self) -> (u32, u32) {
         SIZE
     }
@@ -74,7 +80,7 @@ impl Drawing for Motion {
     }
 }
 
-impl Motion {
+impl DrawnMotion {
     /// The phases of a run up to `last`.
     #[must_use]
     pub fn of(problem: &Problem, segments: &[Segment], last: &Instant) -> Self {
@@ -88,7 +94,7 @@ impl Motion {
                 Exit::Switch(_) | Exit::Undecidable => segment.duration(),
                 _ => last.since(&segment.entry().instant, omega).value(),
             };
-            Piece::of(segment, begins.tau(omega) + since, lasts, POINTS * lasts / span)
+            MotionPiece::of(segment, begins.tau(omega) + since, lasts, POINTS * lasts / span)
         });
         Self {
             title: format!("a = {a}, b = {b}, \u{3be} = {xi}, \u{3c9} = {omega}, g = {g}"),
@@ -122,10 +128,10 @@ impl Motion {
     fn panel<B: DrawingBackend>(
         &self,
         area: &DrawingArea<B, Shift>,
-        panel: &Panel,
+        panel: &MotionPanel,
         scale: u32,
     ) -> Result<(), DrawError> {
-        let Panel { below, beside, x, y, ticks } = *panel;
+        let MotionPanel { below, beside, x, y, ticks } = *panel;
         let all = || self.pieces.iter().flat_map(|piece| &piece.points);
         let (horizontal, vertical) = (around(all().map(x)), around(all().map(y)));
         let (ticks_x, ticks_y) = (horizontal.clone(), vertical.clone());

@@ -4,7 +4,7 @@ use percuss::{Phase, Segment};
 
 /// The sampled motion of one phase.
 #[derive(Clone, Debug)]
-pub struct Piece {
+pub struct MotionPiece {
     /// The phase.
     pub phase: Phase,
     /// tau, p, y, q, v.
@@ -14,7 +14,7 @@ pub struct Piece {
 /// Points of even the shortest phase.
 const FEWEST: usize = 12;
 
-impl Piece {
+impl MotionPiece {
     /// A phase from where it `begins` for as long as it `lasts`, both in tau, in about so many
     /// `points`.
     #[must_use]

@@ -9,7 +9,7 @@ use crate::number::shortest;
 use crate::picture::{self, Figure, Layer, Plot};
 use anyhow::{Result, anyhow, bail};
 use clap::{Args, ValueEnum};
-use percuss::dynamics::diagram::{Diagram, Follow, Step};
+use percuss::dynamics::diagram::{Diagram, DiagramStep, Follow};
 use percuss::{InputError, Parameter};
 use std::io::Write;
 
@@ -118,7 +118,7 @@ fn check_size(arguments: &Arguments, format: Format) -> Result<()> {
     Ok(())
 }
 
-fn write_csv(steps: &[Step], out: &mut dyn Write) -> Result<()> {
+fn write_csv(steps: &[DiagramStep], out: &mut dyn Write) -> Result<()> {
     writeln!(out, "parameter,n,p,y,q,drift_per_period")?;
     for step in steps {
         let [value, drift] = [step.value, step.drift_per_period].map(shortest);
@@ -130,9 +130,9 @@ fn write_csv(steps: &[Step], out: &mut dyn Write) -> Result<()> {
     Ok(())
 }
 
-fn drawing(diagram: &Diagram, steps: &[Step]) -> Figure {
+fn drawing(diagram: &Diagram, steps: &[DiagramStep]) -> Figure {
     let section =
-        |step: &Step| step.points.iter().map(|it| [step.value, it[0]]).collect::<Vec<_>>();
+        |step: &DiagramStep| step.points.iter().map(|it| [step.value, it[0]]).collect::<Vec<_>>();
     let how = match diagram.follow {
         Follow::Carry => "each value starts where the last one ended",
         Follow::Reset => "each value starts from the start given",
@@ -161,7 +161,7 @@ fn drawing(diagram: &Diagram, steps: &[Step]) -> Figure {
 }
 
 /// One line where rounding hides how a phase ends; whether there is no such value.
-fn tell_undecidable(parameter: Parameter, steps: &[Step]) -> bool {
+fn tell_undecidable(parameter: Parameter, steps: &[DiagramStep]) -> bool {
     let hidden = || steps.iter().filter(|step| step.undecidable);
     let Some(first) = hidden().next() else { return true };
     note(&format!(
@@ -176,7 +176,7 @@ fn tell_undecidable(parameter: Parameter, steps: &[Step]) -> bool {
 }
 
 /// One line where motions end in a phase without end.
-fn tell_endless(steps: &[Step]) {
+fn tell_endless(steps: &[DiagramStep]) {
     let ended: Vec<_> = steps.iter().filter_map(|step| step.endless).collect();
     if let Some(first) = ended.first() {
         let values = format!("{} of {} values", ended.len(), steps.len());

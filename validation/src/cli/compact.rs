@@ -7,12 +7,12 @@ use std::io::{self, Write};
 
 /// Writes a value.
 pub(super) fn write(value: &impl Serialize, out: impl Write) -> serde_json::Result<()> {
-    value.serialize(&mut Serializer::with_formatter(out, Lines::default()))
+    value.serialize(&mut Serializer::with_formatter(out, CompactLines::default()))
 }
 
 /// Indents by the library's own formatter, except in lists that hold no list and no object.
 #[derive(Default)]
-struct Lines {
+struct CompactLines {
     indented: PrettyFormatter<'static>,
     /// For each list or object that is open: whether it stands on lines of its own.
     open: Vec<bool>,
@@ -20,7 +20,7 @@ struct Lines {
     waiting: Option<bool>,
 }
 
-impl Lines {
+impl CompactLines {
     /// Before a list's plain value: the separator on the same line.
     fn plain<W: ?Sized + Write>(&mut self, out: &mut W) -> io::Result<()> {
         match (self.waiting.take(), self.open.last()) {
@@ -40,7 +40,7 @@ impl Lines {
     }
 }
 
-/// Plain values of a list go through [`Lines::plain`] first.
+/// Plain values of a list go through [`CompactLines::plain`] first.
 macro_rules! plain {
     ($($method:ident: $kind:ty),*) => {
         $(fn $method<W: ?Sized + Write>(&mut self, out: &mut W, value: $kind) -> io::Result<()> {
@@ -50,7 +50,7 @@ macro_rules! plain {
     };
 }
 
-impl Formatter for Lines {
+impl Formatter for CompactLines {
     plain!(write_i8: i8, write_i16: i16, write_i32: i32, write_i64: i64, write_i128: i128);
     plain!(write_u8: u8, write_u16: u16, write_u32: u32, write_u64: u64, write_u128: u128);
     plain!(write_bool: bool, write_f32: f32, write_f64: f64, write_number_str: &str);

@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     }
     let destination = arguments.output.destination();
     let bar = work::run_bar(destination.is_terminal());
-    let course = Course::new(arguments, &problem);
+    let course = ShownCourse::new(arguments, &problem);
     let progress = course.progress(bar);
     let (mut last, mut count) = (problem.entry, 0);
     let strobes = course.strobes(&progress).inspect(|strobe| (last, count) = (*strobe, count + 1));
@@ -87,14 +87,14 @@ fn undecidable(points: u64) -> String {
 }
 
 /// A motion and the part of it that is shown.
-struct Course<'a> {
+struct ShownCourse<'a> {
     problem: &'a Problem,
     first: Instant,
     end: Instant,
     count: u64,
 }
 
-impl<'a> Course<'a> {
+impl<'a> ShownCourse<'a> {
     fn new(arguments: &Arguments, problem: &'a Problem) -> Self {
         let start = problem.entry.instant;
         let first = start.after_periods(arguments.transient, 1).first_at_angle(arguments.section);

@@ -1,13 +1,13 @@
 //! What `validate` leaves behind besides its table: files, and annotations under the CI service.
 
 use super::output::write_whole;
-use crate::report::{Evidence, Report, annotations, exporters, pictures, under_the_service};
+use crate::report::{Report, ReportEvidence, annotations, exporters, pictures, under_the_service};
 use anyhow::{Context, Result};
 use std::io::{self, Write};
 use std::path::Path;
 
 /// Every format of the report, and the pictures, into a folder.
-pub(super) fn write(report: &Report, evidence: &Evidence, folder: &Path) -> Result<()> {
+pub(super) fn write(report: &Report, evidence: &ReportEvidence, folder: &Path) -> Result<()> {
     for exporter in exporters() {
         let path = folder.join(exporter.file_name());
         write_whole(&path, |out| Ok(exporter.write(report, evidence, out)?)).context("--out")?;
@@ -25,7 +25,7 @@ pub(super) fn write(report: &Report, evidence: &Evidence, folder: &Path) -> Resu
 
 /// Writes annotations to stderr, which the service reads as well: stdout holds the table and
 /// nothing else.
-pub(super) fn annotate(report: &Report, evidence: &Evidence, require: bool) {
+pub(super) fn annotate(report: &Report, evidence: &ReportEvidence, require: bool) {
     if under_the_service() {
         for line in annotations(report, evidence, require) {
             // Where stderr is closed there is no one to tell.

@@ -7,7 +7,7 @@ use crate::case::{self, Case};
 use crate::engine::{self, Engine, Wrong, hush_contained_panics};
 use crate::power::{self, Finding, Standard};
 use crate::report::{
-    Baseline, Compared, Evidence, Place, RankingFormat, Report, Summary, event_pictures,
+    Baseline, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary, event_pictures,
     ranking_text, screen,
 };
 use crate::suite::{self, Prepared, Suite};
@@ -110,7 +110,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     };
     let findings: Vec<_> = pool.install(|| wrong.iter().map(examine).collect());
     bar.finish_and_clear();
-    let mut evidence = Evidence::gather(&cases, &rows, &findings, arguments.cases.is_none());
+    let mut evidence = ReportEvidence::gather(&cases, &rows, &findings, arguments.cases.is_none());
     evidence.folders = folders(arguments);
     if arguments.out.is_some() {
         evidence.events = pool.install(|| event_pictures(&cases, &rows, arguments.suite));
@@ -154,7 +154,7 @@ fn worse(arguments: &Arguments, baseline: &Baseline, report: &Report) -> Result<
     let accepts = |patterns: &[Regex], name: &str| {
         patterns.is_empty() || patterns.iter().any(|it| it.is_match(name))
     };
-    let asked = |it: &Place<'_>| {
+    let asked = |it: &RowPlace<'_>| {
         accepts(&arguments.engine, it.engine)
             && accepts(&arguments.case, it.case)
             && arguments.suite.makes(it.tolerance, it.step)
@@ -172,7 +172,12 @@ fn worse(arguments: &Arguments, baseline: &Baseline, report: &Report) -> Result<
 }
 
 /// Files, annotations and the summary.
-fn write(arguments: &Arguments, report: &Report, evidence: &Evidence, cases: usize) -> Result<()> {
+fn write(
+    arguments: &Arguments,
+    report: &Report,
+    evidence: &ReportEvidence,
+    cases: usize,
+) -> Result<()> {
     if let Some(folder) = &arguments.out {
         reports::write(report, evidence, folder)?;
     }
@@ -192,7 +197,7 @@ fn write(arguments: &Arguments, report: &Report, evidence: &Evidence, cases: usi
     shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })
 }
 
-fn code(arguments: &Arguments, report: &Report, evidence: &Evidence) -> u8 {
+fn code(arguments: &Arguments, report: &Report, evidence: &ReportEvidence) -> u8 {
     let Summary { fail, error, unavailable, .. } = report.summary;
     let lacking = arguments.require && unavailable > 0;
     let out_of_bounds = fail + error > 0 || lacking || !evidence.worse.is_empty();

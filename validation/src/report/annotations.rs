@@ -2,7 +2,7 @@
 //!
 //! The service shows a handful of annotations a step and drops the rest, so there is one a case.
 
-use super::{Evidence, Report, Row};
+use super::{Report, ReportEvidence, Row};
 use crate::score::Verdict;
 
 /// Whether this runs under the service.
@@ -14,7 +14,7 @@ pub fn under_the_service() -> bool {
 /// A line for each case with a row that fails or errs; with `require` also where an engine is
 /// unavailable.
 #[must_use]
-pub fn annotations(report: &Report, evidence: &Evidence, require: bool) -> Vec<String> {
+pub fn annotations(report: &Report, evidence: &ReportEvidence, require: bool) -> Vec<String> {
     let wanted = |row: &&Row| match row.verdict {
         Verdict::Fail | Verdict::Error => true,
         Verdict::Unavailable => require,

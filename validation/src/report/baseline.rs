@@ -32,7 +32,7 @@ struct Largest {
 
 /// A row's place in a report.
 #[derive(Clone, Copy, Debug)]
-pub struct Place<'a> {
+pub struct RowPlace<'a> {
     /// The case.
     pub case: &'a str,
     /// The engine.
@@ -77,7 +77,7 @@ impl Baseline {
 
     /// Holds a report against this one; `asked` says whether a row of the baseline was asked for.
     #[must_use]
-    pub fn compare(&self, report: &Report, asked: impl Fn(&Place<'_>) -> bool) -> Compared {
+    pub fn compare(&self, report: &Report, asked: impl Fn(&RowPlace<'_>) -> bool) -> Compared {
         let mut compared = Compared::default();
         for earlier in &self.results {
             let who = earlier.who();
@@ -96,9 +96,9 @@ impl Baseline {
 }
 
 impl Earlier {
-    fn place(&self) -> Place<'_> {
+    fn place(&self) -> RowPlace<'_> {
         let Self { case, engine, tolerance, step, .. } = self;
-        Place { case, engine, tolerance: *tolerance, step: *step }
+        RowPlace { case, engine, tolerance: *tolerance, step: *step }
     }
 
     fn who(&self) -> String {

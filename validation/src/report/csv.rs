@@ -1,7 +1,7 @@
 //! `errors.csv`: the rows of `report.json`, flat. What is `null` there is empty or `nan` here.
 
 use super::row::{Distance, ValidHorizons};
-use super::{Evidence, Exporter, Report, Row};
+use super::{Exporter, Report, ReportEvidence, Row};
 use crate::number::shortest;
 use crate::score::Spread;
 use std::collections::BTreeMap;
@@ -55,7 +55,7 @@ impl Exporter for Csv {
         "errors.csv"
     }
 
-    fn write(&self, report: &Report, _: &Evidence, out: &mut dyn Write) -> io::Result<()> {
+    fn write(&self, report: &Report, _: &ReportEvidence, out: &mut dyn Write) -> io::Result<()> {
         let mut writer = csv::Writer::from_writer(out);
         writer.write_record(COLUMNS)?;
         for row in &report.results {

@@ -9,7 +9,7 @@ use serde::Serialize;
 
 /// Everything that is shown beside the rows.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Evidence {
+pub struct ReportEvidence {
     /// The cases that were run.
     pub cases: Vec<CaseNote>,
     /// Errors along chaotic runs.
@@ -18,11 +18,11 @@ pub struct Evidence {
     pub restarts: Vec<RestartHistogram>,
     /// Near misses and light touches; where there are none they are read off the rows of cases with
     /// a margin.
-    pub grazes: Vec<Graze>,
+    pub grazes: Vec<GrazeRow>,
     /// Poincare sections of the exact solver and of direct integration.
     pub sections: Vec<SectionPair>,
     /// Deliberately wrong engines, and what noticed them.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<FaultRow>,
     /// What got worse than in the baseline, a line each.
     pub worse: Vec<String>,
     /// Flags with their folders that a command needs to repeat a row on the same data.
@@ -86,7 +86,7 @@ pub struct RestartHistogram {
 
 /// What an engine made of a near miss or a light touch.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Graze {
+pub struct GrazeRow {
     /// The case.
     pub case: String,
     /// How far the gap's first maximum reaches beyond the surface (negative: stays short of it).
@@ -120,7 +120,7 @@ pub struct SectionPair {
 
 /// A deliberately wrong engine.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Fault {
+pub struct FaultRow {
     /// The engine.
     pub engine: String,
     /// What is wrong with it.

@@ -1,12 +1,14 @@
 //! The evidence of a run: what the rows and the prepared cases hold that a row has no room for.
 
-use super::evidence::{CaseNote, ErrorGrowth, Evidence, Fault, RestartHistogram, SectionPair};
+use super::evidence::{
+    CaseNote, ErrorGrowth, FaultRow, ReportEvidence, RestartHistogram, SectionPair,
+};
 use crate::power::{Finding, Gate};
 use crate::score::attractor::{AttractorTest, Comparison};
 use crate::score::{Histogram, Measures, sample_errors};
 use crate::suite::{Prepared, Scored, Status, is_shown};
 
-impl Evidence {
+impl ReportEvidence {
     /// Collects it; `embedded`: the cases stand inside the binary.
     #[must_use]
     pub fn gather(
@@ -38,7 +40,7 @@ impl Evidence {
     }
 }
 
-fn fault(finding: &Finding) -> Fault {
+fn fault(finding: &Finding) -> FaultRow {
     let gate = |gate: Gate| {
         let trip = finding.gates.get(&gate).cloned().unwrap_or_default();
         let detail = match (trip.held, trip.failed) {
@@ -48,7 +50,7 @@ fn fault(finding: &Finding) -> Fault {
         };
         (gate.name().to_owned(), trip.failed > 0, detail)
     };
-    Fault {
+    FaultRow {
         engine: finding.engine.clone(),
         fault: finding.fault.to_owned(),
         gates: Gate::ALL.into_iter().map(gate).collect(),

@@ -1,7 +1,7 @@
 //! Grazing: what each engine made of near misses and light touches, by margin.
 
 use super::setting::setting;
-use super::{Evidence, Report};
+use super::{Report, ReportEvidence};
 use crate::score::Verdict;
 use std::collections::BTreeMap;
 
@@ -32,7 +32,7 @@ pub(super) struct Grazing {
     pub lines: Vec<(String, Vec<Touches>)>,
 }
 
-struct Entry {
+struct GrazingEntry {
     engine: String,
     margin: f64,
     fineness: f64,
@@ -42,7 +42,7 @@ struct Entry {
 
 impl Grazing {
     /// The table that follows from the evidence, or from the rows of cases that state a margin.
-    pub fn of(report: &Report, evidence: &Evidence) -> Self {
+    pub fn of(report: &Report, evidence: &ReportEvidence) -> Self {
         let mut entries =
             if evidence.grazes.is_empty() { of_rows(report, evidence) } else { given(evidence) };
         entries.sort_by(|a, b| b.fineness.total_cmp(&a.fineness));
@@ -87,8 +87,8 @@ fn seen(missed: usize, spurious: usize) -> Seen {
     }
 }
 
-fn given(evidence: &Evidence) -> Vec<Entry> {
-    let entry = |graze: &super::Graze| Entry {
+fn given(evidence: &ReportEvidence) -> Vec<GrazingEntry> {
+    let entry = |graze: &super::GrazeRow| GrazingEntry {
         engine: graze.engine.clone(),
         margin: graze.margin,
         fineness: graze.tolerance.unwrap_or(0.0),
@@ -98,7 +98,7 @@ fn given(evidence: &Evidence) -> Vec<Entry> {
     evidence.grazes.iter().map(entry).collect()
 }
 
-fn of_rows(report: &Report, evidence: &Evidence) -> Vec<Entry> {
+fn of_rows(report: &Report, evidence: &ReportEvidence) -> Vec<GrazingEntry> {
     let margins: BTreeMap<&str, f64> =
         evidence.cases.iter().filter_map(|note| Some((note.name.as_str(), note.margin?))).collect();
     let entry = |row: &super::Row| {
@@ -111,7 +111,7 @@ fn of_rows(report: &Report, evidence: &Evidence) -> Vec<Entry> {
         };
         let fineness = row.tolerance.or(row.step).unwrap_or(0.0);
         let engine = row.engine.to_owned();
-        Some(Entry { engine, margin, fineness, setting: row.setting(), seen })
+        Some(GrazingEntry { engine, margin, fineness, setting: row.setting(), seen })
     };
     report.results.iter().filter_map(entry).collect()
 }

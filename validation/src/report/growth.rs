@@ -4,7 +4,7 @@ use super::ErrorGrowth;
 use super::pictures::{GREY, Palette};
 use super::setting::{setting, who};
 use crate::picture::RGBColor;
-use crate::picture::{Axis, Curve, Curves, Scale, Stroke};
+use crate::picture::{Axis, AxisScale, Curve, Curves, Stroke};
 
 const INK: RGBColor = RGBColor(20, 20, 20);
 
@@ -39,8 +39,8 @@ impl Palette {
         curves.extend(exponential(runs));
         Curves {
             title: format!("Error growth in chaos: {case}"),
-            x: Axis { label: "forcing periods".to_owned(), scale: Scale::Linear },
-            y: Axis { label: "error of the state".to_owned(), scale: Scale::Logarithmic },
+            x: Axis { label: "forcing periods".to_owned(), scale: AxisScale::Linear },
+            y: Axis { label: "error of the state".to_owned(), scale: AxisScale::Logarithmic },
             curves,
         }
     }

@@ -1,6 +1,6 @@
 //! `report.json`.
 
-use super::{Evidence, Exporter, Report};
+use super::{Exporter, Report, ReportEvidence};
 use std::io::{self, Write};
 
 pub(super) struct Json;
@@ -10,7 +10,7 @@ impl Exporter for Json {
         "report.json"
     }
 
-    fn write(&self, report: &Report, _: &Evidence, out: &mut dyn Write) -> io::Result<()> {
+    fn write(&self, report: &Report, _: &ReportEvidence, out: &mut dyn Write) -> io::Result<()> {
         serde_json::to_writer_pretty(&mut *out, report)?;
         out.write_all(b"\n")
     }

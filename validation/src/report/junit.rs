@@ -1,6 +1,6 @@
 //! `junit.xml`: a suite a case, a test a row, for services that show test results.
 
-use super::{Evidence, Exporter, Report, Row};
+use super::{Exporter, Report, ReportEvidence, Row};
 use crate::score::Verdict;
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use std::io::{self, Write};
@@ -13,7 +13,12 @@ impl Exporter for Junit {
         "junit.xml"
     }
 
-    fn write(&self, report: &Report, evidence: &Evidence, out: &mut dyn Write) -> io::Result<()> {
+    fn write(
+        &self,
+        report: &Report,
+        evidence: &ReportEvidence,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let mut whole = quick_junit::Report::new("percuss validate");
         for rows in report.results.chunk_by(|a, b| a.case == b.case) {
             whole.add_test_suite(suite(rows));

@@ -24,11 +24,13 @@ mod summary;
 mod table;
 
 pub use annotations::{annotations, under_the_service};
-pub use baseline::{Baseline, Compared, Place};
-pub use event::{Course, EventPicture, Kind, Mark, View, event_pictures};
-pub use evidence::{CaseNote, ErrorGrowth, Evidence, Fault, Graze, RestartHistogram, SectionPair};
+pub use baseline::{Baseline, Compared, RowPlace};
+pub use event::{EventMark, EventPicture, MismatchKind, View, ViewCourse, event_pictures};
+pub use evidence::{
+    CaseNote, ErrorGrowth, FaultRow, GrazeRow, ReportEvidence, RestartHistogram, SectionPair,
+};
 pub use orders::{Order, orders};
-pub use pictures::{Picture, pictures};
+pub use pictures::{PictureFile, pictures};
 pub use ranking::{COMPARED_AT, Ranked, Units};
 pub use ranking_formats::{RankingFormat, ranking_text};
 pub use row::{EngineEntry, Report, Row, Summary, ValidHorizons};
@@ -45,7 +47,12 @@ pub trait Exporter: Sync {
     ///
     /// # Errors
     /// What the writer says.
-    fn write(&self, report: &Report, evidence: &Evidence, out: &mut dyn Write) -> io::Result<()>;
+    fn write(
+        &self,
+        report: &Report,
+        evidence: &ReportEvidence,
+        out: &mut dyn Write,
+    ) -> io::Result<()>;
 }
 
 /// All formats.

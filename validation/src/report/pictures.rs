@@ -3,12 +3,12 @@
 use super::grazing::{Grazing, Seen};
 use super::setting::{setting, who};
 use super::summary::{self, EngineSummary, SettingSummary};
-use super::{Evidence, Report, RestartHistogram, SectionPair};
+use super::{Report, ReportEvidence, RestartHistogram, SectionPair};
 use crate::number::brief;
 use crate::picture::RGBColor;
 use crate::picture::{
-    self, Axis, Curve, Curves, DrawError, Drawing, Encounter, Figure, HeatCell, HeatMap,
-    HistogramRow, Histograms, Layer, Look, Marker, Plot, Scale, Stroke, Tint, looks, png, svg,
+    self, Axis, AxisScale, Curve, Curves, DrawError, Drawing, Encounter, Figure, HeatCell, HeatMap,
+    HistogramRow, Histograms, Layer, Look, Marker, Plot, Stroke, Tint, looks, png, svg,
 };
 use percuss::Phase;
 use rayon::prelude::*;
@@ -20,13 +20,13 @@ const FEW_CASES: usize = 3;
 pub(super) const GREY: RGBColor = RGBColor(150, 150, 150);
 
 /// A picture's file name and bytes.
-pub type Picture = (String, Vec<u8>);
+pub type PictureFile = (String, Vec<u8>);
 
 /// All pictures that there are data for.
 ///
 /// # Errors
 /// [`DrawError`] with the drawing library's reason.
-pub fn pictures(report: &Report, evidence: &Evidence) -> Result<Vec<Picture>, DrawError> {
+pub fn pictures(report: &Report, evidence: &ReportEvidence) -> Result<Vec<PictureFile>, DrawError> {
     let palette = Palette::of(report, evidence);
     let summaries = summary::engines(report);
     let work = |name: &str, label: &str, figure: fn(&SettingSummary) -> f64| {
@@ -64,7 +64,7 @@ pub fn pictures(report: &Report, evidence: &Evidence) -> Result<Vec<Picture>, Dr
 /// A picture of each wrong event, where few cases are chosen: of all there would be too many.
 fn events<'a>(
     report: &Report,
-    evidence: &'a Evidence,
+    evidence: &'a ReportEvidence,
     palette: &'a Palette,
 ) -> impl Iterator<Item = (String, Encounter)> + 'a {
     let cases = report.results.chunk_by(|a, b| a.case == b.case).count();
@@ -75,7 +75,7 @@ fn events<'a>(
 fn drawn<D: Drawing + Sync>(
     drawings: &[(String, D)],
     small: impl Fn(&D) -> bool + Sync,
-) -> Result<Vec<Picture>, DrawError> {
+) -> Result<Vec<PictureFile>, DrawError> {
     let both = |(name, drawing): &(String, D)| {
         let mut files = vec![(format!("{name}.png"), png(drawing)?)];
         if small(drawing) {
@@ -105,7 +105,7 @@ pub(super) struct Palette {
 
 impl Palette {
     /// The looks of the engines of the report, and of those that only the evidence knows.
-    fn of(report: &Report, evidence: &Evidence) -> Self {
+    fn of(report: &Report, evidence: &ReportEvidence) -> Self {
         let mut names: Vec<(&str, &str)> =
             report.engines.iter().map(|it| (it.name, it.library)).collect();
         let growth = evidence.growth.iter().map(|it| it.engine.as_str());
@@ -152,7 +152,8 @@ impl Palette {
                 .filter(|it| it.0 > 0.0)
                 .collect(),
         };
-        let logarithmic = |label: &str| Axis { label: label.to_owned(), scale: Scale::Logarithmic };
+        let logarithmic =
+            |label: &str| Axis { label: label.to_owned(), scale: AxisScale::Logarithmic };
         Curves {
             title: format!("Work-precision, {label}: {of}"),
             x: logarithmic("right-hand sides (exact: closed-form evaluations)"),

@@ -5,7 +5,7 @@
 
 use super::ranking::{COMPARED_AT, Ranked};
 use super::table::{reasons, row_table};
-use super::{Evidence, Order, Report, Row, orders};
+use super::{Order, Report, ReportEvidence, Row, orders};
 use crate::number::brief;
 use crate::score::Verdict;
 use comfy_table::{CellAlignment, Table, presets};
@@ -16,7 +16,7 @@ pub const WIDTH: usize = 100;
 
 /// The screen; `with_rows`: every row stands above it.
 #[must_use]
-pub fn screen(report: &Report, evidence: &Evidence, with_rows: bool) -> String {
+pub fn screen(report: &Report, evidence: &ReportEvidence, with_rows: bool) -> String {
     let rows = if with_rows { row_table(&report.results) + "\n" } else { String::new() };
     let parts = [
         rows,
@@ -161,9 +161,9 @@ fn valid_horizons(rows: &[Row]) -> String {
     rows.iter().filter_map(line).collect()
 }
 
-fn power(evidence: &Evidence) -> String {
+fn power(evidence: &ReportEvidence) -> String {
     let Some(_) = evidence.faults.first() else { return String::new() };
-    let caught = |it: &&super::Fault| it.gates.iter().any(|gate| gate.1);
+    let caught = |it: &&super::FaultRow| it.gates.iter().any(|gate| gate.1);
     let missed = evidence.faults.iter().filter(|it| !caught(it));
     let missed: String = missed
         .map(|it| wrapped(&format!("power: no gate catches {}: {}", it.engine, it.fault)))
@@ -172,7 +172,7 @@ fn power(evidence: &Evidence) -> String {
     format!("power: {count} of {all} engines that are wrong on purpose are caught\n{missed}")
 }
 
-fn worse(evidence: &Evidence) -> String {
+fn worse(evidence: &ReportEvidence) -> String {
     let lines = evidence.worse.iter();
     lines.map(|it| wrapped(&format!("worse than the baseline: {it}"))).collect()
 }

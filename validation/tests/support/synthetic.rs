@@ -4,8 +4,9 @@
 use percuss::Phase;
 use percuss_validation::build::Build;
 use percuss_validation::report::{
-    CaseNote, Course, EngineEntry, ErrorGrowth, EventPicture, Evidence, Fault, Graze, Kind, Mark,
-    Ranked, Report, RestartHistogram, Row, SectionPair, Summary, Units, ValidHorizons, View,
+    CaseNote, EngineEntry, ErrorGrowth, EventMark, EventPicture, FaultRow, GrazeRow, MismatchKind,
+    Ranked, Report, ReportEvidence, RestartHistogram, Row, SectionPair, Summary, Units,
+    ValidHorizons, View, ViewCourse,
 };
 use percuss_validation::score::{Spread, Verdict};
 use percuss_validation::suite::Suite;
@@ -249,12 +250,12 @@ fn section(count: usize) -> SectionPair {
     }
 }
 
-fn fault(engine: &str, fault: &str, caught: [bool; 4]) -> Fault {
+fn fault(engine: &str, fault: &str, caught: [bool; 4]) -> FaultRow {
     let names = ["events", "time error", "restart test", "same attractor"];
     let gate = |(name, caught): (&str, bool)| {
         (name.to_owned(), caught, if caught { "3.1 above 1".to_owned() } else { String::new() })
     };
-    Fault {
+    FaultRow {
         engine: engine.to_owned(),
         fault: fault.to_owned(),
         gates: names.into_iter().zip(caught).map(gate).collect(),
@@ -265,15 +266,19 @@ fn fault(engine: &str, fault: &str, caught: [bool; 4]) -> Fault {
 fn view(half: f64) -> View {
     let instants = || (0..=60).map(|k| half * (f64::from(k) / 30.0 - 1.0));
     let touch = |t: f64| -t * t;
-    let mark = |t, phase| Mark { t, phase, matched: false };
+    let mark = |t, phase| EventMark { t, phase, matched: false };
     let mut values: Vec<f64> = instants().map(|t| touch(t) - 1e-7).collect();
     values[7] = f64::NAN;
     let events = vec![mark(0.0, Phase::Contact), mark(1e-4, Phase::NoContact)];
     View {
         from: -half,
         to: half,
-        truth: Course { phase: Phase::NoContact, events, values: instants().map(touch).collect() },
-        engine: Course { phase: Phase::NoContact, events: Vec::new(), values },
+        truth: ViewCourse {
+            phase: Phase::NoContact,
+            events,
+            values: instants().map(touch).collect(),
+        },
+        engine: ViewCourse { phase: Phase::NoContact, events: Vec::new(), values },
         steps: vec![-0.6 * half, 0.2 * half, 0.8 * half],
         looks: vec![[-0.6 * half, touch(0.6 * half)], [0.8 * half, f64::NAN]],
     }
@@ -286,7 +291,7 @@ fn event() -> EventPicture {
         engine: "diffsol-bdf".to_owned(),
         tolerance: Some(1e-12),
         step: None,
-        kind: Kind::Missed,
+        kind: MismatchKind::Missed,
         title: NASTY.to_owned(),
         guard: "gap p \u{2212} q \u{2212} g",
         centre: 12.345_678_901,
@@ -295,7 +300,7 @@ fn event() -> EventPicture {
     }
 }
 
-pub fn evidence() -> Evidence {
+pub fn evidence() -> ReportEvidence {
     let note = |(name, margin): (String, f64)| CaseNote {
         file: format!("validation/cases/{name}.toml"),
         name,
@@ -304,7 +309,7 @@ pub fn evidence() -> Evidence {
         why: NASTY.to_owned(),
         margin: Some(margin),
     };
-    let graze = |engine: &str, tolerance: Option<f64>, (case, margin): (String, f64)| Graze {
+    let graze = |engine: &str, tolerance: Option<f64>, (case, margin): (String, f64)| GrazeRow {
         case,
         margin,
         engine: engine.to_owned(),
@@ -318,7 +323,7 @@ pub fn evidence() -> Evidence {
         std::iter::once(("exact", None)).chain(adaptive)
     };
     let words = "every hundredth event is dropped, counted over the engine's life";
-    Evidence {
+    ReportEvidence {
         cases: margins().map(note).collect(),
         growth: runs().enumerate().map(|(i, (it, t))| growth(it, t, i)).collect(),
         restarts: runs().enumerate().map(|(i, (it, t))| histogram(it, t, i)).collect(),

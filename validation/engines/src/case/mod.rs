@@ -16,7 +16,7 @@ pub use bound::{Bound, Quantity, Shortcoming, Statistic};
 pub use expectations::Defaults;
 pub use library::{defaults, defaults_of_own_cases, embedded, from_directory};
 pub use located::{FileError, Origins};
-pub use probed::Probed;
+pub use probed::ProbedCase;
 pub use problem::{Given, Problem};
 pub use regime::Regime;
 pub use wire::{parse_case, parse_problem, read_problem};
@@ -55,7 +55,7 @@ pub struct Case {
     /// The horizon, after the start.
     pub horizon: Horizon,
     /// What is asked of engines beyond the run itself.
-    pub probed: Probed,
+    pub probed: ProbedCase,
     /// Bounds of this case; they come before the default ones.
     pub bounds: Vec<Bound>,
     /// Known shortcomings of engines, with their reasons.

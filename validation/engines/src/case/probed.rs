@@ -9,7 +9,7 @@ const LONGEST: i64 = 1000;
 
 /// What is asked on a case beyond its own run, which is asked of the exact solver in any case.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Probed {
+pub struct ProbedCase {
     /// Whether integrators and wrong engines too restart from states on its attractor and, where
     /// its section has calibrated limits, run for long.
     pub integrators: bool,
@@ -27,7 +27,7 @@ pub(super) struct ProbesTable {
 }
 
 impl Source<'_> {
-    pub(super) fn probed(&self, table: &ProbesTable) -> Result<Probed, FileError> {
+    pub(super) fn probed(&self, table: &ProbesTable) -> Result<ProbedCase, FileError> {
         let accepted = |it: &Spanned<i64>| {
             let periods = u32::try_from(*it.get_ref()).ok();
             periods
@@ -35,6 +35,6 @@ impl Source<'_> {
                 .ok_or_else(|| self.refused("valid_within", it))
         };
         let valid_within = table.valid_within.as_ref().map(accepted).transpose()?;
-        Ok(Probed { integrators: table.integrators, valid_within })
+        Ok(ProbedCase { integrators: table.integrators, valid_within })
     }
 }

@@ -1,12 +1,12 @@
 //! A run repeated without the harness's own part, so that a bench can measure what that part takes.
 //!
-//! The run is told where its events lie. [`Search`](super::location::Search) then evaluates no
+//! The run is told where its events lie. [`Search`](super::location::GuardSearch) then evaluates no
 //! guard and asks for no state inside a step, and the meter neither counts nor checks. The library
 //! takes the same steps from the same states, so that the answer is the same to the last bit;
 //! whoever times the repeated run can hold it to that.
 
 use super::Event;
-use super::location::Crossing;
+use super::location::GuardRise;
 use percuss::Phase;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
@@ -17,11 +17,11 @@ thread_local! {
 
 /// The crossings of a run that was made before.
 #[derive(Clone, Debug)]
-pub struct Script(Rc<Lines>);
+pub struct Script(Rc<AnswerLines>);
 
 #[derive(Debug)]
-struct Lines {
-    crossings: Vec<Crossing>,
+struct AnswerLines {
+    crossings: Vec<GuardRise>,
     /// Whether a run has asked for them.
     read: Cell<bool>,
 }
@@ -31,12 +31,12 @@ impl Script {
     #[must_use]
     pub fn of(phase: Phase, events: &[Event]) -> Self {
         let before = std::iter::once(phase).chain(events.iter().map(|event| event.phase));
-        let crossing = |(before, event): (Phase, &Event)| Crossing {
+        let crossing = |(before, event): (Phase, &Event)| GuardRise {
             t: event.elapsed,
             guard: usize::from(before == Phase::Contact && event.phase == Phase::NoContact),
         };
         let crossings = before.zip(events).map(crossing).collect();
-        Self(Rc::new(Lines { crossings, read: Cell::new(false) }))
+        Self(Rc::new(AnswerLines { crossings, read: Cell::new(false) }))
     }
 
     /// Makes a run that is told these crossings.
@@ -55,12 +55,12 @@ impl Script {
 }
 
 /// The crossings that a run is told, one after another.
-pub(super) struct Told {
+pub(super) struct ToldCrossings {
     script: Script,
     next: Cell<usize>,
 }
 
-impl Told {
+impl ToldCrossings {
     /// What the run that begins on this thread is told; nothing as a rule.
     pub(super) fn here() -> Option<Self> {
         let script = SCRIPT.with_borrow(Clone::clone)?;
@@ -69,7 +69,7 @@ impl Told {
     }
 
     /// The next crossing, if it is not after `end`.
-    pub(super) fn up_to(&self, end: f64) -> Option<Crossing> {
+    pub(super) fn up_to(&self, end: f64) -> Option<GuardRise> {
         let next = self.next.get();
         let found = self.script.0.crossings.get(next).copied().filter(|it| it.t <= end)?;
         self.next.set(next + 1);

@@ -40,7 +40,7 @@ fn complete(outcome: &Outcome, task: &Task) -> Result<(), Failure> {
 mod tests {
     use super::*;
     use crate::case::{Case, Given, embedded};
-    use crate::engine::{Event, Grid, exact};
+    use crate::engine::{Event, SampleGrid, exact};
     use percuss::Phase;
 
     const COUNT: usize = 100;
@@ -51,7 +51,7 @@ mod tests {
         let Case { parameters, start, .. } = case;
         let given = Given { parameters, start, ..Given::default() };
         let Ok(problem) = given.check() else { unreachable!("small-b is checked") };
-        Task::of(&case, problem, Grid { per_period: 8, count: COUNT })
+        Task::of(&case, problem, SampleGrid { per_period: 8, count: COUNT })
     }
 
     fn whole(task: &Task) -> Outcome {

@@ -1,18 +1,21 @@
 //! Hermite's cubic between the ends of a step: an interpolant for methods that have none.
 
 /// A time and the state at it.
-pub(super) type Point = (f64, [f64; 4]);
+pub(super) type CubicEnd = (f64, [f64; 4]);
 
 /// The cubic through two states with their derivatives.
 pub(super) struct Cubic {
-    left: Point,
-    right: Point,
+    left: CubicEnd,
+    right: CubicEnd,
     slopes: [[f64; 4]; 2],
 }
 
 impl Cubic {
     /// The cubic between two points, whose derivatives `rates` writes.
-    pub(super) fn between(ends: [Point; 2], mut rates: impl FnMut(Point, &mut [f64; 4])) -> Self {
+    pub(super) fn between(
+        ends: [CubicEnd; 2],
+        mut rates: impl FnMut(CubicEnd, &mut [f64; 4]),
+    ) -> Self {
         let slopes = ends.map(|end| {
             let mut slope = [0.0; 4];
             rates(end, &mut slope);

@@ -31,8 +31,8 @@ impl Engine for Exact {
         let mut elapsed = TwoWord::ZERO;
         loop {
             let (duration, phase, state) = match passed(task, &mut run, &mut outcome.samples) {
-                Some(Passed::Switch { duration, phase, state }) => (duration, phase, state),
-                Some(Passed::Last(segment)) => {
+                Some(PassedPhase::Switch { duration, phase, state }) => (duration, phase, state),
+                Some(PassedPhase::Last(segment)) => {
                     if segment.is_undecided_at(&task.horizon) {
                         return Err(Failure::new("rounding hides how a phase ends"));
                     }
@@ -61,14 +61,14 @@ impl Engine for Exact {
 const USUAL: usize = 128;
 
 /// A phase, passed.
-enum Passed {
+enum PassedPhase {
     /// It lasts so long; then this phase begins, in this state.
     Switch { duration: TwoWord, phase: Phase, state: [f64; 4] },
     /// It is the run's last.
     Last(Box<Segment>),
 }
 
-impl Passed {
+impl PassedPhase {
     fn by_switch(duration: TwoWord, next: &Entry) -> Self {
         let state = [next.state.p, next.state.y, next.state.q, next.v()];
         Self::Switch { duration, phase: next.phase(), state }
@@ -76,18 +76,18 @@ impl Passed {
 }
 
 /// The run's next phase, sampled as long as samples are asked for.
-fn passed(task: &Task, run: &mut Trajectory, samples: &mut Vec<[f64; 4]>) -> Option<Passed> {
+fn passed(task: &Task, run: &mut Trajectory, samples: &mut Vec<[f64; 4]>) -> Option<PassedPhase> {
     if samples.len() == task.grid.count {
         return Some(match run.step()? {
-            Step::Switch { duration, next } => Passed::by_switch(duration, next),
-            Step::Last(segment) => Passed::Last(segment),
+            Step::Switch { duration, next } => PassedPhase::by_switch(duration, next),
+            Step::Last(segment) => PassedPhase::Last(segment),
         });
     }
     let segment = run.next()?;
     sample(task, &segment, samples);
     Some(match segment.exit() {
-        Exit::Switch(next) => Passed::by_switch(segment.duration_two_word(), next),
-        _ => Passed::Last(Box::new(segment)),
+        Exit::Switch(next) => PassedPhase::by_switch(segment.duration_two_word(), next),
+        _ => PassedPhase::Last(Box::new(segment)),
     })
 }
 

@@ -3,19 +3,19 @@
 
 use super::{Event, Outcome, Task, Work};
 use crate::case::Problem;
-use percuss::dynamics::ensemble::{Motion, Watcher, follow_by};
+use percuss::dynamics::ensemble::{Member, Watcher, follow_by};
 use percuss::lanes::Instructions;
 use percuss::{Endless, Entry, Instant};
 use std::ops::ControlFlow;
 
 /// What a task asks for, of a motion in lanes.
-struct Record {
+struct LaneRecord {
     outcome: Outcome,
     start: Instant,
     omega: f64,
 }
 
-impl Watcher for Record {
+impl Watcher for LaneRecord {
     fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
         let [p, y, q] = strobe.point();
         self.outcome.end = [p, y, q, strobe.v()];
@@ -38,11 +38,11 @@ pub fn run_in_lanes(by: Instructions, task: &Task, times: usize) -> Vec<Outcome>
     let Problem { model, entry, .. } = &task.problem;
     let (done, _) = follow_by(by, times, |_| {
         let (start, omega) = (entry.instant, task.parameters.omega);
-        let watcher = Record { outcome: Outcome::default(), start, omega };
+        let watcher = LaneRecord { outcome: Outcome::default(), start, omega };
         let (first, horizon) = (task.horizon, Some(task.horizon));
-        Motion { model, entry: *entry, first, horizon, watcher }
+        Member { model, entry: *entry, first, horizon, watcher }
     });
-    let counted = |Record { mut outcome, .. }| {
+    let counted = |LaneRecord { mut outcome, .. }| {
         outcome.work = Work { steps: outcome.events.len() as u64 + 1, ..Work::default() };
         outcome
     };

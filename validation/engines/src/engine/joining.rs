@@ -19,7 +19,7 @@ pub(super) struct Moment {
 
 /// How a stretch of one phase ended.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Ended {
+pub(super) enum StretchEnd {
     /// A guard has risen to zero.
     Switch { t: f64, guard: usize, state: [f64; 4] },
     /// The phase goes on.
@@ -36,7 +36,7 @@ pub(super) fn join<E: Equations>(
     task: &Task,
     equations: &E,
     meter: &Meter,
-    mut stretch: impl FnMut(&Moment, &mut Sampler) -> Result<Ended, Failure>,
+    mut stretch: impl FnMut(&Moment, &mut Sampler) -> Result<StretchEnd, Failure>,
 ) -> Result<Outcome, Failure> {
     let mut outcome = Outcome::default();
     task.watched.iter().for_each(|watched| meter.watch(watched));
@@ -46,8 +46,8 @@ pub(super) fn join<E: Equations>(
     sampler.take(0.0, |_| Ok::<_, Failure>(now.state))?;
     while task.span - now.t > SHORTEST * task.span && !meter.has_seen_enough(now.t) {
         now = match stretch(&now, &mut sampler)? {
-            Ended::Inside { t, state } => Moment { t, state, ..now },
-            Ended::Switch { t, guard, state } => {
+            StretchEnd::Inside { t, state } => Moment { t, state, ..now },
+            StretchEnd::Switch { t, guard, state } => {
                 meter.events(outcome.events.len())?;
                 meter.phase_ended(t);
                 let (phase, state) = equations.switch(now.phase, guard, &state);

@@ -24,20 +24,20 @@ pub(super) type StateAt<'a> = dyn FnMut(f64) -> Result<[f64; 4], Failure> + 'a;
 
 /// A guard that has risen to zero.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Crossing {
+pub(super) struct GuardRise {
     pub(super) t: f64,
     pub(super) guard: usize,
 }
 
 /// The guards at an instant.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Look {
+pub(super) struct GuardValues {
     t: f64,
     guards: [f64; GUARDS],
     rates: [f64; GUARDS],
 }
 
-impl Look {
+impl GuardValues {
     /// Outside, and by the equations of motion not on the way back: the interpolant of a loose
     /// tolerance ripples through a threshold that the motion itself is leaving.
     fn leaves(&self, guard: usize) -> bool {
@@ -46,14 +46,14 @@ impl Look {
 }
 
 /// The search for the end of one phase.
-pub(super) struct Search<'a, E> {
+pub(super) struct GuardSearch<'a, E> {
     equations: E,
     phase: Phase,
     meter: &'a Meter,
     began: f64,
 }
 
-impl<'a, E: Equations> Search<'a, E> {
+impl<'a, E: Equations> GuardSearch<'a, E> {
     pub(super) fn new(equations: E, from: &Moment, meter: &'a Meter) -> Self {
         Self { equations, phase: from.phase, meter, began: from.began }
     }
@@ -64,7 +64,7 @@ impl<'a, E: Equations> Search<'a, E> {
         begin: f64,
         end: f64,
         state_at: &mut StateAt<'_>,
-    ) -> Result<Option<Crossing>, Failure> {
+    ) -> Result<Option<GuardRise>, Failure> {
         if let Some(told) = self.meter.told() {
             return Ok(told.up_to(end));
         }
@@ -88,10 +88,10 @@ impl<'a, E: Equations> Search<'a, E> {
     /// The first crossing in a step of which only the ends are looked at.
     pub(super) fn between(
         &self,
-        left: &Look,
-        right: &Look,
+        left: &GuardValues,
+        right: &GuardValues,
         state_at: &mut StateAt<'_>,
-    ) -> Result<Option<Crossing>, Failure> {
+    ) -> Result<Option<GuardRise>, Failure> {
         if let Some(told) = self.meter.told() {
             return Ok(told.up_to(right.t));
         }
@@ -105,24 +105,24 @@ impl<'a, E: Equations> Search<'a, E> {
     /// The first crossing between two looks.
     fn within(
         &self,
-        left: &Look,
-        right: &Look,
+        left: &GuardValues,
+        right: &GuardValues,
         state_at: &mut StateAt<'_>,
-    ) -> Result<Option<Crossing>, Failure> {
-        let mut first: Option<Crossing> = None;
+    ) -> Result<Option<GuardRise>, Failure> {
+        let mut first: Option<GuardRise> = None;
         for guard in 0..GUARDS {
             let found = self.of_guard(guard, left, right, state_at)?;
             if let Some(t) = found.filter(|t| first.is_none_or(|first| *t < first.t)) {
-                first = Some(Crossing { t, guard });
+                first = Some(GuardRise { t, guard });
             }
         }
         Ok(first)
     }
 
     /// The guards of a known state.
-    pub(super) fn look(&self, t: f64, state: &[f64; 4]) -> Look {
+    pub(super) fn look(&self, t: f64, state: &[f64; 4]) -> GuardValues {
         if self.meter.told().is_some() {
-            return Look { t, guards: [NO_GUARD; GUARDS], rates: [0.0; GUARDS] };
+            return GuardValues { t, guards: [NO_GUARD; GUARDS], rates: [0.0; GUARDS] };
         }
         let mut guards = self.equations.guards(self.phase, state);
         self.meter.guards(t, self.phase, &guards);
@@ -134,18 +134,18 @@ impl<'a, E: Equations> Search<'a, E> {
                 *guard = 0.0;
             }
         }
-        Look { t, guards, rates: self.equations.rates(self.phase, t, state) }
+        GuardValues { t, guards, rates: self.equations.rates(self.phase, t, state) }
     }
 
-    fn look_at(&self, t: f64, state_at: &mut StateAt<'_>) -> Result<Look, Failure> {
+    fn look_at(&self, t: f64, state_at: &mut StateAt<'_>) -> Result<GuardValues, Failure> {
         Ok(self.look(t, &state_at(t)?))
     }
 
     fn of_guard(
         &self,
         guard: usize,
-        left: &Look,
-        right: &Look,
+        left: &GuardValues,
+        right: &GuardValues,
         state_at: &mut StateAt<'_>,
     ) -> Result<Option<f64>, Failure> {
         let begins_inside = left.guards[guard] < 0.0;
@@ -153,7 +153,7 @@ impl<'a, E: Equations> Search<'a, E> {
             if !begins_inside || left.rates[guard] <= 0.0 || right.rates[guard] > 0.0 {
                 return Ok(None);
             }
-            let turned = |look: &Look| look.rates[guard] <= 0.0;
+            let turned = |look: &GuardValues| look.rates[guard] <= 0.0;
             let peak = self.bisect(left, right, turned, state_at)?;
             return if peak.guards[guard] >= 0.0 {
                 self.root(guard, left, &peak, state_at).map(Some)
@@ -178,11 +178,11 @@ impl<'a, E: Equations> Search<'a, E> {
     /// The first instant, to the last bit, from which `is_past` holds.
     fn bisect(
         &self,
-        left: &Look,
-        right: &Look,
-        is_past: impl Fn(&Look) -> bool,
+        left: &GuardValues,
+        right: &GuardValues,
+        is_past: impl Fn(&GuardValues) -> bool,
         state_at: &mut StateAt<'_>,
-    ) -> Result<Look, Failure> {
+    ) -> Result<GuardValues, Failure> {
         let (mut before, mut past) = (left.t, *right);
         loop {
             let middle = before + 0.5 * (past.t - before);
@@ -199,8 +199,8 @@ impl<'a, E: Equations> Search<'a, E> {
     fn root(
         &self,
         guard: usize,
-        left: &Look,
-        right: &Look,
+        left: &GuardValues,
+        right: &GuardValues,
         state_at: &mut StateAt<'_>,
     ) -> Result<f64, Failure> {
         let (mut inside, mut outside) = (left.t, right.t);
@@ -237,12 +237,12 @@ mod tests {
     use percuss::Parameters;
 
     /// Contact with a trial force as given and no velocity, so that q is the force.
-    fn first(force: fn(f64) -> f64, rate: fn(f64) -> f64) -> Option<Crossing> {
+    fn first(force: fn(f64) -> f64, rate: fn(f64) -> f64) -> Option<GuardRise> {
         let parameters = Parameters { a: 0.0, b: 0.0, ..Parameters::default() };
         let meter = Meter::new(&Limits::default());
         let equations = Made { oscillator: Oscillator::of(&parameters, 0.0), force, rate };
         let from = Moment { t: 0.0, began: 0.0, phase: Phase::Contact, state: [0.0; 4] };
-        let search = Search::new(equations, &from, &meter);
+        let search = GuardSearch::new(equations, &from, &meter);
         search.step(0.0, 1.0, &mut |t| Ok([t, 0.0, 0.0, 0.0])).ok().flatten()
     }
 

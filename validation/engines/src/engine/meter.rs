@@ -3,9 +3,9 @@
 //! A hung thread cannot be killed, so the limits are enforced where the library calls back, in the
 //! right-hand side and in the guards: they unwind to [`contain`].
 
-use super::alone::Told;
+use super::alone::ToldCrossings;
 use super::field::GUARDS;
-use super::trace::{Look, Recorder, Watched};
+use super::trace::{GuardSample, Recorder, Watched};
 use super::{Outcome, Work};
 use percuss::Phase;
 use std::cell::{Cell, OnceCell};
@@ -52,7 +52,7 @@ pub(super) struct Meter {
     steps: Cell<u64>,
     recorder: OnceCell<Recorder>,
     /// The times of this run's events, if it is made without the harness's own part.
-    told: Option<Told>,
+    told: Option<ToldCrossings>,
 }
 
 /// How often the clock is looked at, in calls.
@@ -70,13 +70,13 @@ impl Meter {
             solves: zero(),
             steps: zero(),
             recorder: OnceCell::new(),
-            told: Told::here(),
+            told: ToldCrossings::here(),
         }
     }
 
     /// The times of this run's events, if it is made without the harness's own part
     /// ([`super::alone`]).
-    pub(super) fn told(&self) -> Option<&Told> {
+    pub(super) fn told(&self) -> Option<&ToldCrossings> {
         self.told.as_ref()
     }
 
@@ -155,13 +155,13 @@ impl Meter {
         self.call();
         if let Some(recorder) = self.recorder.get() {
             for (guard, value) in guards.iter().copied().enumerate() {
-                recorder.look(Look { t, phase, guard, value });
+                recorder.look(GuardSample { t, phase, guard, value });
             }
         }
     }
 
     /// Counts an evaluation of one guard, and records it where that is wanted.
-    pub(super) fn guard(&self, look: Look) {
+    pub(super) fn guard(&self, look: GuardSample) {
         self.call();
         if let Some(recorder) = self.recorder.get() {
             recorder.look(look);

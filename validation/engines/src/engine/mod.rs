@@ -38,7 +38,7 @@ pub use field::{Equations, GUARDS, Oscillator};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use registry::{add, all, exact, select};
-pub use trace::{Look, Trace, Watched};
+pub use trace::{GuardSample, Trace, Watched};
 pub use wrong::{CONTROL, Closed, FAULTY_CONTROL, SOUND, Wrong, faulty, wrong};
 
 use crate::case::{Case, Horizon, Problem};
@@ -48,7 +48,7 @@ use percuss::{Instant, Parameters, Phase};
 
 /// Instants at which the state is compared: `k / per_period` forcing periods after the start.
 #[derive(Clone, Copy, Debug)]
-pub struct Grid {
+pub struct SampleGrid {
     /// Instants a forcing period.
     pub per_period: u32,
     /// How many, the start included.
@@ -74,7 +74,7 @@ pub struct Task {
     /// Time from start to horizon.
     pub span: f64,
     /// When the state is compared.
-    pub grid: Grid,
+    pub grid: SampleGrid,
     /// Events in the engine's life before this run: a fault may strike every hundredth.
     pub events_before: u64,
     /// What is recorded beside the result; such a run ends when that is done.
@@ -148,7 +148,7 @@ pub trait Engine: Sync {
 impl Task {
     /// The run that a case asks for.
     #[must_use]
-    pub fn of(case: &Case, problem: Problem, grid: Grid) -> Self {
+    pub fn of(case: &Case, problem: Problem, grid: SampleGrid) -> Self {
         let horizon = match case.horizon {
             Horizon::Periods(periods) => problem.entry.instant.after_periods(u64::from(periods), 1),
             Horizon::Until(tau) => Instant::at(case.parameters.omega, tau, 0),
@@ -158,7 +158,12 @@ impl Task {
 
     /// A run from a start to a horizon.
     #[must_use]
-    pub fn until(parameters: Parameters, problem: Problem, horizon: Instant, grid: Grid) -> Self {
+    pub fn until(
+        parameters: Parameters,
+        problem: Problem,
+        horizon: Instant,
+        grid: SampleGrid,
+    ) -> Self {
         let entry = problem.entry;
         let (_, phi) = angle::reduce(TwoWord::new(parameters.phi));
         Self {

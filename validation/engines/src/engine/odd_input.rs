@@ -12,7 +12,7 @@ fn task() -> Option<Task> {
     let given = Given { start: Start::default(), ..Given::default() };
     let problem = given.check().ok()?;
     let horizon = problem.entry.instant.after_periods(4, 1);
-    let grid = Grid { per_period: 4, count: 17 };
+    let grid = SampleGrid { per_period: 4, count: 17 };
     Some(Task::until(given.parameters, problem, horizon, grid))
 }
 

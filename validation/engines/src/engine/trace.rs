@@ -17,7 +17,7 @@ pub struct Watched {
 
 /// A guard as a search for events saw it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+pub struct GuardSample {
     /// When, since the start.
     pub t: f64,
     /// The phase whose guard it is.
@@ -35,7 +35,7 @@ pub struct Trace {
     /// has none.
     pub steps: Vec<f64>,
     /// Evaluations of guards, in the order in which they were made.
-    pub looks: Vec<Look>,
+    pub looks: Vec<GuardSample>,
 }
 
 /// More records than this are not kept: a search that hangs would fill the memory.
@@ -75,7 +75,7 @@ impl Recorder {
     }
 
     /// Notes one guard, where the phase has it: only contact has two.
-    pub(super) fn look(&self, look: Look) {
+    pub(super) fn look(&self, look: GuardSample) {
         let looks = &mut self.trace.borrow_mut().looks;
         let is_one = look.guard == 0 || look.phase == Phase::Contact;
         if is_one && self.holds(look.t) && looks.len() < MOST {
@@ -102,7 +102,7 @@ mod tests {
     fn only_what_lies_in_the_window_and_is_a_guard_is_kept() {
         let recorder = Recorder::new(&Watched { window: [1.0, 2.0], instants: Vec::new() });
         [0.5, 1.0, 2.0, 2.5].into_iter().for_each(|t| recorder.step(t));
-        let look = |t, guard| Look { t, phase: Phase::NoContact, guard, value: -0.25 };
+        let look = |t, guard| GuardSample { t, phase: Phase::NoContact, guard, value: -0.25 };
         [look(1.5, 1), look(1.5, 0), look(3.0, 0)].into_iter().for_each(|it| recorder.look(it));
         let mut outcome = Outcome::default();
         recorder.hand_over(&mut outcome);

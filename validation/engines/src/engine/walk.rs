@@ -5,10 +5,10 @@
 //! are the libraries' own. Steps are at most an eighth of a forcing period and of a turn of the
 //! elastic contact ([`longest_step`]), so that the rates at both ends of a step show a peak inside.
 
-use super::cubic::Point;
+use super::cubic::CubicEnd;
 use super::field::Equations;
-use super::joining::{Ended, Moment};
-use super::location::{Look, Search};
+use super::joining::{Moment, StretchEnd};
+use super::location::{GuardSearch, GuardValues};
 use super::meter::Failure;
 use super::sampler::Sampler;
 use std::f64::consts::TAU;
@@ -23,14 +23,14 @@ pub(super) fn longest_step(period: f64) -> f64 {
 
 /// A walk that has come to the end of a step.
 pub(super) struct Walk<'a, E> {
-    search: Search<'a, E>,
-    at: Point,
-    look: Look,
+    search: GuardSearch<'a, E>,
+    at: CubicEnd,
+    look: GuardValues,
 }
 
 impl<'a, E: Equations> Walk<'a, E> {
     /// Starts a walk at the beginning of a stretch.
-    pub(super) fn new(search: Search<'a, E>, from: &Moment) -> Self {
+    pub(super) fn new(search: GuardSearch<'a, E>, from: &Moment) -> Self {
         let look = search.look(from.t, &from.state);
         Self { search, at: (from.t, from.state), look }
     }
@@ -40,10 +40,10 @@ impl<'a, E: Equations> Walk<'a, E> {
     /// `inside` returns the state at a time between the two ends.
     pub(super) fn advance(
         &mut self,
-        right: Point,
+        right: CubicEnd,
         sampler: &mut Sampler,
-        mut inside: impl FnMut(&Point, &Point, f64) -> Result<[f64; 4], Failure>,
-    ) -> Result<Option<Ended>, Failure> {
+        mut inside: impl FnMut(&CubicEnd, &CubicEnd, f64) -> Result<[f64; 4], Failure>,
+    ) -> Result<Option<StretchEnd>, Failure> {
         let left = self.at;
         let look = self.search.look(right.0, &right.1);
         let mut state_at = |t: f64| match t {
@@ -54,26 +54,30 @@ impl<'a, E: Equations> Walk<'a, E> {
         let found = self.search.between(&self.look, &look, &mut state_at)?;
         sampler.take(found.map_or(right.0, |it| it.t), &mut state_at)?;
         if let Some(it) = found {
-            return Ok(Some(Ended::Switch { t: it.t, guard: it.guard, state: state_at(it.t)? }));
+            return Ok(Some(StretchEnd::Switch {
+                t: it.t,
+                guard: it.guard,
+                state: state_at(it.t)?,
+            }));
         }
         (self.at, self.look) = (right, look);
         Ok(None)
     }
 
     /// The end of a stretch that met no switch.
-    pub(super) fn ended(&self) -> Ended {
-        Ended::Inside { t: self.at.0, state: self.at.1 }
+    pub(super) fn ended(&self) -> StretchEnd {
+        StretchEnd::Inside { t: self.at.0, state: self.at.1 }
     }
 }
 
 /// Walks along the ends of steps that are known beforehand.
 pub(super) fn walk<E: Equations>(
-    search: Search<'_, E>,
+    search: GuardSearch<'_, E>,
     from: &Moment,
-    points: impl IntoIterator<Item = Point>,
+    points: impl IntoIterator<Item = CubicEnd>,
     sampler: &mut Sampler,
-    mut inside: impl FnMut(&Point, &Point, f64) -> Result<[f64; 4], Failure>,
-) -> Result<Ended, Failure> {
+    mut inside: impl FnMut(&CubicEnd, &CubicEnd, f64) -> Result<[f64; 4], Failure>,
+) -> Result<StretchEnd, Failure> {
     let mut walk = Walk::new(search, from);
     for right in points {
         if let Some(ended) = walk.advance(right, sampler, &mut inside)? {
@@ -85,7 +89,7 @@ pub(super) fn walk<E: Equations>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Accuracy, Engine, Grid, Limits, Outcome, Task, all};
+    use super::super::{Accuracy, Engine, Limits, Outcome, SampleGrid, Task, all};
     use crate::case::Given;
     use percuss::Start;
 
@@ -94,7 +98,7 @@ mod tests {
         let given = Given { start: Start::default(), ..Given::default() };
         let problem = given.check().ok()?;
         let horizon = problem.entry.instant.after_periods(8, 1);
-        let grid = Grid { per_period: 4, count: 33 };
+        let grid = SampleGrid { per_period: 4, count: 33 };
         let task = Task::until(given.parameters, problem, horizon, grid);
         let engine: &dyn Engine = *all().iter().find(|it| it.declaration().name == name)?;
         engine.run(&task, Accuracy::Tolerance(tolerance), &Limits::default()).ok()

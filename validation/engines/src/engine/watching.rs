@@ -9,7 +9,7 @@ fn task() -> Option<Task> {
     let given = Given { start: Start::default(), ..Given::default() };
     let problem = given.check().ok()?;
     let horizon = problem.entry.instant.after_periods(4, 1);
-    Some(Task::until(given.parameters, problem, horizon, Grid { per_period: 4, count: 17 }))
+    Some(Task::until(given.parameters, problem, horizon, SampleGrid { per_period: 4, count: 17 }))
 }
 
 fn accuracy(engine: &dyn Engine) -> Option<Accuracy> {

@@ -28,18 +28,18 @@ pub fn alone<'a>(
 ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
     let answer = contain(|| engine.run(&course.task, setting, &limits))?;
     if engine.declaration().name == exact().declaration().name {
-        return Ok(Some(Box::new(Stepped { course, end: answer.end, last: answer.end })));
+        return Ok(Some(Box::new(ExactSteps { course, end: answer.end, last: answer.end })));
     }
     let script = Script::of(course.task.phase, &answer.events);
     let last = answer.clone();
-    let mut told = Told { engine, course, setting, limits, script, answer, last };
+    let mut told = ToldRun { engine, course, setting, limits, script, answer, last };
     told.call()?;
     told.check()?;
     Ok(if told.script.was_read() { Some(Box::new(told)) } else { None })
 }
 
 /// An integrator's run that is told its events.
-struct Told<'a> {
+struct ToldRun<'a> {
     engine: &'a dyn Engine,
     course: &'a Course,
     setting: Accuracy,
@@ -49,7 +49,7 @@ struct Told<'a> {
     last: Outcome,
 }
 
-impl Benchmark for Told<'_> {
+impl Benchmark for ToldRun<'_> {
     fn call(&mut self) -> Result<(), Failure> {
         let Self { engine, course, setting, limits, .. } = self;
         let run = || contain(|| engine.run(&course.task, *setting, limits));
@@ -68,13 +68,13 @@ impl Benchmark for Told<'_> {
 }
 
 /// The exact solver's steps to the horizon, without a table.
-struct Stepped<'a> {
+struct ExactSteps<'a> {
     course: &'a Course,
     end: [f64; 4],
     last: [f64; 4],
 }
 
-impl Benchmark for Stepped<'_> {
+impl Benchmark for ExactSteps<'_> {
     fn call(&mut self) -> Result<(), Failure> {
         let task = &self.course.task;
         let entry = black_box(task.problem.entry);

@@ -2,7 +2,7 @@
 
 use super::contestant::{Contestant, TimedRun, ladder};
 use super::course::{Course, Score};
-use super::rounds::{Benchmark, PACE, Series, race};
+use super::rounds::{Benchmark, PACE, RoundTimes, race};
 use crate::engine::{Accuracy, Failure, Stepping, Work};
 
 /// A contestant at a setting, and what came of it.
@@ -28,7 +28,7 @@ pub struct Timed {
     /// What the run counted.
     pub work: Work,
     /// The best time of each round, ns a forcing period.
-    pub series: Series,
+    pub series: RoundTimes,
     /// What share of the time is the harness's own: one less the median over the rounds of that
     /// round's quotient, the engine's part alone ([`super::alone`]) over the whole run. A share
     /// that is next to nothing may come out below zero.
@@ -54,13 +54,13 @@ pub fn contest_at(
     rounds: usize,
     done: &dyn Fn(),
 ) -> Vec<Finisher> {
-    let mut entries: Vec<Result<Entry<'_>, Failure>> = Vec::new();
+    let mut entries: Vec<Result<ContestEntry<'_>, Failure>> = Vec::new();
     for (contestant, setting) in asked {
         entries.push(qualified(*contestant, course, *setting));
         done();
     }
     let mut benchmarks: Vec<&mut dyn Benchmark> = Vec::new();
-    for Entry { timed, alone } in entries.iter_mut().flatten() {
+    for ContestEntry { timed, alone } in entries.iter_mut().flatten() {
         benchmarks.push(&mut **timed);
         if let Some(alone) = alone {
             benchmarks.push(&mut **alone);
@@ -70,13 +70,13 @@ pub fn contest_at(
     (0..rounds * (2 * asked.len() - benchmarks.len())).for_each(|_| done());
     let mut raced = race(&mut benchmarks, rounds, PACE, done).into_iter();
     let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced")));
-    let mut result = |entry: Result<Entry<'_>, Failure>| {
-        let Entry { timed, alone } = entry?;
+    let mut result = |entry: Result<ContestEntry<'_>, Failure>| {
+        let ContestEntry { timed, alone } = entry?;
         let (whole, alone) = (next(), alone.map(|_| next()));
         let whole = whole?;
         let share = alone.and_then(Result::ok).map(|alone| 1.0 - alone.ratio_to(&whole));
         let scale = 1.0 / (timed.runs() * course.periods());
-        let series = Series(whole.0.into_iter().map(|time| time * scale).collect());
+        let series = RoundTimes(whole.0.into_iter().map(|time| time * scale).collect());
         let harness_share = share.filter(|it| it.is_finite());
         Ok(Timed { score: timed.score()?, work: timed.work(), series, harness_share })
     };
@@ -91,7 +91,7 @@ pub fn contest_at(
 }
 
 /// A contestant at a setting, and right after it its part alone where that can be timed.
-struct Entry<'a> {
+struct ContestEntry<'a> {
     timed: Box<dyn TimedRun + 'a>,
     alone: Option<Box<dyn Benchmark + 'a>>,
 }
@@ -101,11 +101,11 @@ fn qualified<'a>(
     contestant: &'a dyn Contestant,
     course: &'a Course,
     setting: Accuracy,
-) -> Result<Entry<'a>, Failure> {
+) -> Result<ContestEntry<'a>, Failure> {
     let mut timed = contestant.enter(course, setting)?;
     timed.call()?;
     timed.score()?;
-    Ok(Entry { timed, alone: contestant.alone(course, setting)? })
+    Ok(ContestEntry { timed, alone: contestant.alone(course, setting)? })
 }
 
 /// How much work a contest is, for progress.

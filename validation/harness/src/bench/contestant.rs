@@ -1,6 +1,6 @@
 //! Who is timed: whatever can run a course and show what came of it.
 //!
-//! An engine is one ([`Entered`]). Something that is no engine, such as many runs at once
+//! An engine is one ([`EnteredEngine`]). Something that is no engine, such as many runs at once
 //! ([`super::lanes`]), implements [`Contestant`] in a file of its own and is named in
 //! [`super::registry`].
 
@@ -69,9 +69,9 @@ pub trait TimedRun: Benchmark {
 }
 
 /// An engine as a contestant.
-pub struct Entered(pub &'static dyn Engine);
+pub struct EnteredEngine(pub &'static dyn Engine);
 
-impl Contestant for Entered {
+impl Contestant for EnteredEngine {
     fn name(&self) -> &'static str {
         self.0.declaration().name
     }

@@ -2,7 +2,7 @@
 //! to.
 
 use crate::case::{Case, FileError, Given};
-use crate::engine::{Event, Failure, Grid, Outcome, Task};
+use crate::engine::{Event, Failure, Outcome, SampleGrid, Task};
 use crate::number::brief;
 use crate::score::{Matching, SCORED_ERROR, WINDOW, worst};
 use crate::truth::{Library, Row, Truth};
@@ -45,7 +45,7 @@ impl Score {
 }
 
 /// Only the switches and the end are asked for.
-const NO_SAMPLES: Grid = Grid { per_period: 1, count: 0 };
+const NO_SAMPLES: SampleGrid = SampleGrid { per_period: 1, count: 0 };
 
 impl Course {
     /// The run of a case.

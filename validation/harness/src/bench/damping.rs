@@ -16,7 +16,7 @@ const TOLERANCE: f64 = 1e-9;
 
 /// All contestants at one damping ratio.
 #[derive(Clone, Debug)]
-pub struct Rung {
+pub struct DampingRung {
     /// The damping ratio.
     pub xi: f64,
     /// What came of it.
@@ -31,12 +31,12 @@ pub fn ladder(
     contestants: &[&dyn Contestant],
     rounds: usize,
     done: &dyn Fn(),
-) -> Result<Vec<Rung>, Failure> {
+) -> Result<Vec<DampingRung>, Failure> {
     let asked = asked(contestants);
     let rung = |xi: f64| {
         let parameters = Parameters { xi, omega: OMEGA, ..Parameters::default() };
         let course = Course::from_rest(parameters, PERIODS)?;
-        Ok(Rung { xi, finishers: contest_at(&course, &asked, rounds, done) })
+        Ok(DampingRung { xi, finishers: contest_at(&course, &asked, rounds, done) })
     };
     XI.into_iter().map(rung).collect()
 }

@@ -8,7 +8,7 @@
 
 /// What a right answer errs, and its time in any unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Corner {
+pub struct AccuracyPoint {
     /// The largest error.
     pub error: f64,
     /// The time.
@@ -18,7 +18,7 @@ pub struct Corner {
 /// The least time on a curve where the error is at most `error`; a setting without a right answer
 /// is `None` and breaks the curve.
 #[must_use]
-pub fn time_at(curve: &[Option<Corner>], error: f64) -> Option<f64> {
+pub fn time_at(curve: &[Option<AccuracyPoint>], error: f64) -> Option<f64> {
     let corners = curve.iter().flatten().filter(|it| it.error <= error).map(|it| it.time);
     let crossings = curve.windows(2).filter_map(|pair| match pair {
         [Some(one), Some(other)] => between(one, other, error),
@@ -28,7 +28,7 @@ pub fn time_at(curve: &[Option<Corner>], error: f64) -> Option<f64> {
 }
 
 /// The time where the straight line between two corners passes `error`.
-fn between(one: &Corner, other: &Corner, error: f64) -> Option<f64> {
+fn between(one: &AccuracyPoint, other: &AccuracyPoint, error: f64) -> Option<f64> {
     let share = (error / one.error).ln() / (other.error / one.error).ln();
     let inside = share > 0.0 && share < 1.0;
     inside.then(|| one.time * (other.time / one.time).powf(share))
@@ -38,8 +38,8 @@ fn between(one: &Corner, other: &Corner, error: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn corner(error: f64, time: f64) -> Option<Corner> {
-        Some(Corner { error, time })
+    fn corner(error: f64, time: f64) -> Option<AccuracyPoint> {
+        Some(AccuracyPoint { error, time })
     }
 
     /// Rounding of two logarithms, their quotient and a power.

@@ -5,7 +5,7 @@
 //! switches, chained (each waits for the last, as in one run) and independent (as in many runs side
 //! by side).
 
-use super::rounds::{Benchmark, Pace, Plain, Series, race};
+use super::rounds::{Benchmark, Plain, RoundPace, RoundTimes, race};
 use super::workload::{Repeated, Workload};
 use crate::engine::Failure;
 use std::hint::black_box;
@@ -14,15 +14,15 @@ use std::hint::black_box;
 const UNITS: u64 = 2000;
 
 /// Short batches, many of them: nothing else runs so briefly.
-const PACE: Pace = Pace { batch: 0.5e6, batches: 5 };
+const PACE: RoundPace = RoundPace { batch: 0.5e6, batches: 5 };
 
 /// What an evaluation costs at the least, and what a switch costs in the same rounds.
 #[derive(Clone, Debug)]
 pub struct Floors {
     /// Each evaluation waits for the last, ns.
-    pub chained: Series,
+    pub chained: RoundTimes,
     /// They do not, ns.
-    pub independent: Series,
+    pub independent: RoundTimes,
     /// The workloads.
     pub switches: Vec<Result<Cost, Failure>>,
 }
@@ -35,7 +35,7 @@ pub struct Cost {
     /// Closed-form evaluations a unit.
     pub evaluations: f64,
     /// The best time of each round, ns a unit.
-    pub series: Series,
+    pub series: RoundTimes,
 }
 
 /// Times one sine-cosine pair and one exponential of libm, against which any version is held: the
@@ -68,7 +68,8 @@ pub fn floors(
         workloads.iter().map(|it| Repeated { workload: it.as_ref(), units: UNITS }).collect();
     let mut benchmarks: Vec<&mut dyn Benchmark> = vec![&mut chained, &mut independent];
     benchmarks.extend(repeated.iter_mut().map(|it| it as &mut dyn Benchmark));
-    let per_unit = |series: Series| Series(series.0.iter().map(|it| it / UNITS as f64).collect());
+    let per_unit =
+        |series: RoundTimes| RoundTimes(series.0.iter().map(|it| it / UNITS as f64).collect());
     let mut raced = race(&mut benchmarks, rounds, PACE, done).into_iter();
     let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced"))).map(per_unit);
     let (chained, independent) = (next()?, next()?);

@@ -14,9 +14,9 @@ use percuss::lanes::Instructions;
 const RUNS: usize = 256;
 
 /// Exact, by the widest instructions that the processor has.
-pub struct Lanes;
+pub struct ExactLanes;
 
-impl Contestant for Lanes {
+impl Contestant for ExactLanes {
     fn name(&self) -> &'static str {
         "exact-lanes"
     }

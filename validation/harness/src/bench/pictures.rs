@@ -4,8 +4,8 @@ use super::report::{Bench, Damped, Row};
 use crate::bench::history::{History, Record};
 use crate::engine;
 use crate::picture::{
-    Axis, Curve, Curves, DrawError, INK, Marker, Picture, Scale, Stroke, basin_colours, looks, png,
-    svg,
+    Axis, AxisScale, Curve, Curves, DrawError, INK, Marker, Picture, Stroke, basin_colours, looks,
+    png, svg,
 };
 
 /// All pictures that there are data for, each as PNG and SVG.
@@ -150,14 +150,14 @@ pub fn history(history: &History) -> Curves {
     let last: String = last.into_iter().flatten().take(10).collect();
     Curves {
         title: format!("A switch in units of the floor, {} versions up to {last}", versions.len()),
-        x: Axis { label: "recorded version, oldest first".to_owned(), scale: Scale::Linear },
-        y: Axis { label: "sine-cosine-exponentials a switch".to_owned(), scale: Scale::Linear },
+        x: Axis { label: "recorded version, oldest first".to_owned(), scale: AxisScale::Linear },
+        y: Axis { label: "sine-cosine-exponentials a switch".to_owned(), scale: AxisScale::Linear },
         curves: benches.iter().enumerate().map(curve).collect(),
     }
 }
 
 fn logarithmic(label: &str) -> Axis {
-    Axis { label: label.to_owned(), scale: Scale::Logarithmic }
+    Axis { label: label.to_owned(), scale: AxisScale::Logarithmic }
 }
 
 /// A curve that looks as its engine does everywhere.

@@ -2,8 +2,8 @@
 
 use super::contest::{Finisher, exact, most_accurate};
 use super::course::Course;
-use super::damping::Rung;
-use super::equal_accuracy::{Corner, time_at};
+use super::damping::DampingRung;
+use super::equal_accuracy::{AccuracyPoint, time_at};
 use super::floor::Floors;
 use super::lead::{Basis, LOOSE, TIGHT};
 use super::length::Length;
@@ -169,7 +169,7 @@ pub struct Damped {
 }
 
 /// What was measured.
-pub struct Measured<'a> {
+pub struct Measurement<'a> {
     /// The courses and who ran on each.
     pub contests: &'a [(&'a Course, Vec<Finisher>)],
     /// The floor.
@@ -177,14 +177,14 @@ pub struct Measured<'a> {
     /// The lengths.
     pub length: Vec<Length>,
     /// The ladder of xi.
-    pub damping: &'a [Rung],
+    pub damping: &'a [DampingRung],
 }
 
 impl Bench {
     /// The bench of what was measured.
     #[must_use]
-    pub fn new(build: Build, rounds: usize, measured: Measured<'_>) -> Self {
-        let Measured { contests, floors, length, damping } = measured;
+    pub fn new(build: Build, rounds: usize, measured: Measurement<'_>) -> Self {
+        let Measurement { contests, floors, length, damping } = measured;
         let cases: Vec<_> = contests.iter().map(|(course, _)| entry(course)).collect();
         let results: Vec<_> = contests.iter().flat_map(|(course, all)| rows(course, all)).collect();
         let floor =
@@ -246,8 +246,9 @@ fn rows(course: &Course, finishers: &[Finisher]) -> Vec<Row> {
 /// exact solver's, so that what the machine did otherwise in a round is out of them already.
 fn at_equal_accuracy(mut rows: Vec<Row>) -> Vec<Row> {
     for own in rows.chunk_by_mut(|a, b| a.engine == b.engine) {
-        let corner =
-            |row: &Row| Some(Corner { error: row.state_error_max?, time: row.ratio_to_exact? });
+        let corner = |row: &Row| {
+            Some(AccuracyPoint { error: row.state_error_max?, time: row.ratio_to_exact? })
+        };
         let curve: Vec<_> = own.iter().map(corner).collect();
         for row in own {
             row.ratio_at_1e_6 = time_at(&curve, LOOSE);
@@ -257,7 +258,7 @@ fn at_equal_accuracy(mut rows: Vec<Row>) -> Vec<Row> {
     rows
 }
 
-fn damped(rung: &Rung) -> Vec<Damped> {
+fn damped(rung: &DampingRung) -> Vec<Damped> {
     let row = |it: &Finisher| {
         let timed = it.result.as_ref().ok();
         Damped {

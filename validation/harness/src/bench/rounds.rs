@@ -44,7 +44,7 @@ impl<F: FnMut()> Benchmark for Plain<F> {
 
 /// How long and how many the batches of a round are.
 #[derive(Clone, Copy, Debug)]
-pub struct Pace {
+pub struct RoundPace {
     /// The least time of a batch, ns: calls are repeated until they fill it.
     pub batch: f64,
     /// Batches a round; one where a call fills several on its own.
@@ -53,13 +53,13 @@ pub struct Pace {
 
 /// Half a millisecond is five hundred times what reading the clock costs, and short enough to lie
 /// between two interruptions.
-pub const PACE: Pace = Pace { batch: 0.5e6, batches: 3 };
+pub const PACE: RoundPace = RoundPace { batch: 0.5e6, batches: 3 };
 
 /// The best time of a call in each round, ns.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Series(pub Vec<f64>);
+pub struct RoundTimes(pub Vec<f64>);
 
-impl Series {
+impl RoundTimes {
     /// The median over the rounds.
     #[must_use]
     pub fn typical(&self) -> f64 {
@@ -83,11 +83,11 @@ impl Series {
 pub fn race(
     benchmarks: &mut [&mut dyn Benchmark],
     rounds: usize,
-    pace: Pace,
+    pace: RoundPace,
     done: &dyn Fn(),
-) -> Vec<Result<Series, Failure>> {
-    let mut results: Vec<Result<Series, Failure>> =
-        benchmarks.iter().map(|_| Ok(Series::default())).collect();
+) -> Vec<Result<RoundTimes, Failure>> {
+    let mut results: Vec<Result<RoundTimes, Failure>> =
+        benchmarks.iter().map(|_| Ok(RoundTimes::default())).collect();
     let mut calls: Vec<u32> = vec![0; benchmarks.len()];
     for round in 0..rounds {
         let order: Vec<usize> = match round % 2 {
@@ -113,7 +113,7 @@ pub fn race(
 
 /// Whether a benchmark sits this round out: a call that is so long meets the quiet and the busy
 /// moments of a machine alike, and three rounds tell as much as ten.
-fn has_rested(series: &Series, round: usize) -> bool {
+fn has_rested(series: &RoundTimes, round: usize) -> bool {
     const LONG: f64 = 5e7;
     const ENOUGH: usize = 3;
     round >= ENOUGH && series.best() > LONG
@@ -121,7 +121,11 @@ fn has_rested(series: &Series, round: usize) -> bool {
 
 /// The best batch of a round, ns a call; `calls` is how many fill a batch, found in the first
 /// round.
-fn best_of(benchmark: &mut dyn Benchmark, calls: &mut u32, pace: Pace) -> Result<f64, Failure> {
+fn best_of(
+    benchmark: &mut dyn Benchmark,
+    calls: &mut u32,
+    pace: RoundPace,
+) -> Result<f64, Failure> {
     if *calls == 0 {
         *calls = filling(benchmark, pace.batch)?;
     }
@@ -163,15 +167,15 @@ mod tests {
     fn a_ratio_is_the_median_of_the_rounds_quotients() {
         // The machine was twice as slow in the second round and disturbed one benchmark in the
         // fourth.
-        let exact = Series(vec![1.0, 2.0, 1.0, 1.0, 1.0]);
-        let engine = Series(vec![300.0, 600.0, 310.0, 900.0, 290.0]);
+        let exact = RoundTimes(vec![1.0, 2.0, 1.0, 1.0, 1.0]);
+        let engine = RoundTimes(vec![300.0, 600.0, 310.0, 900.0, 290.0]);
         assert_eq!(engine.ratio_to(&exact), 300.0);
         assert_eq!(exact.ratio_to(&exact), 1.0);
         assert_eq!(engine.best(), 290.0);
         assert_eq!(engine.typical(), 310.0);
         // Neither the quotient of medians nor of least times.
-        let drifting = Series(vec![4.0, 1.0, 9.0]);
-        assert_eq!(drifting.ratio_to(&Series(vec![2.0, 1.0, 3.0])), 2.0);
+        let drifting = RoundTimes(vec![4.0, 1.0, 9.0]);
+        assert_eq!(drifting.ratio_to(&RoundTimes(vec![2.0, 1.0, 3.0])), 2.0);
     }
 
     /// Right until its `last` check.
@@ -193,7 +197,7 @@ mod tests {
 
     #[test]
     fn a_racer_that_answers_wrongly_in_any_batch_has_no_times() {
-        let pace = Pace { batch: 1e4, batches: 2 };
+        let pace = RoundPace { batch: 1e4, batches: 2 };
         let (mut right, mut late) =
             (Faulty { checks: 0, last: u32::MAX }, Faulty { checks: 0, last: 3 });
         let results = race(&mut [&mut right, &mut late], 4, pace, &|| ());

@@ -3,8 +3,8 @@
 use super::paper::attractors_model;
 use super::work::model;
 use crate::engine::Failure;
-use percuss::dynamics::attractor::{Attractor, Basins, Grid, Kind, Window};
-use percuss::dynamics::strobe::{Point, StrobeMap};
+use percuss::dynamics::attractor::{Attractor, AttractorKind, Basins, Grid, Window};
+use percuss::dynamics::strobe::{StrobeMap, StrobePoint};
 use percuss::{Instant, Start};
 
 /// A window that holds every attractor of Figs. 7 to 10; the paper prints none.
@@ -20,7 +20,7 @@ pub(super) fn map(omega: f64) -> Result<StrobeMap, Failure> {
 }
 
 /// The start at a strobe.
-pub(super) fn start([p, y, q]: Point) -> Start {
+pub(super) fn start([p, y, q]: StrobePoint) -> Start {
     Start { p, y, q: Some(q), ..Start::default() }
 }
 
@@ -44,7 +44,7 @@ pub(super) fn of_period(all: &[Attractor], period: u32) -> Result<&Attractor, Fa
 pub(super) fn strange(all: &[Attractor]) -> Result<&Attractor, Failure> {
     let missing = || Failure::new("no chaotic attractor was found");
     all.iter()
-        .filter(|it| it.kind == Kind::Chaotic)
+        .filter(|it| it.kind == AttractorKind::Chaotic)
         .max_by(|a, b| a.lyapunov_per_period.total_cmp(&b.lyapunov_per_period))
         .ok_or_else(missing)
 }

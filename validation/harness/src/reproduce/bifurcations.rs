@@ -2,15 +2,15 @@
 
 use super::attractors::{described, found, map, of_period};
 use super::brute::{bracket, settled};
-use super::claim::{Claim, Verdict};
+use super::claim::{Claim, ClaimVerdict};
 use super::continued::{family, first};
 use super::integrated::{NAME, strobes};
 use super::paper::Printed;
-use super::work::{Findings, Work};
+use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
-use percuss::dynamics::attractor::{Attractor, Kind as Attracts};
-use percuss::dynamics::continuation::{Bifurcation, Criticality, Doubling, Kind};
-use percuss::dynamics::strobe::Point;
+use percuss::dynamics::attractor::{Attractor, AttractorKind};
+use percuss::dynamics::continuation::{Bifurcation, BifurcationKind, Criticality, Doubling};
+use percuss::dynamics::strobe::StrobePoint;
 
 /// Claims of this item, in its order.
 pub(super) const CLAIMS: &[&str] = &[
@@ -33,12 +33,12 @@ const WIDTH: f64 = 2e-5;
 /// What the integrator is asked for.
 const TOLERANCE: f64 = 1e-10;
 
-pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let mut findings = Findings::default();
     let of = |omega: f64, period: u32| Ok::<_, Failure>(of_period(&found(omega)?, period)?.clone());
     let (six, three, four) = (of(1.58, 6)?, of(1.70, 3)?, of(1.56, 4)?);
-    let cascade = first(Kind::Flip, &six, 1.58, 1.55)?;
-    let tripling = first(Kind::Flip, &three, 1.70, 1.60)?;
+    let cascade = first(BifurcationKind::Flip, &six, 1.58, 1.55)?;
+    let tripling = first(BifurcationKind::Flip, &three, 1.70, 1.60)?;
     let claims: [&dyn Fn() -> Result<Claim, Failure>; CLAIMS.len()] = [
         &|| flips(work, "omega-1.571", &cascade),
         &|| criticality(work, "subcritical-1.571", &cascade),
@@ -72,7 +72,7 @@ fn between(printed: &Printed, value: f64) -> Option<f64> {
 
 /// A flip downwards in omega: by continuation, by brute force from both sides, and by an integrator
 /// where we differ.
-fn flips(work: &Work<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Failure> {
+fn flips(work: &ItemWork<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Failure> {
     let printed = work.paper.claim(id)?;
     let period = flip.orbit.period() as usize;
     let start = flip.orbit.points[0];
@@ -81,7 +81,7 @@ fn flips(work: &Work<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Failure
     let mut claim = Claim::settle(
         &work.paper,
         id,
-        Verdict::of(printed.agrees(flip.value)),
+        ClaimVerdict::of(printed.agrees(flip.value)),
         format!(
             "the flip between periods {} and {} is at omega = {:.7}",
             period,
@@ -109,7 +109,7 @@ fn flips(work: &Work<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Failure
 }
 
 /// Which of some periods an integrator's strobes repeat with, at rest.
-fn integrated(omega: f64, point: Point, periods: &[usize]) -> Result<String, Failure> {
+fn integrated(omega: f64, point: StrobePoint, periods: &[usize]) -> Result<String, Failure> {
     const RUN: u32 = 4000;
     let strobes = strobes(omega, point, RUN, TOLERANCE)?;
     let last = strobes.len() - 1;
@@ -123,7 +123,7 @@ fn integrated(omega: f64, point: Point, periods: &[usize]) -> Result<String, Fai
 
 /// Whether a flip downwards in omega is super- or subcritical: what is there beyond it, and how
 /// wide.
-fn criticality(work: &Work<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Failure> {
+fn criticality(work: &ItemWork<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Failure> {
     let period = flip.orbit.period();
     let doubled = 2 * period as usize;
     let width = |distance: f64| -> Result<Option<f64>, Failure> {
@@ -146,20 +146,20 @@ fn criticality(work: &Work<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, F
     let doubling = Doubling::of(&family(), flip, within.0, within.1, &mut |_| {});
     let followed = doubling.map(|it| it.criticality);
     let verdict = match (followed, grows) {
-        (Some(Criticality::Subcritical), false) => Verdict::Reproduced,
-        (Some(Criticality::Supercritical), true) => Verdict::Differs,
-        _ => Verdict::NotDetermined,
+        (Some(Criticality::Subcritical), false) => ClaimVerdict::Reproduced,
+        (Some(Criticality::Supercritical), true) => ClaimVerdict::Differs,
+        _ => ClaimVerdict::NotDetermined,
     };
     let computed = match verdict {
-        Verdict::Differs => format!(
+        ClaimVerdict::Differs => format!(
             "supercritical: below omega = {:.7} a stable orbit of period {doubled} takes over, its width growing as the square root",
             flip.value
         ),
-        Verdict::Reproduced => format!(
+        ClaimVerdict::Reproduced => format!(
             "subcritical: no stable orbit of period {doubled} is next to omega = {:.7}",
             flip.value
         ),
-        Verdict::NotDetermined => "continuation and brute force do not agree".to_owned(),
+        ClaimVerdict::NotDetermined => "continuation and brute force do not agree".to_owned(),
     };
     let said = |it: Option<f64>| it.map_or("no such orbit".to_owned(), |it| format!("{it:.6}"));
     let side = match followed {
@@ -179,17 +179,17 @@ fn criticality(work: &Work<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, F
 }
 
 /// Period four ends in a fold.
-fn disappears(work: &Work<'_>, four: &Attractor) -> Result<Claim, Failure> {
+fn disappears(work: &ItemWork<'_>, four: &Attractor) -> Result<Claim, Failure> {
     const ID: &str = "omega-1.5757";
     let printed = work.paper.claim(ID)?;
-    let fold = first(Kind::Fold, four, 1.56, 1.62)?;
+    let fold = first(BifurcationKind::Fold, four, 1.56, 1.62)?;
     let start = fold.orbit.points[0];
     let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(4));
     let (holds, fails) = bracket(fold.value - 0.001, fold.value + 0.001, WIDTH / 10.0, keeps)?;
     let mut claim = Claim::settle(
         &work.paper,
         ID,
-        Verdict::of(printed.agrees(fold.value)),
+        ClaimVerdict::of(printed.agrees(fold.value)),
         format!("period four ends in a fold at omega = {:.7}", fold.value),
     )?
     .evidence("continuation with multipliers", said(&fold))
@@ -218,7 +218,7 @@ fn others(omega: f64) -> Result<Vec<Attractor>, Failure> {
     let strange = all
         .iter()
         .enumerate()
-        .filter(|(_, it)| it.kind == Attracts::Chaotic)
+        .filter(|(_, it)| it.kind == AttractorKind::Chaotic)
         .max_by(|a, b| a.1.lyapunov_per_period.total_cmp(&b.1.lyapunov_per_period))
         .map(|(id, _)| id);
     if let Some(id) = strange {
@@ -229,10 +229,10 @@ fn others(omega: f64) -> Result<Vec<Attractor>, Failure> {
 }
 
 /// Period twelve goes, and the attractor of the period-six cascade appears.
-fn red(work: &Work<'_>, cascade: &Bifurcation) -> Result<Claim, Failure> {
+fn red(work: &ItemWork<'_>, cascade: &Bifurcation) -> Result<Claim, Failure> {
     let twelve = found(1.45)?;
     let twelve = of_period(&twelve, 12)?;
-    let fold = first(Kind::Fold, twelve, 1.45, 1.56)?;
+    let fold = first(BifurcationKind::Fold, twelve, 1.45, 1.56)?;
     let (there, gone) = bracket(1.56, 1.53, 1e-4, |omega| Ok(!others(omega)?.is_empty()))?;
     let seen = others(there)?;
     let seen: Vec<_> = seen.iter().map(described).collect();
@@ -241,7 +241,7 @@ fn red(work: &Work<'_>, cascade: &Bifurcation) -> Result<Claim, Failure> {
         "period twelve ends in a fold at omega = {:.7}; the cascade's attractor is there from {there:.4} on",
         fold.value
     );
-    Ok(Claim::settle(&work.paper, "red-emerges", Verdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "red-emerges", ClaimVerdict::of(holds), computed)?
         .note(format!(
             "it is born chaotic at its crisis and passes backwards through the cascade that ends at {:.7}; at 1.56 it is periodic",
             cascade.value
@@ -251,18 +251,18 @@ fn red(work: &Work<'_>, cascade: &Bifurcation) -> Result<Claim, Failure> {
 }
 
 /// Period five appears between 1.58 and 1.60.
-fn five(work: &Work<'_>) -> Result<Claim, Failure> {
+fn five(work: &ItemWork<'_>) -> Result<Claim, Failure> {
     let attractors = found(1.6)?;
     let five = of_period(&attractors, 5)?;
-    let flip = first(Kind::Flip, five, 1.6, 1.58)?;
-    let fold = first(Kind::Fold, five, 1.6, 1.62)?;
+    let flip = first(BifurcationKind::Flip, five, 1.6, 1.58)?;
+    let fold = first(BifurcationKind::Fold, five, 1.6, 1.62)?;
     let start = five.points[0];
     let keeps = |omega: f64| Ok(settled(omega, start, REST, REPEATS)?.0 == Some(5));
     let (holds_at, fails_at) = bracket(1.6, 1.59, WIDTH, keeps)?;
     let holds = flip.value > 1.58 && flip.value < 1.6;
     let computed =
         format!("period five is stable from omega = {:.7} to {:.7}", flip.value, fold.value);
-    Ok(Claim::settle(&work.paper, "five-emerges", Verdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "five-emerges", ClaimVerdict::of(holds), computed)?
         .note("below it doubles; above it ends in a fold")
         .evidence("continuation with multipliers", format!("{}; {}", said(&flip), said(&fold)))
         .evidence(

@@ -3,11 +3,11 @@
 
 use super::attractors::{found, of_period};
 use super::continued::branch;
-use super::work::{Findings, Work};
+use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
 use crate::picture::RGBColor;
 use crate::picture::{Figure, INK, KeyEntry, Layer, Plot, Stroke};
-use percuss::dynamics::continuation::{Bifurcation, Branch, BranchPoint, Kind};
+use percuss::dynamics::continuation::{Bifurcation, BifurcationKind, Branch, BranchPoint};
 use percuss::dynamics::orbit::Orbit;
 
 const RANGE: (f64, f64) = (1.35, 1.72);
@@ -22,7 +22,7 @@ const FAMILIES: [(u32, f64, RGBColor); 6] = [
     (9, 1.7, RGBColor(170, 90, 150)),
 ];
 
-pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let mut branches = Vec::new();
     for (period, omega, colour) in FAMILIES {
         let attractors = found(omega)?;
@@ -98,18 +98,18 @@ fn change<'a>(
 ) -> Option<(f64, &'a Orbit)> {
     let (last, next) = (last?, next?);
     let far = |it: &Bifurcation| (it.value - last.value).abs() + (it.value - next.value).abs();
-    let smooth = branch.bifurcations.iter().filter(|it| it.kind != Kind::Grazing);
+    let smooth = branch.bifurcations.iter().filter(|it| it.kind != BifurcationKind::Grazing);
     let nearest = smooth.min_by(|a, b| far(a).total_cmp(&far(b)))?;
     Some((nearest.value, &nearest.orbit))
 }
 
 /// Squares where a branch turns, doubles or grazes.
 fn marks(branch: &Branch) -> Vec<Layer> {
-    let colour = |kind: Kind| match kind {
-        Kind::Fold => RGBColor(0, 0, 0),
-        Kind::Flip => RGBColor(200, 0, 30),
-        Kind::Grazing => RGBColor(130, 130, 130),
-        Kind::NeimarkSacker => RGBColor(0, 158, 115),
+    let colour = |kind: BifurcationKind| match kind {
+        BifurcationKind::Fold => RGBColor(0, 0, 0),
+        BifurcationKind::Flip => RGBColor(200, 0, 30),
+        BifurcationKind::Grazing => RGBColor(130, 130, 130),
+        BifurcationKind::NeimarkSacker => RGBColor(0, 158, 115),
     };
     let mark = |it: &Bifurcation| Layer::Dots {
         points: it.orbit.points.iter().map(|point| [it.value, point[0]]).collect(),

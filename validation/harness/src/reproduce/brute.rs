@@ -2,7 +2,7 @@
 
 use super::attractors::map;
 use crate::engine::Failure;
-use percuss::dynamics::strobe::Point;
+use percuss::dynamics::strobe::StrobePoint;
 
 /// The longest period that is looked for.
 const LONGEST: usize = 64;
@@ -11,16 +11,16 @@ const LONGEST: usize = 64;
 /// number after which its strobes repeat to `near`; none up to 64.
 pub(super) fn settled(
     omega: f64,
-    point: Point,
+    point: StrobePoint,
     periods: u64,
     near: f64,
-) -> Result<(Option<usize>, Point), Failure> {
+) -> Result<(Option<usize>, StrobePoint), Failure> {
     let map = map(omega)?;
     let entry = map.entry(point).map_err(Failure::new)?;
     let late = map.strobes(entry, periods).last().ok_or_else(|| Failure::new("no strobes"))?;
-    let last: Vec<Point> =
+    let last: Vec<StrobePoint> =
         map.strobes(late, 2 * LONGEST as u64).map(|strobe| strobe.point()).collect();
-    let apart = |a: &Point, b: &Point| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
+    let apart = |a: &StrobePoint, b: &StrobePoint| (a[0] - b[0]).abs().max((a[1] - b[1]).abs());
     let repeats = |k: &usize| last.iter().zip(&last[*k..]).all(|(a, b)| apart(a, b) < near);
     Ok(((1..=LONGEST).find(repeats), late.point()))
 }

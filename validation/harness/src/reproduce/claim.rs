@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// How a claim stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
-pub enum Verdict {
+pub enum ClaimVerdict {
     /// Our computation says the same.
     Reproduced,
     /// It says something else.
@@ -18,7 +18,7 @@ pub enum Verdict {
 
 /// How something was found, and what.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Evidence {
+pub struct ClaimEvidence {
     /// The method, with its settings.
     pub method: String,
     /// What it gave.
@@ -35,11 +35,11 @@ pub struct Claim {
     /// What we find.
     pub computed: String,
     /// How it stands.
-    pub verdict: Verdict,
+    pub verdict: ClaimVerdict,
     /// Why, and what is assumed.
     pub note: String,
     /// Methods and their findings.
-    pub evidence: Vec<Evidence>,
+    pub evidence: Vec<ClaimEvidence>,
 }
 
 impl Claim {
@@ -50,7 +50,7 @@ impl Claim {
     pub fn settle(
         paper: &Paper,
         id: &str,
-        verdict: Verdict,
+        verdict: ClaimVerdict,
         computed: impl Into<String>,
     ) -> Result<Self, Failure> {
         let says = paper.claim(id)?.says.clone();
@@ -74,12 +74,12 @@ impl Claim {
     /// Adds one more method and its finding.
     #[must_use]
     pub fn evidence(mut self, method: impl Into<String>, finding: impl Into<String>) -> Self {
-        self.evidence.push(Evidence { method: method.into(), finding: finding.into() });
+        self.evidence.push(ClaimEvidence { method: method.into(), finding: finding.into() });
         self
     }
 }
 
-impl Verdict {
+impl ClaimVerdict {
     /// Reproduced if all that was checked holds.
     #[must_use]
     pub const fn of(holds: bool) -> Self {

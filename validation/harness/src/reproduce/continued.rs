@@ -3,8 +3,8 @@
 use super::paper::attractors_model;
 use crate::engine::Failure;
 use percuss::dynamics::attractor::Attractor;
-use percuss::dynamics::continuation::{Bifurcation, Branch, Family, Kind};
-use percuss::dynamics::strobe::Point;
+use percuss::dynamics::continuation::{Bifurcation, BifurcationKind, Branch, Family};
+use percuss::dynamics::strobe::StrobePoint;
 use percuss::{Instant, Parameter};
 
 /// The strobe maps at omega tau = 0, one for each frequency.
@@ -15,13 +15,18 @@ pub(super) fn family() -> Family {
 }
 
 /// The branch of the orbit of a period that is found near a point, from one frequency to another.
-pub(super) fn branch(guess: Point, period: u32, from: f64, to: f64) -> Result<Branch, Failure> {
+pub(super) fn branch(
+    guess: StrobePoint,
+    period: u32,
+    from: f64,
+    to: f64,
+) -> Result<Branch, Failure> {
     Branch::follow(&family(), guess, period, from, to, &mut |_| {}).map_err(Failure::new)
 }
 
 /// The first bifurcation of a kind that an orbit meets from one frequency to another.
 pub(super) fn first(
-    kind: Kind,
+    kind: BifurcationKind,
     orbit: &Attractor,
     from: f64,
     to: f64,

@@ -1,7 +1,7 @@
 //! A run as lines in the paper's notation: no contact dash-dotted, contact solid, progression
 //! dotted.
 
-use crate::picture::{KeyEntry, Layer, Piece, Stroke, phase_colour};
+use crate::picture::{KeyEntry, Layer, MotionPiece, Stroke, phase_colour};
 use percuss::{Exit, Instant, Phase, Segment};
 
 /// The phases of a run up to `last`, some `per_period` points a forcing period.
@@ -10,7 +10,7 @@ pub(super) fn pieces(
     last: &Instant,
     omega: f64,
     per_period: f64,
-) -> Vec<Piece> {
+) -> Vec<MotionPiece> {
     let spacing = std::f64::consts::TAU / omega / per_period;
     let piece = |segment: &Segment| {
         let lasts = match segment.exit() {
@@ -18,7 +18,7 @@ pub(super) fn pieces(
             _ => segment.elapsed_at(last),
         };
         let begins = segment.entry().instant.tau(omega);
-        Piece::of(segment, begins, lasts, lasts / spacing)
+        MotionPiece::of(segment, begins, lasts, lasts / spacing)
     };
     segments.iter().map(piece).collect()
 }
@@ -33,8 +33,8 @@ pub(super) const fn stroke(phase: Phase) -> Stroke {
 }
 
 /// Lines of the figures that `of` makes of a point.
-pub(super) fn lines(pieces: &[Piece], of: impl Fn(&[f64; 5]) -> [f64; 2]) -> Vec<Layer> {
-    let line = |piece: &Piece| Layer::Line {
+pub(super) fn lines(pieces: &[MotionPiece], of: impl Fn(&[f64; 5]) -> [f64; 2]) -> Vec<Layer> {
+    let line = |piece: &MotionPiece| Layer::Line {
         points: piece.points.iter().map(&of).collect(),
         colour: phase_colour(piece.phase),
         width: if piece.phase == Phase::Progression { 3.0 } else { 2.0 },
@@ -54,7 +54,7 @@ pub(super) fn key() -> Layer {
 }
 
 /// Rows of a data file: phase, tau, p, y, q, v.
-pub(super) fn rows(pieces: &[Piece]) -> impl Iterator<Item = Vec<String>> {
+pub(super) fn rows(pieces: &[MotionPiece]) -> impl Iterator<Item = Vec<String>> {
     pieces.iter().flat_map(|piece| {
         piece.points.iter().map(|point| {
             let numbers = point.iter().map(f64::to_string);

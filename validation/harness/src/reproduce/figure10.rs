@@ -1,17 +1,17 @@
 //! Fig. 10: the period-four attractor followed in omega, with and without correction of the start.
 
 use super::attractors::{described, found, of_period, start};
-use super::claim::{Claim, Verdict};
+use super::claim::{Claim, ClaimVerdict};
 use super::continued::first;
 use super::paper::attractors_model;
-use super::work::{Findings, Work};
+use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
 use crate::picture::{Figure, INK, Layer, Plot};
 use percuss::Parameter;
 use percuss::dynamics::attractor::Attractor;
-use percuss::dynamics::continuation::{Bifurcation, Kind};
-use percuss::dynamics::diagram::{Diagram, Follow, Step};
-use percuss::dynamics::strobe::Point;
+use percuss::dynamics::continuation::{Bifurcation, BifurcationKind};
+use percuss::dynamics::diagram::{Diagram, DiagramStep, Follow};
+use percuss::dynamics::strobe::StrobePoint;
 
 /// The frequency at which the period-four attractor is taken up, and how far it is followed to both
 /// sides.
@@ -24,7 +24,7 @@ const PERIODS: u32 = 96;
 /// Strobes nearer than this are one point of the diagram.
 const SAME: f64 = 1e-4;
 
-pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let attractors = found(BEGIN)?;
     let four = of_period(&attractors, 4)?;
     let corrected = corrected(four.points[0])?;
@@ -43,7 +43,7 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     Ok(findings)
 }
 
-fn rows(steps: &[Step]) -> impl Iterator<Item = Vec<String>> {
+fn rows(steps: &[DiagramStep]) -> impl Iterator<Item = Vec<String>> {
     steps.iter().flat_map(|step| {
         step.points.iter().map(|[p, y, q]| {
             [step.value, *p, *y, *q, step.drift_per_period].map(|it| it.to_string()).to_vec()
@@ -52,12 +52,12 @@ fn rows(steps: &[Step]) -> impl Iterator<Item = Vec<String>> {
 }
 
 fn diagram(
-    point: Point,
+    point: StrobePoint,
     from: f64,
     to: f64,
     steps: u32,
     follow: Follow,
-) -> Result<Vec<Step>, Failure> {
+) -> Result<Vec<DiagramStep>, Failure> {
     let diagram = Diagram {
         parameters: attractors_model(from),
         start: start(point),
@@ -73,7 +73,7 @@ fn diagram(
 }
 
 /// Carried from where the attractor is known, to both sides.
-fn corrected(four: Point) -> Result<Vec<Step>, Failure> {
+fn corrected(four: StrobePoint) -> Result<Vec<DiagramStep>, Failure> {
     let share = (BEGIN - RANGE.0) / (RANGE.1 - RANGE.0);
     let below = (f64::from(VALUES) * share) as u32;
     let mut steps = diagram(four, BEGIN, RANGE.0, below, Follow::Carry)?;
@@ -94,17 +94,17 @@ struct Stable {
 impl Stable {
     /// The window of an orbit at some frequency, as far as the range goes.
     fn of(orbit: &Attractor, omega: f64) -> Result<Self, Failure> {
-        let flip = first(Kind::Flip, orbit, omega, RANGE.0)?;
-        let fold = first(Kind::Fold, orbit, omega, RANGE.1)?;
+        let flip = first(BifurcationKind::Flip, orbit, omega, RANGE.0)?;
+        let fold = first(BifurcationKind::Fold, orbit, omega, RANGE.1)?;
         Ok(Self { flip, fold })
     }
 }
 
 /// How many different points a step shows, up to some.
-fn count(step: &Step) -> usize {
-    let mut kept: Vec<&Point> = Vec::new();
+fn count(step: &DiagramStep) -> usize {
+    let mut kept: Vec<&StrobePoint> = Vec::new();
     for point in &step.points {
-        let apart = |it: &&Point| (it[0] - point[0]).abs().max((it[1] - point[1]).abs());
+        let apart = |it: &&StrobePoint| (it[0] - point[0]).abs().max((it[1] - point[1]).abs());
         if kept.iter().all(|it| apart(it) > SAME) {
             kept.push(point);
         }
@@ -114,22 +114,25 @@ fn count(step: &Step) -> usize {
 
 /// Steps inside the orbit's stable interval; next to its ends motions settle too slowly to be
 /// counted.
-fn inside<'a>(steps: &'a [Step], stable: &'a Stable) -> impl Iterator<Item = &'a Step> {
+fn inside<'a>(
+    steps: &'a [DiagramStep],
+    stable: &'a Stable,
+) -> impl Iterator<Item = &'a DiagramStep> {
     const ROOM: f64 = 0.002;
-    let within = move |step: &&Step| {
+    let within = move |step: &&DiagramStep| {
         step.value > stable.flip.value + ROOM && step.value < stable.fold.value - ROOM
     };
     steps.iter().filter(within)
 }
 
-fn settle_a(work: &Work<'_>, steps: &[Step], stable: &Stable) -> Result<Claim, Failure> {
+fn settle_a(work: &ItemWork<'_>, steps: &[DiagramStep], stable: &Stable) -> Result<Claim, Failure> {
     let all = inside(steps, stable).count();
     let four = inside(steps, stable).filter(|step| count(step) == 4).count();
     let computed = format!(
         "carried along, the motion stays on period four at all {four} of {all} values between omega = {:.4} and {:.4}",
         stable.flip.value, stable.fold.value
     );
-    Ok(Claim::settle(&work.paper, "fig10a", Verdict::of(four == all && all > 0), computed)?
+    Ok(Claim::settle(&work.paper, "fig10a", ClaimVerdict::of(four == all && all > 0), computed)?
         .note(format!(
             "range of omega assumed: {} to {}; each value starts from where the last ended",
             RANGE.0, RANGE.1
@@ -147,7 +150,7 @@ fn settle_a(work: &Work<'_>, steps: &[Step], stable: &Stable) -> Result<Claim, F
         ))
 }
 
-fn settle_b(work: &Work<'_>, steps: &[Step], stable: &Stable) -> Result<Claim, Failure> {
+fn settle_b(work: &ItemWork<'_>, steps: &[DiagramStep], stable: &Stable) -> Result<Claim, Failure> {
     let all = inside(steps, stable).count();
     let off: Vec<_> = inside(steps, stable).filter(|step| count(step) != 4).collect();
     let computed = format!(
@@ -159,12 +162,16 @@ fn settle_b(work: &Work<'_>, steps: &[Step], stable: &Stable) -> Result<Claim, F
         .take(5)
         .map(|step| format!("{:.4} ({} points)", step.value, count(step)))
         .collect();
-    Ok(Claim::settle(&work.paper, "fig10b", Verdict::of(!off.is_empty()), computed)?
+    Ok(Claim::settle(&work.paper, "fig10b", ClaimVerdict::of(!off.is_empty()), computed)?
         .note("every value starts from the orbit's strobe at omega = 1.4; the paper does not print its start")
         .evidence("strobes after a transient, value by value", format!("first at {}", first.join(", "))))
 }
 
-fn settle_12(work: &Work<'_>, uncorrected: &[Step], stable: &Stable) -> Result<Claim, Failure> {
+fn settle_12(
+    work: &ItemWork<'_>,
+    uncorrected: &[DiagramStep],
+    stable: &Stable,
+) -> Result<Claim, Failure> {
     const OMEGA: f64 = 1.45;
     let attractors = found(OMEGA)?;
     let (four, twelve) = (of_period(&attractors, 4)?, of_period(&attractors, 12)?);
@@ -179,7 +186,7 @@ fn settle_12(work: &Work<'_>, uncorrected: &[Step], stable: &Stable) -> Result<C
         "period four has no bifurcation between {:.4} and {:.4}; period twelve is stable beside it from {:.6} to {:.6}",
         stable.flip.value, stable.fold.value, beside.flip.value, beside.fold.value
     );
-    Ok(Claim::settle(&work.paper, "false-12", Verdict::of(untouched), computed)?
+    Ok(Claim::settle(&work.paper, "false-12", ClaimVerdict::of(untouched), computed)?
         .evidence("orbits at omega = 1.45 by Newton", format!("{}; {}", described(four), described(twelve)))
         .evidence("continuation of both orbits", "period twelve ends in a fold above and loses stability in a flip below, period four in neither")
         .evidence(
@@ -192,8 +199,8 @@ fn settle_12(work: &Work<'_>, uncorrected: &[Step], stable: &Stable) -> Result<C
         ))
 }
 
-fn sheet(corrected: &[Step], uncorrected: &[Step]) -> Figure {
-    let plot = |title: &str, steps: &[Step]| Plot {
+fn sheet(corrected: &[DiagramStep], uncorrected: &[DiagramStep]) -> Figure {
+    let plot = |title: &str, steps: &[DiagramStep]| Plot {
         title: title.to_owned(),
         axes: ["\u{3c9}".to_owned(), "p".to_owned()],
         window: Some([RANGE, (-3.4, 1.2)]),

@@ -1,11 +1,11 @@
 //! Fig. 2: the drift is taken out of the motion.
 
-use super::claim::{Claim, Verdict};
+use super::claim::{Claim, ClaimVerdict};
 use super::curve::{self, HEADER};
 use super::paper::table_1_model;
-use super::work::{Findings, Work, from_rest};
+use super::work::{Findings, ItemWork, from_rest};
 use crate::engine::Failure;
-use crate::picture::{Figure, Layer, Piece, Plot, Stroke, caption};
+use crate::picture::{Figure, Layer, MotionPiece, Plot, Stroke, caption};
 use percuss::Phase;
 
 const PERIODS: u64 = 12;
@@ -14,7 +14,7 @@ const POINTS: f64 = 600.0;
 /// Rounding of the sampled drift, in units of eps: it is one sum of two words.
 const ROUNDINGS: f64 = 4.0;
 
-pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     // The paper prints no parameters: those of Fig. 3.
     let parameters = table_1_model();
     let (model, rest) = from_rest(parameters)?;
@@ -28,7 +28,7 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     Ok(findings)
 }
 
-fn settle(work: &Work<'_>, pieces: &[Piece]) -> Result<Claim, Failure> {
+fn settle(work: &ItemWork<'_>, pieces: &[MotionPiece]) -> Result<Claim, Failure> {
     let points = || pieces.iter().flat_map(|piece| &piece.points);
     let range = |of: fn(&[f64; 5]) -> f64| {
         let fold = |(low, high): (f64, f64), it: f64| (low.min(it), high.max(it));
@@ -36,8 +36,8 @@ fn settle(work: &Work<'_>, pieces: &[Piece]) -> Result<Claim, Failure> {
     };
     let (p_low, p_high) = range(|at| at[1]);
     let (_, x_high) = range(|at| at[1] + at[4]);
-    let rest = |piece: &&Piece| piece.phase != Phase::Progression;
-    let still = |piece: &Piece| {
+    let rest = |piece: &&MotionPiece| piece.phase != Phase::Progression;
+    let still = |piece: &MotionPiece| {
         let (first, last) = (piece.points[0][4], piece.points[piece.points.len() - 1][4]);
         (first - last).abs() <= ROUNDINGS * f64::EPSILON * first.abs()
     };
@@ -49,7 +49,7 @@ fn settle(work: &Work<'_>, pieces: &[Piece]) -> Result<Claim, Failure> {
     let gained = points().last().map_or(0.0, |at| at[4]);
     // x grows with v while p stays: its range does not grow from the first half to the second.
     let half = pieces.len() / 2;
-    let reach = |pieces: &[Piece]| {
+    let reach = |pieces: &[MotionPiece]| {
         pieces.iter().flat_map(|piece| &piece.points).map(|at| at[1].abs()).fold(0.0, f64::max)
     };
     let bounded = reach(&pieces[half..]) <= 2.0 * reach(&pieces[..half]);
@@ -59,14 +59,14 @@ fn settle(work: &Work<'_>, pieces: &[Piece]) -> Result<Claim, Failure> {
         "in {PERIODS} periods v rises by {gained:.4} in {risers} steps, level between; p stays in \
          [{p_low:.3}, {p_high:.3}]; x reaches {x_high:.3}"
     );
-    let claim = Claim::settle(&work.paper, "fig2", Verdict::of(holds), computed)?;
+    let claim = Claim::settle(&work.paper, "fig2", ClaimVerdict::of(holds), computed)?;
     Ok(claim.note("parameters assumed: those of Figs. 3 and 4, from rest").evidence(
         "exact solver, every phase sampled",
         "v constant outside progression, never falling",
     ))
 }
 
-fn sheet(pieces: &[Piece], parameters: &str) -> Figure {
+fn sheet(pieces: &[MotionPiece], parameters: &str) -> Figure {
     let plot = |title: &str, label: &str, layers: Vec<Layer>| Plot {
         title: title.to_owned(),
         axes: ["\u{3c4}".to_owned(), label.to_owned()],

@@ -1,11 +1,11 @@
 //! Fig. 5: the chaotic phase portrait.
 
-use super::claim::{Claim, Verdict};
+use super::claim::{Claim, ClaimVerdict};
 use super::curve::{self, HEADER};
 use super::paper::chaotic_model;
-use super::work::{Findings, Work, from_rest};
+use super::work::{Findings, ItemWork, from_rest};
 use crate::engine::Failure;
-use crate::picture::{Figure, Layer, Piece, Plot, caption};
+use crate::picture::{Figure, Layer, MotionPiece, Plot, caption};
 use percuss::{Parameters, Phase};
 
 const TRANSIENT: u64 = 100;
@@ -14,7 +14,7 @@ const POINTS: f64 = 200.0;
 /// Rounding of p on the surface, and what the slider still has to close after an impact.
 const SURFACE: f64 = 1e-12;
 
-pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let parameters = chaotic_model();
     let (model, rest) = from_rest(parameters)?;
     let begin = rest.instant.after_periods(TRANSIENT, 1);
@@ -29,7 +29,11 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     Ok(findings)
 }
 
-fn settle(work: &Work<'_>, pieces: &[Piece], parameters: &Parameters) -> Result<Claim, Failure> {
+fn settle(
+    work: &ItemWork<'_>,
+    pieces: &[MotionPiece],
+    parameters: &Parameters,
+) -> Result<Claim, Failure> {
     let g = parameters.g;
     let of = |phase: Phase| {
         pieces.iter().filter(move |piece| piece.phase == phase).flat_map(|piece| &piece.points)
@@ -49,12 +53,12 @@ fn settle(work: &Work<'_>, pieces: &[Piece], parameters: &Parameters) -> Result<
          while the slider's top returns; contact between p = g and g + 1; progression reaches p = {settled:.6}",
         100.0 * share
     );
-    Ok(Claim::settle(&work.paper, "fig5", Verdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "fig5", ClaimVerdict::of(holds), computed)?
         .note(format!("from rest, after {TRANSIENT} periods"))
         .evidence("exact solver, every phase sampled", "each phase's range of p"))
 }
 
-fn sheet(pieces: &[Piece], parameters: &Parameters) -> Figure {
+fn sheet(pieces: &[MotionPiece], parameters: &Parameters) -> Figure {
     let mut layers = curve::lines(pieces, |at| [at[1], at[2]]);
     layers.extend([Layer::Guide(parameters.g), Layer::Guide(parameters.g + 1.0)]);
     layers.push(curve::key());

@@ -1,13 +1,13 @@
 //! Fig. 6: the strange attractor's section, exact beside integrated, and how far they lie apart.
 
-use super::claim::{Claim, Verdict};
+use super::claim::{Claim, ClaimVerdict};
 use super::paper::chaotic_model;
-use super::work::{Findings, Work};
+use super::work::{Findings, ItemWork};
 use crate::case;
 use crate::engine::{self, Accuracy, Engine, Failure, Limits};
 use crate::number::brief;
 use crate::picture::{Figure, INK, Layer, Plot, caption, phase_colour};
-use crate::score::attractor::{AttractorTest, Comparison, Section, calibrated, run_of};
+use crate::score::attractor::{AttractorTest, Comparison, RunSection, calibrated, run_of};
 use percuss::{Phase, Start};
 
 /// The harness's case that starts from rest at these parameters; its limits are calibrated.
@@ -19,7 +19,7 @@ const TRANSIENT: u32 = 200;
 /// Points of the pictures.
 const POINTS: u32 = 20_000;
 
-pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let engines = engine::select(&[regex::Regex::new(ENGINES).map_err(Failure::new)?])
         .map_err(Failure::new)?;
     let integrated = engines
@@ -41,11 +41,11 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     Ok(findings)
 }
 
-fn section(engine: &dyn Engine, accuracy: Accuracy) -> Result<Section, Failure> {
+fn section(engine: &dyn Engine, accuracy: Accuracy) -> Result<RunSection, Failure> {
     let refused = || Failure::new("the start is refused");
     let task = run_of(chaotic_model(), Start::default(), TRANSIENT + POINTS).ok_or_else(refused)?;
     let limits = Limits { calls: 1_000_000_000, events: 1_000_000, ..Limits::default() };
-    Section::of(&task, &engine.run(&task, accuracy, &limits)?, TRANSIENT)
+    RunSection::of(&task, &engine.run(&task, accuracy, &limits)?, TRANSIENT)
 }
 
 /// Each integrator's section against the reference, in units of the calibrated limits.
@@ -66,9 +66,9 @@ fn compared(engines: &[&'static dyn Engine]) -> Result<Vec<(&'static str, Compar
 }
 
 fn settle(
-    work: &Work<'_>,
-    exact: &Section,
-    other: &Section,
+    work: &ItemWork<'_>,
+    exact: &RunSection,
+    other: &RunSection,
     comparisons: &[(&'static str, Comparison)],
 ) -> Result<[Claim; 2], Failure> {
     let strange = exact.lyapunov > 0.0;
@@ -77,7 +77,7 @@ fn settle(
         exact.points.len(),
         exact.lyapunov
     );
-    let first = Claim::settle(&work.paper, "fig6a", Verdict::of(strange), computed)?
+    let first = Claim::settle(&work.paper, "fig6a", ClaimVerdict::of(strange), computed)?
         .note(format!("from rest, after {TRANSIENT} periods"))
         .evidence(
             "exact solver, a point a forcing period",
@@ -92,7 +92,7 @@ fn settle(
         comparisons.len(),
         comparisons.iter().map(|(_, it)| it.share()).fold(0.0, f64::max)
     );
-    let mut second = Claim::settle(&work.paper, "fig6b", Verdict::of(agree), computed)?.note(
+    let mut second = Claim::settle(&work.paper, "fig6b", ClaimVerdict::of(agree), computed)?.note(
         "one-dimensional distances of p, y, q and their delay pairs, phase words, exponent, drift; limits that none \
          of 20,000 exact runs exceeded",
     );
@@ -109,8 +109,8 @@ fn settle(
     Ok([first, second])
 }
 
-fn sheet(exact: &Section, other: &Section, engine: &str, farthest: f64) -> Figure {
-    let plot = |title: String, section: &Section, colour| Plot {
+fn sheet(exact: &RunSection, other: &RunSection, engine: &str, farthest: f64) -> Figure {
+    let plot = |title: String, section: &RunSection, colour| Plot {
         title,
         axes: ["p".to_owned(), "y".to_owned()],
         window: None,

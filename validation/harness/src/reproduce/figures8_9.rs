@@ -1,10 +1,10 @@
 //! Figs. 8 and 9: the coexisting attractors at omega = 1.4 and omega = 1.6, one by one.
 
 use super::attractors::{described, found, map, of_period, strange};
-use super::claim::{Claim, Verdict};
+use super::claim::{Claim, ClaimVerdict};
 use super::curve;
 use super::paper::attractors_model;
-use super::work::{Findings, Work};
+use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
 use crate::picture::{Figure, INK, Layer, Plot, caption};
 use percuss::dynamics::attractor::Attractor;
@@ -18,19 +18,19 @@ const TRANSIENT: u64 = 200;
 const PER_PERIOD: f64 = 200.0;
 
 /// One of the two figures.
-struct Panel {
+struct FigurePanel {
     id: &'static str,
     name: &'static str,
     omega: f64,
     periods: &'static [u32],
 }
 
-const FIGURES: [Panel; 2] = [
-    Panel { id: "fig8", name: "figure-8", omega: 1.4, periods: &[4] },
-    Panel { id: "fig9", name: "figure-9", omega: 1.6, periods: &[5, 6] },
+const FIGURES: [FigurePanel; 2] = [
+    FigurePanel { id: "fig8", name: "figure-8", omega: 1.4, periods: &[4] },
+    FigurePanel { id: "fig9", name: "figure-9", omega: 1.6, periods: &[5, 6] },
 ];
 
-pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let mut findings = Findings::default();
     for figure in &FIGURES {
         let map = map(figure.omega)?;
@@ -57,14 +57,18 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     Ok(findings)
 }
 
-fn settle(work: &Work<'_>, figure: &Panel, attractors: &[Attractor]) -> Result<Claim, Failure> {
+fn settle(
+    work: &ItemWork<'_>,
+    figure: &FigurePanel,
+    attractors: &[Attractor],
+) -> Result<Claim, Failure> {
     let strange = strange(attractors)?;
     let said: Vec<_> = attractors.iter().map(described).collect();
     let mut periods: Vec<_> = attractors.iter().filter_map(Attractor::period).collect();
     periods.sort_unstable();
     let chaotic = strange.lyapunov_per_period > 4.0 * strange.lyapunov_error;
     let holds = periods == figure.periods && chaotic && attractors.len() == periods.len() + 1;
-    Ok(Claim::settle(&work.paper, figure.id, Verdict::of(holds), said.join("; "))?
+    Ok(Claim::settle(&work.paper, figure.id, ClaimVerdict::of(holds), said.join("; "))?
         .note("strobes at omega tau = 0; the attractors that a grid of starts reaches")
         .evidence("Newton on the exact strobe map, multipliers", said.join("; "))
         .evidence("picture", format!("{}.png", figure.name)))
@@ -108,7 +112,7 @@ fn section_plot(points: &[[f64; 3]]) -> Plot {
     }
 }
 
-fn sheet(figure: &Panel, plots: Vec<Plot>) -> Figure {
+fn sheet(figure: &FigurePanel, plots: Vec<Plot>) -> Figure {
     Figure {
         title: format!("Fig. {}: coexisting attractors", figure.id.trim_start_matches("fig")),
         caption: format!(

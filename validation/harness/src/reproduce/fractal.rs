@@ -1,8 +1,8 @@
 //! Whether the basins' boundaries are fractal, and whether erosion grows with the frequency.
 
 use super::attractors::{TRANSIENT, WINDOW, grid, map};
-use super::claim::{Claim, Verdict};
-use super::work::{Findings, Work};
+use super::claim::{Claim, ClaimVerdict};
+use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
 use percuss::dynamics::attractor::{
     AttractorCatalog, Basins, Entropy, Uncertainty, entropy, uncertainty_of,
@@ -20,13 +20,13 @@ const BOX: u32 = 5;
 const ERRORS: f64 = 4.0;
 
 /// What is measured at one frequency.
-struct Measured {
+struct FrequencyMeasured {
     omega: f64,
     uncertainty: Uncertainty,
     entropy: Entropy,
 }
 
-pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let mut measured = Vec::new();
     for omega in OMEGAS {
         measured.push(measure(omega)?);
@@ -41,21 +41,21 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
         "boundary_entropy",
         "boundary_boxes",
     ];
-    findings.csv("fractal", &header, measured.iter().map(Measured::row))?;
+    findings.csv("fractal", &header, measured.iter().map(FrequencyMeasured::row))?;
     findings.claims.push(settle(work, &measured)?);
     Ok(findings)
 }
 
-fn measure(omega: f64) -> Result<Measured, Failure> {
+fn measure(omega: f64) -> Result<FrequencyMeasured, Failure> {
     let map = map(omega)?;
     let mut catalog = AttractorCatalog::new(map, TRANSIENT);
     catalog.label_all(&grid(32).starts(), &|_| {});
     let uncertainty = uncertainty_of(|start| catalog.label(start), &WINDOW, 0.0, SCALES, STARTS);
     let basins = Basins::of(&map, &grid(CELLS), TRANSIENT, &|_| {});
-    Ok(Measured { omega, uncertainty, entropy: entropy(&basins, BOX) })
+    Ok(FrequencyMeasured { omega, uncertainty, entropy: entropy(&basins, BOX) })
 }
 
-impl Measured {
+impl FrequencyMeasured {
     fn row(&self) -> Vec<String> {
         let numbers = [
             self.omega,
@@ -69,9 +69,9 @@ impl Measured {
     }
 }
 
-fn settle(work: &Work<'_>, measured: &[Measured]) -> Result<Claim, Failure> {
+fn settle(work: &ItemWork<'_>, measured: &[FrequencyMeasured]) -> Result<Claim, Failure> {
     let fractal = measured.iter().all(|it| it.uncertainty.is_fractal(ERRORS));
-    let grows = |of: fn(&Measured) -> f64| {
+    let grows = |of: fn(&FrequencyMeasured) -> f64| {
         measured.windows(2).filter(|pair| of(&pair[1]) > of(&pair[0])).count()
     };
     let all = measured.len() - 1;
@@ -82,10 +82,10 @@ fn settle(work: &Work<'_>, measured: &[Measured]) -> Result<Claim, Failure> {
     ];
     // The paper measures nothing: its words are settled only where all measures say the same.
     let verdict = match steps.iter().filter(|(_, count)| *count == all).count() {
-        _ if !fractal => Verdict::Differs,
-        3 => Verdict::Reproduced,
-        0 => Verdict::Differs,
-        _ => Verdict::NotDetermined,
+        _ if !fractal => ClaimVerdict::Differs,
+        3 => ClaimVerdict::Reproduced,
+        0 => ClaimVerdict::Differs,
+        _ => ClaimVerdict::NotDetermined,
     };
     let grown: Vec<_> = steps.iter().map(|(what, count)| format!("{what} in {count}")).collect();
     let said: Vec<_> = measured

@@ -4,7 +4,7 @@ use super::attractors::start;
 use super::paper::attractors_model;
 use crate::engine::{self, Accuracy, Failure, Limits};
 use crate::score::attractor::run_of;
-use percuss::dynamics::strobe::Point;
+use percuss::dynamics::strobe::StrobePoint;
 
 /// The integrator.
 pub(super) const NAME: &str = "ode_solvers-dopri5";
@@ -12,7 +12,7 @@ pub(super) const NAME: &str = "ode_solvers-dopri5";
 /// (p, y, q, v) at the strobes of the motion from a point, that one included.
 pub(super) fn strobes(
     omega: f64,
-    point: Point,
+    point: StrobePoint,
     periods: u32,
     tolerance: f64,
 ) -> Result<Vec<[f64; 4]>, Failure> {

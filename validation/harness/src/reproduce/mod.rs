@@ -24,8 +24,8 @@ mod progression;
 mod table1;
 mod work;
 
-pub use claim::{Claim, Evidence, Verdict};
-pub use work::{Findings, Parts, Size, Work};
+pub use claim::{Claim, ClaimEvidence, ClaimVerdict};
+pub use work::{Findings, ItemWork, Parts, Size};
 
 use crate::engine::Failure;
 
@@ -39,7 +39,7 @@ pub struct Item {
     pub parts: u32,
     /// Names of what it keeps of its work before it is finished.
     pub kept: &'static [&'static str],
-    run: fn(&Work<'_>) -> Result<Findings, Failure>,
+    run: fn(&ItemWork<'_>) -> Result<Findings, Failure>,
 }
 
 impl Item {
@@ -47,7 +47,7 @@ impl Item {
     ///
     /// # Errors
     /// What could not be computed, and why.
-    pub fn run(&self, work: &Work<'_>) -> Result<Findings, Failure> {
+    pub fn run(&self, work: &ItemWork<'_>) -> Result<Findings, Failure> {
         (self.run)(work)
     }
 

@@ -2,11 +2,11 @@
 //! against the forcing frequency and against the static force.
 
 use super::paper::chaotic_model;
-use super::work::{Findings, Work};
+use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
 use crate::picture::RGBColor;
 use crate::picture::{Figure, KeyEntry, Layer, Plot, caption_without};
-use percuss::dynamics::diagram::{Diagram, Follow, Step};
+use percuss::dynamics::diagram::{Diagram, DiagramStep, Follow};
 use percuss::{Parameter, Parameters, Start};
 
 const VALUES: u32 = 600;
@@ -53,13 +53,13 @@ const RATES: [Rate; 2] = [
     Rate { name: "progression-b", parameter: Parameter::B, range: (0.01, 0.9), label: "b" },
 ];
 
-pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let mut findings = Findings::default();
     for rate in &RATES {
         let steps = rate.steps()?;
         findings.picture(rate.name, &rate.sheet(&steps))?;
         let header = [rate.parameter.as_str(), "drift_per_period", "drift_per_time", "period"];
-        let row = |step: &Step| {
+        let row = |step: &DiagramStep| {
             let period = period(step).map_or(String::new(), |period| period.to_string());
             let numbers = [step.value, step.drift_per_period, rate.per_time(step)];
             numbers.iter().map(f64::to_string).chain([period]).collect()
@@ -71,7 +71,7 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
 }
 
 /// The least number of forcing periods after which the strobes repeat.
-fn period(step: &Step) -> Option<usize> {
+fn period(step: &DiagramStep) -> Option<usize> {
     let near = |a: &[f64; 3], b: &[f64; 3]| {
         (0..2).all(|i| (a[i] - b[i]).abs() <= REPEATS * (1.0 + a[i].abs()))
     };
@@ -79,7 +79,7 @@ fn period(step: &Step) -> Option<usize> {
     (1..=LONGEST.min(step.points.len().saturating_sub(1))).find(repeats)
 }
 
-fn regime(step: &Step) -> Regime {
+fn regime(step: &DiagramStep) -> Regime {
     match period(step) {
         _ if step.drift_per_period == 0.0 => Regime::Still,
         Some(1) => Regime::One,
@@ -91,7 +91,7 @@ fn regime(step: &Step) -> Regime {
 
 impl Rate {
     /// Every value from rest, so that no value depends on another.
-    fn steps(&self) -> Result<Vec<Step>, Failure> {
+    fn steps(&self) -> Result<Vec<DiagramStep>, Failure> {
         let diagram = Diagram {
             parameters: chaotic_model(),
             start: Start::default(),
@@ -106,14 +106,14 @@ impl Rate {
         diagram.steps(|| {}).map_err(Failure::new)
     }
 
-    fn per_time(&self, step: &Step) -> f64 {
+    fn per_time(&self, step: &DiagramStep) -> f64 {
         let Parameters { omega, .. } = self.parameter.set(chaotic_model(), step.value);
         step.drift_per_period * omega / std::f64::consts::TAU
     }
 
-    fn sheet(&self, steps: &[Step]) -> Figure {
+    fn sheet(&self, steps: &[DiagramStep]) -> Figure {
         let axis = |label: &str| [self.label.to_owned(), label.to_owned()];
-        let dots = |of: &dyn Fn(&Step) -> Vec<[f64; 2]>, size: f64| -> Vec<Layer> {
+        let dots = |of: &dyn Fn(&DiagramStep) -> Vec<[f64; 2]>, size: f64| -> Vec<Layer> {
             let layer = |(kind, _, colour): &(Regime, &str, RGBColor)| Layer::Dots {
                 points: steps.iter().filter(|step| regime(step) == *kind).flat_map(of).collect(),
                 colour: *colour,
@@ -128,7 +128,8 @@ impl Rate {
             stroke: None,
         };
         rate.push(Layer::Key(REGIMES.iter().take(3).map(key).collect()));
-        let strobes = |step: &Step| step.points.iter().map(|it| [step.value, it[0]]).collect();
+        let strobes =
+            |step: &DiagramStep| step.points.iter().map(|it| [step.value, it[0]]).collect();
         let mut section = dots(&strobes, 0.7);
         section.push(Layer::Key(REGIMES.iter().skip(3).map(key).collect()));
         let plot = |axes: [String; 2], layers: Vec<Layer>| Plot {

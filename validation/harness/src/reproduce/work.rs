@@ -18,7 +18,7 @@ pub enum Size {
 }
 
 /// What every item is given.
-pub struct Work<'a> {
+pub struct ItemWork<'a> {
     /// The paper's side.
     pub paper: Paper,
     /// How large.
@@ -41,7 +41,7 @@ pub trait Parts: Sync {
     fn keep(&self, name: &str, bytes: &[u8]) -> Result<(), Failure>;
 }
 
-impl Work<'_> {
+impl ItemWork<'_> {
     /// A part that an earlier run has finished.
     pub(super) fn recall<T: DeserializeOwned>(&self, name: &str) -> Option<T> {
         serde_json::from_slice(&self.parts.recall(name)?).ok()

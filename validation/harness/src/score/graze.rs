@@ -5,7 +5,7 @@
 //! not: either answer is right. The margin is read off the closed form of the phase in which the
 //! guard is watched, continued past the event where there is one.
 
-use super::growth::Growth;
+use super::growth::RunGrowth;
 use crate::engine::{Closed, Equations, GUARDS, Oscillator, Task};
 use crate::truth::{Row, Truth};
 use percuss::{Parameters, Phase};
@@ -46,7 +46,7 @@ impl Graze {
 
 /// The grazes of a true run, in the order of time.
 #[must_use]
-pub fn grazes(task: &Task, truth: &Truth, growth: &Growth) -> Vec<Graze> {
+pub fn grazes(task: &Task, truth: &Truth, growth: &RunGrowth) -> Vec<Graze> {
     let scan = Scan { task, truth, growth };
     let ends = truth.switches.iter().chain([&truth.end]);
     let begins = std::iter::once(&truth.start).chain(&truth.switches);
@@ -56,7 +56,7 @@ pub fn grazes(task: &Task, truth: &Truth, growth: &Growth) -> Vec<Graze> {
 struct Scan<'a> {
     task: &'a Task,
     truth: &'a Truth,
-    growth: &'a Growth,
+    growth: &'a RunGrowth,
 }
 
 /// The closed form of one segment with its guards.

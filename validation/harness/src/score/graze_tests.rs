@@ -1,6 +1,6 @@
 use super::*;
 use crate::case::{Given, embedded};
-use crate::engine::Grid;
+use crate::engine::SampleGrid;
 use crate::truth::Library;
 
 fn of_case(name: &str) -> Vec<Graze> {
@@ -9,9 +9,9 @@ fn of_case(name: &str) -> Vec<Graze> {
     let truth = Library::embedded().and_then(|library| library.truth(&case));
     let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
     let (Ok(truth), Ok(problem)) = (truth, given.check()) else { unreachable!("{name} is valid") };
-    let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
+    let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
     let task = Task::of(&case, problem, grid);
-    let growth = Growth::along(&truth, &case.parameters, task.forcing_angle);
+    let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
     grazes(&task, &truth, &growth)
 }
 
@@ -81,11 +81,12 @@ fn looks_follow_the_faster_of_forcing_and_contact() {
             unreachable!("the parameters are in range")
         };
         let horizon = problem.entry.instant.after_periods(1, 1);
-        let task = Task::until(parameters, problem, horizon, Grid { per_period: 8, count: 9 });
+        let task =
+            Task::until(parameters, problem, horizon, SampleGrid { per_period: 8, count: 9 });
         let Ok(truth) = Truth::replayed(&parameters, &problem.entry, horizon, (9, 8)) else {
             unreachable!("106 bits decide it")
         };
-        let growth = Growth::along(&truth, &parameters, task.forcing_angle);
+        let growth = RunGrowth::along(&truth, &parameters, task.forcing_angle);
         let step = Scan { task: &task, truth: &truth, growth: &growth }.step();
         assert!((step - expected).abs() <= 1e-14, "{step} {expected}");
     }

@@ -30,13 +30,13 @@ const ONE: usize = 6;
 const DIRECTIONS: usize = 5;
 
 type Linear = SMatrix<f64, SIZE, SIZE>;
-type Point = SVector<f64, SIZE>;
+type GrowthPoint = SVector<f64, SIZE>;
 type Bundle = SMatrix<f64, SIZE, DIRECTIONS>;
 type Times = SMatrix<f64, 1, DIRECTIONS>;
 
-/// Growth at every switch and sample, at least 1.
+/// The growth at every event and sample, at least 1.
 #[derive(Clone, Debug)]
-pub struct Growth {
+pub struct RunGrowth {
     /// The growth at each event: of tau, p, y, q and v.
     pub switches: Vec<[f64; 5]>,
     /// The growth at each sample: of p, y, q and v.
@@ -52,17 +52,17 @@ struct Descent {
     times: Times,
 }
 
-struct Motion {
+struct GrowthMotion {
     omega: f64,
     angle: f64,
     parameters: Parameters,
 }
 
-impl Growth {
+impl RunGrowth {
     /// Follows the truth's rows; `angle` is omega tau + phi at the start.
     #[must_use]
     pub fn along(truth: &Truth, parameters: &Parameters, angle: f64) -> Self {
-        let motion = Motion { omega: parameters.omega, angle, parameters: *parameters };
+        let motion = GrowthMotion { omega: parameters.omega, angle, parameters: *parameters };
         let mut growth = Self { switches: Vec::new(), samples: Vec::new(), end: [1.0; 4] };
         let mut descents =
             vec![Descent { state: motion.directions(&truth.start), times: Times::zeros() }];
@@ -101,7 +101,7 @@ impl Growth {
     }
 }
 
-impl Motion {
+impl GrowthMotion {
     fn linear(&self, phase: Phase) -> Linear {
         let Parameters { a, b, xi, omega, .. } = self.parameters;
         let rate = 1.0 / (2.0 * xi);
@@ -138,10 +138,10 @@ impl Motion {
         guard
     }
 
-    fn point(&self, row: &Row) -> Point {
+    fn point(&self, row: &Row) -> GrowthPoint {
         let [p, y, q, v] = row.rounded();
         let (sin, cos) = (self.omega * row.elapsed.value() + self.angle).sin_cos();
-        Point::from([p, y, q, v, cos, sin, 1.0])
+        GrowthPoint::from([p, y, q, v, cos, sin, 1.0])
     }
 
     /// Unit errors of the forcing angle and of each co-ordinate.
@@ -178,7 +178,7 @@ impl Motion {
         }
     }
 
-    /// Growth at a fixed tau inside a phase.
+    /// The growth at a fixed tau inside a phase.
     fn plain(&self, linear: &Linear, descents: &[Descent], begin: &Row, at: &Row) -> [f64; 4] {
         let flow = flow(linear, at.elapsed.minus(begin.elapsed));
         let field = linear * self.point(at);
@@ -244,7 +244,7 @@ mod tests {
             };
             let parameters = case.parameters;
             let angle = parameters.omega * case.start.tau + parameters.phi;
-            let motion = Motion { omega: parameters.omega, angle, parameters };
+            let motion = GrowthMotion { omega: parameters.omega, angle, parameters };
             let mut descents =
                 vec![Descent { state: motion.directions(&truth.start), times: Times::zeros() }];
             let mut begin = truth.start;

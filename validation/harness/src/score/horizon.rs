@@ -6,12 +6,12 @@
 //! engine's unit of error to 1e-3. In 106 bits the truth lasts twice as long as f64; it counts
 //! while its own unit times growth is below a hundredth of 1e-3.
 
-use super::growth::{Growth, SCORED_ERROR};
+use super::growth::{RunGrowth, SCORED_ERROR};
 use super::restart::task;
 use super::starts::far_apart;
 use super::statistics::Spread;
 use crate::case::Problem;
-use crate::engine::{Failure, Grid, Outcome, Task};
+use crate::engine::{Failure, Outcome, SampleGrid, Task};
 use crate::truth::{Truth, UNIT};
 use percuss::TwoWord;
 use rayon::prelude::*;
@@ -148,7 +148,7 @@ impl HorizonRun {
         let grid = (periods as usize + 1, 1);
         let truth = Truth::replayed(&parameters, &entry, horizon, grid).ok()?;
         let angle = task(problem, horizon).forcing_angle;
-        let samples = Growth::along(&truth, &parameters, angle).samples;
+        let samples = RunGrowth::along(&truth, &parameters, angle).samples;
         let mut largest = 1.0_f64;
         let mut rising = |growth: &[f64; 4]| {
             largest = growth[..3].iter().fold(largest, |largest, size| largest.max(*size));
@@ -197,7 +197,7 @@ impl HorizonRun {
         run: &impl Fn(&Task) -> Result<Outcome, Failure>,
     ) -> Result<u32, Failure> {
         let horizon = self.problem.entry.instant.after_periods(u64::from(periods), 1);
-        let grid = Grid { per_period: 1, count: periods as usize + 1 };
+        let grid = SampleGrid { per_period: 1, count: periods as usize + 1 };
         let events_before = self.events_before;
         let outcome = run(&Task { grid, events_before, ..task(self.problem, horizon) })?;
         Ok(self.valid(&outcome, periods))

@@ -1,10 +1,10 @@
 //! The figures of one run.
 
 use super::SCORED_ERROR;
-use super::growth::Growth;
+use super::growth::RunGrowth;
 use super::matching::{Matching, WINDOW};
 use super::mismatch::{Excused, Mismatch};
-use super::probed::Probed;
+use super::probed::ProbeResults;
 use super::statistics::Spread;
 use crate::case::{Quantity, Statistic};
 use crate::engine::{Event, Outcome, Task};
@@ -46,7 +46,7 @@ pub struct Measures {
     /// Largest error of the sample's states in these units; NaN where no sample is scored.
     pub state_constant: f64,
     /// What was asked beyond the run itself.
-    pub probed: Probed,
+    pub probed: ProbeResults,
 }
 
 impl Measures {
@@ -120,7 +120,7 @@ impl Measures {
 pub fn measure(
     task: &Task,
     truth: &Truth,
-    growth: &Growth,
+    growth: &RunGrowth,
     outcome: &Outcome,
     unit: f64,
 ) -> Measures {
@@ -161,7 +161,7 @@ pub fn measure(
         event_constant: event_constant(rows, found, &pairs, growth, unit),
         state_constant: state_constant(truth, outcome, growth, scored, unit),
         mismatch,
-        probed: Probed::default(),
+        probed: ProbeResults::default(),
     }
 }
 
@@ -222,7 +222,7 @@ fn event_constant(
     rows: &[Row],
     found: &[Event],
     pairs: &[(usize, usize)],
-    growth: &Growth,
+    growth: &RunGrowth,
     unit: f64,
 ) -> f64 {
     if pairs.is_empty() {
@@ -241,7 +241,7 @@ fn event_constant(
 fn state_constant(
     truth: &Truth,
     outcome: &Outcome,
-    growth: &Growth,
+    growth: &RunGrowth,
     scored: usize,
     unit: f64,
 ) -> f64 {

@@ -1,6 +1,6 @@
 use super::*;
 use crate::case::{Given, Problem};
-use crate::engine::Grid;
+use crate::engine::SampleGrid;
 use percuss::Phase::{Contact, NoContact, Progression};
 use percuss::{Parameters, Start};
 
@@ -22,7 +22,7 @@ fn row(elapsed: f64, phase: Phase, state: [f64; 4]) -> Row {
 struct Planted {
     task: Task,
     truth: Truth,
-    growth: Growth,
+    growth: RunGrowth,
     outcome: Outcome,
 }
 
@@ -30,7 +30,7 @@ impl Planted {
     fn new() -> Self {
         let problem = problem();
         let horizon = problem.entry.instant.after_periods(2, 1);
-        let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: 17 };
+        let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: 17 };
         let task = Task::until(Parameters::default(), problem, horizon, grid);
         let states = [[0.5, -0.25, 0.5, 0.0], [1.0, 2.0, 0.75, 0.0], [3.0, 0.0, -1.0, 1.5]];
         let phases = [Contact, Progression, NoContact];
@@ -44,7 +44,7 @@ impl Planted {
             end: row(task.span, NoContact, [0.25, 1.0, 0.0, 1.5]),
             samples: (0..17).map(sample).collect(),
         };
-        let growth = Growth {
+        let growth = RunGrowth {
             switches: vec![[2.0, 4.0, 5.0, 8.0, 10.0], [3.0, 1.0, 6.0, 1.0, 1.0], [7.0; 5]],
             samples: vec![[1.0, 2.0, 4.0, 8.0]; 17],
             end: [1.0; 4],

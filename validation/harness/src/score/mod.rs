@@ -1,7 +1,7 @@
 //! Scores: what an engine's run is worth against the truth.
 //!
 //! Everything is measured up to the scored horizon, which is fixed from the truth and the engine's
-//! unit of error alone ([`Growth`]): a miss before it counts, nothing after it does.
+//! unit of error alone ([`RunGrowth`]): a miss before it counts, nothing after it does.
 
 pub mod attractor;
 mod graze;
@@ -20,7 +20,7 @@ mod statistics;
 mod verdict;
 
 pub use graze::{Graze, grazes};
-pub use growth::{Growth, SCORED_ERROR, SCORED_FACTOR};
+pub use growth::{RunGrowth, SCORED_ERROR, SCORED_FACTOR};
 pub use histogram::Histogram;
 pub use horizon::{HorizonTest, Horizons, ValidHorizon};
 pub use matching::{Matching, WINDOW};
@@ -28,8 +28,8 @@ pub(crate) use measure::worst;
 pub use measure::{Measures, measure, sample_errors};
 pub use mismatch::{Excused, Mismatch};
 pub use order::order;
-pub use probed::Probed;
+pub use probed::ProbeResults;
 pub use restart::{MOST_PERIODS, Restart, RestartError, RestartRun, RestartTest};
 pub use starts::{far_apart, on_attractor};
 pub use statistics::Spread;
-pub use verdict::{Checked, Expected, Judgement, Run, Subject, Verdict, judge};
+pub use verdict::{Checked, Expected, RowJudgement, ScoredRun, Subject, Verdict, judge};

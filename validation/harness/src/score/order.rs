@@ -5,7 +5,7 @@
 //! over a ladder is the order in practice: a method below the order it claims is shown as such.
 
 /// A rung: steps taken, error reached.
-pub type Rung = (f64, f64);
+pub type OrderRung = (f64, f64);
 
 /// Errors below this are rounding, above [`LARGEST`] no convergence yet.
 const SMALLEST: f64 = 1e-12;
@@ -16,8 +16,8 @@ const SPAN: f64 = 1.5;
 
 /// The slope by least squares; `None` where the ladder is too short for one.
 #[must_use]
-pub fn order(ladder: &[Rung]) -> Option<f64> {
-    let usable = |(steps, error): &&Rung| *steps > 0.0 && (SMALLEST..LARGEST).contains(error);
+pub fn order(ladder: &[OrderRung]) -> Option<f64> {
+    let usable = |(steps, error): &&OrderRung| *steps > 0.0 && (SMALLEST..LARGEST).contains(error);
     let logarithms: Vec<_> =
         ladder.iter().filter(usable).map(|(steps, error)| (steps.ln(), error.ln())).collect();
     let count = logarithms.len() as f64;
@@ -36,7 +36,7 @@ mod tests {
 
     #[test]
     fn a_power_law_is_its_exponent() {
-        let ladder: Vec<Rung> =
+        let ladder: Vec<OrderRung> =
             [50.0, 100.0, 200.0, 400.0].map(|n: f64| (n, 3.0 * n.powi(-4))).to_vec();
         let found = order(&ladder);
         assert!(found.is_some_and(|order| (order - 4.0).abs() < 1e-12), "{found:?}");
@@ -44,7 +44,7 @@ mod tests {
 
     #[test]
     fn any_number_of_steps_counts() {
-        let ladder: Vec<Rung> = [0.25, 0.5, 1.0].map(|n: f64| (n, 1e-6 * n.powi(-3))).to_vec();
+        let ladder: Vec<OrderRung> = [0.25, 0.5, 1.0].map(|n: f64| (n, 1e-6 * n.powi(-3))).to_vec();
         assert!(order(&ladder).is_some_and(|order| (order - 3.0).abs() < 1e-12));
     }
 

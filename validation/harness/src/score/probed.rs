@@ -6,7 +6,7 @@ use super::restart::Restart;
 
 /// What the probes gave for one engine.
 #[derive(Clone, Debug, Default)]
-pub struct Probed {
+pub struct ProbeResults {
     /// The restart test.
     pub restart: Option<Restart>,
     /// Valid horizons.
@@ -16,7 +16,7 @@ pub struct Probed {
     pub attractor: Option<Result<Comparison, String>>,
 }
 
-impl Probed {
+impl ProbeResults {
     /// Whether there are restarts to speak of.
     #[must_use]
     pub fn restarted(&self) -> bool {

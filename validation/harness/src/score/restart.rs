@@ -6,13 +6,13 @@
 //! period: the first after its separation, at most the eighth. Half of all single periods hold no
 //! switch at all, so the figures are of the runs that had an impact.
 
-use super::growth::Growth;
+use super::growth::RunGrowth;
 use super::histogram::Histogram;
 use super::measure::worst;
 use super::starts::on_attractor;
 use super::statistics::Spread;
 use crate::case::Problem;
-use crate::engine::{Failure, Grid, Outcome, Task};
+use crate::engine::{Failure, Outcome, SampleGrid, Task};
 use crate::truth::{Row, Truth};
 use percuss::TwoWord;
 use percuss::{Instant, Phase};
@@ -29,7 +29,7 @@ pub struct RestartRun {
     /// What is true.
     pub truth: Truth,
     /// How errors grow along it.
-    pub growth: Growth,
+    pub growth: RunGrowth,
     /// Whether it has an impact.
     pub impact: bool,
 }
@@ -169,7 +169,7 @@ impl RestartRun {
         let periods = separation.as_ref().map_or(MOST_PERIODS, after);
         let truth = if periods == MOST_PERIODS { whole } else { replayed(periods)? };
         let task = task(problem, strobe(periods));
-        let growth = Growth::along(&truth, &parameters, task.forcing_angle);
+        let growth = RunGrowth::along(&truth, &parameters, task.forcing_angle);
         Some(Self { task, truth, growth, impact })
     }
 
@@ -224,7 +224,7 @@ fn passage(truth: &Truth) -> (bool, Option<Row>) {
 
 /// The run from a start to an instant, without samples on the way.
 pub(super) fn task(problem: Problem, horizon: Instant) -> Task {
-    let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 };
+    let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 };
     Task::until(*problem.model.parameters(), problem, horizon, grid)
 }
 

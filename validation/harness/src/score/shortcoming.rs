@@ -1,7 +1,7 @@
 //! Known shortcomings held against a row: each excuses the one quantity that it names.
 
 use super::mismatch::Excused;
-use super::verdict::{Checked, Run, Verdict};
+use super::verdict::{Checked, ScoredRun, Verdict};
 use crate::case::Shortcoming;
 use crate::number::brief;
 
@@ -19,7 +19,7 @@ pub(super) enum Answer {
 /// What was not measured shows nothing.
 pub(super) fn answer(
     known: &Shortcoming,
-    run: &Run<'_>,
+    run: &ScoredRun<'_>,
     excused: &Excused,
     checked: &mut [Checked],
 ) -> Answer {

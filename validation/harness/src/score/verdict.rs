@@ -93,7 +93,7 @@ impl Checked {
 
 /// The verdict on a row.
 #[derive(Clone, Debug)]
-pub struct Judgement {
+pub struct RowJudgement {
     /// Each bound that applies.
     pub bounds: Vec<Checked>,
     /// The row's class.
@@ -102,7 +102,7 @@ pub struct Judgement {
     pub why: String,
 }
 
-impl Judgement {
+impl RowJudgement {
     /// A verdict on a row that has no measures.
     #[must_use]
     pub const fn without_result(verdict: Verdict, why: String) -> Self {
@@ -137,7 +137,7 @@ pub struct Expected<'a> {
 
 /// A run that has a result, with what tells whether its events are decidable.
 #[derive(Clone, Copy)]
-pub struct Run<'a> {
+pub struct ScoredRun<'a> {
     /// What was measured.
     pub measures: &'a Measures,
     /// The engine's answer.
@@ -152,7 +152,7 @@ pub struct Run<'a> {
 
 /// Judges a run.
 #[must_use]
-pub fn judge(subject: &Subject<'_>, run: &Run<'_>, expected: &Expected<'_>) -> Judgement {
+pub fn judge(subject: &Subject<'_>, run: &ScoredRun<'_>, expected: &Expected<'_>) -> RowJudgement {
     let excused = excused(subject, run, expected.of_classes);
     let mut checked = check(subject, run, &excused, expected.bounds);
     // A probe that the suite does not ask for can show no shortcoming.
@@ -172,7 +172,7 @@ pub fn judge(subject: &Subject<'_>, run: &Run<'_>, expected: &Expected<'_>) -> J
     let failed = checked.iter().filter(|it| it.verdict == Verdict::Fail);
     reasons.failed.extend(failed.map(Checked::reason));
     let (verdict, why) = reasons.settle(run, &checked, &excused);
-    Judgement { bounds: checked, verdict, why }
+    RowJudgement { bounds: checked, verdict, why }
 }
 
 /// Reasons for the classes that speak of bounds.
@@ -183,7 +183,12 @@ struct Reasons {
 }
 
 impl Reasons {
-    fn settle(self, run: &Run<'_>, checked: &[Checked], excused: &Excused) -> (Verdict, String) {
+    fn settle(
+        self,
+        run: &ScoredRun<'_>,
+        checked: &[Checked],
+        excused: &Excused,
+    ) -> (Verdict, String) {
         let unmeasured = checked.iter().find(|it| it.verdict == Verdict::NotScored);
         if !self.failed.is_empty() {
             (Verdict::Fail, self.failed.join("; "))
@@ -221,7 +226,7 @@ fn little_scored(measures: &Measures) -> String {
 }
 
 /// The grazes that the bound on errors of the engine's class leaves undecided.
-fn excused(subject: &Subject<'_>, run: &Run<'_>, of_classes: &[Bound]) -> Excused {
+fn excused(subject: &Subject<'_>, run: &ScoredRun<'_>, of_classes: &[Bound]) -> Excused {
     let constant = of_classes.iter().find(|it| {
         it.quantity == Quantity::EventConstant
             && it.statistic == Statistic::Max
@@ -229,13 +234,13 @@ fn excused(subject: &Subject<'_>, run: &Run<'_>, of_classes: &[Bound]) -> Excuse
     });
     let Some(constant) = constant else { return Excused::default() };
     let allowed = constant.limit * subject.unit;
-    let Run { measures, outcome, grazes, window, .. } = *run;
+    let ScoredRun { measures, outcome, grazes, window, .. } = *run;
     measures.mismatch.excused(grazes, &outcome.events, window, allowed)
 }
 
 fn check(
     subject: &Subject<'_>,
-    run: &Run<'_>,
+    run: &ScoredRun<'_>,
     excused: &Excused,
     bounds: &[&Bound],
 ) -> Vec<Checked> {
@@ -266,7 +271,7 @@ fn check(
     checked
 }
 
-impl Run<'_> {
+impl ScoredRun<'_> {
     /// A figure once the events that grazes excuse are left out.
     pub(super) fn decidable(
         &self,

@@ -3,12 +3,12 @@
 use super::probes::{Extent, Probes};
 use super::scope::Suite;
 use crate::case::{Case, Defaults, FileError};
-use crate::engine::{Accuracy, Engine, Failure, Grid, Limits, Outcome, Role, Task, answer};
+use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Role, SampleGrid, Task, answer};
 use crate::number::brief;
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
 use crate::score::{
-    Expected, Graze, Growth, Judgement, Measures, Run, Subject, Verdict, WINDOW, grazes, judge,
-    measure,
+    Expected, Graze, Measures, RowJudgement, RunGrowth, ScoredRun, Subject, Verdict, WINDOW,
+    grazes, judge, measure,
 };
 use crate::truth::{Library, Truth};
 use rayon::prelude::*;
@@ -21,7 +21,7 @@ pub struct Prepared {
     /// The case's truth.
     pub truth: Truth,
     /// How errors grow along it.
-    pub growth: Growth,
+    pub growth: RunGrowth,
     /// The places at which the case's guards come close to a threshold.
     pub grazes: Vec<Graze>,
     task: Task,
@@ -61,7 +61,7 @@ pub struct Scored {
     /// Wall time.
     pub wall: Duration,
     /// The verdict.
-    pub judgement: Judgement,
+    pub judgement: RowJudgement,
 }
 
 /// Reads truth and growth of every case.
@@ -87,9 +87,9 @@ fn prepare_one(
     let given =
         crate::case::Given { parameters: case.parameters, start: case.start, ..Default::default() };
     let problem = given.check().map_err(FileError)?;
-    let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
+    let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
     let task = Task::of(&case, problem, grid);
-    let growth = Growth::along(&truth, &case.parameters, task.forcing_angle);
+    let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
     let grazes = grazes(&task, &truth, &growth);
     let probes = Probes::new(&case, &problem, suite, limits)?;
     Ok(Prepared { case, truth, growth, grazes, task, probes })
@@ -121,9 +121,9 @@ impl Prepared {
 
     /// A measured run as it is judged.
     #[must_use]
-    pub fn as_run<'a>(&'a self, measures: &'a Measures, outcome: &'a Outcome) -> Run<'a> {
+    pub fn as_run<'a>(&'a self, measures: &'a Measures, outcome: &'a Outcome) -> ScoredRun<'a> {
         let window = WINDOW * self.task.problem.model.period();
-        Run { measures, outcome, truth: &self.truth, grazes: &self.grazes, window }
+        ScoredRun { measures, outcome, truth: &self.truth, grazes: &self.grazes, window }
     }
 
     /// The same-attractor test, where the case has one.
@@ -190,7 +190,7 @@ fn one(
         judgement,
     };
     let without = |status, verdict, why: String| {
-        row(status, Duration::ZERO, Judgement::without_result(verdict, why))
+        row(status, Duration::ZERO, RowJudgement::without_result(verdict, why))
     };
     if let Err(reason) = engine.available() {
         return without(Status::Unavailable, Verdict::Unavailable, reason);

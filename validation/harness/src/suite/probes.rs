@@ -5,7 +5,7 @@ use super::scope::Suite;
 use crate::case::{Case, FileError, Problem};
 use crate::engine::{Accuracy, Engine, Limits, Role, answer, contain};
 use crate::score::attractor::{AttractorTest, Calibrated};
-use crate::score::{HorizonTest, Probed, RestartTest};
+use crate::score::{HorizonTest, ProbeResults, RestartTest};
 
 /// The tolerance at which integrators are probed in the quick suite, and those of the full one.
 const TOLERANCE: f64 = 1e-9;
@@ -60,7 +60,7 @@ impl Probes {
         unit: f64,
         limits: &Limits,
         extent: Extent,
-    ) -> Probed {
+    ) -> ProbeResults {
         let run = |task: &_| answer(engine, task, accuracy, limits);
         let restarts = self.restart.as_ref().filter(|_| extent.restarts > 0);
         let restart = restarts.map(|test| test.score_first(extent.restarts, unit, run));
@@ -70,7 +70,7 @@ impl Probes {
             contain(|| test.compare(case, engine, accuracy, limits)).map_err(|it| it.to_string())
         };
         let attractor = self.attractor.as_ref().filter(|_| extent.attractor);
-        Probed { restart, horizons, attractor: attractor.map(compare) }
+        ProbeResults { restart, horizons, attractor: attractor.map(compare) }
     }
 
     /// Forcing periods of the long run, where there is one.

@@ -5,8 +5,8 @@
 //! the guard. Here every certificate must leave a multiple of that room, so that it holds for the
 //! phase in 106 bits too; where one does not, the search counts it, and the run is undecided.
 
-use super::forms::Motion;
-use percuss::insides::crossing::certificate::{Corridor, Ends, Verdict};
+use super::forms::TruthMotion;
+use percuss::insides::crossing::certificate::{Corridor, Ends, Proof};
 use percuss::insides::crossing::guarded::{Guarded, SearchHint};
 use percuss::insides::crossing::search::first_crossing;
 use percuss::insides::crossing::series::Series;
@@ -50,7 +50,7 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
         self.0.hint(steps, left, limit)
     }
 
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Verdict {
+    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof {
         self.0.certify(steps, left, right, ends)
     }
 
@@ -86,12 +86,12 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
 }
 
 /// How the phase ends before `limit`, and whether every certificate left the room asked for.
-pub(super) fn crossing(motion: &Motion<f64>, steps: &Steps, limit: f64) -> (Crossing, bool) {
+pub(super) fn crossing(motion: &TruthMotion<f64>, steps: &Steps, limit: f64) -> (Crossing, bool) {
     let mut counters = Counters::default();
     let crossing = match motion {
-        Motion::NoContact(it) => first_crossing(&Cautious(it), steps, limit, &mut counters),
-        Motion::Contact(it) => first_crossing(&Cautious(it), steps, limit, &mut counters),
-        Motion::Progression(it) => first_crossing(&Cautious(it), steps, limit, &mut counters),
+        TruthMotion::NoContact(it) => first_crossing(&Cautious(it), steps, limit, &mut counters),
+        TruthMotion::Contact(it) => first_crossing(&Cautious(it), steps, limit, &mut counters),
+        TruthMotion::Progression(it) => first_crossing(&Cautious(it), steps, limit, &mut counters),
     };
     (crossing, counters.undecidable == 0)
 }

@@ -15,7 +15,7 @@ use percuss::{Instant, Parameters, Phase, State};
 
 /// How a phase begins: what is known exactly at that instant.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum ModeEntry<T> {
+pub(super) enum TruthEntry<T> {
     /// No contact, the mass away from the slider.
     Apart,
     /// No contact, on the surface with this rate of h; zero at a separation.
@@ -28,7 +28,7 @@ pub(super) enum ModeEntry<T> {
 
 /// The closed form of one phase.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Motion<T> {
+pub(super) enum TruthMotion<T> {
     NoContact(NoContact<T>),
     Contact(Contact<T>),
     Progression(Progression<T>),
@@ -36,7 +36,7 @@ pub(super) enum Motion<T> {
 
 /// The model's constants in both arithmetics.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Forms {
+pub(super) struct TruthForms {
     pub(super) constants: Constants<DoubleDouble>,
     rounded: Constants<f64>,
     pub(super) steps: Steps,
@@ -44,7 +44,7 @@ pub(super) struct Forms {
     pub(super) omega: f64,
 }
 
-impl Forms {
+impl TruthForms {
     pub(super) fn new(parameters: &Parameters) -> Self {
         let (_, phi) = angle::reduce(TwoWord::new(parameters.phi));
         Self {
@@ -61,27 +61,27 @@ impl Forms {
         &self,
         instant: &Instant,
         entry: State<DoubleDouble>,
-        mode: ModeEntry<DoubleDouble>,
-    ) -> Motion<DoubleDouble> {
+        mode: TruthEntry<DoubleDouble>,
+    ) -> TruthMotion<DoubleDouble> {
         let radians = DoubleDouble::from(instant.angle_two_word()) + self.phi;
         let (sin, cos) = radians.sin_cos();
         motion(self.constants, entry, EntryAngle { radians, sin, cos }, mode)
     }
 
     /// The phase with everything rounded to f64.
-    pub(super) fn rounded(&self, exact: &Motion<DoubleDouble>) -> Motion<f64> {
+    pub(super) fn rounded(&self, exact: &TruthMotion<DoubleDouble>) -> TruthMotion<f64> {
         let f = |x: DoubleDouble| x.to_f64();
         let (state, angle) = exact.entry();
         let entry = State { p: f(state.p), y: f(state.y), q: f(state.q) };
         let mode = match exact {
-            Motion::NoContact(it) => {
-                it.surface.map_or(ModeEntry::Apart, |rate| ModeEntry::Surface { h_rate: f(rate) })
+            TruthMotion::NoContact(it) => {
+                it.surface.map_or(TruthEntry::Apart, |rate| TruthEntry::Surface { h_rate: f(rate) })
             }
-            Motion::Contact(it) => {
-                ModeEntry::Contact { offset: f(it.offset), reference: f(it.reference) }
+            TruthMotion::Contact(it) => {
+                TruthEntry::Contact { offset: f(it.offset), reference: f(it.reference) }
             }
-            Motion::Progression(it) => {
-                ModeEntry::Progression { drift_rate: f(it.drift_rate), closing: f(it.closing) }
+            TruthMotion::Progression(it) => {
+                TruthEntry::Progression { drift_rate: f(it.drift_rate), closing: f(it.closing) }
             }
         };
         let [radians, sin, cos] = [angle.radians, angle.sin, angle.cos].map(f);
@@ -94,23 +94,25 @@ fn motion<T: Number>(
     constants: Constants<T>,
     entry: State<T>,
     angle: EntryAngle<T>,
-    mode: ModeEntry<T>,
-) -> Motion<T> {
+    mode: TruthEntry<T>,
+) -> TruthMotion<T> {
     match mode {
-        ModeEntry::Apart => Motion::NoContact(NoContact { constants, entry, angle, surface: None }),
-        ModeEntry::Surface { h_rate } => {
-            Motion::NoContact(NoContact { constants, entry, angle, surface: Some(h_rate) })
+        TruthEntry::Apart => {
+            TruthMotion::NoContact(NoContact { constants, entry, angle, surface: None })
         }
-        ModeEntry::Contact { offset, reference } => {
-            Motion::Contact(Contact { constants, entry, angle, offset, reference })
+        TruthEntry::Surface { h_rate } => {
+            TruthMotion::NoContact(NoContact { constants, entry, angle, surface: Some(h_rate) })
         }
-        ModeEntry::Progression { drift_rate, closing } => {
-            Motion::Progression(Progression { constants, entry, angle, drift_rate, closing })
+        TruthEntry::Contact { offset, reference } => {
+            TruthMotion::Contact(Contact { constants, entry, angle, offset, reference })
+        }
+        TruthEntry::Progression { drift_rate, closing } => {
+            TruthMotion::Progression(Progression { constants, entry, angle, drift_rate, closing })
         }
     }
 }
 
-impl<T: Number> Motion<T> {
+impl<T: Number> TruthMotion<T> {
     pub(super) fn phase(&self) -> Phase {
         match self {
             Self::NoContact(_) => Phase::NoContact,

@@ -1,7 +1,7 @@
 //! What begins where a phase ends, and where a run starts, with what is known there imposed.
 
 use super::DoubleDouble;
-use super::forms::{Forms, ModeEntry, Motion};
+use super::forms::{TruthEntry, TruthForms, TruthMotion};
 use percuss::insides::flow::Point;
 use percuss::number::Number;
 use percuss::{Entry, Phase, State};
@@ -15,20 +15,20 @@ pub(super) const UNDECIDED: f64 = 1e-18;
 /// threshold, and is then imposed exactly.
 const FOUR_ULPS: f64 = 4.0 * f64::EPSILON;
 
-impl Forms {
+impl TruthForms {
     /// A start of the phase of `entry`, its state taken exactly but for what that phase imposes.
     pub(super) fn start(
         &self,
         entry: &Entry,
         [p, y, q]: [DoubleDouble; 3],
-    ) -> (State<DoubleDouble>, ModeEntry<DoubleDouble>) {
+    ) -> (State<DoubleDouble>, TruthEntry<DoubleDouble>) {
         let (one, zero) = (DoubleDouble::one(), DoubleDouble::zero());
         let (g, rate, damper) = (self.constants.g, self.constants.rate, self.constants.two_xi * y);
         let size = |x: DoubleDouble| x.abs().to_f64();
         let largest = size(p).max(size(q)).max(size(g));
         let phase = entry.phase();
         if phase == Phase::NoContact && size(p - q - g) > FOUR_ULPS * largest {
-            return (State { p, y, q }, ModeEntry::Apart);
+            return (State { p, y, q }, TruthEntry::Apart);
         }
         let f = damper + q;
         let largest = size(damper).max(size(q));
@@ -39,15 +39,15 @@ impl Forms {
         };
         let q = threshold.map_or(q, |threshold| threshold - damper);
         let mode = match (phase, threshold) {
-            (Phase::NoContact, Some(_)) => ModeEntry::Surface { h_rate: zero },
-            (Phase::NoContact, None) => ModeEntry::Surface { h_rate: f * rate },
-            (Phase::Contact, Some(reference)) => ModeEntry::Contact { offset: zero, reference },
-            (Phase::Contact, None) => ModeEntry::Contact { offset: f, reference: zero },
+            (Phase::NoContact, Some(_)) => TruthEntry::Surface { h_rate: zero },
+            (Phase::NoContact, None) => TruthEntry::Surface { h_rate: f * rate },
+            (Phase::Contact, Some(reference)) => TruthEntry::Contact { offset: zero, reference },
+            (Phase::Contact, None) => TruthEntry::Contact { offset: f, reference: zero },
             (Phase::Progression, Some(_)) => {
-                ModeEntry::Progression { drift_rate: zero, closing: y }
+                TruthEntry::Progression { drift_rate: zero, closing: y }
             }
             (Phase::Progression, None) => {
-                ModeEntry::Progression { drift_rate: (f - one) * rate, closing: (one - q) * rate }
+                TruthEntry::Progression { drift_rate: (f - one) * rate, closing: (one - q) * rate }
             }
         };
         (State { p: q + g, y, q }, mode)
@@ -57,15 +57,15 @@ impl Forms {
     /// the threshold to be told from it.
     pub(super) fn landing(
         &self,
-        motion: &Motion<DoubleDouble>,
+        motion: &TruthMotion<DoubleDouble>,
         at: &Point<DoubleDouble>,
         rises: bool,
-    ) -> Option<(State<DoubleDouble>, ModeEntry<DoubleDouble>)> {
+    ) -> Option<(State<DoubleDouble>, TruthEntry<DoubleDouble>)> {
         let (one, zero) = (DoubleDouble::one(), DoubleDouble::zero());
         let (g, rate, two_xi) = (self.constants.g, self.constants.rate, self.constants.two_xi);
         let on_surface = |y: DoubleDouble, q: DoubleDouble| State { p: q + g, y, q };
         Some(match motion {
-            Motion::NoContact(_) => {
+            TruthMotion::NoContact(_) => {
                 let State { y, q, .. } = at.state;
                 let f = two_xi * at.guard.orders[1];
                 let excess = f - one;
@@ -73,24 +73,24 @@ impl Forms {
                     return None;
                 }
                 let mode = if excess > zero {
-                    ModeEntry::Progression { drift_rate: excess * rate, closing: (one - q) * rate }
+                    TruthEntry::Progression { drift_rate: excess * rate, closing: (one - q) * rate }
                 } else {
-                    ModeEntry::Contact { offset: f, reference: zero }
+                    TruthEntry::Contact { offset: f, reference: zero }
                 };
                 (on_surface(y, q), mode)
             }
-            Motion::Contact(_) if rises => {
+            TruthMotion::Contact(_) if rises => {
                 let y = at.state.y;
-                let mode = ModeEntry::Progression { drift_rate: zero, closing: y };
+                let mode = TruthEntry::Progression { drift_rate: zero, closing: y };
                 (on_surface(y, one - two_xi * y), mode)
             }
-            Motion::Contact(_) => {
+            TruthMotion::Contact(_) => {
                 let y = at.state.y;
-                (on_surface(y, -(two_xi * y)), ModeEntry::Surface { h_rate: zero })
+                (on_surface(y, -(two_xi * y)), TruthEntry::Surface { h_rate: zero })
             }
-            Motion::Progression(_) => {
+            TruthMotion::Progression(_) => {
                 let y = at.slider_velocity;
-                let mode = ModeEntry::Contact { offset: zero, reference: one };
+                let mode = TruthEntry::Contact { offset: zero, reference: one };
                 (on_surface(y, one - two_xi * y), mode)
             }
         })

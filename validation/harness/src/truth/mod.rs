@@ -13,5 +13,5 @@ mod table;
 
 pub use double_double::{DoubleDouble, LARGEST_ANGLE, UNIT};
 pub use library::Library;
-pub use replay::{Beginning, Passage, Replay, Undecided};
+pub use replay::{Beginning, Replay, ReplayedPhase, Undecided};
 pub use table::{Row, Truth};

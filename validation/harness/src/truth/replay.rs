@@ -7,7 +7,7 @@
 
 use super::DoubleDouble;
 use super::cautious::crossing;
-use super::forms::{Forms, ModeEntry, Motion};
+use super::forms::{TruthEntry, TruthForms, TruthMotion};
 use super::landing::UNDECIDED;
 use percuss::insides::crossing::{Crossing, Root};
 use percuss::insides::flow::Point;
@@ -33,12 +33,12 @@ pub struct Beginning {
     pub state: State<DoubleDouble>,
     /// Drift v.
     pub drift: DoubleDouble,
-    motion: Motion<DoubleDouble>,
+    motion: TruthMotion<DoubleDouble>,
 }
 
 /// A phase of the run.
 #[derive(Clone, Copy, Debug)]
-pub struct Passage {
+pub struct ReplayedPhase {
     /// The state at which the phase begins.
     pub begin: Beginning,
     /// The state at which the next phase begins; `None` at the horizon.
@@ -48,7 +48,7 @@ pub struct Passage {
 
 /// The run, phase by phase up to its horizon.
 pub struct Replay {
-    forms: Forms,
+    forms: TruthForms,
     start: Instant,
     horizon: Instant,
     next: Option<Beginning>,
@@ -68,7 +68,7 @@ impl Beginning {
     }
 }
 
-impl Passage {
+impl ReplayedPhase {
     /// p, y, q and v at an instant inside the phase.
     #[must_use]
     pub fn at(&self, instant: &Instant) -> [DoubleDouble; 4] {
@@ -102,19 +102,19 @@ impl Replay {
         state: [DoubleDouble; 3],
         horizon: Instant,
     ) -> Self {
-        let forms = Forms::new(parameters);
+        let forms = TruthForms::new(parameters);
         let (state, mode) = forms.start(entry, state);
         let drift = entry.drift.into();
         let first = begin(&forms, entry.instant, state, drift, mode);
         Self { forms, start: entry.instant, horizon, next: Some(first) }
     }
 
-    fn passage(&self, begin: Beginning) -> Result<Passage, &'static str> {
+    fn passage(&self, begin: Beginning) -> Result<ReplayedPhase, &'static str> {
         let omega = self.forms.omega;
         let span = self.horizon.since(&begin.instant, omega).value();
         // The search's horizon is a little late: whether a switch comes before it is decided here.
         let limit = span.max(0.0) * (1.0 + 1e-12) + f64::MIN_POSITIVE;
-        let passage = |next| Ok(Passage { begin, next, omega });
+        let passage = |next| Ok(ReplayedPhase { begin, next, omega });
         match crossing(&self.forms.rounded(&begin.motion), &self.forms.steps, limit) {
             (_, false) => Err("the margin of a graze"),
             (Crossing::Stage(_) | Crossing::Undecided(_), _) => Err("the end of a phase"),
@@ -141,7 +141,7 @@ impl Replay {
 }
 
 impl Iterator for Replay {
-    type Item = Result<Passage, Undecided>;
+    type Item = Result<ReplayedPhase, Undecided>;
 
     fn next(&mut self) -> Option<Self::Item> {
         let begin = self.next.take()?;
@@ -155,25 +155,25 @@ impl Iterator for Replay {
 }
 
 fn begin(
-    forms: &Forms,
+    forms: &TruthForms,
     instant: Instant,
     state: State<DoubleDouble>,
     drift: DoubleDouble,
-    mode: ModeEntry<DoubleDouble>,
+    mode: TruthEntry<DoubleDouble>,
 ) -> Beginning {
     Beginning { instant, state, drift, motion: forms.motion(&instant, state, mode) }
 }
 
 /// The crossing that f64 found, to 106 bits: Newton's method on the guard less its threshold.
-fn refine(motion: &Motion<DoubleDouble>, root: &Root) -> Option<Point<DoubleDouble>> {
+fn refine(motion: &TruthMotion<DoubleDouble>, root: &Root) -> Option<Point<DoubleDouble>> {
     // From 1e-16 two steps do; next to a graze the root of a square root is found, and takes a few
     // more.
     const STEPS: usize = 12;
     // A root that f64 has misplaced by more is none.
     const ASTRAY: f64 = 1e-5;
     let threshold = match motion {
-        Motion::Contact(contact) if root.rises() => DoubleDouble::one() - contact.reference,
-        Motion::Contact(contact) => -contact.reference,
+        TruthMotion::Contact(contact) if root.rises() => DoubleDouble::one() - contact.reference,
+        TruthMotion::Contact(contact) => -contact.reference,
         _ => DoubleDouble::zero(),
     };
     let first = root.elapsed();
@@ -204,10 +204,10 @@ fn refine(motion: &Motion<DoubleDouble>, root: &Root) -> Option<Point<DoubleDoub
 /// A switch time to 2^-104 of itself.
 const RESOLUTION: f64 = f64::EPSILON * f64::EPSILON;
 
-fn leaves_upwards(motion: &Motion<DoubleDouble>, root: &Root) -> bool {
+fn leaves_upwards(motion: &TruthMotion<DoubleDouble>, root: &Root) -> bool {
     match motion {
-        Motion::NoContact(_) => true,
-        Motion::Contact(_) => root.rises(),
-        Motion::Progression(_) => false,
+        TruthMotion::NoContact(_) => true,
+        TruthMotion::Contact(_) => root.rises(),
+        TruthMotion::Progression(_) => false,
     }
 }

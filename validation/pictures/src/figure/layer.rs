@@ -1,6 +1,6 @@
 //! What a panel of a sheet is made of.
 
-use super::super::canvas::{At, Canvas, Side};
+use super::super::canvas::{At, Canvas, TextSide};
 use super::super::frame::Panel;
 use super::super::{DrawError, palette};
 use plotters::prelude::DrawingBackend;
@@ -44,7 +44,7 @@ impl Stroke {
 #[derive(Clone, Debug)]
 pub struct Raster {
     /// Horizontal and vertical range that the cells fill.
-    pub window: super::Window,
+    pub window: super::PlotWindow,
     /// Rows from the bottom up, all of the same length.
     pub rows: Vec<Vec<RGBColor>>,
 }
@@ -165,7 +165,9 @@ impl Layer {
                 dashes.iter().try_for_each(|dash| canvas.trace(dash, 1.2, palette::INK))
             }
             Self::Text { at, text, colour } => match panel.at((at[0], at[1])) {
-                Some(at) => canvas.text(text, (at.0 + 8.0, at.1 - 12.0), TEXT, Side::Left, *colour),
+                Some(at) => {
+                    canvas.text(text, (at.0 + 8.0, at.1 - 12.0), TEXT, TextSide::Left, *colour)
+                }
                 None => Ok(()),
             },
             Self::Key(entries) => {
@@ -194,7 +196,7 @@ impl KeyEntry {
                 .iter()
                 .try_for_each(|dash| canvas.trace(dash, 2.0, self.colour))?,
         }
-        canvas.text(&self.name, (at.0 + 48.0, at.1), TEXT, Side::Left, palette::INK)
+        canvas.text(&self.name, (at.0 + 48.0, at.1), TEXT, TextSide::Left, palette::INK)
     }
 }
 

@@ -4,10 +4,10 @@ mod layer;
 mod plot;
 
 pub use layer::{KeyEntry, Layer, Raster, Stroke};
-pub use plot::{Plot, Window};
+pub use plot::{Plot, PlotWindow};
 
 use super::axes::around;
-use super::canvas::{Canvas, Side};
+use super::canvas::{Canvas, TextSide};
 use super::{DrawError, Drawing, palette};
 use plotters::coord::Shift;
 use plotters::prelude::*;
@@ -95,7 +95,7 @@ impl Drawing for Figure {
     ) -> Result<(), DrawError> {
         let canvas = Canvas { area, scale };
         canvas.paper()?;
-        canvas.text(&self.title, (24.0, 30.0), TITLE, Side::Left, palette::INK)?;
+        canvas.text(&self.title, (24.0, 30.0), TITLE, TextSide::Left, palette::INK)?;
         let (width, height) = (f64::from(self.panel.0), f64::from(self.panel.1));
         for (i, plot) in self.plots.iter().enumerate() {
             let (row, column) = (i / self.columns.max(1), i % self.columns.max(1));
@@ -105,7 +105,7 @@ impl Drawing for Figure {
         let below = f64::from(HEAD) + height * self.rows() as f64 + 14.0;
         for (i, line) in self.lines().iter().enumerate() {
             let at = (24.0, below + f64::from(LINE) * i as f64);
-            canvas.text(line, at, TEXT, Side::Left, palette::INK)?;
+            canvas.text(line, at, TEXT, TextSide::Left, palette::INK)?;
         }
         Ok(())
     }

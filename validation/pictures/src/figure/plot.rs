@@ -1,13 +1,13 @@
 //! One panel of a sheet.
 
-use super::super::canvas::{At, Canvas, Side};
-use super::super::frame::{Panel, Ruler, Scale};
+use super::super::canvas::{At, Canvas, TextSide};
+use super::super::frame::{AxisScale, Panel, Ruler};
 use super::super::{DrawError, palette};
 use super::layer::Layer;
 use plotters::prelude::DrawingBackend;
 
 /// What a panel shows of the plane; where an end is not finite the data decide.
-pub type Window = [(f64, f64); 2];
+pub type PlotWindow = [(f64, f64); 2];
 
 /// A panel.
 #[derive(Clone, Debug)]
@@ -17,7 +17,7 @@ pub struct Plot {
     /// Names of the axes.
     pub axes: [String; 2],
     /// Ranges of both axes; `None` shows all data.
-    pub window: Option<Window>,
+    pub window: Option<PlotWindow>,
     /// What is drawn, later layers above earlier ones.
     pub layers: Vec<Layer>,
 }
@@ -37,7 +37,7 @@ impl Plot {
     ) -> Result<(), DrawError> {
         let from = (corner.0 + LEFT, corner.1 + TOP);
         let to = (corner.0 + width - RIGHT, corner.1 + height - BOTTOM);
-        canvas.text(&self.title, (from.0, from.1 - 18.0), TEXT, Side::Left, palette::INK)?;
+        canvas.text(&self.title, (from.0, from.1 - 18.0), TEXT, TextSide::Left, palette::INK)?;
         let ruler = |axis: usize| match self.window {
             Some(window) => {
                 let (from, to) = window[axis];
@@ -45,11 +45,11 @@ impl Plot {
             }
             None => {
                 let all = self.layers.iter().flat_map(|layer| layer.extent(axis));
-                Ruler::over(Scale::Linear, all)
+                Ruler::over(AxisScale::Linear, all)
             }
         };
         let (Some(x), Some(y)) = (ruler(0), ruler(1)) else {
-            return canvas.text("nothing to show", from, TEXT, Side::Left, palette::INK);
+            return canvas.text("nothing to show", from, TEXT, TextSide::Left, palette::INK);
         };
         let panel = Panel { from, to, x, y };
         let (below, above): (Vec<&Layer>, Vec<&Layer>) =

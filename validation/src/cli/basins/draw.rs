@@ -3,7 +3,7 @@
 use super::Survey;
 use crate::picture::{self, BASIN_COLOURS, BasinMap, Shown};
 use anyhow::Result;
-use percuss::dynamics::attractor::{Attractor, Basins, Kind, Label};
+use percuss::dynamics::attractor::{Attractor, AttractorKind, Basins, Label};
 
 pub(super) fn bytes(survey: &Survey) -> Result<Vec<u8>> {
     let Survey { problem, transient, basins } = survey;
@@ -28,7 +28,7 @@ pub(super) fn bytes(survey: &Survey) -> Result<Vec<u8>> {
 /// The first chaotic attractor is orange on yellow, as in the paper; all others take the colours
 /// that follow.
 fn colours(attractors: &[Attractor]) -> Vec<usize> {
-    let first = attractors.iter().position(|it| it.kind == Kind::Chaotic);
+    let first = attractors.iter().position(|it| it.kind == AttractorKind::Chaotic);
     let mut next = 0;
     let colour = |id: usize| {
         if Some(id) == first {

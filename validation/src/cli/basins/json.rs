@@ -5,7 +5,7 @@ use crate::cli::model::ParametersJson;
 use percuss::dynamics::attractor::{
     Attractor, Basins, Entropy, Label, Uncertainty, entropy, uncertainty,
 };
-use percuss::dynamics::strobe::Point;
+use percuss::dynamics::strobe::StrobePoint;
 use serde::Serialize;
 
 #[derive(Serialize)]
@@ -32,7 +32,7 @@ struct AttractorJson {
     period: Option<u32>,
     fraction: f64,
     fraction_error: f64,
-    points: Vec<Point>,
+    points: Vec<StrobePoint>,
     drift_per_period: f64,
     multipliers: Vec<[f64; 2]>,
     lyapunov_per_period: f64,

@@ -23,14 +23,14 @@ pub(super) struct AttractorArguments {
     #[command(flatten)]
     grid: GridFlags,
     #[command(flatten)]
-    output: OutputFlags<Shown>,
+    output: OutputFlags<AttractorFormat>,
     #[command(flatten)]
     model: ModelFlags,
 }
 
 /// What attractors are written as; a table where a person reads it on a terminal, JSON elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-enum Shown {
+enum AttractorFormat {
     Json,
     /// A line an attractor, for people
     #[value(alias = "txt")]
@@ -92,10 +92,10 @@ impl BasinFormat {
         }
     }
 
-    const fn of_attractors(self) -> Option<Shown> {
+    const fn of_attractors(self) -> Option<AttractorFormat> {
         match self {
-            Self::Json => Some(Shown::Json),
-            Self::Table => Some(Shown::Table),
+            Self::Json => Some(AttractorFormat::Json),
+            Self::Table => Some(AttractorFormat::Table),
             Self::Npz | Self::Png => None,
         }
     }
@@ -139,8 +139,8 @@ pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result
 }
 
 /// A table for whoever reads it on a terminal.
-fn usual(destination: &Destination) -> Shown {
-    if destination.is_terminal() { Shown::Table } else { Shown::Json }
+fn usual(destination: &Destination) -> AttractorFormat {
+    if destination.is_terminal() { AttractorFormat::Table } else { AttractorFormat::Json }
 }
 
 /// The one format of a kind that was given, if any.
@@ -153,10 +153,10 @@ fn only<F>(given: &[BasinFormat], kind: impl Fn(BasinFormat) -> Option<F>) -> Re
     Ok(first)
 }
 
-fn show(survey: &Survey, shown: Shown, destination: &Destination) -> Result<()> {
+fn show(survey: &Survey, shown: AttractorFormat, destination: &Destination) -> Result<()> {
     match shown {
-        Shown::Json => destination.json(&json::Json::of(survey)),
-        Shown::Table => {
+        AttractorFormat::Json => destination.json(&json::Json::of(survey)),
+        AttractorFormat::Table => {
             let text = table::text(&survey.basins);
             destination.write(|out| Ok(out.write_all(text.as_bytes())?))
         }

@@ -4,7 +4,7 @@ use super::output::{Destination, reader_left};
 use super::{DONE, OUT_OF_BOUNDS, work};
 use crate::bench::compare::binaries::{Common, LIVES, Pair, Quotient, common, quotients};
 use crate::bench::compare::recorded::changes;
-use crate::bench::compare::verdict::{Verdict, is_doubtful};
+use crate::bench::compare::verdict::{WorkloadVerdict, is_doubtful};
 use crate::bench::history::{self, History, Record};
 use crate::cli::names::{Selection, nearest};
 use crate::cli::note;
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let text = lines.join("\n") + "\n";
     let printed = Destination::Stdout.write(|out| Ok(out.write_all(text.as_bytes())?));
     printed.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
-    Ok(if verdicts.contains(&Verdict::Fail) { OUT_OF_BOUNDS } else { DONE })
+    Ok(if verdicts.contains(&WorkloadVerdict::Fail) { OUT_OF_BOUNDS } else { DONE })
 }
 
 /// The file that a side names.
@@ -74,7 +74,7 @@ fn binary(side: &str) -> Option<PathBuf> {
     path.is_file().then_some(path)
 }
 
-type Said = (Vec<String>, Vec<Verdict>);
+type Said = (Vec<String>, Vec<WorkloadVerdict>);
 
 fn against(arguments: &Arguments, old: &Path, new: &Path) -> Result<Said> {
     let pair = Pair { old, new, burden: arguments.slowdown };
@@ -94,7 +94,7 @@ fn against(arguments: &Arguments, old: &Path, new: &Path) -> Result<Said> {
     for Quotient { bench, value, spread } in first {
         let again = second.iter().find(|it| it.bench == bench).map(|it| it.value);
         let values: Vec<f64> = std::iter::once(value).chain(again).collect();
-        let verdict = Verdict::of(&values);
+        let verdict = WorkloadVerdict::of(&values);
         let again = again.map(|it| format!("{it:.4}")).unwrap_or_default();
         lines.push(format!("{bench},{value:.4},{spread:.4},{again},{}", verdict.word()));
         verdicts.push(verdict);

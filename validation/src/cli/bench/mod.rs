@@ -11,7 +11,7 @@ use super::{DONE, OUT_OF_BOUNDS, format, output, parse, work};
 use crate::bench::contest::{self, Finisher, contest};
 use crate::bench::contestant::Contestant;
 use crate::bench::course::Course;
-use crate::bench::report::Measured;
+use crate::bench::report::Measurement;
 use crate::bench::{Bench, cases, damping, floor, length, pictures, registry, table};
 use crate::build;
 use crate::case::{self, Case};
@@ -104,7 +104,7 @@ fn measured(
         courses.iter().map(|it| (it, contest(it, contestants, rounds, &done))).collect();
     let damping = if whole { damping::ladder(contestants, rounds, &done)? } else { Vec::new() };
     bar.finish_and_clear();
-    let measured = Measured { contests: &contests, floors: &floors, length, damping: &damping };
+    let measured = Measurement { contests: &contests, floors: &floors, length, damping: &damping };
     Ok(Bench::new(build::this(), rounds, measured))
 }
 

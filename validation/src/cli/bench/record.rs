@@ -6,7 +6,7 @@ use crate::bench::contestant::enter;
 use crate::bench::course::Course;
 use crate::bench::floor::{self, Floors};
 use crate::bench::history::{self, Figures, History, Record};
-use crate::bench::rounds::Series;
+use crate::bench::rounds::RoundTimes;
 use crate::bench::{instructions, workload};
 use crate::build;
 use crate::engine::{Accuracy, Failure, exact};
@@ -100,7 +100,7 @@ fn figures(course: &Course, halves: &[Floors; 2], i: usize) -> Result<Figures, F
     let [first, second] = [cost(&halves[0])?, cost(&halves[1])?];
     let floor = |half: &Floors| half.chained.best();
     let rounds = [first.series.0.clone(), second.series.0.clone()].concat();
-    let whole = Series(rounds);
+    let whole = RoundTimes(rounds);
     Ok(Figures {
         instructions: None,
         best_ns: whole.best(),

@@ -1,6 +1,6 @@
 //! `orbit`: one periodic orbit, by Newton's method.
 
-use super::json::Found;
+use super::json::OrbitJson;
 use super::{Format, period};
 use crate::cli::format::OutputFlags;
 use crate::cli::model::ModelFlags;
@@ -33,7 +33,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
         scanned(&map, arguments.period)
     };
     let shown = found.as_ref().map_err(|(residual, _)| *residual);
-    arguments.output.destination().json(&Found::new(&problem.model, shown))?;
+    arguments.output.destination().json(&OrbitJson::new(&problem.model, shown))?;
     Ok(match found {
         Ok(_) => DONE,
         Err((_, why)) => {

@@ -1,7 +1,7 @@
 //! `continue`: a branch of periodic orbits.
 
 use super::find::scanned;
-use super::json::{Course, Doubled, Followed};
+use super::json::{BranchJson, Doubled, Followed};
 use super::{Format, period};
 use crate::case::Problem;
 use crate::cli::format::OutputFlags;
@@ -10,7 +10,9 @@ use crate::cli::parse::{self, Typed};
 use crate::cli::{DONE, OUT_OF_BOUNDS, say, work};
 use anyhow::{Result, anyhow};
 use clap::Args;
-use percuss::dynamics::continuation::{Branch, Criticality, Doubling, Ending, Family, Kind};
+use percuss::dynamics::continuation::{
+    BifurcationKind, Branch, BranchEnding, Criticality, Doubling, Family,
+};
 use percuss::dynamics::strobe::StrobeMap;
 use percuss::{InputError, Parameter};
 
@@ -58,7 +60,10 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
         // JSON has null for a NaN: what varies has no value.
         parameters: (&parameter.set(*problem.model.parameters(), f64::NAN)).into(),
         period: branch.as_ref().ok().and_then(|it| it.points.first()).map(|it| it.orbit.period()),
-        course: branch.as_ref().map(|it| Course::of(it, parameter, complete)).unwrap_or_default(),
+        course: branch
+            .as_ref()
+            .map(|it| BranchJson::of(it, parameter, complete))
+            .unwrap_or_default(),
         doubled,
     };
     arguments.output.destination().json(&followed)?;
@@ -110,7 +115,7 @@ fn doubled(branch: &Branch, family: &Family, from: f64, to: f64) -> Option<Doubl
     let doubling = Doubling::of(family, flip, from, to, &mut |share| bar.show_share(share));
     bar.finish_and_clear();
     let Doubling { criticality, branch } = doubling?;
-    let complete = matches!(branch.ending, Ending::Reached | Ending::Left);
+    let complete = matches!(branch.ending, BranchEnding::Reached | BranchEnding::Left);
     Some(Doubled {
         at: flip.value,
         criticality: match criticality {
@@ -118,10 +123,10 @@ fn doubled(branch: &Branch, family: &Family, from: f64, to: f64) -> Option<Doubl
             Criticality::Subcritical => "subcritical",
         },
         period: 2 * period,
-        course: Course::of(&branch, family.parameter(), complete),
+        course: BranchJson::of(&branch, family.parameter(), complete),
     })
 }
 
 fn is_flip_of(found: &percuss::dynamics::continuation::Bifurcation, period: u32) -> bool {
-    found.kind == Kind::Flip && found.orbit.period() == period
+    found.kind == BifurcationKind::Flip && found.orbit.period() == period
 }

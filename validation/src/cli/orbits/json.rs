@@ -3,19 +3,19 @@
 use crate::cli::model::ParametersJson;
 use percuss::dynamics::continuation::{Bifurcation, Branch, BranchPoint};
 use percuss::dynamics::orbit::Orbit;
-use percuss::dynamics::strobe::Point;
+use percuss::dynamics::strobe::StrobePoint;
 use percuss::{Model, Parameter, Phase};
 use serde::Serialize;
 
 /// What `orbit` writes; where none was found the lists are empty and the numbers null.
 #[derive(Serialize)]
-pub(super) struct Found {
+pub(super) struct OrbitJson {
     pub(super) schema: u32,
     pub(super) percuss: &'static str,
     pub(super) parameters: ParametersJson,
     pub(super) converged: bool,
     pub(super) period: Option<u32>,
-    pub(super) points: Vec<Point>,
+    pub(super) points: Vec<StrobePoint>,
     pub(super) phases: Vec<&'static str>,
     pub(super) multipliers: Vec<[f64; 2]>,
     pub(super) stable: Option<bool>,
@@ -24,7 +24,7 @@ pub(super) struct Found {
     pub(super) drift_per_period: Option<f64>,
 }
 
-impl Found {
+impl OrbitJson {
     pub(super) fn new(model: &Model, orbit: Result<&Orbit, f64>) -> Self {
         let found = orbit.ok();
         Self {
@@ -55,7 +55,7 @@ pub(super) struct Followed {
     pub(super) parameters: ParametersJson,
     pub(super) period: Option<u32>,
     #[serde(flatten)]
-    pub(super) course: Course,
+    pub(super) course: BranchJson,
     /// Only with `--doubled`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) doubled: Option<Option<Doubled>>,
@@ -63,9 +63,9 @@ pub(super) struct Followed {
 
 /// A branch.
 #[derive(Default, Serialize)]
-pub(super) struct Course {
+pub(super) struct BranchJson {
     complete: bool,
-    branch: Vec<Place>,
+    branch: Vec<JsonPlace>,
     bifurcations: Vec<Special>,
 }
 
@@ -76,13 +76,13 @@ pub(super) struct Doubled {
     pub(super) criticality: &'static str,
     pub(super) period: u32,
     #[serde(flatten)]
-    pub(super) course: Course,
+    pub(super) course: BranchJson,
 }
 
 #[derive(Serialize)]
-struct Place {
+struct JsonPlace {
     parameter: f64,
-    point: Point,
+    point: StrobePoint,
     multipliers: [[f64; 2]; 3],
     stable: bool,
     drift_per_period: f64,
@@ -95,23 +95,23 @@ struct Special {
     value: f64,
     error: f64,
     period: u32,
-    point: Point,
+    point: StrobePoint,
     multipliers: [[f64; 2]; 3],
     multipliers_beyond: Option<[[f64; 2]; 3]>,
     turns: bool,
 }
 
-impl Course {
+impl BranchJson {
     pub(super) fn of(branch: &Branch, parameter: Parameter, complete: bool) -> Self {
         Self {
             complete,
-            branch: branch.points.iter().map(Place::of).collect(),
+            branch: branch.points.iter().map(JsonPlace::of).collect(),
             bifurcations: branch.bifurcations.iter().map(|it| Special::of(it, parameter)).collect(),
         }
     }
 }
 
-impl Place {
+impl JsonPlace {
     fn of(BranchPoint { value, orbit }: &BranchPoint) -> Self {
         Self {
             parameter: *value,

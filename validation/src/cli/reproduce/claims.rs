@@ -8,14 +8,14 @@ use serde::Serialize;
 use std::io::Write;
 
 #[derive(Serialize)]
-struct File<'a> {
+struct ClaimsFile<'a> {
     schema: u32,
     percuss: &'static str,
     claims: &'a [Claim],
 }
 
 pub(super) fn write(claims: &[Claim], out: &mut dyn Write) -> Result<()> {
-    let file = File { schema: 1, percuss: env!("CARGO_PKG_VERSION"), claims };
+    let file = ClaimsFile { schema: 1, percuss: env!("CARGO_PKG_VERSION"), claims };
     serde_json::to_writer_pretty(&mut *out, &file)?;
     Ok(out.write_all(b"\n")?)
 }

@@ -8,7 +8,7 @@ use super::output::{Destination, make_folder, reader_left, write_whole};
 use super::{DONE, OUT_OF_BOUNDS, say, work};
 use crate::engine::{Failure, hush_contained_panics};
 use crate::reproduce::paper::Paper;
-use crate::reproduce::{Claim, Findings, Item, Size, Work, items};
+use crate::reproduce::{Claim, Findings, Item, ItemWork, Size, items};
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use rayon::prelude::*;
@@ -45,7 +45,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let pool = work::pool(threads)?;
     hush_contained_panics();
     let bar = work::bar(chosen.iter().map(|item| u64::from(item.parts)).sum(), "parts");
-    let task = Work { paper: Paper::read()?, size, step: &|| bar.inc(1), parts: &store };
+    let task = ItemWork { paper: Paper::read()?, size, step: &|| bar.inc(1), parts: &store };
     let done: Vec<Result<Vec<Claim>, Failure>> =
         pool.install(|| chosen.par_iter().map(|item| settle(item, &task, &store)).collect());
     bar.finish_and_clear();
@@ -53,7 +53,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
 }
 
 /// Settles an item: takes it from an earlier run that was interrupted, or computes and keeps it.
-fn settle(item: &Item, work: &Work, store: &Store) -> Result<Vec<Claim>, Failure> {
+fn settle(item: &Item, work: &ItemWork, store: &Store) -> Result<Vec<Claim>, Failure> {
     if let Some(claims) = store.claims(item) {
         (0..item.parts).for_each(|_| (work.step)());
         return Ok(claims);

@@ -38,7 +38,7 @@ fn part(name: &str) -> String {
 
 /// A finished item.
 #[derive(Serialize, Deserialize)]
-struct Kept {
+struct KeptItem {
     /// What computed it: another program's work is not taken up.
     key: String,
     claims: Vec<Claim>,
@@ -67,7 +67,7 @@ impl Store {
     /// The claims of an item that an earlier run of the same program has finished.
     pub(super) fn claims(&self, item: &Item) -> Option<Vec<Claim>> {
         let text = fs::read_to_string(self.path(item)).ok()?;
-        let kept: Kept = serde_json::from_str(&text).ok()?;
+        let kept: KeptItem = serde_json::from_str(&text).ok()?;
         let is_there = |name: &String| self.out.join(name).is_file();
         (kept.key == self.key && kept.files.iter().all(is_there)).then_some(kept.claims)
     }
@@ -83,7 +83,7 @@ impl Store {
             write_file(&self.out, name, bytes)?;
         }
         let names = files.iter().map(|(name, _)| name.clone()).collect();
-        let kept = Kept { key: self.key.clone(), claims: claims.to_vec(), files: names };
+        let kept = KeptItem { key: self.key.clone(), claims: claims.to_vec(), files: names };
         write_file(&self.folder, &format!("{}.json", item.id), &serde_json::to_vec(&kept)?)
     }
 

@@ -1,6 +1,6 @@
 //! A run as CSV.
 
-use super::plan::{Ending, Plan};
+use super::plan::{Plan, RunEnding};
 use super::rows::{Row, Sink};
 use crate::number::shortest;
 use anyhow::Result;
@@ -29,7 +29,7 @@ impl Sink for Csv<'_> {
         Ok(())
     }
 
-    fn finish(&mut self, _: &Ending) -> Result<()> {
+    fn finish(&mut self, _: &RunEnding) -> Result<()> {
         Ok(())
     }
 }

@@ -1,6 +1,6 @@
 //! A run as JSON, written row by row: a long run costs no memory.
 
-use super::plan::{Ending, Plan};
+use super::plan::{Plan, RunEnding};
 use super::rows::{Row, Sink};
 use crate::cli::model::ParametersJson;
 use anyhow::Result;
@@ -15,7 +15,7 @@ pub(super) struct Json<'a> {
 
 /// The start as the run takes it; the phase only where it was stated.
 #[derive(Serialize)]
-struct Start {
+struct StartJson {
     tau: f64,
     p: f64,
     y: f64,
@@ -73,7 +73,7 @@ impl Sink for Json<'_> {
         write!(self.out, ",\"start\":")?;
         let given = plan.problem.start;
         let state = plan.problem.entry.state;
-        self.value(&Start {
+        self.value(&StartJson {
             tau: given.tau,
             p: state.p,
             y: state.y,
@@ -96,7 +96,7 @@ impl Sink for Json<'_> {
         }
     }
 
-    fn finish(&mut self, ending: &Ending) -> Result<()> {
+    fn finish(&mut self, ending: &RunEnding) -> Result<()> {
         write!(self.out, "]")?;
         if ending.touches > 0 {
             write!(self.out, ",\"undecidable\":{}", ending.touches)?;

@@ -12,7 +12,7 @@ use super::{note, work};
 use crate::picture;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use plan::{Ending, Plan};
+use plan::{Plan, RunEnding};
 use std::io::Write;
 
 /// Run the exact solver from one start
@@ -56,7 +56,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     let destination = arguments.output.destination();
     let bar = work::run_bar(destination.is_terminal());
     let plan = Plan::new(arguments.model.problem()?, arguments, bar)?;
-    let mut ending = Ending::default();
+    let mut ending = RunEnding::default();
     destination.write(|out| {
         ending = match format {
             Format::Csv => write_rows(&plan, arguments.samples, &mut csv::Csv(out))?,
@@ -82,7 +82,7 @@ fn check_effect(arguments: &Arguments, format: Format) -> Result<()> {
 }
 
 /// Writes the run's rows; what has to be said about its end.
-fn write_rows(plan: &Plan, samples: Option<u32>, sink: &mut dyn rows::Sink) -> Result<Ending> {
+fn write_rows(plan: &Plan, samples: Option<u32>, sink: &mut dyn rows::Sink) -> Result<RunEnding> {
     sink.begin(plan, samples.is_some())?;
     let ending = match samples {
         Some(per_period) => rows::samples(plan, per_period, sink)?,
@@ -92,9 +92,9 @@ fn write_rows(plan: &Plan, samples: Option<u32>, sink: &mut dyn rows::Sink) -> R
     Ok(ending)
 }
 
-fn draw(plan: &Plan, format: Format, out: &mut dyn Write) -> Result<Ending> {
+fn draw(plan: &Plan, format: Format, out: &mut dyn Write) -> Result<RunEnding> {
     let (segments, ending) = plan.segments_for_picture()?;
-    let motion = picture::Motion::of(&plan.problem, &segments, &plan.last_instant(&segments));
+    let motion = picture::DrawnMotion::of(&plan.problem, &segments, &plan.last_instant(&segments));
     let bytes = match format {
         Format::Svg => picture::svg(&motion)?.into_bytes(),
         _ => picture::png(&motion)?,

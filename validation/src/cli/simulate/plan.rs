@@ -53,13 +53,13 @@ impl Plan {
     }
 
     /// What to say of a run whose last phase is `last` after the phases of `segments`.
-    pub(super) fn ending(&self, last: Option<&Segment>, segments: &Segments<'_>) -> Ending {
+    pub(super) fn ending(&self, last: Option<&Segment>, segments: &Segments<'_>) -> RunEnding {
         let undecided = last.filter(|segment| *segment.exit() == Exit::Undecidable);
         let how = match undecided {
             Some(segment) => Some(self.undecided(segment)),
             None => last.and_then(|last| self.how_it_ends(last, segments.switches)),
         };
-        Ending { how, touches: segments.touches(), undecided: undecided.is_some() }
+        RunEnding { how, touches: segments.touches(), undecided: undecided.is_some() }
     }
 
     fn undecided(&self, last: &Segment) -> String {
@@ -112,7 +112,7 @@ impl Plan {
     }
 
     /// All phases at once, for a picture.
-    pub(super) fn segments_for_picture(&self) -> Result<(Vec<Segment>, Ending)> {
+    pub(super) fn segments_for_picture(&self) -> Result<(Vec<Segment>, RunEnding)> {
         let start = self.problem.entry.instant;
         let longest = MAX_PICTURE_PERIODS * self.problem.model.period();
         let mut segments: Vec<Segment> = Vec::new();
@@ -179,7 +179,7 @@ impl Iterator for Segments<'_> {
 
 /// What has to be said about a run's end.
 #[derive(Debug, Default)]
-pub(super) struct Ending {
+pub(super) struct RunEnding {
     /// How it ends, where that is not what was asked for.
     how: Option<String>,
     /// Touches that rounding does not decide.
@@ -188,7 +188,7 @@ pub(super) struct Ending {
     pub(super) undecided: bool,
 }
 
-impl Ending {
+impl RunEnding {
     /// The lines that say so.
     pub(super) fn lines(&self) -> impl Iterator<Item = String> {
         let touches = match self.touches {

@@ -2,9 +2,9 @@
 
 use super::EventPicture;
 use super::course::picture;
-use super::mismatch::Mismatch;
+use super::mismatch::EventMismatch;
 use crate::case::{Case, Given};
-use crate::engine::{self, Engine, Grid, Limits, Task};
+use crate::engine::{self, Engine, Limits, SampleGrid, Task};
 use crate::score::Verdict;
 use crate::suite::{Prepared, Scored, Status, Suite};
 use crate::truth::Truth;
@@ -16,12 +16,12 @@ const MOST_PICTURES: usize = 200;
 const MOST_WORK: u64 = 10_000_000;
 
 /// A row that has something to show.
-struct Candidate<'a> {
+struct RowChoice<'a> {
     row: &'a Scored,
     prepared: &'a Prepared,
     engine: &'static dyn Engine,
     task: Task,
-    mismatch: Mismatch,
+    mismatch: EventMismatch,
     mean_step: f64,
 }
 
@@ -36,7 +36,7 @@ pub fn event_pictures(cases: &[Prepared], rows: &[Scored], suite: Suite) -> Vec<
 }
 
 /// Chooses as many as can be shown, in the order of the rows.
-fn chosen(candidates: Vec<Candidate<'_>>) -> Vec<Candidate<'_>> {
+fn chosen(candidates: Vec<RowChoice<'_>>) -> Vec<RowChoice<'_>> {
     let key = |i: &usize| {
         let row = candidates[*i].row;
         let before = candidates[..*i].iter().filter(|it| it.row.case == row.case).count();
@@ -49,14 +49,14 @@ fn chosen(candidates: Vec<Candidate<'_>>) -> Vec<Candidate<'_>> {
     all.filter(|(i, _)| order.contains(i)).map(|(_, it)| it).collect()
 }
 
-impl Candidate<'_> {
+impl RowChoice<'_> {
     fn picture(&self, limits: &Limits) -> Option<EventPicture> {
         let Self { row, prepared, engine, task, mismatch, mean_step } = self;
         picture(prepared, task, row, mismatch, (*engine, *mean_step, limits))
     }
 }
 
-fn candidate<'a>(cases: &'a [Prepared], row: &'a Scored) -> Option<Candidate<'a>> {
+fn candidate<'a>(cases: &'a [Prepared], row: &'a Scored) -> Option<RowChoice<'a>> {
     let Status::Ok(measures, outcome) = &row.status else { return None };
     let mismatch = &measures.mismatch;
     let wrong = !(mismatch.missed.is_empty() && mismatch.spurious.is_empty());
@@ -67,14 +67,14 @@ fn candidate<'a>(cases: &'a [Prepared], row: &'a Scored) -> Option<Candidate<'a>
     let prepared = cases.iter().find(|it| it.case.name == row.case)?;
     let engine = *engine::all().iter().find(|it| it.declaration().name == row.engine)?;
     let task = task(&prepared.case)?;
-    let mismatch = Mismatch::first(prepared, &task, row)?;
+    let mismatch = EventMismatch::first(prepared, &task, row)?;
     let mean_step = task.span / outcome.work.steps.max(1) as f64;
-    Some(Candidate { row, prepared, engine, task, mismatch, mean_step })
+    Some(RowChoice { row, prepared, engine, task, mismatch, mean_step })
 }
 
 /// The run of a case, without samples.
 fn task(case: &Case) -> Option<Task> {
     let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
-    let grid = Grid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 };
+    let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 };
     Some(Task::of(case, given.check().ok()?, grid))
 }

@@ -1,9 +1,9 @@
 //! Truth and engine through the views of one wrong event.
 
-use super::guarded::Guarded;
-use super::mismatch::Mismatch;
+use super::guarded::GuardCurve;
+use super::mismatch::EventMismatch;
 use super::scales::Scales;
-use super::{Course, EventPicture, Mark, View};
+use super::{EventMark, EventPicture, View, ViewCourse};
 use crate::engine::{Engine, Limits, Outcome, Task, Trace, Watched, contain};
 use crate::suite::{Prepared, Scored};
 use crate::truth::{Replay, Truth};
@@ -21,7 +21,7 @@ pub(super) fn picture(
     prepared: &Prepared,
     task: &Task,
     row: &Scored,
-    it: &Mismatch,
+    it: &EventMismatch,
     (engine, mean_step, limits): (&dyn Engine, f64, &Limits),
 ) -> Option<EventPicture> {
     let period = task.problem.model.period();
@@ -51,7 +51,7 @@ pub(super) fn picture(
 }
 
 /// The true values, by the run made again in 106 bits.
-fn truth_at(task: &Task, guarded: Guarded, instants: &[f64]) -> Option<Vec<f64>> {
+fn truth_at(task: &Task, guarded: GuardCurve, instants: &[f64]) -> Option<Vec<f64>> {
     let Task { parameters, problem, horizon, .. } = task;
     let start = problem.entry.instant;
     let mut values = Vec::with_capacity(instants.len());
@@ -73,7 +73,7 @@ fn truth_at(task: &Task, guarded: Guarded, instants: &[f64]) -> Option<Vec<f64>>
 }
 
 /// The engine's values, where it records.
-fn engine_at(task: &Task, guarded: Guarded, outcome: &Outcome) -> Vec<f64> {
+fn engine_at(task: &Task, guarded: GuardCurve, outcome: &Outcome) -> Vec<f64> {
     let states = outcome.samples.iter().filter(|_| outcome.trace.is_some());
     states.map(|state| guarded.of_state(&task.parameters, state)).collect()
 }
@@ -82,7 +82,7 @@ fn engine_at(task: &Task, guarded: Guarded, outcome: &Outcome) -> Vec<f64> {
 struct Scene<'a> {
     prepared: &'a Prepared,
     task: &'a Task,
-    it: &'a Mismatch,
+    it: &'a EventMismatch,
     instants: Vec<f64>,
     truth: Vec<f64>,
     engine: Vec<f64>,
@@ -128,18 +128,18 @@ impl Scene<'_> {
         [from, to]: [f64; 2],
         events: Vec<(f64, Phase, bool)>,
         values: &[f64],
-    ) -> Course {
+    ) -> ViewCourse {
         let before = events.iter().take_while(|event| event.0 < from).last();
         let phase = before.map_or(self.task.phase, |event| event.1);
         let inside = events.iter().filter(|event| from <= event.0 && event.0 <= to);
-        let mark = |(t, phase, matched): &(f64, Phase, bool)| Mark {
+        let mark = |(t, phase, matched): &(f64, Phase, bool)| EventMark {
             t: t - self.it.at,
             phase: *phase,
             matched: *matched,
         };
         let place = |t: f64| self.instants.partition_point(|it| *it < t);
         let known = |t: f64| values.get(place(t)).copied();
-        Course {
+        ViewCourse {
             phase,
             events: inside.map(mark).collect(),
             values: Scales::instants([from, to]).filter_map(known).collect(),
@@ -147,7 +147,7 @@ impl Scene<'_> {
     }
 
     fn looks(&self, trace: &Trace, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
-        let of = |look: &crate::engine::Look| Some([look.t, self.it.guarded.of_look(look)?]);
+        let of = |look: &crate::engine::GuardSample| Some([look.t, self.it.guarded.of_look(look)?]);
         let inside = |look: &[f64; 2]| from <= look[0] && look[0] <= to;
         let mut looks: Vec<_> = trace.looks.iter().filter_map(of).filter(inside).collect();
         looks.sort_by(|a, b| a[0].total_cmp(&b[0]));

@@ -1,9 +1,9 @@
 //! Pictures of wrong events as files.
 
 use super::super::setting::{setting, who};
-use super::{Course, EventPicture, View};
+use super::{EventPicture, View, ViewCourse};
 use crate::picture::RGBColor;
-use crate::picture::{Encounter, Stretch, Trail};
+use crate::picture::{Encounter, TimeStretch, Trail};
 
 impl EventPicture {
     /// The file it is drawn to, without its ending: the folder, case, engine and setting.
@@ -35,8 +35,8 @@ impl EventPicture {
     }
 }
 
-fn stretch(view: &View) -> Stretch {
-    Stretch {
+fn stretch(view: &View) -> TimeStretch {
+    TimeStretch {
         from: view.from,
         to: view.to,
         truth: trail(&view.truth),
@@ -46,8 +46,8 @@ fn stretch(view: &View) -> Stretch {
     }
 }
 
-fn trail(course: &Course) -> Trail {
-    let mark = |mark: &super::Mark| (mark.t, mark.phase, mark.matched);
+fn trail(course: &ViewCourse) -> Trail {
+    let mark = |mark: &super::EventMark| (mark.t, mark.phase, mark.matched);
     Trail {
         values: course.values.clone(),
         phase: course.phase,

@@ -1,13 +1,13 @@
 //! The quantity whose zero is an event.
 
-use crate::engine::Look;
+use crate::engine::GuardSample;
 use crate::truth::DoubleDouble;
 use percuss::number::Number;
 use percuss::{Parameters, Phase};
 
 /// The gap, or the trial force less the threshold that the event crosses.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Guarded {
+pub(super) enum GuardCurve {
     /// Mass and slider meet.
     Gap,
     /// The force rises to 1, where the slider begins to move, or falls back to it.
@@ -16,7 +16,7 @@ pub(super) enum Guarded {
     PartingForce,
 }
 
-impl Guarded {
+impl GuardCurve {
     /// What ends the phase `before` where `begins` follows it.
     pub(super) fn of(before: Phase, begins: Phase) -> Self {
         match (before, begins) {
@@ -57,7 +57,7 @@ impl Guarded {
     }
 
     /// The guard's value where a search looked at it; `None` where it looked at other guards.
-    pub(super) fn of_look(self, look: &Look) -> Option<f64> {
+    pub(super) fn of_look(self, look: &GuardSample) -> Option<f64> {
         match (self, look.phase, look.guard) {
             (Self::Gap, Phase::NoContact, 0) | (Self::SlidingForce, Phase::Contact, 0) => {
                 Some(look.value)
@@ -83,8 +83,8 @@ mod tests {
         let mut seen = 0;
         for phase in Phase::ALL {
             for (guard, value) in equations.guards(phase, &state).into_iter().enumerate() {
-                let look = Look { t: 0.0, phase, guard, value };
-                for it in [Guarded::Gap, Guarded::SlidingForce, Guarded::PartingForce] {
+                let look = GuardSample { t: 0.0, phase, guard, value };
+                for it in [GuardCurve::Gap, GuardCurve::SlidingForce, GuardCurve::PartingForce] {
                     let Some(shown) = it.of_look(&look) else { continue };
                     seen += 1;
                     assert!((shown - it.of_state(&parameters, &state)).abs() < 1e-15, "{it:?}");
@@ -99,9 +99,9 @@ mod tests {
     #[test]
     fn an_impact_is_where_the_gap_closes_whatever_follows() {
         use Phase::{Contact, NoContact, Progression};
-        assert_eq!(Guarded::of(NoContact, Progression), Guarded::Gap);
-        assert_eq!(Guarded::of(Contact, Progression), Guarded::SlidingForce);
-        assert_eq!(Guarded::of(Progression, Contact), Guarded::SlidingForce);
-        assert_eq!(Guarded::of(Contact, NoContact), Guarded::PartingForce);
+        assert_eq!(GuardCurve::of(NoContact, Progression), GuardCurve::Gap);
+        assert_eq!(GuardCurve::of(Contact, Progression), GuardCurve::SlidingForce);
+        assert_eq!(GuardCurve::of(Progression, Contact), GuardCurve::SlidingForce);
+        assert_eq!(GuardCurve::of(Contact, NoContact), GuardCurve::PartingForce);
     }
 }

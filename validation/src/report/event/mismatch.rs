@@ -1,8 +1,8 @@
 //! The first event of a run that is not as it should be.
 
-use super::guarded::Guarded;
+use super::guarded::GuardCurve;
 use crate::engine::{Event, Outcome, Task};
-use crate::score::{Growth, Matching, Measures, Verdict, WINDOW};
+use crate::score::{Matching, Measures, RunGrowth, Verdict, WINDOW};
 use crate::suite::{Prepared, Scored, Status};
 use crate::truth::{Row, Truth};
 use percuss::Phase;
@@ -12,7 +12,7 @@ use serde::Serialize;
 /// What is wrong with an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub enum Kind {
+pub enum MismatchKind {
     /// The truth has it and the engine does not.
     Missed,
     /// The engine has it and the truth does not.
@@ -23,14 +23,14 @@ pub enum Kind {
 }
 
 /// An event that is wrong, and which events of truth and engine are the same.
-pub(super) struct Mismatch {
-    pub(super) kind: Kind,
+pub(super) struct EventMismatch {
+    pub(super) kind: MismatchKind,
     /// When, since the start.
     pub(super) at: f64,
     /// How far it is to what it is confused with: the next event on its own side, or its partner.
     pub(super) reach: f64,
     pub(super) begins: Phase,
-    pub(super) guarded: Guarded,
+    pub(super) guarded: GuardCurve,
     /// Indices of the truth's and the engine's events that are the same.
     pub(super) pairs: Vec<(usize, usize)>,
 }
@@ -38,24 +38,24 @@ pub(super) struct Mismatch {
 /// Room for the rounding of a horizon that is kept in forcing periods.
 const HORIZON_ROUNDING: f64 = 1e-12;
 
-impl Mismatch {
+impl EventMismatch {
     /// The first missed or spurious event before the scored horizon; in a row that is out of bounds
     /// without one, the event that is farthest from its place.
     pub(super) fn first(prepared: &Prepared, task: &Task, row: &Scored) -> Option<Self> {
         let Status::Ok(measures, outcome) = &row.status else { return None };
         let Sides { truth, engine, pairs } = Sides::of(&prepared.truth, task, measures, outcome);
         let missed = (0..truth.counted).find(|i| pairs.iter().all(|pair| pair.0 != *i));
-        let missed = missed.map(|i| (truth.times[i], Kind::Missed, i));
+        let missed = missed.map(|i| (truth.times[i], MismatchKind::Missed, i));
         let spurious = (0..engine.counted).find(|j| pairs.iter().all(|pair| pair.1 != *j));
-        let spurious = spurious.map(|j| (engine.times[j], Kind::Spurious, j));
+        let spurious = spurious.map(|j| (engine.times[j], MismatchKind::Spurious, j));
         let first = [missed, spurious].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
         let found = match first {
-            Some((_, Kind::Spurious, j)) => engine.wrong(Kind::Spurious, j),
+            Some((_, MismatchKind::Spurious, j)) => engine.wrong(MismatchKind::Spurious, j),
             Some((_, kind, i)) => truth.wrong(kind, i),
             None if row.judgement.verdict == Verdict::Fail => {
                 let (i, j) = farthest(&truth, &engine, &pairs, &prepared.growth)?;
                 let reach = (truth.times[i] - engine.times[j]).abs();
-                Self { reach, ..truth.wrong(Kind::Displaced, i) }
+                Self { reach, ..truth.wrong(MismatchKind::Displaced, i) }
             }
             None => return None,
         };
@@ -72,9 +72,9 @@ impl Mismatch {
         let when =
             format!("{:.6} after the start (forcing period {:.2})", self.at, self.at / period);
         match self.kind {
-            Kind::Missed => format!("The first missed event is {what} at {when}."),
-            Kind::Spurious => format!("The first spurious event is {what} at {when}."),
-            Kind::Displaced => {
+            MismatchKind::Missed => format!("The first missed event is {what} at {when}."),
+            MismatchKind::Spurious => format!("The first spurious event is {what} at {when}."),
+            MismatchKind::Displaced => {
                 format!("The event farthest from its place is {what} at {when}.")
             }
         }
@@ -83,13 +83,13 @@ impl Mismatch {
 
 /// The events of truth and engine around the scored horizon, paired as the scores pair them.
 struct Sides {
-    truth: Side,
-    engine: Side,
+    truth: EventsOf,
+    engine: EventsOf,
     pairs: Vec<(usize, usize)>,
 }
 
 /// The events of one of them.
-struct Side {
+struct EventsOf {
     first: Phase,
     times: Vec<f64>,
     phases: Vec<Phase>,
@@ -109,7 +109,7 @@ impl Sides {
         let found: Vec<Event> = found.copied().collect();
         let pairs = Matching::of(&rows, &found, window).pairs;
         let phase = |row: &Row| row.phase.unwrap_or(task.phase);
-        let of = |times: Vec<f64>, phases| Side {
+        let of = |times: Vec<f64>, phases| EventsOf {
             first: task.phase,
             counted: times.iter().take_while(|t| **t <= horizon).count(),
             times,
@@ -129,18 +129,18 @@ impl Sides {
     }
 }
 
-impl Side {
-    fn wrong(&self, kind: Kind, i: usize) -> Mismatch {
+impl EventsOf {
+    fn wrong(&self, kind: MismatchKind, i: usize) -> EventMismatch {
         let at = self.times[i];
         let before = if i == 0 { self.first } else { self.phases[i - 1] };
         let neighbours = [i.checked_sub(1), Some(i + 1)].into_iter().flatten();
         let distances = neighbours.filter_map(|k| self.times.get(k)).map(|t| (t - at).abs());
-        Mismatch {
+        EventMismatch {
             kind,
             at,
             reach: distances.fold(f64::INFINITY, f64::min),
             begins: self.phases[i],
-            guarded: Guarded::of(before, self.phases[i]),
+            guarded: GuardCurve::of(before, self.phases[i]),
             pairs: Vec::new(),
         }
     }
@@ -148,10 +148,10 @@ impl Side {
 
 /// The pair whose times differ most for what errors have grown to there.
 fn farthest(
-    truth: &Side,
-    engine: &Side,
+    truth: &EventsOf,
+    engine: &EventsOf,
     pairs: &[(usize, usize)],
-    growth: &Growth,
+    growth: &RunGrowth,
 ) -> Option<(usize, usize)> {
     let share = |(i, j): &(usize, usize)| {
         let error = TwoWord::new(truth.times[*i]).minus(TwoWord::new(engine.times[*j]));

@@ -12,7 +12,7 @@ mod mismatch;
 mod scales;
 
 pub use choice::event_pictures;
-pub use mismatch::Kind;
+pub use mismatch::MismatchKind;
 
 use percuss::Phase;
 use serde::{Serialize, Serializer};
@@ -29,7 +29,7 @@ pub struct EventPicture {
     /// The engine's step, where that is fixed.
     pub step: Option<f64>,
     /// What is wrong with the event.
-    pub kind: Kind,
+    pub kind: MismatchKind,
     /// The event and what is wrong with it, in one sentence.
     pub title: String,
     /// The quantity that is drawn: an event is where it reaches zero.
@@ -50,9 +50,9 @@ pub struct View {
     /// The time at which the view ends.
     pub to: f64,
     /// What is true.
-    pub truth: Course,
+    pub truth: ViewCourse,
     /// What the engine made of it.
-    pub engine: Course,
+    pub engine: ViewCourse,
     /// Ends of the engine's accepted steps.
     pub steps: Vec<f64>,
     /// The times at which the engine's root finder evaluated the guard, and what it found.
@@ -61,12 +61,12 @@ pub struct View {
 
 /// The course of a run through a view.
 #[derive(Clone, Debug, Serialize)]
-pub struct Course {
+pub struct ViewCourse {
     /// The phase that holds where the view begins.
     #[serde(serialize_with = "token")]
     pub phase: Phase,
     /// The events in the view.
-    pub events: Vec<Mark>,
+    pub events: Vec<EventMark>,
     /// The quantity at instants evenly spread over the view, both ends among them; none where the
     /// engine does not record them.
     pub values: Vec<f64>,
@@ -74,7 +74,7 @@ pub struct Course {
 
 /// An event in a view.
 #[derive(Clone, Debug, Serialize)]
-pub struct Mark {
+pub struct EventMark {
     /// When.
     pub t: f64,
     /// The phase that begins.

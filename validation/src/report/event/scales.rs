@@ -1,6 +1,6 @@
 //! The stretches of time that are shown: from some steps of the engine down to the event itself.
 
-use super::mismatch::Mismatch;
+use super::mismatch::EventMismatch;
 
 /// Instants of a view at which both curves are known.
 pub(super) const INSTANTS: usize = 121;
@@ -28,7 +28,7 @@ pub(super) struct Scales {
 
 impl Scales {
     /// Around a wrong event, for an engine with this mean step, in a run as long as `span`.
-    pub(super) fn around(it: &Mismatch, mean_step: f64, period: f64, span: f64) -> Self {
+    pub(super) fn around(it: &EventMismatch, mean_step: f64, period: f64, span: f64) -> Self {
         let widest = (STEPS * mean_step).clamp(LEAST * period, MOST * period);
         let centre = it.at;
         let closest = (AROUND * it.reach).max(ROUNDINGS * (1.0 + centre));

@@ -2,7 +2,7 @@
 //! digits.
 
 use super::super::summary::EngineSummary;
-use super::super::{EventPicture, Evidence, Report, Row};
+use super::super::{EventPicture, Report, ReportEvidence, Row};
 use super::command;
 use crate::picture::Look;
 use serde_json::{Map, Value, json};
@@ -14,7 +14,7 @@ const MOST_POINTS: usize = 6000;
 /// The page's data, fit to stand inside a script element.
 pub(super) fn json(
     report: &Report,
-    evidence: &Evidence,
+    evidence: &ReportEvidence,
     engines: &[EngineSummary],
     looks: &[Look],
 ) -> String {
@@ -48,7 +48,7 @@ fn inside_a_script(json: &str) -> String {
     json.replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
-fn cases(report: &Report, evidence: &Evidence) -> Vec<Value> {
+fn cases(report: &Report, evidence: &ReportEvidence) -> Vec<Value> {
     let names = report.results.chunk_by(|a, b| a.case == b.case).filter_map(|rows| rows.first());
     let note = |row: &Row| {
         let note = evidence.cases.iter().find(|note| note.name == row.case);

@@ -11,7 +11,7 @@ mod horizons;
 mod ranking;
 mod view;
 
-use super::{Evidence, Exporter, Report, summary};
+use super::{Exporter, Report, ReportEvidence, summary};
 use crate::picture::looks;
 use askama::Template;
 use std::io::{self, Write};
@@ -33,9 +33,9 @@ const SCRIPTS: &str = concat!(
 #[template(path = "report.html")]
 struct Page<'a> {
     report: &'a Report,
-    evidence: &'a Evidence,
+    evidence: &'a ReportEvidence,
     engines: Vec<view::EngineLine>,
-    failures: Vec<view::Failure>,
+    failures: Vec<view::FailureView>,
     more_failures: usize,
     ranking: Vec<ranking::RankedLine>,
     cases: usize,
@@ -54,7 +54,12 @@ impl Exporter for Html {
         "report.html"
     }
 
-    fn write(&self, report: &Report, evidence: &Evidence, out: &mut dyn Write) -> io::Result<()> {
+    fn write(
+        &self,
+        report: &Report,
+        evidence: &ReportEvidence,
+        out: &mut dyn Write,
+    ) -> io::Result<()> {
         let summaries = summary::engines(report);
         let names: Vec<_> = report.engines.iter().map(|it| (it.name, it.library)).collect();
         let looks = looks(&names);

@@ -2,7 +2,7 @@
 
 use super::super::grazing::{Grazing, Seen, Touches};
 use super::super::summary::{EngineSummary, SettingSummary};
-use super::super::{Evidence, Report};
+use super::super::{Report, ReportEvidence};
 use crate::number::brief;
 use crate::picture::{Look, Marker};
 use crate::score::Verdict;
@@ -147,7 +147,7 @@ fn overall(summary: &EngineSummary) -> String {
     format!("{}/{}/{}", sum(|it| it.matched), sum(|it| it.expected), sum(|it| it.total))
 }
 
-pub(super) struct Failure {
+pub(super) struct FailureView {
     pub verdict: &'static str,
     pub case: String,
     pub who: String,
@@ -155,11 +155,11 @@ pub(super) struct Failure {
 }
 
 /// What is out of bounds or without a result, and how many more there are.
-pub(super) fn failures(report: &Report) -> (Vec<Failure>, usize) {
+pub(super) fn failures(report: &Report) -> (Vec<FailureView>, usize) {
     let bad =
         report.results.iter().filter(|it| matches!(it.verdict, Verdict::Fail | Verdict::Error));
     let all: Vec<_> = bad
-        .map(|row| Failure {
+        .map(|row| FailureView {
             verdict: row.verdict.as_str(),
             case: row.case.clone(),
             who: row.who(),
@@ -182,7 +182,7 @@ pub(super) struct SeenCell {
     pub title: String,
 }
 
-pub(super) fn grazing(report: &Report, evidence: &Evidence) -> GrazingTable {
+pub(super) fn grazing(report: &Report, evidence: &ReportEvidence) -> GrazingTable {
     let grazing = Grazing::of(report, evidence);
     let cell = |(setting, seen): (String, Seen)| {
         let (class, glyph, words) = match seen {
@@ -218,14 +218,14 @@ pub(super) struct FaultLine {
     pub caught: bool,
 }
 
-pub(super) fn power(evidence: &Evidence) -> PowerTable {
+pub(super) fn power(evidence: &ReportEvidence) -> PowerTable {
     let mut gates: Vec<String> = Vec::new();
     for (gate, ..) in evidence.faults.iter().flat_map(|fault| &fault.gates) {
         if !gates.contains(gate) {
             gates.push(gate.clone());
         }
     }
-    let line = |fault: &super::super::Fault| {
+    let line = |fault: &super::super::FaultRow| {
         let cell = |gate: &String| {
             let found = fault.gates.iter().find(|(name, ..)| name == gate);
             found.map(|(_, caught, detail)| (*caught, detail.clone()))

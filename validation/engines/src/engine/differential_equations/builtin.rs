@@ -7,13 +7,13 @@
 //! - Its Brent step returns after a few evaluations with an end of the bracket, whatever the
 //!   tolerance: times are good to 1e-4 or 1e-5 only.
 
-use super::method::{Method, Rkv655e};
-use super::{COLOURS, Field, LIBRARY, LONGEST_STEP, reason};
+use super::method::{LibraryMethod, Rkv655e};
+use super::{COLOURS, LIBRARY, LONGEST_STEP, PhaseField, reason};
 use crate::engine::field::{Equations, GUARDS, Oscillator};
-use crate::engine::joining::{Ended, Moment, join};
+use crate::engine::joining::{Moment, StretchEnd, join};
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
-use crate::engine::trace::Look;
+use crate::engine::trace::GuardSample;
 use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
@@ -46,20 +46,20 @@ impl Engine for BuiltIn {
         let equations = Oscillator::of(&task.parameters, task.forcing_angle);
         let longest = LONGEST_STEP * task.problem.model.period();
         join(task, &equations, &meter, |from, sampler| {
-            let field = Field { equations, phase: from.phase, meter: &meter };
+            let field = PhaseField { equations, phase: from.phase, meter: &meter };
             let guards = [0, 1].map(|guard| Guard { field, guard });
-            let mut watch = Watch::new(&guards, from, task.span, sampler);
+            let mut watch = BuiltinEvents::new(&guards, from, task.span, sampler);
             let mut method = Rkv655e::method(tolerance, longest, 0.0);
             solve_ode(&mut method, &field, from.t, task.span, &from.state, &mut watch)
                 .map_err(|error| reason(&error))?;
-            watch.ended.unwrap_or(Ok(Ended::Inside { t: task.span, state: watch.last }))
+            watch.ended.unwrap_or(Ok(StretchEnd::Inside { t: task.span, state: watch.last }))
         })
     }
 }
 
 /// A guard as an event of the library's.
 struct Guard<'a> {
-    field: Field<'a, Oscillator>,
+    field: PhaseField<'a, Oscillator>,
     guard: usize,
 }
 
@@ -69,23 +69,23 @@ impl Event<f64, [f64; 4]> for Guard<'_> {
     }
 
     fn event(&self, t: f64, u: &[f64; 4]) -> f64 {
-        let Field { equations, phase, meter } = self.field;
+        let PhaseField { equations, phase, meter } = self.field;
         let value = equations.guards(phase, u)[self.guard];
-        meter.guard(Look { t, phase, guard: self.guard, value });
+        meter.guard(GuardSample { t, phase, guard: self.guard, value });
         value
     }
 }
 
 /// The library's events, and samples up to the first of them.
-struct Watch<'a> {
+struct BuiltinEvents<'a> {
     events: [EventSolout<'a, f64, [f64; 4], Guard<'a>>; GUARDS],
     sampler: &'a mut Sampler,
     meter: &'a Meter,
     last: [f64; 4],
-    ended: Option<Result<Ended, Failure>>,
+    ended: Option<Result<StretchEnd, Failure>>,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> BuiltinEvents<'a> {
     fn new(
         guards: &'a [Guard<'a>; GUARDS],
         from: &Moment,
@@ -97,7 +97,7 @@ impl<'a> Watch<'a> {
     }
 }
 
-impl Solout<f64, [f64; 4]> for Watch<'_> {
+impl Solout<f64, [f64; 4]> for BuiltinEvents<'_> {
     fn solout<I>(
         &mut self,
         end: f64,
@@ -131,7 +131,7 @@ impl Solout<f64, [f64; 4]> for Watch<'_> {
         let taken = self.sampler.take(until, state_at);
         self.ended = match (taken, first) {
             (Err(failure), _) => Some(Err(failure)),
-            (Ok(()), Some((t, guard, state))) => Some(Ok(Ended::Switch { t, guard, state })),
+            (Ok(()), Some((t, guard, state))) => Some(Ok(StretchEnd::Switch { t, guard, state })),
             (Ok(()), None) => return ControlFlag::Continue,
         };
         ControlFlag::Terminate

@@ -44,7 +44,7 @@ pub(in super::super) enum Inside {
 }
 
 /// A method of the library.
-pub(in super::super) trait Method {
+pub(in super::super) trait LibraryMethod {
     const DESCRIPTION: &'static str;
     /// The order that the method's authors state; none where it varies.
     const ORDER: Option<u32>;
@@ -84,7 +84,7 @@ macro_rules! methods {
         $(#[$doc])*
         pub(in super::super) struct $name;
 
-        impl Method for $name {
+        impl LibraryMethod for $name {
             const DESCRIPTION: &'static str = $text;
             const ORDER: Option<u32> = $order;
             const INSIDE: Inside = Inside::$inside;

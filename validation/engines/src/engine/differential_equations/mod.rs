@@ -1,6 +1,6 @@
 //! differential-equations, whose methods give an interpolant of each step to a `Solout`.
 //!
-//! - Switches are located by the harness on that interpolant ([`Watch`]); the library's built-in
+//! - Switches are located by the harness on that interpolant ([`StepWatch`]); the library's built-in
 //!   event location is an engine of its own ([`builtin`]).
 //! - Each phase is begun by a fresh method, because limits of steps and of rejections count over a
 //!   method's life.
@@ -43,10 +43,10 @@ use super::{
 use differential_equations::error::Error;
 use differential_equations::linalg::Matrix;
 use differential_equations::ode::{ODE, solve_ode};
-use method::{Bdf, Dop853, Kvaerno745, Method, Radau5, Rkv655e, Rkv767e};
+use method::{Bdf, Dop853, Kvaerno745, LibraryMethod, Radau5, Rkv655e, Rkv767e};
 use percuss::Phase;
 use std::marker::PhantomData;
-use watch::Watch;
+use watch::StepWatch;
 
 pub(super) use builtin::BuiltIn;
 
@@ -57,32 +57,32 @@ const COLOURS: Colours = Colours::Hues(128.0, 172.0);
 const LONGEST_STEP: f64 = 0.125;
 
 /// The library with one of its methods, on some equations.
-pub(super) struct Stepped<M, E> {
+pub(super) struct SteppedLibrary<M, E> {
     name: &'static str,
     role: Role,
     kind: PhantomData<fn() -> (M, E)>,
 }
 
-const fn stepped<M, E>(name: &'static str, role: Role) -> Stepped<M, E> {
-    Stepped { name, role, kind: PhantomData }
+const fn stepped<M, E>(name: &'static str, role: Role) -> SteppedLibrary<M, E> {
+    SteppedLibrary { name, role, kind: PhantomData }
 }
 
-pub(super) static RKV655E: Stepped<Rkv655e, Oscillator> =
+pub(super) static RKV655E: SteppedLibrary<Rkv655e, Oscillator> =
     stepped("differential-equations-rkv655e", Role::Representative);
-pub(super) static RKV655E_ORIGINAL: Stepped<Rkv655e, OriginalOscillator> =
+pub(super) static RKV655E_ORIGINAL: SteppedLibrary<Rkv655e, OriginalOscillator> =
     stepped("differential-equations-rkv655e-original", Role::Rows);
-pub(super) static RKV767E: Stepped<Rkv767e, Oscillator> =
+pub(super) static RKV767E: SteppedLibrary<Rkv767e, Oscillator> =
     stepped("differential-equations-rkv767e", Role::Damping);
-pub(super) static DOP853: Stepped<Dop853, Oscillator> =
+pub(super) static DOP853: SteppedLibrary<Dop853, Oscillator> =
     stepped("differential-equations-dop853", Role::Rows);
-pub(super) static RADAU5: Stepped<Radau5, Oscillator> =
+pub(super) static RADAU5: SteppedLibrary<Radau5, Oscillator> =
     stepped("differential-equations-radau5", Role::Damping);
-pub(super) static KVAERNO745: Stepped<Kvaerno745, Oscillator> =
+pub(super) static KVAERNO745: SteppedLibrary<Kvaerno745, Oscillator> =
     stepped("differential-equations-kvaerno745", Role::Rows);
-pub(super) static BDF: Stepped<Bdf, Oscillator> =
+pub(super) static BDF: SteppedLibrary<Bdf, Oscillator> =
     stepped("differential-equations-bdf", Role::Damping);
 
-impl<M: Method, E: Equations> Engine for Stepped<M, E> {
+impl<M: LibraryMethod, E: Equations> Engine for SteppedLibrary<M, E> {
     fn declaration(&self) -> Declaration {
         Declaration {
             name: self.name,
@@ -107,8 +107,8 @@ impl<M: Method, E: Equations> Engine for Stepped<M, E> {
         let first =
             if M::MULTISTEP { tolerance.sqrt() * shortest_time(&task.parameters) } else { 0.0 };
         join(task, &equations, &meter, |from, sampler| {
-            let field = Field { equations, phase: from.phase, meter: &meter };
-            let mut watch = Watch::<M, E>::new(field, from, (tolerance, task.span), sampler);
+            let field = PhaseField { equations, phase: from.phase, meter: &meter };
+            let mut watch = StepWatch::<M, E>::new(field, from, (tolerance, task.span), sampler);
             let mut method = M::method(tolerance, longest, first);
             let solved = solve_ode(&mut method, &field, from.t, task.span, &from.state, &mut watch);
             let solved = solved.map_err(|error| reason(&error));
@@ -119,13 +119,13 @@ impl<M: Method, E: Equations> Engine for Stepped<M, E> {
 
 /// The right-hand side of one phase.
 #[derive(Clone, Copy)]
-struct Field<'a, E> {
+struct PhaseField<'a, E> {
     equations: E,
     phase: Phase,
     meter: &'a Meter,
 }
 
-impl<E: Equations> ODE<f64, [f64; 4]> for Field<'_, E> {
+impl<E: Equations> ODE<f64, [f64; 4]> for PhaseField<'_, E> {
     fn diff(&self, t: f64, u: &[f64; 4], du: &mut [f64; 4]) {
         self.equations.derivatives(self.phase, t, u, du);
         self.meter.rhs(du);

@@ -1,11 +1,11 @@
 //! The end of each step, where the library hands its interpolant over.
 
-use super::method::{Inside, Method};
-use super::{Field, reason};
-use crate::engine::cubic::{Cubic, Point};
+use super::method::{Inside, LibraryMethod};
+use super::{PhaseField, reason};
+use crate::engine::cubic::{Cubic, CubicEnd};
 use crate::engine::field::Equations;
-use crate::engine::joining::{Ended, Moment};
-use crate::engine::location::{Crossing, Search};
+use crate::engine::joining::{Moment, StretchEnd};
+use crate::engine::location::{GuardRise, GuardSearch};
 use crate::engine::meter::Failure;
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::Walk;
@@ -17,33 +17,33 @@ use differential_equations::solution::Solution;
 use std::marker::PhantomData;
 
 /// Searches each step for the end of the phase, and takes samples on the way.
-pub(super) struct Watch<'a, M, E> {
-    field: Field<'a, E>,
+pub(super) struct StepWatch<'a, M, E> {
+    field: PhaseField<'a, E>,
     looks: Looks<'a, E>,
     tolerance: f64,
     span: f64,
     sampler: &'a mut Sampler,
     last: [f64; 4],
-    ended: Option<Result<Ended, Failure>>,
+    ended: Option<Result<StretchEnd, Failure>>,
     method: PhantomData<M>,
 }
 
 /// The places inside a step at which the guards are looked at.
 enum Looks<'a, E> {
     /// The guards are looked at inside the step, whose interpolant costs nothing.
-    Inside(Search<'a, E>),
+    Inside(GuardSearch<'a, E>),
     /// The guards are looked at at the step's ends, and inside only where these show something.
     Ends(Walk<'a, E>),
 }
 
-impl<'a, M: Method, E: Equations> Watch<'a, M, E> {
+impl<'a, M: LibraryMethod, E: Equations> StepWatch<'a, M, E> {
     pub(super) fn new(
-        field: Field<'a, E>,
+        field: PhaseField<'a, E>,
         from: &Moment,
         (tolerance, span): (f64, f64),
         sampler: &'a mut Sampler,
     ) -> Self {
-        let search = Search::new(field.equations, from, field.meter);
+        let search = GuardSearch::new(field.equations, from, field.meter);
         let looks = match M::INSIDE {
             Inside::Again => Looks::Ends(Walk::new(search, from)),
             Inside::Interpolant | Inside::Cubic => Looks::Inside(search),
@@ -53,19 +53,19 @@ impl<'a, M: Method, E: Equations> Watch<'a, M, E> {
     }
 
     /// How the stretch ended, once the library has come back.
-    pub(super) fn ended(self, solved: Result<(), Failure>) -> Result<Ended, Failure> {
+    pub(super) fn ended(self, solved: Result<(), Failure>) -> Result<StretchEnd, Failure> {
         match self.ended {
             Some(ended) => ended,
-            None => solved.map(|()| Ended::Inside { t: self.span, state: self.last }),
+            None => solved.map(|()| StretchEnd::Inside { t: self.span, state: self.last }),
         }
     }
 
     fn step(
         &mut self,
         begin: f64,
-        right: Point,
+        right: CubicEnd,
         state_at: &mut dyn FnMut(f64) -> Result<[f64; 4], Failure>,
-    ) -> Result<Option<Ended>, Failure> {
+    ) -> Result<Option<StretchEnd>, Failure> {
         self.field.meter.steps(1);
         let search = match &mut self.looks {
             Looks::Inside(search) => search,
@@ -73,16 +73,16 @@ impl<'a, M: Method, E: Equations> Watch<'a, M, E> {
                 return walk.advance(right, self.sampler, |_, _, t| state_at(t));
             }
         };
-        let Some(Crossing { t, guard }) = search.step(begin, right.0, state_at)? else {
+        let Some(GuardRise { t, guard }) = search.step(begin, right.0, state_at)? else {
             self.sampler.take(right.0, state_at)?;
             return Ok(None);
         };
         self.sampler.take(t, &mut *state_at)?;
-        Ok(Some(Ended::Switch { t, guard, state: state_at(t)? }))
+        Ok(Some(StretchEnd::Switch { t, guard, state: state_at(t)? }))
     }
 }
 
-impl<M: Method, E: Equations> Solout<f64, [f64; 4]> for Watch<'_, M, E> {
+impl<M: LibraryMethod, E: Equations> Solout<f64, [f64; 4]> for StepWatch<'_, M, E> {
     fn solout<I>(
         &mut self,
         end: f64,
@@ -126,10 +126,10 @@ impl<M: Method, E: Equations> Solout<f64, [f64; 4]> for Watch<'_, M, E> {
 }
 
 /// The state at `t` by the method again from a point before it, in one step if that will do.
-fn again<M: Method, E: Equations>(
-    field: &Field<'_, E>,
+fn again<M: LibraryMethod, E: Equations>(
+    field: &PhaseField<'_, E>,
     tolerance: f64,
-    from: Point,
+    from: CubicEnd,
     t: f64,
 ) -> Result<[f64; 4], Failure> {
     let length = t - from.0;

@@ -1,6 +1,6 @@
 //! The library's methods: how a solver of each is started, all else being the same.
 
-use super::{Lu, Matrix, Vect};
+use super::{DenseMatrix, Lu, Vect};
 use crate::engine::{Role, Stepping};
 use diffsol::error::DiffsolError;
 use diffsol::{
@@ -9,18 +9,18 @@ use diffsol::{
 };
 
 /// Equations in the library's vectors over nalgebra.
-pub(in super::super) trait Problem:
-    OdeEquationsImplicit<T = f64, V = Vect, M = Matrix, C = NalgebraContext>
+pub(in super::super) trait DiffsolProblem:
+    OdeEquationsImplicit<T = f64, V = Vect, M = DenseMatrix, C = NalgebraContext>
 {
 }
 
-impl<E> Problem for E where
-    E: OdeEquationsImplicit<T = f64, V = Vect, M = Matrix, C = NalgebraContext>
+impl<E> DiffsolProblem for E where
+    E: OdeEquationsImplicit<T = f64, V = Vect, M = DenseMatrix, C = NalgebraContext>
 {
 }
 
 /// A method of the library.
-pub(in super::super) trait Method: Sync {
+pub(in super::super) trait DiffsolMethod: Sync {
     const NAME: &'static str;
     const DESCRIPTION: &'static str;
     const STEPPING: Stepping;
@@ -35,7 +35,7 @@ pub(in super::super) trait Method: Sync {
     const SOLVES_AN_ESTIMATE: usize = 0;
 
     /// A solver from a state of its own that `begin` has written.
-    fn solver<'a, E: Problem + 'a>(
+    fn solver<'a, E: DiffsolProblem + 'a>(
         problem: &'a OdeSolverProblem<E>,
         begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
     ) -> Result<impl OdeSolverMethod<'a, E>, DiffsolError>;
@@ -59,7 +59,7 @@ pub(in super::super) struct Esdirk34;
 /// Tsitouras's pair.
 pub(in super::super) struct Tsit45;
 
-impl Method for Bdf {
+impl DiffsolMethod for Bdf {
     const NAME: &'static str = "diffsol-bdf";
     const DESCRIPTION: &'static str = "BDF, orders 1 to 5";
     const STEPPING: Stepping = Stepping::PerStep { order: 5 };
@@ -67,7 +67,7 @@ impl Method for Bdf {
     const ROLE: Role = Role::Representative;
     const ONE_STEP: bool = false;
 
-    fn solver<'a, E: Problem + 'a>(
+    fn solver<'a, E: DiffsolProblem + 'a>(
         problem: &'a OdeSolverProblem<E>,
         begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
     ) -> Result<impl OdeSolverMethod<'a, E>, DiffsolError> {
@@ -75,7 +75,7 @@ impl Method for Bdf {
     }
 }
 
-impl Method for TrBdf2 {
+impl DiffsolMethod for TrBdf2 {
     const NAME: &'static str = "diffsol-tr_bdf2";
     const DESCRIPTION: &'static str = "TR-BDF2, order 2";
     const STEPPING: Stepping = Stepping::PerStep { order: 2 };
@@ -83,7 +83,7 @@ impl Method for TrBdf2 {
     const ONE_STEP: bool = true;
     const SOLVES_AN_ESTIMATE: usize = 1;
 
-    fn solver<'a, E: Problem + 'a>(
+    fn solver<'a, E: DiffsolProblem + 'a>(
         problem: &'a OdeSolverProblem<E>,
         begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
     ) -> Result<impl OdeSolverMethod<'a, E>, DiffsolError> {
@@ -92,7 +92,7 @@ impl Method for TrBdf2 {
     }
 }
 
-impl Method for Esdirk34 {
+impl DiffsolMethod for Esdirk34 {
     const NAME: &'static str = "diffsol-esdirk34";
     const DESCRIPTION: &'static str = "ESDIRK 3(4), order 3";
     const STEPPING: Stepping = Stepping::PerStep { order: 3 };
@@ -100,7 +100,7 @@ impl Method for Esdirk34 {
     const ONE_STEP: bool = true;
     const SOLVES_AN_ESTIMATE: usize = 1;
 
-    fn solver<'a, E: Problem + 'a>(
+    fn solver<'a, E: DiffsolProblem + 'a>(
         problem: &'a OdeSolverProblem<E>,
         begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
     ) -> Result<impl OdeSolverMethod<'a, E>, DiffsolError> {
@@ -109,7 +109,7 @@ impl Method for Esdirk34 {
     }
 }
 
-impl Method for Tsit45 {
+impl DiffsolMethod for Tsit45 {
     const NAME: &'static str = "diffsol-tsit45";
     const DESCRIPTION: &'static str = "Tsitouras 5(4)";
     const STEPPING: Stepping = Stepping::Adaptive;
@@ -117,7 +117,7 @@ impl Method for Tsit45 {
     const ROLE: Role = Role::Damping;
     const ONE_STEP: bool = true;
 
-    fn solver<'a, E: Problem + 'a>(
+    fn solver<'a, E: DiffsolProblem + 'a>(
         problem: &'a OdeSolverProblem<E>,
         begin: impl FnOnce(&mut StateRefMut<'_, Vect>),
     ) -> Result<impl OdeSolverMethod<'a, E>, DiffsolError> {

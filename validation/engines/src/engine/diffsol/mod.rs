@@ -25,12 +25,12 @@ use super::joining::join;
 use super::meter::{Failure, Limits, Meter};
 use super::{Accuracy, Colours, Declaration, Engine, Location, Outcome, Task, pins};
 use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder};
-use method::{Bdf, Esdirk34, Method, TrBdf2, Tsit45};
-use phase::Run;
+use method::{Bdf, DiffsolMethod, Esdirk34, TrBdf2, Tsit45};
+use phase::DiffsolRun;
 use std::cell::Cell;
 use std::marker::PhantomData;
 
-type Matrix = NalgebraMat<f64>;
+type DenseMatrix = NalgebraMat<f64>;
 type Vect = NalgebraVec<f64>;
 type Lu = NalgebraLU<f64>;
 
@@ -49,7 +49,7 @@ const FIRST_STEP: f64 = 1e-3;
 /// The longest step, in forcing periods.
 const LONGEST_STEP: f64 = 0.125;
 
-impl<M: Method> Engine for Diffsol<M> {
+impl<M: DiffsolMethod> Engine for Diffsol<M> {
     fn declaration(&self) -> Declaration {
         Declaration {
             name: M::NAME,
@@ -70,7 +70,7 @@ impl<M: Method> Engine for Diffsol<M> {
         let meter = Meter::new(limits);
         let oscillator = Oscillator::of(&task.parameters, task.forcing_angle);
         let phase = Cell::new(task.phase);
-        let problem = OdeBuilder::<Matrix>::new()
+        let problem = OdeBuilder::<DenseMatrix>::new()
             .rtol(tolerance)
             .atol([tolerance])
             .h0(task.problem.model.period() * FIRST_STEP)
@@ -95,7 +95,7 @@ impl<M: Method> Engine for Diffsol<M> {
             )
             .build()
             .map_err(Failure::new)?;
-        let run = Run {
+        let run = DiffsolRun {
             span: task.span,
             longest: LONGEST_STEP * task.problem.model.period(),
             meter: &meter,

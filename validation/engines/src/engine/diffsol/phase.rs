@@ -1,29 +1,29 @@
 //! One phase by a fresh solver, up to the first root at which a guard rises.
 
 use super::Vect;
-use super::method::{Method, Problem};
+use super::method::{DiffsolMethod, DiffsolProblem};
 use crate::engine::field::{Equations, Oscillator};
-use crate::engine::joining::{Ended, Moment};
+use crate::engine::joining::{Moment, StretchEnd};
 use crate::engine::meter::{Failure, Meter};
 use crate::engine::sampler::Sampler;
 use diffsol::ode_solver::OdeSolverStatistics;
 use diffsol::{OdeSolverMethod, OdeSolverProblem, OdeSolverStopReason, StateRefMut, Vector};
 use percuss::Phase;
 
-pub(super) struct Run<'a> {
+pub(super) struct DiffsolRun<'a> {
     pub(super) span: f64,
     pub(super) longest: f64,
     pub(super) meter: &'a Meter,
     pub(super) oscillator: Oscillator,
 }
 
-impl Run<'_> {
-    pub(super) fn one_phase<M: Method, E: Problem>(
+impl DiffsolRun<'_> {
+    pub(super) fn one_phase<M: DiffsolMethod, E: DiffsolProblem>(
         &self,
         problem: &OdeSolverProblem<E>,
         from: &Moment,
         sampler: &mut Sampler,
-    ) -> Result<Ended, Failure> {
+    ) -> Result<StretchEnd, Failure> {
         let mut solver = M::solver(problem, |state| self.begin::<M, E>(problem, from, state))
             .map_err(Failure::new)?;
         solver.set_stop_time(self.span).map_err(Failure::new)?;
@@ -32,12 +32,12 @@ impl Run<'_> {
         Ok(ended)
     }
 
-    fn follow<'a, M: Method, E: Problem + 'a>(
+    fn follow<'a, M: DiffsolMethod, E: DiffsolProblem + 'a>(
         &self,
         solver: &mut impl OdeSolverMethod<'a, E>,
         from: &Moment,
         sampler: &mut Sampler,
-    ) -> Result<Ended, Failure> {
+    ) -> Result<StretchEnd, Failure> {
         loop {
             let reason = solver.step().map_err(Failure::new)?;
             self.meter.steps(1);
@@ -53,13 +53,13 @@ impl Run<'_> {
                 OdeSolverStopReason::TstopReached => {
                     let state = plain(solver.state().y);
                     sampler.take(solver.state().t, state_at)?;
-                    return Ok(Ended::Inside { t: self.span, state });
+                    return Ok(StretchEnd::Inside { t: self.span, state });
                 }
                 OdeSolverStopReason::RootFound(root, guard) => {
                     let state = state_at(root)?;
                     if self.oscillator.rates(from.phase, root, &state)[guard] > 0.0 {
                         sampler.take(root, state_at)?;
-                        return Ok(Ended::Switch { t: root, guard, state });
+                        return Ok(StretchEnd::Switch { t: root, guard, state });
                     }
                     let outside = self.is_outside(from.phase, &plain(solver.state().y));
                     if outside && root < solver.state().t {
@@ -80,7 +80,7 @@ impl Run<'_> {
     }
 
     /// Writes a state with derivative and step of its own.
-    fn begin<M: Method, E: Problem>(
+    fn begin<M: DiffsolMethod, E: DiffsolProblem>(
         &self,
         problem: &OdeSolverProblem<E>,
         from: &Moment,
@@ -99,7 +99,7 @@ impl Run<'_> {
 
 /// Each of Newton's iterations solves one system. In diagonally implicit methods so does each
 /// estimate of a step's error, of which the library counts those that pass and those that fail.
-fn solves<M: Method>(statistics: &OdeSolverStatistics) -> usize {
+fn solves<M: DiffsolMethod>(statistics: &OdeSolverStatistics) -> usize {
     let estimates = statistics.number_of_steps + statistics.number_of_error_test_failures;
     statistics.number_of_nonlinear_solver_iterations + M::SOLVES_AN_ESTIMATE * estimates
 }

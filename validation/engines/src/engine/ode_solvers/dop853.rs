@@ -9,11 +9,11 @@
 //! - Steps are at most an eighth of a turn of the elastic contact too: guards are looked at at
 //!   their ends, where their rates show a peak inside.
 
-use super::{COLOURS, Field, LIBRARY, NEVER_STIFF, STEPS, packed, plain};
-use crate::engine::cubic::Point;
+use super::{COLOURS, LIBRARY, NEVER_STIFF, STEPS, TimedField, packed, plain};
+use crate::engine::cubic::CubicEnd;
 use crate::engine::field::{Equations, Oscillator};
-use crate::engine::joining::{Ended, Moment, join};
-use crate::engine::location::Search;
+use crate::engine::joining::{Moment, StretchEnd, join};
+use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::{longest_step, walk};
@@ -68,20 +68,20 @@ impl<const N: usize> Engine for Dop853<N> {
         let tolerance = accuracy.wanted_tolerance()?;
         let meter = Meter::new(limits);
         let equations = Oscillator::of(&task.parameters, task.forcing_angle);
-        let run = Run::<N> { task, tolerance, meter: &meter, equations };
+        let run = Dop853Run::<N> { task, tolerance, meter: &meter, equations };
         join(task, &equations, &meter, |from, sampler| run.stretch(from, sampler))
     }
 }
 
-struct Run<'a, const N: usize> {
+struct Dop853Run<'a, const N: usize> {
     task: &'a Task,
     tolerance: f64,
     meter: &'a Meter,
     equations: Oscillator,
 }
 
-impl<const N: usize> Run<'_, N> {
-    fn stretch(&self, from: &Moment, sampler: &mut Sampler) -> Result<Ended, Failure> {
+impl<const N: usize> Dop853Run<'_, N> {
+    fn stretch(&self, from: &Moment, sampler: &mut Sampler) -> Result<StretchEnd, Failure> {
         let period = self.task.problem.model.period();
         let longest = longest_step(period);
         let until = (from.t + period.min(MOST_STEPS * longest)).min(self.task.span);
@@ -90,13 +90,13 @@ impl<const N: usize> Run<'_, N> {
             // It is the end but for rounding.
             last.0 = until;
         }
-        let search = Search::new(self.equations, from, self.meter);
-        let inside = |left: &Point, t: f64| self.again(from.phase, left, t);
+        let search = GuardSearch::new(self.equations, from, self.meter);
+        let inside = |left: &CubicEnd, t: f64| self.again(from.phase, left, t);
         walk(search, from, points, sampler, |left, _, t| inside(left, t))
     }
 
     /// The state at `t` by another integration from a point before it, in one step if that will do.
-    fn again(&self, phase: Phase, left: &Point, t: f64) -> Result<[f64; 4], Failure> {
+    fn again(&self, phase: Phase, left: &CubicEnd, t: f64) -> Result<[f64; 4], Failure> {
         let (begin, state) = *left;
         let length = t - begin;
         if length <= TINY * longest_step(self.task.problem.model.period()) {
@@ -113,14 +113,19 @@ impl<const N: usize> Run<'_, N> {
     fn integrate(
         &self,
         phase: Phase,
-        from: Point,
+        from: CubicEnd,
         until: f64,
         longest: f64,
         first: f64,
-    ) -> Result<Vec<Point>, Failure> {
+    ) -> Result<Vec<CubicEnd>, Failure> {
         let (begin, state) = from;
-        let field =
-            Field { equations: self.equations, phase, meter: self.meter, from: state, stale: None };
+        let field = TimedField {
+            equations: self.equations,
+            phase,
+            meter: self.meter,
+            from: state,
+            stale: None,
+        };
         let mut solver = ::ode_solvers::Dop853::from_param(
             field,
             begin,

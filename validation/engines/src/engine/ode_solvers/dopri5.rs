@@ -3,10 +3,10 @@
 //! It is run with `integrate_with_continuous_output_model`: in continuous mode `solout` gets the
 //! right state; in dense mode it does not.
 
-use super::{COLOURS, Field, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, packed, plain};
+use super::{COLOURS, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, TimedField, packed, plain};
 use crate::engine::field::Equations;
-use crate::engine::joining::{Ended, Moment, join};
-use crate::engine::location::{Crossing, Search};
+use crate::engine::joining::{Moment, StretchEnd, join};
+use crate::engine::location::{GuardRise, GuardSearch};
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
 use ::ode_solvers::continuous_output_model::ContinuousOutputModel;
@@ -47,18 +47,18 @@ impl<E: Equations> Engine for Dopri5<E> {
         let tolerance = accuracy.wanted_tolerance()?;
         let meter = Meter::new(limits);
         let equations = E::of(&task.parameters, task.forcing_angle);
-        let mut run = Run::new(task, tolerance, &meter, equations);
+        let mut run = Dopri5Run::new(task, tolerance, &meter, equations);
         join(task, &equations, &meter, |from, sampler| {
             let stretch = run.integrate(from)?;
             let crossing = run.first_crossing(from, &stretch)?;
             let state_at = |t: f64| evaluate(&stretch.output, t);
-            let Some(Crossing { t, guard }) = crossing else {
+            let Some(GuardRise { t, guard }) = crossing else {
                 sampler.take(stretch.last(), state_at)?;
-                return Ok(Ended::Inside { t: stretch.last(), state: stretch.end });
+                return Ok(StretchEnd::Inside { t: stretch.last(), state: stretch.end });
             };
             sampler.take(t, state_at)?;
             run.step = 0.0;
-            Ok(Ended::Switch { t, guard, state: state_at(t)? })
+            Ok(StretchEnd::Switch { t, guard, state: state_at(t)? })
         })
     }
 }
@@ -66,7 +66,7 @@ impl<E: Equations> Engine for Dopri5<E> {
 pub(in crate::engine) type Output = ContinuousOutputModel<f64, SVector<f64, 4>>;
 
 /// The library's method on one task.
-pub(in crate::engine) struct Run<'a, E> {
+pub(in crate::engine) struct Dopri5Run<'a, E> {
     task: &'a Task,
     tolerance: f64,
     meter: &'a Meter,
@@ -91,7 +91,7 @@ impl Stretch {
     }
 }
 
-impl<'a, E: Equations> Run<'a, E> {
+impl<'a, E: Equations> Dopri5Run<'a, E> {
     pub(in crate::engine) fn new(
         task: &'a Task,
         tolerance: f64,
@@ -104,7 +104,7 @@ impl<'a, E: Equations> Run<'a, E> {
     /// Integrates one phase for at most a forcing period, or to the first step's end outside it.
     pub(in crate::engine) fn integrate(&mut self, from: &Moment) -> Result<Stretch, Failure> {
         let period = self.task.problem.model.period();
-        let field = Field {
+        let field = TimedField {
             equations: self.equations,
             phase: from.phase,
             meter: self.meter,
@@ -146,8 +146,8 @@ impl<'a, E: Equations> Run<'a, E> {
         &self,
         from: &Moment,
         stretch: &Stretch,
-    ) -> Result<Option<Crossing>, Failure> {
-        let search = Search::new(self.equations, from, self.meter);
+    ) -> Result<Option<GuardRise>, Failure> {
+        let search = GuardSearch::new(self.equations, from, self.meter);
         let mut begin = stretch.begin;
         for end in stretch.ends.iter().copied().filter(|end| *end > stretch.begin) {
             let found = search.step(begin, end, &mut |t| evaluate(&stretch.output, t))?;

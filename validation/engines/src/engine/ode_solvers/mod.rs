@@ -7,7 +7,7 @@
 //!   integration is dear but right.
 //! - Times are elapsed since the start: the library's dense output fails for negative ones.
 //!
-//! [`Search`]: super::location::Search
+//! [`Search`]: super::location::GuardSearch
 
 mod dop853;
 pub(super) mod dopri5;
@@ -44,7 +44,7 @@ const NEVER_STIFF: u32 = u32::MAX;
 
 /// The right-hand side of one phase, and the end of it. A fifth component of the state is time.
 #[derive(Clone, Copy)]
-struct Field<'a, E> {
+struct TimedField<'a, E> {
     equations: E,
     phase: Phase,
     meter: &'a Meter,
@@ -55,7 +55,7 @@ struct Field<'a, E> {
     stale: Option<(f64, Phase)>,
 }
 
-impl<E: Equations, const N: usize> System<f64, SVector<f64, N>> for Field<'_, E> {
+impl<E: Equations, const N: usize> System<f64, SVector<f64, N>> for TimedField<'_, E> {
     fn system(&self, t: f64, u: &SVector<f64, N>, du: &mut SVector<f64, N>) {
         let clock = u.as_slice().get(4);
         let t = clock.copied().unwrap_or(t);

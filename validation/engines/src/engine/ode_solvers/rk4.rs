@@ -7,11 +7,11 @@
 //!
 //! [`shortest_time`]: crate::engine::shortest_time
 
-use super::{COLOURS, Field, LIBRARY, packed, plain};
+use super::{COLOURS, LIBRARY, TimedField, packed, plain};
 use crate::engine::cubic::Cubic;
 use crate::engine::field::{Equations, Oscillator};
-use crate::engine::joining::{Ended, Moment, join};
-use crate::engine::location::Search;
+use crate::engine::joining::{Moment, StretchEnd, join};
+use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::walk;
@@ -52,26 +52,26 @@ impl Engine for Rk4 {
         let step = accuracy.wanted_step()? * shortest_time(&task.parameters);
         let meter = Meter::new(limits);
         let equations = Oscillator::of(&task.parameters, task.forcing_angle);
-        let run = Run { task, step, meter: &meter, equations };
+        let run = Rk4Run { task, step, meter: &meter, equations };
         join(task, &equations, &meter, |from, sampler| run.stretch(from, sampler))
     }
 }
 
-struct Run<'a> {
+struct Rk4Run<'a> {
     task: &'a Task,
     step: f64,
     meter: &'a Meter,
     equations: Oscillator,
 }
 
-impl Run<'_> {
-    fn stretch(&self, from: &Moment, sampler: &mut Sampler) -> Result<Ended, Failure> {
+impl Rk4Run<'_> {
+    fn stretch(&self, from: &Moment, sampler: &mut Sampler) -> Result<StretchEnd, Failure> {
         let longest = self.task.problem.model.period().min(MOST_STEPS * self.step);
         let length = longest.min(self.task.span - from.t);
         let count = (length / self.step).ceil().max(1.0);
         self.meter.affords(STAGES * count)?;
         let step = length / count;
-        let field = Field {
+        let field = TimedField {
             equations: self.equations,
             phase: from.phase,
             meter: self.meter,
@@ -85,7 +85,7 @@ impl Run<'_> {
             ::ode_solvers::Rk4::new(field, from.t, packed::<4>(from.t, &from.state), until, step);
         let stats = solver.integrate().map_err(Failure::new)?;
         self.meter.steps(stats.accepted_steps.into());
-        let search = Search::new(self.equations, from, self.meter);
+        let search = GuardSearch::new(self.equations, from, self.meter);
         // The library's own times are sums of steps.
         let time = |k: usize| from.t + length * (k as f64 / count);
         let points = solver.y_out().iter().enumerate().skip(1).map(|(k, u)| (time(k), plain(u)));

@@ -7,7 +7,7 @@ use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
 
 /// What is different.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Change {
+pub(super) enum Alteration {
     /// omega + 0.002
     Frequency,
     /// 1.01 xi
@@ -20,7 +20,7 @@ pub(super) enum Change {
 
 pub(super) struct Altered {
     pub(super) name: &'static str,
-    pub(super) change: Change,
+    pub(super) change: Alteration,
 }
 
 impl Engine for Altered {
@@ -30,7 +30,7 @@ impl Engine for Altered {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        if self.change == Change::Drift {
+        if self.change == Alteration::Drift {
             return drifting(task, limits);
         }
         let (parameters, start) = self.altered(task);
@@ -51,12 +51,12 @@ impl Altered {
     fn altered(&self, task: &Task) -> (Parameters, Start) {
         let (parameters, start) = (task.parameters, exact_start(task));
         match self.change {
-            Change::Frequency => {
+            Alteration::Frequency => {
                 (Parameters { omega: parameters.omega + 0.002, ..parameters }, start)
             }
-            Change::Damping => (Parameters { xi: 1.01 * parameters.xi, ..parameters }, start),
-            Change::Drift => (parameters, start),
-            Change::Clock => {
+            Alteration::Damping => (Parameters { xi: 1.01 * parameters.xi, ..parameters }, start),
+            Alteration::Drift => (parameters, start),
+            Alteration::Clock => {
                 let tau = task.problem.entry.instant.tau(parameters.omega);
                 (parameters, Start { tau, cycle: 0, ..start })
             }

@@ -3,19 +3,19 @@
 //!
 //! Without a fault it is the engine `ode_solvers-dopri5`, whose bounds it is held to.
 
-use super::super::cubic::{Cubic, Point};
+use super::super::cubic::{Cubic, CubicEnd};
 use super::super::field::{Equations, GUARDS, Oscillator};
-use super::super::joining::{Ended, Moment, join};
-use super::super::location::Crossing;
+use super::super::joining::{Moment, StretchEnd, join};
+use super::super::location::GuardRise;
 use super::super::meter::{Failure, Limits, Meter};
 use super::super::ode_solvers::DOPRI5;
-use super::super::ode_solvers::dopri5::{Run, Stretch, evaluate};
+use super::super::ode_solvers::dopri5::{Dopri5Run, Stretch, evaluate};
 use super::super::{Accuracy, Declaration, Engine, Outcome, Role, Task};
 use percuss::{Parameters, Phase};
 
 /// What is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Slip {
+pub(super) enum IntegratorFault {
     None,
     /// Every so many events one is not noticed.
     Dropped(u64),
@@ -46,7 +46,7 @@ const HALVINGS: u32 = 80;
 
 pub(super) struct Faulty {
     pub(super) name: &'static str,
-    pub(super) slip: Slip,
+    pub(super) slip: IntegratorFault,
 }
 
 impl Engine for Faulty {
@@ -57,15 +57,15 @@ impl Engine for Faulty {
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let tolerance = accuracy.wanted_tolerance()?;
-        if let Slip::GivesUp(every) = self.slip
+        if let IntegratorFault::GivesUp(every) = self.slip
             && task.events_before % every == every - 1
         {
             return Err(Failure::new("gave up, on purpose"));
         }
         let meter = Meter::new(limits);
         let equations = Oscillator::of(&self.parameters(task), task.forcing_angle);
-        let mut run = Run::new(task, tolerance, &meter, equations);
-        let mut watch = Watch {
+        let mut run = Dopri5Run::new(task, tolerance, &meter, equations);
+        let mut watch = FaultyWatch {
             slip: self.slip,
             equations,
             tolerance,
@@ -77,15 +77,15 @@ impl Engine for Faulty {
             run.stale = watch.stale(from);
             let stretch = run.integrate(from)?;
             let sound = run.first_crossing(from, &stretch)?;
-            let Some(Crossing { t, guard }) = watch.notice(&stretch, from, sound)? else {
+            let Some(GuardRise { t, guard }) = watch.notice(&stretch, from, sound)? else {
                 sampler.take(stretch.last(), |t| watch.state_at(&stretch, from.phase, t))?;
-                return Ok(Ended::Inside { t: stretch.last(), state: stretch.end });
+                return Ok(StretchEnd::Inside { t: stretch.last(), state: stretch.end });
             };
             sampler.take(t, |t| watch.state_at(&stretch, from.phase, t))?;
             run.step = 0.0;
             watch.before = Some(from.phase);
             let state = watch.state_at(&stretch, from.phase, t)?;
-            Ok(Ended::Switch { t, guard, state })
+            Ok(StretchEnd::Switch { t, guard, state })
         })
     }
 }
@@ -93,7 +93,7 @@ impl Engine for Faulty {
 impl Faulty {
     fn parameters(&self, task: &Task) -> Parameters {
         let Parameters { b, xi, .. } = task.parameters;
-        if self.slip != Slip::Parameters {
+        if self.slip != IntegratorFault::Parameters {
             return task.parameters;
         }
         Parameters { b: (1.0 + OFF) * b, xi: (1.0 + OFF) * xi, ..task.parameters }
@@ -101,8 +101,8 @@ impl Faulty {
 }
 
 /// Finds events with the fault.
-struct Watch {
-    slip: Slip,
+struct FaultyWatch {
+    slip: IntegratorFault,
     equations: Oscillator,
     tolerance: f64,
     /// Over the engine's whole life.
@@ -113,11 +113,11 @@ struct Watch {
     before: Option<Phase>,
 }
 
-impl Watch {
+impl FaultyWatch {
     /// The phase whose derivative begins a stretch: that before the last event, if that is the
     /// fault.
     fn stale(&self, from: &Moment) -> Option<Phase> {
-        self.before.filter(|_| self.slip == Slip::OldDerivative && from.t == from.began)
+        self.before.filter(|_| self.slip == IntegratorFault::OldDerivative && from.t == from.began)
     }
 
     /// The crossing that this integrator notices in a stretch; `sound` is the right one.
@@ -125,15 +125,19 @@ impl Watch {
         &mut self,
         stretch: &Stretch,
         from: &Moment,
-        sound: Option<Crossing>,
-    ) -> Result<Option<Crossing>, Failure> {
+        sound: Option<GuardRise>,
+    ) -> Result<Option<GuardRise>, Failure> {
         let found = match self.slip {
-            Slip::SignAtEnds => self.by_sign(stretch, from.phase, false)?,
-            Slip::AnyDirection => self.by_sign(stretch, from.phase, true)?,
-            Slip::Dropped(_) if self.overlooking => self.by_sign(stretch, from.phase, false)?,
-            Slip::Dropped(every) => sound.filter(|_| !self.drops(every)),
-            Slip::AtStepEnd => sound.map(|it| Crossing { t: end_of_step(stretch, it.t), ..it }),
-            Slip::Late => sound.map(|it| self.late(stretch, it)),
+            IntegratorFault::SignAtEnds => self.by_sign(stretch, from.phase, false)?,
+            IntegratorFault::AnyDirection => self.by_sign(stretch, from.phase, true)?,
+            IntegratorFault::Dropped(_) if self.overlooking => {
+                self.by_sign(stretch, from.phase, false)?
+            }
+            IntegratorFault::Dropped(every) => sound.filter(|_| !self.drops(every)),
+            IntegratorFault::AtStepEnd => {
+                sound.map(|it| GuardRise { t: end_of_step(stretch, it.t), ..it })
+            }
+            IntegratorFault::Late => sound.map(|it| self.late(stretch, it)),
             _ => sound,
         };
         if found.is_some() {
@@ -149,9 +153,9 @@ impl Watch {
         self.overlooking
     }
 
-    fn late(&self, stretch: &Stretch, crossing: Crossing) -> Crossing {
+    fn late(&self, stretch: &Stretch, crossing: GuardRise) -> GuardRise {
         let t = (crossing.t + LATE * self.tolerance).min(stretch.last());
-        Crossing { t, ..crossing }
+        GuardRise { t, ..crossing }
     }
 
     /// The first change of sign from one step's end to the next.
@@ -160,7 +164,7 @@ impl Watch {
         stretch: &Stretch,
         phase: Phase,
         any_direction: bool,
-    ) -> Result<Option<Crossing>, Failure> {
+    ) -> Result<Option<GuardRise>, Failure> {
         let mut left = stretch.begin;
         for right in stretch.ends.iter().copied().filter(|end| *end > stretch.begin) {
             let [before, after] =
@@ -170,7 +174,7 @@ impl Watch {
                 let falls = before[guard] > 0.0 && after[guard] <= 0.0;
                 if rises || (any_direction && falls) {
                     let t = self.bisect(stretch, phase, guard, (left, right))?;
-                    return Ok(Some(Crossing { t, guard }));
+                    return Ok(Some(GuardRise { t, guard }));
                 }
             }
             left = right;
@@ -200,7 +204,7 @@ impl Watch {
 
     /// The state inside a stretch, by the interpolant that this integrator has.
     fn state_at(&self, stretch: &Stretch, phase: Phase, t: f64) -> Result<[f64; 4], Failure> {
-        if self.slip != Slip::LowOrder {
+        if self.slip != IntegratorFault::LowOrder {
             return evaluate(&stretch.output, t);
         }
         let end = end_of_step(stretch, t);
@@ -209,7 +213,8 @@ impl Watch {
         if end <= begin {
             return evaluate(&stretch.output, t);
         }
-        let point = |t: f64| -> Result<Point, Failure> { Ok((t, evaluate(&stretch.output, t)?)) };
+        let point =
+            |t: f64| -> Result<CubicEnd, Failure> { Ok((t, evaluate(&stretch.output, t)?)) };
         let cubic = Cubic::between([point(begin)?, point(end)?], |(t, state), rates| {
             self.equations.derivatives(phase, t, &state, rates);
         });

@@ -13,10 +13,10 @@ mod printed;
 mod walk;
 
 use super::Engine;
-use altered::{Altered, Change};
+use altered::{Alteration, Altered};
 pub use closed::Closed;
-use integrator::{Faulty, Slip};
-use walk::{Fault, Walk};
+use integrator::{Faulty, IntegratorFault};
+use walk::{WalkFault, WrongWalk};
 
 /// A wrong engine and what is wrong with it.
 #[derive(Clone, Copy)]
@@ -28,46 +28,46 @@ pub struct Wrong {
 }
 
 /// The walking solver without a fault: the control of the power test.
-pub static CONTROL: &dyn Engine = &Walk { name: "walk-control", fault: Fault::None };
+pub static CONTROL: &dyn Engine = &WrongWalk { name: "walk-control", fault: WalkFault::None };
 
 /// How rarely an engine drops an event.
 pub const DROPPED: [u64; 2] = [100, 1000];
 
 static WRONG: [Wrong; 9] = [
     Wrong {
-        engine: &Walk { name: "wrong-dropped-100", fault: Fault::Dropped(DROPPED[0]) },
+        engine: &WrongWalk { name: "wrong-dropped-100", fault: WalkFault::Dropped(DROPPED[0]) },
         fault: "every hundredth event is dropped",
     },
     Wrong {
-        engine: &Walk { name: "wrong-dropped-1000", fault: Fault::Dropped(DROPPED[1]) },
+        engine: &WrongWalk { name: "wrong-dropped-1000", fault: WalkFault::Dropped(DROPPED[1]) },
         fault: "every thousandth event is dropped",
     },
     Wrong {
-        engine: &Altered { name: "wrong-omega", change: Change::Frequency },
+        engine: &Altered { name: "wrong-omega", change: Alteration::Frequency },
         fault: "omega is larger by 0.002",
     },
     Wrong {
-        engine: &Altered { name: "wrong-xi", change: Change::Damping },
+        engine: &Altered { name: "wrong-xi", change: Alteration::Damping },
         fault: "xi is larger by 1 %",
     },
     Wrong {
-        engine: &Altered { name: "wrong-drift", change: Change::Drift },
+        engine: &Altered { name: "wrong-drift", change: Alteration::Drift },
         fault: "Eq. (20) as printed, with + before the exponential",
     },
     Wrong {
-        engine: &Walk { name: "wrong-arctan", fault: Fault::Arctangent },
+        engine: &WrongWalk { name: "wrong-arctan", fault: WalkFault::Arctangent },
         fault: "Eqs. (15) to (17) as printed, with arctan for beta and delta",
     },
     Wrong {
-        engine: &Walk { name: "wrong-sign-change", fault: Fault::SignChange },
+        engine: &WrongWalk { name: "wrong-sign-change", fault: WalkFault::SignChange },
         fault: "guards are looked at only where a step ends, for a change of sign",
     },
     Wrong {
-        engine: &Walk { name: "wrong-impact", fault: Fault::ContactAtImpact },
+        engine: &WrongWalk { name: "wrong-impact", fault: WalkFault::ContactAtImpact },
         fault: "every impact goes into contact, none straight into progression",
     },
     Wrong {
-        engine: &Altered { name: "wrong-clock", change: Change::Clock },
+        engine: &Altered { name: "wrong-clock", change: Alteration::Clock },
         fault: "time is one number: omega tau loses digits late in a run",
     },
 ];
@@ -79,7 +79,8 @@ pub fn wrong() -> &'static [Wrong] {
 }
 
 /// The integrator of [`faulty`] without a fault: the control of its power test.
-pub static FAULTY_CONTROL: &dyn Engine = &Faulty { name: "dopri5-control", slip: Slip::None };
+pub static FAULTY_CONTROL: &dyn Engine =
+    &Faulty { name: "dopri5-control", slip: IntegratorFault::None };
 
 /// How rarely an integrator drops an event, or gives up a run.
 const SELDOM: u64 = 20;
@@ -91,19 +92,43 @@ macro_rules! faulty {
 }
 
 static FAULTY: [Wrong; 9] = [
-    faulty!("dopri5-drops", Slip::Dropped(SELDOM), "every twentieth event is not noticed"),
-    faulty!("dopri5-at-step-end", Slip::AtStepEnd, "an event is put at its step's end"),
-    faulty!("dopri5-sign-at-ends", Slip::SignAtEnds, "guards are looked at only at steps' ends"),
-    faulty!("dopri5-late", Slip::Late, "an event is found thirty tolerances late"),
+    faulty!(
+        "dopri5-drops",
+        IntegratorFault::Dropped(SELDOM),
+        "every twentieth event is not noticed"
+    ),
+    faulty!("dopri5-at-step-end", IntegratorFault::AtStepEnd, "an event is put at its step's end"),
+    faulty!(
+        "dopri5-sign-at-ends",
+        IntegratorFault::SignAtEnds,
+        "guards are looked at only at steps' ends"
+    ),
+    faulty!("dopri5-late", IntegratorFault::Late, "an event is found thirty tolerances late"),
     faulty!(
         "dopri5-old-derivative",
-        Slip::OldDerivative,
+        IntegratorFault::OldDerivative,
         "a restart begins with the derivative of the phase before"
     ),
-    faulty!("dopri5-any-direction", Slip::AnyDirection, "the direction of a guard is ignored"),
-    faulty!("dopri5-low-order", Slip::LowOrder, "the interpolant is of order 3 instead of 4"),
-    faulty!("dopri5-parameters", Slip::Parameters, "b and xi are larger by 1e-4 of themselves"),
-    faulty!("dopri5-gives-up", Slip::GivesUp(SELDOM), "some restarts end without a result"),
+    faulty!(
+        "dopri5-any-direction",
+        IntegratorFault::AnyDirection,
+        "the direction of a guard is ignored"
+    ),
+    faulty!(
+        "dopri5-low-order",
+        IntegratorFault::LowOrder,
+        "the interpolant is of order 3 instead of 4"
+    ),
+    faulty!(
+        "dopri5-parameters",
+        IntegratorFault::Parameters,
+        "b and xi are larger by 1e-4 of themselves"
+    ),
+    faulty!(
+        "dopri5-gives-up",
+        IntegratorFault::GivesUp(SELDOM),
+        "some restarts end without a result"
+    ),
 ];
 
 /// Integrators with one fault each, held to the bounds of the engine without it, [`SOUND`].

@@ -14,7 +14,7 @@ use percuss::Phase;
 
 /// What is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Fault {
+pub(super) enum WalkFault {
     None,
     /// Every so many events one is not noticed.
     Dropped(u64),
@@ -26,9 +26,9 @@ pub(super) enum Fault {
     ContactAtImpact,
 }
 
-pub(super) struct Walk {
+pub(super) struct WrongWalk {
     pub(super) name: &'static str,
-    pub(super) fault: Fault,
+    pub(super) fault: WalkFault,
 }
 
 /// Steps a forcing period.
@@ -36,7 +36,7 @@ const FINE: f64 = 512.0;
 /// The number of steps per forcing period, as coarse as an integrator's longest steps.
 const COARSE: f64 = 24.0;
 
-impl Engine for Walk {
+impl Engine for WrongWalk {
     fn declaration(&self) -> Declaration {
         Declaration {
             name: self.name,
@@ -48,12 +48,12 @@ impl Engine for Walk {
     }
 
     fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let mut run = Run {
+        let mut run = WrongRun {
             task,
             fault: self.fault,
             oscillator: Oscillator::of(&task.parameters, task.forcing_angle),
             step: task.problem.model.period()
-                / if self.fault == Fault::SignChange { COARSE } else { FINE },
+                / if self.fault == WalkFault::SignChange { COARSE } else { FINE },
             events: task.events_before,
             evaluations: 0,
         };
@@ -61,9 +61,9 @@ impl Engine for Walk {
     }
 }
 
-struct Run<'a> {
+struct WrongRun<'a> {
     task: &'a Task,
-    fault: Fault,
+    fault: WalkFault,
     oscillator: Oscillator,
     step: f64,
     /// Over the engine's whole life.
@@ -71,7 +71,7 @@ struct Run<'a> {
     evaluations: u64,
 }
 
-impl Run<'_> {
+impl WrongRun<'_> {
     fn all(&mut self, limits: &Limits) -> Result<Outcome, Failure> {
         let mut outcome = Outcome::default();
         let mut sampler = Sampler::new(self.task.sample_times());
@@ -101,13 +101,13 @@ impl Run<'_> {
 
     fn closed(&self, phase: Phase, t: f64, state: [f64; 4]) -> Closed {
         let angle = self.task.forcing_angle + self.task.parameters.omega * t;
-        let printed = self.fault == Fault::Arctangent;
+        let printed = self.fault == WalkFault::Arctangent;
         Closed::new(&self.task.parameters, phase, state, angle, printed)
     }
 
     fn switch(&self, phase: Phase, guard: usize, there: &[f64; 4]) -> (Phase, [f64; 4]) {
         let (next, state) = self.oscillator.switch(phase, guard, there);
-        let impact = phase == Phase::NoContact && self.fault == Fault::ContactAtImpact;
+        let impact = phase == Phase::NoContact && self.fault == WalkFault::ContactAtImpact;
         (if impact { Phase::Contact } else { next }, state)
     }
 
@@ -143,7 +143,7 @@ impl Run<'_> {
     }
 
     fn drops(&self) -> bool {
-        matches!(self.fault, Fault::Dropped(every) if self.events.is_multiple_of(every))
+        matches!(self.fault, WalkFault::Dropped(every) if self.events.is_multiple_of(every))
     }
 
     /// Whether a guard is positive, and by the equations of motion not on its way back.
@@ -151,7 +151,7 @@ impl Run<'_> {
         self.evaluations += 1;
         let state = closed.at(t - from);
         let positive = self.oscillator.guards(phase, &state)[guard] > 0.0;
-        let blind = self.fault == Fault::SignChange;
+        let blind = self.fault == WalkFault::SignChange;
         positive && (blind || self.oscillator.rates(phase, t, &state)[guard] > 0.0)
     }
 

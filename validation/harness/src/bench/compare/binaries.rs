@@ -97,23 +97,23 @@ pub fn quotients(
 }
 
 /// The running processes of both sides.
-struct Sides {
+struct Processes {
     old: Worker,
     new: Worker,
 }
 
 /// The side that starts first may find the better place: they take turns in that too.
-fn both(pair: &Pair<'_>, life: u32) -> Result<Sides, Failure> {
+fn both(pair: &Pair<'_>, life: u32) -> Result<Processes, Failure> {
     if life.is_multiple_of(2) {
         let old = Worker::start(pair.old)?;
-        Ok(Sides { old, new: Worker::start(pair.new)? })
+        Ok(Processes { old, new: Worker::start(pair.new)? })
     } else {
         let new = Worker::start(pair.new)?;
-        Ok(Sides { old: Worker::start(pair.old)?, new })
+        Ok(Processes { old: Worker::start(pair.old)?, new })
     }
 }
 
-impl Sides {
+impl Processes {
     /// The quotients of one life's rounds.
     fn rounds(&mut self, bench: &str, burden: f64) -> Result<Vec<f64>, Failure> {
         let units = self.filling(bench)?;

@@ -6,4 +6,4 @@ pub mod recorded;
 pub mod verdict;
 pub mod worker;
 
-pub use verdict::Verdict;
+pub use verdict::WorkloadVerdict;

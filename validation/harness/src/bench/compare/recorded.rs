@@ -5,7 +5,7 @@
 //! floor beside it. It is recorded twice, so that here too slower means slower twice in a row.
 //! Where instructions are counted they decide, and times only warn.
 
-use super::verdict::{FAIL, Verdict, WARN};
+use super::verdict::{FAIL, WARN, WorkloadVerdict};
 use crate::bench::history::Record;
 
 /// A workload of both versions.
@@ -18,7 +18,7 @@ pub struct Change {
     /// The old and the new figure.
     pub figures: [f64; 2],
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: WorkloadVerdict,
 }
 
 impl Change {
@@ -48,8 +48,8 @@ pub fn changes(old: &Record, new: &Record) -> Vec<Change> {
     all.push(settled("evaluations", evaluations));
     all.push(change("state_error", errors(old, new), accuracy(errors(old, new))));
     let quotients = [new.floors / old.floors, new.floors_again / old.floors_again];
-    let verdict = match Verdict::of(&quotients) {
-        Verdict::Fail if counted.is_some() => Verdict::Warn,
+    let verdict = match WorkloadVerdict::of(&quotients) {
+        WorkloadVerdict::Fail if counted.is_some() => WorkloadVerdict::Warn,
         verdict => verdict,
     };
     all.push(change("floors", [old.floors, new.floors], verdict));
@@ -65,19 +65,19 @@ fn errors(old: &Record, new: &Record) -> [f64; 2] {
 }
 
 /// Speed is not bought with digits: an error more than twice as large fails.
-fn accuracy([old, new]: [f64; 2]) -> Verdict {
-    if new <= 2.0 * old { Verdict::Pass } else { Verdict::Fail }
+fn accuracy([old, new]: [f64; 2]) -> WorkloadVerdict {
+    if new <= 2.0 * old { WorkloadVerdict::Pass } else { WorkloadVerdict::Fail }
 }
 
 /// A figure that repeats needs no second measurement: it would say the same.
-fn repeatable(quotient: f64) -> Verdict {
+fn repeatable(quotient: f64) -> WorkloadVerdict {
     // Written so that a NaN is slower.
     if quotient < WARN {
-        Verdict::Pass
+        WorkloadVerdict::Pass
     } else if quotient < FAIL {
-        Verdict::Warn
+        WorkloadVerdict::Warn
     } else {
-        Verdict::Fail
+        WorkloadVerdict::Fail
     }
 }
 

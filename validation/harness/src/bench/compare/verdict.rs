@@ -11,7 +11,7 @@ pub const FAIL: f64 = 1.02;
 
 /// What is said of a workload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
+pub enum WorkloadVerdict {
     /// The new version is as fast as the old one, or faster.
     Pass,
     /// Slower by 1 % or more, or by 2 % once.
@@ -20,7 +20,7 @@ pub enum Verdict {
     Fail,
 }
 
-impl Verdict {
+impl WorkloadVerdict {
     /// The verdict on successive quotients of new to old.
     #[must_use]
     pub fn of(quotients: &[f64]) -> Self {
@@ -56,34 +56,34 @@ mod tests {
 
     #[test]
     fn slower_by_two_percent_twice_in_a_row_fails() {
-        assert_eq!(Verdict::of(&[1.03, 1.03]), Verdict::Fail);
-        assert_eq!(Verdict::of(&[1.02, 1.02]), Verdict::Fail);
-        assert_eq!(Verdict::of(&[1.0, 1.05, 1.021]), Verdict::Fail);
+        assert_eq!(WorkloadVerdict::of(&[1.03, 1.03]), WorkloadVerdict::Fail);
+        assert_eq!(WorkloadVerdict::of(&[1.02, 1.02]), WorkloadVerdict::Fail);
+        assert_eq!(WorkloadVerdict::of(&[1.0, 1.05, 1.021]), WorkloadVerdict::Fail);
     }
 
     #[test]
     fn once_or_not_in_a_row_is_a_warning() {
-        assert_eq!(Verdict::of(&[1.03]), Verdict::Warn);
-        assert_eq!(Verdict::of(&[1.03, 1.0]), Verdict::Warn);
-        assert_eq!(Verdict::of(&[1.03, 1.0, 1.03]), Verdict::Warn);
+        assert_eq!(WorkloadVerdict::of(&[1.03]), WorkloadVerdict::Warn);
+        assert_eq!(WorkloadVerdict::of(&[1.03, 1.0]), WorkloadVerdict::Warn);
+        assert_eq!(WorkloadVerdict::of(&[1.03, 1.0, 1.03]), WorkloadVerdict::Warn);
     }
 
     #[test]
     fn slower_by_one_and_a_half_percent_is_a_warning_however_often() {
-        assert_eq!(Verdict::of(&[1.015, 1.015, 1.015]), Verdict::Warn);
-        assert_eq!(Verdict::of(&[1.01]), Verdict::Warn);
+        assert_eq!(WorkloadVerdict::of(&[1.015, 1.015, 1.015]), WorkloadVerdict::Warn);
+        assert_eq!(WorkloadVerdict::of(&[1.01]), WorkloadVerdict::Warn);
     }
 
     #[test]
     fn faster_or_the_same_passes() {
-        assert_eq!(Verdict::of(&[1.009]), Verdict::Pass);
-        assert_eq!(Verdict::of(&[0.5, 0.5]), Verdict::Pass);
+        assert_eq!(WorkloadVerdict::of(&[1.009]), WorkloadVerdict::Pass);
+        assert_eq!(WorkloadVerdict::of(&[0.5, 0.5]), WorkloadVerdict::Pass);
     }
 
     #[test]
     fn a_nan_passes_nothing() {
-        assert_eq!(Verdict::of(&[f64::NAN]), Verdict::Warn);
-        assert_eq!(Verdict::of(&[f64::NAN, f64::NAN]), Verdict::Fail);
+        assert_eq!(WorkloadVerdict::of(&[f64::NAN]), WorkloadVerdict::Warn);
+        assert_eq!(WorkloadVerdict::of(&[f64::NAN, f64::NAN]), WorkloadVerdict::Fail);
         assert!(is_doubtful(f64::NAN) && is_doubtful(1.02) && !is_doubtful(1.0199));
     }
 }

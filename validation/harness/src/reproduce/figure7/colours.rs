@@ -5,7 +5,7 @@
 //! inherits the colours; where two lead to the same, those of its own kind and period, else those
 //! that come first.
 
-use super::frame::{Frame, Place};
+use super::frame::{ColourPlace, Frame};
 use crate::engine::Failure;
 use crate::reproduce::attractors::start;
 use crate::reproduce::paper::attractors_model;
@@ -13,7 +13,7 @@ use percuss::Parameter;
 use percuss::dynamics::diagram::{Diagram, Follow};
 
 /// The paper's orange on yellow, for the strange attractor; the others follow.
-const STRANGE: Place = 0;
+const STRANGE: ColourPlace = 0;
 
 /// Steps of the frequency from frame to frame, and forcing periods in each.
 const STEPS: u32 = 200;
@@ -22,8 +22,8 @@ const PERIODS: u64 = 400;
 const NEAR: f64 = 0.02;
 
 /// Colours of every frame's attractors, in their order.
-pub(super) fn through(frames: &[Frame]) -> Result<Vec<Vec<Place>>, Failure> {
-    let mut all: Vec<Vec<Place>> = Vec::new();
+pub(super) fn through(frames: &[Frame]) -> Result<Vec<Vec<ColourPlace>>, Failure> {
+    let mut all: Vec<Vec<ColourPlace>> = Vec::new();
     let mut used = 0;
     for (k, frame) in frames.iter().enumerate() {
         let inherited = match (k.checked_sub(1).map(|last| &frames[last]), all.last()) {
@@ -47,10 +47,10 @@ pub(super) fn through(frames: &[Frame]) -> Result<Vec<Vec<Place>>, Failure> {
 /// The colours that attractors of a frame have from the one before.
 fn inherited(
     last: &Frame,
-    colours: &[Place],
+    colours: &[ColourPlace],
     frame: &Frame,
-) -> Result<Vec<Option<Place>>, Failure> {
-    let mut heirs: Vec<Option<(bool, Place)>> = vec![None; frame.attractors.len()];
+) -> Result<Vec<Option<ColourPlace>>, Failure> {
+    let mut heirs: Vec<Option<(bool, ColourPlace)>> = vec![None; frame.attractors.len()];
     for (attractor, pair) in last.attractors.iter().zip(colours) {
         let Some(first) = attractor.points.first() else { continue };
         let Some(heir) = carried(last.omega, *first, frame)? else { continue };

@@ -6,21 +6,21 @@ use crate::picture::RGBColor;
 use crate::picture::{Layer, Plot, Raster, basin_colours};
 use crate::reproduce::attractors::{TRANSIENT, WINDOW, described, grid, map};
 use crate::reproduce::integrated::{NAME, strobes};
-use crate::reproduce::work::Work;
+use crate::reproduce::work::ItemWork;
 use percuss::dynamics::attractor::{Attractor, Basins, Label};
 use percuss::dynamics::orbit::Orbit;
 use serde::{Deserialize, Serialize};
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// The place of an attractor's colours among those of basin pictures.
-pub(super) type Place = usize;
+pub(super) type ColourPlace = usize;
 
 /// Attractors and labels, as they are kept when work is interrupted.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Frame {
     pub omega: f64,
     cells: u32,
-    pub attractors: Vec<Kept>,
+    pub attractors: Vec<KeptAttractor>,
     /// The share of starts of which it is not known where they lead.
     pub unresolved: String,
     /// The number of a start's label ([`Label::number`]), rows from the lowest y on.
@@ -29,7 +29,7 @@ pub(super) struct Frame {
 
 /// What is kept of an attractor.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(super) struct Kept {
+pub(super) struct KeptAttractor {
     pub kind: String,
     pub period: Option<u32>,
     pub said: String,
@@ -46,7 +46,7 @@ const UNRESOLVED: RGBColor = RGBColor(150, 150, 150);
 impl Frame {
     /// Takes a frame from an interrupted run, or computes and keeps it.
     pub(super) fn kept(
-        work: &Work<'_>,
+        work: &ItemWork<'_>,
         letter: &str,
         omega: f64,
         cells: u32,
@@ -61,7 +61,7 @@ impl Frame {
         Ok(frame)
     }
 
-    fn computed(work: &Work<'_>, omega: f64, cells: u32) -> Result<Self, Failure> {
+    fn computed(work: &ItemWork<'_>, omega: f64, cells: u32) -> Result<Self, Failure> {
         let (done, all) = (AtomicU64::new(0), u64::from(cells) * u64::from(cells));
         let seen = |more: u64| {
             let before = done.fetch_add(more, Ordering::Relaxed);
@@ -73,7 +73,7 @@ impl Frame {
         let error = |label| 100.0 * basins.fraction_error(label);
         let kept = |(place, it): (usize, &Attractor)| {
             let label = Label::Attractor(place);
-            Kept {
+            KeptAttractor {
                 kind: it.kind.as_str().to_owned(),
                 period: it.period(),
                 said: described(it),
@@ -121,7 +121,7 @@ impl Frame {
     }
 
     /// The basins with their attractors.
-    pub(super) fn plot(&self, title: &str, colours: &[Place]) -> Plot {
+    pub(super) fn plot(&self, title: &str, colours: &[ColourPlace]) -> Plot {
         let colour = |label: &i32| {
             usize::try_from(*label)
                 .ok()

@@ -5,14 +5,14 @@ mod frame;
 
 use super::Item;
 use super::attractors::{described, found};
-use super::claim::{Claim, Verdict};
+use super::claim::{Claim, ClaimVerdict};
 use super::paper::{Printed, attractors_model};
-use super::work::{Findings, Size, Work};
+use super::work::{Findings, ItemWork, Size};
 use crate::engine::Failure;
 use crate::picture::{Figure, caption, caption_without};
 use frame::Frame;
 use percuss::Parameter;
-use percuss::dynamics::attractor::Kind;
+use percuss::dynamics::attractor::AttractorKind;
 
 /// Cells along a side.
 const CELLS: u32 = 300;
@@ -51,7 +51,7 @@ pub(super) const ITEM: Item = Item {
     run,
 };
 
-fn run(work: &Work<'_>) -> Result<Findings, Failure> {
+fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let cells = match work.size {
         Size::Default => CELLS,
         Size::Full => CELLS_FULL,
@@ -63,7 +63,7 @@ fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     let mut all_agree = true;
     for ((frame, colours), (letter, _, census)) in frames.iter().zip(&colours).zip(FRAMES) {
         let claims = settle(work, frame, &format!("fig7{letter}"), census)?;
-        all_agree &= claims[0].verdict == Verdict::Reproduced;
+        all_agree &= claims[0].verdict == ClaimVerdict::Reproduced;
         findings.claims.extend(claims);
         let sheet = sheet(letter, Some(frame.omega), vec![frame.plot("", colours)], cells, 1);
         findings.picture(&format!("figure-7{letter}"), &sheet)?;
@@ -81,7 +81,7 @@ fn run(work: &Work<'_>) -> Result<Findings, Failure> {
         Claim::settle(
             &work.paper,
             "fig7a-f",
-            Verdict::of(all_agree),
+            ClaimVerdict::of(all_agree),
             format!("number of attractors at {}", said.join(", ")),
         )?
         .note(format!(
@@ -95,7 +95,7 @@ fn run(work: &Work<'_>) -> Result<Findings, Failure> {
 
 /// How many attractors a frame has, and which.
 fn settle(
-    work: &Work<'_>,
+    work: &ItemWork<'_>,
     frame: &Frame,
     figure: &str,
     census: &str,
@@ -108,7 +108,7 @@ fn settle(
     let first = Claim::settle(
         &work.paper,
         figure,
-        Verdict::of(printed.attractors == Some(count)),
+        ClaimVerdict::of(printed.attractors == Some(count)),
         computed,
     )?
     .evidence("shares of the starts", shares.as_str());
@@ -118,7 +118,7 @@ fn settle(
     let mut second = Claim::settle(
         &work.paper,
         census,
-        Verdict::of(agrees(frame, printed)),
+        ClaimVerdict::of(agrees(frame, printed)),
         frame.attractors.iter().map(|it| it.said.clone()).collect::<Vec<_>>().join("; "),
     )?
     .evidence("every start of the frame followed; orbits by Newton with multipliers, chaos by a positive exponent", shares)
@@ -136,7 +136,8 @@ fn settle(
 fn census(frame: &Frame) -> (Vec<u32>, usize) {
     let mut periods: Vec<_> = frame.attractors.iter().filter_map(|it| it.period).collect();
     periods.sort_unstable();
-    let chaotic = frame.attractors.iter().filter(|it| it.kind == Kind::Chaotic.as_str()).count();
+    let chaotic =
+        frame.attractors.iter().filter(|it| it.kind == AttractorKind::Chaotic.as_str()).count();
     (periods, chaotic)
 }
 

@@ -1,22 +1,26 @@
 //! Fig. 3: the phase plane of the motion of Table 1, and the zoom of its stick-slip part.
 
-use super::super::claim::{Claim, Verdict};
+use super::super::claim::{Claim, ClaimVerdict};
 use super::super::curve;
 use super::super::paper::TABLE_1_UNIT;
-use super::super::work::Work;
-use super::Told;
+use super::super::work::ItemWork;
+use super::Table1Run;
 use crate::engine::Failure;
-use crate::picture::{Figure, INK, Layer, Piece, Plot, Window, caption};
+use crate::picture::{Figure, INK, Layer, MotionPiece, Plot, PlotWindow, caption};
 use percuss::Phase;
 
 /// The zoom: where the slider is met, compressed and left.
-const ZOOM: Window = [(-0.1, 1.15), (-2.0, 6.2)];
+const ZOOM: PlotWindow = [(-0.1, 1.15), (-2.0, 6.2)];
 
 /// Rounding of y in progression, in units of eps and of the largest y: it is a sum of four terms,
 /// none larger than twice that, and zero where the phase ends.
 const ROUNDINGS: f64 = 8.0;
 
-pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<Claim, Failure> {
+pub(super) fn settle(
+    work: &ItemWork<'_>,
+    told: &Table1Run,
+    pieces: &[MotionPiece],
+) -> Result<Claim, Failure> {
     let g = told.parameters().g;
     let of = |phase: Phase| pieces.iter().filter(move |piece| piece.phase == phase);
     let points = |phase: Phase| of(phase).flat_map(|piece| &piece.points);
@@ -38,7 +42,7 @@ pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<C
         (lowest / TABLE_1_UNIT).round() * TABLE_1_UNIT + 0.0,
         100.0 * share
     );
-    Ok(Claim::settle(&work.paper, "fig3", Verdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "fig3", ClaimVerdict::of(holds), computed)?
         .note("drawn over rows 1 to 9 of Table 1, as the paper does")
         .evidence("exact solver, every phase sampled", "figures-3-4.csv")
         .evidence(
@@ -66,7 +70,7 @@ fn labelled(points: &[[f64; 2]], i: usize) -> Vec<Layer> {
     layers
 }
 
-pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Figure {
+pub(super) fn sheet(told: &Table1Run, pieces: &[MotionPiece]) -> Figure {
     let plane = |at: &[f64; 5]| [at[1], at[2]];
     let mut whole = curve::lines(pieces, plane);
     whole.push(curve::key());
@@ -77,7 +81,7 @@ pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Figure {
         .collect();
     let numbered = (0..at.len()).flat_map(|i| labelled(&at, i));
     zoom.extend(numbered);
-    let plot = |title: &str, window: Option<Window>, layers: Vec<Layer>| Plot {
+    let plot = |title: &str, window: Option<PlotWindow>, layers: Vec<Layer>| Plot {
         title: title.to_owned(),
         axes: ["p".to_owned(), "y".to_owned()],
         window,

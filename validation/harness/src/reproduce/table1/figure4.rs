@@ -1,11 +1,11 @@
 //! Fig. 4: the progression over Table 1, by Eqs. (19) and (20) with the sign that Eq. (20) needs.
 
-use super::super::claim::{Claim, Verdict};
+use super::super::claim::{Claim, ClaimVerdict};
 use super::super::curve;
-use super::super::work::Work;
-use super::Told;
+use super::super::work::ItemWork;
+use super::Table1Run;
 use crate::engine::Failure;
-use crate::picture::{Figure, Piece, Plot, caption};
+use crate::picture::{Figure, MotionPiece, Plot, caption};
 use percuss::{Parameters, Phase};
 
 /// Eq. (20) from a row of the table, `d` later; `sign` is that of its exponential term.
@@ -23,7 +23,11 @@ fn equation_20(parameters: &Parameters, row: [f64; 3], d: f64, sign: f64) -> f64
 /// error of half a unit in tau0 and y0 times it.
 const FROM_PRINTED_ROWS: f64 = 1e-4;
 
-pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<Claim, Failure> {
+pub(super) fn settle(
+    work: &ItemWork<'_>,
+    told: &Table1Run,
+    pieces: &[MotionPiece],
+) -> Result<Claim, Failure> {
     let printed = &work.paper.table1;
     let (mut worst, mut jump) = (0.0_f64, 0.0_f64);
     let mut gains = Vec::new();
@@ -47,7 +51,7 @@ pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<C
         "v rises by {} in the progressions of Table 1, {total:.4} together, and is level between",
         gains.join(" and ")
     );
-    Ok(Claim::settle(&work.paper, "fig4", Verdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "fig4", ClaimVerdict::of(holds), computed)?
         .note(format!(
             "Eq. (20) needs - (p0 - g - 1) exp(...): as printed, with +, v would jump by up to {jump:.4} where progression begins"
         ))
@@ -55,7 +59,7 @@ pub(super) fn settle(work: &Work<'_>, told: &Told, pieces: &[Piece]) -> Result<C
         .evidence("Eq. (20) as printed", format!("v(tau0) is off v0 by {jump:.4}")))
 }
 
-pub(super) fn sheet(told: &Told, pieces: &[Piece]) -> Figure {
+pub(super) fn sheet(told: &Table1Run, pieces: &[MotionPiece]) -> Figure {
     let start = told.segments[0].entry().v();
     let mut layers = curve::lines(pieces, |at| [at[0], at[4] - start]);
     layers.push(curve::key());

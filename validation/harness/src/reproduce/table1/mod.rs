@@ -3,12 +3,12 @@
 mod figure3;
 mod figure4;
 
-use super::claim::{Claim, Verdict};
+use super::claim::{Claim, ClaimVerdict};
 use super::curve::{self, HEADER};
 use super::paper::{PrintedRow, TABLE_1_UNIT, table_1_model};
-use super::work::{Findings, Work, from_rest};
+use super::work::{Findings, ItemWork, from_rest};
 use crate::engine::Failure;
-use crate::picture::Piece;
+use crate::picture::MotionPiece;
 use percuss::dynamics::orbit::Orbit;
 use percuss::dynamics::strobe::StrobeMap;
 use percuss::{Entry, Instant, Model, Parameters, Segment};
@@ -21,7 +21,7 @@ const POINTS: f64 = 4000.0;
 const SETTLED: u64 = 2000;
 
 /// The run from rest, with the part that Table 1 tells.
-struct Told {
+struct Table1Run {
     model: Model,
     rest: Entry,
     /// The phases whose beginnings are the table's rows.
@@ -30,7 +30,7 @@ struct Told {
     end: Instant,
 }
 
-impl Told {
+impl Table1Run {
     fn new(rows: &[PrintedRow]) -> Result<Self, Failure> {
         let parameters = table_1_model();
         let (model, rest) = from_rest(parameters)?;
@@ -55,14 +55,14 @@ impl Told {
     }
 
     /// The phases between the first row and the last.
-    fn pieces(&self) -> Vec<Piece> {
+    fn pieces(&self) -> Vec<MotionPiece> {
         let segments = &self.segments[..self.segments.len() - 1];
         curve::pieces(segments, &self.end, self.parameters().omega, POINTS)
     }
 }
 
-pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
-    let told = Told::new(&work.paper.table1)?;
+pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
+    let told = Table1Run::new(&work.paper.table1)?;
     let pieces = told.pieces();
     let orbit = settled_orbit(&told)?;
     let mut findings = Findings::default();
@@ -78,7 +78,7 @@ pub(super) fn run(work: &Work<'_>) -> Result<Findings, Failure> {
     Ok(findings)
 }
 
-fn table(told: &Told) -> impl Iterator<Item = Vec<String>> {
+fn table(told: &Table1Run) -> impl Iterator<Item = Vec<String>> {
     told.segments.iter().enumerate().map(|(row, segment)| {
         let [p, y, q] = segment.entry().point();
         let numbers = [told.tau(row), p, y, q].map(|number| number.to_string());
@@ -86,7 +86,7 @@ fn table(told: &Told) -> impl Iterator<Item = Vec<String>> {
     })
 }
 
-fn rows(work: &Work<'_>, told: &Told) -> Result<Claim, Failure> {
+fn rows(work: &ItemWork<'_>, told: &Table1Run) -> Result<Claim, Failure> {
     let printed = &work.paper.table1;
     let phases = told
         .segments
@@ -113,13 +113,13 @@ fn rows(work: &Work<'_>, told: &Told) -> Result<Claim, Failure> {
         told.segments.len(),
         differences.len()
     );
-    Ok(Claim::settle(&work.paper, "table1", Verdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "table1", ClaimVerdict::of(holds), computed)?
         .note("found by following the motion from rest at tau = 0 through 18 forcing periods; within one unit of the last printed digit")
         .evidence("exact solver from rest", "table-1.csv"))
 }
 
 /// The orbit that the motion settles on.
-fn settled_orbit(told: &Told) -> Result<Orbit, Failure> {
+fn settled_orbit(told: &Table1Run) -> Result<Orbit, Failure> {
     let map = StrobeMap::new(told.model, told.rest.instant);
     let settled = map.strobes(told.rest, SETTLED).last();
     let settled = settled.ok_or_else(|| Failure::new("the run has no strobes"))?;
@@ -133,7 +133,7 @@ fn phases(orbit: &Orbit) -> usize {
     orbit.phases.len() - usize::from(cut)
 }
 
-fn period(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure> {
+fn period(work: &ItemWork<'_>, told: &Table1Run, orbit: &Orbit) -> Result<Claim, Failure> {
     let printed = work.paper.claim("table1-period")?;
     let holds = printed.periods == [orbit.period()] && orbit.is_stable();
     let computed = format!(
@@ -146,7 +146,7 @@ fn period(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure>
     let multipliers: Vec<_> =
         orbit.multipliers.iter().map(|[re, im]| format!("{re:.6e}{im:+.1e}i")).collect();
     let point = orbit.points[0];
-    Ok(Claim::settle(&work.paper, "table1-period", Verdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "table1-period", ClaimVerdict::of(holds), computed)?
         .note("looked for as an orbit of twelve forcing periods: its least period is what is told")
         .evidence(
             format!("{SETTLED} forcing periods from rest, then Newton on the exact strobe map"),
@@ -156,7 +156,7 @@ fn period(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure>
         .evidence("parameters", crate::picture::caption(told.parameters())))
 }
 
-fn closed(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure> {
+fn closed(work: &ItemWork<'_>, told: &Table1Run, orbit: &Orbit) -> Result<Claim, Failure> {
     let printed = &work.paper.table1;
     let whole = f64::from(orbit.period()) * told.model.period();
     let last = told.segments.len() - 1;
@@ -169,7 +169,7 @@ fn closed(work: &Work<'_>, told: &Told, orbit: &Orbit) -> Result<Claim, Failure>
         apart[0],
         told.segments[0].entry().state.y - told.segments[last].entry().state.y
     );
-    Ok(Claim::settle(&work.paper, "table1-closed", Verdict::of(holds), computed)?
+    Ok(Claim::settle(&work.paper, "table1-closed", ClaimVerdict::of(holds), computed)?
         .note("the printed rows say so themselves; the orbit that the motion settles on later does close after T")
         .evidence("the printed rows", format!("{theirs:.5} apart, {:.5} more than T", apart[1]))
         .evidence(

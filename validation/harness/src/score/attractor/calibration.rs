@@ -11,9 +11,9 @@
 //! measure no lower one.
 
 use super::distance::{Distances, STATISTICS, distances};
-use super::limits::{Calibrated, Plan};
-use super::runs::{Kind, exact_section, reference};
-use super::section::Section;
+use super::limits::{Calibrated, ComparisonPlan};
+use super::runs::{RunKind, exact_section, reference};
+use super::section::RunSection;
 use crate::case::Case;
 use crate::engine::Failure;
 use rayon::prelude::*;
@@ -43,15 +43,15 @@ pub struct Calibration {
 ///
 /// # Errors
 /// The solver's reason where it refuses a run.
-pub fn calibrate(case: &Case, plan: Plan, runs: u32) -> Result<Calibration, Failure> {
+pub fn calibrate(case: &Case, plan: ComparisonPlan, runs: u32) -> Result<Calibration, Failure> {
     let reference = reference(case, &plan)?;
     let null = |number| {
-        let run = exact_section(case, case.parameters, &plan, Kind::Calibration, number)?;
+        let run = exact_section(case, case.parameters, &plan, RunKind::Calibration, number)?;
         Ok(Null::of(&run, &reference))
     };
     let nulls: Result<Vec<Null>, Failure> = (0..runs).into_par_iter().map(null).collect();
     let nulls = nulls?;
-    let scales = STATISTICS.map(|name| Scale::of(name, &plan, &nulls));
+    let scales = STATISTICS.map(|name| DistanceScale::of(name, &plan, &nulls));
     let all =
         nulls.iter().flat_map(|null| scales.iter().map(|it| (it.standardized(null), it.name)));
     let farthest = all.fold((0.0, ""), |most, it| if it.0 > most.0 { it } else { most });
@@ -68,7 +68,7 @@ struct Null {
 }
 
 impl Null {
-    fn of(section: &Section, reference: &Section) -> Self {
+    fn of(section: &RunSection, reference: &RunSection) -> Self {
         let signed = BTreeMap::from([
             ("lyapunov", section.lyapunov - reference.lyapunov),
             ("drift", section.drift - reference.drift),
@@ -83,7 +83,7 @@ impl Null {
 }
 
 /// What makes a distance comparable with the others.
-struct Scale {
+struct DistanceScale {
     name: &'static str,
     is_signed: bool,
     mean: f64,
@@ -91,8 +91,8 @@ struct Scale {
     floor: f64,
 }
 
-impl Scale {
-    fn of(name: &'static str, plan: &Plan, nulls: &[Null]) -> Self {
+impl DistanceScale {
+    fn of(name: &'static str, plan: &ComparisonPlan, nulls: &[Null]) -> Self {
         let is_signed = nulls.iter().any(|null| null.signed.contains_key(name));
         let is_share = name.starts_with("ks") || name.ends_with("share") || name == "phase_words";
         let floor = if is_share { ODD_PERIODS / f64::from(plan.periods) } else { SMALLEST };
@@ -135,7 +135,8 @@ fn moments(values: impl Iterator<Item = f64> + Clone) -> (f64, f64) {
 mod tests {
     use super::*;
 
-    const PLAN: Plan = Plan { transient: 0, periods: 1_000_000, reference_periods: 1 };
+    const PLAN: ComparisonPlan =
+        ComparisonPlan { transient: 0, periods: 1_000_000, reference_periods: 1 };
 
     fn nulls(name: &'static str, values: &[f64], signed: bool) -> Vec<Null> {
         let null = |value: &f64| Null {
@@ -147,7 +148,7 @@ mod tests {
 
     #[test]
     fn drift_and_exponent_differ_with_their_signs() {
-        let section = |drift: f64, lyapunov: f64| Section {
+        let section = |drift: f64, lyapunov: f64| RunSection {
             points: vec![[0.0; 3]; 3],
             words: BTreeMap::new(),
             drift,
@@ -164,7 +165,8 @@ mod tests {
     #[test]
     fn a_run_so_many_deviations_off_has_the_limit_of_so_many() {
         let logarithms = [1.0_f64, 2.0, 3.0].map(f64::exp);
-        let scale = Scale::of("wasserstein_p", &PLAN, &nulls("wasserstein_p", &logarithms, false));
+        let scale =
+            DistanceScale::of("wasserstein_p", &PLAN, &nulls("wasserstein_p", &logarithms, false));
         for z in [-1.5, 0.5, 4.0_f64] {
             let value = (2.0 + z).exp();
             let null = &nulls("wasserstein_p", &[value], false)[0];
@@ -173,7 +175,7 @@ mod tests {
         }
         for sign in [1.0, -1.0] {
             let differences = [0.1, 0.2, 0.3].map(|value| sign * value);
-            let scale = Scale::of("drift", &PLAN, &nulls("drift", &differences, true));
+            let scale = DistanceScale::of("drift", &PLAN, &nulls("drift", &differences, true));
             for z in [0.5, 3.0] {
                 let value = 0.2 + 0.1 * z;
                 let null = &nulls("drift", &[sign * value], true)[0];
@@ -186,8 +188,8 @@ mod tests {
     #[test]
     fn the_floor_forgives_what_is_below_it() {
         let values = [1e-3_f64, 2e-3, 3e-3];
-        let coarse = Plan { periods: 100, ..PLAN };
-        let scale = Scale::of("ks_p", &coarse, &nulls("ks_p", &values, false));
+        let coarse = ComparisonPlan { periods: 100, ..PLAN };
+        let scale = DistanceScale::of("ks_p", &coarse, &nulls("ks_p", &values, false));
         assert_eq!(scale.floor, ODD_PERIODS / 100.0);
         assert_eq!(scale.standardized(&nulls("ks_p", &[scale.floor], false)[0]), 0.0);
         assert_eq!(scale.limit(0.0), scale.floor);

@@ -3,7 +3,7 @@
 use super::distance::{Distances, distances};
 use super::limits::Calibrated;
 use super::runs::{reference, section};
-use super::section::Section;
+use super::section::RunSection;
 use crate::case::Case;
 use crate::engine::{Accuracy, Engine, Failure, Limits};
 
@@ -12,7 +12,7 @@ pub struct AttractorTest {
     /// Plan and limits.
     pub calibrated: Calibrated,
     /// What sections are compared with.
-    pub reference: Section,
+    pub reference: RunSection,
 }
 
 /// How far an engine's section is from the reference.

@@ -1,6 +1,6 @@
 //! Distances between two sections, and of a section from the exact map.
 
-use super::section::{SERIES, Section};
+use super::section::{RunSection, SERIES};
 use crate::score::SCORED_ERROR;
 use crate::score::statistics::Spread;
 use std::collections::{BTreeMap, BTreeSet};
@@ -48,7 +48,7 @@ pub fn is_sampled(name: &str) -> bool {
 /// words, differences of exponent and drift per period; median and share of large values among the
 /// errors of single periods.
 #[must_use]
-pub fn distances(section: &Section, reference: &Section) -> Distances {
+pub fn distances(section: &RunSection, reference: &RunSection) -> Distances {
     let mut result = Distances::new();
     let pairs = section.sorted.iter().zip(&reference.sorted);
     for (k, (ours, theirs)) in pairs.enumerate() {
@@ -162,20 +162,20 @@ mod tests {
         };
         let words =
             |share: f64| BTreeMap::from([("cn".to_owned(), share), ("n".to_owned(), 1.0 - share)]);
-        let reference = Section {
+        let reference = RunSection {
             sorted: sorted(0.0),
             words: words(0.5),
             lyapunov: 0.1,
             drift: 0.01,
-            ..Section::default()
+            ..RunSection::default()
         };
-        let section = Section {
+        let section = RunSection {
             sorted: sorted(1.0),
             words: words(0.75),
             lyapunov: -0.2,
             drift: 0.03,
             map_errors: vec![1.0, 2e-9, 5e-9, 2.0 * SCORED_ERROR, 0.5 * SCORED_ERROR],
-            ..Section::default()
+            ..RunSection::default()
         };
         let mut expected = Distances::new();
         for k in 0..SERIES {

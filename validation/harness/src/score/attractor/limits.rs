@@ -9,7 +9,7 @@ const FILE: &str = include_str!("../../../attractors.toml");
 /// How the comparison of a case is made.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
-pub struct Plan {
+pub struct ComparisonPlan {
     /// Forcing periods that are left out.
     pub transient: u32,
     /// Forcing periods of an engine's section.
@@ -25,14 +25,14 @@ pub struct Calibrated {
     /// The case.
     pub case: String,
     /// How the runs are made.
-    pub plan: Plan,
+    pub plan: ComparisonPlan,
     /// The limit of each distance.
     pub limits: BTreeMap<String, f64>,
 }
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct LimitsFile {
     attractors: Vec<Calibrated>,
 }
 
@@ -41,7 +41,7 @@ struct File {
 /// # Errors
 /// [`FileError`]; a test shows that there is none.
 pub fn calibrated() -> Result<Vec<Calibrated>, FileError> {
-    let file: File = toml::from_str(FILE)
+    let file: LimitsFile = toml::from_str(FILE)
         .map_err(|error| FileError(format!("attractors.toml: {}", error.message())))?;
     Ok(file.attractors)
 }

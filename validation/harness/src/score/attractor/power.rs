@@ -2,7 +2,7 @@
 
 use super::comparison::AttractorTest;
 use super::distance::{distances, is_sampled};
-use super::runs::{Kind, exact_section};
+use super::runs::{RunKind, exact_section};
 use crate::case::Case;
 use crate::engine::Failure;
 use percuss::Parameters;
@@ -87,7 +87,7 @@ impl AttractorTest {
     /// # Errors
     /// The solver's reason where it refuses a run.
     pub fn false_alarms(&self, case: &Case, runs: u32) -> Result<Alarms, Failure> {
-        self.alarms(case, case.parameters, Kind::Fresh, runs)
+        self.alarms(case, case.parameters, RunKind::Fresh, runs)
     }
 
     /// Alarms on so many runs with a parameter that is changed.
@@ -101,14 +101,14 @@ impl AttractorTest {
         relative: f64,
         runs: u32,
     ) -> Result<Alarms, Failure> {
-        self.alarms(case, changed.by(relative, case.parameters), Kind::Changed, runs)
+        self.alarms(case, changed.by(relative, case.parameters), RunKind::Changed, runs)
     }
 
     fn alarms(
         &self,
         case: &Case,
         parameters: Parameters,
-        kind: Kind,
+        kind: RunKind,
         runs: u32,
     ) -> Result<Alarms, Failure> {
         let plan = &self.calibrated.plan;

@@ -1,14 +1,14 @@
 //! The long runs that the test compares: an engine's, and the exact solver's from many starts.
 
-use super::limits::Plan;
-use super::section::{Section, run_of};
+use super::limits::ComparisonPlan;
+use super::section::{RunSection, run_of};
 use crate::case::Case;
 use crate::engine::{self, Accuracy, Engine, Failure, Limits};
 use percuss::{Parameters, Start};
 
 /// Which runs of the exact solver: no two kinds share a start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum RunKind {
     /// Those that limits are measured by.
     Calibration,
     /// Those that the rate of false alarms is measured by.
@@ -17,7 +17,7 @@ pub enum Kind {
     Changed,
 }
 
-impl Kind {
+impl RunKind {
     /// The place of the kind's first start, beyond any number of runs of the kind before it.
     const fn first(self) -> u32 {
         match self {
@@ -41,43 +41,48 @@ const STRIDE: f64 = 1e-9;
 pub(super) fn exact_section(
     case: &Case,
     parameters: Parameters,
-    plan: &Plan,
-    kind: Kind,
+    plan: &ComparisonPlan,
+    kind: RunKind,
     number: u32,
-) -> Result<Section, Failure> {
+) -> Result<RunSection, Failure> {
     nth_section(case, parameters, plan, kind.first() + number % MOST_RUNS)
 }
 
 /// The reference section of a case: from its own start.
-pub(super) fn reference(case: &Case, plan: &Plan) -> Result<Section, Failure> {
-    nth_section(case, case.parameters, &Plan { periods: plan.reference_periods, ..*plan }, 0)
+pub(super) fn reference(case: &Case, plan: &ComparisonPlan) -> Result<RunSection, Failure> {
+    nth_section(
+        case,
+        case.parameters,
+        &ComparisonPlan { periods: plan.reference_periods, ..*plan },
+        0,
+    )
 }
 
 fn nth_section(
     case: &Case,
     parameters: Parameters,
-    plan: &Plan,
+    plan: &ComparisonPlan,
     place: u32,
-) -> Result<Section, Failure> {
+) -> Result<RunSection, Failure> {
     let start = Start { p: case.start.p - f64::from(place) * STRIDE, ..case.start };
     let refused = || Failure::new("the start is refused");
     let periods = plan.transient + plan.periods;
     let task = run_of(parameters, start, periods).ok_or_else(refused)?;
     let truth = run_of(case.parameters, start, periods).ok_or_else(refused)?;
     let outcome = engine::exact().run(&task, Accuracy::Exact, &Limits::default())?;
-    Section::judged(&task, &outcome, plan.transient, &truth.problem)
+    RunSection::judged(&task, &outcome, plan.transient, &truth.problem)
 }
 
 /// The section of one engine's run.
 pub(super) fn section(
     engine: &dyn Engine,
     case: &Case,
-    plan: &Plan,
+    plan: &ComparisonPlan,
     accuracy: Accuracy,
     limits: &Limits,
-) -> Result<Section, Failure> {
+) -> Result<RunSection, Failure> {
     let task = run_of(case.parameters, case.start, plan.transient + plan.periods)
         .ok_or_else(|| Failure::new("the start is refused"))?;
     let outcome = engine.run(&task, accuracy, limits)?;
-    Section::of(&task, &outcome, plan.transient)
+    RunSection::of(&task, &outcome, plan.transient)
 }

@@ -2,7 +2,7 @@
 //! periods are from the exact map's.
 
 use crate::case::{Given, Problem};
-use crate::engine::{Event, Failure, Grid, Outcome, Task};
+use crate::engine::{Event, Failure, Outcome, SampleGrid, Task};
 use percuss::dynamics::linear::apply;
 use percuss::dynamics::strobe::{Passage, StrobeMap};
 use percuss::{Parameters, Phase, Start};
@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 
 /// The section of a run after its transient.
 #[derive(Clone, Debug, Default)]
-pub struct Section {
+pub struct RunSection {
     /// p, y and q at successive strobes.
     pub points: Vec<[f64; 3]>,
     /// How often each sequence of phases begins within a forcing period, as shares.
@@ -34,11 +34,11 @@ pub fn run_of(parameters: Parameters, start: Start, periods: u32) -> Option<Task
     let problem = Given { parameters, start, ..Given::default() }.check().ok()?;
     let Problem { entry, .. } = problem;
     let horizon = entry.instant.after_periods(u64::from(periods), 1);
-    let grid = Grid { per_period: 1, count: periods as usize + 1 };
+    let grid = SampleGrid { per_period: 1, count: periods as usize + 1 };
     Some(Task::until(parameters, problem, horizon, grid))
 }
 
-impl Section {
+impl RunSection {
     /// The section of a run of [`run_of`], without its first `transient` periods.
     ///
     /// # Errors
@@ -47,7 +47,7 @@ impl Section {
         Self::judged(task, outcome, transient, &task.problem)
     }
 
-    /// Like [`Section::of`], with the exact map of another problem: the one that the run should
+    /// Like [`RunSection::of`], with the exact map of another problem: the one that the run should
     /// have solved.
     pub(super) fn judged(
         task: &Task,
