@@ -1,9 +1,11 @@
 //! A run repeated without the harness's own part, so that a bench can measure what that part takes.
 //!
-//! The run is told where its events lie. [`Search`](super::location::GuardSearch) then evaluates no
-//! guard and asks for no state inside a step, and the meter neither counts nor checks. The library
-//! takes the same steps from the same states, so that the answer is the same to the last bit;
-//! whoever times the repeated run can hold it to that.
+//! The run is told where its events lie. [`GuardSearch`] then evaluates no guard and asks for no
+//! state inside a step, and the meter neither counts nor checks. The library takes the same steps
+//! from the same states, so that the answer is the same to the last bit; whoever times the repeated
+//! run can hold it to that.
+//!
+//! [`GuardSearch`]: super::location::GuardSearch
 
 use super::Event;
 use super::location::GuardRise;

@@ -19,7 +19,7 @@ const LONGEST: usize = 32;
 
 /// How the motion is, by its strobes.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Regime {
+enum ProgressionRegime {
     Still,
     One,
     Two,
@@ -27,12 +27,12 @@ enum Regime {
     Irregular,
 }
 
-const REGIMES: [(Regime, &str, RGBColor); 5] = [
-    (Regime::Still, "no progression", RGBColor(150, 150, 150)),
-    (Regime::One, "period 1", RGBColor(0, 114, 178)),
-    (Regime::Two, "period 2", RGBColor(0, 158, 115)),
-    (Regime::Longer, "3 to 32", RGBColor(204, 121, 167)),
-    (Regime::Irregular, "irregular", RGBColor(213, 94, 0)),
+const REGIMES: [(ProgressionRegime, &str, RGBColor); 5] = [
+    (ProgressionRegime::Still, "no progression", RGBColor(150, 150, 150)),
+    (ProgressionRegime::One, "period 1", RGBColor(0, 114, 178)),
+    (ProgressionRegime::Two, "period 2", RGBColor(0, 158, 115)),
+    (ProgressionRegime::Longer, "3 to 32", RGBColor(204, 121, 167)),
+    (ProgressionRegime::Irregular, "irregular", RGBColor(213, 94, 0)),
 ];
 
 /// A diagram of the rate.
@@ -79,13 +79,13 @@ fn period(step: &DiagramStep) -> Option<usize> {
     (1..=LONGEST.min(step.points.len().saturating_sub(1))).find(repeats)
 }
 
-fn regime(step: &DiagramStep) -> Regime {
+fn regime(step: &DiagramStep) -> ProgressionRegime {
     match period(step) {
-        _ if step.drift_per_period == 0.0 => Regime::Still,
-        Some(1) => Regime::One,
-        Some(2) => Regime::Two,
-        Some(_) => Regime::Longer,
-        None => Regime::Irregular,
+        _ if step.drift_per_period == 0.0 => ProgressionRegime::Still,
+        Some(1) => ProgressionRegime::One,
+        Some(2) => ProgressionRegime::Two,
+        Some(_) => ProgressionRegime::Longer,
+        None => ProgressionRegime::Irregular,
     }
 }
 
@@ -114,7 +114,7 @@ impl Rate {
     fn sheet(&self, steps: &[DiagramStep]) -> Figure {
         let axis = |label: &str| [self.label.to_owned(), label.to_owned()];
         let dots = |of: &dyn Fn(&DiagramStep) -> Vec<[f64; 2]>, size: f64| -> Vec<Layer> {
-            let layer = |(kind, _, colour): &(Regime, &str, RGBColor)| Layer::Dots {
+            let layer = |(kind, _, colour): &(ProgressionRegime, &str, RGBColor)| Layer::Dots {
                 points: steps.iter().filter(|step| regime(step) == *kind).flat_map(of).collect(),
                 colour: *colour,
                 size,
@@ -122,7 +122,7 @@ impl Rate {
             REGIMES.iter().map(layer).collect()
         };
         let mut rate = dots(&|step| vec![[step.value, self.per_time(step)]], 2.4);
-        let key = |(_, name, colour): &(Regime, &str, RGBColor)| KeyEntry {
+        let key = |(_, name, colour): &(ProgressionRegime, &str, RGBColor)| KeyEntry {
             name: (*name).to_owned(),
             colour: *colour,
             stroke: None,

@@ -1,13 +1,13 @@
 //! ode_solvers, whose methods locate no events: what its engines have in common.
 //!
 //! - Each runs at most one forcing period of one phase at a time; `solout` stops it at the end of a
-//!   step that leaves the phase, and the harness locates the switch ([`Search`]).
+//!   step that leaves the phase, and the harness locates the switch ([`GuardSearch`]).
 //! - Steps are at most an eighth of a forcing period, so that no step hides a whole phase.
 //! - Stiffness detection (`n_stiff`) is switched off: it gives up on light damping, where the
 //!   integration is dear but right.
 //! - Times are elapsed since the start: the library's dense output fails for negative ones.
 //!
-//! [`Search`]: super::location::GuardSearch
+//! [`GuardSearch`]: super::location::GuardSearch
 
 mod dop853;
 pub(super) mod dopri5;
