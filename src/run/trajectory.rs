@@ -148,6 +148,8 @@ impl FusedIterator for Trajectory {}
 impl Iterator for Trajectory {
     type Item = Segment;
 
+    // Inlined into its caller, so that what the caller does not use of a segment is not copied.
+    #[inline]
     fn next(&mut self) -> Option<Segment> {
         let passed = self.pass()?;
         let (begun, next) = self.last_and_next();
