@@ -3,8 +3,8 @@
 //!
 //! A mass driven by a cos(omega tau + phi) + b strikes a weightless visco-elastic slider that
 //! sticks by dry friction. In each of three phases the motion is known in closed form; this crate
-//! joins the phases at their switches, every one of which it proves to be the first, within the
-//! rounding model of the repository's docs/ROUNDING.md.
+//! joins the phases at their events, and proves of every event that no earlier crossing was passed,
+//! within the rounding model of the repository's docs/ROUNDING.md.
 //!
 //! ```
 //! use percuss::{Model, Parameters, Start};

@@ -1,4 +1,7 @@
-//! What a search allows itself, in rounding and in work: one table for the solver and the lanes.
+//! Tolerances and counts that the solver and the lanes have in common.
+//!
+//! The limits of work are in [`crate::crossing::limit`]; a bound that one certificate uses alone
+//! stands in its module.
 //!
 //! Where lanes are stricter their row stands beside the solver's, with its reason: what no lane
 //! proves is left to the scalar solver, so that a stricter row costs time and no event.
@@ -24,8 +27,8 @@ pub const REST: f64 = 1.3;
 /// Pieces in which a contact is certified before its search divides it.
 pub const PIECES: usize = 8;
 
-/// The same of the shorter pieces that lanes take where these do not prove a contact: the solver
-/// divides there.
+/// Shorter pieces that lanes take where the usual ones do not prove a contact; the solver divides
+/// there instead.
 pub const LANE_FINE_PIECES: usize = 16;
 
 /// Stretches of negative force in which a flight is certified by tangents.

@@ -12,7 +12,8 @@
 
 use crate::numeric::real::Real;
 
-/// 8! * C(8, 4): the middle Bernstein coefficient of s^4 (1 - s)^4/8!.
+/// 8! C(8, 4): the middle Bernstein coefficient of s^4 (1 - s)^4/8! is its inverse, and all others
+/// are zero.
 pub const MIDDLE: f64 = 2_822_400.0;
 
 /// Between which values a guard stays as long as its phase lasts.

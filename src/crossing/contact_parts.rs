@@ -12,7 +12,7 @@ use crate::numeric::real::Real;
 /// The trial force in parts, at some place.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactParts<T> {
-    /// When.
+    /// The time since the segment began.
     pub elapsed: T,
     /// Free part.
     pub free: T,

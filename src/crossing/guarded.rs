@@ -51,19 +51,20 @@ pub trait Guarded: Flow<f64> {
         f64::INFINITY
     }
 
-    /// Rounding room for products that underflow ([`crate::flow::constants::Constants::underflow`]).
+    /// Rounding slack for products that underflow
+    /// ([`underflow`](crate::flow::constants::Constants::underflow)).
     fn underflow(&self) -> f64;
 
     /// The guard's Taylor series at an evaluation.
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<f64, N>;
 
-    /// How far that reaches with few terms, against the fastest rate: not at all where
+    /// How far that series reaches with few terms, against the fastest rate: not at all where
     /// [`Self::continued`] takes the higher derivatives from it.
     fn short_reach(&self) -> f64 {
         SHORT_REACH
     }
 
-    /// How far it reaches with few terms, and with all.
+    /// How far the series reaches with few terms, and with all.
     fn reaches(&self) -> [f64; 2] {
         let rate = self.fastest_rate();
         [self.short_reach() / rate, REACH / rate]

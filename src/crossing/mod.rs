@@ -1,14 +1,15 @@
 //! The first crossing of a guard: guessed, evaluated, certified.
 //!
-//! A switch takes one evaluation mostly: next to the guess, from which the guard's own [`series`]
+//! Most switches take one evaluation: next to the guess, from where the guard's own [`series`]
 //! leads to the root and the state there.
 //!
 //! # Why no crossing is ever passed
 //!
-//! [`search`] walks from the start of the phase in pieces. A piece counts as done only if a
-//! [`certificate`] proves that the guard stays inside its corridor there, and a root is accepted
-//! only as the right end of a certified piece. Guesses propose where pieces end; a bad guess costs
-//! evaluations, never a crossing. A whole flight is mostly certified by [`tangents`], a whole
+//! [`search`] walks from the start of the phase in pieces. A piece is passed if a [`certificate`]
+//! proves that the guard stays inside its corridor there, if a bound on the whole future proves the
+//! same ([`slow_envelope`]), or, counted as undecidable, if rounding hides whether it does. A root
+//! is accepted only as the right end of such a piece. Guesses propose where pieces end; a bad guess
+//! costs evaluations, never a crossing. A whole flight is mostly certified by [`tangents`], a whole
 //! progression by an inequality. A long piece is certified in fixed steps from its ends
 //! ([`piecewise`], [`contact_parts`]), which need no evaluation; where a certificate fails the
 //! piece is divided; if the guard is outside at the division, an earlier crossing is bracketed and
@@ -25,7 +26,7 @@
 //! search that passes it leaves the phase undecided.
 //!
 //! [`stepping`] is the same question answered in the plainest way, by one-sided steps with a bound
-//! on the curvature. It is several times dearer and serves as the judge in the tests.
+//! on the curvature. It is several times dearer and is the reference in the tests.
 
 pub mod allowances;
 #[cfg(test)]
@@ -49,23 +50,25 @@ pub mod tangents;
 use crate::flow::Point;
 use crate::numeric::two_word::TwoWord;
 
-/// How a phase ends.
+/// What the search of a guard's first crossing has found.
 #[derive(Clone, Copy, Debug)]
 pub enum Crossing {
     /// The guard reaches a threshold.
     At(Root),
-    /// It does not before the horizon.
+    /// The guard reaches no threshold before the horizon.
     Horizon,
-    /// It never does.
+    /// The guard never reaches a threshold.
     Never,
-    /// It does not until this elapsed time, after which rounding no longer knows the guard well:
-    /// the motion is to be taken up again there ([`guarded::Guarded::stage`]).
+    /// The guard reaches none until this elapsed time, after which rounding no longer knows it
+    /// well: the motion is to be taken up again there ([`guarded::Guarded::stage`]).
     Stage(f64),
-    /// It does not until this elapsed time, and the search has taken more work than its [`limit`].
+    /// The guard reaches none until this elapsed time, and the search has exceeded its [`limit`] of
+    /// work.
     Undecided(f64),
 }
 
-/// A certified first crossing.
+/// A root of a guard, where it leaves its corridor. A search returns it as the first crossing only
+/// after a certificate; until then it is a candidate.
 #[derive(Clone, Copy, Debug)]
 pub struct Root {
     /// The motion at the crossing.

@@ -18,7 +18,7 @@ use crate::flow::steps::{FreeStep, GRIP, PULLING, PUSHING, Steps};
 /// A guard's excess in parts, at some place.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeParts {
-    /// When.
+    /// The time since the segment began.
     pub elapsed: f64,
     /// Parabola and harmonic.
     pub value: f64,

@@ -211,7 +211,8 @@ pub fn follow<G: Guarded>(
     Err(point)
 }
 
-/// The root between `left` (inside) and `right` (outside): safeguarded, ends always.
+/// The root between `left` (inside) and `right` (outside), by Newton's method with bisection as a
+/// safeguard, so that it always terminates.
 #[cold]
 pub fn bracketed<G: Guarded>(
     phase: &G,

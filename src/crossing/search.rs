@@ -48,7 +48,7 @@ pub fn first_crossing<G: Guarded>(
 
 /// A search in two stages, so that what follows an event can begin between them: it waits for the
 /// candidate's root but not for the verdict, and the processor works on both.
-pub struct Stages {
+pub struct CandidateSearch {
     left: Point<f64>,
     hint: SearchHint,
 }
@@ -56,7 +56,7 @@ pub struct Stages {
 /// Where a guess leads: to a root, which is mostly the phase's end, or in vain.
 pub type Candidate = Result<Root, Point<f64>>;
 
-impl Stages {
+impl CandidateSearch {
     /// The search of a phase whose end is guessed; without a guess the phase gives a hint.
     #[inline(always)]
     pub fn new<G: Guarded>((phase, steps): (&G, &Steps), guess: Option<f64>, horizon: f64) -> Self {

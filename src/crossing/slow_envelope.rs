@@ -15,7 +15,7 @@ use crate::numeric::remainders::decay;
 use crate::numeric::two_word::ROUNDER;
 use std::f64::consts::TAU;
 
-/// See the module's text.
+/// The envelope of a slow motion, with the symbols of the module's text.
 #[derive(Clone, Copy, Debug)]
 pub struct SlowEnvelope {
     /// c

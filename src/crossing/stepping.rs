@@ -1,10 +1,11 @@
-//! The first crossing by plain one-sided steps: the judge.
+//! The first crossing by plain one-sided steps, as a reference for tests.
 //!
 //! If a guard's excess e is negative and M bounds e'' from above from here on, no crossing lies
 //! closer than the smallest r > 0 with e + e' r + M r^2/2 = 0. Stepping by r never passes a
 //! crossing, needs no grid and no guess, and converges quadratically on a transversal crossing. It
-//! takes about nine evaluations a switch where [`crate::crossing::search`] takes one mostly, and
-//! shares with it nothing but the closed forms.
+//! takes about nine evaluations a switch where [`crate::crossing::search`] mostly takes one. It
+//! shares with that search the closed forms, the corridor and the rounding slack, but no guess, no
+//! root finder and no certificate.
 
 use crate::crossing::certificate::Corridor;
 use crate::crossing::guarded::{Guarded, slack};

@@ -26,7 +26,7 @@ use std::f64::consts::TAU;
 /// A concave function at one place.
 #[derive(Clone, Copy)]
 pub struct Tangent<T> {
-    /// Where.
+    /// The time at which the tangent touches.
     pub from: T,
     /// Value there.
     pub value: T,

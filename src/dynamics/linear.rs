@@ -6,7 +6,7 @@ pub type StrobePoint = [f64; 3];
 /// A derivative with respect to (p, y, q), row by row.
 pub type Jacobian = [[f64; 3]; 3];
 
-/// No change.
+/// The identity matrix.
 pub const IDENTITY: Jacobian = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// A complex number: real and imaginary part.
@@ -32,7 +32,7 @@ pub fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
-/// The largest sum of moduli along a row.
+/// The infinity norm: the largest sum of moduli along a row.
 #[must_use]
 pub fn norm<const N: usize>(matrix: &[[f64; N]; N]) -> f64 {
     matrix.iter().map(|row| row.iter().map(|x| x.abs()).sum()).fold(0.0, f64::max)

@@ -2,8 +2,9 @@
 //!
 //! # The third exponent
 //!
-//! An impact swallows the direction A = dp - dq, and on the slider p and q move as one: with either
-//! the last exponent is minus infinity. Only a motion in flight throughout has three finite ones.
+//! An impact annihilates the direction A = dp - dq, and on the slider p and q move as one: with
+//! either the last exponent is minus infinity. Only a motion in flight throughout has three finite
+//! ones.
 //!
 //! # The exact mean contraction
 //!
@@ -51,7 +52,8 @@ pub const BATCHES: u64 = 32;
 /// Lyapunov exponents of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Per forcing period, largest first; minus infinity where a direction is swallowed.
+    /// Per forcing period, largest first; minus infinity where an impact annihilates a
+    /// direction.
     pub exponents_per_period: [f64; 3],
     /// The standard errors of the exponents, from the scatter of the means over [`BATCHES`] batches
     /// of equal length: honest as soon as a batch is longer than the motion remembers. NaN of what

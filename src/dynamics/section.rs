@@ -11,9 +11,8 @@ use std::ops::ControlFlow;
 
 /// The strobes of one motion from some instant on: one pass over its phases, in constant memory.
 ///
-/// It has no end of its own but an undecidable phase ([`Exit::Undecidable`]), and a motion whose
-/// phase never ends is followed all the same. The phases come from a trajectory, or from an adaptor
-/// of one.
+/// The iterator ends only at an undecidable phase ([`Exit::Undecidable`]); a motion in a phase that
+/// never ends has strobes for ever. The segments come from a trajectory, or from an adaptor of one.
 #[derive(Clone, Debug)]
 pub struct Section<I = Trajectory> {
     trajectory: I,

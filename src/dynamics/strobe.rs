@@ -2,8 +2,8 @@
 //!
 //! Its points are (p, y, q) at instants with one forcing angle. The map is continuous and piecewise
 //! smooth. Its derivative is the product of the phases' derivatives and of the saltations between
-//! them; the field is continuous at f = 0 and f = 1, so only impacts have one. An impact swallows
-//! the direction A = dp - dq: the derivative of a period with any contact is singular.
+//! them; the field is continuous at f = 0 and f = 1, so only impacts have one. An impact
+//! annihilates the direction A = dp - dq: the derivative of a period with any contact is singular.
 //!
 //! # At a graze
 //!

@@ -1,4 +1,8 @@
-//! Contact without progression: Eqs. (15)-(17), for every damping ratio and through resonance.
+//! Contact without progression, Eqs. (15) to (17), for every damping ratio and through resonance.
+//!
+//! The state at entry and the fundamental solutions C and S ([`crate::flow::damped`]) stand for the
+//! paper's C1, C2, beta and delta; the complex response ([`crate::flow::forced`]) stands for its
+//! alpha and gamma.
 
 use crate::flow::complex::Complex;
 use crate::flow::constants::Constants;
@@ -57,8 +61,8 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Contact<T, C> {
     }
 }
 
-/// The guard, which counts from a threshold, with three derivatives, from its value and the velocity
-/// of the mass: y' = F - f and f' = 2 xi (F - f) + y, differentiated twice more.
+/// The guard, counted from a threshold, and its first three derivatives, from its value and the
+/// velocity of the mass: y' = F - f and f' = 2 xi (F - f) + y, differentiated twice more.
 ///
 /// F and f may both be near the threshold, so that is taken off first: `level` is b less the
 /// threshold, `force` F - b, F', F''.

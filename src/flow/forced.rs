@@ -38,14 +38,15 @@ pub enum Forced<T> {
         delta: T,
         /// 1/(i omega - lambda+)
         slow: Complex<T>,
-        /// Its size: the time after which forced and free oscillation are out of step.
+        /// |1/(i omega - lambda+)|: how long forced and free oscillation stay in step.
         in_step: T,
         /// 1/(i omega - lambda-)
         quick: Complex<T>,
     },
 }
 
-/// The response to a cos(omega d + theta0) from rest.
+/// The complex response R to exp(i omega d) from rest. A contact scales it by a and turns it by the
+/// forcing angle at entry ([`crate::flow::contact`]).
 #[derive(Clone, Copy, Debug)]
 pub struct Response<T> {
     /// Velocity R'.

@@ -150,7 +150,8 @@ pub const SEPARATION_INTERVAL: f64 = 2.0;
 /// [`SEPARATION_INTERVAL`], and more before: their quotient only falls.
 pub const GRIP: f64 = 0.5676;
 
-/// And one that pushes it outwards: its eighth derivative then costs 0.02 of its own size.
+/// Up to this many decay times an exponential that pushes the guard outwards stays in one piece:
+/// its eighth derivative then costs 0.02 of its own size.
 pub const PUSHING: f64 = 4.0;
 
 /// The steps of a model.
@@ -158,11 +159,11 @@ pub const PUSHING: f64 = 4.0;
 pub struct Steps {
     /// The step from piece to piece of a certificate.
     pub piece: FreeStep,
-    /// Over the life of an exponential that pulls inwards.
+    /// The step over the life of an exponential that pulls inwards.
     pub pulling: FreeStep,
-    /// Until a flight has got off the surface.
+    /// The step until a flight has got off the surface.
     pub separation_interval: FreeStep,
-    /// Over the life of an exponential that pushes outwards.
+    /// The step over the life of an exponential that pushes outwards.
     pub pushing: FreeStep,
     /// The step from place to place of a guess.
     pub look: FreeStep,

@@ -6,14 +6,14 @@ use super::wide::Column;
 /// What the lanes of a batch have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]
-pub enum Stage {
+pub enum LaneTask {
     /// Flights, from separation to impact.
     Flight,
     /// Contacts, to either threshold.
     Contact,
-    /// Flights whose certificate has failed, with great care.
+    /// Flights whose certificate has failed, certified again in finer pieces.
     FlightAgain,
-    /// Contacts whose certificate has failed, with great care.
+    /// Contacts whose certificate has failed, certified again in finer pieces.
     ContactAgain,
     /// Progressions, until the slider's bottom stops.
     Slip,
@@ -25,8 +25,8 @@ pub enum Stage {
     SlipStrobe,
 }
 
-impl Stage {
-    /// All stages.
+impl LaneTask {
+    /// All tasks.
     pub const ALL: [Self; 8] = [
         Self::Flight,
         Self::Contact,
@@ -43,7 +43,7 @@ impl Stage {
         matches!(self, Self::FlightStrobe | Self::ContactStrobe | Self::SlipStrobe)
     }
 
-    /// The stage that solves the same phase with great care, where there is more than one way.
+    /// The task that certifies the same phase in finer pieces, where there is one.
     pub const fn again(self) -> Option<Self> {
         match self {
             Self::Flight => Some(Self::FlightAgain),

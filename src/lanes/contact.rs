@@ -3,7 +3,7 @@
 
 use super::contact_shape::Forms;
 use super::harmonic::Angle;
-use super::root::{Care, LanePhase, LaneRoot, find};
+use super::root::{Fineness, LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::swing::{LaneParts, each};
@@ -167,7 +167,7 @@ impl<S: Simd> LaneContact<'_, S> {
 
     /// The switches that end the contacts.
     #[inline(always)]
-    pub fn release(&self, care: Care) -> Release<S> {
+    pub fn release(&self, fineness: Fineness) -> Release<S> {
         let first = self.first();
         let (guess, threshold, guessed) = self.first_exit(first);
         let LaneRoot { at, elapsed, series, step, fine, .. } =
@@ -181,7 +181,8 @@ impl<S: Simd> LaneContact<'_, S> {
         let last = self.one_by_one(elapsed, self.orders(force, threshold, y), force, quick);
         let rises = !(threshold + self.reference).below(0.5);
         let outward = rises.choose(last[1], -last[1]).above(0.0);
-        let fine = fine & outward & self.stays_inside(first, last, elapsed + step, at.terms, care);
+        let fine =
+            fine & outward & self.stays_inside(first, last, elapsed + step, at.terms, fineness);
         Release { elapsed: (elapsed, step), y, rises, fine }
     }
 

@@ -2,13 +2,13 @@
 //! ([`crate::crossing::contact_ahead`]).
 //!
 //! The certificate is the scalar solver's ([`crate::crossing::certificate`]), in pieces of fixed
-//! length, which are shorter where great care is taken.
+//! length, which are shorter where finer pieces are asked for.
 
 use super::certificate::LanePiece;
 use super::contact::LaneContact;
 use super::contact_shape::Forms;
 use super::guess::meeting;
-use super::root::Care;
+use super::root::Fineness;
 use super::shape::Shape;
 use super::swing::{LaneParts, Swings, each};
 use super::wide::{Mask, Wide};
@@ -71,7 +71,7 @@ impl<S: Simd> LaneContact<'_, S> {
         last: [Wide<S>; 4],
         length: Wide<S>,
         terms: Wide<S>,
-        care: Care,
+        fineness: Fineness,
     ) -> Mask<S> {
         let Shape { forced_eighth, fast, .. } = *self.shape;
         let (low, high) = (-self.reference, -self.reference + 1.0);
@@ -79,9 +79,9 @@ impl<S: Simd> LaneContact<'_, S> {
         let over = fast.above(0.0);
         let mut eighth = here.eighth(self.shape) + forced_eighth;
         let slack = self.slack(&here, terms);
-        let (mut swings, pieces) = match care {
-            Care::Usual => (Swings::of_pieces(self.shape, self.forms), PIECES),
-            Care::Great => (Swings::of_guess(self.shape, self.forms), LANE_FINE_PIECES),
+        let (mut swings, pieces) = match fineness {
+            Fineness::Usual => (Swings::of_pieces(self.shape, self.forms), PIECES),
+            Fineness::Finer => (Swings::of_guess(self.shape, self.forms), LANE_FINE_PIECES),
         };
         let mut left = first;
         // The start's own value does not count where it is a threshold by the switch that began the

@@ -26,7 +26,7 @@ impl Forms {
 }
 
 /// A step of a guess, radians of the faster of forcing and free oscillation: the cubic between two
-/// places errs by 1/384 of the amplitude, which the series puts right.
+/// places errs by 0.8^4/384 = 1.1e-3 of the amplitude, which the series corrects.
 const SWING: f64 = 0.8;
 
 /// The length of a certificate's pieces, radians of the faster of forcing and free oscillation: the
@@ -39,9 +39,9 @@ const SHORTEST: f64 = 1.0 / 256.0;
 
 /// The steps of a contact.
 struct ContactPace {
-    /// Steps are measured by this rate,
+    /// The rate that measures a step.
     full: f64,
-    /// and the first one is this much of them.
+    /// The first step, as a part of the others.
     early: f64,
 }
 

@@ -3,15 +3,17 @@
 //!
 //! # Certificate
 //!
-//! That of [`crate::crossing::tangents`], a lane's flight beside another's. Flights whose start
-//! neither concavity nor sinking clears are certified with great care, by three tangents more in a
-//! stretch or as the scalar solver certifies short ones ([`crate::crossing::no_contact`]).
+//! Tangents certify a flight as in [`crate::crossing::tangents`], one flight a lane. Off the
+//! surface the spring is compared with the largest force in that interval, where the scalar solver
+//! takes the largest force of all times. Flights whose start neither concavity nor sinking clears
+//! are certified in finer pieces, by three tangents more in a stretch or as the scalar solver
+//! certifies short flights ([`crate::crossing::no_contact`]).
 
 use super::certificate::LanePiece;
 use super::functions::shrink;
 use super::guess::LaneEnvelope;
 use super::harmonic::Angle;
-use super::root::{Care, LanePhase, LaneRoot, find};
+use super::root::{Fineness, LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
@@ -118,7 +120,7 @@ impl<S: Simd> LanePhase<S> for Flight<'_, S> {
 impl<S: Simd> Flight<'_, S> {
     /// The impacts that end the flights.
     #[inline(always)]
-    pub fn impact(&self, care: Care) -> Impact<S> {
+    pub fn impact(&self, fineness: Fineness) -> Impact<S> {
         let Shape { b, two_xi, rate, look, look_decay, .. } = *self.shape;
         let (guess, guessed) = self.slow_envelope().first_root();
         // Within the first stride of a short-lived exponential: its end, from where the convex h
@@ -135,11 +137,11 @@ impl<S: Simd> Flight<'_, S> {
         let clear = (largest * LANE_TIE).less(f)
             & (largest.larger(y.same(1.0)) * LANE_TIE).less((f - 1.0).magnitude());
         let root = elapsed + step;
-        let certified = match care {
-            Care::Usual => self.stays_below(root, q, care),
-            Care::Great => {
+        let certified = match fineness {
+            Fineness::Usual => self.stays_below(root, q, fineness),
+            Fineness::Finer => {
                 let [force, force_rate, _] = push.force;
-                self.stays_below(root, q, care)
+                self.stays_below(root, q, fineness)
                     | self.hops(root, [slope, q * rate, force + b, force_rate])
             }
         };
@@ -258,7 +260,7 @@ impl<S: Simd> Flight<'_, S> {
     /// The lanes in which h is negative from the start to the root, at which the slider's top is
     /// `q`.
     #[inline(always)]
-    fn stays_below(&self, root: Wide<S>, q: Wide<S>, care: Care) -> Mask<S> {
+    fn stays_below(&self, root: Wide<S>, q: Wide<S>, fineness: Fineness) -> Mask<S> {
         let Shape { a, b, omega, rate, turning, turning_sin, turning_cos, .. } = *self.shape;
         let Angle { radians: angle, sin, cos } = self.angle;
         let zero = root.same(0.0);
@@ -298,9 +300,9 @@ impl<S: Simd> Flight<'_, S> {
             let near = bound.at(begins, [turning_sin, turning_cos]);
             let near = near.or_where(begins.less(start), first);
             let far = bound.at(ends, [-turning_sin, turning_cos]);
-            let below = match care {
-                Care::Usual => near.stays_below_to(&far),
-                Care::Great => self.stays_below_between(&bound, &near, &far, length),
+            let below = match fineness {
+                Fineness::Usual => near.stays_below_to(&far),
+                Fineness::Finer => self.stays_below_between(&bound, &near, &far, length),
             };
             fine = fine & (below | !open | !start.less(ends));
             begins = begins + period;

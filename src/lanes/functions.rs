@@ -1,4 +1,5 @@
-//! Sine, cosine and exponential of all lanes at once, and their remainders ([`crate::numeric::remainders`]).
+//! Sine, cosine and exponential of all lanes at once, with their remainders
+//! ([`crate::numeric::remainders`]).
 //!
 //! The argument is reduced by Cody and Waite's method with fused products and a tail of its own
 //! (two words of pi/2: up to [`FURTHEST`] the third would be 1e-28); the kernels are those of

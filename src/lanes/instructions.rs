@@ -1,6 +1,6 @@
 //! The instruction sets, chosen when the program runs.
 
-use super::batch::{Batch, Stage};
+use super::batch::{Batch, LaneTask};
 use super::work::BatchWork;
 use pulp::Simd;
 
@@ -94,8 +94,8 @@ impl Permit {
     }
 
     /// Works a batch off.
-    pub(crate) fn work(self, stage: Stage, batch: &mut Batch) {
-        let work = BatchWork { stage, batch };
+    pub(crate) fn work(self, task: LaneTask, batch: &mut Batch) {
+        let work = BatchWork { task, batch };
         match self {
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(simd) => Simd::vectorize(simd, work),

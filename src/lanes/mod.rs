@@ -1,14 +1,17 @@
 //! Many motions at once: phases of one kind, one a lane of the processor's vectors.
 //!
 //! What the scalar solver does for one phase (guess, evaluation, certificate, landing) is done here
-//! for as many as a vector has lanes, without a branch on what a lane holds. A switch is accepted
-//! only where a certificate proves it to be the first; the scalar solver takes every phase for
-//! which that fails, which comes near a tie or a graze, or which begins away from the slider.
+//! for as many as a vector has lanes. Every lane follows the same instructions, whatever it holds;
+//! a form that no lane of the vector needs is skipped. A switch is accepted only where a
+//! certificate proves it to be the first; the scalar solver takes every phase for which that fails,
+//! which comes near a tie or a graze, or which begins away from the slider.
 //!
-//! Closed forms, series, tangents, certificates and inequalities are the scalar solver's own text,
-//! written over [`crate::numeric::real::Real`], and so is what they allow for rounding
-//! ([`crate::crossing::allowances`]). The functions, the guesses and the order of the steps are of
-//! their own.
+//! What the lanes share with the scalar solver is written once, over the trait `Real` in
+//! `src/numeric/real.rs`: closed forms, Taylor series, the bound of a tangent, the coefficients of
+//! a certificate, the parts of a contact, the inequality that proves a progression, and what these
+//! allow for rounding (`src/crossing/allowances.rs`). The lanes have of their own: elementary
+//! functions, guesses, the polishing of roots, derivatives of order four and up, the walk from
+//! tangent to tangent, and in `src/dynamics/ensemble` the choice of the next phase.
 //!
 //! Every operation is one of IEEE 754 in each lane by itself, and products and sums are fused where
 //! they are written so, on every instruction set: a motion's bits depend neither on its neighbours
@@ -36,7 +39,7 @@ mod wide;
 mod words;
 mod work;
 
-pub(crate) use batch::{Batch, Begin, PhaseEnds, Stage};
+pub(crate) use batch::{Batch, Begin, LaneTask, PhaseEnds};
 pub use instructions::Instructions;
 pub(crate) use instructions::Permit;
 pub(crate) use shape::Shape;

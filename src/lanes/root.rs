@@ -26,13 +26,13 @@ pub trait LanePhase<S: Simd> {
     fn is_short(&self, d: Wide<S>, step: Wide<S>) -> Mask<S>;
 }
 
-/// What a certificate may cost.
+/// How fine the pieces of a certificate are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Care {
-    /// The care that is enough nearly always.
+pub enum Fineness {
+    /// The pieces that are enough nearly always.
     Usual,
-    /// The care for what usual care has left open.
-    Great,
+    /// Finer pieces, for what the usual ones have left open.
+    Finer,
 }
 
 /// A root next to an evaluation.
@@ -40,7 +40,7 @@ pub enum Care {
 pub struct LaneRoot<S: Simd, A> {
     /// The evaluation.
     pub at: A,
-    /// When.
+    /// The elapsed time of the evaluation.
     pub elapsed: Wide<S>,
     /// The guard's excess as a series from there.
     pub series: Series<Wide<S>, TERMS>,
@@ -74,9 +74,9 @@ pub fn find<S: Simd, P: LanePhase<S>>(
         alive = alive & zero.less(next);
         // Next to a crest that misses, Newton's method may stop anywhere.
         let settled = cubic(excess, step).magnitude().less(excess[0].magnitude() * RESIDUAL + TINY);
-        // So much nearer to the start than the evaluation its rounding would show.
-        let far = step.magnitude().less(next * LONGEST_STEP);
-        let short = phase.is_short(elapsed, step) & settled & far;
+        // A step that is long against the root's own time would show the evaluation's rounding.
+        let near = step.magnitude().less(next * LONGEST_STEP);
+        let short = phase.is_short(elapsed, step) & settled & near;
         if attempt == ATTEMPTS || !(alive & !short).any() {
             let series = Series::of_orders(excess, phase.later(&at));
             let (step, slope, polished) = series.polished(step);

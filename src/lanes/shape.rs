@@ -40,7 +40,7 @@ shape! {
     omega,
     /// omega^2
     omega2,
-    /// Phase of the harmonic force in two words, radians.
+    /// First word of the phase of the harmonic force, radians.
     phi,
     /// The second word of the phase.
     phi_low,
@@ -133,7 +133,7 @@ shape! {
     swing_sin,
     /// Cosine of omega times that.
     swing_cos,
-    /// C, S and S' of the free oscillation after it.
+    /// C of the free oscillation after that step.
     swing_c,
     /// S
     swing_s,
@@ -145,7 +145,7 @@ shape! {
     piece_sin,
     /// Cosine of omega times that.
     piece_cos,
-    /// C, S and S' of the free oscillation after it.
+    /// C of the free oscillation after that piece.
     piece_c,
     /// S
     piece_s,

@@ -72,8 +72,8 @@ impl<S: Simd> Wide<S> {
         Mask { simd: self.simd, value: self.simd.equal_f64s(self.value, other) }
     }
 
-    /// The bits of a sum with [`crate::numeric::two_word::ROUNDER`], whose lowest ones are those of a whole
-    /// number: where this one of them is set.
+    /// The lanes in which a bit of a whole number is set; the number stands in the lowest bits of
+    /// its sum with [`ROUNDER`](crate::numeric::two_word::ROUNDER).
     #[inline(always)]
     pub fn has_bit(self, bit: u64) -> Mask<S> {
         let simd = self.simd;

@@ -1,11 +1,11 @@
 //! A batch worked off, from the lanes' beginnings to their ends.
 
-use super::batch::{Batch, Begin, PhaseEnds, Stage};
+use super::batch::{Batch, Begin, LaneTask, PhaseEnds};
 use super::contact::{LaneContact, Release};
 use super::contact_shape::Forms;
 use super::flight::{Flight, Impact};
 use super::harmonic::Angle;
-use super::root::Care;
+use super::root::Fineness;
 use super::shape::Shape;
 use super::slip::{Slip, SlipStrobe, Stop};
 use super::wide::{Column, Mask, Wide};
@@ -16,7 +16,7 @@ use pulp::{Simd, WithSimd};
 /// A batch to be worked off.
 pub struct BatchWork<'a> {
     /// What it is.
-    pub stage: Stage,
+    pub task: LaneTask,
     /// The batch.
     pub batch: &'a mut Batch,
 }
@@ -28,15 +28,15 @@ impl WithSimd for BatchWork<'_> {
     fn with_simd<S: Simd>(self, simd: S) {
         let Batch { shape, begin, end } = self.batch;
         let lanes = LoadedLanes { shape: &shape.load(simd), begin, simd };
-        match self.stage {
-            Stage::Flight => lanes.flight(Care::Usual, end),
-            Stage::Contact => lanes.contact(Care::Usual, end),
-            Stage::FlightAgain => lanes.flight(Care::Great, end),
-            Stage::ContactAgain => lanes.contact(Care::Great, end),
-            Stage::Slip => lanes.slip(end),
-            Stage::FlightStrobe => lanes.flight_strobe(end),
-            Stage::ContactStrobe => lanes.contact_strobe(end),
-            Stage::SlipStrobe => lanes.slip_strobe(end),
+        match self.task {
+            LaneTask::Flight => lanes.flight(Fineness::Usual, end),
+            LaneTask::Contact => lanes.contact(Fineness::Usual, end),
+            LaneTask::FlightAgain => lanes.flight(Fineness::Finer, end),
+            LaneTask::ContactAgain => lanes.contact(Fineness::Finer, end),
+            LaneTask::Slip => lanes.slip(end),
+            LaneTask::FlightStrobe => lanes.flight_strobe(end),
+            LaneTask::ContactStrobe => lanes.contact_strobe(end),
+            LaneTask::SlipStrobe => lanes.slip_strobe(end),
         }
     }
 }
@@ -97,8 +97,8 @@ impl<'a, S: Simd> LoadedLanes<'a, S> {
     }
 
     #[inline(always)]
-    fn flight(&self, care: Care, end: &mut PhaseEnds) {
-        let Impact { elapsed, y, q, f, fine } = self.flights().impact(care);
+    fn flight(&self, fineness: Fineness, end: &mut PhaseEnds) {
+        let Impact { elapsed, y, q, f, fine } = self.flights().impact(fineness);
         self.switch(elapsed, fine, end);
         y.store(&mut end.y);
         q.store(&mut end.q);
@@ -106,10 +106,10 @@ impl<'a, S: Simd> LoadedLanes<'a, S> {
     }
 
     #[inline(always)]
-    fn contact(&self, care: Care, end: &mut PhaseEnds) {
+    fn contact(&self, fineness: Fineness, end: &mut PhaseEnds) {
         let release = match Forms::of(self.shape) {
-            Forms::Usual => self.contacts(Forms::Usual).release(care),
-            Forms::Any => self.contacts(Forms::Any).release(care),
+            Forms::Usual => self.contacts(Forms::Usual).release(fineness),
+            Forms::Any => self.contacts(Forms::Any).release(fineness),
         };
         let Release { elapsed, y, rises, fine } = release;
         self.switch(elapsed, fine, end);

@@ -8,7 +8,7 @@ use crate::state::State;
 /// The state and the instant at which a phase begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entry {
-    /// When.
+    /// The instant of the entry.
     pub instant: Instant,
     /// Bounded co-ordinates.
     pub state: State,

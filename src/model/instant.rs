@@ -1,8 +1,9 @@
 //! Time as forcing cycle and forcing angle, so that nothing is lost late in a run.
 //!
-//! One unit in the last place of tau = 1e8 is 1.5e-8; of the angle it would be as much. The motion
-//! depends on tau through `omega tau mod 2 pi` alone, so that is what is carried, in two words:
-//! one word would lose half a unit at every switch, always in the same direction.
+//! One unit in the last place of tau = 1e8 is 1.5e-8, and a forcing angle that is computed from
+//! that tau would be wrong by omega times as much. The motion depends on tau through `omega tau mod
+//! 2 pi` alone, so that is what is carried, in two words: one word would lose half a unit at every
+//! switch, always in the same direction.
 
 use crate::flow::forcing::EntryAngle;
 use crate::numeric::angle;

@@ -55,8 +55,8 @@ impl Model {
         Ok(Entry { instant, state, drift: TwoWord::new(start.v), mode })
     }
 
-    /// The motion that begins in `state` at `instant` with no drift; its phase is decided as for a
-    /// [`Start`] that states none.
+    /// The entry in `state` at `instant` with no drift; its phase is decided as for a [`Start`]
+    /// that states none.
     ///
     /// # Errors
     /// [`InputError`] names what is out of range, or a mass beyond the slider's top.

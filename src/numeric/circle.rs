@@ -1,6 +1,6 @@
 //! Sine and cosine of an f64 by a table of the turn's 64th parts.
 //!
-//! A switch needs three or four of them, one after the other. Between two entries of the table a
+//! An event needs three or four of them in one dependent chain. Between two entries of the table a
 //! series of four terms does, in little more than half the instructions of the library; the entries
 //! are held in two words. Errors are below half a unit in the last place of the value and a tenth
 //! of one of 1: three fifths of a unit where the value is large, more units where it is small. Only

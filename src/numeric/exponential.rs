@@ -1,9 +1,9 @@
-//! The exponential of an f64 by a table of the doubling's 64th parts, as [`crate::numeric::circle`] has its
-//! sines.
+//! The exponential of an f64 by a table of 64 parts of a doubling, as [`crate::numeric::circle`]
+//! has sine and cosine.
 //!
-//! The library divides, and its steps wait for one another; here a short series is multiplied to an
-//! entry of the table, which is held in two words. The error is half a unit in the last place and
-//! two hundredths. Only additions and multiplications, hence the same bits on every platform.
+//! The library divides, and its operations form one dependent chain; here a short series multiplies
+//! an entry of the table, which is held in two words. The error is half a unit in the last place
+//! and two hundredths. Only additions and multiplications, hence the same bits on every platform.
 
 use crate::numeric::two_word::{ROUNDER, TwoWord, cut};
 

@@ -1,13 +1,11 @@
-//! How a phase ends.
+//! How a segment ends.
 
 use crate::model::entry::Entry;
 use std::fmt;
 
 /// Why a phase has no end.
-///
-/// It stands in an [`Exit`] where a switch has other numbers. Behind a byte those would be copied
-/// across the words in which they were written, for which a processor has to wait; so it is a whole
-/// word.
+// A whole word: a switch has other numbers at its place in an `Exit`. Behind a byte those would be
+// copied across the words in which they were written, for which a processor has to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Endless {
@@ -37,7 +35,7 @@ impl fmt::Display for Endless {
     }
 }
 
-/// How a phase ends.
+/// How a segment ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Exit {
@@ -46,10 +44,10 @@ pub enum Exit {
     /// The phase does not end before the horizon; without a horizon, not before a forcing angle of
     /// 1e30 has passed.
     Horizon,
-    /// Never: proved.
+    /// It is proved that the phase never ends.
     Endless(Endless),
-    /// It is not decided how the phase ends: the search has taken more work than its limit because
-    /// rounding hides what the phase does. It is proved to last for [`Segment::duration`](crate::Segment::duration); nothing
-    /// is known of what follows.
+    /// The search has exceeded its limit of work, because rounding hides what the guard does. The
+    /// phase is proved to last for [`Segment::duration`](crate::Segment::duration); what follows is
+    /// not known.
     Undecidable,
 }

@@ -1,4 +1,4 @@
-//! How a phase ends by plain one-sided steps in any arithmetic: the judge of the search in f64.
+//! How a phase ends by plain one-sided steps in any arithmetic, as a reference for the search.
 //!
 //! As in [`crate::crossing::stepping`] no step passes a crossing; here the arithmetic may be one of
 //! more digits, in which the phase begins with the same f64 values and is decided with its own
@@ -16,7 +16,7 @@ use crate::numeric::number::Number;
 use crate::run::segment::Segment;
 use crate::state::State;
 
-/// How a phase ends.
+/// How the one-sided search says that a phase ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Judgement {
     /// The phase ends by a crossing.

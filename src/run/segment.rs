@@ -164,8 +164,8 @@ impl Segment {
         instant.since(&self.entry.instant, self.constants.omega).value()
     }
 
-    /// The phase taken up again at an instant inside it: a motion that begins there and goes on as
-    /// this one does, to within rounding.
+    /// The entry at an instant inside the segment: a run that begins there goes on as this one
+    /// does, to within rounding.
     #[must_use]
     pub fn entry_at(&self, instant: &Instant) -> Entry {
         let elapsed = instant.since(&self.entry.instant, self.constants.omega);
@@ -203,8 +203,8 @@ impl Segment {
         Entry { instant: *instant, state, drift, mode }
     }
 
-    /// How long the phase lasts by plain one-sided stepping (the judge): infinite if it does not
-    /// end within `horizon`, none if that takes more than `evaluations`.
+    /// How long the phase lasts by plain one-sided stepping (the reference): infinite if it does
+    /// not end within `horizon`, none if that takes more than `evaluations`.
     #[doc(hidden)]
     #[must_use]
     pub fn judged_duration(&self, horizon: f64, evaluations: u64) -> Option<f64> {

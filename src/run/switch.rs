@@ -1,11 +1,11 @@
-//! From one switch to the next.
+//! From one switch to the next: search, certificate, and the entry of the next segment.
 //!
 //! What every switch takes, guess, evaluation, root and landing, is inlined here: a processor has
 //! to wait where a call has written words that are read back in pairs, and such calls cost a sixth
 //! of a switch's time. What few switches take is kept out of the way.
 
 use crate::crossing::guarded::{Guarded, SearchHint};
-use crate::crossing::search::Stages;
+use crate::crossing::search::CandidateSearch;
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
@@ -32,14 +32,14 @@ pub(crate) struct Begun {
     pub guess: Option<f64>,
 }
 
-/// How a phase ends.
+/// How a segment ends, without the next entry.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum End {
     /// The phase ends by a switch.
     Switch,
     /// The phase does not end before the horizon.
     Horizon,
-    /// Never: proved.
+    /// It is proved that the phase never ends.
     Endless(Endless),
     /// It is not decided within the limit of work ([`crate::crossing::limit`]).
     Undecidable,
@@ -158,13 +158,13 @@ fn found<P: Landing>(
     counters: &mut Counters,
 ) -> SearchEnd {
     let solved = (phase, model.steps());
-    let stages = Stages::new(solved, begun.guess, limit);
+    let search = CandidateSearch::new(solved, begun.guess, limit);
     let mut candidate = None;
-    if let Some(guess) = stages.guess(limit) {
-        candidate = Some(match Stages::candidate(phase, guess, limit, counters) {
+    if let Some(guess) = search.guess(limit) {
+        candidate = Some(match CandidateSearch::candidate(phase, guess, limit, counters) {
             Ok(root) => {
                 *next = begun.after(model, phase, &root);
-                if stages.confirm(solved, &root, limit) {
+                if search.confirm(solved, &root, limit) {
                     return SearchEnd::At(root.elapsed());
                 }
                 Ok(root)
@@ -172,7 +172,7 @@ fn found<P: Landing>(
             Err(point) => Err(point),
         });
     }
-    let verdict = stages.search(solved, candidate, limit, counters);
+    let verdict = search.search(solved, candidate, limit, counters);
     if let Crossing::At(root) = &verdict {
         *next = begun.after(model, phase, root);
     }

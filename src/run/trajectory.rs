@@ -102,7 +102,7 @@ impl Trajectory {
         self.counters
     }
 
-    /// Passes the next phase; unlike iterating without keeping it, at less cost.
+    /// Advances by one segment without building it, which costs less than [`Iterator::next`].
     #[inline]
     pub fn step(&mut self) -> Option<Step<'_>> {
         let passed = self.pass()?;

@@ -3,7 +3,7 @@
 //!
 //! The state is (angle, p, y, q, v) with the forcing angle omega tau in radians. Within a phase the
 //! derivative is that of the closed form. The field is continuous at f = 0 and at f = 1, so only an
-//! impact has a saltation: there the contact surface swallows the direction A = dp - dq.
+//! impact has a saltation: there the contact surface annihilates the direction A = dp - dq.
 
 use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
@@ -34,7 +34,7 @@ pub type Matrix = [[f64; 5]; 5];
 /// A gradient with respect to (angle, p, y, q, v).
 pub type Gradient = [f64; 5];
 
-/// No change.
+/// The identity matrix.
 pub const IDENTITY: Matrix = {
     let mut identity = [[0.0; 5]; 5];
     let mut i = 0;

@@ -1,8 +1,8 @@
 //! Attractors of the strobe map, and the recognition of a motion that approaches one.
 //!
 //! - **Periodic**: strobes repeat, Newton's method confirms the orbit ([`Orbit::find`]), its
-//!   multipliers are inside the unit circle, and a neighbourhood has been found that nothing leaves
-//!   (`trap.rs`).
+//!   multipliers are inside the unit circle, and there is a neighbourhood from which all sampled
+//!   points return closer: evidence, not proof (`trap.rs`).
 //! - **Chaotic**: the largest exponent is above zero by more than [`ERRORS`] standard errors over a
 //!   run of 2^17 strobes that met no orbit. Another motion is on the same attractor when 48 strobes
 //!   in a row lie in the cells of that run (`cells.rs`); so its bands are one attractor.

@@ -129,17 +129,17 @@ pub enum BranchEnding {
     /// The branch ends in a flip of an orbit of half its period, which is the last of the branch's
     /// bifurcations.
     Halved {
-        /// Where.
+        /// The parameter value at which the branch ends.
         value: f64,
     },
     /// No orbit was found beyond.
     Lost {
-        /// Where.
+        /// The parameter value at which the branch ends.
         value: f64,
     },
     /// More orbits than are kept.
     Long {
-        /// Where.
+        /// The parameter value at which the branch ends.
         value: f64,
     },
 }

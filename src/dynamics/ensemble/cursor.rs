@@ -12,7 +12,7 @@ use std::ops::ControlFlow;
 
 /// A motion and where it is.
 pub struct Cursor<'a, W> {
-    /// What moves.
+    /// The model that is followed.
     pub model: &'a Model,
     /// The entry of the motion's present phase.
     pub entry: Entry,

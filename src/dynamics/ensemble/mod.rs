@@ -36,7 +36,7 @@ pub trait Watcher {
 /// One motion of an ensemble.
 #[derive(Clone, Debug)]
 pub struct Member<'a, W> {
-    /// What moves.
+    /// The model that is followed.
     pub model: &'a Model,
     /// The entry at which the motion begins.
     pub entry: Entry,
@@ -44,7 +44,7 @@ pub struct Member<'a, W> {
     pub first: Instant,
     /// No switch after this need be found: not before the last strobe that is looked at.
     pub horizon: Option<Instant>,
-    /// Who looks.
+    /// The watcher of its strobes.
     pub watcher: W,
 }
 
@@ -53,8 +53,8 @@ pub struct Member<'a, W> {
 pub struct Tally {
     /// The phases that were solved in lanes.
     pub in_lanes: u64,
-    /// The phases that were solved one by one: those that no lane can prove or has the closed form
-    /// of, and starts away from the slider.
+    /// The phases that were solved one by one: those that no lane has proved, those of models whose
+    /// closed form lanes do not have, and starts away from the slider.
     pub alone: u64,
 }
 

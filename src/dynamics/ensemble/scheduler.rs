@@ -7,7 +7,7 @@
 use super::cursor::Cursor;
 use super::slot::Slot;
 use super::{Done, Member, Tally, Watcher};
-use crate::lanes::{Batch, Permit, Stage, WIDEST};
+use crate::lanes::{Batch, LaneTask, Permit, WIDEST};
 use crate::model::Model;
 
 /// The motions of one thread.
@@ -15,8 +15,8 @@ pub struct LaneScheduler<'a, W> {
     permit: Permit,
     slots: Vec<Option<Slot<'a, W>>>,
     free: Vec<usize>,
-    /// Slots by the stage that they wait for.
-    waiting: [Vec<usize>; Stage::ALL.len()],
+    /// Slots by the task that they wait for.
+    waiting: [Vec<usize>; LaneTask::ALL.len()],
     batch: Box<Batch>,
     /// The model whose constants each lane of the batch has.
     shaped: Vec<Option<&'a Model>>,
@@ -26,9 +26,9 @@ pub struct LaneScheduler<'a, W> {
 
 impl<'a, W: Watcher> LaneScheduler<'a, W> {
     pub fn new(permit: Permit) -> Self {
-        // With one less than a vector waiting for each stage and one motion more, some vector is
+        // With one less than a vector waiting for each task and one motion more, some vector is
         // full.
-        let slots = Stage::ALL.len() * permit.width();
+        let slots = LaneTask::ALL.len() * permit.width();
         Self {
             permit,
             slots: (0..slots).map(|_| None).collect(),
@@ -58,9 +58,10 @@ impl<'a, W: Watcher> LaneScheduler<'a, W> {
                     }
                 }
             }
-            let fullest = Stage::ALL.into_iter().max_by_key(|it| self.waiting[*it as usize].len());
+            let fullest =
+                LaneTask::ALL.into_iter().max_by_key(|it| self.waiting[*it as usize].len());
             match fullest {
-                Some(stage) if !self.waiting[stage as usize].is_empty() => self.work(stage),
+                Some(task) if !self.waiting[task as usize].is_empty() => self.work(task),
                 _ => return Done { watchers: self.done, tally: self.tally },
             }
         }
@@ -68,14 +69,14 @@ impl<'a, W: Watcher> LaneScheduler<'a, W> {
 
     fn enter(&mut self, place: usize, number: usize, cursor: Cursor<'a, W>) {
         let mut slot = Slot::new(number, cursor);
-        let stage = slot.next_stage();
+        let task = slot.next_task();
         self.slots[place] = Some(slot);
-        self.queue(place, stage);
+        self.queue(place, task);
     }
 
-    fn queue(&mut self, place: usize, stage: Option<Stage>) {
-        match stage {
-            Some(stage) => self.waiting[stage as usize].push(place),
+    fn queue(&mut self, place: usize, task: Option<LaneTask>) {
+        match task {
+            Some(task) => self.waiting[task as usize].push(place),
             None => {
                 if let Some((number, watcher, tally)) = self.slots[place].take().map(Slot::leave) {
                     self.done.push((number, watcher));
@@ -86,9 +87,9 @@ impl<'a, W: Watcher> LaneScheduler<'a, W> {
         }
     }
 
-    /// Takes a vector of one kind one stage further. Lanes left over repeat what they had.
-    fn work(&mut self, stage: Stage) {
-        let waiting = &mut self.waiting[stage as usize];
+    /// Takes a vector of one kind one task further. Lanes left over repeat what they had.
+    fn work(&mut self, task: LaneTask) {
+        let waiting = &mut self.waiting[task as usize];
         let rest = waiting.len().saturating_sub(self.permit.width());
         let taken = waiting.len() - rest;
         let mut places = [0; WIDEST];
@@ -102,13 +103,13 @@ impl<'a, W: Watcher> LaneScheduler<'a, W> {
                 slot.shape(lane, &mut self.batch.shape);
                 self.shaped[lane] = Some(model);
             }
-            slot.begin(stage, lane, &mut self.batch.begin);
+            slot.begin(task, lane, &mut self.batch.begin);
         }
-        self.permit.work(stage, &mut self.batch);
+        self.permit.work(task, &mut self.batch);
         for (lane, place) in places.iter().enumerate() {
             let Some(slot) = &mut self.slots[*place] else { continue };
-            let stage = slot.advance(stage, lane, &self.batch.end);
-            self.queue(*place, stage);
+            let task = slot.advance(task, lane, &self.batch.end);
+            self.queue(*place, task);
         }
     }
 }

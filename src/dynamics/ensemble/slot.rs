@@ -3,7 +3,7 @@
 use super::cursor::Cursor;
 use super::{Tally, Watcher};
 use crate::crossing::allowances::FOUR_ULPS;
-use crate::lanes::{Begin, Column, PhaseEnds, Shape, Stage};
+use crate::lanes::{Begin, Column, LaneTask, PhaseEnds, Shape};
 use crate::model::Model;
 use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
@@ -46,17 +46,17 @@ impl<'a, W: Watcher> Slot<'a, W> {
 
     /// What the lanes are to do next; what they cannot is done before. None when the watcher has
     /// seen enough.
-    pub fn next_stage(&mut self) -> Option<Stage> {
+    pub fn next_task(&mut self) -> Option<LaneTask> {
         loop {
-            let stage = match self.cursor.entry.mode {
+            let task = match self.cursor.entry.mode {
                 _ if self.shape.is_none() => None,
-                ModeEntry::Separation { h_rate: 0.0 } => Some(Stage::Flight),
-                ModeEntry::Contact { .. } => Some(Stage::Contact),
-                ModeEntry::Progression { .. } => Some(Stage::Slip),
+                ModeEntry::Separation { h_rate: 0.0 } => Some(LaneTask::Flight),
+                ModeEntry::Contact { .. } => Some(LaneTask::Contact),
+                ModeEntry::Progression { .. } => Some(LaneTask::Slip),
                 ModeEntry::Apart | ModeEntry::Separation { .. } => None,
             };
-            if stage.is_some() {
-                return stage;
+            if task.is_some() {
+                return task;
             }
             self.tally.alone += 1;
             if self.cursor.pass().is_break() {
@@ -66,17 +66,17 @@ impl<'a, W: Watcher> Slot<'a, W> {
     }
 
     /// The phase, and in it the strobe that is due, by the scalar solver.
-    fn pass_alone(&mut self) -> Option<Stage> {
+    fn pass_alone(&mut self) -> Option<LaneTask> {
         self.tally.alone += 1;
         match self.cursor.pass() {
-            ControlFlow::Continue(()) => self.next_stage(),
+            ControlFlow::Continue(()) => self.next_task(),
             ControlFlow::Break(()) => None,
         }
     }
 
     /// Fills a lane.
     #[inline]
-    pub fn begin(&self, stage: Stage, lane: usize, begin: &mut Begin) {
+    pub fn begin(&self, task: LaneTask, lane: usize, begin: &mut Begin) {
         let Entry { instant, state, mode, .. } = &self.cursor.entry;
         let angle = instant.angle_two_word();
         begin.angle[lane] = angle.high;
@@ -90,7 +90,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
         };
         begin.first[lane] = first;
         begin.second[lane] = second;
-        if stage.is_strobe() {
+        if task.is_strobe() {
             let due = self.cursor.due;
             let angle = due.angle_two_word();
             begin.due_cycles[lane] = (due.cycle() - instant.cycle()) as i64 as f64;
@@ -101,33 +101,33 @@ impl<'a, W: Watcher> Slot<'a, W> {
 
     /// Takes what a lane has found; what it has not, the scalar solver finds. What to do next.
     #[inline]
-    pub fn advance(&mut self, stage: Stage, lane: usize, end: &PhaseEnds) -> Option<Stage> {
+    pub fn advance(&mut self, task: LaneTask, lane: usize, end: &PhaseEnds) -> Option<LaneTask> {
         if end.fine[lane] != 1.0 {
-            return stage.again().or_else(|| self.pass_alone());
+            return task.again().or_else(|| self.pass_alone());
         }
-        if stage.is_strobe() {
-            let Some(strobe) = self.strobe(stage, lane, end) else { return self.pass_alone() };
+        if task.is_strobe() {
+            let Some(strobe) = self.strobe(task, lane, end) else { return self.pass_alone() };
             if self.cursor.see(&strobe, None).is_break() {
                 return None;
             }
             return match self.next {
-                Some(next) => self.onwards(stage, next),
+                Some(next) => self.onwards(task, next),
                 None => self.pass_alone(),
             };
         }
         self.tally.in_lanes += 1;
-        let next = self.landed(stage, lane, end);
-        self.onwards(stage, next)
+        let next = self.landed(task, lane, end);
+        self.onwards(task, next)
     }
 
     /// The next strobe in the phase, or the phase after it.
     #[inline]
-    fn onwards(&mut self, stage: Stage, next: Entry) -> Option<Stage> {
+    fn onwards(&mut self, task: LaneTask, next: Entry) -> Option<LaneTask> {
         // As a segment shows them: what is due when the phase ends belongs to the next one.
         while next.instant > self.cursor.due {
             if self.cursor.due > self.cursor.entry.instant {
                 self.next = Some(next);
-                return Some(stage.strobe());
+                return Some(task.strobe());
             }
             let entry = self.cursor.entry;
             if self.cursor.see(&entry, None).is_break() {
@@ -135,20 +135,20 @@ impl<'a, W: Watcher> Slot<'a, W> {
             }
         }
         self.cursor.enter(&next);
-        self.next_stage()
+        self.next_task()
     }
 
     /// What begins at a switch, with what is known there imposed ([`crate::run::switch`]).
     #[inline]
-    fn landed(&self, stage: Stage, lane: usize, end: &PhaseEnds) -> Entry {
+    fn landed(&self, task: LaneTask, lane: usize, end: &PhaseEnds) -> Entry {
         let Entry { instant, drift, .. } = self.cursor.entry;
         let constants = self.cursor.model.constants();
         let angle = TwoWord { high: end.angle[lane], low: end.angle_low[lane] };
         let instant =
             Instant::from_parts(instant.cycle() + i128::from(end.cycles[lane] as i64), angle);
         let y = end.y[lane];
-        let (q, mode, drift) = match stage {
-            Stage::Contact | Stage::ContactAgain | Stage::ContactStrobe => {
+        let (q, mode, drift) = match task {
+            LaneTask::Contact | LaneTask::ContactAgain | LaneTask::ContactStrobe => {
                 let threshold = end.guard[lane];
                 let mode = if threshold == 1.0 {
                     ModeEntry::Progression { drift_rate: 0.0, closing: y }
@@ -157,12 +157,12 @@ impl<'a, W: Watcher> Slot<'a, W> {
                 };
                 (threshold - constants.two_xi * y, mode, drift)
             }
-            Stage::Slip | Stage::SlipStrobe => {
+            LaneTask::Slip | LaneTask::SlipStrobe => {
                 let mode = ModeEntry::Contact { offset: 0.0, reference: 1.0 };
                 let drift = drift.plus(TwoWord::new(end.drift[lane]));
                 (1.0 - constants.two_xi * y, mode, drift)
             }
-            Stage::Flight | Stage::FlightAgain | Stage::FlightStrobe => {
+            LaneTask::Flight | LaneTask::FlightAgain | LaneTask::FlightStrobe => {
                 let (f, q) = (end.guard[lane], end.q[lane]);
                 let mode = if f < 1.0 {
                     ModeEntry::Contact { offset: f, reference: 0.0 }
@@ -177,13 +177,13 @@ impl<'a, W: Watcher> Slot<'a, W> {
 
     /// The phase taken up at the strobe ([`crate::Segment::entry_at`]); none next to a threshold.
     #[inline]
-    fn strobe(&self, stage: Stage, lane: usize, end: &PhaseEnds) -> Option<Entry> {
+    fn strobe(&self, task: LaneTask, lane: usize, end: &PhaseEnds) -> Option<Entry> {
         let Entry { drift, mode, .. } = self.cursor.entry;
         let g = self.cursor.model.constants().g;
         let state = State { p: end.p[lane], y: end.y[lane], q: end.q[lane] };
         let guard = end.guard[lane];
-        let (mode, drift) = match (stage, mode) {
-            (Stage::FlightStrobe, _) => {
+        let (mode, drift) = match (task, mode) {
+            (LaneTask::FlightStrobe, _) => {
                 let clear = state.p < state.q + g;
                 (clear.then_some(ModeEntry::Apart)?, drift)
             }

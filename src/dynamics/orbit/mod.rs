@@ -29,7 +29,7 @@ pub struct Orbit {
     /// The phases met in one whole period of the orbit, in order, from that of the first strobe.
     pub phases: Vec<Phase>,
     /// The orbit's multipliers (real and imaginary part), largest modulus first. With any contact
-    /// the last is zero: the surface swallows a direction.
+    /// the last is zero: the surface annihilates a direction.
     pub multipliers: [[f64; 2]; 3],
     /// How well it closes: the largest |image - next strobe| over (1 + |strobe|), per forcing
     /// period.

@@ -1,7 +1,7 @@
 //! differential-equations, whose methods give an interpolant of each step to a `Solout`.
 //!
-//! - Switches are located by the harness on that interpolant ([`StepWatch`]); the library's built-in
-//!   event location is an engine of its own ([`builtin`]).
+//! - Events are located by the harness on that interpolant ([`StepWatch`]); the library's own event
+//!   location is an engine of its own ([`builtin`]).
 //! - Each phase is begun by a fresh method, because limits of steps and of rejections count over a
 //!   method's life.
 //! - Tolerances are vectors, one for each co-ordinate.
