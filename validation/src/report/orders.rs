@@ -10,7 +10,7 @@ pub struct Order {
     pub engine: &'static str,
     /// What its authors state.
     pub claimed: u32,
-    /// The middle value over the cases.
+    /// The median over the cases.
     pub found: f64,
     /// How many cases have a ladder long enough.
     pub cases: usize,

@@ -44,7 +44,7 @@ pub struct Ranked {
 /// Errors of event times in units of what is allowed.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Units {
-    /// The middle value.
+    /// The median.
     pub median: f64,
     /// The largest.
     pub max: f64,

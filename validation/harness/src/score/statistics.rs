@@ -5,7 +5,7 @@ use serde::Serialize;
 /// How a set of errors is spread; all NaN where there is none.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
-    /// The middle value.
+    /// The median.
     pub median: f64,
     /// 99 % are at most this.
     pub q99: f64,
