@@ -4,6 +4,7 @@ use crate::crossing::allowances::STEP_ROUNDINGS;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
 use crate::crossing::contact_parts::{ContactParts, ContactShape};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
+use crate::crossing::higher_orders::ContactOrders;
 use crate::crossing::series::{Push, SHORT_REACH, Series};
 use crate::crossing::slow_envelope::quick_decay;
 use crate::flow::constants::Constants;
@@ -276,17 +277,10 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
     }
 
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<f64, N> {
-        let Constants { two_xi, omega, .. } = *self.constants.borrow();
-        // f'' + 2 xi f' + f = F + 2 xi F'
-        let (u, v) = (at.force[0], at.force[1]);
-        let omega2 = omega * omega;
-        let (mut drive, mut next) = (v - two_xi * omega2 * u, -omega2 * (u + two_xi * v));
-        let [.., mut before, mut last] = at.guard.orders;
-        Series::new(&at.guard.orders, || {
-            (before, last) = (last, next - two_xi * last - before);
-            (drive, next) = (next, -omega2 * drive);
-            last
-        })
+        let Constants { two_xi, omega2, .. } = *self.constants.borrow();
+        let force = [at.force[0], at.force[1]];
+        let mut higher = ContactOrders::new([omega2, two_xi], force, at.guard.orders);
+        Series::new(&at.guard.orders, || higher.step())
     }
 
     #[inline(always)]

@@ -36,6 +36,7 @@ pub mod contact;
 mod contact_ahead;
 pub mod contact_parts;
 pub mod guarded;
+pub mod higher_orders;
 pub mod limit;
 pub mod no_contact;
 pub mod piecewise;

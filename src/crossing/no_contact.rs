@@ -2,6 +2,7 @@
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
+use crate::crossing::higher_orders::PushedOrders;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::slow_envelope::{EnvelopePlace, SlowEnvelope, first_root};
@@ -187,14 +188,9 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
     }
 
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<f64, N> {
-        let Constants { rate, omega, .. } = *self.constants.borrow();
-        let mut spring = at.state.q * (rate * rate * rate);
-        let (mut force, mut next) = (at.force[0], at.force[1]);
-        Series::new(&at.guard.orders, || {
-            spring *= -rate;
-            (force, next) = (next, -(omega * omega * force));
-            next + spring
-        })
+        let Constants { rate, omega2, .. } = *self.constants.borrow();
+        let mut higher = PushedOrders::new([omega2, rate], at.state.q, [at.force[0], at.force[1]]);
+        Series::new(&at.guard.orders, || higher.step())
     }
 
     #[inline(always)]

@@ -2,6 +2,7 @@
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
+use crate::crossing::higher_orders::PushedOrders;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::slow_envelope::SlowEnvelope;
@@ -133,13 +134,9 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
 
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<f64, N> {
         let Constants { rate, omega, .. } = *self.constants.borrow();
-        let mut lag = at.slider_velocity * (rate * rate * rate);
-        let [_, mut force, mut next] = at.force;
-        Series::new(&at.guard.orders, || {
-            lag *= -rate;
-            (force, next) = (next, -(omega * omega * force));
-            next + lag
-        })
+        let force = [at.force[1], at.force[2]];
+        let mut higher = PushedOrders::new([omega * omega, rate], at.slider_velocity, force);
+        Series::new(&at.guard.orders, || higher.step())
     }
 
     #[inline(always)]

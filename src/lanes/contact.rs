@@ -9,6 +9,7 @@ use super::shape::Shape;
 use super::swing::{LaneParts, each};
 use super::wide::{Mask, Wide};
 use crate::crossing::contact_parts::ContactParts;
+use crate::crossing::higher_orders::ContactOrders;
 use crate::crossing::series::{Push, REACH, short_decay};
 use crate::flow::contact::{Pressed, Pressing, orders};
 use crate::flow::damped::Free;
@@ -85,18 +86,8 @@ impl<S: Simd> LanePhase<S> for Leaving<'_, '_, S> {
     #[inline(always)]
     fn later(&self, at: &Evaluated<S>) -> [Wide<S>; LATER] {
         let Shape { two_xi, omega2, .. } = *self.contact.shape;
-        // f'' + 2 xi f' + f = F + 2 xi F'
-        let [u, v, _] = at.force;
-        let mut drive = (two_xi * omega2).times_from(u, v);
-        let mut next = -(omega2 * two_xi.times_plus(v, u));
-        let [.., mut before, mut last] = at.f;
-        let mut later = [last; LATER];
-        for order in &mut later {
-            (before, last) = (last, two_xi.times_from(last, next - before));
-            (drive, next) = (next, -(omega2 * drive));
-            *order = last;
-        }
-        later
+        let mut higher = ContactOrders::new([omega2, two_xi], [at.force[0], at.force[1]], at.f);
+        [(); LATER].map(|()| higher.step())
     }
 
     #[inline(always)]

@@ -18,6 +18,7 @@ use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::allowances::{LANE_TIE, SLACK, STRETCHES};
+use crate::crossing::higher_orders::PushedOrders;
 use crate::crossing::series::{Push, REACH, short_decay};
 use crate::crossing::tangents::{EndedFlight, Tangent, TangentBound};
 use crate::flow::forcing::Harmonic;
@@ -97,16 +98,9 @@ impl<S: Simd> LanePhase<S> for Flight<'_, S> {
     #[inline(always)]
     fn later(&self, at: &Aloft<S>) -> [Wide<S>; LATER] {
         let Shape { b, omega2, rate, .. } = *self.shape;
-        let mut spring = at.q * (rate * rate * rate);
-        let [total, mut next, _] = at.force;
-        let mut force = total - b;
-        let mut later = [force; LATER];
-        for order in &mut later {
-            spring = -(spring * rate);
-            (force, next) = (next, -(omega2 * force));
-            *order = next + spring;
-        }
-        later
+        let [total, next, _] = at.force;
+        let mut higher = PushedOrders::new([omega2, rate], at.q, [total - b, next]);
+        [(); LATER].map(|()| higher.step())
     }
 
     #[inline(always)]

@@ -7,11 +7,11 @@
 //! which comes near a tie or a graze, or which begins away from the slider.
 //!
 //! What the lanes share with the scalar solver is written once, over the trait `Real` in
-//! `src/numeric/real.rs`: closed forms, Taylor series, the bound of a tangent, the coefficients of
-//! a certificate, the parts of a contact, the inequality that proves a progression, and what these
-//! allow for rounding (`src/crossing/allowances.rs`). The lanes have of their own: elementary
-//! functions, guesses, the polishing of roots, derivatives of order four and up, the walk from
-//! tangent to tangent, and in `src/dynamics/ensemble` the choice of the next phase.
+//! `src/numeric/real.rs`: closed forms, Taylor series with all derivatives, the bound of a
+//! tangent, the coefficients of a certificate, the parts of a contact, the inequality that proves a
+//! progression, and what these allow for rounding (`src/crossing/allowances.rs`). The lanes have of
+//! their own: elementary functions, guesses, the polishing of roots, the walk from tangent to
+//! tangent, and in `src/dynamics/ensemble` the choice of the next phase.
 //!
 //! Every operation is one of IEEE 754 in each lane by itself, and products and sums are fused where
 //! they are written so, on every instruction set: a motion's bits depend neither on its neighbours

@@ -10,6 +10,7 @@ use super::root::{LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
+use crate::crossing::higher_orders::PushedOrders;
 use crate::crossing::progression::stops_once;
 use crate::crossing::series::{REACH, short_decay};
 use crate::flow::progression::{Slipped, Slipping};
@@ -110,15 +111,8 @@ impl<S: Simd> LanePhase<S> for Slip<'_, S> {
     #[inline(always)]
     fn later(&self, at: &Sliding<S>) -> [Wide<S>; LATER] {
         let Shape { omega2, rate, .. } = *self.shape;
-        let mut lag = at.lag * (rate * rate * rate);
-        let [mut force, mut next] = at.force;
-        let mut later = [lag; LATER];
-        for order in &mut later {
-            lag = -(lag * rate);
-            (force, next) = (next, -(omega2 * force));
-            *order = next + lag;
-        }
-        later
+        let mut higher = PushedOrders::new([omega2, rate], at.lag, at.force);
+        [(); LATER].map(|()| higher.step())
     }
 
     #[inline(always)]
