@@ -45,11 +45,12 @@ fn texts(root: &Path) -> BTreeMap<String, String> {
     files
 }
 
-/// The module of a file: `run::switch`; none of tests and of the root, which exports them all.
+/// The module of a file: `run::switch`; none of tests, of the root, which exports them all, and of
+/// what the package `faults/` adds to its copy of the sources.
 fn module(root: &Path, path: &Path) -> Option<String> {
     let inside: PathBuf = path.strip_prefix(root).ok()?.with_extension("");
     let name = inside.to_str()?.replace(std::path::MAIN_SEPARATOR, "::");
-    let tests = name.ends_with("_tests") || name == "lib";
+    let tests = name.ends_with("_tests") || name == "lib" || name == "fault";
     (!tests).then(|| name.trim_end_matches("::mod").to_owned())
 }
 
