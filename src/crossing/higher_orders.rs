@@ -5,8 +5,8 @@
 
 use crate::numeric::real::Real;
 
-/// The orders of a guard that a harmonic force and an exponential make: the gap of a flight, and the
-/// slider's velocity in a progression.
+/// The orders of a guard that a harmonic force and an exponential make: the gap of a flight, and
+/// the slider's velocity in a progression.
 pub struct PushedOrders<T> {
     omega2: T,
     rate: T,

@@ -124,7 +124,8 @@ pub struct Counters {
     /// phase, and the exponential of a bound that is asked about whole futures because nothing is
     /// guessed. Guesses, series and certificates call none.
     pub evaluations: u64,
-    /// Touches and near misses whose margin is below the rounding error.
+    /// Touches and near misses that were passed: rounding hides whether the guard crosses there. A
+    /// search that is given up is not among them; it ends the run.
     pub undecidable: u64,
     /// Pieces that had to be divided.
     pub divisions: u64,

@@ -46,8 +46,8 @@ pub fn first_crossing<G: Guarded>(
     Search::new((phase, steps), (left, hint, None), horizon, counters).run(counters)
 }
 
-/// A search in two stages, so that what follows an event can begin between them: it waits for the
-/// candidate's root but not for the verdict, and the processor works on both.
+/// A search in two parts, so that what follows an event can begin between them: it waits for the
+/// candidate's root but not for its certificate, and the processor works on both.
 pub struct CandidateSearch {
     left: Point<f64>,
     hint: SearchHint,
@@ -77,7 +77,7 @@ impl CandidateSearch {
         }
     }
 
-    /// The first stage: where the guess leads.
+    /// The first part: where the guess leads.
     #[inline(always)]
     pub fn candidate<G: Guarded>(
         phase: &G,
@@ -88,7 +88,7 @@ impl CandidateSearch {
         follow(phase, 0.0, guess, horizon, counters)
     }
 
-    /// The second stage, as it mostly ends: one certificate says that the candidate's root is the
+    /// The second part, as it mostly ends: one certificate says that the candidate's root is the
     /// first crossing.
     #[inline(always)]
     pub fn confirm<G: Guarded>(
@@ -102,7 +102,7 @@ impl CandidateSearch {
             && phase.certify(steps, &self.left, &root.point, ends) == Proof::Inside
     }
 
-    /// The second stage where that is not confirmed: the whole search, which takes the candidate
+    /// The second part where that is not confirmed: the whole search, which takes the candidate
     /// for the end of its first piece.
     #[cold]
     pub fn search<G: Guarded>(

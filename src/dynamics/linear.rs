@@ -38,7 +38,7 @@ pub fn norm<const N: usize>(matrix: &[[f64; N]; N]) -> f64 {
     matrix.iter().map(|row| row.iter().map(|x| x.abs()).sum()).fold(0.0, f64::max)
 }
 
-/// The sum of the diagonal: of the eigenvalues.
+/// The trace: the sum of the diagonal, which is the sum of the eigenvalues.
 #[must_use]
 pub fn trace(matrix: &Jacobian) -> f64 {
     matrix[0][0] + matrix[1][1] + matrix[2][2]

@@ -106,7 +106,7 @@ pub fn sections(
 pub(super) struct KeptStrobes<'a> {
     wanted: usize,
     pub strobes: Vec<Entry>,
-    /// Told when it has them.
+    /// Called once, when all wanted strobes are kept.
     done: &'a (dyn Fn() + Sync),
 }
 

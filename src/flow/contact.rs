@@ -23,7 +23,7 @@ pub struct Contact<T, C = Constants<T>> {
     pub constants: C,
     /// State when the contact begins; p = q + g.
     pub entry: State<T>,
-    /// Forcing angle then.
+    /// Forcing angle when the contact begins.
     pub angle: EntryAngle<T>,
     /// f - `reference` when the contact begins: 0 exactly after a progression.
     pub offset: T,

@@ -129,8 +129,8 @@ fn near_critical<T: Number>(xi: T, m: T, d: T) -> Free<T> {
 }
 
 impl<T: Real> Free<T> {
-    /// With m = (1 - xi^2) d^2: S = d exp(-xi d) (1 - m/3! + m^2/5! - ...), C alike; the series
-    /// without their ones are given.
+    /// S = d exp(-xi d) (1 - m/3! + m^2/5! - ...) with m = (1 - xi^2) d^2, and C by the series of
+    /// the cosine. Both series are given without their leading one.
     #[inline(always)]
     pub fn of_series(
         xi: T,

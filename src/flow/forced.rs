@@ -146,9 +146,9 @@ impl<T: Real> Response<T> {
 
 /// Forced and free oscillation near resonance.
 pub struct Together<'a, T> {
-    /// The forcing's.
+    /// Sine and cosine of the forcing.
     pub turn: &'a Circular<T>,
-    /// The free oscillation's.
+    /// Exponential, sine and cosine of the free oscillation.
     pub rotation: &'a Rotation<T>,
     /// 1/(i omega - lambda+) and 1/(i omega - lambda-).
     pub inverses: [Complex<T>; 2],

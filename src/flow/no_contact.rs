@@ -16,7 +16,7 @@ pub struct NoContact<T, C = Constants<T>> {
     pub constants: C,
     /// State when the flight begins.
     pub entry: State<T>,
-    /// Forcing angle then.
+    /// Forcing angle when the flight begins.
     pub angle: EntryAngle<T>,
     /// If the flight begins on the contact surface, h = 0 there exactly, and this is h': zero at a
     /// separation (f = 0), negative where a start state has f < 0.

@@ -17,11 +17,13 @@ pub struct Progression<T, C = Constants<T>> {
     pub constants: C,
     /// State when the progression begins; p = q + g.
     pub entry: State<T>,
-    /// Forcing angle then.
+    /// Forcing angle when the progression begins.
     pub angle: EntryAngle<T>,
-    /// Drift velocity then: 0 exactly when entered from contact, positive from an impact.
+    /// Drift velocity when the progression begins: 0 exactly when entered from contact, positive
+    /// from an impact.
     pub drift_rate: T,
-    /// Velocity of the slider's top then, (1 - q)/(2 xi): y exactly when entered from contact.
+    /// Velocity of the slider's top when the progression begins, (1 - q)/(2 xi): y exactly when
+    /// entered from contact.
     pub closing: T,
 }
 
@@ -120,7 +122,7 @@ impl<T: Real> Slipping<T> {
         }
     }
 
-    /// Everything by its change.
+    /// The state by its changes since the progression began, which are small in early times.
     ///
     /// The drift is Eq. (20) with - (p0 - g - 1) exp(..), its linear terms collected: y0 - (1 -
     /// q0)/(2 xi) = w0. 1 - q0 as 2 xi times the closing velocity keeps the digits that q0 near 1
@@ -137,7 +139,7 @@ impl<T: Real> Slipping<T> {
         }
     }
 
-    /// Everything by what is left of 1 - q0: else the digits of a large q0 are lost.
+    /// The state by what is left of 1 - q0: the changes would lose the digits of a large q0.
     #[inline(always)]
     pub fn late(&self) -> Slipped<T> {
         let ([y0, ..], [d, z]) = (self.begin, self.times);

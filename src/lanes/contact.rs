@@ -26,11 +26,11 @@ pub struct LaneContact<'a, S: Simd> {
     pub forms: Forms,
     /// Forcing angle at the start.
     pub angle: Angle<S>,
-    /// Velocity of the mass then.
+    /// Velocity of the mass when the contact begins.
     pub y: Wide<S>,
-    /// Displacement of the slider's top then.
+    /// Displacement of the slider's top when the contact begins.
     pub q: Wide<S>,
-    /// The guard then.
+    /// Value of the guard when the contact begins.
     pub offset: Wide<S>,
     /// The threshold, 0 or 1, from which it counts.
     pub reference: Wide<S>,
@@ -53,13 +53,13 @@ pub struct Evaluated<S: Simd> {
 
 /// The trial force reaches a threshold.
 pub struct Release<S: Simd> {
-    /// When: an evaluation, and from there to the root.
+    /// The time of the end: that of an evaluation, and the step from there to the root.
     pub elapsed: (Wide<S>, Wide<S>),
     /// Velocity of the mass.
     pub y: Wide<S>,
     /// The lanes in which the root is on the upper threshold.
     pub rises: Mask<S>,
-    /// The lanes in which all this is proved.
+    /// The lanes in which the event and all these values are proved.
     pub fine: Mask<S>,
 }
 

@@ -18,7 +18,7 @@ pub enum Forms {
 }
 
 impl Forms {
-    /// Those of these models.
+    /// The closed forms that these models need.
     #[inline(always)]
     pub fn of<S: Simd>(shape: &Shape<Wide<S>>) -> Self {
         if shape.unusual.above(0.0).any() { Self::Any } else { Self::Usual }

@@ -49,7 +49,7 @@ impl<S: Simd> Free<Wide<S>> {
         Self { rotation: Rotation { shrink, turn }, ..free }
     }
 
-    /// Another form's solutions where the mask holds.
+    /// These solutions, or those of another form where the mask holds.
     #[inline(always)]
     fn or_where(self, mask: Mask<S>, other: Self) -> Self {
         Self {

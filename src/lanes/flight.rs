@@ -34,9 +34,9 @@ pub struct Flight<'a, S: Simd> {
     pub shape: &'a Shape<Wide<S>>,
     /// Forcing angle at the start.
     pub angle: Angle<S>,
-    /// Velocity of the mass then.
+    /// Velocity of the mass when the flight begins.
     pub y: Wide<S>,
-    /// Displacement of the slider's top then.
+    /// Displacement of the slider's top when the flight begins.
     pub q: Wide<S>,
 }
 
@@ -54,7 +54,7 @@ pub struct Aloft<S: Simd> {
 
 /// An impact.
 pub struct Impact<S: Simd> {
-    /// When: an evaluation, and from there to the root.
+    /// The time of the end: that of an evaluation, and the step from there to the root.
     pub elapsed: (Wide<S>, Wide<S>),
     /// Velocity of the mass.
     pub y: Wide<S>,
@@ -62,7 +62,7 @@ pub struct Impact<S: Simd> {
     pub q: Wide<S>,
     /// Trial force.
     pub f: Wide<S>,
-    /// The lanes in which all this is proved.
+    /// The lanes in which the event and all these values are proved.
     pub fine: Mask<S>,
 }
 
@@ -307,7 +307,7 @@ impl<S: Simd> Flight<'_, S> {
 }
 
 impl<S: Simd> Tangent<Wide<S>> {
-    /// Another tangent where the mask holds.
+    /// This tangent, or another one where the mask holds.
     #[inline(always)]
     fn or_where(self, mask: Mask<S>, other: Self) -> Self {
         Self {

@@ -135,9 +135,9 @@ shape! {
     swing_cos,
     /// C of the free oscillation after that step.
     swing_c,
-    /// S
+    /// S of the free oscillation after that step.
     swing_s,
-    /// S'
+    /// S' of the free oscillation after that step.
     swing_s_rate,
     /// A piece of a certificate in contact.
     piece,
@@ -147,9 +147,9 @@ shape! {
     piece_cos,
     /// C of the free oscillation after that piece.
     piece_c,
-    /// S
+    /// S of the free oscillation after that piece.
     piece_s,
-    /// S'
+    /// S' of the free oscillation after that piece.
     piece_s_rate,
     /// What the first step and the first piece in contact are of all others: one but clearly above
     /// critical damping, where C, S and S' are the slow exponential, zero and the quick one.
@@ -158,17 +158,17 @@ shape! {
     early_swing_sin,
     /// Cosine of omega times the first step.
     early_swing_cos,
-    /// C
+    /// C of the free oscillation after the first step.
     early_swing_c,
-    /// S'
+    /// S' of the free oscillation after the first step.
     early_swing_s_rate,
     /// Sine of omega times the first piece.
     early_piece_sin,
     /// Cosine of omega times the first piece.
     early_piece_cos,
-    /// C
+    /// C of the free oscillation after the first piece.
     early_piece_c,
-    /// S'
+    /// S' of the free oscillation after the first piece.
     early_piece_s_rate,
     /// What the steps may round off, in eps of the parts' size.
     roundings,

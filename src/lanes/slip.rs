@@ -23,13 +23,13 @@ pub struct Slip<'a, S: Simd> {
     pub shape: &'a Shape<Wide<S>>,
     /// Forcing angle at the start.
     pub angle: Angle<S>,
-    /// Velocity of the mass then.
+    /// Velocity of the mass when the progression begins.
     pub y: Wide<S>,
-    /// Displacement of the slider's top then.
+    /// Displacement of the slider's top when the progression begins.
     pub q: Wide<S>,
-    /// Drift velocity then.
+    /// Drift velocity when the progression begins.
     pub drift_rate: Wide<S>,
-    /// Velocity of the slider's top then.
+    /// Velocity of the slider's top when the progression begins.
     pub closing: Wide<S>,
 }
 
@@ -66,13 +66,13 @@ pub struct SlipStrobe<S: Simd> {
 
 /// The slider's bottom stops.
 pub struct Stop<S: Simd> {
-    /// When: an evaluation, and from there to the root.
+    /// The time of the end: that of an evaluation, and the step from there to the root.
     pub elapsed: (Wide<S>, Wide<S>),
     /// Velocity of the mass, and of the slider's top.
     pub y: Wide<S>,
     /// Drift since the start.
     pub drift: Wide<S>,
-    /// The lanes in which all this is proved.
+    /// The lanes in which the event and all these values are proved.
     pub fine: Mask<S>,
 }
 
@@ -164,7 +164,7 @@ impl<S: Simd> Slip<'_, S> {
 }
 
 impl<S: Simd> Slipped<Wide<S>> {
-    /// Another's values where the mask holds.
+    /// These values, or those of another progression where the mask holds.
     #[inline(always)]
     fn or_where(self, mask: Mask<S>, other: Self) -> Self {
         Self {

@@ -99,7 +99,7 @@ impl<S: Simd> LaneParts<S> {
 /// The strides of a contact: the first one, and all others up to doubling.
 #[derive(Clone, Copy)]
 pub struct Swings<S: Simd> {
-    /// The present one.
+    /// The stride that is due.
     pub now: ContactStep<Wide<S>>,
     full: ContactStep<Wide<S>>,
     forms: Forms,
@@ -160,7 +160,7 @@ impl<S: Simd> Swings<S> {
         Self { now, full, forms }
     }
 
-    /// Goes on to the next one.
+    /// Goes on to the next stride: twice as long, until the full length is reached.
     #[inline(always)]
     pub fn next(&mut self) {
         if self.forms == Forms::Usual {

@@ -51,8 +51,8 @@ pub fn circular_of<T: Number>(x: T, correction: T) -> Circular<T> {
 }
 
 impl<T: Real> Circular<T> {
-    /// The same of an argument that is larger by so much, to first order: the correction is below
-    /// eps of the argument.
+    /// The functions at an argument that is larger by `correction`, to first order: the correction
+    /// is below eps of the argument.
     #[inline(always)]
     pub fn corrected(self, correction: T) -> Self {
         let Self { sin, cos_minus_1, sin_minus_x } = self;

@@ -23,7 +23,7 @@ pub enum Judgement {
     Crossing {
         /// The elapsed time at which the guard crosses.
         elapsed: f64,
-        /// Through the upper threshold.
+        /// Whether the guard crosses the upper threshold; else it crosses the lower one.
         rises: bool,
         /// What the rounding of the guard in f64 may move it by.
         width: f64,
@@ -37,9 +37,9 @@ pub enum Judgement {
 /// What one search is allowed.
 #[derive(Clone, Copy, Debug)]
 pub struct Effort {
-    /// Time that matters.
+    /// The elapsed time up to which the phase is searched.
     pub horizon: f64,
-    /// Evaluations.
+    /// The largest number of evaluations.
     pub evaluations: usize,
     /// Half the distance from one to the next number of the arithmetic.
     pub unit: f64,

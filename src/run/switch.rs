@@ -24,9 +24,9 @@ use crate::state::State;
 /// How a phase begins.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Begun {
-    /// When and in which state.
+    /// The instant and the state at which the phase begins.
     pub entry: Entry,
-    /// The forcing angle then.
+    /// The forcing angle at that instant.
     pub angle: EntryAngle<f64>,
     /// A guess of the time after which the phase ends.
     pub guess: Option<f64>,
@@ -144,11 +144,11 @@ fn pass_by<P: Landing>(
     }
 }
 
-/// Searches a phase's end in two stages: candidate, then verdict.
+/// Searches a phase's end: a candidate first, then the certificate that it is the first crossing.
 ///
-/// The next phase begins at the candidate's root, before the verdict, so that the processor works
-/// on both. If the verdict is another root, the phase begins there; if it is none, what has begun
-/// counts for nothing.
+/// The next phase begins at the candidate's root, before the certificate, so that the processor
+/// works on both. If the certificate fails and the search finds another root, the phase begins
+/// there; if it finds none, what has begun counts for nothing.
 #[inline(always)]
 fn found<P: Landing>(
     phase: &P,
@@ -179,7 +179,7 @@ fn found<P: Landing>(
     SearchEnd::of(&verdict)
 }
 
-/// Next to a horizon, and where no switch was found as yet.
+/// Settles how a phase ends next to a horizon, or where no switch has been found so far.
 #[cold]
 #[inline(never)]
 fn pass_late<P: Landing>(

@@ -10,7 +10,8 @@ pub struct Begun {
     pub state: State,
 }
 
-/// alpha, beta, gamma and delta of Eqs. (15)-(17) with what they are taken from.
+/// The constants of Eq. (15): C1 and C2 by Eq. (16), and by Eq. (17) alpha to delta with what they
+/// are taken from.
 #[derive(Clone, Copy, Debug)]
 pub struct Phases {
     pub c1: f64,

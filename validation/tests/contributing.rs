@@ -92,6 +92,9 @@ fn the_tables_of_a_case_are_made_as_is_said() {
             ["python", script, "--case", _] => {
                 assert!(read(&format!("reference_data/{script}")).contains("\"--case\""));
             }
+            ["python", script] => {
+                assert!(root().join("reference_data").join(script).is_file(), "{script}");
+            }
             _ => panic!("{line}: not known here"),
         }
     }

@@ -13,8 +13,8 @@
 //! found by halving, and the curve is taken up again with the derivative of the other side: of the
 //! two directions of the new tangent the one that leaves the old piece. So a branch goes through a
 //! corner, with multipliers that jump, or turns back there, a non-smooth fold, in the same way. A
-//! corner at which the phases of the whole orbit change is a `grazing`; a switch that only passes
-//! the strobe turns the word round, and is none.
+//! corner at which the phases of the whole orbit change is a `grazing`; an event that only passes
+//! the strobe changes their cyclic order alone, and is none.
 
 //!
 //! # What is not to be expected
@@ -122,9 +122,9 @@ pub struct Bifurcation {
 pub enum BranchEnding {
     /// The branch ends at the value that was asked for.
     Reached,
-    /// Back at the value where it began.
+    /// The branch leaves its interval at the end where it began.
     Left,
-    /// It is closed: back at the orbit where it began.
+    /// The branch closes: it comes back to the orbit at which it began.
     Closed,
     /// The branch ends in a flip of an orbit of half its period, which is the last of the branch's
     /// bifurcations.
@@ -132,12 +132,12 @@ pub enum BranchEnding {
         /// The parameter value at which the branch ends.
         value: f64,
     },
-    /// No orbit was found beyond.
+    /// The branch is lost: no orbit was found beyond its last one.
     Lost {
         /// The parameter value at which the branch ends.
         value: f64,
     },
-    /// More orbits than are kept.
+    /// The branch has more orbits than are kept.
     Long {
         /// The parameter value at which the branch ends.
         value: f64,

@@ -1,4 +1,4 @@
-//! Points of the curve of orbits in (first strobe, parameter), its tangent, and the corrector.
+//! Points of the curve of orbits in (strobes, parameter), its tangent, and the corrector.
 
 use super::family::Family;
 use crate::dynamics::linear::{IDENTITY, dot, modulus, solve};
@@ -186,7 +186,7 @@ fn offsets(defects: &[StrobePoint], slopes: &[StrobePoint], step: f64) -> Vec<St
 }
 
 impl BranchTangent {
-    /// The other way.
+    /// The tangent in the opposite direction.
     pub(super) fn turned(&self) -> Self {
         let points = self.points.iter().map(|it| it.map(|x| -x)).collect();
         Self { points, rate: -self.rate }

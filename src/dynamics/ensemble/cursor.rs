@@ -18,7 +18,7 @@ pub struct Cursor<'a, W> {
     pub entry: Entry,
     /// The present phase as the scalar solver has begun it, if it passed the phase before.
     begun: Option<Begun>,
-    /// When it is next looked at.
+    /// The instant of the next strobe.
     pub due: Instant,
     horizon: Option<Instant>,
     watcher: W,
@@ -30,7 +30,8 @@ impl<'a, W: Watcher> Cursor<'a, W> {
         Self { model, entry, begun: None, due: first, horizon, watcher }
     }
 
-    /// Follows it to its end by the scalar solver: who watched, and the number of phases.
+    /// Follows the motion to its end by the scalar solver; gives its watcher, and the number of
+    /// phases.
     pub fn watched_alone(mut self) -> (W, u64) {
         let mut phases = 1;
         while self.pass().is_continue() {
@@ -39,7 +40,7 @@ impl<'a, W: Watcher> Cursor<'a, W> {
         (self.watcher, phases)
     }
 
-    /// Who watched.
+    /// The watcher of the motion.
     #[cfg(feature = "lanes")]
     pub fn into_watcher(self) -> W {
         self.watcher
@@ -76,7 +77,7 @@ impl<'a, W: Watcher> Cursor<'a, W> {
         self.begun = None;
     }
 
-    /// Shows the strobe that was due.
+    /// Shows the watcher the strobe that was due, and sets the next.
     pub fn see(&mut self, strobe: &Entry, endless: Option<Endless>) -> ControlFlow<()> {
         self.due = self.due.next_cycle();
         self.watcher.see(strobe, endless)

@@ -41,7 +41,7 @@ impl<'a, W: Watcher> LaneScheduler<'a, W> {
         }
     }
 
-    /// Follows motions as long as there is a next one; their numbers and watchers.
+    /// Follows motions as long as there is a next one; returns their numbers and watchers.
     pub fn follow(
         mut self,
         next: &mut dyn FnMut() -> Option<usize>,

@@ -44,8 +44,8 @@ impl<'a, W: Watcher> Slot<'a, W> {
         }
     }
 
-    /// What the lanes are to do next; what they cannot is done before. None when the watcher has
-    /// seen enough.
+    /// The next task for the lanes. What lanes cannot do, the scalar solver does first. `None` when
+    /// the watcher has seen enough.
     pub fn next_task(&mut self) -> Option<LaneTask> {
         loop {
             let task = match self.cursor.entry.mode {
@@ -99,7 +99,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
         }
     }
 
-    /// Takes what a lane has found; what it has not, the scalar solver finds. What to do next.
+    /// Takes what a lane has found, or has the scalar solver find it; returns the next task.
     #[inline]
     pub fn advance(&mut self, task: LaneTask, lane: usize, end: &PhaseEnds) -> Option<LaneTask> {
         if end.fine[lane] != 1.0 {

@@ -95,9 +95,9 @@ pub struct GrazeRow {
     pub engine: String,
     /// The engine's tolerance, where it has one.
     pub tolerance: Option<f64>,
-    /// Switches of the truth that it does not have.
+    /// Events of the truth that it does not have.
     pub missed: usize,
-    /// Switches that the truth does not have.
+    /// Events that the truth does not have.
     pub spurious: usize,
 }
 
@@ -125,7 +125,7 @@ pub struct FaultRow {
     pub engine: String,
     /// What is wrong with it.
     pub fault: String,
-    /// The gates it was held against: name, whether it was caught, and the figure that tells.
+    /// The checks it was held against: name, whether it was caught, and the figure that tells.
     pub gates: Vec<(String, bool, String)>,
 }
 

@@ -14,8 +14,8 @@ pub(super) enum Seen {
     Missed,
     /// Events are spurious.
     Spurious,
-    /// Events of the graze differ, which the method's bounds leave undecided.
-    Either,
+    /// The events of a graze differ; it is undecidable for the method.
+    Undecidable,
     /// The run had no result, or nothing of it is scored.
     Nothing,
 }
@@ -105,7 +105,7 @@ fn of_rows(report: &Report, evidence: &ReportEvidence) -> Vec<GrazingEntry> {
         let margin = *margins.get(row.case.as_str())?;
         let seen = match (row.verdict, row.events_missed, row.events_spurious) {
             (Verdict::NotScored, ..) => Seen::Nothing,
-            (Verdict::Undecidable, ..) => Seen::Either,
+            (Verdict::Undecidable, ..) => Seen::Undecidable,
             (_, Some(missed), Some(spurious)) => seen(missed, spurious),
             _ => Seen::Nothing,
         };

@@ -31,7 +31,7 @@ pub struct Ranked {
     pub events_missed: usize,
     /// The engine's events that the truth does not have.
     pub events_spurious: usize,
-    /// Cases with a row that fails or errs, a known shortcoming included.
+    /// Cases with a row that fails or errs, expected failures included.
     pub fails_on: Vec<String>,
     /// Errors of event times over tolerance x (1 + |value|) x growth x events so far; eps stands in
     /// for the tolerance of the exact solver, and step^p/(p + 1)! for that of a fixed step.

@@ -49,17 +49,17 @@ pub struct EngineEntry {
 pub struct Summary {
     /// Every bound that applies was measured and holds.
     pub pass: usize,
-    /// Out of bounds as a stated shortcoming has it.
+    /// Rows that are out of bounds by expected failures alone.
     pub known: usize,
-    /// Different in events of a graze alone that the method's bounds leave undecided.
+    /// Rows that differ from the truth only in events of grazes that are undecidable.
     pub undecidable: usize,
     /// Too little of the run could be scored.
     pub not_scored: usize,
-    /// Out of bounds.
+    /// Rows that are out of bounds.
     pub fail: usize,
-    /// Without a result.
+    /// Rows whose run gave no result.
     pub error: usize,
-    /// Beyond the suite's budget.
+    /// Rows that were not run, because they would have exceeded the suite's budget.
     pub not_run: usize,
     /// The number of rows of engines that are not installed.
     pub unavailable: usize,
@@ -125,9 +125,9 @@ pub struct RestartFigures {
 pub struct ValidHorizons {
     /// Runs made.
     pub runs: usize,
-    /// Half of them last as long as this.
+    /// The median of the valid horizons.
     pub median: f64,
-    /// 99 % of them do.
+    /// The horizon that 99 % of the runs reach.
     pub q01: f64,
     /// What the truth's growth along each run makes of the engine's unit of error: the median.
     pub predicted_median: f64,

@@ -96,7 +96,7 @@ pub(super) fn figure(value: f64) -> String {
     }
 }
 
-/// The cases on which each engine fails, with what is a known shortcoming told apart.
+/// The cases on which each engine fails, with expected failures told apart.
 fn failing_cases(report: &Report) -> String {
     let line = |it: &Ranked| {
         if it.fails_on.is_empty() {

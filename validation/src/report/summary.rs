@@ -68,7 +68,7 @@ impl SettingSummary {
         }
     }
 
-    /// The share of the truth's switches that the engine has; NaN where there was none to find.
+    /// The share of the truth's events that the engine has; NaN where there was none to find.
     pub fn recall(&self) -> f64 {
         self.matched as f64 / self.expected as f64
     }

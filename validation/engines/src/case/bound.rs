@@ -7,23 +7,23 @@ use regex::Regex;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
-    /// Switches of the truth that the engine does not have.
+    /// Events of the truth that the engine does not have.
     EventsMissed,
-    /// Switches of the engine that the truth does not have.
+    /// Events of the engine that the truth does not have.
     EventsSpurious,
     /// Number of differences between the engine's sequence of phases and the truth's (0 or 1).
     PhaseWord,
-    /// Error of the matched switches' times, units of time.
+    /// Error of the matched events' times, units of time.
     EventTimeError,
     /// max(|dp|, |dy|, |dq|) on the fixed sample, units of displacement.
     StateError,
     /// |dv| at the scored horizon, units of displacement.
     DriftError,
-    /// Largest error of a switch's time or state over unit x (1 + |value|) x growth x number of
-    /// switches.
+    /// Largest error of an event's time or state over unit x (1 + |value|) x growth x number of
+    /// events.
     EventConstant,
     /// Largest error of the sample's states over unit x (1 + |value|) x growth x number of
-    /// switches.
+    /// events.
     StateConstant,
     /// Forcing periods until the state's error passes 1e-3 (a lower limit).
     ValidPeriods,
@@ -71,7 +71,7 @@ impl Quantity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Statistic {
-    /// The middle value.
+    /// The median.
     Median,
     /// 99 % are at most this.
     Q99,
@@ -100,7 +100,7 @@ pub struct Bound {
     pub why: String,
 }
 
-/// A shortcoming of an engine that is known: the one quantity of a row that it excuses.
+/// An expected failure of an engine: the one quantity of a row that it excuses.
 #[derive(Clone, Debug)]
 pub struct Shortcoming {
     /// Cases it is for, where it does not stand in one.

@@ -58,6 +58,6 @@ pub struct Case {
     pub probed: ProbedCase,
     /// Bounds of this case; they come before the default ones.
     pub bounds: Vec<Bound>,
-    /// Known shortcomings of engines, with their reasons.
+    /// Expected failures of engines, with their reasons.
     pub shortcomings: Vec<Shortcoming>,
 }

@@ -2,7 +2,7 @@
 
 use super::Stepping;
 
-/// How an engine finds its switches.
+/// How an engine finds its events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Location {
@@ -54,7 +54,7 @@ pub struct Declaration {
     /// The order of convergence that the method's authors state. Methods of variable order and
     /// closed forms have none.
     pub order: Option<u32>,
-    /// How it finds switches.
+    /// How it finds events.
     pub events: Location,
     /// Whether it has dense output of its own.
     pub dense_output: bool,

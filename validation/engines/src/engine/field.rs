@@ -30,7 +30,8 @@ pub trait Equations: Copy {
     /// The derivatives' derivative along `w`.
     fn jacobian_product(&self, phase: Phase, w: &[f64], dw: &mut [f64]);
 
-    /// The guards: gap; trial force at 1, at 0; trial force at 1.
+    /// The phase's guards, [`GUARDS`] of them: the gap in flight; the trial force at 1 and at 0 in
+    /// contact; the trial force at 1 in progression.
     fn guards(&self, phase: Phase, u: &[f64]) -> [f64; GUARDS];
 
     /// The guards' rates by the equations of motion.

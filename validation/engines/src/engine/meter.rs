@@ -29,7 +29,7 @@ impl Failure {
 pub struct Limits {
     /// Right-hand sides, Jacobian products and guards together.
     pub calls: u64,
-    /// Switches.
+    /// The events found so far.
     pub events: usize,
     /// The last resort: results must not depend on it.
     pub wall: Duration,

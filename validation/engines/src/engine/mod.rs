@@ -81,7 +81,7 @@ pub struct Task {
     pub watched: Option<Watched>,
 }
 
-/// A switch as an engine found it: the phase that begins, and the state at that instant.
+/// An event as an engine found it: the phase that begins, and the state at that instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event {
     /// The phase that begins.
@@ -108,7 +108,7 @@ pub struct Work {
 /// A run that was made.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// The switches in the order they were found.
+    /// The events in the order in which they were found.
     pub events: Vec<Event>,
     /// The states on the grid.
     pub samples: Vec<[f64; 4]>,

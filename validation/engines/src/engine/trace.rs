@@ -18,7 +18,7 @@ pub struct Watched {
 /// A guard as a search for events saw it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuardSample {
-    /// When, since the start.
+    /// Time of the evaluation, since the start.
     pub t: f64,
     /// The phase whose guard it is.
     pub phase: Phase,

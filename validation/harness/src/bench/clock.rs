@@ -11,7 +11,7 @@ pub struct Stopwatch {
 }
 
 impl Stopwatch {
-    /// Starts.
+    /// Starts the clock.
     #[must_use]
     pub fn start() -> Self {
         Self { began: now() }

@@ -8,10 +8,10 @@ use crate::engine::{Accuracy, Failure, Role, Stepping};
 use percuss::Parameters;
 
 const XI: [f64; 9] = [1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4];
-/// That of the stiffness ladder.
+/// The forcing frequency of the cases of the stiffness ladder.
 const OMEGA: f64 = 1.2;
 const PERIODS: u64 = 20;
-/// Tight enough that most are right all the way, loose enough that stability chooses their steps.
+/// A tolerance at which most engines are right to the end, and stability limits their steps.
 const TOLERANCE: f64 = 1e-9;
 
 /// All contestants at one damping ratio.

@@ -1,6 +1,6 @@
 //! Times at equal accuracy, read off a work-precision curve.
 //!
-//! An engine's settings, from loose to tight, are the corners of its curve of time against error.
+//! An engine's settings, from loose to tight, are the vertices of its curve of time against error.
 //! Between two neighbouring settings whose answers are both right, the logarithm of the time is
 //! linear in the logarithm of the error. The time at errors of at most E is the least time on the
 //! curve where the error is at most E. A curve is never extended: one that stays above E has no
@@ -19,15 +19,15 @@ pub struct AccuracyPoint {
 /// is `None` and breaks the curve.
 #[must_use]
 pub fn time_at(curve: &[Option<AccuracyPoint>], error: f64) -> Option<f64> {
-    let corners = curve.iter().flatten().filter(|it| it.error <= error).map(|it| it.time);
+    let vertices = curve.iter().flatten().filter(|it| it.error <= error).map(|it| it.time);
     let crossings = curve.windows(2).filter_map(|pair| match pair {
         [Some(one), Some(other)] => between(one, other, error),
         _ => None,
     });
-    corners.chain(crossings).min_by(f64::total_cmp)
+    vertices.chain(crossings).min_by(f64::total_cmp)
 }
 
-/// The time where the straight line between two corners passes `error`.
+/// The time where the straight line between two vertices passes `error`.
 fn between(one: &AccuracyPoint, other: &AccuracyPoint, error: f64) -> Option<f64> {
     let share = (error / one.error).ln() / (other.error / one.error).ln();
     let inside = share > 0.0 && share < 1.0;

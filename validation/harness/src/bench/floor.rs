@@ -1,9 +1,9 @@
-//! The floor: what one evaluation of a closed form costs at the least, its sine, cosine and
+//! What one evaluation of a closed form costs at the least: the latency of its sine, cosine and
 //! exponential.
 //!
-//! A switch needs one evaluation: the state at the root. It is timed in the same rounds as the
-//! switches, chained (each waits for the last, as in one run) and independent (as in many runs side
-//! by side).
+//! An event needs one evaluation: the state at the root. It is timed in the same rounds as the
+//! workloads, as a dependent chain (each evaluation waits for the last, as in one run) and with
+//! independent evaluations (as in many runs side by side).
 
 use super::rounds::{Benchmark, Plain, RoundPace, RoundTimes, race};
 use super::workload::{Repeated, Workload};
@@ -19,11 +19,11 @@ const PACE: RoundPace = RoundPace { batch: 0.5e6, batches: 5 };
 /// What an evaluation costs at the least, and what a switch costs in the same rounds.
 #[derive(Clone, Debug)]
 pub struct Floors {
-    /// Each evaluation waits for the last, ns.
+    /// Dependent-chain latency, ns: each evaluation waits for the result of the one before.
     pub chained: RoundTimes,
-    /// They do not, ns.
+    /// Reciprocal throughput, ns: no evaluation waits for another.
     pub independent: RoundTimes,
-    /// The workloads.
+    /// The cost of each workload, in the order in which the workloads were given.
     pub switches: Vec<Result<Cost, Failure>>,
 }
 

@@ -107,7 +107,7 @@ pub struct History {
 }
 
 impl History {
-    /// Reads one; a file that is not there is an empty history.
+    /// Reads a history; a file that is not there is an empty history.
     ///
     /// # Errors
     /// One line that names the file, and the line that is not accepted.

@@ -41,7 +41,7 @@ pub struct Lead<'a> {
     /// The adaptive engine that takes least: its most accurate setting, or its fastest setting
     /// whose error is at most that of the basis.
     pub next: &'a Row,
-    /// How many times as long it takes.
+    /// How many times as long the competitor takes as the exact solver.
     pub ratio: f64,
 }
 
@@ -90,7 +90,7 @@ pub struct Shortfall<'a> {
     pub case: &'a str,
     /// The closest competitor.
     pub engine: &'a str,
-    /// How many times as long it takes.
+    /// How many times as long the competitor takes as the exact solver.
     pub ratio: f64,
     /// Time of the exact solver's run for each event of it, ns.
     pub ns_per_event: f64,

@@ -1,4 +1,4 @@
-//! What a run costs against its length: time in proportion to it, memory none of it.
+//! What a run costs against its length: its time is proportional to it, its memory constant.
 //!
 //! A chaotic run of a million periods has no truth to be held to. A stable orbit has: after any
 //! multiple of its period the motion is where it began. So every length that is timed is checked
@@ -13,7 +13,7 @@ use percuss::{Entry, Model, Parameters, Start, Step};
 
 /// Lengths in forcing periods, multiples of the orbit's five.
 const LENGTHS: [u64; 6] = [10, 100, 1_000, 10_000, 100_000, 1_000_000];
-/// Those that take long.
+/// Lengths that are timed only when long runs are asked for.
 const LONG: [u64; 2] = [10_000_000, 100_000_000];
 /// Each length is run until it has taken this long, ns, and once at least.
 const LEAST: f64 = 2e7;

@@ -30,11 +30,11 @@ pub struct Bench {
     pub events: Vec<EventCost>,
     /// Cost against length; empty where only some cases were asked for.
     pub length: Vec<Length>,
-    /// Cost against xi; empty alike.
+    /// Cost against xi; empty where only some cases were asked for.
     pub damping: Vec<Damped>,
 }
 
-/// A course.
+/// A case that is timed.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
 pub struct CaseEntry {
@@ -52,7 +52,7 @@ impl CaseEntry {
     }
 }
 
-/// One contestant at one setting on one case. What there is not is null.
+/// One contestant at one setting on one case. A figure that there is not is null.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are those of the command line's contract")]
 pub struct Row {
@@ -223,7 +223,7 @@ fn rows(course: &Course, finishers: &[Finisher]) -> Vec<Row> {
             engine: it.name.to_owned(),
             tolerance: it.setting.tolerance(),
             step: it.setting.step(),
-            ns_per_period: timed.map(|it| it.series.typical()),
+            ns_per_period: timed.map(|it| it.series.median()),
             state_error_max: timed.map(|it| it.score.state_error),
             event_time_error_max: timed.map(|it| it.score.event_time_error),
             ratio_to_exact: timed.map(|it| it.series.ratio_to(&unit)).filter(|it| it.is_finite()),
@@ -265,7 +265,7 @@ fn damped(rung: &DampingRung) -> Vec<Damped> {
             xi: rung.xi,
             engine: it.name.to_owned(),
             tolerance: it.setting.tolerance(),
-            ns_per_period: timed.map(|it| it.series.typical()),
+            ns_per_period: timed.map(|it| it.series.median()),
             state_error_max: timed.map(|it| it.score.state_error),
             why: it.result.as_ref().err().map(ToString::to_string),
         }

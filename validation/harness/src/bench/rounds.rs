@@ -62,7 +62,7 @@ pub struct RoundTimes(pub Vec<f64>);
 impl RoundTimes {
     /// The median over the rounds.
     #[must_use]
-    pub fn typical(&self) -> f64 {
+    pub fn median(&self) -> f64 {
         Spread::of(self.0.clone()).median
     }
 
@@ -172,7 +172,7 @@ mod tests {
         assert_eq!(engine.ratio_to(&exact), 300.0);
         assert_eq!(exact.ratio_to(&exact), 1.0);
         assert_eq!(engine.best(), 290.0);
-        assert_eq!(engine.typical(), 310.0);
+        assert_eq!(engine.median(), 310.0);
         // Neither the quotient of medians nor of least times.
         let drifting = RoundTimes(vec![4.0, 1.0, 9.0]);
         assert_eq!(drifting.ratio_to(&RoundTimes(vec![2.0, 1.0, 3.0])), 2.0);

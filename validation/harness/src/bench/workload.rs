@@ -14,7 +14,7 @@ pub trait Workload {
     /// The workload's name, as in the history.
     fn name(&self) -> String;
 
-    /// Does this many units; the closed-form evaluations that took.
+    /// Does this many units, and returns the number of closed-form evaluations that they took.
     ///
     /// # Errors
     /// Why there is no such work.

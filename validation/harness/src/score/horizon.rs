@@ -30,7 +30,7 @@ struct HorizonRun {
     truth: Truth,
     /// The largest growth of p, y and q so far, at each sample.
     growth: Vec<f64>,
-    /// Switches of the runs before it: a fault may strike every hundredth.
+    /// Events of the runs before it: a fault may strike every hundredth.
     events_before: u64,
 }
 

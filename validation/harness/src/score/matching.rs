@@ -1,16 +1,16 @@
-//! Which of the engine's switches are which of the truth's.
+//! Which events of the engine are which of the truth's.
 
 use crate::engine::Event;
 use crate::truth::Row;
 
-/// Two switches are the same if the same phase begins and they are at most this apart, in forcing
+/// Two events are the same if the same phase begins and they are at most this apart, in forcing
 /// periods.
 pub const WINDOW: f64 = 0.05;
 
-/// A pairing of switches in order.
+/// A pairing of events in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Matching {
-    /// Indices into the truth's and the engine's switches.
+    /// Indices into the truth's and the engine's events.
     pub pairs: Vec<(usize, usize)>,
 }
 

@@ -23,19 +23,20 @@ pub struct Measures {
     pub total: usize,
     /// The truth's events before the scored horizon.
     pub expected: usize,
-    /// Those that the engine has.
+    /// Events that are matched, of the `expected` ones.
     pub matched: usize,
     /// Which events the engine and the truth do not share.
     pub mismatch: Mismatch,
     /// Whether the phases follow each other as in the truth.
     pub phase_word_ok: bool,
-    /// Errors of matched switches' times.
+    /// Errors of matched events' times.
     pub event_time: Spread,
     /// max(|dp|, |dy|, |dq|) on the sample.
     pub state: Spread,
     /// |dv| at the horizon; NaN where that is not scored.
     pub drift: f64,
-    /// How much of it the errors of the switches' times explain to first order; NaN alike.
+    /// The part of the drift's error that the errors of the events' times explain to first order;
+    /// NaN where the drift is not scored.
     pub drift_by_times: f64,
     /// Forcing periods until the state's error passes [`SCORED_ERROR`].
     pub valid_periods: f64,

@@ -12,9 +12,9 @@ pub struct Mismatch {
     pub missed: Vec<usize>,
     /// Indices of the engine's events that the truth does not have.
     pub spurious: Vec<usize>,
-    /// Indices of the truth's events that the engine does not have, at any time.
+    /// Indices of the truth's missed events, beyond the scored horizon too.
     lost: Vec<usize>,
-    /// Indices of the engine's events that the truth does not have, at any time.
+    /// Indices of the engine's spurious events, beyond the scored horizon too.
     extra: Vec<usize>,
     /// How many of the truth's events are before the scored horizon.
     expected: usize,

@@ -23,7 +23,8 @@ impl ProbeResults {
         self.restart.as_ref().is_some_and(|it| it.with_impact > 0)
     }
 
-    /// The largest distance of the section in units of its limit; NaN where there is none.
+    /// The largest ratio of a distance between sections to its limit: above 1 the test has failed.
+    /// NaN where no section was compared.
     #[must_use]
     pub fn share(&self) -> f64 {
         match &self.attractor {

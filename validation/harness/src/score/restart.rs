@@ -36,9 +36,9 @@ pub struct RestartRun {
 
 /// The runs of one case.
 pub struct RestartTest {
-    /// Those with a truth, in the order of their starts.
+    /// The runs with a truth, in the order of their starts.
     pub runs: Vec<RestartRun>,
-    /// Those that 106 bits do not decide.
+    /// Runs that 106 bits do not decide, which are left out.
     pub undecided: usize,
 }
 
@@ -47,9 +47,10 @@ pub struct RestartTest {
 pub struct RestartError {
     /// The largest error of p, y, q and v in units of error x (1 + |value|) x growth.
     pub units: f64,
-    /// That of v alone.
+    /// The error of v, in the units of `units`.
     pub drift_units: f64,
-    /// The largest error of a switch time, alike; not a number where the phases follow otherwise.
+    /// The largest error of an event's time, in the units of `units`; NaN where the sequence of
+    /// phases is not the truth's.
     pub time_units: f64,
     /// The largest error of p, y, q and v itself.
     pub absolute: f64,
@@ -62,7 +63,8 @@ pub struct RestartError {
 pub struct Restart {
     /// Runs made.
     pub runs: usize,
-    /// Those with an impact, of which all figures are.
+    /// Runs with an impact. The spreads and the histogram are of these; `failed` and `wrong_words`
+    /// count all runs.
     pub with_impact: usize,
     /// Runs that the truth leaves undecided, which are not made.
     pub undecided: usize,

@@ -1,15 +1,15 @@
-//! Known shortcomings held against a row: each excuses the one quantity that it names.
+//! Expected failures held against a row: each excuses the one quantity that it names.
 
 use super::mismatch::Excused;
 use super::verdict::{Checked, ScoredRun, Verdict};
 use crate::case::Shortcoming;
 use crate::number::brief;
 
-/// What a stated shortcoming comes to on a row.
+/// What became of an expected failure on a row.
 pub(super) enum Answer {
-    /// It shows as stated; the reason.
+    /// The figure lies between floor and ceiling; the reason of the failure.
     Shows(String),
-    /// It does not; what is out of date.
+    /// The figure lies elsewhere; what is out of date.
     OutOfDate(String),
 }
 

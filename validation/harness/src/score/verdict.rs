@@ -1,4 +1,4 @@
-//! The verdict on a row: bounds held against measures, with what grazes and known shortcomings
+//! The verdict on a row: bounds held against measures, with what grazes and expected failures
 //! excuse.
 //!
 //! A row has one class, the first that applies of: unavailable, not-run, error, fail, known,
@@ -26,7 +26,7 @@ pub enum Verdict {
     Error,
     /// A bound failed.
     Fail,
-    /// A bound failed as a stated shortcoming of the engine has it.
+    /// A bound failed, and the failure is expected of the engine.
     Known,
     /// Events of a graze differ that the method's bounds leave undecided.
     Undecidable,
@@ -70,13 +70,13 @@ impl Verdict {
 pub struct Checked {
     /// What is bounded.
     pub quantity: Quantity,
-    /// Which figure of it.
+    /// Which statistic of the quantity is bounded.
     pub statistic: Statistic,
     /// The limit.
     pub limit: f64,
     /// What was measured, without the events that a graze excuses; NaN where nothing was.
     pub value: f64,
-    /// Whether it is within.
+    /// The class of the bound: pass, undecidable, not-scored, fail, or known (expected failure).
     pub verdict: Verdict,
     /// The bound's reason.
     pub why: String,
@@ -131,7 +131,7 @@ pub struct Expected<'a> {
     /// Bounds of classes of methods alone, whose constants decide which grazes are undecidable:
     /// what a case allows besides excuses no event.
     pub of_classes: &'a [Bound],
-    /// Known shortcomings.
+    /// Failures that are expected of engines.
     pub shortcomings: &'a [&'a Shortcoming],
 }
 

@@ -33,7 +33,7 @@ pub struct Prepared {
 pub enum Status {
     /// The run has a result.
     Ok(Box<Measures>, Outcome),
-    /// Without one.
+    /// The run has no result; the reason.
     Failed(Failure),
     /// The engine is not installed.
     Unavailable,

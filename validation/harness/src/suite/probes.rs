@@ -148,7 +148,7 @@ impl Extent {
 /// Runs from which a valid horizon is taken: as many as a median needs to be good to a period or
 /// two.
 const HORIZONS: usize = 200;
-/// Those of a wrong engine, which is off by far more than that.
+/// Runs for the valid horizon of a wrong engine, which is off by far more than a period or two.
 const HORIZONS_OF_WRONG: usize = 40;
 
 /// The test of valid horizons, where a case asks for it.

@@ -27,7 +27,7 @@ pub struct Undecided {
 /// The state at which a phase begins.
 #[derive(Clone, Copy, Debug)]
 pub struct Beginning {
-    /// When.
+    /// The instant at which the phase begins.
     pub instant: Instant,
     /// Bounded co-ordinates.
     pub state: State<DoubleDouble>,

@@ -104,7 +104,7 @@ fn figures(course: &Course, halves: &[Floors; 2], i: usize) -> Result<Figures, F
     Ok(Figures {
         instructions: None,
         best_ns: whole.best(),
-        median_ns: whole.typical(),
+        median_ns: whole.median(),
         floor_ns: floor(&halves[0]).min(floor(&halves[1])),
         floors: first.series.best() / floor(&halves[0]),
         floors_again: second.series.best() / floor(&halves[1]),
