@@ -11,6 +11,7 @@ use percuss::dynamics::ensemble::{Member, Watcher, follow_by};
 use percuss::dynamics::section::section;
 use percuss::lanes::Instructions;
 use percuss::{Endless, Entry, Model, Parameters, Start};
+use percuss_validation::score::Spread;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::hint::black_box;
 use std::ops::ControlFlow;
@@ -99,9 +100,8 @@ fn threads(count: usize) -> ThreadPool {
     ThreadPoolBuilder::new().num_threads(count).build().expect("a pool of threads")
 }
 
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values[values.len() / 2]
+fn median(values: Vec<f64>) -> f64 {
+    Spread::of(values).median
 }
 
 /// Instruction sets beside the scalar solver, one thread.

@@ -89,7 +89,7 @@ impl FreeParts {
     }
 
     /// Value and slope of the parabola and a line that stands for the exponential.
-    fn slow(&self, shape: &FreeShape, line: &Line) -> (f64, f64) {
+    fn slow(&self, shape: &FreeShape, line: &Chord) -> (f64, f64) {
         let value = self.value + self.bow * shape.per_omega2;
         let slope = self.slope + self.quarter * (shape.omega * shape.per_omega2);
         (value + line.at(self.elapsed), slope + line.slope)
@@ -98,13 +98,13 @@ impl FreeParts {
 
 /// The straight line that stands for the exponential.
 #[derive(Clone, Copy)]
-struct Line {
+struct Chord {
     end: f64,
     value: f64,
     slope: f64,
 }
 
-impl Line {
+impl Chord {
     /// A straight line that is nowhere below the exponential between the two places.
     fn above(from: &FreeParts, to: &FreeParts, rate: f64) -> Self {
         // At the right end it may have sunk below the smallest number: the left one has its sign.
@@ -126,7 +126,7 @@ pub struct PiecewiseCertificate<'a> {
     shape: &'a FreeShape,
     steps: &'a Steps,
     /// Once the exponential has lived.
-    line: Option<Line>,
+    line: Option<Chord>,
 }
 
 /// How high the harmonic's crests may be between two places.
@@ -183,7 +183,7 @@ impl<'a> PiecewiseCertificate<'a> {
         if first == Proof::Open {
             return (first, room);
         }
-        let line = Line::above(&settled, &right.parts, rate);
+        let line = Chord::above(&settled, &right.parts, rate);
         // From here on the line stands for it.
         let (mut settled, mut right) = (settled, right);
         (settled.lasting, right.parts.lasting) = (0.0, 0.0);
@@ -251,7 +251,7 @@ impl<'a> PiecewiseCertificate<'a> {
         /// own room leaves that out: its parts have cancelled before they were rounded.
         const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
         let FreeShape { curvature, grain, strength, per_omega2, rate, .. } = *self.shape;
-        let line = self.line.unwrap_or_else(|| Line::above(near, far, rate));
+        let line = self.line.unwrap_or_else(|| Chord::above(near, far, rate));
         let amplitude = strength * per_omega2;
         let (here, rising) = near.slow(self.shape, &line);
         let (there, falling) = far.slow(self.shape, &line);
@@ -298,7 +298,7 @@ impl<'a> PiecewiseCertificate<'a> {
     }
 
     /// The orders with a line in place of the exponential.
-    fn above(&self, parts: &FreeParts, line: &Line) -> [f64; 4] {
+    fn above(&self, parts: &FreeParts, line: &Chord) -> [f64; 4] {
         let [value, slope, bend, third] = self.bare(parts);
         [value + line.at(parts.elapsed), slope + line.slope, bend, third]
     }
@@ -331,7 +331,7 @@ mod tests {
             rate: 1.0,
             rate8: 1.0,
         };
-        let line = Some(Line { end: 2.0, value: 0.0, slope: 0.0 });
+        let line = Some(Chord { end: 2.0, value: 0.0, slope: 0.0 });
         let certificate = PiecewiseCertificate { shape: &shape, steps: &steps, line };
         let at = |elapsed, slope| FreeParts {
             elapsed,

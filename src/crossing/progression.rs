@@ -2,7 +2,6 @@
 
 use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
-use crate::crossing::higher_orders::PushedOrders;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::slow_envelope::SlowEnvelope;
@@ -133,10 +132,15 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
     }
 
     fn series<const N: usize>(&self, at: &Point<f64>) -> Series<f64, N> {
+        // By `PushedOrders`, as in lanes, an event takes 0.9 % more instructions.
         let Constants { rate, omega, .. } = *self.constants.borrow();
-        let force = [at.force[1], at.force[2]];
-        let mut higher = PushedOrders::new([omega * omega, rate], at.slider_velocity, force);
-        Series::new(&at.guard.orders, || higher.step())
+        let mut lag = at.slider_velocity * (rate * rate * rate);
+        let [_, mut force, mut next] = at.force;
+        Series::new(&at.guard.orders, || {
+            lag *= -rate;
+            (force, next) = (next, -(omega * omega * force));
+            next + lag
+        })
     }
 
     #[inline(always)]

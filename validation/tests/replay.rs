@@ -8,7 +8,7 @@ use percuss::TwoWord;
 use percuss_validation::case::{Case, Given, embedded};
 use percuss_validation::engine::{SampleGrid, Task};
 use percuss_validation::score::RunGrowth;
-use percuss_validation::truth::{Library, Row, Truth, UNIT, Undecided};
+use percuss_validation::truth::{Library, Truth, TruthRow, UNIT, Undecided};
 
 /// The tables hold 25 significant digits, rounded to nearest, and at most 60 decimals.
 const HALF_A_DIGIT: f64 = 0.5e-24;
@@ -52,7 +52,7 @@ struct Place {
 }
 
 fn compare(
-    (found, proved): (&Row, &Row),
+    (found, proved): (&TruthRow, &TruthRow),
     growth: &[f64; 5],
     Place { switches, time }: Place,
     what: &str,
@@ -60,7 +60,7 @@ fn compare(
 ) {
     assert_eq!(found.phase, proved.phase, "{what}");
     let names = ["tau", "p", "y", "q", "v"];
-    let values = |row: &Row| {
+    let values = |row: &TruthRow| {
         let [p, y, q, v] = row.state;
         [row.elapsed, p, y, q, v]
     };
@@ -93,8 +93,8 @@ fn every_proved_digit_of_every_case_is_met() {
             compare((found, proved), &growth.switches[n], place, &what, &mut here);
         }
         let plain = |growth: [f64; 4]| [1.0, growth[0], growth[1], growth[2], growth[3]];
-        let place = |row: &Row| {
-            let since = |switch: &Row| row.elapsed.minus(switch.elapsed).value();
+        let place = |row: &TruthRow| {
+            let since = |switch: &TruthRow| row.elapsed.minus(switch.elapsed).value();
             let passed = truth.switches.iter().take_while(|switch| since(switch) >= 0.0).count();
             let last = passed.checked_sub(1).map_or(&truth.start, |n| &truth.switches[n]);
             Place { switches: passed.max(1), time: since(last) }

@@ -2,7 +2,7 @@
 //!
 //! The service shows a handful of annotations a step and drops the rest, so there is one a case.
 
-use super::{Report, ReportEvidence, Row};
+use super::{Report, ReportEvidence, ReportRow};
 use crate::score::Verdict;
 
 /// Whether this runs under the service.
@@ -15,13 +15,13 @@ pub fn under_the_service() -> bool {
 /// unavailable.
 #[must_use]
 pub fn annotations(report: &Report, evidence: &ReportEvidence, require: bool) -> Vec<String> {
-    let wanted = |row: &&Row| match row.verdict {
+    let wanted = |row: &&ReportRow| match row.verdict {
         Verdict::Fail | Verdict::Error => true,
         Verdict::Unavailable => require,
         _ => false,
     };
-    let of_case = |rows: &[Row]| {
-        let bad: Vec<&Row> = rows.iter().filter(wanted).collect();
+    let of_case = |rows: &[ReportRow]| {
+        let bad: Vec<&ReportRow> = rows.iter().filter(wanted).collect();
         let case = &bad.first()?.case;
         let file = evidence.cases.iter().find(|note| note.name == *case).map(|note| &note.file);
         Some(line(case, file.map(String::as_str), &bad))
@@ -37,7 +37,7 @@ fn worse(worse: &[String]) -> Option<String> {
     (count > 0).then(|| format!("::error title={title}::{}", message(&worse.join("\n"))))
 }
 
-fn line(case: &str, file: Option<&str>, bad: &[&Row]) -> String {
+fn line(case: &str, file: Option<&str>, bad: &[&ReportRow]) -> String {
     let file = file.map_or(String::new(), |file| format!("file={},", property(file)));
     let rows = if bad.len() == 1 { "row" } else { "rows" };
     let title = property(&format!("{case}: {} {rows} out of bounds", bad.len()));

@@ -1,6 +1,6 @@
 //! An earlier report, to be no worse than.
 
-use super::{Report, Row};
+use super::{Report, ReportRow};
 use crate::number::brief;
 use serde::Deserialize;
 
@@ -106,14 +106,14 @@ impl Earlier {
         format!("{} {}", self.case, super::setting::who(&self.engine, &setting))
     }
 
-    fn is(&self, row: &Row) -> bool {
+    fn is(&self, row: &ReportRow) -> bool {
         self.case == row.case
             && self.engine == row.engine
             && self.tolerance == row.tolerance
             && self.step == row.step
     }
 
-    fn against(&self, row: &Row) -> Vec<String> {
+    fn against(&self, row: &ReportRow) -> Vec<String> {
         let mut worse = Vec::new();
         let now = row.verdict.as_str();
         let lost = self.verdict == "pass" && now != "pass";

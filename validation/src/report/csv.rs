@@ -1,7 +1,7 @@
 //! `errors.csv`: the rows of `report.json`, flat. What is `null` there is empty or `nan` here.
 
 use super::row::{Distance, ValidHorizons};
-use super::{Exporter, Report, ReportEvidence, Row};
+use super::{Exporter, Report, ReportEvidence, ReportRow};
 use crate::number::shortest;
 use crate::score::Spread;
 use std::collections::BTreeMap;
@@ -79,7 +79,7 @@ fn spread(spread: &Spread) -> [String; 3] {
     [spread.median, spread.q99, spread.max].map(shortest)
 }
 
-fn fields(row: &Row) -> [String; 38] {
+fn fields(row: &ReportRow) -> [String; 38] {
     let [time_median, time_q99, time_max] = spread(&row.event_time_error);
     let [state_median, state_q99, state_max] = spread(&row.state_error);
     let restart = row.restart.map(|it| spread(&it.error)).unwrap_or_default();

@@ -101,7 +101,7 @@ fn given(evidence: &ReportEvidence) -> Vec<GrazingEntry> {
 fn of_rows(report: &Report, evidence: &ReportEvidence) -> Vec<GrazingEntry> {
     let margins: BTreeMap<&str, f64> =
         evidence.cases.iter().filter_map(|note| Some((note.name.as_str(), note.margin?))).collect();
-    let entry = |row: &super::Row| {
+    let entry = |row: &super::ReportRow| {
         let margin = *margins.get(row.case.as_str())?;
         let seen = match (row.verdict, row.events_missed, row.events_spurious) {
             (Verdict::NotScored, ..) => Seen::Nothing,

@@ -1,6 +1,6 @@
 //! `junit.xml`: a suite a case, a test a row, for services that show test results.
 
-use super::{Exporter, Report, ReportEvidence, Row};
+use super::{Exporter, Report, ReportEvidence, ReportRow};
 use crate::score::Verdict;
 use quick_junit::{NonSuccessKind, TestCase, TestCaseStatus, TestSuite};
 use std::io::{self, Write};
@@ -30,7 +30,7 @@ impl Exporter for Junit {
     }
 }
 
-fn suite(rows: &[Row]) -> TestSuite {
+fn suite(rows: &[ReportRow]) -> TestSuite {
     let mut suite = TestSuite::new(rows.first().map_or("", |row| &row.case));
     suite.set_time(rows.iter().map(wall).sum());
     suite.add_test_cases(rows.iter().map(test));
@@ -51,7 +51,7 @@ fn baseline(worse: &[String]) -> TestSuite {
     suite
 }
 
-fn test(row: &Row) -> TestCase {
+fn test(row: &ReportRow) -> TestCase {
     let mut status = match row.verdict {
         Verdict::Pass | Verdict::Known | Verdict::Undecidable => TestCaseStatus::success(),
         Verdict::Fail => TestCaseStatus::non_success(NonSuccessKind::Failure),
@@ -71,6 +71,6 @@ fn test(row: &Row) -> TestCase {
     test
 }
 
-fn wall(row: &Row) -> Duration {
+fn wall(row: &ReportRow) -> Duration {
     Duration::from_nanos(row.wall_ns.unwrap_or(0))
 }

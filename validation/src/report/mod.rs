@@ -33,7 +33,7 @@ pub use orders::{Order, orders};
 pub use pictures::{PictureFile, pictures};
 pub use ranking::{COMPARED_AT, Ranked, Units};
 pub use ranking_formats::{RankingFormat, ranking_text};
-pub use row::{EngineEntry, Report, Row, Summary, ValidHorizons};
+pub use row::{EngineEntry, Report, ReportRow, Summary, ValidHorizons};
 pub use screen::{WIDTH, screen};
 
 use std::io::{self, Write};

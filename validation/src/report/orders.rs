@@ -1,6 +1,6 @@
 //! The order at which each engine converges, beside the one it claims.
 
-use super::{EngineEntry, Row};
+use super::{EngineEntry, ReportRow};
 use crate::score::Spread;
 
 /// An engine's order.
@@ -37,11 +37,11 @@ const ENOUGH: usize = 10;
 
 /// The orders of all engines that claim one and have ladders.
 #[must_use]
-pub fn orders(engines: &[EngineEntry], rows: &[Row]) -> Vec<Order> {
+pub fn orders(engines: &[EngineEntry], rows: &[ReportRow]) -> Vec<Order> {
     engines.iter().filter_map(|engine| of(engine, rows)).collect()
 }
 
-fn of(entry: &EngineEntry, rows: &[Row]) -> Option<Order> {
+fn of(entry: &EngineEntry, rows: &[ReportRow]) -> Option<Order> {
     let (engine, claimed) = (entry.name, entry.order?);
     let mut own: Vec<_> = rows
         .iter()

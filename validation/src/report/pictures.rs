@@ -221,7 +221,7 @@ fn touches(grazing: Grazing) -> HeatMap {
             Seen::Right => '\u{25cf}',
             Seen::Missed => '\u{25cb}',
             Seen::Spurious => '\u{d7}',
-            Seen::Either => '\u{25d0}',
+            Seen::Undecidable => '\u{25d0}',
             Seen::Nothing => '\u{2013}',
         };
         let right = cell.iter().filter(|(_, seen)| *seen == Seen::Right).count();

@@ -5,7 +5,7 @@
 //! that needs fewer right-hand sides per event at an error of 1e-6 comes first. Exact engines stand
 //! above, as the reference.
 
-use super::Row;
+use super::ReportRow;
 use crate::engine::Accuracy;
 use crate::score::{Spread, Verdict};
 use crate::suite::{Scored, Status};
@@ -65,7 +65,7 @@ impl Ranked {
 }
 
 /// Ranks the engines of a run; `rows` are the report's rows of `scored`, in the same order.
-pub(super) fn ranking(scored: &[Scored], rows: &[Row]) -> Vec<Ranked> {
+pub(super) fn ranking(scored: &[Scored], rows: &[ReportRow]) -> Vec<Ranked> {
     let mut engines: Vec<&'static str> = Vec::new();
     for row in scored {
         if !engines.contains(&row.engine) {
@@ -91,13 +91,14 @@ fn place(engines: Vec<(Ranked, bool)>) -> Vec<Ranked> {
 }
 
 /// An engine's figures without its place, and whether it is exact.
-fn one(engine: &'static str, rows: Vec<(&Scored, &Row)>) -> (Ranked, bool) {
+fn one(engine: &'static str, rows: Vec<(&Scored, &ReportRow)>) -> (Ranked, bool) {
     let exact = rows.iter().all(|(scored, _)| scored.accuracy == Accuracy::Exact);
     let counted = || rows.iter().filter_map(|(scored, row)| Counted::of(scored, row));
     let sum = |count: fn(&Counted) -> usize| counted().map(|it| count(&it)).sum();
     let units: Vec<f64> = counted().flat_map(|it| it.units).collect();
     let Spread { median, max, .. } = Spread::of(units);
-    let bad = |row: &Row| matches!(row.verdict, Verdict::Fail | Verdict::Error | Verdict::Known);
+    let bad =
+        |row: &ReportRow| matches!(row.verdict, Verdict::Fail | Verdict::Error | Verdict::Known);
     let mut fails_on: Vec<String> =
         rows.iter().filter(|(_, row)| bad(row)).map(|(_, row)| row.case.clone()).collect();
     fails_on.dedup();
@@ -126,7 +127,7 @@ struct Counted {
 }
 
 impl Counted {
-    fn of(scored: &Scored, row: &Row) -> Option<Self> {
+    fn of(scored: &Scored, row: &ReportRow) -> Option<Self> {
         let Status::Ok(measures, _) = &scored.status else { return None };
         // A row that is not scored finds nothing, but its spurious events count.
         let judged = row.verdict != Verdict::NotScored;
@@ -148,10 +149,10 @@ fn in_tolerances(scored: &Scored, units: &[f64]) -> Vec<f64> {
 }
 
 /// The median over the cases of the cost at [`COMPARED_AT`].
-fn rhs_per_event(rows: &[(&Scored, &Row)], exact: bool) -> Option<f64> {
+fn rhs_per_event(rows: &[(&Scored, &ReportRow)], exact: bool) -> Option<f64> {
     let costs = rows.chunk_by(|a, b| a.1.case == b.1.case).filter_map(|case| {
         let events = case.first()?.0.events;
-        let rung = |(scored, row): &(&Scored, &Row)| {
+        let rung = |(scored, row): &(&Scored, &ReportRow)| {
             let Status::Ok(measures, outcome) = &scored.status else { return None };
             let whole = measures.whole && measures.matched == measures.total && events > 0;
             let error = row.event_time_error.max;

@@ -20,7 +20,7 @@ pub struct Report {
     /// The engines that were run.
     pub engines: Vec<EngineEntry>,
     /// A row for each case, engine and tolerance.
-    pub results: Vec<Row>,
+    pub results: Vec<ReportRow>,
     /// The engines by how many of all events they find; exact ones come first, as the reference.
     pub ranking: Vec<Ranked>,
     /// How many rows came to which verdict.
@@ -71,7 +71,7 @@ pub struct Summary {
     missing_docs,
     reason = "the keys are those of the command line's contract, explained in the schema"
 )]
-pub struct Row {
+pub struct ReportRow {
     pub case: String,
     pub engine: &'static str,
     pub tolerance: Option<f64>,
@@ -146,7 +146,7 @@ impl Report {
     /// The report of these rows.
     #[must_use]
     pub fn new(suite: Suite, engines: &[Declaration], rows: &[Scored]) -> Self {
-        let mut results: Vec<Row> = rows.iter().map(Row::of).collect();
+        let mut results: Vec<ReportRow> = rows.iter().map(ReportRow::of).collect();
         fill_orders(&mut results);
         Self {
             build: build::this(),
@@ -161,10 +161,10 @@ impl Report {
 
 /// The rows of one engine on one case are its ladder, as far as they are scored to the same
 /// horizon: over a longer one in chaos errors grow by more.
-fn fill_orders(rows: &mut [Row]) {
+fn fill_orders(rows: &mut [ReportRow]) {
     for ladder in rows.chunk_by_mut(|a, b| a.case == b.case && a.engine == b.engine) {
         let longest = ladder.iter().map(|row| row.horizon_periods).fold(0.0, f64::max);
-        let rung = |row: &Row| {
+        let rung = |row: &ReportRow| {
             let comparable = row.horizon_periods == longest;
             Some((row.steps.filter(|_| comparable)? as f64, row.state_error.max))
         };
@@ -184,7 +184,7 @@ impl EngineEntry {
 impl Summary {
     /// Counts the rows of each class.
     #[must_use]
-    pub fn of(rows: &[Row]) -> Self {
+    pub fn of(rows: &[ReportRow]) -> Self {
         let count = |verdict| rows.iter().filter(|row| row.verdict == verdict).count();
         Self {
             pass: count(Verdict::Pass),
@@ -223,7 +223,7 @@ fn by_name(comparison: &Comparison) -> BTreeMap<&'static str, Distance> {
         .collect()
 }
 
-impl Row {
+impl ReportRow {
     /// Whether the engine was run at all.
     #[must_use]
     pub fn was_run(&self) -> bool {

@@ -5,7 +5,7 @@
 
 use super::ranking::{COMPARED_AT, Ranked};
 use super::table::{reasons, row_table};
-use super::{Order, Report, ReportEvidence, Row, orders};
+use super::{Order, Report, ReportEvidence, ReportRow, orders};
 use crate::number::brief;
 use crate::score::Verdict;
 use comfy_table::{CellAlignment, Table, presets};
@@ -103,8 +103,9 @@ fn failing_cases(report: &Report) -> String {
             return None;
         }
         let case = |case: &String| {
-            let own = |row: &&Row| row.engine == it.engine && row.case == *case;
-            let unexpected = |row: &Row| matches!(row.verdict, Verdict::Fail | Verdict::Error);
+            let own = |row: &&ReportRow| row.engine == it.engine && row.case == *case;
+            let unexpected =
+                |row: &ReportRow| matches!(row.verdict, Verdict::Fail | Verdict::Error);
             let fails = report.results.iter().filter(own).any(unexpected);
             if fails { format!("{case}!") } else { case.clone() }
         };
@@ -123,7 +124,7 @@ fn number_of_cases(report: &Report) -> usize {
     report.results.chunk_by(|a, b| a.case == b.case).count()
 }
 
-fn not_run(rows: &[Row]) -> String {
+fn not_run(rows: &[ReportRow]) -> String {
     let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.verdict == Verdict::NotRun) {
         *counts.entry(row.engine).or_default() += 1;
@@ -149,8 +150,8 @@ fn short_orders(report: &Report) -> String {
 }
 
 /// How long the exact solver stays right in chaos; the report has the integrators' horizons too.
-fn valid_horizons(rows: &[Row]) -> String {
-    let line = |row: &Row| {
+fn valid_horizons(rows: &[ReportRow]) -> String {
+    let line = |row: &ReportRow| {
         let it = row.valid_horizon.filter(|_| row.engine.starts_with("exact"))?;
         Some(wrapped(&format!(
             "valid horizon: {} on {}: median {} forcing periods over {} runs (1st percentile {}; \

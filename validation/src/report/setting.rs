@@ -1,8 +1,8 @@
 //! How accurate an engine was asked to be, in words.
 
-use super::Row;
+use super::ReportRow;
 
-impl Row {
+impl ReportRow {
     /// The tolerance, or the step as `h ...`, or nothing where there is none to choose.
     #[must_use]
     pub fn setting(&self) -> String {

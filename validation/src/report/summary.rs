@@ -1,6 +1,6 @@
 //! An engine at a setting over all cases of the report: recall, typical errors, typical cost.
 
-use super::{Report, Row};
+use super::{Report, ReportRow};
 use crate::score::{Spread, Verdict};
 use serde::Serialize;
 
@@ -40,16 +40,18 @@ impl EngineSummary {
 }
 
 impl SettingSummary {
-    fn of(rows: &[&Row]) -> Self {
-        let ran: Vec<&Row> = rows.iter().copied().filter(|row| row.was_run()).collect();
+    fn of(rows: &[&ReportRow]) -> Self {
+        let ran: Vec<&ReportRow> = rows.iter().copied().filter(|row| row.was_run()).collect();
         // As in the ranking: what is not scored counts as not found.
         let scored = || ran.iter().filter(|row| row.verdict != Verdict::NotScored);
-        let sum = |count: fn(&Row) -> Option<usize>| scored().filter_map(|row| count(row)).sum();
-        let error = |figure: fn(&Row) -> f64| {
-            let of = |row: &&Row| if row.status == "ok" { figure(row) } else { f64::INFINITY };
+        let sum =
+            |count: fn(&ReportRow) -> Option<usize>| scored().filter_map(|row| count(row)).sum();
+        let error = |figure: fn(&ReportRow) -> f64| {
+            let of =
+                |row: &&ReportRow| if row.status == "ok" { figure(row) } else { f64::INFINITY };
             Spread::of(ran.iter().map(of).filter(|error| !error.is_nan()).collect()).median
         };
-        let work = |figure: fn(&Row) -> Option<u64>| {
+        let work = |figure: fn(&ReportRow) -> Option<u64>| {
             Spread::of(ran.iter().filter_map(|row| figure(row)).map(|work| work as f64).collect())
                 .median
         };
@@ -80,10 +82,11 @@ pub(super) fn engines(report: &Report) -> Vec<EngineSummary> {
 }
 
 fn one(report: &Report, engine: &str) -> EngineSummary {
-    let mut rows: Vec<&Row> = report.results.iter().filter(|row| row.engine == engine).collect();
+    let mut rows: Vec<&ReportRow> =
+        report.results.iter().filter(|row| row.engine == engine).collect();
     let counts = Verdict::ALL.map(|it| rows.iter().filter(|row| row.verdict == it).count());
-    let fineness = |row: &Row| row.tolerance.or(row.step).unwrap_or(0.0);
+    let fineness = |row: &ReportRow| row.tolerance.or(row.step).unwrap_or(0.0);
     rows.sort_by(|a, b| fineness(b).total_cmp(&fineness(a)));
-    let same = |a: &&Row, b: &&Row| a.setting() == b.setting();
+    let same = |a: &&ReportRow, b: &&ReportRow| a.setting() == b.setting();
     EngineSummary { counts, settings: rows.chunk_by(same).map(SettingSummary::of).collect() }
 }

@@ -1,13 +1,13 @@
 //! The rows of a report as a table, and the reasons of those that are out of bounds.
 
-use super::Row;
+use super::ReportRow;
 use super::screen::{text, wrapped};
 use crate::number::brief;
 use crate::score::Verdict;
 use comfy_table::{CellAlignment, Table, presets};
 
 /// Every row, one line each.
-pub(super) fn row_table(rows: &[Row]) -> String {
+pub(super) fn row_table(rows: &[ReportRow]) -> String {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING);
     table.set_header([
@@ -40,17 +40,18 @@ pub(super) fn row_table(rows: &[Row]) -> String {
 }
 
 /// The reasons of rows without a result and of rows whose failure nothing excuses.
-pub(super) fn reasons(rows: &[Row]) -> String {
-    let bad =
-        |row: &&Row| matches!(row.verdict, Verdict::Fail | Verdict::Error | Verdict::Unavailable);
-    let line = |row: &Row| {
+pub(super) fn reasons(rows: &[ReportRow]) -> String {
+    let bad = |row: &&ReportRow| {
+        matches!(row.verdict, Verdict::Fail | Verdict::Error | Verdict::Unavailable)
+    };
+    let line = |row: &ReportRow| {
         let (verdict, case, engine) = (row.verdict.as_str(), &row.case, row.engine);
         wrapped(&format!("{verdict}: {case} {engine} {}: {}", setting(row), row.why))
     };
     rows.iter().filter(bad).map(line).collect()
 }
 
-fn cells(case: &str, row: &Row) -> [String; 12] {
+fn cells(case: &str, row: &ReportRow) -> [String; 12] {
     let count = |count: Option<usize>| count.map_or("-".to_owned(), |count| count.to_string());
     let figure = |value: f64| if value.is_nan() { "-".to_owned() } else { brief(value) };
     [
@@ -74,7 +75,7 @@ fn cells(case: &str, row: &Row) -> [String; 12] {
 }
 
 /// The tolerance or step, a dash where there is none.
-fn setting(row: &Row) -> String {
+fn setting(row: &ReportRow) -> String {
     let setting = row.setting();
     if setting.is_empty() { "-".to_owned() } else { setting }
 }

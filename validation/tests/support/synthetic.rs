@@ -5,7 +5,7 @@ use percuss::Phase;
 use percuss_validation::build::Build;
 use percuss_validation::report::{
     CaseNote, EngineEntry, ErrorGrowth, EventMark, EventPicture, FaultRow, GrazeRow, MismatchKind,
-    Ranked, Report, ReportEvidence, RestartHistogram, Row, SectionPair, Summary, Units,
+    Ranked, Report, ReportEvidence, ReportRow, RestartHistogram, SectionPair, Summary, Units,
     ValidHorizons, View, ViewCourse,
 };
 use percuss_validation::score::{Spread, Verdict};
@@ -42,13 +42,13 @@ fn margins() -> impl Iterator<Item = (String, f64)> {
     misses.into_iter().chain(touches)
 }
 
-pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize) -> Row {
+pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize) -> ReportRow {
     let unit = tolerance.unwrap_or(1e-15);
     let order = 3.0 + (seed % 5) as f64;
     let error = unit * 10.0_f64.powf(4.0 * chance(seed));
     let chaotic = case.ends_with("-00");
     let rhs = if tolerance.is_none() { 90.0 } else { 400.0 * unit.powf(-1.0 / (2.0 * order)) };
-    Row {
+    ReportRow {
         case: case.to_owned(),
         engine,
         tolerance,
@@ -86,7 +86,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
     }
 }
 
-fn results() -> Vec<Row> {
+fn results() -> Vec<ReportRow> {
     let mut cases: Vec<String> = (0..18).map(|k| format!("periodic-{k:02}")).collect();
     cases.extend(margins().map(|(name, _)| name));
     let mut rows = Vec::new();
@@ -98,7 +98,7 @@ fn results() -> Vec<Row> {
             }
         }
     }
-    let mut spoil = |at: usize, change: &dyn Fn(&mut Row)| change(&mut rows[at]);
+    let mut spoil = |at: usize, change: &dyn Fn(&mut ReportRow)| change(&mut rows[at]);
     spoil(3, &|row| {
         row.verdict = Verdict::Fail;
         row.why = NASTY.to_owned();

@@ -44,7 +44,7 @@ impl Engine for Exact {
             elapsed = elapsed.plus(duration);
             outcome.events.push(Event { phase, elapsed: elapsed.value(), state });
             if outcome.events.len() > limits.events {
-                return Err(Failure::new(format!("gave up after {} switches", limits.events)));
+                return Err(Failure::new(format!("gave up after {} events", limits.events)));
             }
         }
         let counters = run.counters();
@@ -57,7 +57,7 @@ impl Engine for Exact {
     }
 }
 
-/// How many switches a run has room for at first.
+/// How many events a run has room for at first.
 const USUAL: usize = 128;
 
 /// A phase, passed.

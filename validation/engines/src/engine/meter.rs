@@ -126,12 +126,12 @@ impl Meter {
         }
     }
 
-    /// Refuses more switches than allowed.
+    /// Refuses more events than allowed.
     pub(super) fn events(&self, count: usize) -> Result<(), Failure> {
         if count < self.limits.events {
             Ok(())
         } else {
-            Err(Failure::new(format!("gave up after {count} switches")))
+            Err(Failure::new(format!("gave up after {count} events")))
         }
     }
 

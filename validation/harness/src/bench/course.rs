@@ -5,7 +5,7 @@ use crate::case::{Case, FileError, Given};
 use crate::engine::{Event, Failure, Outcome, SampleGrid, Task};
 use crate::number::brief;
 use crate::score::{Matching, SCORED_ERROR, WINDOW, worst};
-use crate::truth::{Library, Row, Truth};
+use crate::truth::{Library, Truth, TruthRow};
 use percuss::{Parameters, Start};
 
 /// A run to be made and what is true of it.
@@ -122,11 +122,11 @@ impl Course {
     }
 }
 
-fn is_same(row: &Row, event: &Event, window: f64) -> bool {
+fn is_same(row: &TruthRow, event: &Event, window: f64) -> bool {
     row.phase == Some(event.phase) && off(row.elapsed, event.elapsed) <= window
 }
 
-fn state_error(row: &Row, state: &[f64; 4]) -> f64 {
+fn state_error(row: &TruthRow, state: &[f64; 4]) -> f64 {
     worst((0..3).map(|k| off(row.state[k], state[k])))
 }
 

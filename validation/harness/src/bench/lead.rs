@@ -1,7 +1,7 @@
 //! How far the exact solver is ahead of its closest competitor, at its most accurate and at equal
 //! accuracy.
 
-use super::report::{Bench, EventCost, Row};
+use super::report::{Bench, BenchRow, EventCost};
 use crate::number::{brief, shortest};
 use std::fmt;
 
@@ -40,7 +40,7 @@ pub struct Lead<'a> {
     pub basis: Basis,
     /// The adaptive engine that takes least: its most accurate setting, or its fastest setting
     /// whose error is at most that of the basis.
-    pub next: &'a Row,
+    pub next: &'a BenchRow,
     /// How many times as long the competitor takes as the exact solver.
     pub ratio: f64,
 }
@@ -64,9 +64,10 @@ impl Lead<'_> {
 #[must_use]
 pub fn lead<'a>(bench: &'a Bench, case: &str, basis: Basis) -> Option<Lead<'a>> {
     let rows = bench.results.iter().filter(|row| row.case == case && row.adaptive);
-    let ahead = |row: &'a Row| Some((row, row.ratio(basis)?));
+    let ahead = |row: &'a BenchRow| Some((row, row.ratio(basis)?));
     // Of an engine's settings that share a ratio the fastest comes first.
-    let order = |(row, ratio): &(&Row, f64)| (*ratio, row.ns_per_period.unwrap_or(f64::INFINITY));
+    let order =
+        |(row, ratio): &(&BenchRow, f64)| (*ratio, row.ns_per_period.unwrap_or(f64::INFINITY));
     let least = rows.filter(|row| row.meets(basis)).filter_map(ahead).min_by(|a, b| {
         let ((a, time), (b, other)) = (order(a), order(b));
         a.total_cmp(&b).then(time.total_cmp(&other))
@@ -77,7 +78,7 @@ pub fn lead<'a>(bench: &'a Bench, case: &str, basis: Basis) -> Option<Lead<'a>> 
 /// Whether the exact solver errs less on a case than every adaptive engine at any tolerance.
 #[must_use]
 pub fn errs_least(bench: &Bench, case: &str) -> bool {
-    let error = |row: &Row| row.state_error_max.unwrap_or(f64::INFINITY);
+    let error = |row: &BenchRow| row.state_error_max.unwrap_or(f64::INFINITY);
     let rows = || bench.results.iter().filter(|row| row.case == case);
     let exact = rows().find(|row| row.engine == "exact").map_or(f64::INFINITY, error);
     rows().filter(|row| row.adaptive).all(|row| exact <= error(row))
@@ -147,8 +148,8 @@ mod tests {
 
     const CASE: &str = "fast";
 
-    fn row(engine: &str, ns_per_period: f64, ratio: f64, error: f64) -> Row {
-        Row {
+    fn row(engine: &str, ns_per_period: f64, ratio: f64, error: f64) -> BenchRow {
+        BenchRow {
             case: CASE.to_owned(),
             engine: engine.to_owned(),
             tolerance: (engine != "exact").then_some(1e-12),
@@ -222,9 +223,9 @@ mod tests {
     fn competitors_are_compared_at_equal_accuracy() {
         let mut bench = bench(50.0, 20);
         // Fast but inaccurate at this setting: it counts where its curve reaches the error.
-        let quick = Row { most_accurate: false, ..row("quick", 320.0, 1.0, 1e-5) };
+        let quick = BenchRow { most_accurate: false, ..row("quick", 320.0, 1.0, 1e-5) };
         let reaches =
-            Row { ratio_at_1e_6: quick.ratio_at_1e_6, ..row("quick", 6400.0, 20.0, 1e-8) };
+            BenchRow { ratio_at_1e_6: quick.ratio_at_1e_6, ..row("quick", 6400.0, 20.0, 1e-8) };
         bench.results.extend([quick, reaches]);
         let at = |basis| {
             lead(&bench, CASE, basis).map(|it| (it.next.engine.as_str(), it.ratio, it.accuracy()))

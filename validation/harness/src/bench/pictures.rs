@@ -1,6 +1,6 @@
 //! Work-precision of every case, and cost against length and against xi.
 
-use super::report::{Bench, Damped, Row};
+use super::report::{Bench, BenchRow, Damped};
 use crate::bench::history::{History, Record};
 use crate::engine;
 use crate::picture::{
@@ -37,8 +37,8 @@ pub(super) fn both(drawn: &[(String, Curves)]) -> Result<Vec<Picture>, DrawError
 }
 
 fn work_precision(bench: &Bench, case: &str) -> Curves {
-    let rows: Vec<&Row> = bench.results.iter().filter(|row| row.case == case).collect();
-    let point = |row: &&Row| Some((row.ns_per_period?, row.state_error_max?));
+    let rows: Vec<&BenchRow> = bench.results.iter().filter(|row| row.case == case).collect();
+    let point = |row: &&BenchRow| Some((row.ns_per_period?, row.state_error_max?));
     let curves = rows.chunk_by(|a, b| a.engine == b.engine);
     let curves =
         curves.filter_map(|own| Some((own.first()?.engine.as_str(), own.iter().filter_map(point))));
@@ -149,9 +149,9 @@ pub fn history(history: &History) -> Curves {
     let last = versions.last().map(|it| it.commit.as_deref().unwrap_or(&it.percuss).chars());
     let last: String = last.into_iter().flatten().take(10).collect();
     Curves {
-        title: format!("A switch in units of the floor, {} versions up to {last}", versions.len()),
+        title: format!("An event in units of the floor, {} versions up to {last}", versions.len()),
         x: Axis { label: "recorded version, oldest first".to_owned(), scale: AxisScale::Linear },
-        y: Axis { label: "sine-cosine-exponentials a switch".to_owned(), scale: AxisScale::Linear },
+        y: Axis { label: "sine-cosine-exponentials an event".to_owned(), scale: AxisScale::Linear },
         curves: benches.iter().enumerate().map(curve).collect(),
     }
 }

@@ -23,7 +23,7 @@ pub struct Bench {
     /// The courses.
     pub cases: Vec<CaseEntry>,
     /// A row for each case, contestant and setting.
-    pub results: Vec<Row>,
+    pub results: Vec<BenchRow>,
     /// What one evaluation costs at the least.
     pub floor: Floor,
     /// What the exact solver takes for an event of each case's run.
@@ -55,7 +55,7 @@ impl CaseEntry {
 /// One contestant at one setting on one case. A figure that there is not is null.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are those of the command line's contract")]
-pub struct Row {
+pub struct BenchRow {
     pub case: String,
     pub engine: String,
     pub tolerance: Option<f64>,
@@ -82,7 +82,7 @@ pub struct Row {
     pub why: Option<String>,
 }
 
-impl Row {
+impl BenchRow {
     /// The tolerance or the step, as tables show it.
     #[must_use]
     pub fn setting(&self) -> String {
@@ -141,7 +141,7 @@ pub struct EventCost {
 impl EventCost {
     /// The cost by the exact solver's row on a case.
     #[must_use]
-    pub fn of(case: &CaseEntry, exact: Option<&Row>, floor: Floor) -> Self {
+    pub fn of(case: &CaseEntry, exact: Option<&BenchRow>, floor: Floor) -> Self {
         let per_event = |it: Option<f64>| it.and_then(|it| case.per_event(it));
         let ns = per_event(exact.and_then(|row| row.ns_per_period));
         let without = (case.events == 0).then(|| "the run has no event".to_owned());
@@ -213,12 +213,12 @@ fn entry(course: &Course) -> CaseEntry {
     }
 }
 
-fn rows(course: &Course, finishers: &[Finisher]) -> Vec<Row> {
+fn rows(course: &Course, finishers: &[Finisher]) -> Vec<BenchRow> {
     let unit = exact(finishers).map(|it| it.series.clone()).unwrap_or_default();
     let row = |it: &Finisher| {
         let timed = it.result.as_ref().ok();
         let best = most_accurate(finishers, it.name).is_some_and(|best| std::ptr::eq(best, it));
-        Row {
+        BenchRow {
             case: course.name.clone(),
             engine: it.name.to_owned(),
             tolerance: it.setting.tolerance(),
@@ -244,9 +244,9 @@ fn rows(course: &Course, finishers: &[Finisher]) -> Vec<Row> {
 
 /// Reads each engine's work-precision curve at [`LOOSE`] and [`TIGHT`]. Its times are ratios to the
 /// exact solver's, so that what the machine did otherwise in a round is out of them already.
-fn at_equal_accuracy(mut rows: Vec<Row>) -> Vec<Row> {
+fn at_equal_accuracy(mut rows: Vec<BenchRow>) -> Vec<BenchRow> {
     for own in rows.chunk_by_mut(|a, b| a.engine == b.engine) {
-        let corner = |row: &Row| {
+        let corner = |row: &BenchRow| {
             Some(AccuracyPoint { error: row.state_error_max?, time: row.ratio_to_exact? })
         };
         let curve: Vec<_> = own.iter().map(corner).collect();

@@ -2,7 +2,7 @@
 
 use super::grid::{plain, shown};
 use super::lead::{BASES, Shortfall, errs_least, lead, times};
-use super::report::{Bench, Row};
+use super::report::{Bench, BenchRow};
 use crate::number::brief;
 
 /// The exact solver's cost on each case, and its closest competitors at their most accurate and at
@@ -42,7 +42,7 @@ fn events(bench: &Bench) -> String {
     ]);
     for (case, it) in bench.cases.iter().zip(&bench.events) {
         let own = bench.results.iter().find(|row| row.case == it.case && row.engine == "exact");
-        let of = |get: fn(&Row) -> Option<f64>| own.and_then(get);
+        let of = |get: fn(&BenchRow) -> Option<f64>| own.and_then(get);
         table.add_row([
             it.case.clone(),
             case.events.to_string(),

@@ -2,7 +2,7 @@
 
 use super::grid::{plain, shown};
 use super::lead::times;
-use super::report::{Bench, Row};
+use super::report::{Bench, BenchRow};
 use super::summary::{figure, share, summary};
 use crate::number::brief;
 
@@ -41,7 +41,7 @@ fn engines(bench: &Bench) -> String {
 /// Why engines that are right at no setting are not, at the last of them.
 fn reasons(bench: &Bench) -> String {
     let last = bench.cases.iter().flat_map(|entry| best(bench, &entry.case));
-    let reason = |row: &Row| {
+    let reason = |row: &BenchRow| {
         let why = row.why.as_ref()?;
         Some(format!("no time: {} {} {}: {why}\n", row.case, row.engine, row.setting()))
     };
@@ -49,14 +49,15 @@ fn reasons(bench: &Bench) -> String {
 }
 
 /// One row per engine: at its most accurate setting, or, where no answer was right, the last.
-fn best<'a>(bench: &'a Bench, case: &str) -> Vec<&'a Row> {
-    let rows: Vec<&Row> = bench.results.iter().filter(|row| row.case == case).collect();
-    let one =
-        |engine: &[&'a Row]| engine.iter().find(|row| row.most_accurate).or(engine.last()).copied();
+fn best<'a>(bench: &'a Bench, case: &str) -> Vec<&'a BenchRow> {
+    let rows: Vec<&BenchRow> = bench.results.iter().filter(|row| row.case == case).collect();
+    let one = |engine: &[&'a BenchRow]| {
+        engine.iter().find(|row| row.most_accurate).or(engine.last()).copied()
+    };
     rows.chunk_by(|a, b| a.engine == b.engine).filter_map(one).collect()
 }
 
-fn cells(case: &str, row: &Row) -> [String; 11] {
+fn cells(case: &str, row: &BenchRow) -> [String; 11] {
     [
         case.to_owned(),
         row.engine.clone(),

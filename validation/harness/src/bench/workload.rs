@@ -21,7 +21,7 @@ pub trait Workload {
     fn run(&self, units: u64) -> Result<u64, Failure>;
 }
 
-/// Switches of a case's run, followed beyond its horizon; one that ends is begun again.
+/// Events of a case's run, followed beyond its horizon; one that ends is begun again.
 pub struct Switches<'a> {
     course: &'a Course,
 }
@@ -37,7 +37,7 @@ impl Workload for Switches<'_> {
         while done < units {
             let counters = switches(&problem.model, problem.entry, units - done);
             if counters.switches == 0 {
-                return Err(Failure::new("its first phase never ends: there is no switch to time"));
+                return Err(Failure::new("its first phase never ends: there is no event to time"));
             }
             done += counters.switches;
             evaluations += counters.evaluations;
@@ -46,7 +46,7 @@ impl Workload for Switches<'_> {
     }
 }
 
-/// Follows a run for this many switches, or to its end.
+/// Follows a run for this many events, or to its end.
 fn switches(model: &Model, entry: Entry, most: u64) -> Counters {
     let mut run = model.trajectory(black_box(entry));
     while run.counters().switches < most {

@@ -7,7 +7,7 @@
 
 use super::growth::RunGrowth;
 use crate::engine::{Closed, Equations, GUARDS, Oscillator, Task};
-use crate::truth::{Row, Truth};
+use crate::truth::{Truth, TruthRow};
 use percuss::{Parameters, Phase};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -103,7 +103,7 @@ impl GuardedSegment {
 
 impl Scan<'_> {
     /// The grazes of the segment after `n` events.
-    fn segment(&self, n: usize, begin: &Row, end: &Row) -> Vec<Graze> {
+    fn segment(&self, n: usize, begin: &TruthRow, end: &TruthRow) -> Vec<Graze> {
         let Some(phase) = begin.phase else { return Vec::new() };
         let began = begin.elapsed.value();
         let length = end.elapsed.minus(begin.elapsed).value();

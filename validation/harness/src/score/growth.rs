@@ -9,7 +9,7 @@
 //! quantity's derivative with respect to the state just before switch m (forcing angle, p, y, q, v;
 //! m = 0 is the start). Samples at a fixed tau use the plain derivative.
 
-use crate::truth::{Row, Truth};
+use crate::truth::{Truth, TruthRow};
 use nalgebra::{SMatrix, SVector};
 use percuss::TwoWord;
 use percuss::{Parameters, Phase};
@@ -71,8 +71,9 @@ impl RunGrowth {
             let Some(phase) = begin.phase else { break };
             let linear = motion.linear(phase);
             let samples = &truth.samples[growth.samples.len()..];
-            let inside =
-                |row: &&Row| next.phase.is_none() || row.elapsed.minus(next.elapsed).value() < 0.0;
+            let inside = |row: &&TruthRow| {
+                next.phase.is_none() || row.elapsed.minus(next.elapsed).value() < 0.0
+            };
             for sample in samples.iter().take_while(inside) {
                 growth.samples.push(motion.plain(&linear, &descents, &begin, sample));
             }
@@ -138,14 +139,14 @@ impl GrowthMotion {
         guard
     }
 
-    fn point(&self, row: &Row) -> GrowthPoint {
+    fn point(&self, row: &TruthRow) -> GrowthPoint {
         let [p, y, q, v] = row.rounded();
         let (sin, cos) = (self.omega * row.elapsed.value() + self.angle).sin_cos();
         GrowthPoint::from([p, y, q, v, cos, sin, 1.0])
     }
 
     /// Unit errors of the forcing angle and of each co-ordinate.
-    fn directions(&self, row: &Row) -> Bundle {
+    fn directions(&self, row: &TruthRow) -> Bundle {
         let point = self.point(row);
         let mut bundle = Bundle::zeros();
         (bundle[(COS, 0)], bundle[(SIN, 0)]) = (-point[SIN], point[COS]);
@@ -160,8 +161,8 @@ impl GrowthMotion {
         phase: Phase,
         linear: &Linear,
         descents: &mut Vec<Descent>,
-        begin: &Row,
-        next: &Row,
+        begin: &TruthRow,
+        next: &TruthRow,
     ) {
         let flow = flow(linear, next.elapsed.minus(begin.elapsed));
         let field = linear * self.point(next);
@@ -179,7 +180,13 @@ impl GrowthMotion {
     }
 
     /// The growth at a fixed tau inside a phase.
-    fn plain(&self, linear: &Linear, descents: &[Descent], begin: &Row, at: &Row) -> [f64; 4] {
+    fn plain(
+        &self,
+        linear: &Linear,
+        descents: &[Descent],
+        begin: &TruthRow,
+        at: &TruthRow,
+    ) -> [f64; 4] {
         let flow = flow(linear, at.elapsed.minus(begin.elapsed));
         let field = linear * self.point(at);
         largest(descents, |descent| {

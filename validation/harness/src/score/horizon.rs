@@ -205,7 +205,7 @@ impl HorizonRun {
 
     fn valid(&self, outcome: &Outcome, last: u32) -> u32 {
         // Written so that a NaN is off.
-        let right = |(truth, found): (&crate::truth::Row, &[f64; 4])| {
+        let right = |(truth, found): (&crate::truth::TruthRow, &[f64; 4])| {
             let off = |k: usize| truth.state[k].minus(TwoWord::new(found[k])).value().abs();
             (0..3).all(|k| off(k) <= SCORED_ERROR)
         };

@@ -1,7 +1,7 @@
 //! Which events of the engine are which of the truth's.
 
 use crate::engine::Event;
-use crate::truth::Row;
+use crate::truth::TruthRow;
 
 /// Two events are the same if the same phase begins and they are at most this apart, in forcing
 /// periods.
@@ -17,7 +17,7 @@ pub struct Matching {
 impl Matching {
     /// The pairing in order with the most pairs, and among those the least sum of time differences.
     #[must_use]
-    pub fn of(truth: &[Row], engine: &[Event], window: f64) -> Self {
+    pub fn of(truth: &[TruthRow], engine: &[Event], window: f64) -> Self {
         let width = engine.len() + 1;
         let better = |a: (usize, f64), b: (usize, f64)| a.0 > b.0 || (a.0 == b.0 && a.1 < b.1);
         // best[i * width + j]: pairs and their cost among the first i and j switches.
@@ -65,8 +65,8 @@ mod tests {
     use percuss::Phase::{Contact, NoContact, Progression};
     use percuss::TwoWord;
 
-    fn rows(switches: &[(f64, Phase)]) -> Vec<Row> {
-        let row = |(t, phase): &(f64, Phase)| Row {
+    fn rows(switches: &[(f64, Phase)]) -> Vec<TruthRow> {
+        let row = |(t, phase): &(f64, Phase)| TruthRow {
             phase: Some(*phase),
             elapsed: TwoWord::new(*t),
             state: [TwoWord::ZERO; 4],

@@ -8,7 +8,7 @@ use super::probed::ProbeResults;
 use super::statistics::Spread;
 use crate::case::{Quantity, Statistic};
 use crate::engine::{Event, Outcome, Task};
-use crate::truth::{Row, Truth};
+use crate::truth::{Truth, TruthRow};
 use percuss::Phase;
 use percuss::TwoWord;
 
@@ -175,7 +175,7 @@ fn off(truth: TwoWord, value: f64) -> f64 {
     truth.minus(TwoWord::new(value)).value().abs()
 }
 
-fn time_error(row: &Row, event: &Event) -> f64 {
+fn time_error(row: &TruthRow, event: &Event) -> f64 {
     off(row.elapsed, event.elapsed)
 }
 
@@ -188,7 +188,7 @@ pub(crate) fn worst(errors: impl Iterator<Item = f64>) -> f64 {
 /// max(|dp|, |dy|, |dq|) at each sample of the truth; NaN at one that the engine did not deliver.
 #[must_use]
 pub fn sample_errors(truth: &Truth, outcome: &Outcome) -> Vec<f64> {
-    let error = |(k, row): (usize, &Row)| {
+    let error = |(k, row): (usize, &TruthRow)| {
         let state = outcome.samples.get(k).copied().unwrap_or([f64::NAN; 4]);
         worst((0..3).map(|i| off(row.state[i], state[i])))
     };
@@ -197,7 +197,12 @@ pub fn sample_errors(truth: &Truth, outcome: &Outcome) -> Vec<f64> {
 
 /// A progression that begins too late by dt lacks v' dt. v' vanishes where contact turns into
 /// progression and back, so that only impacts straight into progression hand their errors on.
-fn drift_by_times(task: &Task, rows: &[Row], found: &[Event], pairs: &[(usize, usize)]) -> f64 {
+fn drift_by_times(
+    task: &Task,
+    rows: &[TruthRow],
+    found: &[Event],
+    pairs: &[(usize, usize)],
+) -> f64 {
     let lost = |(i, j): &(usize, usize)| {
         let [_, y, q, _] = rows[*i].rounded();
         let rate = y - (1.0 - q) / (2.0 * task.parameters.xi);
@@ -214,13 +219,13 @@ fn valid_periods(task: &Task, truth: &Truth, errors: &[f64], period: f64) -> f64
 }
 
 /// The error of an event's time in units of error x (1 + |value|) x growth x events so far.
-fn time_units(row: &Row, event: &Event, growth: f64, unit: f64, n: usize) -> f64 {
+fn time_units(row: &TruthRow, event: &Event, growth: f64, unit: f64, n: usize) -> f64 {
     let scale = (1.0 + row.elapsed.value().abs()) * growth * unit * (n + 1) as f64;
     time_error(row, event) / scale
 }
 
 fn event_constant(
-    rows: &[Row],
+    rows: &[TruthRow],
     found: &[Event],
     pairs: &[(usize, usize)],
     growth: &RunGrowth,
@@ -254,7 +259,7 @@ fn state_constant(
     worst((1..scored).map(|n| {
         let (row, growth) = (&truth.samples[n], &growth.samples[n]);
         let state = outcome.samples.get(n).copied().unwrap_or([f64::NAN; 4]);
-        let passed = |switch: &&Row| switch.elapsed.minus(row.elapsed).value() <= 0.0;
+        let passed = |switch: &&TruthRow| switch.elapsed.minus(row.elapsed).value() <= 0.0;
         switches += truth.switches[switches..].iter().take_while(passed).count();
         let largest = worst((0..4).map(|k| relative(row.state[k], state[k]) / growth[k]));
         largest / (unit * (switches.max(1)) as f64)

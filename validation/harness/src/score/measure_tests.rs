@@ -14,8 +14,8 @@ fn problem() -> Problem {
     problem
 }
 
-fn row(elapsed: f64, phase: Phase, state: [f64; 4]) -> Row {
-    Row { phase: Some(phase), elapsed: TwoWord::new(elapsed), state: state.map(TwoWord::new) }
+fn row(elapsed: f64, phase: Phase, state: [f64; 4]) -> TruthRow {
+    TruthRow { phase: Some(phase), elapsed: TwoWord::new(elapsed), state: state.map(TwoWord::new) }
 }
 
 /// Two forcing periods with three events, and growths that are all different.
@@ -35,7 +35,7 @@ impl Planted {
         let states = [[0.5, -0.25, 0.5, 0.0], [1.0, 2.0, 0.75, 0.0], [3.0, 0.0, -1.0, 1.5]];
         let phases = [Contact, Progression, NoContact];
         let times = [1.0, 2.0, 8.0];
-        let switches: Vec<Row> = (0..3).map(|i| row(times[i], phases[i], states[i])).collect();
+        let switches: Vec<TruthRow> = (0..3).map(|i| row(times[i], phases[i], states[i])).collect();
         let period = problem.model.period();
         let sample = |k: usize| row(k as f64 * period / 8.0, NoContact, [0.25, 1.0, 0.0, 0.0]);
         let truth = Truth {
@@ -49,14 +49,14 @@ impl Planted {
             samples: vec![[1.0, 2.0, 4.0, 8.0]; 17],
             end: [1.0; 4],
         };
-        let event = |row: &Row| Event {
+        let event = |row: &TruthRow| Event {
             phase: row.phase.unwrap_or(NoContact),
             elapsed: row.elapsed.value(),
             state: row.rounded(),
         };
         let outcome = Outcome {
             events: truth.switches.iter().map(event).collect(),
-            samples: truth.samples.iter().map(Row::rounded).collect(),
+            samples: truth.samples.iter().map(TruthRow::rounded).collect(),
             end: truth.end.rounded(),
             ..Outcome::default()
         };

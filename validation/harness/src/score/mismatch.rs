@@ -3,7 +3,7 @@
 use super::graze::Graze;
 use super::matching::Matching;
 use crate::engine::Event;
-use crate::truth::Row;
+use crate::truth::TruthRow;
 
 /// Missed and spurious events up to the scored horizon.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -64,7 +64,7 @@ impl Mismatch {
 
     /// Whether the phases follow each other alike once what is excused is left out.
     #[must_use]
-    pub fn same_word(&self, rows: &[Row], found: &[Event], excused: &Excused) -> bool {
+    pub fn same_word(&self, rows: &[TruthRow], found: &[Event], excused: &Excused) -> bool {
         let truth = (0..self.expected).filter(|i| !excused.missed.contains(i));
         let own = self.counted.iter().filter(|j| !excused.spurious.contains(j));
         truth.map(|i| rows[i].phase).eq(own.map(|j| Some(found[*j].phase)))
@@ -125,8 +125,8 @@ mod tests {
 
     const WINDOW: f64 = 0.1;
 
-    fn row((elapsed, phase): (f64, Phase)) -> Row {
-        Row { phase: Some(phase), elapsed: TwoWord::new(elapsed), state: [TwoWord::ZERO; 4] }
+    fn row((elapsed, phase): (f64, Phase)) -> TruthRow {
+        TruthRow { phase: Some(phase), elapsed: TwoWord::new(elapsed), state: [TwoWord::ZERO; 4] }
     }
 
     fn event((elapsed, phase): (f64, Phase)) -> Event {
@@ -137,7 +137,10 @@ mod tests {
         Graze { elapsed, margin, growth: 1.0, events, phase: NoContact }
     }
 
-    fn mismatch(truth: &[(f64, Phase)], own: &[(f64, Phase)]) -> (Mismatch, Vec<Row>, Vec<Event>) {
+    fn mismatch(
+        truth: &[(f64, Phase)],
+        own: &[(f64, Phase)],
+    ) -> (Mismatch, Vec<TruthRow>, Vec<Event>) {
         let rows: Vec<_> = truth.iter().copied().map(row).collect();
         let found: Vec<_> = own.iter().copied().map(event).collect();
         let matching = Matching::of(&rows, &found, WINDOW);

@@ -13,7 +13,7 @@ use super::starts::on_attractor;
 use super::statistics::Spread;
 use crate::case::Problem;
 use crate::engine::{Failure, Outcome, SampleGrid, Task};
-use crate::truth::{Row, Truth};
+use crate::truth::{Truth, TruthRow};
 use percuss::TwoWord;
 use percuss::{Instant, Phase};
 use rayon::prelude::*;
@@ -161,7 +161,7 @@ impl RestartRun {
             let grid = (0, Truth::SAMPLES_PER_PERIOD);
             Truth::replayed(&parameters, &problem.entry, strobe(periods), grid).ok()
         };
-        let after = |switch: &Row| {
+        let after = |switch: &TruthRow| {
             let instant = problem.entry.instant.after(switch.elapsed, parameters.omega);
             u64::try_from(instant.cycle() + 1).unwrap_or(1).min(MOST_PERIODS)
         };
@@ -208,7 +208,7 @@ fn scale(unit: f64, truth: TwoWord, growth: f64) -> f64 {
 }
 
 /// Whether a run has an impact, and the separation that follows it.
-fn passage(truth: &Truth) -> (bool, Option<Row>) {
+fn passage(truth: &Truth) -> (bool, Option<TruthRow>) {
     let mut before = truth.start.phase;
     let mut impact = false;
     for switch in &truth.switches {

@@ -17,7 +17,7 @@ fn run() -> RestartRun {
 }
 
 fn perfect(run: &RestartRun) -> Outcome {
-    let event = |row: &Row| crate::engine::Event {
+    let event = |row: &TruthRow| crate::engine::Event {
         phase: row.phase.unwrap_or(NoContact),
         elapsed: row.elapsed.value(),
         state: row.rounded(),
@@ -30,12 +30,13 @@ fn perfect(run: &RestartRun) -> Outcome {
 }
 
 fn truth(start: Phase, phases: &[Phase]) -> Truth {
-    let row = |(k, phase): (usize, &Phase)| Row {
+    let row = |(k, phase): (usize, &Phase)| TruthRow {
         phase: Some(*phase),
         elapsed: TwoWord::new(k as f64),
         state: [TwoWord::ZERO; 4],
     };
-    let switches: Vec<Row> = phases.iter().enumerate().map(|(k, it)| row((k + 1, it))).collect();
+    let switches: Vec<TruthRow> =
+        phases.iter().enumerate().map(|(k, it)| row((k + 1, it))).collect();
     Truth { start: row((0, &start)), end: row((9, &start)), samples: Vec::new(), switches }
 }
 

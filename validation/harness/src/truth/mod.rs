@@ -14,4 +14,4 @@ mod table;
 pub use double_double::{DoubleDouble, LARGEST_ANGLE, UNIT};
 pub use library::Library;
 pub use replay::{Beginning, Replay, ReplayedPhase, Undecided};
-pub use table::{Row, Truth};
+pub use table::{Truth, TruthRow};

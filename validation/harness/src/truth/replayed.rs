@@ -1,7 +1,7 @@
 //! A truth of any run, in the shape of the tables.
 
 use super::replay::{Beginning, Replay, Undecided};
-use super::{DoubleDouble, Row, Truth};
+use super::{DoubleDouble, Truth, TruthRow};
 use crate::case::{Case, FileError, Given};
 use crate::engine::{SampleGrid, Task};
 use percuss::{Entry, Instant, Parameters};
@@ -46,13 +46,13 @@ impl Truth {
     ) -> Result<Self, Undecided> {
         let omega = parameters.omega;
         let begin = entry.instant;
-        let row = |phase, instant: &Instant, values: [DoubleDouble; 4]| Row {
+        let row = |phase, instant: &Instant, values: [DoubleDouble; 4]| TruthRow {
             phase,
             elapsed: instant.since(&begin, omega),
             state: values.map(Into::into),
         };
         let opening = |it: &Beginning| row(Some(it.phase()), &it.instant, it.values());
-        let mut rows: Vec<Row> = Vec::new();
+        let mut rows: Vec<TruthRow> = Vec::new();
         let mut sampled = Vec::with_capacity(samples);
         for passage in Replay::new(parameters, entry, horizon) {
             let passage = passage?;

@@ -10,7 +10,7 @@ const END: &str = "end";
 
 /// A row of a table.
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub struct TruthRow {
     /// The phase that begins, or holds; `None` on the row at the horizon.
     pub phase: Option<Phase>,
     /// Time since the start.
@@ -23,16 +23,16 @@ pub struct Row {
 #[derive(Clone, Debug)]
 pub struct Truth {
     /// The start.
-    pub start: Row,
+    pub start: TruthRow,
     /// The state at which each phase after the first begins.
-    pub switches: Vec<Row>,
+    pub switches: Vec<TruthRow>,
     /// The horizon.
-    pub end: Row,
+    pub end: TruthRow,
     /// Eight instants a forcing period, the start among them.
-    pub samples: Vec<Row>,
+    pub samples: Vec<TruthRow>,
 }
 
-impl Row {
+impl TruthRow {
     /// The row's state, rounded.
     #[must_use]
     pub fn rounded(&self) -> [f64; 4] {
@@ -71,7 +71,7 @@ impl Truth {
     }
 }
 
-fn read_rows(case: &Case, file: &str, text: &str) -> Result<Vec<Row>, FileError> {
+fn read_rows(case: &Case, file: &str, text: &str) -> Result<Vec<TruthRow>, FileError> {
     check_heading(case, file, text)?;
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_reader(text.as_bytes());
     let heading = reader.headers().map_err(|error| FileError::of(file, error))?;
@@ -81,7 +81,7 @@ fn read_rows(case: &Case, file: &str, text: &str) -> Result<Vec<Row>, FileError>
             "accepted are the columns index,phase,elapsed,tau,p,y,q,v",
         ));
     }
-    let mut rows: Vec<Row> = Vec::new();
+    let mut rows: Vec<TruthRow> = Vec::new();
     for (index, record) in reader.records().enumerate() {
         let record = record.map_err(|error| FileError::of(file, error))?;
         let row = read_row(index, &record);
@@ -101,7 +101,7 @@ fn read_rows(case: &Case, file: &str, text: &str) -> Result<Vec<Row>, FileError>
     Ok(rows)
 }
 
-fn read_row(index: usize, record: &csv::StringRecord) -> Option<Row> {
+fn read_row(index: usize, record: &csv::StringRecord) -> Option<TruthRow> {
     if record.get(0)?.parse() != Ok(index) {
         return None;
     }
@@ -111,7 +111,7 @@ fn read_row(index: usize, record: &csv::StringRecord) -> Option<Row> {
     };
     let number = |column: usize| decimal::parse(record.get(column)?);
     let state = [number(4)?, number(5)?, number(6)?, number(7)?];
-    Some(Row { phase, elapsed: number(2)?, state })
+    Some(TruthRow { phase, elapsed: number(2)?, state })
 }
 
 /// The table must have been made from the very f64 values of the case.

@@ -1,7 +1,7 @@
 //! A run as CSV.
 
 use super::plan::{Plan, RunEnding};
-use super::rows::{Row, Sink};
+use super::rows::{RunRow, Sink};
 use crate::number::shortest;
 use anyhow::Result;
 use std::io::Write;
@@ -16,7 +16,7 @@ impl Sink for Csv<'_> {
         Ok(writeln!(self.0, "{}", if samples { SAMPLES } else { SWITCHES })?)
     }
 
-    fn row(&mut self, plan: &Plan, row: &Row) -> Result<()> {
+    fn row(&mut self, plan: &Plan, row: &RunRow) -> Result<()> {
         let tau = shortest(row.instant.tau(plan.omega()));
         let [p, y, q, v] = row.state.map(shortest);
         match row.co_ordinates {

@@ -1,7 +1,7 @@
 //! A run as JSON, written row by row: a long run costs no memory.
 
 use super::plan::{Plan, RunEnding};
-use super::rows::{Row, Sink};
+use super::rows::{RunRow, Sink};
 use crate::cli::model::ParametersJson;
 use anyhow::Result;
 use percuss::Phase;
@@ -85,10 +85,10 @@ impl Sink for Json<'_> {
         Ok(write!(self.out, ",\"rows\":[")?)
     }
 
-    fn row(&mut self, plan: &Plan, row: &Row) -> Result<()> {
+    fn row(&mut self, plan: &Plan, row: &RunRow) -> Result<()> {
         writeln!(self.out, "{}", if self.rows == 0 { "" } else { "," })?;
         self.rows += 1;
-        let Row { index, phase, instant, state: [p, y, q, v], co_ordinates } = *row;
+        let RunRow { index, phase, instant, state: [p, y, q, v], co_ordinates } = *row;
         let (tau, cycle, angle) = (instant.tau(plan.omega()), instant.cycle(), instant.angle());
         match co_ordinates {
             None => self.value(&SwitchRow { index, phase, tau, p, y, q, v, cycle, angle }),

@@ -19,7 +19,7 @@ use std::io::Write;
 #[derive(Args)]
 #[command(group(ArgGroup::new("length").required(true).args(["events", "periods", "until"])))]
 pub(super) struct Arguments {
-    /// Ends after this many switches
+    /// Ends after this many events
     #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(0, u64::MAX), allow_hyphen_values = true)]
     events: Option<u64>,
     /// Ends after this many forcing periods, at most 1000000000
@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     /// Ends at this time, at or after the start
     #[arg(long, value_name = "TAU", value_parser = parse::time, allow_hyphen_values = true)]
     until: Option<Typed<f64>>,
-    /// Rows K times a forcing period instead of at each switch
+    /// Rows K times a forcing period instead of at each event
     #[arg(long, value_name = "K", value_parser = parse::whole::<u32>(1, 4_294_967_295), allow_hyphen_values = true)]
     samples: Option<u32>,
     /// With --events: stops early after this many forcing periods [default: 1000000]

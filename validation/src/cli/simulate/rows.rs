@@ -6,7 +6,7 @@ use percuss::{Exit, Instant, Sample, Segment};
 
 /// A row of the output.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Row {
+pub(super) struct RunRow {
     /// Counts the rows of switches from 0.
     pub(super) index: u64,
     pub(super) phase: &'static str,
@@ -20,7 +20,7 @@ pub(super) struct Row {
 /// Something that rows can be written to.
 pub(super) trait Sink {
     fn begin(&mut self, plan: &Plan, samples: bool) -> Result<()>;
-    fn row(&mut self, plan: &Plan, row: &Row) -> Result<()>;
+    fn row(&mut self, plan: &Plan, row: &RunRow) -> Result<()>;
     fn finish(&mut self, ending: &RunEnding) -> Result<()>;
 }
 
@@ -47,7 +47,7 @@ pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<RunEnding> {
         let state = [entry.state.p, entry.state.y, entry.state.q, entry.v()];
         sink.row(
             plan,
-            &Row {
+            &RunRow {
                 index,
                 phase: entry.phase().as_str(),
                 instant: entry.instant,
@@ -64,7 +64,7 @@ pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<RunEnding> {
         let state = state(&last.at_instant(&instant));
         sink.row(
             plan,
-            &Row {
+            &RunRow {
                 index: index + 1,
                 phase: if ending.undecided { UNDECIDABLE } else { "end" },
                 instant,
@@ -108,8 +108,8 @@ pub(super) fn samples(plan: &Plan, per_period: u32, sink: &mut dyn Sink) -> Resu
 /// The phase of a row at which the run is no longer decided.
 const UNDECIDABLE: &str = "undecidable";
 
-fn sample(index: u64, phase: &'static str, segment: &Segment, instant: Instant) -> Row {
+fn sample(index: u64, phase: &'static str, segment: &Segment, instant: Instant) -> RunRow {
     let state = state(&segment.at_instant(&instant));
     let [p, _, q, v] = state;
-    Row { index, phase, instant, state, co_ordinates: Some([p + v, q + v]) }
+    RunRow { index, phase, instant, state, co_ordinates: Some([p + v, q + v]) }
 }

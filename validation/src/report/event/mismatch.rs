@@ -4,7 +4,7 @@ use super::guarded::GuardCurve;
 use crate::engine::{Event, Outcome, Task};
 use crate::score::{Matching, Measures, RunGrowth, Verdict, WINDOW};
 use crate::suite::{Prepared, Scored, Status};
-use crate::truth::{Row, Truth};
+use crate::truth::{Truth, TruthRow};
 use percuss::Phase;
 use percuss::TwoWord;
 use serde::Serialize;
@@ -104,11 +104,11 @@ impl Sides {
         let window = WINDOW * period;
         let near = |t: f64| t <= horizon + window;
         let rows = truth.switches.iter().take_while(|row| near(row.elapsed.value()));
-        let rows: Vec<Row> = rows.copied().collect();
+        let rows: Vec<TruthRow> = rows.copied().collect();
         let found = outcome.events.iter().take_while(|event| near(event.elapsed));
         let found: Vec<Event> = found.copied().collect();
         let pairs = Matching::of(&rows, &found, window).pairs;
-        let phase = |row: &Row| row.phase.unwrap_or(task.phase);
+        let phase = |row: &TruthRow| row.phase.unwrap_or(task.phase);
         let of = |times: Vec<f64>, phases| EventsOf {
             first: task.phase,
             counted: times.iter().take_while(|t| **t <= horizon).count(),

@@ -2,7 +2,7 @@
 //! digits.
 
 use super::super::summary::EngineSummary;
-use super::super::{EventPicture, Report, ReportEvidence, Row};
+use super::super::{EventPicture, Report, ReportEvidence, ReportRow};
 use super::command;
 use crate::picture::Look;
 use serde_json::{Map, Value, json};
@@ -50,7 +50,7 @@ fn inside_a_script(json: &str) -> String {
 
 fn cases(report: &Report, evidence: &ReportEvidence) -> Vec<Value> {
     let names = report.results.chunk_by(|a, b| a.case == b.case).filter_map(|rows| rows.first());
-    let note = |row: &Row| {
+    let note = |row: &ReportRow| {
         let note = evidence.cases.iter().find(|note| note.name == row.case);
         json!({
             "name": row.case,
@@ -64,7 +64,7 @@ fn cases(report: &Report, evidence: &ReportEvidence) -> Vec<Value> {
 }
 
 /// Each key of a row as an array over the rows; keys of nested objects with a dot.
-fn columns(rows: &[Row]) -> Map<String, Value> {
+fn columns(rows: &[ReportRow]) -> Map<String, Value> {
     let flat: Vec<BTreeMap<String, Value>> = rows.iter().map(flat).collect();
     let names = flat.iter().flat_map(|row| row.keys().cloned());
     let names: std::collections::BTreeSet<String> = names.collect();
@@ -77,7 +77,7 @@ fn columns(rows: &[Row]) -> Map<String, Value> {
     all.map(|(name, column)| (name, Value::Array(column))).collect()
 }
 
-fn flat(row: &Row) -> BTreeMap<String, Value> {
+fn flat(row: &ReportRow) -> BTreeMap<String, Value> {
     let mut flat = BTreeMap::from([("setting".to_owned(), json!(row.setting()))]);
     if let Value::Object(fields) = rounded(json!(row)) {
         for (name, value) in fields {
@@ -121,7 +121,7 @@ impl Texts {
 
 /// The picture of an event with the number of its row.
 fn event(report: &Report, picture: &EventPicture) -> Option<Value> {
-    let is_its = |row: &Row| {
+    let is_its = |row: &ReportRow| {
         (row.case.as_str(), row.engine) == (&picture.case, &picture.engine)
             && (row.tolerance, row.step) == (picture.tolerance, picture.step)
     };
@@ -134,7 +134,7 @@ fn event(report: &Report, picture: &EventPicture) -> Option<Value> {
 }
 
 /// Quantity and statistic, limit, value, verdict, why.
-fn bounds(row: &Row, texts: &mut Texts) -> Vec<Value> {
+fn bounds(row: &ReportRow, texts: &mut Texts) -> Vec<Value> {
     let word = |value: Value| value.as_str().unwrap_or_default().replace('_', " ");
     let mut bound = |it: &crate::score::Checked| {
         let quantity = in_words(&word(json!(it.quantity))).to_owned();

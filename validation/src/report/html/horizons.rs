@@ -1,6 +1,6 @@
 //! Valid horizons as the page shows them: a line a row that has them.
 
-use super::super::{Report, Row};
+use super::super::{Report, ReportRow};
 
 pub(super) struct HorizonLine {
     pub case: String,
@@ -10,7 +10,7 @@ pub(super) struct HorizonLine {
 }
 
 pub(super) fn horizons(report: &Report) -> Vec<HorizonLine> {
-    let line = |row: &Row| {
+    let line = |row: &ReportRow| {
         let it = row.valid_horizon?;
         Some(HorizonLine {
             case: row.case.clone(),

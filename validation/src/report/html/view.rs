@@ -189,7 +189,7 @@ pub(super) fn grazing(report: &Report, evidence: &ReportEvidence) -> GrazingTabl
             Seen::Right => ("right", "\u{25cf}", "right"),
             Seen::Missed => ("missed", "\u{25cb}", "missed events"),
             Seen::Spurious => ("spurious", "\u{00d7}", "spurious events"),
-            Seen::Either => ("either", "\u{25d0}", "undecidable: either answer is right"),
+            Seen::Undecidable => ("either", "\u{25d0}", "undecidable: either answer is right"),
             Seen::Nothing => ("nothing", "\u{2013}", "no result, or nothing scored"),
         };
         let of = if setting.is_empty() { String::new() } else { format!("{setting}: ") };

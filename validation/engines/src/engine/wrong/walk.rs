@@ -90,7 +90,7 @@ impl WrongRun<'_> {
             (t, phase, state) = (at, next, on_surface);
             outcome.events.push(Event { phase, elapsed: t, state });
             if outcome.events.len() > limits.events {
-                return Err(Failure::new(format!("gave up after {} switches", limits.events)));
+                return Err(Failure::new(format!("gave up after {} events", limits.events)));
             }
         }
         outcome.samples = sampler.finish(outcome.end);
