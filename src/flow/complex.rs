@@ -1,4 +1,4 @@
-//! A complex number over any [`Real`], with what the forced response needs.
+//! A complex number over any `Real`, with what the forced response needs.
 
 use crate::numeric::real::Real;
 use std::ops::{Add, Mul, Sub};
