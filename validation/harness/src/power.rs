@@ -4,7 +4,7 @@
 //! hand, held against the exact solver's bounds, and must fail at least one.
 
 use crate::case::{Bound, Quantity};
-use crate::engine::{Accuracy, Limits, SOUND, Wrong, faulty, wrong};
+use crate::engine::{Accuracy, Limits, REFERENCE, SOUND, Wrong, faulty, wrong};
 use crate::number::brief;
 use crate::score::{Checked, Expected, Subject, Verdict, judge};
 use crate::suite::{Extent, Prepared};
@@ -113,7 +113,7 @@ pub struct Standard {
 
 /// The standard to which the exact solver is held.
 pub const AS_EXACT: Standard =
-    Standard { engine: "exact", accuracy: Accuracy::Exact, unit: f64::EPSILON };
+    Standard { engine: REFERENCE, accuracy: Accuracy::Exact, unit: f64::EPSILON };
 
 /// The tolerances at which integrators with a fault are run.
 const FAULTY_AT: [f64; 2] = [1e-6, 1e-9];

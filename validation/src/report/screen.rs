@@ -6,6 +6,7 @@
 use super::ranking::{COMPARED_AT, Ranked};
 use super::table::{reasons, row_table};
 use super::{Order, Report, ReportEvidence, ReportRow, orders};
+use crate::engine::REFERENCE;
 use crate::number::brief;
 use crate::score::Verdict;
 use comfy_table::{CellAlignment, Table, presets};
@@ -152,7 +153,7 @@ fn short_orders(report: &Report) -> String {
 /// How long the exact solver stays right in chaos; the report has the integrators' horizons too.
 fn valid_horizons(rows: &[ReportRow]) -> String {
     let line = |row: &ReportRow| {
-        let it = row.valid_horizon.filter(|_| row.engine.starts_with("exact"))?;
+        let it = row.valid_horizon.filter(|_| row.engine.starts_with(REFERENCE))?;
         Some(wrapped(&format!(
             "valid horizon: {} on {}: median {} forcing periods over {} runs (1st percentile {}; \
              predicted from error growth: {})",

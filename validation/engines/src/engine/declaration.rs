@@ -2,6 +2,9 @@
 
 use super::Stepping;
 
+/// The name of the exact solver, with which the names of all exact engines begin and no other.
+pub const REFERENCE: &str = "exact";
+
 /// How an engine finds its events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]

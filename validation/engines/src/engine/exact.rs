@@ -2,7 +2,7 @@
 
 use super::meter::{Failure, Limits};
 use super::{Accuracy, Colours, Declaration, Engine, Event, Location, Outcome, Role, Stepping};
-use super::{Task, Work, pins};
+use super::{REFERENCE, Task, Work, pins};
 use percuss::TwoWord;
 use percuss::{Entry, Exit, Phase, Sample, Segment, Step, Trajectory};
 
@@ -12,7 +12,7 @@ pub(super) struct Exact;
 impl Engine for Exact {
     fn declaration(&self) -> Declaration {
         Declaration {
-            name: "exact",
+            name: REFERENCE,
             library: "percuss",
             version: pins::version("percuss"),
             method: "closed forms, certified first crossing",

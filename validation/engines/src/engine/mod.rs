@@ -33,7 +33,7 @@ mod wrong;
 pub use accuracy::{Accuracy, Stepping, shortest_time};
 pub use alone::Script;
 pub use answer::answer;
-pub use declaration::{Colours, Declaration, Location, Role};
+pub use declaration::{Colours, Declaration, Location, REFERENCE, Role};
 pub use field::{Equations, GUARDS, Oscillator};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};

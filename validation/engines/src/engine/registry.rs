@@ -1,7 +1,7 @@
 //! All engines.
 
 use super::exact::Exact;
-use super::{Engine, Failure, differential_equations, diffsol, ode_solvers};
+use super::{Engine, Failure, REFERENCE, differential_equations, diffsol, ode_solvers};
 use regex::Regex;
 use std::sync::OnceLock;
 
@@ -38,15 +38,15 @@ pub fn all() -> &'static [&'static dyn Engine] {
 /// Adds engines of another crate to those of this program, until it ends.
 ///
 /// # Errors
-/// A name that is taken or begins with `exact`, which marks the reference; or engines that are
+/// A name that is taken or begins with [`REFERENCE`]; or engines that are
 /// added after any was asked for.
 pub fn add(own: &[&'static dyn Engine]) -> Result<(), Failure> {
     let mut every = ENGINES.to_vec();
     for engine in own {
         let name = engine.declaration().name;
-        if name.starts_with("exact") || every.iter().any(|it| it.declaration().name == name) {
+        if name.starts_with(REFERENCE) || every.iter().any(|it| it.declaration().name == name) {
             return Err(Failure::new(format!(
-                "an engine cannot be called {name:?}: accepted is a name of its own that does not begin with exact"
+                "an engine cannot be called {name:?}: accepted is a name of its own that does not begin with {REFERENCE}"
             )));
         }
         every.push(*engine);

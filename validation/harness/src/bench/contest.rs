@@ -3,7 +3,7 @@
 use super::contestant::{Contestant, TimedRun, ladder};
 use super::course::{Course, Score};
 use super::rounds::{Benchmark, PACE, RoundTimes, race};
-use crate::engine::{Accuracy, Failure, Stepping, Work};
+use crate::engine::{Accuracy, Failure, REFERENCE, Stepping, Work};
 
 /// A contestant at a setting, and what came of it.
 #[derive(Clone, Debug)]
@@ -118,7 +118,7 @@ pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
 /// The exact solver's row, which all others are held against.
 #[must_use]
 pub fn exact(finishers: &[Finisher]) -> Option<&Timed> {
-    let own = finishers.iter().find(|it| it.stepping == Stepping::Exact && it.name == "exact");
+    let own = finishers.iter().find(|it| it.stepping == Stepping::Exact && it.name == REFERENCE);
     own?.result.as_ref().ok()
 }
 

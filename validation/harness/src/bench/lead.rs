@@ -1,12 +1,9 @@
 //! How far the exact solver is ahead of its closest competitor, at its most accurate and at equal
 //! accuracy.
 
-use super::report::{Bench, BenchRow, EventCost};
+use super::report::{Bench, BenchRow};
+use crate::engine::REFERENCE;
 use crate::number::{brief, shortest};
-use std::fmt;
-
-/// How many times as long the closest competitor is to take, on every case.
-pub const ASKED: f64 = 100.0;
 
 /// A ratio in whole numbers, rounded down: it is at least so many times.
 #[must_use]
@@ -80,69 +77,13 @@ pub fn lead<'a>(bench: &'a Bench, case: &str, basis: Basis) -> Option<Lead<'a>> 
 pub fn errs_least(bench: &Bench, case: &str) -> bool {
     let error = |row: &BenchRow| row.state_error_max.unwrap_or(f64::INFINITY);
     let rows = || bench.results.iter().filter(|row| row.case == case);
-    let exact = rows().find(|row| row.engine == "exact").map_or(f64::INFINITY, error);
+    let exact = rows().find(|row| row.engine == REFERENCE).map_or(f64::INFINITY, error);
     rows().filter(|row| row.adaptive).all(|row| exact <= error(row))
-}
-
-/// A lead of less than [`ASKED`], in terms of one event.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shortfall<'a> {
-    /// The case.
-    pub case: &'a str,
-    /// The closest competitor.
-    pub engine: &'a str,
-    /// How many times as long the competitor takes as the exact solver.
-    pub ratio: f64,
-    /// Time of the exact solver's run for each event of it, ns.
-    pub ns_per_event: f64,
-    /// The competitor's right-hand sides for each event.
-    pub right_hand_sides: f64,
-    /// The least time of one evaluation, ns.
-    pub floor: f64,
-}
-
-impl<'a> Shortfall<'a> {
-    /// What is missing on a case to a lead of [`ASKED`]; nothing where the lead is large enough, or
-    /// the run has no event.
-    #[must_use]
-    pub fn of(bench: &'a Bench, case: &'a str) -> Option<Self> {
-        let Lead { next, ratio, .. } = lead(bench, case, Basis::MostAccurate)?;
-        let entry = bench.cases.iter().find(|it| it.case == case)?;
-        let cost: &EventCost = bench.events.iter().find(|it| it.case == case)?;
-        let it = Self {
-            case,
-            engine: &next.engine,
-            ratio,
-            ns_per_event: cost.ns_per_event?,
-            right_hand_sides: entry.per_event(next.rhs_per_period?)?,
-            floor: bench.floor.chained_ns,
-        };
-        Some(it).filter(|it| it.ratio < ASKED)
-    }
-}
-
-impl fmt::Display for Shortfall<'_> {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { case, engine, ratio, ns_per_event, right_hand_sides, floor } = *self;
-        let asked = ns_per_event * ratio / ASKED;
-        writeln!(
-            out,
-            "{case}: a lead of {ASKED}x would need {asked:.0} ns per event ({:.1} floors); \
-             measured: {ns_per_event:.0} ns ({:.1} floors)",
-            asked / floor,
-            ns_per_event / floor,
-        )?;
-        write!(
-            out,
-            "  {engine} takes {right_hand_sides:.0} right-hand sides per event, {:.0} ns each",
-            ns_per_event * ratio / right_hand_sides,
-        )
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::report::{CaseEntry, Floor};
+    use super::super::report::{CaseEntry, EventCost, Floor};
     use super::*;
     use crate::build::Build;
 
@@ -189,18 +130,10 @@ mod tests {
     }
 
     #[test]
-    fn a_lead_that_is_too_small_is_told_in_the_tables_own_time_of_an_event() {
+    fn the_table_has_the_time_and_the_floors_of_an_event() {
         let bench = bench(50.0, 20);
         assert_eq!(bench.events[0].ns_per_event, Some(160.0));
         assert_eq!(bench.events[0].floors_per_event, Some(4.0));
-        assert_eq!(
-            Shortfall::of(&bench, CASE).map(|it| it.to_string()).as_deref(),
-            Some(
-                "fast: a lead of 100x would need 80 ns per event (2.0 floors); \
-                 measured: 160 ns (4.0 floors)\n  \
-                 an-engine takes 200 right-hand sides per event, 40 ns each"
-            )
-        );
         let table = crate::bench::summary(&bench);
         let line = table.lines().find(|line| line.starts_with(CASE)).unwrap_or_default();
         let cells: Vec<_> = line.split_whitespace().collect();
@@ -208,15 +141,13 @@ mod tests {
     }
 
     #[test]
-    fn a_lead_is_large_enough_or_not_whatever_it_is_rounded_to() {
-        for (ratio, said, enough) in [(99.9, "99", false), (100.0, "100", true)] {
+    fn a_lead_is_rounded_down() {
+        for (ratio, said) in [(99.9, "99"), (100.0, "100")] {
             let bench = bench(ratio, 20);
             let lead = lead(&bench, CASE, Basis::MostAccurate);
             let lead = lead.map(|it| (it.next.engine.clone(), times(it.ratio)));
             assert_eq!(lead, Some(("an-engine".to_owned(), said.to_owned())));
-            assert_eq!(Shortfall::of(&bench, CASE).is_none(), enough);
         }
-        assert_eq!(Shortfall::of(&bench(50.0, 0), CASE), None);
     }
 
     #[test]

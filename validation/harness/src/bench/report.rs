@@ -8,7 +8,7 @@ use super::floor::Floors;
 use super::lead::{Basis, LOOSE, TIGHT};
 use super::length::Length;
 use crate::build::Build;
-use crate::engine::Stepping;
+use crate::engine::{REFERENCE, Stepping};
 use crate::number::shortest;
 use serde::{Deserialize, Serialize};
 
@@ -189,7 +189,8 @@ impl Bench {
         let results: Vec<_> = contests.iter().flat_map(|(course, all)| rows(course, all)).collect();
         let floor =
             Floor { chained_ns: floors.chained.best(), independent_ns: floors.independent.best() };
-        let exact = |case: &str| results.iter().find(|it| it.case == case && it.engine == "exact");
+        let exact =
+            |case: &str| results.iter().find(|it| it.case == case && it.engine == REFERENCE);
         let cost = |it: &CaseEntry| EventCost::of(it, exact(&it.case), floor);
         Self {
             build,

@@ -1,8 +1,9 @@
 //! What a bench says in brief: the cost of an event, and the closest competitor on each case.
 
 use super::grid::{plain, shown};
-use super::lead::{BASES, Shortfall, errs_least, lead, times};
+use super::lead::{BASES, errs_least, lead, times};
 use super::report::{Bench, BenchRow};
+use crate::engine::REFERENCE;
 use crate::number::brief;
 
 /// The exact solver's cost on each case, and its closest competitors at their most accurate and at
@@ -23,9 +24,7 @@ pub fn summary(bench: &Bench) -> String {
          harness: share of the engine's time that is the harness's own\n",
     );
     text.push_str(&least_error(bench));
-    let short = bench.cases.iter().filter_map(|it| Shortfall::of(bench, &it.case));
-    let short: Vec<_> = short.map(|it| format!("{it}\n")).collect();
-    if short.is_empty() { text } else { text + "\n" + &short.concat() }
+    text
 }
 
 /// What the exact solver takes for an event of each case.
@@ -41,7 +40,7 @@ fn events(bench: &Bench) -> String {
         "harness",
     ]);
     for (case, it) in bench.cases.iter().zip(&bench.events) {
-        let own = bench.results.iter().find(|row| row.case == it.case && row.engine == "exact");
+        let own = bench.results.iter().find(|row| row.case == it.case && row.engine == REFERENCE);
         let of = |get: fn(&BenchRow) -> Option<f64>| own.and_then(get);
         table.add_row([
             it.case.clone(),

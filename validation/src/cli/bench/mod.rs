@@ -15,7 +15,7 @@ use crate::bench::report::Measurement;
 use crate::bench::{Bench, cases, damping, floor, length, pictures, registry, table};
 use crate::build;
 use crate::case::{self, Case};
-use crate::engine::{Stepping, hush_contained_panics};
+use crate::engine::{REFERENCE, Stepping, hush_contained_panics};
 use crate::truth::Library;
 use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
@@ -137,7 +137,7 @@ fn chosen_engines<'a>(
     let listed = "percuss engines lists those of validate, and exact-lanes is one of bench";
     let selection = Selection { flag: "--engine", what: "engine", listed };
     selection.check(patterns, all.iter().map(|it| it.name()))?;
-    let is_unit = |it: &dyn Contestant| it.name() == "exact" && it.stepping() == Stepping::Exact;
+    let is_unit = |it: &dyn Contestant| it.name() == REFERENCE && it.stepping() == Stepping::Exact;
     Ok(all.iter().map(AsRef::as_ref).filter(|it| is_unit(*it) || matches(*it)).collect())
 }
 
