@@ -23,7 +23,7 @@ impl<T: Real> PushedOrders<T> {
         Self { omega2, rate, exponential: left * (rate * rate * rate), force, next }
     }
 
-    /// The next order, one by one.
+    /// The next order.
     #[inline(always)]
     pub fn step(&mut self) -> T {
         self.exponential = -(self.exponential * self.rate);
@@ -51,7 +51,7 @@ impl<T: Real> ContactOrders<T> {
         Self { omega2, two_xi, drive, next, before: second, last: third }
     }
 
-    /// The next order, one by one.
+    /// The next order.
     #[inline(always)]
     pub fn step(&mut self) -> T {
         let order = self.two_xi.times_from(self.last, self.next) - self.before;
