@@ -176,7 +176,8 @@ impl ExponentRun {
             self.go(segment, done, segment.duration());
             self.tangent.switch(segment);
             if self.observing() && segment.phase() == Phase::NoContact {
-                self.contraction += impact_factor(segment, next.phase(), self.two_xi).abs().ln();
+                self.contraction +=
+                    libm::log(impact_factor(segment, next.phase(), self.two_xi).abs());
                 self.touched = true;
             }
         }
@@ -276,7 +277,7 @@ fn batch_end(k: u64, periods: u64, batches: u64) -> u64 {
 /// separation.
 fn impact_factor(segment: &Segment, next: Phase, two_xi: f64) -> f64 {
     let d = segment.duration();
-    let e = (-d / two_xi).exp();
+    let e = libm::exp(-d / two_xi);
     let lost = two_xi * e * d;
     match (next, &segment.motion()) {
         (Phase::Progression, Motion::NoContact(_)) => {

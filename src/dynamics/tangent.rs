@@ -79,7 +79,7 @@ impl TangentVector {
         self.turn(&saltation);
         self.stay_on_slider();
         let [area, ..] = wedge(&saltation, self.area);
-        self.size += area.abs().ln();
+        self.size += libm::log(area.abs());
         self.area = ON_SLIDER;
     }
 
@@ -89,7 +89,7 @@ impl TangentVector {
             .map(|row| derivative[row][P] * p + derivative[row][Y] * y + derivative[row][Q] * q);
         let [p, y, q] = image;
         let length = libm::hypot(libm::hypot(p, y), q);
-        self.length += length.ln();
+        self.length += libm::log(length);
         // An error that has vanished altogether stays where it was: its logarithm tells.
         if length > 0.0 {
             self.direction = image.map(|part| part / length);

@@ -7,6 +7,8 @@
 pub mod build;
 pub mod cli;
 pub mod report;
+pub mod sweep;
+mod unfinished;
 
 pub use percuss_engines::{case, engine, number};
 pub use percuss_harness::{arrays, bench, power, reproduce, score, suite, truth};

@@ -6,7 +6,7 @@ use clap::Command;
 use percuss_validation::cli::command;
 
 /// Each verb with flags that make it complete; a flag under test takes the place of its own pair.
-const VERBS: [(&str, &[(&str, &str)]); 18] = [
+const VERBS: [(&str, &[(&str, &str)]); 21] = [
     ("simulate", &[("--periods", "1")]),
     ("poincare", &[("--transient", "1"), ("--periods", "1")]),
     ("lyapunov", &[("--transient", "1"), ("--periods", "1")]),
@@ -36,6 +36,9 @@ const VERBS: [(&str, &[(&str, &str)]); 18] = [
     ("validate", &[]),
     ("engines", &[]),
     ("cases", &[]),
+    ("sweep run", &[("--plan", "no.toml"), ("--out", "/proc/nowhere")]),
+    ("sweep status", &[("--plan", "no.toml"), ("--out", "/proc/nowhere")]),
+    ("sweep merge", &[("--plan", "no.toml"), ("--out", "/proc/nowhere"), ("--output", "a.npz")]),
     ("reproduce", &[("--out", "/proc/nowhere")]),
     ("bench", &[]),
     ("bench record", &[]),
@@ -49,6 +52,9 @@ const INTEGERS: &[&str] = &["-5", "1e300", "1.5", "nan", "x", "", "1844674407370
 const NUMBERS: &[&str] = &["nan", "inf", "-inf", "1e400", "-1e300", "1,5", "x", ""];
 const WORDS: &[&str] = &["", "x", "-5", "1e300"];
 const MISSING_FOLDER: &[&str] = &["/no/such/folder/file.json"];
+
+/// The steps of a sweep.
+const SWEEP: &[&str] = &["sweep run", "sweep status", "sweep merge"];
 
 /// The verbs that a row is for (all where empty), a flag, values that are refused, and what the
 /// line says is accepted.
@@ -114,6 +120,11 @@ const ROWS: &[Row] = &[
         "a folder that exists",
     ),
     (&["bifurcation"], "--output", &["/no/such/folder/file.csv"], "a folder that exists"),
+    (SWEEP, "--plan", &["/no/such.toml", "/"], "accepted is a TOML file"),
+    (SWEEP, "--out", &["/proc/version"], "accepted is a folder"),
+    (&["sweep run"], "--shard", &["", "x", "3", "4/4", "-1/4", "1/0", "0.5/4"], "accepted is I/N"),
+    (&["sweep merge"], "--output", &["a.csv", "-"], "ends in .npz"),
+    (&["sweep merge"], "--output", &["/no/such/folder/file.npz"], "a folder that exists"),
     (&[], "--output", MISSING_FOLDER, "a folder that exists"),
     (&["completions"], "SHELL", &["", "x", "1e300"], "bash"),
 ];

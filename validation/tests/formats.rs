@@ -328,3 +328,28 @@ fn bench_record() {
     let svg = stdout(&["bench", "history", "--history", &history]);
     assert!(svg.contains("switches/chaos-from-rest"), "{svg}");
 }
+
+#[test]
+fn sweep_status() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let plan = folder.path().join("plan.toml");
+    let text = "[sweep]\nverb = \"lyapunov\"\nshards = 3\n[fixed]\ntransient = 1\nperiods = 2\n\
+                [[axis]]\nparameter = \"b\"\nfrom = 0.1\nto = 0.2\nsteps = 5\n";
+    std::fs::write(&plan, text).expect("written");
+    let (plan, out) = (plan.display().to_string(), folder.path().join("out"));
+    let words = |step: &'static str| ["sweep", step, "--plan", &plan, "--out"].map(str::to_owned);
+    let status = |code: i32| {
+        let words = [&words("status")[..], &[out.display().to_string()]].concat();
+        let output = support::run(&words.iter().map(String::as_str).collect::<Vec<_>>());
+        assert_eq!(output.status.code(), Some(code));
+        let value = json(&support::text(&output.stdout));
+        assert_valid("sweep-status.schema.json", &value);
+        value
+    };
+    assert_eq!(status(1)["seconds_to_end"], Value::Null);
+    let words = [&words("run")[..], &[out.display().to_string()]].concat();
+    stdout(&words.iter().map(String::as_str).collect::<Vec<_>>());
+    assert_eq!(status(0)["complete"], true);
+    std::fs::write(out.join("00001.shard"), "x").expect("written");
+    assert_eq!(status(1)["damaged"][0]["shard"], 1);
+}

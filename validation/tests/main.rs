@@ -36,6 +36,7 @@ mod rig;
 mod simulate;
 mod spoiled;
 mod strobe_derivative;
+mod sweep;
 mod terminal;
 mod validate;
 mod work;

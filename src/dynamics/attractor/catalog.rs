@@ -43,6 +43,26 @@ impl AttractorCatalog {
         self.known.iter().map(|it| &it.attractor)
     }
 
+    /// The attractors with what motions near them are recognised by, in the same order.
+    pub(super) fn known(&self) -> &[Known] {
+        &self.known
+    }
+
+    /// How many events a start meets until it is recognised or given up.
+    pub(super) fn events(&self, start: StrobePoint) -> u64 {
+        let Ok(mut entry) = self.map.entry(start) else { return 0 };
+        let mut events = 0;
+        for extension in 0..=EXTENSIONS {
+            let recognition = self.recognition(entry, self.transient << extension);
+            events += recognition.events();
+            match recognition.outcome() {
+                Ok(_) => break,
+                Err(last) => entry = last,
+            }
+        }
+        events
+    }
+
     /// The label of a start, as far as the attractors met so far tell.
     #[must_use]
     pub fn label(&self, start: StrobePoint) -> Label {
@@ -160,8 +180,13 @@ impl AttractorCatalog {
     /// Follows a motion until it is recognised, for at most so many strobes; where it is then if it
     /// is not.
     fn recognised(&self, from: Entry, strobes: u64) -> Result<Label, Entry> {
+        self.recognition(from, strobes).outcome()
+    }
+
+    /// What has been seen of a motion after so many strobes, or when it was recognised.
+    fn recognition(&self, from: Entry, strobes: u64) -> Recognition<'_> {
         let watcher = Recognition::new(&self.known, from, strobes, &|_| {});
-        ensemble::follow_alone(self.motion(from, strobes, watcher)).outcome()
+        ensemble::follow_alone(self.motion(from, strobes, watcher))
     }
 
     /// The motion from here on, of which so many strobes after the first are looked at.

@@ -14,9 +14,20 @@ pub(super) const RECURRENCES: u32 = 48;
 
 /// A set of cells.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Cells {
     width: f64,
+    #[cfg_attr(feature = "serde", serde(serialize_with = "in_order"))]
     visited: HashSet<[i64; 3]>,
+}
+
+/// Writes cells in order, so that equal sets are written alike.
+#[cfg(feature = "serde")]
+fn in_order<S: serde::Serializer>(
+    cells: &HashSet<[i64; 3]>,
+    serializer: S,
+) -> Result<S::Ok, S::Error> {
+    serializer.collect_seq(cells.iter().collect::<std::collections::BTreeSet<_>>())
 }
 
 impl Cells {

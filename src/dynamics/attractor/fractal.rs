@@ -14,7 +14,7 @@ use super::grid::{Basins, Window};
 use super::known::Label;
 use crate::dynamics::parallel;
 use crate::dynamics::strobe::StrobePoint;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// How uncertain starts are.
 #[derive(Clone, Debug, PartialEq)]
@@ -90,7 +90,7 @@ pub fn uncertainty_of(
     starts: u32,
 ) -> Uncertainty {
     let width = window.p[1] - window.p[0];
-    let mut counts = HashMap::new();
+    let mut counts = BTreeMap::new();
     let mut seen = Vec::new();
     for scale in scales {
         let epsilon = 0.5_f64.powi(scale.cast_signed());
@@ -129,7 +129,7 @@ pub fn uncertainty(basins: &Basins) -> Uncertainty {
         scales.push(scale);
         step /= 2;
     }
-    let mut counts = HashMap::new();
+    let mut counts = BTreeMap::new();
     basins.labels.iter().for_each(|label| *counts.entry(*label).or_insert(0) += 1);
     Uncertainty::fitted(scales, saturation(&counts))
 }
@@ -150,7 +150,7 @@ pub fn entropy(basins: &Basins, side: u32) -> Entropy {
         }
         let cells = (wide * wide) as f64;
         let parts = counts.values().map(|count| f64::from(*count) / cells);
-        boxes.push((counts.len(), parts.map(|share| -share * share.ln()).sum::<f64>()));
+        boxes.push((counts.len(), parts.map(|share| -share * libm::log(share)).sum::<f64>()));
     }
     let all = boxes.iter().map(|it| it.1).sum::<f64>() / boxes.len() as f64;
     let mixed: Vec<f64> = boxes.iter().filter(|it| it.0 > 1).map(|it| it.1).collect();
@@ -162,7 +162,8 @@ pub fn entropy(basins: &Basins, side: u32) -> Entropy {
 }
 
 /// The share of uncertain starts if labels were thrown at random: that three are not all equal.
-fn saturation(counts: &HashMap<Label, u64>) -> f64 {
+/// Terms are summed in the labels' order, so that the last bits are the same every time.
+fn saturation(counts: &BTreeMap<Label, u64>) -> f64 {
     let all = counts.values().sum::<u64>() as f64;
     1.0 - counts.values().map(|count| (*count as f64 / all).powi(3)).sum::<f64>()
 }
@@ -179,7 +180,7 @@ fn slope(scales: &[Scale], saturated: f64) -> Option<(f64, f64)> {
         .map(|scale| {
             let share = scale.uncertain as f64 / scale.starts as f64;
             let weight = scale.uncertain as f64 / (1.0 - share);
-            [scale.epsilon.ln(), share.ln(), weight]
+            [libm::log(scale.epsilon), libm::log(share), weight]
         })
         .collect();
     if points.len() < 3 {

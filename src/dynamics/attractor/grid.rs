@@ -1,11 +1,11 @@
 //! A grid of starts, and which attractor each of them reaches.
 
-use super::catalog::AttractorCatalog;
 use super::known::Label;
 use super::{Attractor, AttractorKind};
-use crate::dynamics::strobe::{StrobeMap, StrobePoint};
+use crate::dynamics::strobe::StrobePoint;
 use crate::error::InputError;
 use crate::parameters::within;
+use std::ops::Range;
 
 /// A rectangle of starts.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,10 +41,6 @@ pub struct Basins {
     pub labels: Vec<Label>,
 }
 
-/// Attractors are first looked for from a grid of so many by so many starts, whatever grid is asked
-/// for: so they do not depend on it.
-const LATTICE: u32 = 16;
-
 impl Window {
     /// Checks that both sides are finite, at most 1e9 in size, and from low to high.
     ///
@@ -76,8 +72,14 @@ impl Grid {
     /// All starts, row by row from the lowest y on.
     #[must_use]
     pub fn starts(&self) -> Vec<StrobePoint> {
-        let p = self.p();
-        self.y().iter().flat_map(|y| p.iter().map(|p| [*p, *y, self.q])).collect()
+        self.starts_of(0..self.rows)
+    }
+
+    /// The starts of some rows.
+    pub(super) fn starts_of(&self, rows: Range<u32>) -> Vec<StrobePoint> {
+        let (p, y) = (self.p(), self.y());
+        let rows = &y[rows.start as usize..rows.end as usize];
+        rows.iter().flat_map(|y| p.iter().map(|p| [*p, *y, self.q])).collect()
     }
 
     /// How many starts there are.
@@ -99,22 +101,8 @@ fn centres([from, to]: [f64; 2], count: u32) -> Vec<f64> {
 }
 
 impl Basins {
-    /// Labels every start of a grid.
-    ///
-    /// `transient` is how many forcing periods a start is followed at first (see
-    /// [`AttractorCatalog::new`]); `seen` is told of how many starts more the label is known.
-    #[must_use]
-    pub fn of(map: &StrobeMap, grid: &Grid, transient: u64, seen: &(dyn Fn(u64) + Sync)) -> Self {
-        let mut catalog = AttractorCatalog::new(*map, transient);
-        let lattice = Grid { columns: LATTICE, rows: LATTICE, ..*grid };
-        catalog.label_all(&lattice.starts(), &|_| {});
-        let labels = catalog.label_all(&grid.starts(), seen);
-        Self::sorted(*grid, &catalog, labels)
-    }
-
     /// Drops attractors that no start reaches and puts the others in order.
-    fn sorted(grid: Grid, catalog: &AttractorCatalog, labels: Vec<Label>) -> Self {
-        let known: Vec<&Attractor> = catalog.attractors().collect();
+    pub(super) fn sorted(grid: Grid, known: &[Attractor], labels: Vec<Label>) -> Self {
         let mut reached = vec![false; known.len()];
         for label in &labels {
             if let Label::Attractor(id) = label {
@@ -123,7 +111,7 @@ impl Basins {
         }
         let listed = |id: &usize| reached[*id] && known[*id].kind != AttractorKind::Unidentified;
         let mut order: Vec<usize> = (0..known.len()).filter(listed).collect();
-        order.sort_by(|a, b| known[*a].order(known[*b]));
+        order.sort_by(|a, b| known[*a].order(&known[*b]));
         let place = |label: Label| match label {
             Label::Attractor(id) => {
                 order.iter().position(|it| *it == id).map_or(Label::Unresolved, Label::Attractor)

@@ -31,6 +31,7 @@ impl Label {
 
 /// An attractor and what a motion near it is recognised by.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Known {
     pub attractor: Attractor,
     pub evidence: Evidence,
@@ -38,6 +39,7 @@ pub(super) struct Known {
 
 /// What a motion is recognised by.
 #[derive(Clone, Debug)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Evidence {
     Traps(Vec<Trap>),
     Cells(Cells),

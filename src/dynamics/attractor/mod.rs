@@ -15,6 +15,7 @@
 //! A chaotic set of which a motion leaves after some 10^5 periods on average cannot be told from an
 //! attractor by any run of that length.
 
+mod block;
 mod catalog;
 mod cells;
 mod fractal;
@@ -24,6 +25,7 @@ mod recognition;
 mod settle;
 mod trap;
 
+pub use block::{BlockLabeller, LabelledBlock};
 pub use catalog::AttractorCatalog;
 pub use fractal::{Entropy, Scale, Uncertainty, entropy, uncertainty, uncertainty_of};
 pub use grid::{Basins, Grid, Window};
@@ -41,6 +43,8 @@ pub const ERRORS: f64 = 4.0;
 
 /// What an attractor is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum AttractorKind {
     /// A stable orbit.
     Periodic,
@@ -75,6 +79,7 @@ impl fmt::Display for AttractorKind {
 
 /// An attractor.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Attractor {
     /// What it is.
     pub kind: AttractorKind,
@@ -115,7 +120,7 @@ impl Attractor {
             kind: AttractorKind::Periodic,
             points: orbit.points.clone(),
             drift_per_period: orbit.drift_per_period,
-            lyapunov_per_period: libm::hypot(re, im).ln() / f64::from(orbit.period()),
+            lyapunov_per_period: libm::log(libm::hypot(re, im)) / f64::from(orbit.period()),
             lyapunov_error: 0.0,
             orbit: Some(orbit),
         }

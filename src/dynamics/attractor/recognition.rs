@@ -20,12 +20,19 @@ pub(super) struct Recognition<'a> {
     /// Strobes met, and the number after which it is given up.
     met: u64,
     most: u64,
+    /// The number of events met.
+    events: u64,
     seen: &'a (dyn Fn(u64) + Sync),
 }
 
 impl<'a> Recognition<'a> {
     pub fn new(known: &'a [Known], from: Entry, most: u64, seen: &'a (dyn Fn(u64) + Sync)) -> Self {
-        Self { watch: Watch::new(known), label: None, last: from, met: 0, most, seen }
+        Self { watch: Watch::new(known), label: None, last: from, met: 0, most, events: 0, seen }
+    }
+
+    /// How many events the motion has met.
+    pub const fn events(&self) -> u64 {
+        self.events
     }
 
     /// The motion's label, or its state if it has none yet.
@@ -47,6 +54,10 @@ impl Watcher for Recognition<'_> {
             return ControlFlow::Break(());
         }
         if self.met > self.most { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+
+    fn enter(&mut self, _phase: &Entry) {
+        self.events += 1;
     }
 }
 

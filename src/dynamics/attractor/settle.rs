@@ -23,6 +23,8 @@ const TURNS: u64 = 2000;
 /// Forcing periods of the first look at the exponents, and of the one that decides.
 const GLANCE: u64 = 512;
 const DECISION: u64 = 1 << 14;
+/// Forcing periods of all runs that decide about an attractor that is no orbit.
+pub(super) const LONG_RUN: u64 = GLANCE + REFERENCE + DECISION;
 /// A largest exponent, and a contraction, that are no larger are taken for zero.
 const NEUTRAL: f64 = 1e-3;
 

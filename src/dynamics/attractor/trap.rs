@@ -16,6 +16,7 @@ use crate::phase::Phase;
 
 /// An ellipsoid about one strobe of an orbit.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) struct Trap {
     centre: StrobePoint,
     metric: Jacobian,

@@ -23,6 +23,7 @@ pub const LARGEST_PERIOD: u32 = 10_000;
 
 /// A periodic orbit of the strobe map.
 #[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Orbit {
     /// The orbit's strobes (p, y, q), one per forcing period, as many as the least period.
     pub points: Vec<StrobePoint>,

@@ -18,32 +18,32 @@ use std::io::Write;
 pub(super) struct Arguments {
     /// What varies: a, b, xi, omega, g or phi
     #[arg(long, value_name = "NAME", value_parser = parse::parameter)]
-    parameter: Parameter,
+    pub(super) parameter: Parameter,
     /// The parameter's first value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
-    from: Typed<f64>,
+    pub(super) from: Typed<f64>,
     /// The parameter's last value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
-    to: Typed<f64>,
+    pub(super) to: Typed<f64>,
     /// Number of values, both ends included
     #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, 1_000_000), allow_hyphen_values = true)]
-    steps: u32,
+    pub(super) steps: u32,
     /// Forcing periods that are left out at each value
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
-    transient: u64,
+    pub(super) transient: u64,
     /// Points at each value, one a forcing period, at least 1
     #[arg(long, value_name = "N", value_parser = parse::whole::<u32>(1, MAX_PERIODS), allow_hyphen_values = true)]
-    periods: u32,
+    pub(super) periods: u32,
     /// Starts each value from the last state of the one before (the default)
     #[arg(long, conflicts_with = "reset")]
     carry: bool,
     /// Starts each value from the start given
     #[arg(long)]
-    reset: bool,
+    pub(super) reset: bool,
     #[command(flatten)]
     output: OutputFlags<Format>,
     #[command(flatten)]
-    model: ModelFlags,
+    pub(super) model: ModelFlags,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
@@ -54,15 +54,16 @@ enum Format {
 }
 
 /// Rows that are held in memory.
-const MAX_ROWS: u64 = 10_000_000;
+pub(super) const MAX_ROWS: u64 = 10_000_000;
 /// An SVG of more points is not small.
 const MAX_SVG: u64 = 20_000;
 
 /// Writes the diagram; whether the motion was decided to its end at every value.
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     let format = arguments.output.format(Format::Csv)?;
-    let diagram = diagram(arguments)?;
-    check_size(arguments, format)?;
+    let diagram = diagram(arguments, &arguments.model)?;
+    let most = if format == Format::Svg { MAX_SVG } else { MAX_ROWS };
+    check_size(arguments, most)?;
     let bar = work::bar(u64::from(arguments.steps), "values");
     let steps = work::pool(threads)?.install(|| diagram.steps(|| bar.inc(1)));
     bar.finish_and_clear();
@@ -77,8 +78,9 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     Ok(tell_undecidable(diagram.parameter, &steps))
 }
 
-fn diagram(arguments: &Arguments) -> Result<Diagram> {
-    let problem = arguments.model.problem()?;
+/// The diagram that the flags ask for, with this model and start.
+pub(super) fn diagram(arguments: &Arguments, model: &ModelFlags) -> Result<Diagram> {
+    let problem = model.problem()?;
     let parameters = *problem.model.parameters();
     let parameter = arguments.parameter;
     if arguments.steps == 1 && arguments.from.value != arguments.to.value {
@@ -108,10 +110,10 @@ fn diagram(arguments: &Arguments) -> Result<Diagram> {
     })
 }
 
-fn check_size(arguments: &Arguments, format: Format) -> Result<()> {
+/// Refuses more rows than are held in memory.
+pub(super) fn check_size(arguments: &Arguments, most: u64) -> Result<()> {
     work::check_horizon(arguments.transient, u64::from(arguments.periods))?;
     let rows = u64::from(arguments.steps) * u64::from(arguments.periods);
-    let most = if format == Format::Svg { MAX_SVG } else { MAX_ROWS };
     if rows > most {
         bail!("--steps times --periods is {rows}: accepted are at most {most}");
     }

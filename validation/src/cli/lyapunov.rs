@@ -19,14 +19,14 @@ use serde::Serialize;
 pub(super) struct Arguments {
     /// Forcing periods that are left out
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(0, MAX_PERIODS), allow_hyphen_values = true)]
-    transient: u64,
+    pub(super) transient: u64,
     /// Forcing periods over which the exponents are taken, at least 1
     #[arg(long, value_name = "N", value_parser = parse::whole::<u64>(1, MAX_PERIODS), allow_hyphen_values = true)]
-    periods: u64,
+    pub(super) periods: u64,
     #[command(flatten)]
     output: OutputFlags<Format>,
     #[command(flatten)]
-    model: ModelFlags,
+    pub(super) model: ModelFlags,
 }
 
 #[derive(Serialize)]

@@ -22,8 +22,8 @@ mod progress;
 mod reports;
 mod reproduce;
 mod simulate;
+mod sweep;
 mod terminal;
-mod unfinished;
 mod validate;
 mod work;
 
@@ -73,6 +73,7 @@ enum Verb {
     Bench(bench::Arguments),
     Orbit(Box<orbits::find::Arguments>),
     Continue(Box<orbits::follow::Arguments>),
+    Sweep(sweep::Arguments),
     Cases(cases::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
@@ -129,6 +130,7 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Bench(bench) => bench::run(bench),
         Verb::Orbit(orbit) => orbits::find::run(orbit),
         Verb::Continue(branch) => orbits::follow::run(branch),
+        Verb::Sweep(sweep) => sweep::run(sweep, arguments.threads),
         Verb::Cases(cases) => cases::run(cases).map(|()| DONE),
         Verb::Completions(completions) => completions::run(completions).map(|()| DONE),
         Verb::Man(man) => man::run(man).map(|()| DONE),

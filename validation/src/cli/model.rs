@@ -3,6 +3,8 @@
 use super::note;
 use super::parse::{self, Typed};
 use crate::case::{Given, Problem, read_problem};
+use crate::number::shortest;
+use crate::sweep::Point;
 use anyhow::{Result, anyhow};
 use clap::Args;
 use percuss::{Parameter, Parameters, Phase};
@@ -61,6 +63,23 @@ impl ModelFlags {
     /// File and flags together, checked.
     pub(super) fn problem(&self) -> Result<Problem> {
         self.given()?.check().map_err(|line| anyhow!(line))
+    }
+
+    /// The same flags at a point of a sweep.
+    pub(super) fn at(&self, point: &Point) -> Self {
+        let mut at = self.clone();
+        for (parameter, value) in &point.values {
+            let flag = match parameter {
+                Parameter::A => &mut at.a,
+                Parameter::B => &mut at.b,
+                Parameter::Xi => &mut at.xi,
+                Parameter::Omega => &mut at.omega,
+                Parameter::G => &mut at.g,
+                Parameter::Phi => &mut at.phi,
+            };
+            *flag = Some(Typed { value: *value, text: shortest(*value) });
+        }
+        at
     }
 
     fn given(&self) -> Result<Given> {

@@ -1,7 +1,7 @@
 //! Where results go: stdout, or a file that is there whole or not at all.
 
 use super::compact;
-use super::unfinished::Unfinished;
+use crate::unfinished::Unfinished;
 use anyhow::{Context, Result, anyhow, bail};
 use serde::Serialize;
 use std::fs::{self, File};
@@ -118,7 +118,7 @@ pub(super) fn check_file(flag: &str, path: &Path) -> Result<()> {
 }
 
 /// The folder that a file is in.
-fn folder_of(path: &Path) -> &Path {
+pub(super) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

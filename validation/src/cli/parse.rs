@@ -121,3 +121,12 @@ pub(super) fn window(text: &str) -> Result<Window, String> {
         "accepted is pmin,pmax,ymin,ymax with each pair rising, within 1e9".to_owned()
     })
 }
+
+/// I/N, a shard of so many.
+pub(super) fn shard(text: &str) -> Result<[u32; 2], String> {
+    let parts = text.split_once('/').map(|(shard, shards)| [shard.parse(), shards.parse()]);
+    match parts {
+        Some([Ok(shard), Ok(shards)]) if shard < shards => Ok([shard, shards]),
+        _ => Err("accepted is I/N, shard I of N, from 0/N to N - 1".to_owned()),
+    }
+}

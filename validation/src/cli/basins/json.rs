@@ -9,7 +9,7 @@ use percuss::dynamics::strobe::StrobePoint;
 use serde::Serialize;
 
 #[derive(Serialize)]
-pub(super) struct Json {
+pub(in crate::cli) struct Json {
     schema: u32,
     percuss: &'static str,
     parameters: ParametersJson,
@@ -19,24 +19,24 @@ pub(super) struct Json {
     tau: f64,
     cycle: i64,
     transient: u64,
-    attractors: Vec<AttractorJson>,
-    unresolved: f64,
+    pub(in crate::cli) attractors: Vec<AttractorJson>,
+    pub(in crate::cli) unresolved: f64,
     uncertainty: UncertaintyJson,
     basin_entropy: EntropyJson,
 }
 
 #[derive(Serialize)]
-struct AttractorJson {
-    id: i32,
-    kind: &'static str,
-    period: Option<u32>,
-    fraction: f64,
-    fraction_error: f64,
-    points: Vec<StrobePoint>,
-    drift_per_period: f64,
+pub(in crate::cli) struct AttractorJson {
+    pub(in crate::cli) id: i32,
+    pub(in crate::cli) kind: &'static str,
+    pub(in crate::cli) period: Option<u32>,
+    pub(in crate::cli) fraction: f64,
+    pub(in crate::cli) fraction_error: f64,
+    pub(in crate::cli) points: Vec<StrobePoint>,
+    pub(in crate::cli) drift_per_period: f64,
     multipliers: Vec<[f64; 2]>,
-    lyapunov_per_period: f64,
-    lyapunov_error: f64,
+    pub(in crate::cli) lyapunov_per_period: f64,
+    pub(in crate::cli) lyapunov_error: f64,
 }
 
 #[derive(Serialize)]
@@ -63,7 +63,7 @@ const POINTS: usize = 1000;
 const BOX: u32 = 5;
 
 impl Json {
-    pub(super) fn of(survey: &Survey) -> Self {
+    pub(in crate::cli) fn of(survey: &Survey) -> Self {
         let Survey { problem, transient, basins } = survey;
         let Basins { grid, attractors, .. } = basins;
         let parameters = problem.model.parameters();

@@ -1,7 +1,7 @@
 //! `attractors` and `basins`: where the starts of a grid lead.
 
 mod draw;
-mod json;
+pub(super) mod json;
 mod npz;
 mod table;
 
@@ -21,11 +21,11 @@ use std::path::PathBuf;
 #[derive(Args)]
 pub(super) struct AttractorArguments {
     #[command(flatten)]
-    grid: GridFlags,
+    pub(super) grid: GridFlags,
     #[command(flatten)]
     output: OutputFlags<AttractorFormat>,
     #[command(flatten)]
-    model: ModelFlags,
+    pub(super) model: ModelFlags,
 }
 
 /// What attractors are written as; a table where a person reads it on a terminal, JSON elsewhere.
@@ -41,7 +41,7 @@ enum AttractorFormat {
 #[derive(Args)]
 pub(super) struct BasinArguments {
     #[command(flatten)]
-    grid: GridFlags,
+    pub(super) grid: GridFlags,
     /// Where the labels go; its extension (npz, png) is its format
     #[arg(long, value_name = "FILE")]
     output: Option<PathBuf>,
@@ -49,12 +49,12 @@ pub(super) struct BasinArguments {
     #[arg(long, value_enum)]
     format: Vec<BasinFormat>,
     #[command(flatten)]
-    model: ModelFlags,
+    pub(super) model: ModelFlags,
 }
 
 /// Which starts, and how long they are followed.
 #[derive(Args, Clone, Debug)]
-struct GridFlags {
+pub(super) struct GridFlags {
     /// Cells along p and along y; starts are their centres
     #[arg(long, value_name = "NXxNY", value_parser = parse::grid)]
     grid: [u32; 2],
@@ -64,7 +64,7 @@ struct GridFlags {
     /// Forcing periods that a start is followed before it is examined; doubled up to three times
     /// where that does not settle it, and cut short as soon as it does
     #[arg(long, value_name = "M", value_parser = parse::whole::<u64>(1, MAX_TRANSIENT), allow_hyphen_values = true)]
-    transient: u64,
+    pub(super) transient: u64,
 }
 
 /// What labels are written as.
@@ -102,10 +102,10 @@ impl BasinFormat {
 }
 
 /// A surveyed grid.
-struct Survey {
-    problem: Problem,
-    transient: u64,
-    basins: Basins,
+pub(super) struct Survey {
+    pub(super) problem: Problem,
+    pub(super) transient: u64,
+    pub(super) basins: Basins,
 }
 
 pub(super) fn attractors(arguments: &AttractorArguments, threads: Option<u16>) -> Result<()> {
@@ -164,16 +164,17 @@ fn show(survey: &Survey, shown: AttractorFormat, destination: &Destination) -> R
 }
 
 impl GridFlags {
+    /// The grid, with this displacement of the slider's top.
+    pub(super) fn grid_of(&self, q: Option<f64>) -> Grid {
+        let [columns, rows] = self.grid;
+        Grid { window: self.window, columns, rows, q: q.unwrap_or(0.0) }
+    }
+
     fn survey(&self, model: &ModelFlags, threads: Option<u16>) -> Result<Survey> {
         let problem = model.problem_of_grid()?;
         model.note_replaced_by_grid();
         let map = StrobeMap::new(problem.model, problem.entry.instant);
-        let grid = Grid {
-            window: self.window,
-            columns: self.grid[0],
-            rows: self.grid[1],
-            q: problem.start.q.unwrap_or(0.0),
-        };
+        let grid = self.grid_of(problem.start.q);
         let bar = work::bar(grid.len() as u64, "starts");
         let seen = |count| bar.inc(count);
         let basins =

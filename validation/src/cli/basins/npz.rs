@@ -13,11 +13,11 @@ pub(super) fn bytes(survey: &Survey, json: &Json) -> Result<Vec<u8>> {
     let ids: Vec<i32> =
         (0..basins.attractors.len()).map(|k| Label::Attractor(k).number()).collect();
     let meta = serde_json::to_vec(json)?;
-    let mut archive = Npz::default();
+    let mut archive = Npz::new(Vec::new());
     archive.add("labels", &[rows, columns], basins.labels.iter().map(|label| label.number()))?;
     archive.add("p", &[columns], basins.grid.p())?;
     archive.add("y", &[rows], basins.grid.y())?;
     archive.add("ids", &[ids.len()], ids)?;
     archive.add("meta", &[meta.len()], meta)?;
-    archive.bytes()
+    archive.finish()
 }

@@ -48,6 +48,12 @@ pub(super) fn scanned(map: &StrobeMap, period: u32) -> Result<Orbit, (f64, Strin
     let bar = work::share_bar();
     let found = scan(map, period, &mut |share| bar.show_share(share));
     bar.finish_and_clear();
+    say_which(&found, period);
+    preferred(found, period)
+}
+
+/// Says how many orbits of the period a scan has found, where it is more than one.
+fn say_which(found: &[Orbit], period: u32) {
     let whole = found.iter().filter(|it| it.period() == period);
     let (count, stable) = (whole.clone().count(), whole.filter(|it| it.is_stable()).count());
     if count > 1 {
@@ -55,6 +61,10 @@ pub(super) fn scanned(map: &StrobeMap, period: u32) -> Result<Orbit, (f64, Strin
             "a scan found {count} orbits of period {period}, {stable} of them stable; this is one: --p, --y and --q near another select that"
         ));
     }
+}
+
+/// The first orbit that a scan has found.
+pub(super) fn preferred(found: Vec<Orbit>, period: u32) -> Result<Orbit, (f64, String)> {
     found.into_iter().next().ok_or_else(|| {
         (f64::INFINITY, format!("no orbit of period {period} was found by a scan of starts"))
     })

@@ -1,6 +1,6 @@
 //! `continue`: a branch of periodic orbits.
 
-use super::find::scanned;
+use super::find::{preferred, scanned};
 use super::json::{BranchJson, Doubled, Followed};
 use super::{Format, period};
 use crate::case::Problem;
@@ -13,6 +13,7 @@ use clap::Args;
 use percuss::dynamics::continuation::{
     BifurcationKind, Branch, BranchEnding, Criticality, Doubling, Family,
 };
+use percuss::dynamics::orbit::scan;
 use percuss::dynamics::strobe::StrobeMap;
 use percuss::{InputError, Parameter};
 
@@ -21,7 +22,7 @@ use percuss::{InputError, Parameter};
 pub(crate) struct Arguments {
     /// The parameter that varies: a, b, xi, omega, g or phi
     #[arg(long, value_name = "NAME", value_parser = parse::parameter)]
-    parameter: Parameter,
+    pub(crate) parameter: Parameter,
     /// The parameter's first value
     #[arg(long, value_name = "X", value_parser = parse::end, allow_hyphen_values = true)]
     from: Typed<f64>,
@@ -37,20 +38,44 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     output: OutputFlags<Format>,
     #[command(flatten)]
-    model: ModelFlags,
+    pub(crate) model: ModelFlags,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
+    arguments.output.format(Format::Json)?;
+    let bar = work::share_bar();
+    let (followed, why) =
+        followed(arguments, &arguments.model, Seen::Told(&|share| bar.show_share(share)))?;
+    bar.finish_and_clear();
+    arguments.output.destination().json(&followed)?;
+    if let Some(why) = &why {
+        say(why);
+    }
+    Ok(if why.is_none() { DONE } else { OUT_OF_BOUNDS })
+}
+
+/// Whether a person is told of what goes on.
+#[derive(Clone, Copy)]
+pub(crate) enum Seen<'a> {
+    /// Shares that are done are told, and what a scan has found.
+    Told(&'a dyn Fn(f64)),
+    /// Nothing is told.
+    Alone,
+}
+
+/// The branch that the flags ask for, with this model and start, and why it is not complete.
+pub(crate) fn followed(
+    arguments: &Arguments,
+    model: &ModelFlags,
+    seen: Seen<'_>,
+) -> Result<(Followed, Option<String>)> {
     let Arguments {
         parameter, from: Typed { value: from, .. }, to: Typed { value: to, .. }, ..
     } = *arguments;
-    arguments.output.format(Format::Json)?;
-    let (problem, guessed) = arguments.model.guess(Some((parameter, "--from", &arguments.from)))?;
-    let family = Family::new(*problem.model.parameters(), parameter, problem.entry.instant);
-    family.map(to).map_err(|error| refused_end(&arguments.to, &error))?;
-    let branch = branch(arguments, &problem, guessed, &family);
+    let (problem, guessed, family) = family(arguments, model)?;
+    let branch = branch(arguments, &problem, guessed, &family, seen);
     let doubled = match &branch {
-        Ok(branch) if arguments.doubled => Some(doubled(branch, &family, from, to)),
+        Ok(branch) if arguments.doubled => Some(doubled(branch, &family, from, to, seen)),
         _ => None,
     };
     let complete = branch.as_ref().is_ok_and(Branch::is_complete);
@@ -66,15 +91,29 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
             .unwrap_or_default(),
         doubled,
     };
-    arguments.output.destination().json(&followed)?;
-    match branch {
-        Ok(branch) if !complete => {
-            say(&format!("--parameter {}: {}", parameter.as_str(), branch.ending))
+    let why = match branch {
+        Ok(_) if complete => None,
+        Ok(branch) => Some(format!("--parameter {}: {}", parameter.as_str(), branch.ending)),
+        Err(why) => Some(why),
+    };
+    Ok((followed, why))
+}
+
+/// The problem at the first value, whether a start was given, and the models that are passed.
+pub(crate) fn family(arguments: &Arguments, model: &ModelFlags) -> Result<(Problem, bool, Family)> {
+    let Arguments { parameter, from, to, .. } = arguments;
+    let (problem, guessed) = model.guess(Some((*parameter, "--from", from)))?;
+    let family = Family::new(*problem.model.parameters(), *parameter, problem.entry.instant);
+    family.map(to.value).map_err(|error| refused_end(to, &error))?;
+    Ok((problem, guessed, family))
+}
+
+impl Seen<'_> {
+    fn share(self, share: f64) {
+        if let Self::Told(told) = self {
+            told(share);
         }
-        Err(why) => say(&why),
-        _ => {}
     }
-    Ok(if complete { DONE } else { OUT_OF_BOUNDS })
 }
 
 /// What is said of a value of --to that the model does not accept.
@@ -90,30 +129,36 @@ fn branch(
     problem: &Problem,
     guessed: bool,
     family: &Family,
+    seen: Seen<'_>,
 ) -> Result<Branch, String> {
+    let Arguments { period, from, to, .. } = arguments;
     let guess = if guessed {
         problem.entry.point()
     } else {
         let map = StrobeMap::new(problem.model, problem.entry.instant);
-        let orbit = scanned(&map, arguments.period).map_err(|(_, why)| why)?;
-        orbit.points[0]
+        let orbit = match seen {
+            Seen::Told(_) => scanned(&map, *period),
+            Seen::Alone => preferred(scan(&map, *period, &mut |_| ()), *period),
+        };
+        orbit.map_err(|(_, why)| why)?.points[0]
     };
-    let bar = work::share_bar();
-    let told = &mut |share| bar.show_share(share);
-    let Arguments { period, from, to, .. } = arguments;
+    let told = &mut |share| seen.share(share);
     let branch = Branch::follow(family, guess, *period, from.value, to.value, told);
-    bar.finish_and_clear();
     branch.map_err(|none| none.to_string())
 }
 
 /// The branch of twice the period at the first flip of the branch's own orbit, if there is one.
-fn doubled(branch: &Branch, family: &Family, from: f64, to: f64) -> Option<Doubled> {
+fn doubled(
+    branch: &Branch,
+    family: &Family,
+    from: f64,
+    to: f64,
+    seen: Seen<'_>,
+) -> Option<Doubled> {
     let period = branch.points.first()?.orbit.period();
     let own = |it: &&_| is_flip_of(it, period);
     let flip = branch.bifurcations.iter().find(own)?;
-    let bar = work::share_bar();
-    let doubling = Doubling::of(family, flip, from, to, &mut |share| bar.show_share(share));
-    bar.finish_and_clear();
+    let doubling = Doubling::of(family, flip, from, to, &mut |share| seen.share(share));
     let Doubling { criticality, branch } = doubling?;
     let complete = matches!(branch.ending, BranchEnding::Reached | BranchEnding::Left);
     Some(Doubled {

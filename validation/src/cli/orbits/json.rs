@@ -49,51 +49,51 @@ fn tokens(orbit: &Orbit) -> Vec<&'static str> {
 
 /// What `continue` writes.
 #[derive(Serialize)]
-pub(super) struct Followed {
-    pub(super) schema: u32,
-    pub(super) percuss: &'static str,
-    pub(super) parameters: ParametersJson,
-    pub(super) period: Option<u32>,
+pub(crate) struct Followed {
+    pub(crate) schema: u32,
+    pub(crate) percuss: &'static str,
+    pub(crate) parameters: ParametersJson,
+    pub(crate) period: Option<u32>,
     #[serde(flatten)]
-    pub(super) course: BranchJson,
+    pub(crate) course: BranchJson,
     /// Only with `--doubled`.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) doubled: Option<Option<Doubled>>,
+    pub(crate) doubled: Option<Option<Doubled>>,
 }
 
 /// A branch.
 #[derive(Default, Serialize)]
-pub(super) struct BranchJson {
-    complete: bool,
-    branch: Vec<JsonPlace>,
-    bifurcations: Vec<Special>,
+pub(crate) struct BranchJson {
+    pub(crate) complete: bool,
+    pub(crate) branch: Vec<JsonPlace>,
+    pub(crate) bifurcations: Vec<Special>,
 }
 
 /// The branch of twice the period at the first flip.
 #[derive(Serialize)]
-pub(super) struct Doubled {
-    pub(super) at: f64,
-    pub(super) criticality: &'static str,
-    pub(super) period: u32,
+pub(crate) struct Doubled {
+    pub(crate) at: f64,
+    pub(crate) criticality: &'static str,
+    pub(crate) period: u32,
     #[serde(flatten)]
-    pub(super) course: BranchJson,
+    pub(crate) course: BranchJson,
 }
 
 #[derive(Serialize)]
-struct JsonPlace {
-    parameter: f64,
-    point: StrobePoint,
-    multipliers: [[f64; 2]; 3],
-    stable: bool,
-    drift_per_period: f64,
+pub(crate) struct JsonPlace {
+    pub(crate) parameter: f64,
+    pub(crate) point: StrobePoint,
+    pub(crate) multipliers: [[f64; 2]; 3],
+    pub(crate) stable: bool,
+    pub(crate) drift_per_period: f64,
 }
 
 #[derive(Serialize)]
-struct Special {
-    r#type: &'static str,
+pub(crate) struct Special {
+    pub(crate) r#type: &'static str,
     parameter: &'static str,
-    value: f64,
-    error: f64,
+    pub(crate) value: f64,
+    pub(crate) error: f64,
     period: u32,
     point: StrobePoint,
     multipliers: [[f64; 2]; 3],
@@ -102,7 +102,7 @@ struct Special {
 }
 
 impl BranchJson {
-    pub(super) fn of(branch: &Branch, parameter: Parameter, complete: bool) -> Self {
+    pub(crate) fn of(branch: &Branch, parameter: Parameter, complete: bool) -> Self {
         Self {
             complete,
             branch: branch.points.iter().map(JsonPlace::of).collect(),

@@ -2,7 +2,7 @@
 
 pub(super) mod find;
 pub(super) mod follow;
-mod json;
+pub(super) mod json;
 
 use clap::ValueEnum;
 

@@ -112,12 +112,12 @@ impl Frame {
     /// Labels and grid for NumPy.
     pub(super) fn npz(&self) -> Result<Vec<u8>, Failure> {
         let (grid, cells) = (grid(self.cells), self.cells as usize);
-        let mut archive = Npz::default();
+        let mut archive = Npz::new(Vec::new());
         let written = archive
             .add("labels", &[cells, cells], self.labels.iter().copied())
             .and_then(|()| archive.add("p", &[cells], grid.p()))
             .and_then(|()| archive.add("y", &[cells], grid.y()));
-        written.and_then(|()| archive.bytes()).map_err(Failure::new)
+        written.and_then(|()| archive.finish()).map_err(Failure::new)
     }
 
     /// The basins with their attractors.

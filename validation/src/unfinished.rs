@@ -1,10 +1,11 @@
 //! Files under their temporary names: gone when they fail, and when the process is interrupted.
 
 use std::collections::BTreeSet;
+use std::fs::File;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use tempfile::{Builder, NamedTempFile};
+use tempfile::{Builder, NamedTempFile, PersistError};
 
 /// The temporary names that are in use.
 static NAMES: Mutex<BTreeSet<PathBuf>> = Mutex::new(BTreeSet::new());
@@ -15,7 +16,7 @@ fn names() -> MutexGuard<'static, BTreeSet<PathBuf>> {
 }
 
 /// A file that has not its own name yet.
-pub(super) struct Unfinished {
+pub(crate) struct Unfinished {
     // Removed from the disk before its name is forgotten: fields are dropped in this order.
     file: NamedTempFile,
     name: Name,
@@ -31,7 +32,7 @@ impl Drop for Name {
 
 impl Unfinished {
     /// Makes one in a folder.
-    pub(super) fn new(builder: &Builder, folder: &Path) -> io::Result<Self> {
+    pub(crate) fn new(builder: &Builder, folder: &Path) -> io::Result<Self> {
         signals::watch();
         // Known from the moment it exists.
         let mut names = names();
@@ -42,11 +43,28 @@ impl Unfinished {
     }
 
     /// Gives it its own name.
-    pub(super) fn finish(self, target: &Path) -> io::Result<()> {
+    pub(crate) fn finish(self, target: &Path) -> io::Result<()> {
+        self.kept(|file| file.persist(target))
+    }
+
+    /// Gives it its own name, unless there is a file of that name.
+    pub(crate) fn finish_new(self, target: &Path) -> io::Result<()> {
+        self.kept(|file| file.persist_noclobber(target))
+    }
+
+    /// Waits until what was written is on the disk.
+    pub(crate) fn sync(&self) -> io::Result<()> {
+        self.file.as_file().sync_all()
+    }
+
+    fn kept(
+        self,
+        persist: impl FnOnce(NamedTempFile) -> Result<File, PersistError>,
+    ) -> io::Result<()> {
         let Self { file, name } = self;
         // An interruption comes before this or after it.
         let names = names();
-        let kept = file.persist(target).map(drop).map_err(|error| error.error);
+        let kept = persist(file).map(drop).map_err(|error| error.error);
         drop(names);
         drop(name);
         kept

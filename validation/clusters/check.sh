@@ -1,0 +1,146 @@
+#!/usr/bin/env bash
+# Sets up cluster engines on this machine, computes one sweep by each, and compares the merged bytes
+# with those of a single run.
+#
+#   check.sh [slurm] [dask] [ray] [hyperqueue] [mpi]     (all where none is named)
+#
+# Debian or Ubuntu, root (it installs packages and starts daemons of its own, which it ends). Takes
+# the program from the environment variable PERCUSS, else builds it.
+set -euo pipefail
+[ "$(id -u)" -eq 0 ] || exec sudo --preserve-env env "PATH=$PATH" "$0" "$@"
+here=$(cd "$(dirname "$0")" && pwd)
+root=$(cd "$here/../.." && pwd)
+engines=("$@")
+[ ${#engines[@]} -gt 0 ] || engines=(slurm dask ray hyperqueue mpi)
+
+if [ -z "${PERCUSS:-}" ]; then
+    cargo build --release --locked --manifest-path "$root/Cargo.toml" --bin percuss
+    PERCUSS=${CARGO_TARGET_DIR:-$root/target}/release/percuss
+fi
+work=$(mktemp -d)
+end() {
+    for file in "$work"/*.pid; do
+        [ -e "$file" ] || continue
+        pid=$(cat "$file")
+        kill "$pid" 2>/dev/null || true
+        # It writes its state before it ends.
+        for _ in $(seq 50); do
+            kill -0 "$pid" 2>/dev/null || break
+            sleep 0.2
+        done
+    done
+    rm -rf "$work" || true
+}
+trap end EXIT
+
+mkdir "$work/bin"
+ln -s "$PERCUSS" "$work/bin/percuss"
+export PATH="$work/bin:$PATH"
+cd "$work"
+cp "$here/plan.toml" plan.toml
+
+install() {
+    dpkg -s "$@" >/dev/null 2>&1 && return
+    apt-get update -qq
+    DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@" >/dev/null
+}
+
+# Python's packages, in an environment of their own.
+python_packages() {
+    install python3-venv
+    [ -d "$work/venv" ] || python3 -m venv "$work/venv"
+    "$work/venv/bin/pip" install --quiet --disable-pip-version-check "$@"
+}
+
+compare() {
+    cmp single.npz "$1.npz"
+    percuss sweep status --plan plan.toml --out "$1" --format table | tail -n +2 | head -1
+    echo "$1: the merged bytes are those of a single run"
+}
+
+slurm() {
+    install slurm-wlm munge
+    host=$(hostname -s)
+    mkdir -p slurm.d/state slurm.d/spool munge.d
+    head -c 1024 /dev/urandom >munge.d/key
+    chown -R munge: munge.d
+    chmod 755 "$work"
+    chmod 700 munge.d
+    chmod 400 munge.d/key
+    runuser -u munge -- munged --force --key-file="$work/munge.d/key" \
+        --socket="$work/munge.d/socket" --pid-file="$work/munge.d/munged.pid" \
+        --log-file="$work/munge.d/log" --seed-file="$work/munge.d/seed"
+    chmod 711 munge.d
+    cat >slurm.conf <<CONF
+ClusterName=percuss
+SlurmctldHost=$host(127.0.0.1)
+SlurmUser=root
+AuthType=auth/munge
+AuthInfo=socket=$work/munge.d/socket
+StateSaveLocation=$work/slurm.d/state
+SlurmdSpoolDir=$work/slurm.d/spool
+SlurmctldPidFile=$work/slurmctld.pid
+SlurmdPidFile=$work/slurmd.pid
+SlurmctldLogFile=$work/slurm.d/slurmctld.log
+SlurmdLogFile=$work/slurm.d/slurmd.log
+SlurmctldPort=16817
+SlurmdPort=16818
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+ReturnToService=2
+NodeName=$host NodeAddr=127.0.0.1 CPUs=$(nproc) State=UNKNOWN
+PartitionName=p Nodes=ALL Default=YES MaxTime=INFINITE State=UP
+CONF
+    export SLURM_CONF=$work/slurm.conf
+    slurmctld
+    sleep 2
+    slurmd
+    sleep 3
+    "$here/slurm.sh" plan.toml slurm slurm.npz --chdir="$work"
+    for _ in $(seq 300); do
+        [ -z "$(squeue --noheader)" ] && break
+        sleep 1
+    done
+    ln -s "$work/munge.d/munged.pid" munged.pid
+    tail -n +1 slurm/log/*.txt
+    compare slurm
+}
+
+dask() {
+    python_packages "dask[distributed]"
+    "$work/venv/bin/python" "$here/sweep_by_dask.py" plan.toml dask dask.npz
+    compare dask
+}
+
+ray() {
+    python_packages ray
+    "$work/venv/bin/python" "$here/sweep_by_ray.py" plan.toml ray ray.npz
+    compare ray
+}
+
+hyperqueue() {
+    python_packages hyperqueue
+    "$work/venv/bin/python" "$here/sweep_by_hyperqueue.py" plan.toml hyperqueue
+    percuss sweep merge --plan plan.toml --out hyperqueue --output hyperqueue.npz
+    compare hyperqueue
+}
+
+mpi() {
+    install openmpi-bin libopenmpi-dev libclang-dev
+    target=${CARGO_TARGET_DIR:-$root/target}
+    cargo build --release --locked --manifest-path "$root/validation/Cargo.toml" --features mpi \
+        --bin percuss
+    mpirun --allow-run-as-root --oversubscribe -n 4 \
+        "$target/release/percuss" sweep run --plan plan.toml --out mpi --threads 1
+    percuss sweep merge --plan plan.toml --out mpi --output mpi.npz
+    compare mpi
+}
+
+percuss sweep run --plan plan.toml --out single
+percuss sweep merge --plan plan.toml --out single --output single.npz
+for engine in "${engines[@]}"; do
+    printf '== %s (%ss)\n' "$engine" "$SECONDS"
+    "$engine"
+done

@@ -1,0 +1,182 @@
+//! `basins` and `attractors` at the points of a sweep.
+
+use super::records;
+use crate::case::Problem;
+use crate::cli::basins::json::{AttractorJson, Json};
+use crate::cli::basins::{AttractorArguments, BasinArguments, GridFlags, Survey};
+use crate::cli::model::ModelFlags;
+use crate::sweep::{Array, Point, Tiles, Work};
+use anyhow::Result;
+use percuss::dynamics::attractor::{Basins, BlockLabeller, Grid, Label, LabelledBlock};
+use percuss::dynamics::strobe::StrobeMap;
+use rayon::prelude::*;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Labels or attractors at each point; a tile is a block of a grid's rows.
+pub(super) struct BasinWork {
+    grid: GridFlags,
+    model: ModelFlags,
+    wanted: Wanted,
+    /// What blocks of one point share: the last point's, where points have several.
+    last: Mutex<Option<(u64, Arc<BlockLabeller>)>>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Wanted {
+    Labels,
+    Attractors,
+}
+
+/// What is known of a point before any of its starts is labelled.
+struct Ground {
+    problem: Problem,
+    map: StrobeMap,
+    grid: Grid,
+}
+
+/// Starts along p and along y of the pilot.
+const PILOT: u32 = 16;
+
+impl BasinWork {
+    pub(super) fn labels(arguments: BasinArguments) -> Self {
+        Self::new(arguments.grid, arguments.model, Wanted::Labels)
+    }
+
+    pub(super) fn attractors(arguments: AttractorArguments) -> Self {
+        Self::new(arguments.grid, arguments.model, Wanted::Attractors)
+    }
+
+    fn new(grid: GridFlags, model: ModelFlags, wanted: Wanted) -> Self {
+        model.note_replaced_by_grid();
+        Self { grid, model, wanted, last: Mutex::default() }
+    }
+
+    fn ground(&self, point: &Point) -> Result<Ground> {
+        let problem = self.model.at(point).problem_of_grid()?;
+        let map = StrobeMap::new(problem.model, problem.entry.instant);
+        let grid = self.grid.grid_of(problem.start.q);
+        Ok(Ground { problem, map, grid })
+    }
+
+    /// What the blocks of a point share; made once for blocks in a row.
+    fn labeller(&self, point: &Point) -> Result<Arc<BlockLabeller>> {
+        let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((number, labeller)) = &*last
+            && *number == point.number
+        {
+            return Ok(Arc::clone(labeller));
+        }
+        let Ground { map, grid, .. } = self.ground(point)?;
+        let labeller = Arc::new(BlockLabeller::new(&map, &grid, self.grid.transient));
+        *last = Some((point.number, Arc::clone(&labeller)));
+        Ok(labeller)
+    }
+
+    fn arrays(&self, problem: Problem, basins: Basins) -> Result<Vec<Array>> {
+        let survey = Survey { problem, transient: self.grid.transient, basins };
+        let json = Json::of(&survey);
+        match self.wanted {
+            Wanted::Labels => labels(&survey.basins, &json),
+            Wanted::Attractors => Ok(attractors(&json)),
+        }
+    }
+}
+
+/// What the verb `basins` writes, but its axes.
+fn labels(basins: &Basins, json: &Json) -> Result<Vec<Array>> {
+    let shape = [basins.grid.rows as usize, basins.grid.columns as usize];
+    let labels = basins.labels.iter().map(|label| label.number()).collect();
+    let ids: Vec<i32> =
+        (0..basins.attractors.len()).map(|id| Label::Attractor(id).number()).collect();
+    Ok(vec![
+        Array::i4("labels", &shape, labels),
+        Array::i4("ids", &[ids.len()], ids),
+        Array::text("meta", serde_json::to_vec(json)?),
+    ])
+}
+
+/// What the verb `attractors` writes as JSON, of each attractor its first point.
+fn attractors(json: &Json) -> Vec<Array> {
+    let all = &json.attractors;
+    let count = [all.len()];
+    let numbers = |of: &dyn Fn(&AttractorJson) -> f64| all.iter().map(of).collect::<Vec<f64>>();
+    let integers = |of: &dyn Fn(&AttractorJson) -> i32| all.iter().map(of).collect::<Vec<i32>>();
+    let first = |it: &AttractorJson| it.points.first().copied().unwrap_or([f64::NAN; 3]);
+    vec![
+        Array::i4("ids", &count, integers(&|it| it.id)),
+        Array::i4("kind", &count, integers(&|it| kind(it.kind))),
+        Array::i4("period", &count, integers(&|it| it.period.map_or(-1, u32::cast_signed))),
+        Array::f8("fraction", &count, numbers(&|it| it.fraction)),
+        Array::f8("fraction_error", &count, numbers(&|it| it.fraction_error)),
+        Array::f8("drift_per_period", &count, numbers(&|it| it.drift_per_period)),
+        Array::f8("lyapunov_per_period", &count, numbers(&|it| it.lyapunov_per_period)),
+        Array::f8("lyapunov_error", &count, numbers(&|it| it.lyapunov_error)),
+        Array::f8("points", &[all.len(), 3], all.iter().flat_map(first).collect()),
+        Array::f8("unresolved", &[], vec![json.unresolved]),
+    ]
+}
+
+/// The number of a kind in files.
+fn kind(name: &str) -> i32 {
+    let names = ["periodic", "chaotic", "quasi-periodic", "escaping"];
+    names.iter().position(|it| *it == name).map_or(-1, |place| place as i32)
+}
+
+impl Work for BasinWork {
+    fn check(&self, point: &Point) -> Result<()> {
+        self.model.at(point).problem_of_grid().map(drop)
+    }
+
+    fn tiles(&self) -> u32 {
+        self.grid.grid_of(None).blocks()
+    }
+
+    fn tile(&self, point: &Point, tile: u32) -> Result<Vec<u8>> {
+        if self.tiles() > 1 {
+            return records::bytes(&self.labeller(point)?.label(tile, &|_| {}));
+        }
+        let Ground { problem, map, grid } = self.ground(point)?;
+        let basins = Basins::of(&map, &grid, self.grid.transient, &|_| {});
+        records::bytes(&self.arrays(problem, basins)?)
+    }
+
+    fn join(&self, point: &Point, tiles: Tiles<'_>) -> Result<Vec<Array>> {
+        if self.tiles() == 1 {
+            return records::of_single(tiles);
+        }
+        let blocks = tiles.map(|bytes| records::value::<LabelledBlock>(&bytes?));
+        let blocks: Vec<LabelledBlock> = blocks.collect::<Result<_>>()?;
+        let Ground { problem, grid, .. } = self.ground(point)?;
+        self.arrays(problem, Basins::joined(grid, blocks))
+    }
+
+    /// A lattice of starts stands for the blocks in whose rows they lie.
+    fn costs(&self, point: &Point) -> Result<Vec<u64>> {
+        let Ground { map, grid, .. } = self.ground(point)?;
+        let labeller = BlockLabeller::new(&map, &grid, self.grid.transient);
+        let lattice = Grid { columns: PILOT, rows: PILOT, ..grid };
+        let events: Vec<u64> =
+            lattice.starts().par_iter().map(|start| labeller.events(*start)).collect();
+        let rows: Vec<u64> = events.chunks(PILOT as usize).map(|row| row.iter().sum()).collect();
+        let search = labeller.events_of_long_runs() + rows.iter().sum::<u64>();
+        let cost = |block: u32| {
+            let of = grid.rows_of(block);
+            let starts = u64::from(of.end - of.start) * u64::from(grid.columns);
+            let middle = u64::from(of.start + of.end) * u64::from(PILOT) / 2;
+            let row = (middle / u64::from(grid.rows)).min(u64::from(PILOT) - 1);
+            search + rows[row as usize] * starts / u64::from(PILOT)
+        };
+        Ok((0..grid.blocks()).map(cost).collect())
+    }
+
+    fn coordinates(&self) -> Vec<Array> {
+        let grid = self.grid.grid_of(None);
+        match self.wanted {
+            Wanted::Labels => vec![
+                Array::f8("p", &[grid.columns as usize], grid.p()),
+                Array::f8("y", &[grid.rows as usize], grid.y()),
+            ],
+            Wanted::Attractors => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,65 @@
+//! `lyapunov` at the points of a sweep.
+
+use super::records;
+use crate::cli::lyapunov::Arguments;
+use crate::cli::work;
+use crate::sweep::{Array, Point, Tiles, Work};
+use anyhow::Result;
+use percuss::Endless;
+use percuss::dynamics::lyapunov::Spectrum;
+
+/// Exponents at each point; a point is one tile.
+pub(super) struct ExponentWork {
+    arguments: Arguments,
+}
+
+impl ExponentWork {
+    pub(super) fn new(arguments: Arguments) -> Result<Self> {
+        work::check_horizon(arguments.transient, arguments.periods)?;
+        Ok(Self { arguments })
+    }
+}
+
+impl Work for ExponentWork {
+    fn check(&self, point: &Point) -> Result<()> {
+        self.arguments.model.at(point).problem().map(drop)
+    }
+
+    fn tile(&self, point: &Point, _tile: u32) -> Result<Vec<u8>> {
+        let Arguments { transient, periods, model, .. } = &self.arguments;
+        let problem = model.at(point).problem()?;
+        records::bytes(&arrays(&Spectrum::of(&problem.model, problem.entry, *transient, *periods)))
+    }
+
+    fn join(&self, _point: &Point, tiles: Tiles<'_>) -> Result<Vec<Array>> {
+        records::of_single(tiles)
+    }
+
+    fn costs(&self, point: &Point) -> Result<Vec<u64>> {
+        let Arguments { transient, periods, model, .. } = &self.arguments;
+        let problem = model.at(point).problem()?;
+        Ok(vec![records::events(&problem.model, problem.entry, transient + periods)])
+    }
+}
+
+/// What the verb writes as JSON, with infinite exponents as they are.
+fn arrays(found: &Spectrum) -> Vec<Array> {
+    vec![
+        Array::f8("exponents_per_period", &[3], found.exponents_per_period.to_vec()),
+        Array::f8("standard_error", &[3], found.standard_error.to_vec()),
+        Array::f8("contraction_per_period", &[], vec![found.contraction_per_period]),
+        Array::f8("drift_per_period", &[], vec![found.drift_per_period]),
+        Array::i4("endless", &[], vec![number_of(found.endless)]),
+        Array::i4("undecidable", &[], vec![i32::from(found.undecidable)]),
+    ]
+}
+
+/// The number in files of a phase that never ends; -1 of a motion without one.
+pub(super) const fn number_of(endless: Option<Endless>) -> i32 {
+    match endless {
+        None => -1,
+        Some(Endless::NeverReturns) => 0,
+        Some(Endless::NeverStops) => 1,
+        Some(Endless::RestsForEver) => 2,
+    }
+}

@@ -1,0 +1,247 @@
+//! `sweep`: a verb of the dynamics over one or two parameters, in shards.
+
+mod basins;
+mod branches;
+mod diagrams;
+mod exponents;
+mod index;
+mod records;
+mod shown;
+mod verb;
+
+#[cfg(feature = "mpi")]
+use super::REFUSED;
+use super::format::OutputFlags;
+use super::output::{self, Destination};
+use super::parse;
+use super::work::{self, Bar};
+use super::{DONE, OUT_OF_BOUNDS, note, say};
+#[cfg(feature = "mpi")]
+use crate::sweep::Ranks;
+use crate::sweep::{Damage, Folder, Merge, NotMerged, Plan, Status, Sweep, Told, Work};
+use anyhow::{Result, anyhow, bail};
+use clap::{Args, Subcommand};
+use shown::{Format, StatusJson};
+use std::path::PathBuf;
+
+/// A verb over one or two parameters, in shards, on this machine or many
+#[derive(Args)]
+pub(super) struct Arguments {
+    #[command(subcommand)]
+    step: Step,
+}
+
+#[derive(Subcommand)]
+enum Step {
+    Run(RunArguments),
+    Status(StatusArguments),
+    Merge(MergeArguments),
+}
+
+/// What is swept, and where its shards are.
+#[derive(Args)]
+struct SweepFlags {
+    /// What is swept, and in how many shards
+    #[arg(long, value_name = "FILE.toml")]
+    plan: PathBuf,
+    /// The folder of the shards, which all workers share
+    #[arg(long, value_name = "DIR")]
+    out: PathBuf,
+}
+
+/// Compute one shard, or all that are not finished
+#[derive(Args)]
+struct RunArguments {
+    #[command(flatten)]
+    sweep: SweepFlags,
+    /// The shard to compute, from 0, of N; without it HQ_TASK_ID, SLURM_ARRAY_TASK_ID,
+    /// PBS_ARRAY_INDEX or SGE_TASK_ID says which, and without these all are computed
+    #[arg(long, value_name = "I/N", value_parser = parse::shard, allow_hyphen_values = true)]
+    shard: Option<[u32; 2]>,
+}
+
+/// Which shards are done, running, missing and damaged; exit code 0 where all are done
+#[derive(Args)]
+struct StatusArguments {
+    #[command(flatten)]
+    sweep: SweepFlags,
+    #[command(flatten)]
+    output: OutputFlags<Format>,
+}
+
+/// Join all shards into one file of arrays for NumPy
+#[derive(Args)]
+struct MergeArguments {
+    #[command(flatten)]
+    sweep: SweepFlags,
+    /// Where the arrays go, a file that ends in .npz
+    #[arg(long, value_name = "FILE.npz")]
+    output: PathBuf,
+}
+
+pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
+    match &arguments.step {
+        Step::Run(arguments) => compute(arguments, threads),
+        Step::Status(arguments) => status(arguments, threads),
+        Step::Merge(arguments) => merged(arguments, threads),
+    }
+}
+
+impl SweepFlags {
+    /// The plan and what it does, both checked.
+    fn plan(&self) -> Result<(Plan, Box<dyn Work>)> {
+        let plan = Plan::read(&self.plan)?;
+        let work = verb::work(&plan).and_then(|work| {
+            Sweep::check(&plan, work.as_ref())?;
+            Ok(work)
+        });
+        let work = work.map_err(|error| anyhow!("--plan {}: {error:#}", self.plan.display()))?;
+        Ok((plan, work))
+    }
+}
+
+fn compute(arguments: &RunArguments, threads: Option<u16>) -> Result<u8> {
+    let folder = Folder::new(&arguments.sweep.out)?;
+    let (plan, work) = arguments.sweep.plan()?;
+    let shard = match arguments.shard {
+        Some([shard, shards]) if shards == plan.shards => Some(shard),
+        Some([shard, shards]) => bail!(
+            "--shard {shard}/{shards} does not fit: the plan has {} shards, accepted are 0/{} to \
+             {}/{}",
+            plan.shards,
+            plan.shards,
+            plan.shards - 1,
+            plan.shards
+        ),
+        None => index::of_task(&plan, |name| std::env::var(name).ok())?,
+    };
+    #[cfg(feature = "mpi")]
+    if shard.is_none()
+        && let Some(ranks) = Ranks::of_job()
+    {
+        return by_ranks(&ranks, &plan, work.as_ref(), &folder, threads);
+    }
+    work::pool(threads)?.install(|| {
+        folder.begin(&plan)?;
+        let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
+        let progress = Progress { bar: work::bar(0, "tiles") };
+        match shard {
+            Some(shard) => sweep.run(shard, &progress),
+            None => sweep.run_all(&progress),
+        }
+    })?;
+    Ok(DONE)
+}
+
+/// Computes all shards by the ranks of an MPI job.
+#[cfg(feature = "mpi")]
+fn by_ranks(
+    ranks: &Ranks,
+    plan: &Plan,
+    work: &dyn Work,
+    folder: &Folder,
+    threads: Option<u16>,
+) -> Result<u8> {
+    let pool = work::pool(threads)?;
+    let begin = || {
+        pool.install(|| {
+            folder.begin(plan)?;
+            Sweep::new(plan, work, folder)
+        })
+    };
+    // The pilot is left to the first rank; the others read what it has found.
+    let first = if ranks.is_first() { Some(begin()) } else { None };
+    let others = ranks.are_well(first.as_ref().is_none_or(Result::is_ok));
+    if !others {
+        return first.map_or(Ok(REFUSED), |failed| failed.map(|_| REFUSED));
+    }
+    let sweep = first.unwrap_or_else(begin);
+    // No rank waits for one that cannot begin.
+    if !ranks.are_well(sweep.is_ok()) && sweep.is_ok() {
+        return Ok(REFUSED);
+    }
+    let sweep = sweep?;
+    ranks.run(&sweep, &pool, &Progress { bar: work::bar(0, "tiles") })?;
+    Ok(DONE)
+}
+
+fn status(arguments: &StatusArguments, threads: Option<u16>) -> Result<u8> {
+    let usual = shown::usual(&arguments.output.destination());
+    let format = arguments.output.format(usual)?;
+    let folder = Folder::new(&arguments.sweep.out)?;
+    let (plan, work) = arguments.sweep.plan()?;
+    let status = if folder.check(&plan)? {
+        work::pool(threads)?.install(|| {
+            let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
+            anyhow::Ok(Status::of(&sweep))
+        })?
+    } else {
+        Status::not_begun(&plan)
+    };
+    let destination = arguments.output.destination();
+    match format {
+        Format::Json => destination.json(&StatusJson::of(&plan, &status))?,
+        Format::Table => {
+            let text = shown::table(&plan, &status);
+            destination.write(|out| Ok(out.write_all(text.as_bytes())?))?;
+        }
+    }
+    Ok(if status.is_complete() { DONE } else { OUT_OF_BOUNDS })
+}
+
+fn merged(arguments: &MergeArguments, threads: Option<u16>) -> Result<u8> {
+    let output = &arguments.output;
+    if output.extension().is_none_or(|it| it != "npz") {
+        bail!(
+            "--output {} is not accepted: accepted is a file that ends in .npz",
+            output.display()
+        );
+    }
+    let destination = Destination::new(Some(output));
+    destination.check()?;
+    let folder = Folder::new(&arguments.sweep.out)?;
+    let (plan, work) = arguments.sweep.plan()?;
+    let beside = output::folder_of(output);
+    let merged = if folder.check(&plan)? {
+        work::pool(threads)?.install(|| {
+            let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
+            let bar = work::bar(plan.points(), "points");
+            let merge = Merge::new(&sweep)?;
+            destination.write(|out| merge.write(beside, out, &|| bar.inc(1)))
+        })
+    } else {
+        Err(NotMerged::not_begun(&plan).into())
+    };
+    match merged {
+        Err(error) if error.is::<NotMerged>() => {
+            say(&error.to_string());
+            Ok(OUT_OF_BOUNDS)
+        }
+        merged => merged.map(|()| DONE),
+    }
+}
+
+struct Progress {
+    bar: Bar,
+}
+
+impl Told for Progress {
+    fn redone(&self, shard: u32, why: &Damage) {
+        note(&format!("shard {shard} ({}) is {why}; it is computed again", Folder::name(shard)));
+    }
+
+    fn doubled(&self, shard: u32) {
+        note(&format!(
+            "shard {shard} is being computed by another process as well: both give the same, and \
+             one of them may be ended"
+        ));
+    }
+
+    fn begun(&self, tiles: u64) {
+        self.bar.inc_length(tiles);
+    }
+
+    fn tile(&self) {
+        self.bar.inc(1);
+    }
+}

@@ -1,0 +1,55 @@
+//! What varies in a sweep.
+
+use percuss::{Parameter, Parameters};
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// One parameter that takes equally spaced values.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Axis {
+    /// What varies.
+    pub parameter: Parameter,
+    /// The first value.
+    pub from: f64,
+    /// The last value, which may be the smaller one.
+    pub to: f64,
+    /// How many values, both ends included.
+    pub steps: u32,
+}
+
+impl Axis {
+    /// The value at a step; the last one is `to` exactly.
+    #[must_use]
+    pub fn value(&self, step: u32) -> f64 {
+        if step + 1 >= self.steps && step > 0 {
+            return self.to;
+        }
+        let share = f64::from(step) / f64::from(self.steps.max(2) - 1);
+        self.from + share * (self.to - self.from)
+    }
+}
+
+/// One combination of the values of a sweep's axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// The number of the point; the last axis varies fastest.
+    pub number: u64,
+    /// The parameters that vary, and their values.
+    pub values: Vec<(Parameter, f64)>,
+}
+
+impl Point {
+    /// Parameters with the values of this point.
+    #[must_use]
+    pub fn set(&self, parameters: Parameters) -> Parameters {
+        self.values.iter().fold(parameters, |all, (parameter, value)| parameter.set(all, *value))
+    }
+}
+
+impl fmt::Display for Point {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let values = self.values.iter().map(|(name, value)| format!("{} = {value}", name.as_str()));
+        f.write_str(&values.collect::<Vec<_>>().join(", "))
+    }
+}

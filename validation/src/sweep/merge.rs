@@ -1,0 +1,160 @@
+//! Joins the shards of a sweep into one archive of arrays.
+//!
+//! Points are joined one after the other, and what each gives is appended to a spool for every
+//! array; so the memory that this takes is that of one point, whatever the number of points.
+
+use super::array::{Array, Values};
+use super::plan::Plan;
+use super::run::Sweep;
+use super::shard::{Damage, Place};
+use super::spool::{Kind, Number, Spool};
+use crate::arrays::Npz;
+use anyhow::{Context, Result};
+use npyz::{AutoSerialize, Serialize};
+use std::fmt;
+use std::io::Write;
+use std::path::Path;
+
+/// Shards without which nothing is merged.
+#[derive(Debug)]
+pub struct NotMerged(Vec<(u32, Damage)>);
+
+/// Most shards that are named.
+const NAMED: usize = 10;
+
+impl std::error::Error for NotMerged {}
+
+impl fmt::Display for NotMerged {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let named = self.0.iter().take(NAMED).map(|(shard, why)| format!("shard {shard} is {why}"));
+        let more = self.0.len().saturating_sub(NAMED);
+        let more = if more > 0 { format!("; and {more} more") } else { String::new() };
+        let named = named.collect::<Vec<_>>().join("; ");
+        write!(f, "{named}{more}: sweep run with the same plan and folder computes what is missing")
+    }
+}
+
+/// A sweep whose shards are all there and whole.
+pub struct Merge<'a> {
+    sweep: &'a Sweep<'a>,
+    /// Where each tile is.
+    places: Vec<Place>,
+}
+
+impl NotMerged {
+    /// What is said of a folder in which nothing was begun.
+    #[must_use]
+    pub fn not_begun(plan: &Plan) -> Self {
+        Self((0..plan.shards).map(|shard| (shard, Damage::Missing)).collect())
+    }
+}
+
+impl<'a> Merge<'a> {
+    /// Reads all shards once.
+    ///
+    /// # Errors
+    /// [`NotMerged`] names shards that are missing or damaged.
+    pub fn new(sweep: &'a Sweep<'a>) -> Result<Self> {
+        Ok(Self { sweep, places: places(sweep)? })
+    }
+
+    /// Writes all points as an `.npz` file; spools are kept in `folder` meanwhile. `told` is called
+    /// as points are done.
+    ///
+    /// # Errors
+    /// What cannot be written, and a shard that has changed meanwhile.
+    pub fn write(&self, folder: &Path, out: &mut dyn Write, told: &dyn Fn()) -> Result<()> {
+        let Self { sweep, places } = self;
+        let spools = spooled(sweep, places, folder, told)?;
+        archive(sweep, spools, out)
+    }
+}
+
+/// Writes the axes, the verb's own axes, and what the spools hold.
+fn archive(sweep: &Sweep<'_>, spools: Vec<Spool>, out: &mut dyn Write) -> Result<()> {
+    let axes = &sweep.plan.axes;
+    let mut archive = Npz::new(out);
+    for axis in axes {
+        let values = (0..axis.steps).map(|step| axis.value(step));
+        archive.add(axis.parameter.as_str(), &[axis.steps as usize], values)?;
+    }
+    for Array { name, shape, values } in sweep.work.coordinates() {
+        match values {
+            Values::F8(values) => archive.add(&name, &shape, values)?,
+            Values::I4(values) => archive.add(&name, &shape, values)?,
+            Values::U1(values) => archive.add(&name, &shape, values)?,
+        }
+    }
+    let front: Vec<usize> = axes.iter().map(|it| it.steps as usize).collect();
+    for spool in spools {
+        match spool.kind {
+            Kind::F8 => add::<f64>(&mut archive, &front, spool)?,
+            Kind::I4 => add::<i32>(&mut archive, &front, spool)?,
+            Kind::U1 => add::<u8>(&mut archive, &front, spool)?,
+        }
+    }
+    archive.finish()?;
+    Ok(())
+}
+
+/// Where each tile is, if all are there.
+fn places(sweep: &Sweep<'_>) -> Result<Vec<Place>> {
+    let mut places = Vec::new();
+    let mut not_merged = Vec::new();
+    for shard in 0..sweep.plan.shards {
+        match sweep.shard(shard) {
+            Ok(found) => places.extend(found.places()),
+            Err(why) => not_merged.push((shard, why)),
+        }
+    }
+    if !not_merged.is_empty() {
+        return Err(NotMerged(not_merged).into());
+    }
+    places.sort_unstable_by_key(|(tile, _)| *tile);
+    Ok(places.into_iter().map(|(_, place)| place).collect())
+}
+
+fn spooled(
+    sweep: &Sweep<'_>,
+    places: &[Place],
+    folder: &Path,
+    told: &dyn Fn(),
+) -> Result<Vec<Spool>> {
+    let tiles = sweep.work.tiles() as usize;
+    let mut spools: Vec<Spool> = Vec::new();
+    for (places, number) in places.chunks(tiles).zip(0..) {
+        let point = sweep.plan.point(number);
+        let mut bytes = places.iter().map(|place| place.read(sweep.folder));
+        let arrays = sweep.work.join(&point, &mut bytes);
+        let arrays = arrays.with_context(|| format!("at {point}"))?;
+        if spools.is_empty() {
+            let made: Result<_> = arrays.iter().map(|it| Spool::new(it, folder)).collect();
+            spools = made?;
+        }
+        for (spool, array) in spools.iter_mut().zip(&arrays) {
+            spool.add(array)?;
+        }
+        told();
+    }
+    Ok(spools)
+}
+
+/// Writes what a spool holds as one array, with the axes' dimensions in front.
+fn add<T: Number + AutoSerialize + Serialize>(
+    archive: &mut Npz<&mut dyn Write>,
+    front: &[usize],
+    spool: Spool,
+) -> Result<()> {
+    let shape: Vec<usize> = front.iter().chain(&spool.shape).copied().collect();
+    let name = spool.name.clone();
+    let points: usize = front.iter().product();
+    let mut reader = spool.rewound()?;
+    archive.add_by(&name, &shape, |push| {
+        for _ in 0..points {
+            for value in reader.next::<T>()? {
+                push(value)?;
+            }
+        }
+        Ok(())
+    })
+}

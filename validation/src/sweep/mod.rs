@@ -1,0 +1,36 @@
+//! Sweeps: a verb of the dynamics over one or two parameters, in shards that one machine or many
+//! compute.
+//!
+//! A [`Plan`] spans *points*, one for each combination of its axes' values. The verb's [`Work`] cuts
+//! each point into *tiles*, whose results depend on nothing but themselves. A pilot counts events
+//! on a coarse grid (`pilot.rs`), by which the tiles are dealt to shards (`deal.rs`). A shard is
+//! computed by [`Sweep`] and is one file (`shard.rs`) in the sweep's folder ([`Folder`]). When all are
+//! there, [`Merge`] joins them into one archive of arrays, which tells nothing of shards, threads
+//! or machines.
+
+mod array;
+mod axis;
+mod deal;
+mod folder;
+mod merge;
+#[cfg(feature = "mpi")]
+mod mpi;
+mod pilot;
+mod plan;
+mod run;
+mod shard;
+mod spool;
+mod status;
+mod work;
+
+pub use array::{Array, Values};
+pub use axis::{Axis, Point};
+pub use folder::{Folder, Program};
+pub use merge::{Merge, NotMerged};
+#[cfg(feature = "mpi")]
+pub use mpi::Ranks;
+pub use plan::{Plan, PlanFile};
+pub use run::{Sweep, Told};
+pub use shard::Damage;
+pub use status::{ShardState, Status};
+pub use work::{Tiles, Work};

@@ -1,0 +1,177 @@
+//! Computes the shards of a sweep.
+
+use super::folder::{Folder, Program};
+use super::pilot::{self, Dealt};
+use super::plan::Plan;
+use super::shard::{self, Damage, Head, Identity, Shard};
+use super::work::Work;
+use anyhow::{Result, bail};
+use rayon::prelude::*;
+use std::time::{Duration, Instant};
+
+/// A sweep that is ready to be computed, looked at or merged.
+pub struct Sweep<'a> {
+    pub(super) plan: &'a Plan,
+    pub(super) work: &'a dyn Work,
+    pub(super) folder: &'a Folder,
+    pub(super) dealt: Dealt,
+    pub(super) identity: Identity,
+}
+
+/// What is told of a run.
+pub trait Told: Sync {
+    /// A shard's file is there, but cannot be used: why.
+    fn redone(&self, shard: u32, why: &Damage);
+    /// Another process computes this shard as well.
+    fn doubled(&self, shard: u32);
+    /// So many tiles are to be done.
+    fn begun(&self, tiles: u64);
+    /// One more is.
+    fn tile(&self);
+}
+
+impl<'a> Sweep<'a> {
+    /// Refuses a plan that has more shards than tiles, or a point that the verb refuses.
+    ///
+    /// # Errors
+    /// Names what is refused, and says what is accepted.
+    pub fn check(plan: &Plan, work: &dyn Work) -> Result<()> {
+        let tiles = plan.points() * u64::from(work.tiles());
+        if u64::from(plan.shards) > tiles {
+            bail!(
+                "shards = {} is not accepted: there are {tiles} tiles, accepted are 1 to {tiles}",
+                plan.shards
+            );
+        }
+        (0..plan.points()).try_for_each(|number| {
+            let point = plan.point(number);
+            work.check(&point).map_err(|error| error.context(format!("at {point}")))
+        })
+    }
+
+    /// Deals the tiles of a plan that was checked, in a folder that was begun.
+    ///
+    /// # Errors
+    /// What the verb objects to, and a folder that cannot be written.
+    pub fn new(plan: &'a Plan, work: &'a dyn Work, folder: &'a Folder) -> Result<Self> {
+        let dealt = pilot::dealt(plan, work, folder)?;
+        let identity = Identity {
+            schema: 1,
+            plan: plan.hash.clone(),
+            deal: dealt.digest.clone(),
+            program: Program::this(),
+        };
+        Ok(Self { plan, work, folder, dealt, identity })
+    }
+
+    /// A shard whose file is there and whole.
+    ///
+    /// # Errors
+    /// Says why there is none.
+    pub fn shard(&self, shard: u32) -> Result<Shard, Damage> {
+        Shard::open(self.folder, &self.identity, shard, &self.dealt.deal.tiles_of(shard))
+    }
+
+    /// Computes one shard, unless it is finished.
+    ///
+    /// # Errors
+    /// What the verb objects to, and a folder that cannot be written.
+    pub fn run(&self, shard: u32, told: &dyn Told) -> Result<()> {
+        if self.is_open(shard, told) {
+            told.begun(self.dealt.deal.tiles_of(shard).len() as u64);
+            let lock = self.folder.lock(shard)?;
+            if !lock.is_ours() && self.folder.is_locked(shard) {
+                told.doubled(shard);
+            }
+            self.compute(shard, told)?;
+        }
+        Ok(())
+    }
+
+    /// Computes all shards that are not finished. Those that another process computes are left to
+    /// the end, and computed as well where they are not finished by then.
+    ///
+    /// # Errors
+    /// What the verb objects to, and a folder that cannot be written.
+    pub fn run_all(&self, told: &dyn Told) -> Result<()> {
+        let open = self.open_shards(told);
+        let tiles = |shard: &u32| self.dealt.deal.tiles_of(*shard).len() as u64;
+        told.begun(open.iter().map(tiles).sum());
+        let mut left = Vec::new();
+        for shard in open {
+            let lock = self.folder.lock(shard)?;
+            if !lock.is_ours() && self.folder.is_locked(shard) {
+                left.push(shard);
+            } else if self.shard(shard).is_err() {
+                self.compute(shard, told)?;
+            } else {
+                (0..tiles(&shard)).for_each(|_| told.tile());
+            }
+        }
+        for shard in left {
+            let _lock = self.folder.lock(shard)?;
+            if self.shard(shard).is_err() {
+                self.compute(shard, told)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The shards that are still to be computed.
+    pub(super) fn open_shards(&self, told: &dyn Told) -> Vec<u32> {
+        (0..self.plan.shards).filter(|shard| self.is_open(*shard, told)).collect()
+    }
+
+    fn is_open(&self, shard: u32, told: &dyn Told) -> bool {
+        match self.shard(shard) {
+            Ok(_) => false,
+            Err(Damage::Missing) => true,
+            Err(why) => {
+                told.redone(shard, &why);
+                true
+            }
+        }
+    }
+
+    fn compute(&self, shard: u32, told: &dyn Told) -> Result<()> {
+        let begun = Instant::now();
+        let numbers = self.dealt.deal.tiles_of(shard);
+        let compute = |tile: &u64| {
+            let done = self.tile(*tile);
+            told.tile();
+            done
+        };
+        // A tile that is one of several of its point is large, and takes all threads itself.
+        let tiles: Result<Vec<Vec<u8>>> = if self.work.tiles() == 1 {
+            numbers.par_iter().map(compute).collect()
+        } else {
+            numbers.iter().map(compute).collect()
+        };
+        self.keep(shard, begun.elapsed(), &tiles?)
+    }
+
+    /// Computes one tile.
+    pub(super) fn tile(&self, tile: u64) -> Result<Vec<u8>> {
+        let tiles = u64::from(self.work.tiles());
+        let point = self.plan.point(tile / tiles);
+        let done = self.work.tile(&point, (tile % tiles) as u32);
+        done.map_err(|error| error.context(format!("at {point}")))
+    }
+
+    /// Writes a shard's tiles, which took so long.
+    pub(super) fn keep(&self, shard: u32, took: Duration, tiles: &[Vec<u8>]) -> Result<()> {
+        // Another worker may have finished it, and a merge may be reading that.
+        if self.shard(shard).is_ok() {
+            return Ok(());
+        }
+        let numbers = self.dealt.deal.tiles_of(shard);
+        let lengths = tiles.iter().map(|it| it.len() as u64);
+        let head = Head {
+            identity: self.identity.clone(),
+            shard,
+            seconds: took.as_secs_f64(),
+            tiles: numbers.iter().copied().zip(lengths).collect(),
+        };
+        shard::write(self.folder, &head, tiles)
+    }
+}

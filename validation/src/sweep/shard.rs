@@ -1,0 +1,186 @@
+//! A shard's file: one line of JSON, the tiles' bytes, and the SHA-256 of all that.
+
+use super::folder::{Folder, Program};
+use super::plan::hexadecimal;
+use anyhow::{Context, Result};
+use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
+use std::fmt;
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
+
+/// The first line of a shard's file.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Head {
+    /// What the shard is one of.
+    pub identity: Identity,
+    /// Its number, from 0.
+    pub shard: u32,
+    /// Seconds that it took.
+    pub seconds: f64,
+    /// The tiles, in order, and how many bytes each has.
+    pub tiles: Vec<(u64, u64)>,
+}
+
+/// What must be the same of all shards that are joined.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Identity {
+    /// The format's number.
+    pub schema: u32,
+    /// The plan's hash.
+    pub plan: String,
+    /// The hash of what the tiles were dealt by.
+    pub deal: String,
+    /// What computed it.
+    pub program: Program,
+}
+
+/// A shard's file that is whole and belongs to the sweep.
+#[derive(Debug)]
+pub struct Shard {
+    /// Its first line.
+    pub head: Head,
+    /// Where the tiles begin.
+    from: u64,
+}
+
+/// Why a shard's file cannot be used.
+#[derive(Debug)]
+pub enum Damage {
+    /// There is no file.
+    Missing,
+    /// What is wrong with it.
+    Damaged(String),
+}
+
+/// Bytes of the checksum at the end: a line break, 64 digits, a line break.
+const CHECKSUM: u64 = 66;
+/// A longer first line is none.
+const LONGEST_HEAD: u64 = 1 << 30;
+
+impl fmt::Display for Damage {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Missing => f.write_str("missing"),
+            Self::Damaged(why) => write!(f, "damaged: {why}"),
+        }
+    }
+}
+
+impl From<io::Error> for Damage {
+    fn from(error: io::Error) -> Self {
+        match error.kind() {
+            ErrorKind::NotFound => Self::Missing,
+            ErrorKind::UnexpectedEof => Self::Damaged("it is truncated".to_owned()),
+            _ => Self::Damaged(error.to_string()),
+        }
+    }
+}
+
+/// Writes a shard.
+///
+/// # Errors
+/// A folder that cannot be written.
+pub fn write(folder: &Folder, head: &Head, tiles: &[Vec<u8>]) -> Result<()> {
+    let mut line = serde_json::to_vec(head)?;
+    line.push(b'\n');
+    let mut parts: Vec<&[u8]> = vec![&line];
+    parts.extend(tiles.iter().map(Vec::as_slice));
+    let mut hash = Sha256::new();
+    parts.iter().for_each(|part| hash.update(part));
+    let checksum = format!("\n{}\n", hexadecimal(&hash.finalize()));
+    parts.push(checksum.as_bytes());
+    folder.write_shard(head.shard, &parts)
+}
+
+impl Shard {
+    /// Reads a shard's file whole, and checks that it is what was written for this sweep.
+    ///
+    /// # Errors
+    /// Says why it cannot be used.
+    pub fn open(
+        folder: &Folder,
+        identity: &Identity,
+        shard: u32,
+        tiles: &[u64],
+    ) -> Result<Self, Damage> {
+        let damaged = |why: &str| Damage::Damaged(why.to_owned());
+        let file = File::open(folder.shard(shard))?;
+        let length = file.metadata()?.len();
+        let body = length.checked_sub(CHECKSUM).ok_or_else(|| damaged("it is truncated"))?;
+        let mut file = BufReader::new(file);
+        let mut hash = Sha256::new();
+        io::copy(&mut (&mut file).take(body), &mut hash)?;
+        let mut checksum = String::new();
+        let stated = file.read_to_string(&mut checksum);
+        if stated.is_err() || checksum != format!("\n{}\n", hexadecimal(&hash.finalize())) {
+            return Err(damaged("its checksum does not fit: it is truncated or altered"));
+        }
+        file.rewind()?;
+        let mut line = Vec::new();
+        (&mut file).take(LONGEST_HEAD.min(body)).read_until(b'\n', &mut line)?;
+        let head: Head = serde_json::from_slice(&line)
+            .map_err(|error| Damage::Damaged(format!("its first line is none ({error})")))?;
+        if head.identity != *identity {
+            return Err(damaged(head.identity.difference(identity)));
+        }
+        if head.shard != shard {
+            return Err(Damage::Damaged(format!("it is shard {} under a wrong name", head.shard)));
+        }
+        let from = line.len() as u64;
+        let sum: u64 = head.tiles.iter().map(|it| it.1).sum();
+        if !head.tiles.iter().map(|it| &it.0).eq(tiles) || from + sum != body {
+            return Err(damaged("it has other tiles"));
+        }
+        Ok(Self { head, from })
+    }
+
+    /// The places of the tiles in the file, and their lengths, in order.
+    pub fn places(&self) -> impl Iterator<Item = (u64, Place)> {
+        let shard = self.head.shard;
+        let places = self.head.tiles.iter().scan(self.from, move |from, (tile, length)| {
+            let place = Place { shard, from: *from, length: *length };
+            *from += length;
+            Some((*tile, place))
+        });
+        places.collect::<Vec<_>>().into_iter()
+    }
+}
+
+/// Where a tile's bytes are.
+#[derive(Clone, Copy, Debug)]
+pub struct Place {
+    shard: u32,
+    from: u64,
+    length: u64,
+}
+
+impl Place {
+    /// The tile's bytes.
+    ///
+    /// # Errors
+    /// A file that cannot be read any more.
+    pub fn read(&self, folder: &Folder) -> Result<Vec<u8>> {
+        let name = Folder::name(self.shard);
+        let mut bytes = Vec::new();
+        let read = File::open(folder.shard(self.shard)).and_then(|mut file| {
+            file.seek(SeekFrom::Start(self.from))?;
+            file.take(self.length).read_to_end(&mut bytes)
+        });
+        read.with_context(|| format!("{name} cannot be read"))?;
+        Ok(bytes)
+    }
+}
+
+impl Identity {
+    /// What differs from another.
+    fn difference(&self, other: &Self) -> &'static str {
+        if self.plan != other.plan {
+            "it is of another plan"
+        } else if self.program != other.program {
+            "it is of another version of percuss, or of another arithmetic"
+        } else {
+            "its tiles were dealt in another way"
+        }
+    }
+}

@@ -1,0 +1,49 @@
+//! What a verb does at the points of a sweep.
+
+use super::{Array, Point};
+use anyhow::Result;
+
+/// The tiles, one after the other, of a point; each may fail to be read.
+pub type Tiles<'a> = &'a mut dyn Iterator<Item = Result<Vec<u8>>>;
+
+/// A verb with its fixed flags.
+///
+/// Results depend on the point and the tile alone: not on the other tiles, on threads or on the
+/// machine.
+pub trait Work: Sync {
+    /// Refuses a point at which the verb has nothing to work on, and says what is accepted.
+    ///
+    /// # Errors
+    /// What the verb says of the point's model and start.
+    fn check(&self, point: &Point) -> Result<()>;
+
+    /// The number of tiles of each point.
+    fn tiles(&self) -> u32 {
+        1
+    }
+
+    /// Computes one tile of a point.
+    ///
+    /// # Errors
+    /// What the verb objects to.
+    fn tile(&self, point: &Point, tile: u32) -> Result<Vec<u8>>;
+
+    /// Joins the tiles of a point, given in order, into the arrays of that point. Points give the
+    /// same names, types and numbers of dimensions.
+    ///
+    /// # Errors
+    /// A tile that cannot be read.
+    fn join(&self, point: &Point, tiles: Tiles<'_>) -> Result<Vec<Array>>;
+
+    /// About how many events each tile of a point costs, or a quantity in proportion to it: counted
+    /// where the point is one of the pilot's.
+    ///
+    /// # Errors
+    /// What the verb objects to.
+    fn costs(&self, point: &Point) -> Result<Vec<u64>>;
+
+    /// Arrays that are the same at every point: the axes that the verb has itself.
+    fn coordinates(&self) -> Vec<Array> {
+        Vec::new()
+    }
+}
