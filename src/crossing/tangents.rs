@@ -248,8 +248,8 @@ mod tests {
         }
     }
 
-    /// All places where the guard's closed form rises to zero within six forcing periods, in flights
-    /// that begin with a separation; with how many such places there were before.
+    /// All places where the guard's closed form rises to zero within six forcing periods, in
+    /// flights that begin with a separation; with how many such places there were before.
     fn for_each_rise(mut check: impl FnMut(&NoContact<f64>, &Steps, &Point<f64>, usize)) {
         const LOOKS: u32 = 32; // in a period
         let models = [(0.02, 0.7, 0.02), (0.05, 1.4, 0.05), (0.3, 2.0, 0.03), (0.2, 0.4, 0.1)];

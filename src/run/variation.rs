@@ -202,8 +202,11 @@ mod tests {
         let mut switches = [0; 3];
         for xi in [0.05, 0.6] {
             let parameters = Parameters { xi, ..Parameters::default() };
-            let model = Model::new(parameters).unwrap();
-            let entry = model.start(&Start { p: -0.4, y: 1.2, ..Start::default() }).unwrap();
+            let start = Start { p: -0.4, y: 1.2, ..Start::default() };
+            let model = Model::new(parameters);
+            let Ok((model, entry)) = model.and_then(|it| Ok((it, it.start(&start)?))) else {
+                unreachable!("model and start are in range")
+            };
             let horizon = entry.instant.after_periods(20, 1);
             for segment in model.trajectory(entry).until(horizon) {
                 let Some(LandingPoint { field, guard, guard_rate }) = segment.landing() else {
