@@ -128,21 +128,24 @@ fn a_contact_rests_on_one_side_where_both_signs_are_beyond_rounding() {
     let (a, b, xi, omega, fast) = (0.01, 0.5, 1.25, 0.7, 2.0);
     let constants = Constants::new(&Parameters { a, b, xi, omega, ..Parameters::default() });
     let angle = EntryAngle { radians: 1.0, sin: 1.0_f64.sin(), cos: 1.0_f64.cos() };
-    let entry = State { p: 0.32, y: 2.0, q: 0.3 };
-    let contact = Contact { constants, entry, angle, offset: 0.8, reference: 0.0 };
-    let left = contact.at(0.0);
-    let amplitude = contact.split(&left).amplitude;
-    let terms = left.guard.largest_term + left.guard.orders[0].abs() + b + a + amplitude;
-    let rates = 2.0 * xi * terms + 2.0 + omega * amplitude;
-    let rests = |x: f64, rate: f64| {
-        contact.rests_on_one_side(&left, &Split { free: [x, rate, 0.0, 0.0], amplitude })
-    };
-    for sign in [1.0, -1.0] {
-        let x = 0.01 * sign;
-        let rate = |share: f64| -fast * x + share * sign * ROUNDINGS * rates;
-        assert!(!rests(x, rate(0.97)) && rests(x, rate(1.03)), "the rate, {sign}");
-        let x = |share: f64| share * sign * ROUNDINGS * terms;
-        assert!(!rests(x(0.97), 1e-3 * sign) && rests(x(1.03), 1e-3 * sign), "the value, {sign}");
+    for y in [2.0, -2.0] {
+        let entry = State { p: 0.32, y, q: 0.3 };
+        let contact = Contact { constants, entry, angle, offset: 0.8, reference: 0.0 };
+        let left = contact.at(0.0);
+        let amplitude = contact.split(&left).amplitude;
+        let terms = left.guard.largest_term + left.guard.orders[0].abs() + b + a + amplitude;
+        let rates = 2.0 * xi * terms + 2.0 + omega * amplitude;
+        let rests = |x: f64, rate: f64| {
+            contact.rests_on_one_side(&left, &Split { free: [x, rate, 0.0, 0.0], amplitude })
+        };
+        for sign in [1.0, -1.0] {
+            let x = 0.01 * sign;
+            let rate = |share: f64| -fast * x + share * sign * ROUNDINGS * rates;
+            assert!(!rests(x, rate(0.97)) && rests(x, rate(1.03)), "the rate, {sign} {y}");
+            let x = |share: f64| share * sign * ROUNDINGS * terms;
+            let (less, more) = (rests(x(0.97), 1e-3 * sign), rests(x(1.03), 1e-3 * sign));
+            assert!(!less && more, "the value, {sign} {y}");
+        }
     }
 }
 

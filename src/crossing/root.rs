@@ -279,6 +279,11 @@ pub fn middle(inside: f64, outside: f64, halvings: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flow::constants::Constants;
+    use crate::flow::forcing::EntryAngle;
+    use crate::flow::no_contact::NoContact;
+    use crate::parameters::Parameters;
+    use crate::state::State;
 
     /// Excess, slope, bend and slack next to a threshold, and whether the guard passes it: a crest
     /// of slope^2/(2 bend) above the excess, less the slack.
@@ -310,5 +315,20 @@ mod tests {
         for slope in [1.0, 1e-200] {
             assert!(passes((0.0, slope, 0.0), true, slope));
         }
+    }
+
+    /// A crossing not after the horizon is one at the horizon itself, too. Without any force h is
+    /// the straight line d - 1, and all numbers here are exact.
+    #[test]
+    fn a_guess_leads_to_a_root_at_the_limit_itself() {
+        let parameters = Parameters { a: 0.0, b: 0.0, g: 0.0, ..Parameters::default() };
+        let constants: Constants<f64> = Constants::new(&parameters);
+        let angle = EntryAngle { radians: 0.0, sin: 0.0, cos: 1.0 };
+        let entry = State { p: -1.0, y: 1.0, q: 0.0 };
+        let flight = NoContact { constants, entry, angle, surface: None };
+        let guess = 1.0 - 1.0 / 1024.0;
+        let until = |limit: f64| follow(&flight, 0.0, guess, limit, &mut Counters::default());
+        assert!(until(1.0).is_ok_and(|root| root.point.elapsed == 1.0 && root.low == 0.0));
+        assert!(until(1.0 - f64::EPSILON).is_err());
     }
 }

@@ -195,6 +195,18 @@ mod tests {
         }
     }
 
+    /// Within [`REACH`] the last terms are below rounding; at z = 1 all eight of them show.
+    #[test]
+    fn a_short_decay_has_the_terms_of_the_exponential() {
+        for z in [1.0, -1.0_f64] {
+            let terms = (1..=8).map(|k| (-z).powi(k) * INVERSE_FACTORIALS[k as usize]);
+            let exact: f64 = terms.sum();
+            let off = (short_decay(z) - exact).abs();
+            // Eight terms of at most 1, each rounded once here and once there.
+            assert!(off <= 16.0 * f64::EPSILON, "{z}: {off:e}");
+        }
+    }
+
     proptest! {
         #[test]
         fn a_series_leads_where_an_evaluation_does(

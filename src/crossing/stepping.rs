@@ -141,6 +141,7 @@ fn arrival(point: &Point<f64>, corridor: &Corridor) -> Root {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::flow::Flow;
     use crate::flow::forcing::EntryAngle;
     use crate::parameters::Parameters;
     use crate::state::State;
@@ -200,5 +201,45 @@ mod tests {
         assert_eq!(evaluations, 1);
         assert_eq!(at(Some(-0.1)), (0.0, 0));
         assert_eq!(at(None), (0.0, 0));
+    }
+
+    /// A crossing not after the horizon is one at the horizon itself, too. Without any force h is
+    /// the straight line d - 1, of which the first step finds the zero exactly.
+    #[test]
+    fn a_crossing_at_the_horizon_itself_is_found() {
+        let parameters = Parameters { a: 0.0, b: 0.0, g: 0.0, ..Parameters::default() };
+        let constants = Constants::new(&parameters);
+        let angle = EntryAngle { radians: 0.0, sin: 0.0, cos: 1.0 };
+        let entry = State { p: -1.0, y: 1.0, q: 0.0 };
+        let flight = NoContact { constants, entry, angle, surface: None };
+        let until = |horizon| {
+            let found = first_crossing(&flight, horizon, 100, &mut Counters::default());
+            match found {
+                Some(Crossing::At(root)) => Some(root.point.elapsed),
+                _ => None,
+            }
+        };
+        assert_eq!(until(1.0), Some(1.0));
+        assert_eq!(until(1.0 - f64::EPSILON), None);
+    }
+
+    /// Newton's method squares the error of the straight line's zero, here 1e-4, three times; any
+    /// other slope would leave more than rounding of it.
+    #[test]
+    fn an_arrival_is_the_zero_of_its_cubic() {
+        let parameters = Parameters::default();
+        let constants = Constants::new(&parameters);
+        let angle = EntryAngle { radians: 0.0, sin: 0.0, cos: 1.0 };
+        let flight = NoContact { constants, entry: State::default(), angle, surface: None };
+        let corridor = Corridor { low: f64::NEG_INFINITY, high: 0.0 };
+        for (root, bend, third) in [(0.01_f64, 2.0, 0.0), (-0.01, 2.0, 0.0), (0.01, 0.0, 90.0)] {
+            // over + d + bend d^2/2 + third d^3/6 is zero at d = root.
+            let over = -root * (1.0 + root * (0.5 * bend + root * third / 6.0));
+            let mut point = flight.at(1.0);
+            point.guard.orders = [over, 1.0, bend, third];
+            let Root { point: end, low, .. } = arrival(&point, &corridor);
+            let off = ((end.elapsed - 1.0) + low - root).abs();
+            assert!(off <= 4.0 * f64::EPSILON * root.abs(), "{root} {bend} {third}: {off:e}");
+        }
     }
 }

@@ -247,4 +247,74 @@ mod tests {
             }
         }
     }
+
+    /// All places where the guard's closed form rises to zero within six forcing periods, in
+    /// flights that begin with a separation; with how many such places there were before.
+    fn for_each_rise(mut check: impl FnMut(&NoContact<f64>, &Steps, &Point<f64>, usize)) {
+        const LOOKS: u32 = 32; // in a period
+        let models = [(0.02, 0.7, 0.02), (0.05, 1.4, 0.05), (0.3, 2.0, 0.03), (0.2, 0.4, 0.1)];
+        for (xi, omega, b) in models {
+            let parameters = Parameters { xi, omega, b, ..Parameters::default() };
+            let constants: Constants<f64> = Constants::new(&parameters);
+            let steps = Steps::new(&parameters);
+            let flights = (0..96).flat_map(|k| [-0.02, -0.05, -0.1, -0.2].map(|y| (k, y)));
+            for (k, y) in flights {
+                let radians = TAU * f64::from(k) / 96.0;
+                let angle = EntryAngle { radians, sin: radians.sin(), cos: radians.cos() };
+                let q = -2.0 * xi * y;
+                let entry = State { p: q + parameters.g, y, q };
+                let flight = NoContact { constants, entry, angle, surface: Some(0.0) };
+                let guard = |d: f64| flight.at(d).guard.orders[0];
+                // Else no separation.
+                if parameters.a * angle.cos + b >= q * constants.rate.powi(2) {
+                    continue;
+                }
+                let places = (1..6 * LOOKS).map(|i| TAU / omega * f64::from(i) / f64::from(LOOKS));
+                let places: Vec<f64> = places.collect();
+                let rises =
+                    places.windows(2).filter(|pair| guard(pair[0]) < 0.0 && guard(pair[1]) >= 0.0);
+                for (before, pair) in rises.enumerate() {
+                    let (mut inside, mut outside) = (pair[0], pair[1]);
+                    for _ in 0..60 {
+                        let middle = 0.5 * (inside + outside);
+                        if guard(middle) < 0.0 { inside = middle } else { outside = middle }
+                    }
+                    check(&flight, &steps, &flight.at(outside), before);
+                }
+            }
+        }
+    }
+
+    /// A guard that has been positive before is not negative up to where it rises again. Of the
+    /// first rises about three quarters are proved.
+    #[test]
+    fn no_flight_is_proved_up_to_a_later_root() {
+        let (mut first, mut proved, mut later) = (0, 0, 0);
+        for_each_rise(|flight, steps, root, before| {
+            let stays = stays_below(flight, steps, root);
+            if before == 0 {
+                (first, proved) = (first + 1, proved + u32::from(stays));
+            } else {
+                let (xi, angle) = (flight.constants.two_xi / 2.0, flight.angle.radians);
+                assert!(!stays, "xi {xi}, angle {angle}, y {}: {}", flight.entry.y, root.elapsed);
+                later += 1;
+            }
+        });
+        assert!(later > 50 && 2 * proved > first, "{later} later, {proved} of {first} proved");
+    }
+
+    /// Where F is positive E lies below its chord, which says something only if E is negative at
+    /// both of its ends.
+    #[test]
+    fn nothing_is_proved_where_the_bound_is_positive_off_the_surface() {
+        let mut positive = 0;
+        for_each_rise(|flight, steps, root, _| {
+            let start = off_the_surface(flight, steps, &bound(flight, root));
+            if start.is_some_and(|start| start.value >= 0.0 && start.from < root.elapsed) {
+                assert!(!stays_below(flight, steps, root), "{}", root.elapsed);
+                positive += 1;
+            }
+        });
+        assert!(positive > 20, "{positive}");
+    }
 }

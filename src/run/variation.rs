@@ -189,3 +189,37 @@ fn contact_variation(contact: &Contact<f64, &Constants<f64>>, d: f64) -> Matrix 
     variation[Y] = [y_by_angle, 0.0, 1.0 + free.s_rate_minus_1, -free.s, 0.0];
     variation
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parameters::Parameters;
+    use crate::{Model, Start};
+
+    /// A guard depends on the state alone: its rate is its gradient along the field.
+    #[test]
+    fn a_guards_gradient_along_the_field_is_its_rate() {
+        let mut switches = [0; 3];
+        for xi in [0.05, 0.6] {
+            let parameters = Parameters { xi, ..Parameters::default() };
+            let start = Start { p: -0.4, y: 1.2, ..Start::default() };
+            let model = Model::new(parameters);
+            let Ok((model, entry)) = model.and_then(|it| Ok((it, it.start(&start)?))) else {
+                unreachable!("model and start are in range")
+            };
+            let horizon = entry.instant.after_periods(20, 1);
+            for segment in model.trajectory(entry).until(horizon) {
+                let Some(LandingPoint { field, guard, guard_rate }) = segment.landing() else {
+                    continue;
+                };
+                let terms: Vec<f64> = guard.iter().zip(field).map(|(g, speed)| g * speed).collect();
+                let off = (terms.iter().sum::<f64>() - guard_rate).abs();
+                // The field rounds in a few sums of forces and speeds of at most about 2.
+                let room = 64.0 * f64::EPSILON;
+                assert!(off <= room, "{:?} {xi}: {terms:?} {guard_rate}", segment.phase());
+                switches[segment.phase() as usize] += 1;
+            }
+        }
+        assert!(switches.iter().all(|count| *count > 2), "{switches:?}");
+    }
+}

@@ -2,8 +2,10 @@ use super::*;
 use crate::case::{Given, embedded};
 use crate::engine::SampleGrid;
 use crate::truth::Library;
+use percuss::TwoWord;
 
-fn of_case(name: &str) -> Vec<Graze> {
+/// A case with its truth.
+fn followed(name: &str) -> (Task, Truth, RunGrowth) {
     let case = embedded().unwrap_or_default().into_iter().find(|it| it.name == name);
     let Some(case) = case else { unreachable!("{name} is embedded") };
     let truth = Library::embedded().and_then(|library| library.truth(&case));
@@ -12,6 +14,11 @@ fn of_case(name: &str) -> Vec<Graze> {
     let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
     let task = Task::of(&case, problem, grid);
     let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
+    (task, truth, growth)
+}
+
+fn of_case(name: &str) -> Vec<Graze> {
+    let (task, truth, growth) = followed(name);
     grazes(&task, &truth, &growth)
 }
 
@@ -89,5 +96,72 @@ fn looks_follow_the_faster_of_forcing_and_contact() {
         let growth = RunGrowth::along(&truth, &parameters, task.forcing_angle);
         let step = Scan { task: &task, truth: &truth, growth: &growth }.step();
         assert!((step - expected).abs() <= 1e-14, "{step} {expected}");
+    }
+}
+
+/// The forcing goes on between the start of the run and that of a segment.
+#[test]
+fn rates_are_the_slopes_of_guards_in_segments_that_begin_late() {
+    /// Differences of this length err by its square times a third derivative of at most about 1.
+    const STEP: f64 = 1e-4;
+    let parameters = Parameters::default();
+    let (angle, began) = (0.3, 5.0);
+    for phase in Phase::ALL {
+        let begun = [0.3 + parameters.g, 0.1, 0.3, 0.0];
+        let angle_there = angle + parameters.omega * began;
+        let segment = GuardedSegment {
+            phase,
+            began,
+            oscillator: Oscillator::of(&parameters, angle),
+            closed: Closed::new(&parameters, phase, begun, angle_there, false),
+        };
+        for d in [0.2, 1.1, 2.7] {
+            let (before, after) = (segment.guards(d - STEP), segment.guards(d + STEP));
+            for (guard, rate) in segment.rates(d).into_iter().enumerate() {
+                let slope = (after[guard] - before[guard]) / (2.0 * STEP);
+                assert!((rate - slope).abs() <= 1e-7, "{phase:?} {d}: {rate} {slope}");
+            }
+        }
+    }
+}
+
+/// A guard that crosses its threshold and would turn comes back after twice the time to its turn,
+/// if it is a parabola: a phase that comes back within twice that again belongs to the graze.
+#[test]
+fn a_phase_that_comes_back_soon_belongs_to_the_graze() {
+    let (task, truth, growth) = followed("graze-overlap-1e-3");
+    let length = truth.switches[0].elapsed.value();
+    let events_with_return_at = |turns: f64| {
+        let whole = Scan { task: &task, truth: &truth, growth: &growth };
+        let found = whole.segment(0, &truth.start, &truth.switches[0]);
+        let Some(graze) = found.iter().find(|it| it.events.start < it.events.end) else {
+            unreachable!("the case has a graze at its first event")
+        };
+        let mut truth = truth.clone();
+        truth.switches[1].elapsed = TwoWord::new(length + turns * (graze.elapsed - length));
+        let scan = Scan { task: &task, truth: &truth, growth: &growth };
+        let found = scan.segment(0, &truth.start, &truth.switches[0]);
+        found.into_iter().find(|it| it.elapsed == graze.elapsed).map(|it| it.events)
+    };
+    assert_eq!(events_with_return_at(3.9), Some(0..2));
+    assert_eq!(events_with_return_at(4.1), Some(0..1));
+}
+
+/// An error is allowed against 1 + |value|: the largest of the three contributions counts, whatever
+/// the signs of the values.
+#[test]
+fn the_growth_of_a_guard_counts_the_size_of_each_value() {
+    let (task, truth, mut growth) = followed("graze-overlap-1e-3");
+    growth.samples = vec![[2.0, 3.0, 5.0, 7.0]];
+    let scan = Scan { task: &task, truth: &truth, growth: &growth };
+    let two_xi = 2.0 * task.parameters.xi;
+    for sign in [1.0, -1.0] {
+        let of = |phase, state: [f64; 4]| scan.guard_growth(phase, &state.map(|it| sign * it), 0.0);
+        // p counts once, y not at all, q once.
+        assert_eq!(of(Phase::NoContact, [4.0, 90.0, 0.5, 90.0]), 10.0);
+        assert_eq!(of(Phase::NoContact, [0.5, 90.0, 4.0, 90.0]), 25.0);
+        // y counts 2 xi times, q once, p not at all.
+        let (y, q) = (3.0 * 31.0 * two_xi, 5.0 * 1.25);
+        assert_eq!(of(Phase::Contact, [90.0, 30.0, 0.25, 90.0]), y.max(q));
     }
 }

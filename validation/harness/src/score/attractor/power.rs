@@ -120,3 +120,21 @@ impl AttractorTest {
         Ok(all?.iter().fold(Alarms::default(), |alarms, names| alarms.with(names)))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One of the three is larger by that share of itself, the others are as they were.
+    #[test]
+    fn a_changed_parameter_is_larger_by_a_share_of_itself() {
+        let Parameters { xi, omega, b, .. } = Parameters::default();
+        for (changed, factors) in
+            Changed::ALL.into_iter().zip([[1.25, 1.0, 1.0], [1.0, 1.25, 1.0], [1.0, 1.0, 1.25]])
+        {
+            let found = changed.by(0.25, Parameters::default());
+            let expected = [xi * factors[0], omega * factors[1], b * factors[2]];
+            assert_eq!([found.xi, found.omega, found.b], expected, "{}", changed.name());
+        }
+    }
+}

@@ -141,6 +141,7 @@ fn apart(found: &[f64; 3], image: &[f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     /// An event belongs to the period in which it lies; one at the section's first strobe begins
     /// the first word, and one before it belongs to none.
@@ -167,5 +168,23 @@ mod tests {
         assert_eq!(apart(&[0.5, 0.0, 0.0], &[0.0, 0.0, 0.0]), 0.5);
         assert_eq!(apart(&[0.0, -4.0, 0.0], &[0.0, -3.0, 0.0]), 0.25);
         assert_eq!(apart(&[1.0, 1.0, 9.0], &[1.0, 1.0, 4.0]), 1.0);
+    }
+
+    /// Over a thousand decay times of the contact all that an impact has left of an error dies out
+    /// below the smallest number: of a period that ends so nothing can be said. Of an error in a
+    /// contact the part dp - dq stays.
+    #[test]
+    fn a_period_in_which_an_error_dies_out_does_not_count() {
+        let parameters =
+            Parameters { xi: 0.5, omega: PI / 1e3, a: 0.05, b: 0.5, ..Parameters::default() };
+        let Ok(problem) = (Given { parameters, ..Given::default() }).check() else {
+            unreachable!("the parameters are in range")
+        };
+        let (falling, resting) = ([-0.1, 0.0, 0.0], [0.5 + parameters.g, 0.0, 0.5]);
+        let (lyapunov, errors) = mapped(&problem, &[falling, resting]);
+        // From the direction that the first period has not turned: 0.6 - 0.64.
+        assert!((lyapunov - 0.04_f64.ln()).abs() <= 1e-14, "{lyapunov}");
+        assert_eq!(errors.len(), 1);
+        assert!(mapped(&problem, &[falling]).0.is_nan());
     }
 }
