@@ -8,6 +8,7 @@ use super::plan::Plan;
 use super::run::Sweep;
 use super::shard::{Damage, Place};
 use super::spool::{Kind, Number, Spool};
+use super::tiling;
 use crate::arrays::Npz;
 use anyhow::{Context, Result};
 use npyz::{AutoSerialize, Serialize};
@@ -120,23 +121,34 @@ fn spooled(
     folder: &Path,
     told: &dyn Fn(),
 ) -> Result<Vec<Spool>> {
-    let tiles = sweep.work.tiles() as usize;
     let mut spools: Vec<Spool> = Vec::new();
-    for (places, number) in places.chunks(tiles).zip(0..) {
-        let point = sweep.plan.point(number);
-        let mut bytes = places.iter().map(|place| place.read(sweep.folder));
-        let arrays = sweep.work.join(&point, &mut bytes);
-        let arrays = arrays.with_context(|| format!("at {point}"))?;
-        if spools.is_empty() {
-            let made: Result<_> = arrays.iter().map(|it| Spool::new(it, folder)).collect();
-            spools = made?;
+    let mut tile = 0;
+    while tile < sweep.tiling.count() {
+        // Either the points of one tile, or the blocks of one point.
+        let beside = sweep.tiling.tiles_beside(tile);
+        let read = |tile: u64| places[tile as usize].read(sweep.folder);
+        let read = beside.clone().map(|tile| tiling::unpacked(&read(tile)?));
+        let pieces: Vec<Vec<Vec<u8>>> = read.collect::<Result<_>>()?;
+        for (at, number) in sweep.tiling.points_of(tile).enumerate() {
+            let point = sweep.plan.point(number);
+            let mut blocks = pieces.iter().map(|it| it.get(at).cloned().context("a tile is cut"));
+            let arrays = sweep.work.join(&point, &mut blocks);
+            let arrays = arrays.with_context(|| format!("at {point}"))?;
+            add_point(&mut spools, &arrays, folder)?;
+            told();
         }
-        for (spool, array) in spools.iter_mut().zip(&arrays) {
-            spool.add(array)?;
-        }
-        told();
+        tile = beside.end;
     }
     Ok(spools)
+}
+
+/// Appends the arrays of a point; the first point decides which there are.
+fn add_point(spools: &mut Vec<Spool>, arrays: &[Array], folder: &Path) -> Result<()> {
+    if spools.is_empty() {
+        let made: Result<_> = arrays.iter().map(|it| Spool::new(it, folder)).collect();
+        *spools = made?;
+    }
+    spools.iter_mut().zip(arrays).try_for_each(|(spool, array)| spool.add(array))
 }
 
 /// Writes what a spool holds as one array, with the axes' dimensions in front.

@@ -1,8 +1,9 @@
 //! Sweeps: a verb of the dynamics over one or two parameters, in shards that one machine or many
 //! compute.
 //!
-//! A [`Plan`] spans *points*, one for each combination of its axes' values. The verb's [`Work`] cuts
-//! each point into *tiles*, whose results depend on nothing but themselves. A pilot counts events
+//! A [`Plan`] spans *points*, one for each combination of its axes' values. They are cut into
+//! *tiles*, some points each or blocks of a large one (`tiling.rs`), and what the verb's [`Work`] gives
+//! depends on the point and block alone. A pilot counts events
 //! on a coarse grid (`pilot.rs`), by which the tiles are dealt to shards (`deal.rs`). A shard is
 //! computed by [`Sweep`] and is one file (`shard.rs`) in the sweep's folder ([`Folder`]). When all are
 //! there, [`Merge`] joins them into one archive of arrays, which tells nothing of shards, threads
@@ -21,6 +22,7 @@ mod run;
 mod shard;
 mod spool;
 mod status;
+mod tiling;
 mod work;
 
 pub use array::{Array, Values};

@@ -6,6 +6,7 @@
 use super::deal::Deal;
 use super::folder::Folder;
 use super::plan::{Plan, digest};
+use super::tiling::Tiling;
 use super::work::Work;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
@@ -40,8 +41,8 @@ pub struct Dealt {
 ///
 /// # Errors
 /// What the verb objects to, and a folder that cannot be written.
-pub fn dealt(plan: &Plan, work: &dyn Work, folder: &Folder) -> Result<Dealt> {
-    let tiles = plan.points() * u64::from(work.tiles());
+pub fn dealt(plan: &Plan, work: &dyn Work, tiling: Tiling, folder: &Folder) -> Result<Dealt> {
+    let tiles = tiling.count();
     if plan.shards == 1 || u64::from(plan.shards) == tiles {
         let even = vec![1; usize::try_from(tiles)?];
         return Ok(Dealt { deal: Deal::new(&even, plan.shards), digest: "even".to_owned() });
@@ -55,11 +56,12 @@ pub fn dealt(plan: &Plan, work: &dyn Work, folder: &Folder) -> Result<Dealt> {
         }
     };
     let stride = strides(plan, work);
-    let mut costs = Vec::with_capacity(usize::try_from(tiles)?);
-    for point in 0..plan.points() {
-        let near = nearest(plan, &stride, point);
-        costs.extend(counted.costs.get(&near).context("the pilot lacks a point")?);
-    }
+    let cost = |tile: u64| {
+        let block = tiling.block_of(tile) as usize;
+        let of = |point| counted.costs.get(&nearest(plan, &stride, point))?.get(block).copied();
+        tiling.points_of(tile).map(of).sum::<Option<u64>>().context("the pilot lacks a point")
+    };
+    let costs: Vec<u64> = (0..tiles).map(cost).collect::<Result<_>>()?;
     Ok(Dealt { deal: Deal::new(&costs, plan.shards), digest: counted.digest })
 }
 

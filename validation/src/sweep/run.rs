@@ -4,6 +4,7 @@ use super::folder::{Folder, Program};
 use super::pilot::{self, Dealt};
 use super::plan::Plan;
 use super::shard::{self, Damage, Head, Identity, Shard};
+use super::tiling::{self, Tiling};
 use super::work::Work;
 use anyhow::{Result, bail};
 use rayon::prelude::*;
@@ -14,6 +15,7 @@ pub struct Sweep<'a> {
     pub(super) plan: &'a Plan,
     pub(super) work: &'a dyn Work,
     pub(super) folder: &'a Folder,
+    pub(super) tiling: Tiling,
     pub(super) dealt: Dealt,
     pub(super) identity: Identity,
 }
@@ -36,7 +38,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// Names what is refused, and says what is accepted.
     pub fn check(plan: &Plan, work: &dyn Work) -> Result<()> {
-        let tiles = plan.points() * u64::from(work.tiles());
+        let tiles = Tiling::new(plan, work).count();
         if u64::from(plan.shards) > tiles {
             bail!(
                 "shards = {} is not accepted: there are {tiles} tiles, accepted are 1 to {tiles}",
@@ -54,14 +56,15 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// What the verb objects to, and a folder that cannot be written.
     pub fn new(plan: &'a Plan, work: &'a dyn Work, folder: &'a Folder) -> Result<Self> {
-        let dealt = pilot::dealt(plan, work, folder)?;
+        let tiling = Tiling::new(plan, work);
+        let dealt = pilot::dealt(plan, work, tiling, folder)?;
         let identity = Identity {
             schema: 1,
             plan: plan.hash.clone(),
             deal: dealt.digest.clone(),
             program: Program::this(),
         };
-        Ok(Self { plan, work, folder, dealt, identity })
+        Ok(Self { plan, work, folder, tiling, dealt, identity })
     }
 
     /// A shard whose file is there and whole.
@@ -141,21 +144,25 @@ impl<'a> Sweep<'a> {
             told.tile();
             done
         };
-        // A tile that is one of several of its point is large, and takes all threads itself.
-        let tiles: Result<Vec<Vec<u8>>> = if self.work.tiles() == 1 {
-            numbers.par_iter().map(compute).collect()
-        } else {
+        // A block of a point is large, and takes all threads itself.
+        let tiles: Result<Vec<Vec<u8>>> = if self.tiling.cuts_points() {
             numbers.iter().map(compute).collect()
+        } else {
+            numbers.par_iter().map(compute).collect()
         };
         self.keep(shard, begun.elapsed(), &tiles?)
     }
 
     /// Computes one tile.
     pub(super) fn tile(&self, tile: u64) -> Result<Vec<u8>> {
-        let tiles = u64::from(self.work.tiles());
-        let point = self.plan.point(tile / tiles);
-        let done = self.work.tile(&point, (tile % tiles) as u32);
-        done.map_err(|error| error.context(format!("at {point}")))
+        let block = self.tiling.block_of(tile);
+        let piece = |number: u64| {
+            let point = self.plan.point(number);
+            let done = self.work.tile(&point, block);
+            done.map_err(|error| error.context(format!("at {point}")))
+        };
+        let pieces: Result<Vec<Vec<u8>>> = self.tiling.points_of(tile).map(piece).collect();
+        Ok(tiling::packed(&pieces?))
     }
 
     /// Writes a shard's tiles, which took so long.

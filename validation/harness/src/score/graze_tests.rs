@@ -165,3 +165,12 @@ fn the_growth_of_a_guard_counts_the_size_of_each_value() {
         assert_eq!(of(Phase::Contact, [90.0, 30.0, 0.25, 90.0]), y.max(q));
     }
 }
+
+/// The trial force is q + 2 xi y, and the gap is p - q but for its sign.
+#[test]
+fn a_guard_depends_on_the_state_as_the_model_says() {
+    let parameters = Parameters { xi: 0.05, ..Parameters::default() };
+    assert_eq!(gradient(Phase::Contact, &parameters), [0.0, 0.1, 1.0]);
+    assert_eq!(gradient(Phase::Progression, &parameters), [0.0, 0.1, 1.0]);
+    assert_eq!(gradient(Phase::NoContact, &parameters), [1.0, 0.0, 1.0]);
+}
