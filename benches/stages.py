@@ -13,7 +13,8 @@ import re
 import subprocess
 import sys
 
-# A call belongs to a stage by its name or by its file, the first rule that fits; a chain by its innermost call.
+# A call belongs to a stage by its name or by its file, the first rule that fits; a chain by its
+# innermost call.
 STAGES = [
     ("certificate", re.compile(r"certif|stays_below|/certificate\.rs|/walk\.rs|/tangents\.rs")),
     ("time and angle", re.compile(r"after_with_forcing|instant_after|/instant\.rs")),

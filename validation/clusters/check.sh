@@ -5,7 +5,9 @@
 #   check.sh [slurm] [dask] [ray] [hyperqueue] [mpi]     (all where none is named)
 #
 # Debian or Ubuntu, root (it installs packages and starts daemons of its own, which it ends). Takes
-# the program from the environment variable PERCUSS, else builds it.
+# the program from the environment variable PERCUSS, else builds it; the plan from PLAN, else
+# plan.toml beside this file. With plans of many and few shards the seconds that it prints tell what
+# an engine adds to each.
 set -euo pipefail
 [ "$(id -u)" -eq 0 ] || exec sudo --preserve-env env "PATH=$PATH" "$0" "$@"
 here=$(cd "$(dirname "$0")" && pwd)
@@ -32,12 +34,15 @@ end() {
     rm -rf "$work" || true
 }
 trap end EXIT
+trap 'exit 143' TERM
+trap 'exit 130' INT
 
 mkdir "$work/bin"
 ln -s "$PERCUSS" "$work/bin/percuss"
 export PATH="$work/bin:$PATH"
+plan=$(realpath "${PLAN:-$here/plan.toml}")
 cd "$work"
-cp "$here/plan.toml" plan.toml
+cp "$plan" plan.toml
 
 install() {
     dpkg -s "$@" >/dev/null 2>&1 && return
@@ -70,6 +75,7 @@ slurm() {
     runuser -u munge -- munged --force --key-file="$work/munge.d/key" \
         --socket="$work/munge.d/socket" --pid-file="$work/munge.d/munged.pid" \
         --log-file="$work/munge.d/log" --seed-file="$work/munge.d/seed"
+    ln -s "$work/munge.d/munged.pid" munged.pid
     chmod 711 munge.d
     cat >slurm.conf <<CONF
 ClusterName=percuss
@@ -98,25 +104,30 @@ CONF
     sleep 2
     slurmd
     sleep 3
+    begun=$SECONDS
     "$here/slurm.sh" plan.toml slurm slurm.npz --chdir="$work"
-    for _ in $(seq 300); do
+    for _ in $(seq 600); do
         [ -z "$(squeue --noheader)" ] && break
         sleep 1
     done
-    ln -s "$work/munge.d/munged.pid" munged.pid
-    tail -n +1 slurm/log/*.txt
+    echo "slurm: $((SECONDS - begun)) s from the submission to the end"
+    cat slurm/log/merge.txt
     compare slurm
 }
 
 dask() {
     python_packages "dask[distributed]"
+    begun=$SECONDS
     "$work/venv/bin/python" "$here/sweep_by_dask.py" plan.toml dask dask.npz
+    echo "dask: $((SECONDS - begun)) s from the start of its workers to the end"
     compare dask
 }
 
 ray() {
     python_packages ray
+    begun=$SECONDS
     "$work/venv/bin/python" "$here/sweep_by_ray.py" plan.toml ray ray.npz
+    echo "ray: $((SECONDS - begun)) s from the start of its workers to the end"
     compare ray
 }
 

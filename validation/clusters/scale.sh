@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Measures what sweeps cost, for the section "Scale" of docs/SWEEPS.md: time and bytes a shard, the
-# cost of starting a task, the memory of a merge, and strong and weak scaling to the cores there are.
+# cost of starting a task, the memory of a merge, and strong and weak scaling to the cores there
+# are.
 #
 #   scale.sh      (Debian: apt-get install time)
 #

@@ -3,8 +3,8 @@
 #
 #   slurm.sh PLAN.toml DIR OUTPUT.npz [options of sbatch, such as --cpus-per-task=4 --time=2:00:00]
 #
-# Submitted again, it computes what an earlier array has left. DIR is on a file system that all nodes
-# share. The plan has no `first`: the array's indices are the shards' numbers.
+# Submitted again, it computes what an earlier array has left. DIR is on a file system that all
+# nodes share. The plan has no `first`: the array's indices are the shards' numbers.
 set -eu
 plan=$1 out=$2 output=$3
 shift 3

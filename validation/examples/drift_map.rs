@@ -3,7 +3,8 @@
 //!
 //! ```sh
 //! percuss sweep run --plan docs/sweeps/omega-b.toml --out target/omega-b
-//! percuss sweep merge --plan docs/sweeps/omega-b.toml --out target/omega-b --output target/omega-b.npz
+//! percuss sweep merge --plan docs/sweeps/omega-b.toml --out target/omega-b \
+//!     --output target/omega-b.npz
 //! cargo run --release -p percuss-validation --example drift_map -- \
 //!     target/omega-b.npz b docs/drift-omega-b.png
 //! ```

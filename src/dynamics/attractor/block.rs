@@ -115,7 +115,7 @@ impl Basins {
     /// Labels every start of a grid.
     ///
     /// `transient` is how many forcing periods a start is followed at first (see
-    /// [`AttractorCatalog::new`](super::AttractorCatalog::new)); `seen` is told of how many starts more the label is known.
+    /// [`AttractorCatalog::new`]); `seen` is told of how many starts more the label is known.
     #[must_use]
     pub fn of(map: &StrobeMap, grid: &Grid, transient: u64, seen: &(dyn Fn(u64) + Sync)) -> Self {
         let labeller = BlockLabeller::new(map, grid, transient);

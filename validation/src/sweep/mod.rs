@@ -2,12 +2,11 @@
 //! compute.
 //!
 //! A [`Plan`] spans *points*, one for each combination of its axes' values. They are cut into
-//! *tiles*, some points each or blocks of a large one (`tiling.rs`), and what the verb's [`Work`] gives
-//! depends on the point and block alone. A pilot counts events
-//! on a coarse grid (`pilot.rs`), by which the tiles are dealt to shards (`deal.rs`). A shard is
-//! computed by [`Sweep`] and is one file (`shard.rs`) in the sweep's folder ([`Folder`]). When all are
-//! there, [`Merge`] joins them into one archive of arrays, which tells nothing of shards, threads
-//! or machines.
+//! *tiles*, some points each or blocks of a large one (`tiling.rs`), and what the verb's [`Work`]
+//! gives depends on the point and block alone. A pilot counts events on a coarse grid (`pilot.rs`),
+//! by which the tiles are dealt to shards (`deal.rs`). A shard is computed by [`Sweep`] and is one
+//! file (`shard.rs`) in the sweep's folder ([`Folder`]). When all are there, [`Merge`] joins them
+//! into one archive of arrays, which tells nothing of shards, threads or machines.
 
 mod array;
 mod axis;
