@@ -13,7 +13,7 @@ use anyhow::{Context, Result};
 use npyz::NpyFile;
 use percuss::{Parameter, Parameters};
 use percuss_validation::picture::{
-    self, Figure, KeyEntry, Layer, Plot, PlotWindow, RGBColor, Raster,
+    self, Colour, Figure, KeyEntry, Layer, Plot, PlotWindow, Raster,
 };
 use std::fs::File;
 use std::io::Read;
@@ -36,22 +36,22 @@ enum Regime {
     Undecided,
 }
 
-const REGIMES: [(Regime, &str, RGBColor); 5] = [
-    (Regime::Resting, "no progression, no chaos", RGBColor(222, 222, 222)),
-    (Regime::Periodic, "progression, periodic", RGBColor(95, 165, 225)),
-    (Regime::Chaotic, "chaos", RGBColor(230, 120, 30)),
-    (Regime::Endless, "endless phase", RGBColor(120, 30, 90)),
-    (Regime::Undecided, "undecided", RGBColor(250, 236, 150)),
+const REGIMES: [(Regime, &str, Colour); 5] = [
+    (Regime::Resting, "no progression, no chaos", Colour(222, 222, 222)),
+    (Regime::Periodic, "progression, periodic", Colour(95, 165, 225)),
+    (Regime::Chaotic, "chaos", Colour(230, 120, 30)),
+    (Regime::Endless, "endless phase", Colour(120, 30, 90)),
+    (Regime::Undecided, "undecided", Colour(250, 236, 150)),
 ];
 
 /// Colours of the drift: none, and five steps up to the largest.
-const SHADES: [RGBColor; 6] = [
-    RGBColor(222, 222, 222),
-    RGBColor(253, 231, 150),
-    RGBColor(122, 209, 81),
-    RGBColor(34, 168, 132),
-    RGBColor(42, 120, 142),
-    RGBColor(68, 1, 84),
+const SHADES: [Colour; 6] = [
+    Colour(222, 222, 222),
+    Colour(253, 231, 150),
+    Colour(122, 209, 81),
+    Colour(34, 168, 132),
+    Colour(42, 120, 142),
+    Colour(68, 1, 84),
 ];
 
 /// The arrays of a merged sweep.
@@ -96,7 +96,7 @@ fn main() -> Result<()> {
     let fixed = picture::caption_without(&Parameters::default(), Some(parameter));
     let fixed = fixed.split(", ").filter(|it| !it.starts_with(&axes[0]));
     let fixed = fixed.collect::<Vec<_>>().join(", ");
-    let plot = |title: &str, key: Vec<KeyEntry>, colours: Vec<RGBColor>| Plot {
+    let plot = |title: &str, key: Vec<KeyEntry>, colours: Vec<Colour>| Plot {
         title: title.to_owned(),
         axes: axes.clone(),
         window: Some(window(&x, &y)),
@@ -134,7 +134,7 @@ fn two_digits(value: f64) -> String {
     format!("{value:.places$}")
 }
 
-fn entry(name: &str, colour: RGBColor) -> KeyEntry {
+fn entry(name: &str, colour: Colour) -> KeyEntry {
     KeyEntry { name: name.to_owned(), colour, stroke: None }
 }
 
@@ -167,7 +167,7 @@ fn window(x: &[f64], y: &[f64]) -> PlotWindow {
     })
 }
 
-fn raster(x: &[f64], y: &[f64], colours: &[RGBColor]) -> Layer {
+fn raster(x: &[f64], y: &[f64], colours: &[Colour]) -> Layer {
     let row = |j: usize| (0..x.len()).map(|i| colours[i * y.len() + j]).collect();
     Layer::Raster(Raster { window: window(x, y), rows: (0..y.len()).map(row).collect() })
 }

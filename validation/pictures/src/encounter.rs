@@ -2,11 +2,12 @@
 //! and a close one. Steps, evaluations of the guard and events are marks, phases bands above.
 
 use super::canvas::{At, Canvas, TextSide};
+use super::colour::{Colour, WHITE};
+use super::figure::Stroke;
 use super::frame::{AxisScale, Panel, Ruler, power_of_ten};
-use super::{DrawError, Drawing, Marker, palette};
+use super::key::{KeyItem, KeyLayout, key};
+use super::{Drawing, Marker, palette};
 use percuss::Phase;
-use plotters::coord::Shift;
-use plotters::prelude::*;
 
 /// A picture of an event.
 #[derive(Clone, Debug)]
@@ -18,7 +19,7 @@ pub struct Encounter {
     /// The engine's name.
     pub engine: String,
     /// The engine's colour.
-    pub colour: RGBColor,
+    pub colour: Colour,
     /// What is drawn against time.
     pub guard: String,
     /// The time from which times are counted.
@@ -62,129 +63,99 @@ const TOP: f64 = 164.0;
 const BOTTOM: f64 = 550.0;
 const BAND: f64 = 24.0;
 /// An event that only one of the two has; no engine is yellow.
-const WRONG: RGBColor = RGBColor(255, 217, 47);
-const TRUTH: RGBColor = RGBColor(160, 164, 170);
+const WRONG: Colour = Colour(255, 217, 47);
+const TRUTH: Colour = Colour(160, 164, 170);
 
 impl Drawing for Encounter {
     fn size(&self) -> (u32, u32) {
         SIZE
     }
 
-    fn draw<B: DrawingBackend>(
-        &self,
-        area: &DrawingArea<B, Shift>,
-        scale: u32,
-    ) -> Result<(), DrawError> {
-        let canvas = Canvas { area, scale };
-        canvas.paper()?;
-        canvas.text(&self.title, (24.0, 30.0), TEXT + 5.0, TextSide::Left, palette::INK)?;
-        canvas.text(&self.subtitle, (24.0, 64.0), TEXT, TextSide::Left, palette::INK)?;
+    fn draw(&self, canvas: &mut Canvas) {
+        canvas.title(&self.title);
+        canvas.text(&self.subtitle, (24.0, 64.0), TEXT, TextSide::Left, palette::INK);
         let width = WIDE / self.stretches.len().max(1) as f64;
         for (i, stretch) in self.stretches.iter().enumerate() {
             let left = width * i as f64;
-            self.stretch(&canvas, stretch, (left + 132.0, left + width - 26.0))?;
+            self.stretch(canvas, stretch, (left + 132.0, left + width - 26.0));
         }
-        self.key(&canvas)
+        self.key(canvas);
     }
 }
 
 impl Encounter {
-    fn stretch<B: DrawingBackend>(
-        &self,
-        canvas: &Canvas<'_, B>,
-        it: &TimeStretch,
-        (left, right): (f64, f64),
-    ) -> Result<(), DrawError> {
+    fn stretch(&self, canvas: &mut Canvas, it: &TimeStretch, (left, right): (f64, f64)) {
         let times = Factor::of([it.from, it.to].into_iter());
         let values = Factor::of(it.shown());
         let (from, to) = (times.scaled(it.from), times.scaled(it.to));
         let vertical = Ruler::over(AxisScale::Linear, it.shown().map(|v| values.scaled(v)));
-        let Some(y) = vertical.filter(|_| from < to) else { return Ok(()) };
+        let Some(y) = vertical.filter(|_| from < to) else { return };
         let x = Ruler::between(from, to);
         let panel = Panel { from: (left, TOP), to: (right, BOTTOM), x, y };
         let below = times.named(&format!("time \u{2212} {:.7}", self.centre));
-        panel.draw(canvas, &below, &values.named(&self.guard))?;
+        panel.draw(canvas, &below, &values.named(&self.guard));
         let at = |t: f64, v: f64| panel.at((times.scaled(t), values.scaled(v)));
         let guide = [panel.place((0.0, 0.0)).0, panel.place((0.0, 0.0)).1];
-        canvas.line((left, guide[1]), (right, guide[1]), 1.4, palette::INK)?;
-        canvas.line((guide[0], TOP), (guide[0], BOTTOM), 1.0, palette::INK)?;
+        canvas.line((left, guide[1]), (right, guide[1]), 1.4, palette::INK);
+        canvas.line((guide[0], TOP), (guide[0], BOTTOM), 1.0, palette::INK);
         let place = |t: f64| panel.place((times.scaled(t), 0.0)).0.clamp(left, right);
         for (trail, name, top) in [(&it.truth, "truth", 96.0), (&it.engine, "engine", 126.0)] {
-            trail.band(canvas, place, (left, right, top))?;
-            canvas.text(
-                name,
-                (left - 10.0, top + BAND / 2.0),
-                TEXT,
-                TextSide::Right,
-                palette::INK,
-            )?;
+            trail.band(canvas, place, (left, right, top));
+            let at = (left - 10.0, top + BAND / 2.0);
+            canvas.text(name, at, TEXT, TextSide::Right, palette::INK);
         }
         let curve = |trail: &Trail| -> Vec<At> {
             trail.places(it.from, it.to).filter_map(|(t, v)| at(t, v)).collect()
         };
-        canvas.trace(&curve(&it.truth), 6.0, TRUTH)?;
-        canvas.trace(&curve(&it.engine), 2.4, self.colour)?;
+        canvas.trace(&curve(&it.truth), 6.0, Stroke::Solid, TRUTH);
+        canvas.trace(&curve(&it.engine), 2.4, Stroke::Solid, self.colour);
         let ends = it.steps.iter().filter_map(|t| at(*t, it.engine.along(it.from, it.to, *t)?));
-        ends.into_iter().try_for_each(|at| canvas.marker(Marker::Circle, at, 5.0, self.colour))?;
+        ends.for_each(|at| canvas.marker(Marker::Circle, at, 5.0, self.colour));
         let looks = it.looks.iter().filter_map(|[t, v]| at(*t, *v));
-        looks.into_iter().try_for_each(|at| hollow(canvas, at, self.colour))?;
+        looks.for_each(|at| hollow(canvas, at, self.colour));
         self.events(canvas, it, |t| at(t, 0.0))
     }
 
-    fn events<B: DrawingBackend>(
-        &self,
-        canvas: &Canvas<'_, B>,
-        it: &TimeStretch,
-        at: impl Fn(f64) -> Option<At>,
-    ) -> Result<(), DrawError> {
+    fn events(&self, canvas: &mut Canvas, it: &TimeStretch, at: impl Fn(f64) -> Option<At>) {
         for (t, _, matched) in &it.truth.events {
             let Some(at) = at(*t) else { continue };
             if *matched {
-                canvas.marker(Marker::Circle, at, 4.5, palette::INK)?;
+                canvas.marker(Marker::Circle, at, 4.5, palette::INK);
             } else {
-                wrong(canvas, at, false)?;
+                wrong(canvas, at, false);
             }
         }
         for (t, _, matched) in &it.engine.events {
             let Some(at) = at(*t) else { continue };
             if *matched {
-                canvas.marker(Marker::Triangle, (at.0, at.1 + 12.0), 6.0, self.colour)?;
+                canvas.marker(Marker::Triangle, (at.0, at.1 + 12.0), 6.0, self.colour);
             } else {
-                wrong(canvas, at, true)?;
+                wrong(canvas, at, true);
             }
         }
-        Ok(())
     }
 
-    fn key<B: DrawingBackend>(&self, canvas: &Canvas<'_, B>) -> Result<(), DrawError> {
-        let y = 664.0;
-        let ink = palette::INK;
-        let words = [
-            ("truth", 110.0),
-            (self.engine.as_str(), 64.0 + 9.9 * self.engine.chars().count() as f64),
-            ("step", 96.0),
-            ("root finder's look", 212.0),
-            ("true event", 140.0),
-            ("engine's event", 188.0),
-            ("missed", 110.0),
-            ("spurious", 0.0),
+    fn key(&self, canvas: &mut Canvas) {
+        let middle = |at: At| (at.0 + 22.0, at.1);
+        let line = |width: f64, colour: Colour| {
+            move |canvas: &mut Canvas, at: At| canvas.line(at, (at.0 + 34.0, at.1), width, colour)
+        };
+        let mark = |marker: Marker, size: f64, colour: Colour| {
+            move |canvas: &mut Canvas, at: At| canvas.marker(marker, middle(at), size, colour)
+        };
+        let items = [
+            KeyItem::new("truth", line(6.0, TRUTH)),
+            KeyItem::new(&self.engine, line(2.4, self.colour)),
+            KeyItem::new("step", mark(Marker::Circle, 5.0, self.colour)),
+            KeyItem::new("root finder's look", |canvas, at| {
+                hollow(canvas, middle(at), self.colour);
+            }),
+            KeyItem::new("true event", mark(Marker::Circle, 4.5, palette::INK)),
+            KeyItem::new("engine's event", mark(Marker::Triangle, 6.0, self.colour)),
+            KeyItem::new("missed", |canvas, at| wrong(canvas, middle(at), false)),
+            KeyItem::new("spurious", |canvas, at| wrong(canvas, middle(at), true)),
         ];
-        let mut x = 24.0;
-        for (i, (word, wide)) in words.into_iter().enumerate() {
-            let (from, to, middle) = ((x, y), (x + 30.0, y), (x + 18.0, y));
-            match i {
-                0 => canvas.line(from, to, 6.0, TRUTH)?,
-                1 => canvas.line(from, to, 2.4, self.colour)?,
-                2 => canvas.marker(Marker::Circle, middle, 5.0, self.colour)?,
-                3 => hollow(canvas, middle, self.colour)?,
-                4 => canvas.marker(Marker::Circle, middle, 4.5, ink)?,
-                5 => canvas.marker(Marker::Triangle, middle, 6.0, self.colour)?,
-                _ => wrong(canvas, middle, i > 6)?,
-            }
-            canvas.text(word, (x + 38.0, y), TEXT - 1.0, TextSide::Left, ink)?;
-            x += wide;
-        }
-        Ok(())
+        key(canvas, (24.0, 664.0), KeyLayout::Row, TEXT - 1.0, items);
     }
 }
 
@@ -214,26 +185,25 @@ impl Trail {
     }
 
     /// Phases one after the other, named where there is room.
-    fn band<B: DrawingBackend>(
+    fn band(
         &self,
-        canvas: &Canvas<'_, B>,
+        canvas: &mut Canvas,
         place: impl Fn(f64) -> f64,
         (left, right, top): (f64, f64, f64),
-    ) -> Result<(), DrawError> {
+    ) {
         let starts = self.events.iter().map(|(t, phase, _)| (place(*t), *phase));
         let starts: Vec<_> = std::iter::once((left, self.phase)).chain(starts).collect();
         for (i, (from, phase)) in starts.iter().enumerate() {
             let to = starts.get(i + 1).map_or(right, |next| next.0);
             let to = to.max(from + 1.0).min(right);
-            canvas.fill((*from, top), (to, top + BAND), palette::phase(*phase))?;
+            canvas.fill((*from, top), (to, top + BAND), palette::phase(*phase));
             let name = phase.as_str().replace('-', " ");
             if to - from > 11.0 * name.len() as f64 {
                 let colour = if *phase == Phase::Contact { palette::INK } else { WHITE };
                 let middle = ((from + to) / 2.0, top + BAND / 2.0);
-                canvas.text(&name, middle, TEXT - 2.0, TextSide::Middle, colour)?;
+                canvas.text(&name, middle, TEXT - 2.0, TextSide::Middle, colour);
             }
         }
-        Ok(())
     }
 }
 
@@ -260,25 +230,19 @@ impl Factor {
 }
 
 /// A disc, with a cross where the engine alone has the event.
-fn wrong<B: DrawingBackend>(
-    canvas: &Canvas<'_, B>,
-    at: At,
-    spurious: bool,
-) -> Result<(), DrawError> {
-    canvas.marker(Marker::Circle, at, 9.0, palette::INK)?;
-    canvas.marker(Marker::Circle, at, 7.4, WRONG)?;
-    if spurious { canvas.marker(Marker::Cross, at, 4.6, palette::INK) } else { Ok(()) }
+fn wrong(canvas: &mut Canvas, at: At, spurious: bool) {
+    canvas.marker(Marker::Circle, at, 9.0, palette::INK);
+    canvas.marker(Marker::Circle, at, 7.4, WRONG);
+    if spurious {
+        canvas.marker(Marker::Cross, at, 4.6, palette::INK);
+    }
 }
 
-fn hollow<B: DrawingBackend>(
-    canvas: &Canvas<'_, B>,
-    at: At,
-    colour: RGBColor,
-) -> Result<(), DrawError> {
+fn hollow(canvas: &mut Canvas, at: At, colour: Colour) {
     const HALF: f64 = 6.0;
     let corner = |(x, y): At| (at.0 + HALF * x, at.1 + HALF * y);
-    let corners = [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)].map(corner);
-    corners.windows(2).try_for_each(|pair| canvas.line(pair[0], pair[1], 1.6, colour))
+    let corners = [(0.0, -1.0), (1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0), (1.0, 0.0)];
+    canvas.trace(&corners.map(corner), 1.6, Stroke::Solid, colour);
 }
 
 #[cfg(test)]

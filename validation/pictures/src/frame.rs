@@ -1,8 +1,7 @@
 //! A framed panel with ticks on linear or logarithmic axes.
 
 use super::canvas::{At, Canvas, TextSide};
-use super::{DrawError, axes, palette};
-use plotters::prelude::DrawingBackend;
+use super::{axes, palette};
 
 /// How an axis runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,25 +53,30 @@ impl Ruler {
                 ((low - 0.05).floor(), (high + 0.05).ceil())
             }
         };
-        Some(Self::placed(scale, from, to))
+        Some(Self::placed(scale, from, to, MOST_TICKS))
     }
 
     /// A linear axis from one value to another.
     pub fn between(from: f64, to: f64) -> Self {
-        Self::placed(AxisScale::Linear, from, to)
+        Self::placed(AxisScale::Linear, from, to, MOST_TICKS)
     }
 
-    fn placed(scale: AxisScale, from: f64, to: f64) -> Self {
-        let stride = stride((to - from) / MOST_TICKS, scale);
-        let first = (from / stride).ceil() as i64;
-        let last = (to / stride).floor() as i64;
+    /// The axis with at most about so many ticks.
+    pub fn with_ticks(self, most: f64) -> Self {
+        Self::placed(self.scale, self.from, self.to, most)
+    }
+
+    fn placed(scale: AxisScale, from: f64, to: f64, most: f64) -> Self {
+        let step = tick_step((to - from) / most, scale);
+        let first = (from / step).ceil() as i64;
+        let last = (to / step).floor() as i64;
         let label = |value: f64| match scale {
             AxisScale::Linear => axes::label(value, &(from..to)),
             AxisScale::Logarithmic => power_of_ten(value.round() as i64),
         };
-        let tick = |k: i64| (k as f64 * stride, label(k as f64 * stride));
+        let tick = |k: i64| (k as f64 * step, label(k as f64 * step));
         // Where an axis is too narrow for its size its ticks cannot be told apart.
-        let ticks = (first..=last).take(4 * MOST_TICKS as usize).map(tick);
+        let ticks = (first..=last).take(4 * most as usize).map(tick);
         Self { scale, from, to, ticks: ticks.collect() }
     }
 
@@ -83,17 +87,17 @@ impl Ruler {
             AxisScale::Logarithmic if value > 0.0 => value.log10(),
             AxisScale::Logarithmic => self.from,
         };
-        self.share(placed)
+        self.fraction(placed)
     }
 
     /// The place of a tick on the axis, from 0 to 1.
-    pub fn share(&self, placed: f64) -> f64 {
+    pub fn fraction(&self, placed: f64) -> f64 {
         (placed - self.from) / (self.to - self.from)
     }
 }
 
 /// The next of 1, 2, 5 times a power of ten.
-fn stride(rough: f64, scale: AxisScale) -> f64 {
+fn tick_step(rough: f64, scale: AxisScale) -> f64 {
     let power = 10.0_f64.powf(rough.log10().floor());
     let nice = [1.0, 2.0, 5.0, 10.0].map(|k| k * power).into_iter().find(|k| *k >= rough);
     let nice = nice.unwrap_or(rough);
@@ -133,46 +137,36 @@ impl Panel {
         (across, down)
     }
 
-    pub fn draw<B: DrawingBackend>(
-        &self,
-        canvas: &Canvas<'_, B>,
-        below: &str,
-        beside: &str,
-    ) -> Result<(), DrawError> {
+    pub fn draw(&self, canvas: &mut Canvas, below: &str, beside: &str) {
         let (from, to) = (self.from, self.to);
         for (placed, _) in &self.x.ticks {
-            let x = from.0 + self.x.share(*placed) * (to.0 - from.0);
-            canvas.line((x, from.1), (x, to.1), 1.0, palette::GRID)?;
+            let x = from.0 + self.x.fraction(*placed) * (to.0 - from.0);
+            canvas.line((x, from.1), (x, to.1), 1.0, palette::GRID);
         }
         for (placed, _) in &self.y.ticks {
-            let y = to.1 - self.y.share(*placed) * (to.1 - from.1);
-            canvas.line((from.0, y), (to.0, y), 1.0, palette::GRID)?;
+            let y = to.1 - self.y.fraction(*placed) * (to.1 - from.1);
+            canvas.line((from.0, y), (to.0, y), 1.0, palette::GRID);
         }
-        self.draw_over(canvas, below, beside)
+        self.draw_over(canvas, below, beside);
     }
 
     /// Frame, labels and names without lines across: what is drawn already stays.
-    pub fn draw_over<B: DrawingBackend>(
-        &self,
-        canvas: &Canvas<'_, B>,
-        below: &str,
-        beside: &str,
-    ) -> Result<(), DrawError> {
+    pub fn draw_over(&self, canvas: &mut Canvas, below: &str, beside: &str) {
         let (from, to) = (self.from, self.to);
         for (placed, label) in &self.x.ticks {
-            let x = from.0 + self.x.share(*placed) * (to.0 - from.0);
-            canvas.line((x, to.1), (x, to.1 + 6.0), 1.0, palette::INK)?;
-            canvas.text(label, (x, to.1 + 20.0), TEXT, TextSide::Middle, palette::INK)?;
+            let x = from.0 + self.x.fraction(*placed) * (to.0 - from.0);
+            canvas.line((x, to.1), (x, to.1 + 6.0), 1.0, palette::INK);
+            canvas.text(label, (x, to.1 + 20.0), TEXT, TextSide::Middle, palette::INK);
         }
         for (placed, label) in &self.y.ticks {
-            let y = to.1 - self.y.share(*placed) * (to.1 - from.1);
-            canvas.line((from.0 - 6.0, y), (from.0, y), 1.0, palette::INK)?;
-            canvas.text(label, (from.0 - 10.0, y), TEXT, TextSide::Right, palette::INK)?;
+            let y = to.1 - self.y.fraction(*placed) * (to.1 - from.1);
+            canvas.line((from.0 - 6.0, y), (from.0, y), 1.0, palette::INK);
+            canvas.text(label, (from.0 - 10.0, y), TEXT, TextSide::Right, palette::INK);
         }
-        canvas.frame(from, to)?;
+        canvas.frame(from, to);
         let middle = ((from.0 + to.0) / 2.0, to.1 + 52.0);
-        canvas.text(below, middle, TEXT + 2.0, TextSide::Middle, palette::INK)?;
-        canvas.upright(beside, (from.0 - 96.0, (from.1 + to.1) / 2.0), TEXT + 2.0)
+        canvas.text(below, middle, TEXT + 2.0, TextSide::Middle, palette::INK);
+        canvas.upright(beside, (from.0 - 96.0, (from.1 + to.1) / 2.0), TEXT + 2.0);
     }
 }
 

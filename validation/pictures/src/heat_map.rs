@@ -1,9 +1,7 @@
 //! A table of tinted cells: engines by something.
 
 use super::canvas::{Canvas, TextSide};
-use super::{DrawError, Drawing, palette};
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use super::{Colour, Drawing, palette};
 
 const ROW: u32 = 38;
 const HEAD: u32 = 110;
@@ -66,43 +64,36 @@ impl Drawing for HeatMap {
         (width.clamp(900, 4000), HEAD + rows * ROW + MARGIN)
     }
 
-    fn draw<B: DrawingBackend>(
-        &self,
-        area: &DrawingArea<B, Shift>,
-        scale: u32,
-    ) -> Result<(), DrawError> {
-        let canvas = Canvas { area, scale };
+    fn draw(&self, canvas: &mut Canvas) {
         let [margin, head, row, label] = [MARGIN, HEAD, ROW, LABEL].map(f64::from);
         let left = margin + label;
         let middle = |i: usize| left + self.cell() * (i as f64 + 0.5);
-        canvas.paper()?;
-        canvas.text(&self.title, (margin, 28.0), TEXT + 4.0, TextSide::Left, palette::INK)?;
-        canvas.text(&self.note, (margin, 58.0), TEXT - 2.0, TextSide::Left, palette::INK)?;
+        canvas.title(&self.title);
+        canvas.text(&self.note, (margin, 58.0), TEXT - 2.0, TextSide::Left, palette::INK);
         for (i, name) in self.columns.iter().enumerate() {
-            canvas.text(name, (middle(i), head - 16.0), TEXT, TextSide::Middle, palette::INK)?;
+            canvas.text(name, (middle(i), head - 16.0), TEXT, TextSide::Middle, palette::INK);
         }
         for (j, (name, cells)) in self.rows.iter().enumerate() {
             let top = head + j as f64 * row;
-            canvas.text(name, (margin, top + row / 2.0), TEXT, TextSide::Left, palette::INK)?;
+            canvas.text(name, (margin, top + row / 2.0), TEXT, TextSide::Left, palette::INK);
             for (i, cell) in cells.iter().enumerate() {
                 let from = left + self.cell() * i as f64;
                 let (paper, ink) = colours(cell.tint);
                 let to = (from + self.cell() - 2.0, top + row - 2.0);
-                canvas.fill((from, top), to, paper)?;
+                canvas.fill((from, top), to, paper);
                 let at = (middle(i) - 1.0, top + row / 2.0 - 1.0);
-                canvas.text(&cell.text, at, TEXT - 1.0, TextSide::Middle, ink)?;
+                canvas.text(&cell.text, at, TEXT - 1.0, TextSide::Middle, ink);
             }
         }
-        Ok(())
     }
 }
 
-const fn colours(tint: Tint) -> (RGBColor, RGBColor) {
+const fn colours(tint: Tint) -> (Colour, Colour) {
     match tint {
-        Tint::Good => (RGBColor(220, 242, 232), RGBColor(10, 110, 79)),
-        Tint::Fair => (RGBColor(223, 237, 251), RGBColor(11, 83, 148)),
-        Tint::Poor => (RGBColor(252, 236, 200), RGBColor(122, 77, 0)),
-        Tint::Bad => (RGBColor(251, 227, 224), RGBColor(179, 38, 30)),
-        Tint::None => (RGBColor(240, 242, 244), RGBColor(91, 100, 112)),
+        Tint::Good => (Colour(220, 242, 232), Colour(10, 110, 79)),
+        Tint::Fair => (Colour(223, 237, 251), Colour(11, 83, 148)),
+        Tint::Poor => (Colour(252, 236, 200), Colour(122, 77, 0)),
+        Tint::Bad => (Colour(251, 227, 224), Colour(179, 38, 30)),
+        Tint::None => (Colour(240, 242, 244), Colour(91, 100, 112)),
     }
 }

@@ -1,10 +1,8 @@
-//! Histograms below each other on one axis, a strip each.
+//! Histograms below each other on one axis.
 
 use super::canvas::{Canvas, TextSide};
 use super::frame::{AxisScale, Ruler, power_of_ten};
-use super::{DrawError, Drawing, palette};
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use super::{Colour, Drawing, palette};
 
 const ROW: u32 = 46;
 const HEAD: u32 = 64;
@@ -19,7 +17,7 @@ pub struct HistogramRow {
     /// The histogram's name.
     pub name: String,
     /// The histogram's colour.
-    pub colour: RGBColor,
+    pub colour: Colour,
     /// Edges of the bins as exponents of ten, one more than counts.
     pub edges: Vec<f64>,
     /// What is in each bin.
@@ -34,7 +32,7 @@ pub struct Histograms {
     /// The axis's name.
     pub label: String,
     /// The histograms from top to bottom.
-    pub strips: Vec<HistogramRow>,
+    pub rows: Vec<HistogramRow>,
 }
 
 impl HistogramRow {
@@ -48,56 +46,42 @@ impl HistogramRow {
 
 impl Drawing for Histograms {
     fn size(&self) -> (u32, u32) {
-        let rows = u32::try_from(self.strips.len()).unwrap_or(0).clamp(1, 200);
+        let rows = u32::try_from(self.rows.len()).unwrap_or(0).clamp(1, 200);
         (1500, HEAD + rows * ROW + FOOT)
     }
 
-    fn draw<B: DrawingBackend>(
-        &self,
-        area: &DrawingArea<B, Shift>,
-        scale: u32,
-    ) -> Result<(), DrawError> {
-        let canvas = Canvas { area, scale };
-        let [head, row] = [HEAD, ROW].map(f64::from);
-        canvas.paper()?;
-        canvas.text(&self.title, (24.0, 28.0), TEXT + 4.0, TextSide::Left, palette::INK)?;
+    fn draw(&self, canvas: &mut Canvas) {
+        let [head, height] = [HEAD, ROW].map(f64::from);
+        canvas.title(&self.title);
         let edges =
-            self.strips.iter().flat_map(HistogramRow::bins).flat_map(|(from, to, _)| [from, to]);
+            self.rows.iter().flat_map(HistogramRow::bins).flat_map(|(from, to, _)| [from, to]);
         let Some(ruler) = Ruler::over(AxisScale::Linear, edges) else {
-            return canvas.text(
-                "nothing was measured",
-                (24.0, head + 20.0),
-                TEXT,
-                TextSide::Left,
-                palette::INK,
-            );
+            let at = (24.0, head + 20.0);
+            return canvas.text("nothing was measured", at, TEXT, TextSide::Left, palette::INK);
         };
-        let bottom = head + self.strips.len() as f64 * row;
-        let across = |share: f64| LEFT + share * (RIGHT - LEFT);
+        let bottom = head + self.rows.len() as f64 * height;
+        let across = |place: f64| LEFT + place * (RIGHT - LEFT);
         for (value, label) in &ruler.ticks {
             let whole = (value - value.round()).abs() < 1e-9;
             let label = if whole { power_of_ten(value.round() as i64) } else { label.clone() };
-            let x = across(ruler.share(*value));
-            canvas.line((x, head), (x, bottom), 1.0, palette::GRID)?;
-            canvas.text(&label, (x, bottom + 20.0), TEXT, TextSide::Middle, palette::INK)?;
+            let x = across(ruler.fraction(*value));
+            canvas.line((x, head), (x, bottom), 1.0, palette::GRID);
+            canvas.text(&label, (x, bottom + 20.0), TEXT, TextSide::Middle, palette::INK);
         }
-        for (i, strip) in self.strips.iter().enumerate() {
-            let base = head + (i + 1) as f64 * row;
-            let most = strip.bins().map(|bin| bin.2).max().unwrap_or(1) as f64;
-            canvas.line((LEFT, base), (RIGHT, base), 1.0, palette::GRID)?;
-            let at = (LEFT - 16.0, base - row / 2.0);
-            canvas.text(&strip.name, at, TEXT, TextSide::Right, palette::INK)?;
-            for (from, to, count) in strip.bins() {
-                let tall = ((row - 8.0) * count as f64 / most).max(1.0);
-                let [from, to] = [from, to].map(|edge| across(ruler.share(edge)));
-                canvas.fill(
-                    (from, base - tall),
-                    ((to - 1.0).max(from + 1.0), base),
-                    strip.colour,
-                )?;
+        for (i, row) in self.rows.iter().enumerate() {
+            let base = head + (i + 1) as f64 * height;
+            let most = row.bins().map(|bin| bin.2).max().unwrap_or(1) as f64;
+            canvas.line((LEFT, base), (RIGHT, base), 1.0, palette::GRID);
+            let at = (LEFT - 16.0, base - height / 2.0);
+            canvas.text(&row.name, at, TEXT, TextSide::Right, palette::INK);
+            for (from, to, count) in row.bins() {
+                let tall = ((height - 8.0) * count as f64 / most).max(1.0);
+                let [from, to] = [from, to].map(|edge| across(ruler.fraction(edge)));
+                let corner = ((to - 1.0).max(from + 1.0), base);
+                canvas.fill((from, base - tall), corner, row.colour);
             }
         }
         let middle = ((LEFT + RIGHT) / 2.0, bottom + 54.0);
-        canvas.text(&self.label, middle, TEXT + 1.0, TextSide::Middle, palette::INK)
+        canvas.text(&self.label, middle, TEXT + 1.0, TextSide::Middle, palette::INK);
     }
 }

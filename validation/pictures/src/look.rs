@@ -1,16 +1,16 @@
 //! The look of an engine: a family of colours a library, a shade and a marker an engine, the same
 //! in every picture and on every page.
 
+use super::colour::Colour;
 use percuss_engines::engine::{self, Colours};
-use plotters::style::RGBColor;
 
 /// How an engine is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
     /// The colour on white.
-    pub light: RGBColor,
+    pub light: Colour,
     /// The colour on black.
-    pub dark: RGBColor,
+    pub dark: Colour,
     /// The shape of its points.
     pub marker: Marker,
 }
@@ -78,21 +78,21 @@ fn look(name: &str, all: &[(&str, Colours)]) -> Look {
 /// The first is black or white, all others of the family are grey.
 fn ink(place: usize) -> Look {
     let (light, dark, marker) = match place {
-        0 => (RGBColor(20, 20, 20), RGBColor(245, 245, 245), Marker::Circle),
-        _ => (RGBColor(125, 125, 125), RGBColor(150, 150, 150), Marker::Diamond),
+        0 => (Colour(20, 20, 20), Colour(245, 245, 245), Marker::Circle),
+        _ => (Colour(125, 125, 125), Colour(150, 150, 150), Marker::Diamond),
     };
     Look { light, dark, marker }
 }
 
 /// Hue in degrees, saturation and lightness from 0 to 1.
-fn colour(hue: f64, saturation: f64, lightness: f64) -> RGBColor {
+fn colour(hue: f64, saturation: f64, lightness: f64) -> Colour {
     let strength = saturation * lightness.min(1.0 - lightness);
     let channel = |offset: f64| {
         let k = (offset + hue / 30.0) % 12.0;
         let value = lightness - strength * (k - 3.0).min(9.0 - k).clamp(-1.0, 1.0);
         (255.0 * value).round() as u8
     };
-    RGBColor(channel(0.0), channel(8.0), channel(4.0))
+    Colour(channel(0.0), channel(8.0), channel(4.0))
 }
 
 #[cfg(test)]
@@ -101,9 +101,9 @@ mod tests {
 
     #[test]
     fn hues() {
-        assert_eq!(colour(0.0, 1.0, 0.5), RGBColor(255, 0, 0));
-        assert_eq!(colour(120.0, 1.0, 0.5), RGBColor(0, 255, 0));
-        assert_eq!(colour(240.0, 1.0, 0.25), RGBColor(0, 0, 128));
+        assert_eq!(colour(0.0, 1.0, 0.5), Colour(255, 0, 0));
+        assert_eq!(colour(120.0, 1.0, 0.5), Colour(0, 255, 0));
+        assert_eq!(colour(240.0, 1.0, 0.25), Colour(0, 0, 128));
     }
 
     #[test]

@@ -72,7 +72,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     arguments.output.destination().write(|out| match format {
         Format::Csv => write_csv(&steps, out),
         Format::Png => Ok(out.write_all(&picture::png(&drawing(&diagram, &steps))?)?),
-        Format::Svg => Ok(out.write_all(picture::svg(&drawing(&diagram, &steps))?.as_bytes())?),
+        Format::Svg => Ok(out.write_all(picture::svg(&drawing(&diagram, &steps)).as_bytes())?),
     })?;
     tell_endless(&steps);
     Ok(tell_undecidable(diagram.parameter, &steps))

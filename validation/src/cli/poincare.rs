@@ -153,7 +153,7 @@ fn draw(
     out: &mut dyn Write,
 ) -> Result<()> {
     let points = strobes.map(|strobe| [strobe.state.p, strobe.state.y]).collect();
-    let sheet = Figure {
+    let figure = Figure {
         title: picture::caption(problem.model.parameters()),
         caption: format!(
             "{} points at \u{3c9}\u{3c4} mod 2\u{3c0} = {}, after {} forcing periods",
@@ -168,5 +168,5 @@ fn draw(
             layers: vec![Layer::cloud(points, picture::INK)],
         }],
     };
-    Ok(out.write_all(&picture::png(&sheet)?)?)
+    Ok(out.write_all(&picture::png(&figure)?)?)
 }

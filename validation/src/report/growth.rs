@@ -3,10 +3,10 @@
 use super::ErrorGrowth;
 use super::pictures::{GREY, Palette};
 use super::setting::{setting, who};
-use crate::picture::RGBColor;
+use crate::picture::Colour;
 use crate::picture::{Axis, AxisScale, Curve, Curves, Stroke};
 
-const INK: RGBColor = RGBColor(20, 20, 20);
+const INK: Colour = Colour(20, 20, 20);
 
 impl Palette {
     pub(super) fn growth(&self, case: &str, runs: &[&ErrorGrowth]) -> Curves {

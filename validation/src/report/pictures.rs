@@ -5,7 +5,7 @@ use super::setting::{setting, who};
 use super::summary::{self, EngineSummary, SettingSummary};
 use super::{Report, ReportEvidence, RestartHistogram, SectionPair};
 use crate::number::brief;
-use crate::picture::RGBColor;
+use crate::picture::Colour;
 use crate::picture::{
     self, Axis, AxisScale, Curve, Curves, DrawError, Drawing, Encounter, Figure, HeatCell, HeatMap,
     HistogramRow, Histograms, Layer, Look, Marker, Plot, Stroke, Tint, looks, png, svg,
@@ -17,7 +17,7 @@ use rayon::prelude::*;
 const MOST_SVG_POINTS: usize = 6000;
 /// Wrong events are drawn one by one where at most this many cases are chosen.
 const FEW_CASES: usize = 3;
-pub(super) const GREY: RGBColor = RGBColor(150, 150, 150);
+pub(super) const GREY: Colour = Colour(150, 150, 150);
 
 /// A picture's file name and bytes.
 pub type PictureFile = (String, Vec<u8>);
@@ -41,12 +41,12 @@ pub fn pictures(report: &Report, evidence: &ReportEvidence) -> Result<Vec<Pictur
         by_case(&evidence.growth, |it| &it.case)
             .map(|(case, runs)| (format!("error-growth-{case}"), palette.growth(case, &runs))),
     );
-    let mut tiles = vec![("recall".to_owned(), recall(report, &summaries))];
+    let mut heat_maps = vec![("recall".to_owned(), recall(report, &summaries))];
     let grazing = Grazing::of(report, evidence);
     if !grazing.lines.is_empty() {
-        tiles.push(("grazing".to_owned(), touches(grazing)));
+        heat_maps.push(("grazing".to_owned(), touches(grazing)));
     }
-    let strips: Vec<_> = by_case(&evidence.restarts, |it| &it.case)
+    let histograms: Vec<_> = by_case(&evidence.restarts, |it| &it.case)
         .flat_map(|(case, runs)| palette.restarts(case, &runs))
         .collect();
     let clouds: Vec<_> = evidence.sections.iter().enumerate().map(attractors).collect();
@@ -54,8 +54,8 @@ pub fn pictures(report: &Report, evidence: &ReportEvidence) -> Result<Vec<Pictur
     let drawn = [
         drawn(&events, |_| true)?,
         drawn(&curves, |_| true)?,
-        drawn(&tiles, |_| true)?,
-        drawn(&strips, |_| true)?,
+        drawn(&heat_maps, |_| true)?,
+        drawn(&histograms, |_| true)?,
         drawn(&clouds, |it| it.points() <= MOST_SVG_POINTS)?,
     ];
     Ok(drawn.into_iter().flatten().collect())
@@ -79,7 +79,7 @@ fn drawn<D: Drawing + Sync>(
     let both = |(name, drawing): &(String, D)| {
         let mut files = vec![(format!("{name}.png"), png(drawing)?)];
         if small(drawing) {
-            files.push((format!("{name}.svg"), svg(drawing)?.into_bytes()));
+            files.push((format!("{name}.svg"), svg(drawing).into_bytes()));
         }
         Ok(files)
     };
@@ -118,7 +118,7 @@ impl Palette {
         Self { looks: looks.map(|((name, _), look)| ((*name).to_owned(), look)).collect() }
     }
 
-    pub(super) fn colour(&self, engine: &str) -> RGBColor {
+    pub(super) fn colour(&self, engine: &str) -> Colour {
         self.look(engine).map_or(GREY, |look| look.light)
     }
 
@@ -170,7 +170,7 @@ impl Palette {
                 units.push(&run.unit);
             }
         }
-        let strip = |run: &&&RestartHistogram| HistogramRow {
+        let row = |run: &&&RestartHistogram| HistogramRow {
             name: who(&run.engine, &setting(run.tolerance, None)),
             colour: self.colour(&run.engine),
             edges: run.edges.clone(),
@@ -178,13 +178,13 @@ impl Palette {
         };
         let picture = |(i, unit): (usize, &&str)| {
             let suffix = if i == 0 { String::new() } else { format!("-{}", i + 1) };
-            let strips = runs.iter().filter(|run| run.unit == **unit);
-            let strips = Histograms {
+            let chosen = runs.iter().filter(|run| run.unit == **unit);
+            let histograms = Histograms {
                 title: format!("Errors after one impact and separation: {case}"),
                 label: format!("error in units of {unit}"),
-                strips: strips.collect::<Vec<_>>().iter().map(strip).collect(),
+                rows: chosen.collect::<Vec<_>>().iter().map(row).collect(),
             };
-            (format!("restart-errors-{case}{suffix}"), strips)
+            (format!("restart-errors-{case}{suffix}"), histograms)
         };
         units.iter().enumerate().map(picture).collect()
     }
@@ -255,7 +255,7 @@ fn attractors((i, pair): (usize, &SectionPair)) -> (String, Figure) {
         window: None,
         layers: vec![Layer::cloud(points.to_vec(), colour)],
     };
-    let sheet = Figure {
+    let figure = Figure {
         title: format!("Attractors at \u{3c9} = {}, \u{3be} = {}", pair.omega, pair.xi),
         caption: pair.distances.iter().map(told).collect::<Vec<_>>().join("; "),
         columns: 2,
@@ -265,5 +265,5 @@ fn attractors((i, pair): (usize, &SectionPair)) -> (String, Figure) {
             plot(&pair.direct_engine, &pair.direct, picture::phase_colour(Phase::NoContact)),
         ],
     };
-    (format!("attractors-{}", i + 1), sheet.on_the_same_axes())
+    (format!("attractors-{}", i + 1), figure.on_the_same_axes())
 }

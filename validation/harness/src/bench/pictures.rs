@@ -31,7 +31,7 @@ pub(super) fn both(drawn: &[(String, Curves)]) -> Result<Vec<Picture>, DrawError
     let mut files = Vec::new();
     for (name, curves) in drawn {
         files.push((format!("{name}.png"), png(curves)?));
-        files.push((format!("{name}.svg"), svg(curves)?.into_bytes()));
+        files.push((format!("{name}.svg"), svg(curves).into_bytes()));
     }
     Ok(files)
 }

@@ -5,7 +5,7 @@ use super::attractors::{found, of_period};
 use super::continued::branch;
 use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
-use crate::picture::RGBColor;
+use crate::picture::Colour;
 use crate::picture::{Figure, INK, KeyEntry, Layer, Plot, Stroke};
 use percuss::dynamics::continuation::{Bifurcation, BifurcationKind, Branch, BranchPoint};
 use percuss::dynamics::orbit::Orbit;
@@ -13,13 +13,13 @@ use percuss::dynamics::orbit::Orbit;
 const RANGE: (f64, f64) = (1.35, 1.72);
 
 /// A family of orbits: its period, where it is taken up, and its colour.
-const FAMILIES: [(u32, f64, RGBColor); 6] = [
-    (4, 1.4, RGBColor(0, 0, 0)),
-    (12, 1.45, RGBColor(200, 0, 30)),
-    (6, 1.58, RGBColor(0, 114, 178)),
-    (3, 1.7, RGBColor(0, 158, 115)),
-    (5, 1.6, RGBColor(213, 94, 0)),
-    (9, 1.7, RGBColor(170, 90, 150)),
+const FAMILIES: [(u32, f64, Colour); 6] = [
+    (4, 1.4, Colour(0, 0, 0)),
+    (12, 1.45, Colour(200, 0, 30)),
+    (6, 1.58, Colour(0, 114, 178)),
+    (3, 1.7, Colour(0, 158, 115)),
+    (5, 1.6, Colour(213, 94, 0)),
+    (9, 1.7, Colour(170, 90, 150)),
 ];
 
 pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
@@ -38,7 +38,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
         (work.step)();
     }
     let mut findings = Findings::default();
-    findings.picture("figure-10-branches", &sheet(&branches))?;
+    findings.picture("figure-10-branches", &drawing(&branches))?;
     let rows = branches.iter().flat_map(|(period, _, branch)| {
         branch.points.iter().flat_map(move |point| rows(*period, point))
     });
@@ -62,7 +62,7 @@ fn rows(period: u32, point: &BranchPoint) -> impl Iterator<Item = Vec<String>> +
 }
 
 /// One line per strobe and stretch of equal stability, up to where that changes.
-fn lines(branch: &Branch, colour: RGBColor) -> Vec<Layer> {
+fn lines(branch: &Branch, colour: Colour) -> Vec<Layer> {
     let alike = |a: &BranchPoint, b: &BranchPoint| {
         a.orbit.is_stable() == b.orbit.is_stable() && a.orbit.points.len() == b.orbit.points.len()
     };
@@ -106,10 +106,10 @@ fn change<'a>(
 /// Squares where a branch turns, doubles or grazes.
 fn marks(branch: &Branch) -> Vec<Layer> {
     let colour = |kind: BifurcationKind| match kind {
-        BifurcationKind::Fold => RGBColor(0, 0, 0),
-        BifurcationKind::Flip => RGBColor(200, 0, 30),
-        BifurcationKind::Grazing => RGBColor(130, 130, 130),
-        BifurcationKind::NeimarkSacker => RGBColor(0, 158, 115),
+        BifurcationKind::Fold => Colour(0, 0, 0),
+        BifurcationKind::Flip => Colour(200, 0, 30),
+        BifurcationKind::Grazing => Colour(130, 130, 130),
+        BifurcationKind::NeimarkSacker => Colour(0, 158, 115),
     };
     let mark = |it: &Bifurcation| Layer::Dots {
         points: it.orbit.points.iter().map(|point| [it.value, point[0]]).collect(),
@@ -119,11 +119,11 @@ fn marks(branch: &Branch) -> Vec<Layer> {
     branch.bifurcations.iter().map(mark).collect()
 }
 
-fn sheet(branches: &[(u32, RGBColor, Branch)]) -> Figure {
+fn drawing(branches: &[(u32, Colour, Branch)]) -> Figure {
     let mut layers: Vec<Layer> =
         branches.iter().flat_map(|(_, colour, branch)| lines(branch, *colour)).collect();
     layers.extend(branches.iter().flat_map(|(.., branch)| marks(branch)));
-    let key = |(period, _, colour): (u32, f64, RGBColor)| KeyEntry {
+    let key = |(period, _, colour): (u32, f64, Colour)| KeyEntry {
         name: format!("P{period}"),
         colour,
         stroke: Some(Stroke::Solid),

@@ -36,7 +36,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     findings.claims.push(settle_a(work, &corrected, &stable)?);
     findings.claims.push(settle_b(work, &uncorrected, &stable)?);
     findings.claims.push(settle_12(work, &uncorrected, &stable)?);
-    findings.picture("figure-10", &sheet(&corrected, &uncorrected))?;
+    findings.picture("figure-10", &drawing(&corrected, &uncorrected))?;
     for (name, steps) in [("figure-10a", &corrected), ("figure-10b", &uncorrected)] {
         findings.csv(name, &["omega", "p", "y", "q", "drift_per_period"], rows(steps))?;
     }
@@ -199,7 +199,7 @@ fn settle_12(
         ))
 }
 
-fn sheet(corrected: &[DiagramStep], uncorrected: &[DiagramStep]) -> Figure {
+fn drawing(corrected: &[DiagramStep], uncorrected: &[DiagramStep]) -> Figure {
     let plot = |title: &str, steps: &[DiagramStep]| Plot {
         title: title.to_owned(),
         axes: ["\u{3c9}".to_owned(), "p".to_owned()],

@@ -23,7 +23,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let pieces = curve::pieces(&segments, &end, parameters.omega, POINTS);
     let mut findings = Findings::default();
     findings.claims.push(settle(work, &pieces)?);
-    findings.picture("figure-2", &sheet(&pieces, &caption(&parameters)))?;
+    findings.picture("figure-2", &drawing(&pieces, &caption(&parameters)))?;
     findings.csv("figure-2", &HEADER, curve::rows(&pieces))?;
     Ok(findings)
 }
@@ -66,7 +66,7 @@ fn settle(work: &ItemWork<'_>, pieces: &[MotionPiece]) -> Result<Claim, Failure>
     ))
 }
 
-fn sheet(pieces: &[MotionPiece], parameters: &str) -> Figure {
+fn drawing(pieces: &[MotionPiece], parameters: &str) -> Figure {
     let plot = |title: &str, label: &str, layers: Vec<Layer>| Plot {
         title: title.to_owned(),
         axes: ["\u{3c4}".to_owned(), label.to_owned()],

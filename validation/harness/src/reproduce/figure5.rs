@@ -24,7 +24,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let pieces = curve::pieces(&segments, &end, parameters.omega, POINTS);
     let mut findings = Findings::default();
     findings.claims.push(settle(work, &pieces, &parameters)?);
-    findings.picture("figure-5", &sheet(&pieces, &parameters))?;
+    findings.picture("figure-5", &drawing(&pieces, &parameters))?;
     findings.csv("figure-5", &HEADER, curve::rows(&pieces))?;
     Ok(findings)
 }
@@ -58,7 +58,7 @@ fn settle(
         .evidence("exact solver, every phase sampled", "each phase's range of p"))
 }
 
-fn sheet(pieces: &[MotionPiece], parameters: &Parameters) -> Figure {
+fn drawing(pieces: &[MotionPiece], parameters: &Parameters) -> Figure {
     let mut layers = curve::lines(pieces, |at| [at[1], at[2]]);
     layers.extend([Layer::Guide(parameters.g), Layer::Guide(parameters.g + 1.0)]);
     layers.push(curve::key());

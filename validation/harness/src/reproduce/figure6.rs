@@ -4,7 +4,7 @@ use super::claim::{Claim, ClaimVerdict};
 use super::paper::chaotic_model;
 use super::work::{Findings, ItemWork};
 use crate::case;
-use crate::engine::{self, Accuracy, Engine, Failure, Limits};
+use crate::engine::{self, Accuracy, Engine, Failure, Limits, Location};
 use crate::number::brief;
 use crate::picture::{Figure, INK, Layer, Plot, caption, phase_colour};
 use crate::score::attractor::{AttractorTest, Comparison, RunSection, calibrated, run_of};
@@ -24,8 +24,8 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
         .map_err(Failure::new)?;
     let integrated = engines
         .iter()
-        .find(|engine| engine.declaration().library == "ode_solvers")
-        .ok_or_else(|| Failure::new("no integrator was chosen"))?;
+        .find(|engine| engine.declaration().events == Location::Harness)
+        .ok_or_else(|| Failure::new("no integrator has its events located on dense output"))?;
     let exact = section(engine::exact(), Accuracy::Exact)?;
     let other = section(*integrated, Accuracy::Tolerance(TOLERANCE))?;
     let comparisons = compared(&engines)?;
@@ -33,7 +33,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     findings.claims.extend(settle(work, &exact, &other, &comparisons)?);
     let farthest = comparisons.iter().map(|(_, it)| it.share()).fold(0.0, f64::max);
     findings
-        .picture("figure-6", &sheet(&exact, &other, integrated.declaration().name, farthest))?;
+        .picture("figure-6", &drawing(&exact, &other, integrated.declaration().name, farthest))?;
     for (name, section) in [("figure-6a", &exact), ("figure-6b", &other)] {
         let row = |point: &[f64; 3]| point.iter().map(f64::to_string).collect();
         findings.csv(name, &["p", "y", "q"], section.points.iter().map(row))?;
@@ -109,7 +109,7 @@ fn settle(
     Ok([first, second])
 }
 
-fn sheet(exact: &RunSection, other: &RunSection, engine: &str, farthest: f64) -> Figure {
+fn drawing(exact: &RunSection, other: &RunSection, engine: &str, farthest: f64) -> Figure {
     let plot = |title: String, section: &RunSection, colour| Plot {
         title,
         axes: ["p".to_owned(), "y".to_owned()],

@@ -45,7 +45,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
         }
         plots.push(section_plot(&cloud));
         findings.claims.push(settle(work, figure, &attractors)?);
-        findings.picture(figure.name, &sheet(figure, plots))?;
+        findings.picture(figure.name, &drawing(figure, plots))?;
         let row = |point: &[f64; 3]| point.iter().map(f64::to_string).collect();
         findings.csv(
             &format!("{}-strange", figure.name),
@@ -112,7 +112,7 @@ fn section_plot(points: &[[f64; 3]]) -> Plot {
     }
 }
 
-fn sheet(figure: &FigurePanel, plots: Vec<Plot>) -> Figure {
+fn drawing(figure: &FigurePanel, plots: Vec<Plot>) -> Figure {
     Figure {
         title: format!("Fig. {}: coexisting attractors", figure.id.trim_start_matches("fig")),
         caption: format!(

@@ -4,7 +4,7 @@
 use super::paper::chaotic_model;
 use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
-use crate::picture::RGBColor;
+use crate::picture::Colour;
 use crate::picture::{Figure, KeyEntry, Layer, Plot, caption_without};
 use percuss::dynamics::diagram::{Diagram, DiagramStep, Follow};
 use percuss::{Parameter, Parameters, Start};
@@ -27,12 +27,12 @@ enum ProgressionRegime {
     Irregular,
 }
 
-const REGIMES: [(ProgressionRegime, &str, RGBColor); 5] = [
-    (ProgressionRegime::Still, "no progression", RGBColor(150, 150, 150)),
-    (ProgressionRegime::One, "period 1", RGBColor(0, 114, 178)),
-    (ProgressionRegime::Two, "period 2", RGBColor(0, 158, 115)),
-    (ProgressionRegime::Longer, "3 to 32", RGBColor(204, 121, 167)),
-    (ProgressionRegime::Irregular, "irregular", RGBColor(213, 94, 0)),
+const REGIMES: [(ProgressionRegime, &str, Colour); 5] = [
+    (ProgressionRegime::Still, "no progression", Colour(150, 150, 150)),
+    (ProgressionRegime::One, "period 1", Colour(0, 114, 178)),
+    (ProgressionRegime::Two, "period 2", Colour(0, 158, 115)),
+    (ProgressionRegime::Longer, "3 to 32", Colour(204, 121, 167)),
+    (ProgressionRegime::Irregular, "irregular", Colour(213, 94, 0)),
 ];
 
 /// A diagram of the rate.
@@ -57,7 +57,7 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let mut findings = Findings::default();
     for rate in &RATES {
         let steps = rate.steps()?;
-        findings.picture(rate.name, &rate.sheet(&steps))?;
+        findings.picture(rate.name, &rate.drawing(&steps))?;
         let header = [rate.parameter.as_str(), "drift_per_period", "drift_per_time", "period"];
         let row = |step: &DiagramStep| {
             let period = period(step).map_or(String::new(), |period| period.to_string());
@@ -111,10 +111,10 @@ impl Rate {
         step.drift_per_period * omega / std::f64::consts::TAU
     }
 
-    fn sheet(&self, steps: &[DiagramStep]) -> Figure {
+    fn drawing(&self, steps: &[DiagramStep]) -> Figure {
         let axis = |label: &str| [self.label.to_owned(), label.to_owned()];
         let dots = |of: &dyn Fn(&DiagramStep) -> Vec<[f64; 2]>, size: f64| -> Vec<Layer> {
-            let layer = |(kind, _, colour): &(ProgressionRegime, &str, RGBColor)| Layer::Dots {
+            let layer = |(kind, _, colour): &(ProgressionRegime, &str, Colour)| Layer::Dots {
                 points: steps.iter().filter(|step| regime(step) == *kind).flat_map(of).collect(),
                 colour: *colour,
                 size,
@@ -122,7 +122,7 @@ impl Rate {
             REGIMES.iter().map(layer).collect()
         };
         let mut rate = dots(&|step| vec![[step.value, self.per_time(step)]], 2.4);
-        let key = |(_, name, colour): &(ProgressionRegime, &str, RGBColor)| KeyEntry {
+        let key = |(_, name, colour): &(ProgressionRegime, &str, Colour)| KeyEntry {
             name: (*name).to_owned(),
             colour: *colour,
             stroke: None,

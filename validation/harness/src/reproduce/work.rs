@@ -71,11 +71,10 @@ impl Findings {
     ///
     /// # Errors
     /// The drawing library's reason.
-    pub fn picture(&mut self, name: &str, sheet: &Figure) -> Result<(), Failure> {
-        self.files.push((format!("{name}.png"), png(sheet).map_err(Failure::new)?));
-        if sheet.points() <= MOST_SVG_POINTS {
-            self.files
-                .push((format!("{name}.svg"), svg(sheet).map_err(Failure::new)?.into_bytes()));
+    pub fn picture(&mut self, name: &str, figure: &Figure) -> Result<(), Failure> {
+        self.files.push((format!("{name}.png"), png(figure).map_err(Failure::new)?));
+        if figure.points() <= MOST_SVG_POINTS {
+            self.files.push((format!("{name}.svg"), svg(figure).into_bytes()));
         }
         Ok(())
     }

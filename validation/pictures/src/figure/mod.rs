@@ -1,4 +1,4 @@
-//! A sheet: panels of layers under a title, with a caption; what the paper's figures are drawn as.
+//! A figure: panels of layers under a title, with a caption; what the paper's figures are drawn as.
 
 mod layer;
 mod plot;
@@ -8,19 +8,16 @@ pub use plot::{Plot, PlotWindow};
 
 use super::axes::around;
 use super::canvas::{Canvas, TextSide};
-use super::{DrawError, Drawing, palette};
-use plotters::coord::Shift;
-use plotters::prelude::*;
+use super::{Drawing, font, palette};
 
-const TITLE: f64 = 24.0;
 const TEXT: f64 = 18.0;
 /// Height of a line of the caption.
 const LINE: u32 = 26;
 const HEAD: u32 = 56;
-/// Mean width of a letter of the caption, on the generous side.
-const LETTER: usize = 9;
+/// Room on either side of the caption.
+const MARGIN: f64 = 24.0;
 
-/// A sheet of panels, row by row.
+/// Panels under a title, row by row.
 #[derive(Clone, Debug)]
 pub struct Figure {
     /// What it shows.
@@ -36,24 +33,24 @@ pub struct Figure {
 }
 
 impl Figure {
+    /// The caption in lines that are no longer than the figure is wide.
     fn lines(&self) -> Vec<String> {
-        let width = (self.panel.0 as usize * self.columns.max(1)).saturating_sub(48) / LETTER;
-        let mut lines = vec![String::new()];
+        let width = f64::from(self.size_of_panels().0) - 2.0 * MARGIN;
+        let mut lines: Vec<String> = Vec::new();
         for word in self.caption.split_whitespace() {
-            let full = lines
-                .last()
-                .is_some_and(|line| line.chars().count() + word.chars().count() >= width);
-            if full {
-                lines.push(String::new());
-            }
-            if let Some(line) = lines.last_mut() {
-                if !line.is_empty() {
-                    line.push(' ');
-                }
-                line.push_str(word);
+            let longer = lines.last().map(|line| format!("{line} {word}"));
+            match (longer, lines.last_mut()) {
+                (Some(longer), Some(line)) if font::width(&longer, TEXT) <= width => *line = longer,
+                _ => lines.push(word.to_owned()),
             }
         }
         lines
+    }
+
+    fn size_of_panels(&self) -> (u32, u32) {
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let width = self.panel.0.saturating_mul(count(self.columns.max(1)));
+        (width, self.panel.1.saturating_mul(count(self.rows())))
     }
 
     fn rows(&self) -> usize {
@@ -82,31 +79,23 @@ impl Figure {
 
 impl Drawing for Figure {
     fn size(&self) -> (u32, u32) {
-        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
-        let width = self.panel.0.saturating_mul(count(self.columns.max(1)));
-        let panels = self.panel.1.saturating_mul(count(self.rows()));
-        (width, HEAD + panels + 20 + LINE * count(self.lines().len()))
+        let (width, height) = self.size_of_panels();
+        let lines = u32::try_from(self.lines().len()).unwrap_or(u32::MAX);
+        (width, height.saturating_add(HEAD + 20).saturating_add(LINE.saturating_mul(lines)))
     }
 
-    fn draw<B: DrawingBackend>(
-        &self,
-        area: &DrawingArea<B, Shift>,
-        scale: u32,
-    ) -> Result<(), DrawError> {
-        let canvas = Canvas { area, scale };
-        canvas.paper()?;
-        canvas.text(&self.title, (24.0, 30.0), TITLE, TextSide::Left, palette::INK)?;
+    fn draw(&self, canvas: &mut Canvas) {
+        canvas.title(&self.title);
         let (width, height) = (f64::from(self.panel.0), f64::from(self.panel.1));
         for (i, plot) in self.plots.iter().enumerate() {
             let (row, column) = (i / self.columns.max(1), i % self.columns.max(1));
             let corner = (width * column as f64, f64::from(HEAD) + height * row as f64);
-            plot.draw(&canvas, corner, (width, height))?;
+            plot.draw(canvas, corner, (width, height));
         }
         let below = f64::from(HEAD) + height * self.rows() as f64 + 14.0;
         for (i, line) in self.lines().iter().enumerate() {
-            let at = (24.0, below + f64::from(LINE) * i as f64);
-            canvas.text(line, at, TEXT, TextSide::Left, palette::INK)?;
+            let at = (MARGIN, below + f64::from(LINE) * i as f64);
+            canvas.text(line, at, TEXT, TextSide::Left, palette::INK);
         }
-        Ok(())
     }
 }

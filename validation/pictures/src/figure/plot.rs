@@ -1,10 +1,9 @@
-//! One panel of a sheet.
+//! One panel of a figure.
 
 use super::super::canvas::{At, Canvas, TextSide};
 use super::super::frame::{AxisScale, Panel, Ruler};
-use super::super::{DrawError, palette};
+use super::super::palette;
 use super::layer::Layer;
-use plotters::prelude::DrawingBackend;
 
 /// What a panel shows of the plane; where an end is not finite the data decide.
 pub type PlotWindow = [(f64, f64); 2];
@@ -29,15 +28,10 @@ const TOP: f64 = 40.0;
 const BOTTOM: f64 = 84.0;
 
 impl Plot {
-    pub(super) fn draw<B: DrawingBackend>(
-        &self,
-        canvas: &Canvas<'_, B>,
-        corner: At,
-        (width, height): At,
-    ) -> Result<(), DrawError> {
+    pub(super) fn draw(&self, canvas: &mut Canvas, corner: At, (width, height): At) {
         let from = (corner.0 + LEFT, corner.1 + TOP);
         let to = (corner.0 + width - RIGHT, corner.1 + height - BOTTOM);
-        canvas.text(&self.title, (from.0, from.1 - 18.0), TEXT, TextSide::Left, palette::INK)?;
+        canvas.text(&self.title, (from.0, from.1 - 18.0), TEXT, TextSide::Left, palette::INK);
         let ruler = |axis: usize| match self.window {
             Some(window) => {
                 let (from, to) = window[axis];
@@ -55,12 +49,12 @@ impl Plot {
         let (below, above): (Vec<&Layer>, Vec<&Layer>) =
             self.layers.iter().partition(|layer| matches!(layer, Layer::Raster(_)));
         // A raster fills the panel: it would hide the grid.
-        below.iter().try_for_each(|layer| layer.draw(canvas, &panel))?;
+        below.iter().for_each(|layer| layer.draw(canvas, &panel));
         if below.is_empty() {
-            panel.draw(canvas, &self.axes[0], &self.axes[1])?;
+            panel.draw(canvas, &self.axes[0], &self.axes[1]);
         } else {
-            panel.draw_over(canvas, &self.axes[0], &self.axes[1])?;
+            panel.draw_over(canvas, &self.axes[0], &self.axes[1]);
         }
-        above.iter().try_for_each(|layer| layer.draw(canvas, &panel))
+        above.iter().for_each(|layer| layer.draw(canvas, &panel));
     }
 }

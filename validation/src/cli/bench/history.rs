@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let picture = history_picture(&history);
     let bytes = match format {
         Format::Png => png(&picture)?,
-        Format::Svg => svg(&picture)?.into_bytes(),
+        Format::Svg => svg(&picture).into_bytes(),
     };
     arguments.output.destination().write(|out| Ok(out.write_all(&bytes)?))
 }

@@ -96,7 +96,7 @@ fn draw(plan: &Plan, format: Format, out: &mut dyn Write) -> Result<RunEnding> {
     let (segments, ending) = plan.segments_for_picture()?;
     let motion = picture::DrawnMotion::of(&plan.problem, &segments, &plan.last_instant(&segments));
     let bytes = match format {
-        Format::Svg => picture::svg(&motion)?.into_bytes(),
+        Format::Svg => picture::svg(&motion).into_bytes(),
         _ => picture::png(&motion)?,
     };
     out.write_all(&bytes)?;

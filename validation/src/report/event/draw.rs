@@ -2,7 +2,7 @@
 
 use super::super::setting::{setting, who};
 use super::{EventPicture, View, ViewCourse};
-use crate::picture::RGBColor;
+use crate::picture::Colour;
 use crate::picture::{Encounter, TimeStretch, Trail};
 
 impl EventPicture {
@@ -15,7 +15,7 @@ impl EventPicture {
     }
 
     /// The widest view beside the one that tells most.
-    pub(in super::super) fn encounter(&self, colour: RGBColor) -> Encounter {
+    pub(in super::super) fn encounter(&self, colour: Colour) -> Encounter {
         let mut places = vec![0, self.telling];
         places.dedup();
         let shown = places.into_iter().filter_map(|i| self.views.get(i));

@@ -244,10 +244,9 @@ pub(super) fn power(evidence: &ReportEvidence) -> PowerTable {
 
 /// A custom property an engine, on white and on black.
 pub(super) fn colours(looks: &[Look]) -> String {
-    let rule = |of: fn(&Look) -> crate::picture::RGBColor| {
+    let rule = |of: fn(&Look) -> crate::picture::Colour| {
         looks.iter().enumerate().fold(String::new(), |mut rule, (i, look)| {
-            let crate::picture::RGBColor(r, g, b) = of(look);
-            let _ = write!(rule, "--e{i}:#{r:02x}{g:02x}{b:02x};");
+            let _ = write!(rule, "--e{i}:{};", of(look));
             rule
         })
     };

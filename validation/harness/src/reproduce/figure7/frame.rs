@@ -2,7 +2,7 @@
 
 use crate::arrays::Npz;
 use crate::engine::Failure;
-use crate::picture::RGBColor;
+use crate::picture::Colour;
 use crate::picture::{Layer, Plot, Raster, basin_colours};
 use crate::reproduce::attractors::{TRANSIENT, WINDOW, described, grid, map};
 use crate::reproduce::integrated::{NAME, strobes};
@@ -41,7 +41,7 @@ pub(super) struct KeptAttractor {
 /// The steps of progress that a frame tells.
 const STEPS: u64 = 10;
 /// Starts that lead to no attractor.
-const UNRESOLVED: RGBColor = RGBColor(150, 150, 150);
+const UNRESOLVED: Colour = Colour(150, 150, 150);
 
 impl Frame {
     /// Takes a frame from an interrupted run, or computes and keeps it.

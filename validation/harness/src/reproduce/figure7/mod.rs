@@ -65,14 +65,14 @@ fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
         let claims = settle(work, frame, &format!("fig7{letter}"), census)?;
         all_agree &= claims[0].verdict == ClaimVerdict::Reproduced;
         findings.claims.extend(claims);
-        let sheet = sheet(letter, Some(frame.omega), vec![frame.plot("", colours)], cells, 1);
-        findings.picture(&format!("figure-7{letter}"), &sheet)?;
+        let figure = drawing(letter, Some(frame.omega), vec![frame.plot("", colours)], cells, 1);
+        findings.picture(&format!("figure-7{letter}"), &figure)?;
         findings.files.push((format!("figure-7{letter}.npz"), frame.npz()?));
     }
     let plots = frames.iter().zip(&colours).zip(FRAMES).map(|((frame, colours), (letter, ..))| {
         frame.plot(&format!("({letter}) \u{3c9} = {}", frame.omega), colours)
     });
-    findings.picture("figure-7", &sheet("", None, plots.collect(), cells, 3))?;
+    findings.picture("figure-7", &drawing("", None, plots.collect(), cells, 3))?;
     let said: Vec<_> = frames
         .iter()
         .map(|frame| format!("omega = {}: {}", frame.omega, frame.attractors.len()))
@@ -147,7 +147,7 @@ fn agrees(frame: &Frame, printed: &Printed) -> bool {
     periods == printed.periods && printed.chaotic == Some(chaotic)
 }
 
-/// In what a frame and the printed one differ.
+/// Says in what a frame and the printed one differ.
 fn difference(frame: &Frame, printed: &Printed) -> String {
     let said = |periods: &[u32], chaotic: usize| {
         let periods: Vec<_> = periods.iter().map(u32::to_string).collect();
@@ -158,7 +158,7 @@ fn difference(frame: &Frame, printed: &Printed) -> String {
     format!("here {}, in the paper {papers}", said(&periods, chaotic))
 }
 
-fn sheet(
+fn drawing(
     letter: &str,
     omega: Option<f64>,
     plots: Vec<crate::picture::Plot>,

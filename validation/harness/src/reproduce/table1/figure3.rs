@@ -70,7 +70,7 @@ fn labelled(points: &[[f64; 2]], i: usize) -> Vec<Layer> {
     layers
 }
 
-pub(super) fn sheet(told: &Table1Run, pieces: &[MotionPiece]) -> Figure {
+pub(super) fn drawing(told: &Table1Run, pieces: &[MotionPiece]) -> Figure {
     let plane = |at: &[f64; 5]| [at[1], at[2]];
     let mut whole = curve::lines(pieces, plane);
     whole.push(curve::key());

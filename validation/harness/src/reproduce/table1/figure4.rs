@@ -59,7 +59,7 @@ pub(super) fn settle(
         .evidence("Eq. (20) as printed", format!("v(tau0) is off v0 by {jump:.4}")))
 }
 
-pub(super) fn sheet(told: &Table1Run, pieces: &[MotionPiece]) -> Figure {
+pub(super) fn drawing(told: &Table1Run, pieces: &[MotionPiece]) -> Figure {
     let start = told.segments[0].entry().v();
     let mut layers = curve::lines(pieces, |at| [at[0], at[4] - start]);
     layers.push(curve::key());

@@ -71,8 +71,8 @@ pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     findings.claims.push(closed(work, &told, &orbit)?);
     findings.claims.push(figure3::settle(work, &told, &pieces)?);
     findings.claims.push(figure4::settle(work, &told, &pieces)?);
-    findings.picture("figure-3", &figure3::sheet(&told, &pieces))?;
-    findings.picture("figure-4", &figure4::sheet(&told, &pieces))?;
+    findings.picture("figure-3", &figure3::drawing(&told, &pieces))?;
+    findings.picture("figure-4", &figure4::drawing(&told, &pieces))?;
     findings.csv("figures-3-4", &HEADER, curve::rows(&pieces))?;
     findings.csv("table-1", &["point", "phase", "tau", "p", "y", "q"], table(&told))?;
     Ok(findings)

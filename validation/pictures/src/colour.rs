@@ -1,0 +1,27 @@
+//! Colours by their shares of red, green and blue.
+
+use std::fmt;
+
+/// Red, green and blue, each from 0 to 255.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Colour(pub u8, pub u8, pub u8);
+
+/// White.
+pub(super) const WHITE: Colour = Colour(255, 255, 255);
+
+/// Writes the colour as style sheets and SVG do: `#0072b2`.
+impl fmt::Display for Colour {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_colour_is_six_digits() {
+        assert_eq!(Colour(0, 114, 178).to_string(), "#0072b2");
+    }
+}
