@@ -38,7 +38,7 @@ mod run;
 mod state;
 
 pub use crossing::Counters;
-pub use error::InputError;
+pub use error::{InputError, UnknownName};
 pub use model::Model;
 pub use model::entry::Entry;
 pub use model::instant::Instant;

@@ -92,8 +92,19 @@ fn names_are_read_back() {
     let unknown = "zeta".parse::<Parameter>().unwrap_err().to_string();
     assert_eq!(unknown, "\"zeta\" is no parameter: accepted are a, b, xi, omega, g, phi");
     assert_eq!(format!("{:>14}|", Endless::NeverStops), "   never stops|");
-    assert_eq!(attractor::AttractorKind::QuasiPeriodic.to_string(), "quasi-periodic");
-    assert_eq!(continuation::BifurcationKind::NeimarkSacker.to_string(), "neimark-sacker");
+    for endless in Endless::ALL {
+        assert_eq!(endless.to_string().parse(), Ok(endless));
+    }
+    for kind in attractor::AttractorKind::ALL {
+        assert_eq!(kind.to_string().parse(), Ok(kind));
+    }
+    for kind in continuation::BifurcationKind::ALL {
+        assert_eq!(kind.to_string().parse(), Ok(kind));
+    }
+    assert_eq!(attractor::AttractorKind::QuasiPeriodic.as_str(), "quasi-periodic");
+    let unknown = "cusp".parse::<continuation::BifurcationKind>().unwrap_err().to_string();
+    let accepted = "accepted are fold, flip, neimark-sacker, grazing";
+    assert_eq!(unknown, format!("\"cusp\" is no kind of bifurcation: {accepted}"));
 }
 
 #[cfg(feature = "serde")]

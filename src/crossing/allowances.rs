@@ -43,3 +43,11 @@ pub const LONGEST_STEP: f64 = 0.25;
 
 /// What may be left of an excess where its cubic is zero: the series puts it right.
 pub const RESIDUAL: f64 = 1e-6;
+
+/// The part of an exponential below which one step of a guess forgets it.
+pub const SHORT_LIVED: f64 = 0.05;
+
+/// Margin on the largest force in lanes, in its amplitudes. Lanes take the largest force up to the
+/// time in question, which only the rounding of its cosine can exceed; the solver bounds it by its
+/// amplitudes ([`crate::flow::steps::SINKING`]).
+pub const LANE_SINKING: f64 = 1e-12;

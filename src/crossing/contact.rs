@@ -16,11 +16,11 @@ use crate::flow::{Jet, Point};
 use crate::state::State;
 use std::borrow::Borrow;
 
-/// Up to this reach, a length times the rate at which derivatives repeat a rounding, the slack has
-/// room for the derivatives in a piece's coefficients.
+/// The longest reach, a length times the rate at which derivatives repeat a rounding, at which
+/// the slack has room for the derivatives in a piece's coefficients.
 const FEW: f64 = 4.0;
 
-/// Up to this angle of the faster of forcing and free oscillation one piece must do.
+/// The angle of the faster of forcing and free oscillation up to which one piece must do.
 const SHORT: f64 = 2.0;
 
 /// Contact's trial force split into what is forced for ever and what dies out.
@@ -342,9 +342,9 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             let stepped = slack + STEP_ROUNDINGS * f64::EPSILON * (size + b.abs());
             let shape = self.shape(self.eighth(free), stepped);
             let right = (right.elapsed, &right.guard.orders);
-            let swing = &steps.contact_piece;
+            let step = &steps.contact_piece;
             let parts = self.parts(left, split);
-            if parts.stays_inside(&left.guard.orders, right, ends, &shape, swing) {
+            if parts.stays_inside(&left.guard.orders, right, ends, &shape, step) {
                 return Proof::Inside;
             }
         }

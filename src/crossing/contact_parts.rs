@@ -1,7 +1,7 @@
 //! A contact followed in fixed steps from an evaluation: where the trial force may leave its
 //! corridor (a guess), and that it does not before (a certificate in pieces).
 //!
-//! The force less b is a free oscillation and a forced one. A stride of the model's own length
+//! The force less b is a free oscillation and a forced one. A step of the model's own length
 //! turns both by known factors, so that places around an evaluation need none of their own.
 
 use crate::crossing::allowances::{PIECES, REST};
@@ -90,20 +90,20 @@ impl ContactParts<f64> {
     pub fn first_exit(
         &self,
         shape: &ContactShape,
-        swing: &ContactStep<f64>,
+        step: &ContactStep<f64>,
         steps: usize,
     ) -> Result<f64, Self> {
         let corridor = shape.corridor;
         let mut here = *self;
         let (mut last, mut last_rate) = here.value_and_rate(shape);
         for _ in 0..steps {
-            let next = here.after(swing);
+            let next = here.after(step);
             let (value, rate) = next.value_and_rate(shape);
             if corridor.excess(value) >= 0.0 {
                 let threshold = if value >= corridor.high { corridor.high } else { corridor.low };
-                let slopes = (last_rate * swing.length, rate * swing.length);
+                let slopes = (last_rate * step.length, rate * step.length);
                 let share = meeting(last - threshold, value - threshold, slopes);
-                return Ok(here.elapsed + swing.length * share);
+                return Ok(here.elapsed + step.length * share);
             }
             (here, last, last_rate) = (next, value, rate);
         }
@@ -117,7 +117,7 @@ impl ContactParts<f64> {
         (right, right_orders): (f64, &[f64; 4]),
         ends: Ends,
         shape: &ContactShape,
-        swing: &ContactStep<f64>,
+        step: &ContactStep<f64>,
     ) -> bool {
         let inside = |left: &[f64; 4], right: &[f64; 4], length: f64, ends: Ends| {
             let eighth = (-shape.eighth, shape.eighth);
@@ -132,13 +132,13 @@ impl ContactParts<f64> {
         let mut left_ends = Ends { right: false, ..ends };
         for _ in 0..PIECES {
             let rest = right - here.elapsed;
-            if rest < REST * swing.length {
+            if rest < REST * step.length {
                 let ends = Ends { right: ends.right, ..left_ends };
                 return inside(&orders, right_orders, rest, ends);
             }
-            let next = here.after(swing);
+            let next = here.after(step);
             let next_orders = next.guard(shape);
-            if !inside(&orders, &next_orders, swing.length, left_ends) {
+            if !inside(&orders, &next_orders, step.length, left_ends) {
                 return false;
             }
             (here, orders, left_ends) = (next, next_orders, Ends::FREE);

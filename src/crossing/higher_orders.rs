@@ -16,8 +16,8 @@ pub struct PushedOrders<T> {
 }
 
 impl<T: Real> PushedOrders<T> {
-    /// From the exponential that is left, whose third derivative is `rate`^3 times that, and the
-    /// force with its derivative.
+    /// The derivatives from the exponential that is left, whose third derivative is `rate`^3 times
+    /// that, and the force with its derivative.
     #[inline(always)]
     pub fn new([omega2, rate]: [T; 2], left: T, [force, next]: [T; 2]) -> Self {
         Self { omega2, rate, exponential: left * (rate * rate * rate), force, next }
@@ -43,7 +43,7 @@ pub struct ContactOrders<T> {
 }
 
 impl<T: Real> ContactOrders<T> {
-    /// From the force F with its derivative, and f with three.
+    /// The derivatives from the force F with its derivative, and f with three.
     #[inline(always)]
     pub fn new([omega2, two_xi]: [T; 2], [u, v]: [T; 2], [.., second, third]: [T; 4]) -> Self {
         let drive = (two_xi * omega2).times_from(u, v);

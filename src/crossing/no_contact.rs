@@ -15,7 +15,7 @@ use crate::flow::{Jet, Point};
 use crate::state::State;
 use std::borrow::Borrow;
 
-/// Up to this forcing angle one piece may do.
+/// The forcing angle up to which one piece may do.
 const SHORT: f64 = 4.0;
 
 impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {

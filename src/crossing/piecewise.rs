@@ -1,7 +1,7 @@
 //! The certificate of a long flight or progression: pieces in fixed steps from both ends.
 //!
 //! The guard, counted so that it is negative inside, is a parabola, a harmonic and an exponential.
-//! All three are known at an evaluation, and a stride of the model's own length turns the harmonic
+//! All three are known at an evaluation, and a step of the model's own length turns the harmonic
 //! and shrinks the exponential by known factors: the ends of the pieces need no evaluation. In
 //! between there is mostly nothing to prove: the parabola lies below minus the harmonic's
 //! amplitude.
@@ -13,7 +13,7 @@
 
 use crate::crossing::allowances::REST;
 use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
-use crate::flow::steps::{FreeStep, GRIP, PULLING, PUSHING, Steps};
+use crate::flow::steps::{FreeStep, GRIP, PULLING, PUSHING, SINKING, Steps};
 
 /// A guard's excess in parts, at some place.
 #[derive(Clone, Copy, Debug)]
@@ -65,10 +65,10 @@ pub struct PieceEnd {
 }
 
 impl FreeParts {
-    fn after(&self, stride: &FreeStep, shape: &FreeShape) -> Self {
+    fn after(&self, step: &FreeStep, shape: &FreeShape) -> Self {
         const ROUNDINGS: f64 = 8.0 * f64::EPSILON;
         let FreeShape { curvature, strength, grain, .. } = *shape;
-        let FreeStep { length, sin, cos, decay, speed, sag, fall, drop } = *stride;
+        let FreeStep { length, sin, cos, decay, speed, sag, fall, drop } = *step;
         let (lift, gain) = (0.5 * length * curvature, length * curvature);
         let change = length * (self.slope + lift);
         let slopes = self.slope.abs() + lift.abs() + grain;
@@ -84,8 +84,8 @@ impl FreeParts {
         }
     }
 
-    fn before(&self, stride: &FreeStep, shape: &FreeShape) -> Self {
-        self.after(&stride.reversed(), shape)
+    fn before(&self, step: &FreeStep, shape: &FreeShape) -> Self {
+        self.after(&step.reversed(), shape)
     }
 
     /// Value and slope of the parabola and a line that stands for the exponential.
@@ -202,7 +202,7 @@ impl<'a> PiecewiseCertificate<'a> {
     /// - 1 + z).
     fn parts_for_certain(&self, left: &FreeParts) -> bool {
         let FreeShape { curvature, strength, rate, .. } = *self.shape;
-        -left.lasting * (rate * rate) * GRIP > (strength + curvature.max(0.0)) * (1.0 + 1e-9)
+        -left.lasting * (rate * rate) * GRIP > (strength + curvature.max(0.0)) * SINKING
     }
 
     /// Goes from the left end until the amplitude takes over, then back from the right end.
@@ -211,7 +211,7 @@ impl<'a> PiecewiseCertificate<'a> {
         (mut near, mut near_ends): (PieceEnd, Ends),
         (mut far, mut is_root): (PieceEnd, bool),
     ) -> (Proof, f64) {
-        let stride = &self.steps.piece;
+        let step = &self.steps.piece;
         let mut worst = Proof::Inside;
         let mut room = 0.0;
         for _ in 0..MOST_PIECES {
@@ -220,17 +220,17 @@ impl<'a> PiecewiseCertificate<'a> {
             if most < -(room + rounding) {
                 return (worst, room);
             }
-            if far.parts.elapsed - near.parts.elapsed < REST * stride.length {
+            if far.parts.elapsed - near.parts.elapsed < REST * step.length {
                 let last = self.piece(&near, &far, Ends { right: is_root, ..near_ends });
                 return (worst.max(last), room);
             }
             let (left, right, ends);
             if here < -(room + rounding) {
-                let next = self.end(far.parts.before(stride, self.shape));
+                let next = self.end(far.parts.before(step, self.shape));
                 (left, right, ends) = (next, far, Ends { right: is_root, ..Ends::FREE });
                 (far, is_root) = (next, false);
             } else {
-                let next = self.end(near.parts.after(stride, self.shape));
+                let next = self.end(near.parts.after(step, self.shape));
                 (left, right, ends) = (near, next, near_ends);
                 (near, near_ends) = (next, Ends::FREE);
             }

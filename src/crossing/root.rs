@@ -8,6 +8,9 @@ use crate::crossing::{Counters, Root, Side};
 use crate::flow::Point;
 use crate::numeric::two_word::TwoWord;
 
+/// Squares below this have lost digits to underflow.
+pub const EXACT_SQUARE: f64 = 1e-290;
+
 /// Evaluates with counting.
 #[inline(always)]
 pub fn evaluate<G: Guarded>(phase: &G, elapsed: f64, counters: &mut Counters) -> Point<f64> {
@@ -162,12 +165,10 @@ fn leaves(point: &Point<f64>, rises: bool) -> bool {
 /// anywhere.
 #[inline(always)]
 fn passes((over, slope, bend): (f64, f64, f64), rises: bool, slack: f64) -> bool {
-    /// Smaller squares have lost digits to underflow.
-    const EXACT: f64 = 1e-290;
     let outward = if rises { 1.0 } else { -1.0 };
     let (bend, over) = (bend * outward, over * outward - slack);
     let square = slope * slope;
-    if square >= EXACT {
+    if square >= EXACT_SQUARE {
         square > 2.0 * bend * over
     } else {
         passes_without_squares(slope, bend, over)

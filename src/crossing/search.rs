@@ -53,7 +53,8 @@ pub struct CandidateSearch {
     hint: SearchHint,
 }
 
-/// Where a guess leads: to a root, which is mostly the phase's end, or in vain.
+/// What a guess leads to: a root, which is mostly the phase's end, or the point at which it is
+/// given up.
 pub type Candidate = Result<Root, Point<f64>>;
 
 impl CandidateSearch {
@@ -120,7 +121,7 @@ impl CandidateSearch {
     }
 }
 
-/// The walk through a phase, piece by piece.
+/// The search through a phase, piece by piece.
 struct Search<'a, G> {
     phase: &'a G,
     steps: &'a Steps,
@@ -133,7 +134,7 @@ struct Search<'a, G> {
     /// What the advice has led to, if it has been followed already.
     followed: Option<Candidate>,
     /// The least step that gets on.
-    stride: f64,
+    least_step: f64,
     /// The time after which it is over, and what it ends with there.
     horizon: f64,
     over: Crossing,
@@ -163,9 +164,9 @@ impl<'a, G: Guarded> Search<'a, G> {
             true => (stage, Crossing::Stage(stage)),
             false => (horizon, Crossing::Horizon),
         };
-        let (ends, stride) = (phase.imposed(), STRIDE / phase.fastest_rate());
+        let (ends, least_step) = (phase.imposed(), FIRST_STEP / phase.fastest_rate());
         let limit = Limit::new(steps, counters);
-        Self { phase, steps, left, ends, hint, followed, stride, horizon, over, limit }
+        Self { phase, steps, left, ends, hint, followed, least_step, horizon, over, limit }
     }
 
     #[cold]
@@ -191,7 +192,7 @@ impl<'a, G: Guarded> Search<'a, G> {
     /// What the advice comes to.
     fn proposal(&mut self, counters: &mut Counters) -> Proposal {
         let (phase, horizon) = (self.phase, self.horizon);
-        match onwards(self.hint, self.left.elapsed, &mut self.stride) {
+        match onwards(self.hint, self.left.elapsed, &mut self.least_step) {
             SearchHint::ClearFrom(time) if time <= self.left.elapsed => {
                 counters.undecidable += u64::from(phase.touches_for_ever());
                 Proposal::Over(Crossing::Never)
@@ -226,8 +227,8 @@ impl<'a, G: Guarded> Search<'a, G> {
             Ok(root) => Target::Root(root),
             Err(point) => {
                 // A guess that led nowhere: the next ones must lead further.
-                self.stride *= 2.0;
-                let least = (left + self.stride).min(horizon);
+                self.least_step *= 2.0;
+                let least = (left + self.least_step).min(horizon);
                 let near = point.elapsed < least;
                 Target::Point(if near { evaluate_again(phase, least, counters) } else { point })
             }
@@ -256,18 +257,18 @@ impl<'a, G: Guarded> Search<'a, G> {
 }
 
 /// The first step of its own that the search takes, against the inverse of the fastest rate.
-const STRIDE: f64 = 0.1;
+const FIRST_STEP: f64 = 0.1;
 
 /// Advice to go on by less than this share of the time so far comes from bounds that rounding keeps
 /// from settling: it is followed in steps.
 const CREEPING: f64 = 1e-3;
 
 /// A hint that gets on. A guess that falls on `left` is no guess; that, or an advice to go on
-/// by less than a stride, is replaced by a stride, longer each time.
-fn onwards(hint: SearchHint, left: f64, stride: &mut f64) -> SearchHint {
+/// by less than the least step, is replaced by that step, which doubles each time.
+fn onwards(hint: SearchHint, left: f64, least_step: &mut f64) -> SearchHint {
     let resolution = 8.0 * f64::EPSILON * left;
     let nearest = match hint {
-        SearchHint::Onward(_) => left + stride.max(CREEPING * left),
+        SearchHint::Onward(_) => left + least_step.max(CREEPING * left),
         SearchHint::Root(_) | SearchHint::ClearUntil(_) => left + resolution,
         SearchHint::ClearFrom(_) => return hint,
     };
@@ -279,8 +280,8 @@ fn onwards(hint: SearchHint, left: f64, stride: &mut f64) -> SearchHint {
         }
         // A NaN comes here too.
         _ => {
-            *stride *= 2.0;
-            SearchHint::Onward(left + stride.max(2.0 * resolution))
+            *least_step *= 2.0;
+            SearchHint::Onward(left + least_step.max(2.0 * resolution))
         }
     }
 }

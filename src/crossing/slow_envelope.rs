@@ -7,8 +7,10 @@
 //! harmonic is at its crest the bound is attained, so that of a crossing no more than one period
 //! has to be searched each time the bound becomes positive.
 
+use crate::crossing::allowances::SHORT_LIVED;
 use crate::crossing::contact_parts::meeting;
 use crate::crossing::guarded::SearchHint;
+use crate::crossing::root::EXACT_SQUARE;
 use crate::crossing::stepping::safe_step;
 use crate::flow::steps::{FreeStep, Steps};
 use crate::numeric::remainders::decay;
@@ -181,7 +183,6 @@ impl SlowEnvelope {
         const STEPS: usize = 40;
         // At larger angles one leap more, with an evaluation, is worth its cost.
         const FURTHEST: f64 = 1e6;
-        const SHORT_LIVED: f64 = 0.05;
         for _ in 0..STEPS {
             if self.parabola(here.elapsed) + self.amplitude < 0.0 {
                 inside = true;
@@ -261,8 +262,8 @@ pub struct EnvelopePlace {
 }
 
 impl EnvelopePlace {
-    fn after(&self, stride: &FreeStep) -> Self {
-        let FreeStep { length, sin, cos, decay, .. } = *stride;
+    fn after(&self, step: &FreeStep) -> Self {
+        let FreeStep { length, sin, cos, decay, .. } = *step;
         Self {
             elapsed: self.elapsed + length,
             sin: self.sin * cos + self.cos * sin,
@@ -274,10 +275,8 @@ impl EnvelopePlace {
 
 /// The first t > 0 with value + rising t + curvature t^2/2 = 0, for value < 0.
 pub fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
-    /// Smaller squares have lost digits to underflow.
-    const EXACT: f64 = 1e-290;
     let discriminant = rising * rising - 2.0 * curvature * value;
-    if discriminant.abs() < EXACT && curvature > 0.0 {
+    if discriminant.abs() < EXACT_SQUARE && curvature > 0.0 {
         return first_root_without_squares(value, rising, curvature);
     }
     if discriminant < 0.0 {

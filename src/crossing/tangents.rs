@@ -18,7 +18,7 @@ use crate::crossing::guarded::slack;
 use crate::flow::Point;
 use crate::flow::constants::Constants;
 use crate::flow::no_contact::NoContact;
-use crate::flow::steps::{GRIP, Steps, Turning};
+use crate::flow::steps::{GRIP, SINKING, Steps, Turning};
 use crate::numeric::real::Real;
 use std::borrow::Borrow;
 use std::f64::consts::TAU;
@@ -174,16 +174,16 @@ fn off_the_surface<C: Borrow<Constants<f64>>>(
     let Constants { a, b, omega, rate, .. } = *flight.constants.borrow();
     let Turning { sin, cos, .. } = steps.turning;
     let entry = flight.angle;
-    let parting = &steps.separation_interval;
+    let interval = &steps.separation_interval;
     let negative_until = steps.turning.negative_until(entry.radians);
     let concave_until = (negative_until.unwrap_or(entry.radians) - entry.radians) / omega;
-    let sinks = (a + b.max(0.0)) * (1.0 + 1e-9) < flight.entry.q * (rate * rate) * GRIP;
-    if sinks && parting.length > concave_until {
+    let sinks = (a + b.max(0.0)) * SINKING < flight.entry.q * (rate * rate) * GRIP;
+    if sinks && interval.length > concave_until {
         let turned = [
-            entry.sin * parting.cos + entry.cos * parting.sin,
-            entry.cos * parting.cos - entry.sin * parting.sin,
+            entry.sin * interval.cos + entry.cos * interval.sin,
+            entry.cos * interval.cos - entry.sin * interval.sin,
         ];
-        return Some(bound.at(parting.length, turned));
+        return Some(bound.at(interval.length, turned));
     }
     (concave_until > 0.0).then(|| bound.at(concave_until, [-sin, cos]))
 }

@@ -10,8 +10,8 @@ use crate::model::{Model, Motion};
 use crate::run::segment::Segment;
 use crate::run::variation::{Matrix, P, Q, Y};
 
-/// A contact is passed in pieces in which its slowest part shrinks by at most exp(-PIECE).
-const PIECE: f64 = 300.0;
+/// A contact is passed in pieces in which its slowest part shrinks by at most exp(-LONGEST_DECAY).
+const LONGEST_DECAY: f64 = 300.0;
 
 /// Errors of (p, y, q), and the areas dp^dy, dp^dq and dy^dq of a pair of them.
 #[derive(Clone, Copy, Debug)]
@@ -54,7 +54,7 @@ impl TangentVector {
                 self.area = wedge(&variation, self.area);
             }
             Motion::Contact(_) => {
-                let pieces = (elapsed * self.slowest / PIECE).ceil().max(1.0);
+                let pieces = (elapsed * self.slowest / LONGEST_DECAY).ceil().max(1.0);
                 let variation = segment.variation(elapsed / pieces);
                 for _ in 0..pieces as u64 {
                     self.turn(&variation);

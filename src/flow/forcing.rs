@@ -23,10 +23,11 @@ pub struct EntryAngle<T> {
 pub struct Harmonic<T> {
     /// a cos(omega tau + phi) and its first two derivatives.
     pub force: [T; 3],
-    /// Its integral from 0 to d: (a/omega) (sin(omega tau + phi) - sin(omega tau0 + phi)).
+    /// The forcing's integral from 0 to d: (a/omega) (sin(omega tau + phi) - sin(omega tau0 +
+    /// phi)).
     pub impulse: T,
-    /// Its second integral: -(a/omega^2) (cos(omega tau + phi) - cos(omega tau0 + phi) + omega d
-    /// sin(omega tau0 + phi)).
+    /// The forcing's second integral: -(a/omega^2) (cos(omega tau + phi) - cos(omega tau0 + phi) +
+    /// omega d sin(omega tau0 + phi)).
     pub displacement: T,
     /// An upper bound of the terms that made `displacement`.
     pub displacement_terms: T,

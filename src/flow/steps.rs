@@ -67,14 +67,15 @@ pub struct ContactStep<T> {
     pub cos: T,
     /// C of the free oscillation ([`crate::flow::damped`]).
     pub c: T,
-    /// S
+    /// S of the free oscillation.
     pub s: T,
-    /// S'
+    /// S' of the free oscillation.
     pub s_rate: T,
 }
 
 impl ContactStep<f64> {
-    fn new(length: f64, omega: f64, damping: &Damping<f64>) -> Self {
+    /// A step of this length.
+    pub fn new(length: f64, omega: f64, damping: &Damping<f64>) -> Self {
         let (sin, cos) = libm::sincos(omega * length);
         let free = damping.at(length);
         let (c, s_rate) = (1.0 + free.c_minus_1, 1.0 + free.s_rate_minus_1);
@@ -110,8 +111,8 @@ impl Turning {
         Self { angle, sin: libm::sin(angle), cos, length, period: TAU / omega }
     }
 
-    /// Up to which forcing angle the force is negative from `radians` on, within `[0, 2 pi)`; none
-    /// if it is not negative there.
+    /// The forcing angle up to which the force is negative from `radians` on, within `[0, 2 pi)`;
+    /// none if it is not negative there.
     #[inline]
     #[must_use]
     pub fn negative_until(&self, radians: f64) -> Option<f64> {
@@ -122,7 +123,7 @@ impl Turning {
 
 /// The length of a certificate's pieces, measured against the faster of forcing and free
 /// oscillation, radians: the interpolant's error is 2^8/2822400 = 1e-4 of the amplitude.
-const PIECE: f64 = 2.0;
+pub const PIECE: f64 = 2.0;
 
 /// The length of a guess's steps: the cubic between two places errs by 0.5^4/384 = 2e-4 of the
 /// amplitude.
@@ -138,7 +139,7 @@ fn contact_look(parameters: &Parameters) -> f64 {
     LOOK.min((384.0 * RIPPLE / amplitude).sqrt().sqrt() / omega)
 }
 
-/// Up to this many decay times an exponential that pulls the guard inwards stays in one piece: its
+/// Decay times up to which an exponential that pulls the guard inwards stays in one piece: its
 /// eighth derivative helps, and at twelve its third derivative begins to lift the coefficients.
 pub const PULLING: f64 = 10.0;
 
@@ -150,7 +151,12 @@ pub const SEPARATION_INTERVAL: f64 = 2.0;
 /// [`SEPARATION_INTERVAL`], and more before: their quotient only falls.
 pub const GRIP: f64 = 0.5676;
 
-/// Up to this many decay times an exponential that pushes the guard outwards stays in one piece:
+/// Factor on the largest force, by which a flight is shown to sink away from the slider. The
+/// solver bounds the force by its amplitudes, so that this margin costs no proof; lanes have a
+/// smaller one ([`LANE_SINKING`](crate::crossing::allowances::LANE_SINKING)).
+pub const SINKING: f64 = 1.0 + 1e-9;
+
+/// Decay times up to which an exponential that pushes the guard outwards stays in one piece:
 /// its eighth derivative then costs 0.02 of its own size.
 pub const PUSHING: f64 = 4.0;
 
@@ -186,18 +192,18 @@ impl Steps {
         let Parameters { omega, xi, .. } = *parameters;
         let rate = 0.5 / xi;
         let damping = &Damping::new(xi);
-        let stride = |length: f64| FreeStep::new(length, omega, rate);
+        let free_step = |length: f64| FreeStep::new(length, omega, rate);
         let fastest = omega.max(1.0);
         let (slowest, quickest) = match damping {
             Damping::Over { slow, fast, .. } => (slow.max(omega).min(1.0), *fast),
             _ => (1.0, 1.0),
         };
         Self {
-            piece: stride(PIECE / omega),
-            pulling: stride(0.9 * PULLING / rate),
-            separation_interval: stride(SEPARATION_INTERVAL / rate),
-            pushing: stride(0.9 * PUSHING / rate),
-            look: stride(LOOK / omega),
+            piece: free_step(PIECE / omega),
+            pulling: free_step(0.9 * PULLING / rate),
+            separation_interval: free_step(SEPARATION_INTERVAL / rate),
+            pushing: free_step(0.9 * PUSHING / rate),
+            look: free_step(LOOK / omega),
             contact_piece: ContactStep::new(PIECE / fastest, omega, damping),
             quick_look: ContactStep::new(LOOK / quickest, omega, damping),
             contact_look: ContactStep::new(contact_look(parameters), omega, damping),

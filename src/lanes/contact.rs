@@ -2,11 +2,11 @@
 //! [`super::contact_ahead`].
 
 use super::contact_shape::Forms;
+use super::contact_steps::{LaneParts, each};
 use super::harmonic::Angle;
 use super::root::{Fineness, LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;
-use super::swing::{LaneParts, each};
 use super::wide::{Mask, Wide};
 use crate::crossing::contact_parts::ContactParts;
 use crate::crossing::higher_orders::ContactOrders;

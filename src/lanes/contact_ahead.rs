@@ -7,17 +7,17 @@
 use super::certificate::LanePiece;
 use super::contact::LaneContact;
 use super::contact_shape::Forms;
+use super::contact_steps::{ContactSteps, LaneParts, each};
 use super::guess::meeting;
 use super::root::Fineness;
 use super::shape::Shape;
-use super::swing::{LaneParts, Swings, each};
 use super::wide::{Mask, Wide};
 use crate::crossing::allowances::{LANE_FINE_PIECES, PIECES, REST, SLACK};
 use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// Steps of a guess, after which a lane is left to the scalar solver.
-const STRIDES: usize = 24;
+const STEPS: usize = 24;
 
 impl<S: Simd> LaneContact<'_, S> {
     /// When the force may first leave its corridor, through which threshold, and where that is
@@ -27,15 +27,15 @@ impl<S: Simd> LaneContact<'_, S> {
         let (low, high) = (-self.reference, -self.reference + 1.0);
         let mut here = self.parts(orders);
         let (mut value, mut rate) = (orders[0], orders[1]);
-        let mut swings = Swings::of_guess(self.shape, self.forms);
+        let mut steps = ContactSteps::of_guess(self.shape, self.forms);
         let zero = value.same(0.0);
         let mut elapsed = zero;
         let mut found = zero.less(zero);
         let mut open = !found;
         let mut chord = (value, zero, rate, zero, zero, zero, zero);
-        for _ in 0..STRIDES {
-            let stride = swings.now.length;
-            here = here.after(&swings.now);
+        for _ in 0..STEPS {
+            let step = steps.now.length;
+            here = here.after(&steps.now);
             let [next, next_rate, ..] = here.orders(self.shape, self.reference);
             let over = !next.less(high);
             let leaves = open & (over | !low.less(next));
@@ -47,23 +47,23 @@ impl<S: Simd> LaneContact<'_, S> {
                 leaves.choose(next_rate, chord.3),
                 leaves.choose(elapsed, chord.4),
                 leaves.choose(threshold, chord.5),
-                leaves.choose(stride, chord.6),
+                leaves.choose(step, chord.6),
             );
             found = found | leaves;
             open = open & !leaves;
             if !open.any() {
                 break;
             }
-            (value, rate, elapsed) = (next, next_rate, elapsed + stride);
-            swings.next();
+            (value, rate, elapsed) = (next, next_rate, elapsed + step);
+            steps.next();
         }
-        let (left, right, left_rate, right_rate, from, threshold, stride) = chord;
-        let share = meeting(left, right, (left_rate * stride, right_rate * stride));
-        (share.times_plus(stride, from), threshold, found)
+        let (left, right, left_rate, right_rate, from, threshold, step) = chord;
+        let share = meeting(left, right, (left_rate * step, right_rate * step));
+        (share.times_plus(step, from), threshold, found)
     }
 
     /// The lanes in which the force stays inside its corridor from the start to the root, by their
-    /// orders: in pieces, whose ends follow from the start in strides of the model's own length.
+    /// orders: in pieces, whose ends follow from the start in steps of the model's own length.
     #[inline(always)]
     pub fn stays_inside(
         &self,
@@ -79,9 +79,9 @@ impl<S: Simd> LaneContact<'_, S> {
         let over = fast.above(0.0);
         let mut eighth = here.eighth(self.shape) + forced_eighth;
         let slack = self.slack(&here, terms);
-        let (mut swings, pieces) = match fineness {
-            Fineness::Usual => (Swings::of_pieces(self.shape, self.forms), PIECES),
-            Fineness::Finer => (Swings::of_guess(self.shape, self.forms), LANE_FINE_PIECES),
+        let (mut steps, pieces) = match fineness {
+            Fineness::Usual => (ContactSteps::of_pieces(self.shape, self.forms), PIECES),
+            Fineness::Finer => (ContactSteps::of_guess(self.shape, self.forms), LANE_FINE_PIECES),
         };
         let mut left = first;
         // The start's own value does not count where it is a threshold by the switch that began the
@@ -91,16 +91,16 @@ impl<S: Simd> LaneContact<'_, S> {
         let none = bare & !bare;
         let (mut open, mut fine) = (!none, !none);
         for _ in 0..pieces {
-            let stride = swings.now.length;
-            let is_last = rest.less(stride * REST);
+            let step = steps.now.length;
+            let is_last = rest.less(step * REST);
             if self.forms == Forms::Any {
                 let shrinking = here.eighth_of_exponentials(self.shape) + forced_eighth;
                 eighth = over.choose(shrinking, eighth);
             }
-            here = here.after(&swings.now);
+            here = here.after(&steps.now);
             let next = here.orders(self.shape, self.reference);
             let right = each(is_last, last, next);
-            let length = is_last.choose(rest, stride);
+            let length = is_last.choose(rest, step);
             let piece =
                 LanePiece { left, right, length, eighth, bare, double: none, to_root: is_last };
             fine = fine & (piece.stays_between(low, high, slack) | !open);
@@ -108,8 +108,8 @@ impl<S: Simd> LaneContact<'_, S> {
             if !open.any() {
                 break;
             }
-            (left, bare, rest) = (next, none, rest - stride);
-            swings.next();
+            (left, bare, rest) = (next, none, rest - step);
+            steps.next();
         }
         fine & !open
     }

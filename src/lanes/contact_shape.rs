@@ -6,6 +6,7 @@ use crate::crossing::allowances::STEP_ROUNDINGS;
 use crate::flow::constants::Constants;
 use crate::flow::damped::Damping;
 use crate::flow::forced::Forced;
+use crate::flow::steps::{ContactStep, PIECE};
 use pulp::Simd;
 
 /// Which closed forms the contacts of a vector have: what no lane needs is not asked for.
@@ -27,13 +28,9 @@ impl Forms {
 
 /// A step of a guess, radians of the faster of forcing and free oscillation: the cubic between two
 /// places errs by 0.8^4/384 = 1.1e-3 of the amplitude, which the series corrects.
-const SWING: f64 = 0.8;
+const CONTACT_LOOK: f64 = 0.8;
 
-/// The length of a certificate's pieces, radians of the faster of forcing and free oscillation: the
-/// interpolant errs by 2^8/2822400 = 1e-4 of the amplitude.
-const PIECE: f64 = 2.0;
-
-/// The first stride is at least this much of all others: each doubling doubles what it has rounded
+/// The first step is at least this much of all others: each doubling doubles what it has rounded
 /// off.
 const SHORTEST: f64 = 1.0 / 256.0;
 
@@ -59,28 +56,14 @@ impl ContactPace {
     }
 }
 
-/// A stride with what the free oscillation does in it.
-#[derive(Clone, Copy)]
-struct Stride {
-    length: f64,
-    sin: f64,
-    cos: f64,
-    c: f64,
-    s: f64,
-    s_rate: f64,
-}
-
-impl Stride {
-    fn new(length: f64, omega: f64, damping: &Damping<f64>) -> Self {
-        let (sin, cos) = libm::sincos(omega * length);
-        let [c, s, s_rate] = if let Damping::Over { fast, slow, .. } = *damping {
-            [libm::exp(-slow * length), 0.0, libm::exp(-fast * length)]
-        } else {
-            let free = damping.at(length);
-            [1.0 + free.c_minus_1, free.s, 1.0 + free.s_rate_minus_1]
-        };
-        Self { length, sin, cos, c, s, s_rate }
-    }
+/// A step in contact, with both exponentials of the free part clearly above critical damping.
+fn contact_step(length: f64, omega: f64, damping: &Damping<f64>) -> ContactStep<f64> {
+    let Damping::Over { fast, slow, .. } = *damping else {
+        return ContactStep::new(length, omega, damping);
+    };
+    let (sin, cos) = libm::sincos(omega * length);
+    let [c, s_rate] = [libm::exp(-slow * length), libm::exp(-fast * length)];
+    ContactStep { length, sin, cos, c, s: 0.0, s_rate }
 }
 
 impl Shape<f64> {
@@ -88,13 +71,13 @@ impl Shape<f64> {
     pub(super) fn of_contact(constants: &Constants<f64>) -> Self {
         let Constants { a, b, omega, damping, steady, forced_eighth, .. } = *constants;
         let pace = ContactPace::new(omega, &damping);
-        let stride = |radians: f64| Stride::new(radians / pace.full, omega, &damping);
-        let full = [SWING, PIECE].map(stride);
-        let first = [SWING * pace.early, PIECE * pace.early];
-        let early = if pace.early < 1.0 { first.map(stride) } else { full };
-        let ([swing, piece], [early_swing, early_piece]) = (full, early);
+        let step = |radians: f64| contact_step(radians / pace.full, omega, &damping);
+        let full = [CONTACT_LOOK, PIECE].map(step);
+        let first = [CONTACT_LOOK * pace.early, PIECE * pace.early];
+        let early = if pace.early < 1.0 { first.map(step) } else { full };
+        let ([contact_look, piece], [early_contact_look, early_piece]) = (full, early);
         // Clearly above critical damping the exponentials come from the whole force at the start,
-        // and after n doublings the strides have lost less than 2^(n + 2) eps.
+        // and after n doublings the steps have lost less than 2^(n + 2) eps.
         let (roundings, pulls) = match damping {
             Damping::Over { .. } => (STEP_ROUNDINGS + 4.0 / pace.early, b.abs() + a),
             _ => (STEP_ROUNDINGS, b.abs()),
@@ -103,12 +86,12 @@ impl Shape<f64> {
             steady: steady.orders([1.0, 0.0, 0.0])[0],
             steady_rate: steady.orders([0.0, 1.0, 0.0])[0],
             forced_eighth,
-            swing: swing.length,
-            swing_sin: swing.sin,
-            swing_cos: swing.cos,
-            swing_c: swing.c,
-            swing_s: swing.s,
-            swing_s_rate: swing.s_rate,
+            contact_look: contact_look.length,
+            contact_look_sin: contact_look.sin,
+            contact_look_cos: contact_look.cos,
+            contact_look_c: contact_look.c,
+            contact_look_s: contact_look.s,
+            contact_look_s_rate: contact_look.s_rate,
             piece: piece.length,
             piece_sin: piece.sin,
             piece_cos: piece.cos,
@@ -116,10 +99,10 @@ impl Shape<f64> {
             piece_s: piece.s,
             piece_s_rate: piece.s_rate,
             early: pace.early,
-            early_swing_sin: early_swing.sin,
-            early_swing_cos: early_swing.cos,
-            early_swing_c: early_swing.c,
-            early_swing_s_rate: early_swing.s_rate,
+            early_contact_look_sin: early_contact_look.sin,
+            early_contact_look_cos: early_contact_look.cos,
+            early_contact_look_c: early_contact_look.c,
+            early_contact_look_s_rate: early_contact_look.s_rate,
             early_piece_sin: early_piece.sin,
             early_piece_cos: early_piece.cos,
             early_piece_c: early_piece.c,

@@ -9,7 +9,7 @@ use crate::flow::damped::{Free, Rotation};
 use crate::numeric::real::Real;
 use pulp::Simd;
 
-/// Up to this size of m = (1 - xi^2) d^2 the series serves near critical damping.
+/// The size of m = (1 - xi^2) d^2 up to which the series serves near critical damping.
 const SERIES: f64 = 0.5;
 
 impl<S: Simd> Free<Wide<S>> {

@@ -17,7 +17,7 @@ use super::root::{Fineness, LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
-use crate::crossing::allowances::{LANE_TIE, SLACK, STRETCHES};
+use crate::crossing::allowances::{LANE_SINKING, LANE_TIE, SLACK, STRETCHES};
 use crate::crossing::higher_orders::PushedOrders;
 use crate::crossing::series::{Push, REACH, short_decay};
 use crate::crossing::tangents::{EndedFlight, Tangent, TangentBound};
@@ -117,7 +117,7 @@ impl<S: Simd> Flight<'_, S> {
     pub fn impact(&self, fineness: Fineness) -> Impact<S> {
         let Shape { b, two_xi, rate, look, look_decay, .. } = *self.shape;
         let (guess, guessed) = self.slow_envelope().first_root();
-        // Within the first stride of a short-lived exponential: its end, from where the convex h
+        // Within the first step of a short-lived exponential: its end, from where the convex h
         // leads back.
         let hasty = guess.less(look) & look_decay.is(0.0);
         let guess = hasty.choose(look, guess);
@@ -269,7 +269,7 @@ impl<S: Simd> Flight<'_, S> {
         // The largest force until then: at either end, unless a crest lies between.
         let no_crest = settled.times_plus(omega, angle).below(TAU);
         let crest = no_crest.choose(cos.larger(settled_cos), cos.same(1.0));
-        let strongest = a.times_plus(crest, b) + (a + b.magnitude()) * 1e-12;
+        let strongest = a.times_plus(crest, b) + (a + b.magnitude()) * LANE_SINKING;
         let sinks = strongest.less(self.q * rate * rate * GRIP);
         let by_sinking = sinks & !(concave_at_first & settled.less(concave_until));
         let start = by_sinking.choose(settled, concave_until);

@@ -1,5 +1,5 @@
 //! Guesses of roots outside contact: the slow part of a guard and its harmonic, looked at in
-//! strides ([`crate::crossing::slow_envelope`]).
+//! steps ([`crate::crossing::slow_envelope`]).
 
 use super::functions::{FURTHEST, sin_cos};
 use super::shape::Shape;
@@ -26,7 +26,7 @@ pub struct LaneEnvelope<'a, S: Simd> {
     pub cos: Wide<S>,
     /// e
     pub exponential: Wide<S>,
-    /// The guard at the beginning, without its exponential where that lives less than a stride.
+    /// The guard at the beginning, without its exponential where that lives less than a step.
     pub first: Wide<S>,
 }
 
@@ -40,7 +40,7 @@ struct LanePlace<S: Simd> {
 }
 
 /// Steps after which a lane is left to the scalar solver.
-const STRIDES: usize = 24;
+const STEPS: usize = 24;
 
 impl<S: Simd> LaneEnvelope<'_, S> {
     /// When the guard may first rise to zero, and in which lanes that is told.
@@ -55,7 +55,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
         let mut chord = (here.value, zero, here.rate, zero, zero);
         let mut open = !(zero.less(zero));
         let mut found = zero.less(zero);
-        for _ in 0..STRIDES {
+        for _ in 0..STEPS {
             let closed = open & (self.parabola(here.elapsed) + self.amplitude).less(zero);
             if closed.any() {
                 here = self.skipped(here, closed);

@@ -10,7 +10,7 @@
 //! `src/numeric/real.rs`: closed forms, Taylor series with all derivatives, the bound of a
 //! tangent, the coefficients of a certificate, the parts of a contact, the inequality that proves a
 //! progression, and what these allow for rounding (`src/crossing/allowances.rs`). The lanes have of
-//! their own: elementary functions, guesses, the polishing of roots, the walk from tangent to
+//! their own: elementary functions, guesses, the polishing of roots, the way from tangent to
 //! tangent, and in `src/dynamics/ensemble` the choice of the next phase.
 //!
 //! Every operation is one of IEEE 754 in each lane by itself, and products and sums are fused where
@@ -23,6 +23,7 @@ mod certificate;
 mod contact;
 mod contact_ahead;
 mod contact_shape;
+mod contact_steps;
 mod damped;
 mod flight;
 mod forced;
@@ -34,7 +35,6 @@ mod root;
 mod series;
 mod shape;
 mod slip;
-mod swing;
 mod wide;
 mod words;
 mod work;

@@ -1,6 +1,7 @@
 //! What the lanes need of the parameters: of one model, and of as many as there are lanes.
 
 use super::wide::{Column, Wide};
+use crate::crossing::allowances::SHORT_LIVED;
 use crate::flow::constants::Constants;
 use crate::flow::steps::Steps;
 use crate::model::Model;
@@ -128,17 +129,17 @@ shape! {
     /// A bound of the eighth derivative of the forced trial force.
     forced_eighth,
     /// A step of a guess in contact.
-    swing,
+    contact_look,
     /// Sine of omega times that.
-    swing_sin,
+    contact_look_sin,
     /// Cosine of omega times that.
-    swing_cos,
+    contact_look_cos,
     /// C of the free oscillation after that step.
-    swing_c,
+    contact_look_c,
     /// S of the free oscillation after that step.
-    swing_s,
+    contact_look_s,
     /// S' of the free oscillation after that step.
-    swing_s_rate,
+    contact_look_s_rate,
     /// A piece of a certificate in contact.
     piece,
     /// Sine of omega times that.
@@ -155,13 +156,13 @@ shape! {
     /// critical damping, where C, S and S' are the slow exponential, zero and the quick one.
     early,
     /// Sine of omega times the first step.
-    early_swing_sin,
+    early_contact_look_sin,
     /// Cosine of omega times the first step.
-    early_swing_cos,
+    early_contact_look_cos,
     /// C of the free oscillation after the first step.
-    early_swing_c,
+    early_contact_look_c,
     /// S' of the free oscillation after the first step.
-    early_swing_s_rate,
+    early_contact_look_s_rate,
     /// Sine of omega times the first piece.
     early_piece_sin,
     /// Cosine of omega times the first piece.
@@ -180,9 +181,6 @@ shape! {
 /// 1/384 of the amplitude, which the series puts right.
 const LOOK: f64 = 1.0;
 
-/// The part of an exponential below which one step of a guess forgets it.
-const SHORT_LIVED: f64 = 0.05;
-
 impl Shape<f64> {
     /// The constants of a model; `None` without forcing or where the force never changes sign to
     /// positive, and where powers of the parameters come near the ends of the f64 range.
@@ -197,7 +195,7 @@ impl Shape<f64> {
         if !suits {
             return None;
         }
-        let Steps { turning, separation_interval: parting, .. } = *model.steps();
+        let Steps { turning, separation_interval: interval, .. } = *model.steps();
         let (halfway_sin, halfway_cos) = libm::sincos(0.5 * (turning.angle + std::f64::consts::PI));
         let (look_sin, look_cos) = libm::sincos(LOOK);
         let look = LOOK / omega;
@@ -223,8 +221,8 @@ impl Shape<f64> {
             turning_cos: turning.cos,
             halfway_sin,
             halfway_cos,
-            settling_sin: parting.sin,
-            settling_cos: parting.cos,
+            settling_sin: interval.sin,
+            settling_cos: interval.cos,
             look,
             look_sin,
             look_cos,

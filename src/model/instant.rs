@@ -183,7 +183,7 @@ fn radians(cycles: i128, angle: TwoWord) -> TwoWord {
     TWO_PI.times(to_f64(cycles)).plus(angle)
 }
 
-/// Without a call of the library for any count that a run meets.
+/// Converts without a call of the library for any count that a run meets.
 #[inline]
 fn to_f64(cycles: i128) -> f64 {
     #[cold]

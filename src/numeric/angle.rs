@@ -58,7 +58,7 @@ pub(crate) fn wrap(turns: i128, rest: TwoWord) -> (i128, TwoWord) {
 /// `rest` less so many turns.
 #[inline]
 fn less_turns(rest: TwoWord, whole: f64) -> TwoWord {
-    /// Up to here the products with the parts of 2 pi are exact.
+    /// The size up to which the products with the parts of 2 pi are exact.
     const FEW: f64 = (1 << 20) as f64;
     /// 2 pi in parts of 33 bits, and the rest.
     const FIRST: f64 = cut(TWO_PI.high);

@@ -11,7 +11,7 @@ use crate::numeric::two_word::{ROUNDER, TWO_PI, TwoWord, cut};
 /// Parts of a turn.
 const PARTS: usize = 64;
 
-/// Up to this size the part's number times the part's first word is exact.
+/// The size up to which the part's number times the part's first word is exact.
 const LARGEST: f64 = 6e4;
 
 /// 2 pi/64 in three words, of which the first has 33 bits.

@@ -10,7 +10,7 @@ use crate::numeric::two_word::{ROUNDER, TwoWord, cut};
 /// Parts of a doubling.
 const PARTS: usize = 64;
 
-/// Up to this size the result and all its parts are normal numbers.
+/// The size up to which the result and all its parts are normal numbers.
 const LARGEST: f64 = 700.0;
 
 /// ln 2 (relative error 1e-33).

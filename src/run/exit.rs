@@ -1,7 +1,9 @@
 //! How a segment ends.
 
+use crate::error::UnknownName;
 use crate::model::entry::Entry;
 use std::fmt;
+use std::str::FromStr;
 
 /// Why a phase has no end.
 // A whole word: a switch has other numbers at its place in an `Exit`. Behind a byte those would be
@@ -18,6 +20,9 @@ pub enum Endless {
 }
 
 impl Endless {
+    /// All reasons.
+    pub const ALL: [Self; 3] = [Self::NeverReturns, Self::NeverStops, Self::RestsForEver];
+
     /// The name in words.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
@@ -32,6 +37,14 @@ impl Endless {
 impl fmt::Display for Endless {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.as_str())
+    }
+}
+
+impl FromStr for Endless {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        UnknownName::find("reason for a phase without end", &Self::ALL, Self::as_str, name)
     }
 }
 

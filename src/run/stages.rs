@@ -88,7 +88,7 @@ impl Contact<f64, &Constants<f64>> {
     }
 }
 
-/// What is left of the fundamental solutions of the free oscillation: C, S and S' without the one
+/// The rest of the fundamental solutions of the free oscillation: C, S and S' without the one
 /// that [`crate::flow::damped`] takes from them.
 struct Left {
     s: f64,

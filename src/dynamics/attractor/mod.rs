@@ -34,9 +34,11 @@ pub use known::Label;
 use super::lyapunov::Spectrum;
 use super::orbit::Orbit;
 use super::strobe::{StrobeMap, StrobePoint};
+use crate::error::UnknownName;
 use crate::model::instant::Instant;
 use std::cmp::Ordering;
 use std::fmt;
+use std::str::FromStr;
 
 /// Standard errors by which a positive exponent must differ from zero.
 pub const ERRORS: f64 = 4.0;
@@ -59,6 +61,10 @@ pub enum AttractorKind {
 }
 
 impl AttractorKind {
+    /// All kinds.
+    pub const ALL: [Self; 4] =
+        [Self::Periodic, Self::Chaotic, Self::QuasiPeriodic, Self::Unidentified];
+
     /// The name used in files.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
@@ -74,6 +80,14 @@ impl AttractorKind {
 impl fmt::Display for AttractorKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.as_str())
+    }
+}
+
+impl FromStr for AttractorKind {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        UnknownName::find("kind of attractor", &Self::ALL, Self::as_str, name)
     }
 }
 

@@ -25,8 +25,8 @@ const BEYOND: [f64; 7] = [1e-7, 1e-6, 1e-8, 1e-5, 1e-4, 1e-3, 1e-9];
 const SHARP: f64 = 1e-12;
 
 impl FamilyCurve {
-    /// The corner between a knot and a distance along its tangent at which the piece is another one
-    /// or no orbit is found.
+    /// The corner between a point and a distance along its tangent at which the piece is another
+    /// one or no orbit is found.
     ///
     /// Its error is what the halving leaves, rounding, and how far off the same corner is found
     /// from the other side: a contact that is too short to be told from a touch counts as none.
@@ -54,24 +54,25 @@ impl FamilyCurve {
         apart + self.uncertainty(before)
     }
 
-    /// The last orbit of a knot's piece along the curve, and how much further the corner may be.
+    /// The last orbit of a point's piece along the curve, and how much further the corner may be.
     fn approached(&self, base: &ContinuationPoint, distance: f64) -> (ContinuationPoint, f64) {
         let mut before = base.clone();
         let mut rest = distance;
-        let mut strides = 0;
+        let mut advances = 0;
         for _ in 0..HALVINGS {
             if rest <= REACHED {
                 break;
             }
             match self.corrected(&before, 0.5 * rest).filter(|it| it.is_on_piece_of(&before)) {
-                // The length left is measured anew from each knot: it may be more than was thought.
+                // The length left is measured anew from each point: it may be more than was
+                // thought.
                 Some(next) => {
                     before = next;
-                    strides += 1;
-                    rest *= if strides > 2 { 1.5 } else { 0.5 };
+                    advances += 1;
+                    rest *= if advances > 2 { 1.5 } else { 0.5 };
                 }
                 None => {
-                    strides = 0;
+                    advances = 0;
                     rest *= 0.5;
                 }
             }
@@ -92,31 +93,32 @@ impl FamilyCurve {
         tangents.reverse();
         tangents.into_iter().find_map(|tangent| {
             let base = ContinuationPoint { tangent, ..before.clone() };
-            let mut knot = self.corrected(&base, step)?;
-            if knot.is_on_piece_of(before) {
+            let mut point = self.corrected(&base, step)?;
+            if point.is_on_piece_of(before) {
                 return None;
             }
             // Away from the corner, whichever way the bordering row has turned it.
-            if self.product(&knot.tangent, &base.tangent, &before.chain) < 0.0 {
-                knot.tangent = knot.tangent.turned();
+            if self.product(&point.tangent, &base.tangent, &before.iterate) < 0.0 {
+                point.tangent = point.tangent.turned();
             }
-            Some(knot)
+            Some(point)
         })
     }
 
-    /// Chains a step along the old direction that lie on another piece: as it is, and with each
+    /// Iterates a step along the old direction that lie on another piece: as it is, and with each
     /// strobe replaced by the image of the one before. A strobe that is still on the slider where
     /// the orbit no longer is is so put right.
     fn probes(&self, from: &ContinuationPoint, step: f64) -> Vec<ShootingIterate> {
         let along = &from.tangent;
         let probed = self.family.map(from.value + step * along.rate).ok().and_then(|map| {
-            let points = shifted(&from.chain.points, &along.points, step);
-            let chain = ShootingIterate::of(&map, &points)?;
-            let mut images: Vec<StrobePoint> = chain.passages.iter().map(|it| it.point()).collect();
+            let points = shifted(&from.iterate.points, &along.points, step);
+            let iterate = ShootingIterate::of(&map, &points)?;
+            let mut images: Vec<StrobePoint> =
+                iterate.passages.iter().map(|it| it.point()).collect();
             images.rotate_right(1);
-            Some([Some(chain), ShootingIterate::of(&map, &images)])
+            Some([Some(iterate), ShootingIterate::of(&map, &images)])
         });
-        let other = |probe: &ShootingIterate| !probe.is_on_piece_of(&from.chain);
+        let other = |probe: &ShootingIterate| !probe.is_on_piece_of(&from.iterate);
         probed.into_iter().flatten().flatten().filter(other).collect()
     }
 }

@@ -62,18 +62,18 @@ impl FamilyCurve {
         let scale = (1.0 + size(&single.points[0])) / size(&first);
         let points: Vec<StrobePoint> =
             there.iter().copied().chain(back).map(|it| it.map(|x| x * scale)).collect();
-        let chain =
+        let iterate =
             ShootingIterate::of(&map, &[&flip.orbit.points[..], &flip.orbit.points].concat())?;
-        let orbit = Orbit::of(&chain);
+        let orbit = Orbit::of(&iterate);
         let base = ContinuationPoint {
             value: flip.value,
-            chain,
+            iterate,
             tangent: BranchTangent { points, rate: 0.0 },
             orbit,
         };
         AMPLITUDES.iter().find_map(|amplitude| {
-            let knot = self.corrected(&base, *amplitude)?;
-            (knot.chain.width() > 0.1 * amplitude).then_some(knot)
+            let point = self.corrected(&base, *amplitude)?;
+            (point.iterate.width() > 0.1 * amplitude).then_some(point)
         })
     }
 
@@ -81,8 +81,8 @@ impl FamilyCurve {
         let offset = doubled.value - flip.value;
         let below = |value: f64| {
             let map = self.family.map(value).ok()?;
-            let chain = solved(&map, ShootingIterate::of(&map, &flip.orbit.points)?).ok()?;
-            let multipliers = Orbit::of(&chain).multipliers;
+            let iterate = solved(&map, ShootingIterate::of(&map, &flip.orbit.points)?).ok()?;
+            let multipliers = Orbit::of(&iterate).multipliers;
             Some(multipliers.iter().filter(|it| it[1] == 0.0 && it[0] < -1.0).count())
         };
         match below(flip.value + offset)?.cmp(&below(flip.value - offset)?) {
@@ -95,8 +95,8 @@ impl FamilyCurve {
 
 /// The direction that once around turns into its opposite: any column of the adjugate of M + 1, of
 /// which the largest has lost least.
-fn flipped(chain: &ShootingIterate) -> Option<StrobePoint> {
-    let Around { matrix, .. } = chain.around(&chain.defects);
+fn flipped(iterate: &ShootingIterate) -> Option<StrobePoint> {
+    let Around { matrix, .. } = iterate.around(&iterate.defects);
     let plus: [StrobePoint; 3] =
         std::array::from_fn(|i| std::array::from_fn(|j| matrix[i][j] + IDENTITY[i][j]));
     let adjugate = adjugate(&plus);

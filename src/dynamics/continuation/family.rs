@@ -42,25 +42,25 @@ impl Family {
         Ok(StrobeMap::new(model, self.instant))
     }
 
-    /// Derivatives of the images of a chain's strobes with respect to the parameter, per strobe.
+    /// Derivatives of the images of an iterate's strobes with respect to the parameter, per strobe.
     ///
     /// By differences: they steer the corrector and give the tangent, nothing else. A point that is
     /// accepted satisfies the map itself, and its multipliers are those of the exact derivative.
-    /// Where a corner is near, the difference is taken on the chain's own side of it.
+    /// Where a corner is near, the difference is taken on the iterate's own side of it.
     pub(super) fn slopes(
         &self,
         value: f64,
-        chain: &ShootingIterate,
+        iterate: &ShootingIterate,
         scale: f64,
     ) -> Vec<StrobePoint> {
-        (0..chain.points.len()).map(|k| self.slope(value, chain, k, scale)).collect()
+        (0..iterate.points.len()).map(|k| self.slope(value, iterate, k, scale)).collect()
     }
 
-    fn slope(&self, value: f64, chain: &ShootingIterate, k: usize, scale: f64) -> StrobePoint {
-        let here = &chain.passages[k];
+    fn slope(&self, value: f64, iterate: &ShootingIterate, k: usize, scale: f64) -> StrobePoint {
+        let here = &iterate.passages[k];
         let beside = |step: f64| {
             let map = self.map(value + step).ok()?;
-            let passage = map.passage(&map.entry(chain.points[k]).ok()?, 1);
+            let passage = map.passage(&map.entry(iterate.points[k]).ok()?, 1);
             Some((passage.point(), passage.phases == here.phases))
         };
         let mut fallback = [0.0; 3];

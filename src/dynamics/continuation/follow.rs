@@ -39,7 +39,7 @@ impl<'a> BranchWalk<'a> {
         Self { curve, from, to, told, points: Vec::new(), bifurcations: Vec::new() }
     }
 
-    /// Follows the curve from a knot until it leaves the interval or is lost.
+    /// Follows the curve from a point until it leaves the interval or is lost.
     pub(super) fn branch(mut self, first: ContinuationPoint) -> Branch {
         let ending = self.follow(first);
         Branch { points: self.points, bifurcations: self.bifurcations, ending }
@@ -47,14 +47,14 @@ impl<'a> BranchWalk<'a> {
 
     fn follow(&mut self, first: ContinuationPoint) -> BranchEnding {
         let start = first.clone();
-        let mut knot = first;
-        self.keep(&knot);
+        let mut point = first;
+        self.keep(&point);
         if self.from == self.to {
             return BranchEnding::Reached;
         }
         let mut step = FIRST;
         for count in 0..STEPS {
-            let (next, reached) = match self.step(&knot, &mut step) {
+            let (next, reached) = match self.step(&point, &mut step) {
                 Ok(next) => next,
                 Err(ending) => return ending,
             };
@@ -63,45 +63,45 @@ impl<'a> BranchWalk<'a> {
             if let Some(ending) = reached {
                 return ending;
             }
-            if count > 2 && self.is_back(&knot, &next, &start) {
+            if count > 2 && self.is_back(&point, &next, &start) {
                 return BranchEnding::Closed;
             }
-            knot = next;
+            point = next;
         }
-        BranchEnding::Long { value: knot.value }
+        BranchEnding::Long { value: point.value }
     }
 
-    /// The next knot, what lies between being noted, and whether the branch ends there.
+    /// The next point, what lies between being noted, and whether the branch ends there.
     fn step(
         &mut self,
-        knot: &ContinuationPoint,
+        point: &ContinuationPoint,
         step: &mut f64,
     ) -> Result<(ContinuationPoint, Option<BranchEnding>), BranchEnding> {
         loop {
             let distance = *step;
-            let attempt = self.curve.corrected(knot, distance);
-            let other_piece = attempt.as_ref().is_some_and(|it| !it.is_on_piece_of(knot));
-            let smooth = attempt.filter(|it| self.is_smooth(knot, it, distance));
+            let attempt = self.curve.corrected(point, distance);
+            let other_piece = attempt.as_ref().is_some_and(|it| !it.is_on_piece_of(point));
+            let smooth = attempt.filter(|it| self.is_smooth(point, it, distance));
             if let Some(next) = smooth {
-                let (next, distance, ending) = self.cut(knot, next, distance);
-                if next.is_on_piece_of(knot) {
-                    if let Some(flip) = self.curve.halving(knot, &next) {
+                let (next, distance, ending) = self.cut(point, next, distance);
+                if next.is_on_piece_of(point) {
+                    if let Some(flip) = self.curve.halving(point, &next) {
                         let ending = BranchEnding::Halved { value: flip.value };
                         self.bifurcations.push(flip);
                         return Err(ending);
                     }
-                    self.note_between(knot, &next, distance);
+                    self.note_between(point, &next, distance);
                     *step = (1.5 * distance).min(LONGEST);
                     return Ok((next, ending));
                 }
             }
             if other_piece || distance <= SHORTEST {
-                let corner = self.curve.corner(knot, distance);
+                let corner = self.curve.corner(point, distance);
                 if let Some(corner) = corner {
-                    return self.turn(knot, corner, step);
+                    return self.turn(point, corner, step);
                 }
                 if distance <= SHORTEST {
-                    return Err(BranchEnding::Lost { value: knot.value });
+                    return Err(BranchEnding::Lost { value: point.value });
                 }
             }
             *step = 0.5 * distance;
@@ -111,16 +111,16 @@ impl<'a> BranchWalk<'a> {
     /// Passes a corner.
     fn turn(
         &mut self,
-        knot: &ContinuationPoint,
+        point: &ContinuationPoint,
         corner: Corner,
         step: &mut f64,
     ) -> Result<(ContinuationPoint, Option<BranchEnding>), BranchEnding> {
         let Corner { before, beyond, error } = corner;
         if !self.is_inside(before.value) {
-            let (end, _, ending) = self.cut(knot, before, 0.0);
+            let (end, _, ending) = self.cut(point, before, 0.0);
             return Ok((end, ending));
         }
-        if before.word() != beyond.word() {
+        if before.phase_sequence() != beyond.phase_sequence() {
             self.bifurcations.push(Bifurcation {
                 kind: BifurcationKind::Grazing,
                 value: before.value,
@@ -136,16 +136,21 @@ impl<'a> BranchWalk<'a> {
         Ok((beyond, ending))
     }
 
-    fn is_smooth(&self, knot: &ContinuationPoint, next: &ContinuationPoint, distance: f64) -> bool {
-        next.is_on_piece_of(knot)
-            && self.curve.product(&knot.tangent, &next.tangent, &knot.chain) >= TURN
-            && (next.change_of_multipliers(knot) <= CHANGE || distance <= SHORTEST)
+    fn is_smooth(
+        &self,
+        point: &ContinuationPoint,
+        next: &ContinuationPoint,
+        distance: f64,
+    ) -> bool {
+        next.is_on_piece_of(point)
+            && self.curve.product(&point.tangent, &next.tangent, &point.iterate) >= TURN
+            && (next.change_of_multipliers(point) <= CHANGE || distance <= SHORTEST)
     }
 
     /// A step that leaves the interval is cut at its end.
     fn cut(
         &self,
-        knot: &ContinuationPoint,
+        point: &ContinuationPoint,
         next: ContinuationPoint,
         distance: f64,
     ) -> (ContinuationPoint, f64, Option<BranchEnding>) {
@@ -154,25 +159,25 @@ impl<'a> BranchWalk<'a> {
         }
         let ending = self.left(next.value);
         let bound = if ending == BranchEnding::Reached { self.to } else { self.from };
-        let share = (bound - knot.value) / (next.value - knot.value);
-        let cut = self.at(knot, &next, bound, share);
+        let share = (bound - point.value) / (next.value - point.value);
+        let cut = self.at(point, &next, bound, share);
         (cut.unwrap_or(next), distance * share, Some(ending))
     }
 
     /// The orbit at a value of the parameter, between two points.
     fn at(
         &self,
-        knot: &ContinuationPoint,
+        point: &ContinuationPoint,
         next: &ContinuationPoint,
         value: f64,
         share: f64,
     ) -> Option<ContinuationPoint> {
-        let pairs = knot.chain.points.iter().zip(&next.chain.points);
+        let pairs = point.iterate.points.iter().zip(&next.iterate.points);
         let between: Vec<_> =
             pairs.map(|(a, b)| std::array::from_fn(|i| a[i] + share * (b[i] - a[i]))).collect();
         let map = self.curve.family.map(value).ok()?;
-        let chain = polished(&map, ShootingIterate::of(&map, &between)?);
-        chain.is_closed().then(|| self.curve.knot(value, chain, &next.tangent))
+        let iterate = polished(&map, ShootingIterate::of(&map, &between)?);
+        iterate.is_closed().then(|| self.curve.point(value, iterate, &next.tangent))
     }
 
     fn is_inside(&self, value: f64) -> bool {
@@ -188,39 +193,39 @@ impl<'a> BranchWalk<'a> {
     /// Whether the step passes where the branch began, in the same direction.
     fn is_back(
         &self,
-        knot: &ContinuationPoint,
+        point: &ContinuationPoint,
         next: &ContinuationPoint,
         start: &ContinuationPoint,
     ) -> bool {
-        let span = (next.value - knot.value).abs().max(1e-12 * self.curve.unit);
-        let near = |it: &ContinuationPoint| it.chain.distance(&start.chain);
-        let length = knot.chain.distance(&next.chain);
-        (knot.value - start.value).abs() <= 2.0 * span
-            && near(knot).min(near(next)) <= length
-            && self.curve.product(&next.tangent, &start.tangent, &start.chain) > 0.0
+        let span = (next.value - point.value).abs().max(1e-12 * self.curve.unit);
+        let near = |it: &ContinuationPoint| it.iterate.distance(&start.iterate);
+        let length = point.iterate.distance(&next.iterate);
+        (point.value - start.value).abs() <= 2.0 * span
+            && near(point).min(near(next)) <= length
+            && self.curve.product(&next.tangent, &start.tangent, &start.iterate) > 0.0
     }
 
-    fn keep(&mut self, knot: &ContinuationPoint) {
-        self.points.push(BranchPoint { value: knot.value, orbit: knot.orbit.clone() });
+    fn keep(&mut self, point: &ContinuationPoint) {
+        self.points.push(BranchPoint { value: point.value, orbit: point.orbit.clone() });
     }
 
     /// Bifurcations between two points of one piece.
-    fn note_between(&mut self, knot: &ContinuationPoint, next: &ContinuationPoint, distance: f64) {
+    fn note_between(&mut self, point: &ContinuationPoint, next: &ContinuationPoint, distance: f64) {
         let mut found: Vec<(BifurcationKind, Located)> = Vec::new();
         let mut seek = |kind: BifurcationKind, test: &dyn Fn(&ContinuationPoint) -> f64| {
-            if test(knot) * test(next) < 0.0 {
-                found.extend(self.curve.located(knot, distance, test).map(|it| (kind, it)));
+            if test(point) * test(next) < 0.0 {
+                found.extend(self.curve.located(point, distance, test).map(|it| (kind, it)));
             }
         };
         seek(BifurcationKind::Fold, &|it| it.tangent.rate);
         seek(BifurcationKind::Flip, &ContinuationPoint::flip);
-        if knot.torus().is_some() && next.torus().is_some() {
+        if point.torus().is_some() && next.torus().is_some() {
             seek(BifurcationKind::NeimarkSacker, &|it| it.torus().unwrap_or(f64::NAN));
         }
         found.sort_by(|a, b| a.1.distance.total_cmp(&b.1.distance));
         for (kind, located) in found {
             let error = self.curve.error(&located);
-            let Located { knot: ContinuationPoint { value, orbit, .. }, .. } = located;
+            let Located { point: ContinuationPoint { value, orbit, .. }, .. } = located;
             let turns = kind == BifurcationKind::Fold;
             self.bifurcations.push(Bifurcation { kind, value, error, turns, orbit, beyond: None });
         }

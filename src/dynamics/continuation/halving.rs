@@ -16,31 +16,31 @@ impl FamilyCurve {
     /// changes sign.
     pub(super) fn halving(
         &self,
-        knot: &ContinuationPoint,
+        point: &ContinuationPoint,
         next: &ContinuationPoint,
     ) -> Option<Bifurcation> {
-        let (here, there) = (differences(&knot.chain)?, differences(&next.chain)?);
+        let (here, there) = (differences(&point.iterate)?, differences(&next.iterate)?);
         let along: f64 = here.iter().zip(&there).map(|(a, b)| dot(a, b)).sum();
         if along >= 0.0 {
             return None;
         }
-        let map = self.family.map(knot.value).ok()?;
+        let map = self.family.map(point.value).ok()?;
         let half = here.len();
-        let (first, second) = knot.chain.points.split_at(half);
+        let (first, second) = point.iterate.points.split_at(half);
         let middle: Vec<StrobePoint> = first
             .iter()
             .zip(second)
             .map(|(a, b)| std::array::from_fn(|i| 0.5 * (a[i] + b[i])))
             .collect();
-        let chain = solved(&map, ShootingIterate::of(&map, &middle)?).ok()?;
+        let iterate = solved(&map, ShootingIterate::of(&map, &middle)?).ok()?;
         let along = BranchTangent { points: vec![[0.0; 3]; half], rate: self.unit };
-        let single = self.knot(knot.value, chain, &along);
+        let single = self.point(point.value, iterate, &along);
         let located = AROUND.iter().find_map(|distance| {
             let start = self.corrected(&single, -distance)?;
             self.located(&start, 2.0 * distance, ContinuationPoint::flip)
         })?;
         let error = self.error(&located);
-        let Located { knot: ContinuationPoint { value, orbit, .. }, .. } = located;
+        let Located { point: ContinuationPoint { value, orbit, .. }, .. } = located;
         Some(Bifurcation {
             kind: BifurcationKind::Flip,
             value,
@@ -53,9 +53,9 @@ impl FamilyCurve {
 }
 
 /// The differences of strobes half a period apart; `None` for an odd number of strobes.
-fn differences(chain: &ShootingIterate) -> Option<Vec<StrobePoint>> {
-    let count = chain.points.len();
-    let (first, second) = chain.points.split_at(count / 2);
+fn differences(iterate: &ShootingIterate) -> Option<Vec<StrobePoint>> {
+    let count = iterate.points.len();
+    let (first, second) = iterate.points.split_at(count / 2);
     let pairs = first.iter().zip(second);
     let differences = pairs.map(|(a, b)| std::array::from_fn(|i| a[i] - b[i])).collect();
     count.is_multiple_of(2).then_some(differences)

@@ -4,8 +4,8 @@ use super::point::{ContinuationPoint, FamilyCurve};
 
 /// The orbit at which a test function vanishes.
 pub(super) struct Located {
-    pub(super) knot: ContinuationPoint,
-    /// Distance from the knot that was searched from.
+    pub(super) point: ContinuationPoint,
+    /// Distance from the point that was searched from.
     pub(super) distance: f64,
     /// How far along the curve it may be off.
     pub(super) bracket: f64,
@@ -22,7 +22,7 @@ const SPREAD: f64 = 1e-6;
 impl FamilyCurve {
     /// How far the parameter's value there may be off.
     pub(super) fn error(&self, located: &Located) -> f64 {
-        located.bracket * located.knot.tangent.rate.abs() + self.uncertainty(&located.knot)
+        located.bracket * located.point.tangent.rate.abs() + self.uncertainty(&located.point)
     }
 
     /// The zero of `test` on the curve between `base` and a distance along its tangent.
@@ -46,10 +46,10 @@ impl FamilyCurve {
             if !at.is_finite() || (high - low).abs() <= RESOLUTION * (1.0 + distance.abs()) {
                 break;
             }
-            let knot = self.corrected(base, at)?;
-            let f = test(&knot);
+            let point = self.corrected(base, at)?;
+            let f = test(&point);
             let ended = at == low || at == high || f == 0.0;
-            best = (at, knot);
+            best = (at, point);
             if ended {
                 break;
             }
@@ -63,10 +63,10 @@ impl FamilyCurve {
                 sided = 1;
             }
         }
-        let (at, knot) = best;
+        let (at, point) = best;
         let (slope, scatter) = self.scatter(base, at, SPREAD * distance, &test)?;
         let bracket = if slope == 0.0 { distance.abs() } else { 3.0 * scatter / slope.abs() };
-        Some(Located { knot, distance: at, bracket })
+        Some(Located { point, distance: at, bracket })
     }
 
     /// Slope of the test about a distance, and how far it scatters about that line: what its

@@ -42,11 +42,13 @@ mod point;
 
 use super::orbit::{NoOrbit, Orbit, ShootingIterate};
 use super::strobe::StrobePoint;
+use crate::error::UnknownName;
 pub use doubling::{Criticality, Doubling};
 pub use family::Family;
 use follow::BranchWalk;
 use point::{BranchTangent, FamilyCurve};
 use std::fmt;
+use std::str::FromStr;
 
 /// A branch of orbits.
 #[derive(Clone, Debug)]
@@ -82,6 +84,9 @@ pub enum BifurcationKind {
 }
 
 impl BifurcationKind {
+    /// All kinds.
+    pub const ALL: [Self; 4] = [Self::Fold, Self::Flip, Self::NeimarkSacker, Self::Grazing];
+
     /// The name used in files.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
@@ -97,6 +102,14 @@ impl BifurcationKind {
 impl fmt::Display for BifurcationKind {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.pad(self.as_str())
+    }
+}
+
+impl FromStr for BifurcationKind {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        UnknownName::find("kind of bifurcation", &Self::ALL, Self::as_str, name)
     }
 }
 
@@ -178,14 +191,14 @@ impl Branch {
     ) -> Result<Self, NoOrbit> {
         let map = family.map(from).map_err(|it| NoOrbit::from(super::orbit::Reason::Guess(it)))?;
         let orbit = Orbit::find(&map, guess, period)?;
-        let chain = ShootingIterate::of(&map, &orbit.points)
+        let iterate = ShootingIterate::of(&map, &orbit.points)
             .ok_or(NoOrbit::from(super::orbit::Reason::Escaped))?;
         let curve = FamilyCurve::new(family, from, to);
         let towards = BranchTangent {
-            points: vec![[0.0; 3]; chain.points.len()],
+            points: vec![[0.0; 3]; iterate.points.len()],
             rate: curve.unit * (to - from).signum(),
         };
-        let first = curve.knot(from, chain, &towards);
+        let first = curve.point(from, iterate, &towards);
         Ok(BranchWalk::new(curve, from, to, told).branch(first))
     }
 

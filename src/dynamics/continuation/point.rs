@@ -10,7 +10,7 @@ use crate::phase::Phase;
 #[derive(Clone, Debug)]
 pub(super) struct ContinuationPoint {
     pub(super) value: f64,
-    pub(super) chain: ShootingIterate,
+    pub(super) iterate: ShootingIterate,
     pub(super) tangent: BranchTangent,
     pub(super) orbit: Orbit,
 }
@@ -32,7 +32,7 @@ pub(super) struct FamilyCurve {
 /// Newton's iterations of a corrector: more, and the step was too long.
 const ITERATIONS: usize = 10;
 
-/// The bordered system: orbits next to a chain, and a direction.
+/// The bordered system: orbits next to an iterate, and a direction.
 struct Bordered {
     matrix: [[f64; 4]; 4],
     offset: StrobePoint,
@@ -53,57 +53,57 @@ impl FamilyCurve {
     ) -> Option<ContinuationPoint> {
         let BranchTangent { points, rate } = &base.tangent;
         let mut value = base.value + distance * rate;
-        let mut strobes = shifted(&base.chain.points, points, distance);
+        let mut strobes = shifted(&base.iterate.points, points, distance);
         let mut best: Option<(f64, ShootingIterate)> = None;
         for _ in 0..ITERATIONS {
-            let chain = ShootingIterate::of(&self.family.map(value).ok()?, &strobes)?;
-            let left = self.along(base, &chain, value) - distance;
+            let iterate = ShootingIterate::of(&self.family.map(value).ok()?, &strobes)?;
+            let left = self.along(base, &iterate, value) - distance;
             let in_place = left.abs() <= 0.01 * distance.abs() + f64::EPSILON;
-            let closed = in_place && chain.is_closed();
+            let closed = in_place && iterate.is_closed();
             match &best {
-                Some((_, before)) if !closed || chain.residual >= before.residual => break,
+                Some((_, before)) if !closed || iterate.residual >= before.residual => break,
                 None if !closed => {}
-                _ => best = Some((value, chain.clone())),
+                _ => best = Some((value, iterate.clone())),
             }
-            let bordered = self.bordered(&chain, value, &base.tangent, &base.chain);
+            let bordered = self.bordered(&iterate, value, &base.tangent, &base.iterate);
             let [p, y, q] = bordered.offset.map(|x| -x);
             let [dp, dy, dq, step] = solve(bordered.matrix, [p, y, q, -left]);
             let step = step * self.unit;
-            let offsets = offsets(&chain.defects, &bordered.slopes, step);
-            strobes = shifted(&chain.points, &chain.spread([dp, dy, dq], &offsets), 1.0);
+            let offsets = offsets(&iterate.defects, &bordered.slopes, step);
+            strobes = shifted(&iterate.points, &iterate.spread([dp, dy, dq], &offsets), 1.0);
             value += step;
         }
-        let (value, chain) = best?;
-        Some(self.knot(value, chain, &base.tangent))
+        let (value, iterate) = best?;
+        Some(self.point(value, iterate, &base.tangent))
     }
 
-    /// A closed chain with the curve's direction, which is that of `along` as far as there is a
+    /// A closed iterate with the curve's direction, which is that of `along` as far as there is a
     /// choice.
-    pub(super) fn knot(
+    pub(super) fn point(
         &self,
         value: f64,
-        chain: ShootingIterate,
+        iterate: ShootingIterate,
         along: &BranchTangent,
     ) -> ContinuationPoint {
-        let tangent = self.tangent(&chain, value, along);
-        let orbit = Orbit::of(&chain);
-        ContinuationPoint { value, chain, tangent, orbit }
+        let tangent = self.tangent(&iterate, value, along);
+        let orbit = Orbit::of(&iterate);
+        ContinuationPoint { value, iterate, tangent, orbit }
     }
 
-    /// The curve's direction at a chain.
+    /// The curve's direction at an iterate.
     pub(super) fn tangent(
         &self,
-        chain: &ShootingIterate,
+        iterate: &ShootingIterate,
         value: f64,
         along: &BranchTangent,
     ) -> BranchTangent {
-        let bordered = self.bordered(chain, value, along, chain);
+        let bordered = self.bordered(iterate, value, along, iterate);
         let [p, y, q, rate] = solve(bordered.matrix, [0.0, 0.0, 0.0, 1.0]);
         let rate = rate * self.unit;
-        let none = vec![[0.0; 3]; chain.points.len()];
-        let points = chain.spread([p, y, q], &offsets(&none, &bordered.slopes, rate));
+        let none = vec![[0.0; 3]; iterate.points.len()];
+        let points = iterate.spread([p, y, q], &offsets(&none, &bordered.slopes, rate));
         let mut tangent = BranchTangent { points, rate };
-        let length = self.product(&tangent, &tangent, chain).sqrt();
+        let length = self.product(&tangent, &tangent, iterate).sqrt();
         if length > 0.0 && length.is_finite() {
             tangent.rate /= length;
             tangent.points.iter_mut().flatten().for_each(|x| *x /= length);
@@ -111,11 +111,11 @@ impl FamilyCurve {
         tangent
     }
 
-    /// How far along the tangent of `base` a chain lies.
-    fn along(&self, base: &ContinuationPoint, chain: &ShootingIterate, value: f64) -> f64 {
+    /// How far along the tangent of `base` an iterate lies.
+    fn along(&self, base: &ContinuationPoint, iterate: &ShootingIterate, value: f64) -> f64 {
         let moved: StrobePoint =
-            std::array::from_fn(|i| chain.points[0][i] - base.chain.points[0][i]);
-        let weight = weight(&base.chain);
+            std::array::from_fn(|i| iterate.points[0][i] - base.iterate.points[0][i]);
+        let weight = weight(&base.iterate);
         let BranchTangent { points, rate } = &base.tangent;
         weight * dot(&points[0], &moved) + rate / self.unit * ((value - base.value) / self.unit)
     }
@@ -132,14 +132,14 @@ impl FamilyCurve {
 
     fn bordered(
         &self,
-        chain: &ShootingIterate,
+        iterate: &ShootingIterate,
         value: f64,
         along: &BranchTangent,
         weighed: &ShootingIterate,
     ) -> Bordered {
-        let slopes = self.family.slopes(value, chain, self.unit.min(1.0));
-        let Around { matrix: around, offset } = chain.around(&chain.defects);
-        let Around { offset: by_value, .. } = chain.around(&slopes);
+        let slopes = self.family.slopes(value, iterate, self.unit.min(1.0));
+        let Around { matrix: around, offset } = iterate.around(&iterate.defects);
+        let Around { offset: by_value, .. } = iterate.around(&slopes);
         let mut matrix = [[0.0; 4]; 4];
         for i in 0..3 {
             for j in 0..3 {
@@ -153,23 +153,23 @@ impl FamilyCurve {
     }
 
     /// What rounding of the map leaves uncertain of the parameter's value at a place of the curve.
-    pub(super) fn uncertainty(&self, knot: &ContinuationPoint) -> f64 {
+    pub(super) fn uncertainty(&self, point: &ContinuationPoint) -> f64 {
         let Bordered { matrix, .. } =
-            self.bordered(&knot.chain, knot.value, &knot.tangent, &knot.chain);
+            self.bordered(&point.iterate, point.value, &point.tangent, &point.iterate);
         let by_row = (0..3).map(|row| {
             let mut right = [0.0; 4];
             right[row] = 1.0;
             solve(matrix, right)[3].abs()
         });
-        let largest = knot.chain.points.iter().fold(1.0, |largest, it| size(it).max(largest));
-        let rounding = f64::EPSILON * largest * knot.chain.passages.len() as f64;
-        by_row.sum::<f64>() * self.unit * rounding + f64::EPSILON * knot.value.abs()
+        let largest = point.iterate.points.iter().fold(1.0, |largest, it| size(it).max(largest));
+        let rounding = f64::EPSILON * largest * point.iterate.passages.len() as f64;
+        by_row.sum::<f64>() * self.unit * rounding + f64::EPSILON * point.value.abs()
     }
 }
 
 /// Points and parameter weigh alike when they change by their own size.
-fn weight(chain: &ShootingIterate) -> f64 {
-    (1.0 + size(&chain.points[0])).powi(-2)
+fn weight(iterate: &ShootingIterate) -> f64 {
+    (1.0 + size(&iterate.points[0])).powi(-2)
 }
 
 pub(super) fn shifted(
@@ -196,12 +196,12 @@ impl BranchTangent {
 impl ContinuationPoint {
     /// The phases strobe by strobe: where they are the same, the map is smooth in between.
     pub(super) fn is_on_piece_of(&self, other: &Self) -> bool {
-        self.chain.is_on_piece_of(&other.chain)
+        self.iterate.is_on_piece_of(&other.iterate)
     }
 
     /// The phases of the whole orbit from wherever they are least: a switch that passes a strobe
     /// does not change them.
-    pub(super) fn word(&self) -> Vec<Phase> {
+    pub(super) fn phase_sequence(&self) -> Vec<Phase> {
         let phases = &self.orbit.phases;
         let turned = (0..phases.len()).map(|k| [&phases[k..], &phases[..k]].concat());
         turned.min().unwrap_or_default()
@@ -224,8 +224,8 @@ impl ContinuationPoint {
 
     /// How much sum and pairwise products of the multipliers differ, relative to their size.
     pub(super) fn change_of_multipliers(&self, other: &Self) -> f64 {
-        let invariants = |knot: &Self| {
-            let [a, b, c] = knot.orbit.multipliers;
+        let invariants = |point: &Self| {
+            let [a, b, c] = point.orbit.multipliers;
             let pair = |a: [f64; 2], b: [f64; 2]| a[0] * b[0] - a[1] * b[1];
             [a[0] + b[0] + c[0], pair(a, b) + pair(b, c) + pair(c, a)]
         };

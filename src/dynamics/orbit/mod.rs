@@ -46,18 +46,18 @@ impl Orbit {
     /// # Errors
     /// [`NoOrbit`] says why none was reached and how close it came.
     pub fn find(map: &StrobeMap, guess: StrobePoint, period: u32) -> Result<Self, NoOrbit> {
-        let chain = ShootingIterate::shot(map, guess, period)?;
-        Ok(Self::of(&least::closed(map, solved(map, chain)?)))
+        let iterate = ShootingIterate::shot(map, guess, period)?;
+        Ok(Self::of(&least::closed(map, solved(map, iterate)?)))
     }
 
-    /// What a converged chain is.
-    pub(crate) fn of(chain: &ShootingIterate) -> Self {
+    /// What a converged iterate is.
+    pub(crate) fn of(iterate: &ShootingIterate) -> Self {
         Self {
-            points: chain.points.clone(),
-            phases: chain.phases(),
-            multipliers: multipliers::of(chain),
-            residual: chain.residual,
-            drift_per_period: chain.drift() / chain.points.len() as f64,
+            points: iterate.points.clone(),
+            phases: iterate.phases(),
+            multipliers: multipliers::of(iterate),
+            residual: iterate.residual,
+            drift_per_period: iterate.drift() / iterate.points.len() as f64,
         }
     }
 

@@ -1,4 +1,4 @@
-//! The multipliers of a closed chain.
+//! The multipliers of a closed iterate.
 
 use super::shooting::ShootingIterate;
 use crate::dynamics::linear::{
@@ -14,9 +14,9 @@ pub(crate) struct Invariants {
 }
 
 impl Invariants {
-    pub(crate) fn of(chain: &ShootingIterate) -> Self {
-        let around = around(chain);
-        let reversed = chain
+    pub(crate) fn of(iterate: &ShootingIterate) -> Self {
+        let around = around(iterate);
+        let reversed = iterate
             .jacobians
             .iter()
             .fold(IDENTITY, |before, jacobian| product(&before, &adjugate(jacobian)));
@@ -26,20 +26,20 @@ impl Invariants {
 
 /// The multipliers of an orbit. With any contact one multiplier is zero and the others follow from
 /// two invariants; without, all three are computed.
-pub(super) fn of(chain: &ShootingIterate) -> [ReIm; 3] {
-    if touches(chain) {
-        let Invariants { sum, pairs } = Invariants::of(chain);
+pub(super) fn of(iterate: &ShootingIterate) -> [ReIm; 3] {
+    if touches(iterate) {
+        let Invariants { sum, pairs } = Invariants::of(iterate);
         let [first, second] = roots(sum, pairs);
         [first, second, [0.0; 2]]
     } else {
-        eigenvalues(&around(chain))
+        eigenvalues(&around(iterate))
     }
 }
 
-fn around(chain: &ShootingIterate) -> Jacobian {
-    chain.jacobians.iter().fold(IDENTITY, |before, jacobian| product(jacobian, &before))
+fn around(iterate: &ShootingIterate) -> Jacobian {
+    iterate.jacobians.iter().fold(IDENTITY, |before, jacobian| product(jacobian, &before))
 }
 
-fn touches(chain: &ShootingIterate) -> bool {
-    chain.passages.iter().flat_map(|it| &it.phases).any(|phase| *phase != Phase::NoContact)
+fn touches(iterate: &ShootingIterate) -> bool {
+    iterate.passages.iter().flat_map(|it| &it.phases).any(|phase| *phase != Phase::NoContact)
 }

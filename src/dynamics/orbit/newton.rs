@@ -1,4 +1,4 @@
-//! Newton's method on a chain of strobes, damped, and over the corners of the map.
+//! Newton's method on a sequence of strobes, damped, and over the corners of the map.
 
 use super::shooting::ShootingIterate;
 use super::{NoOrbit, Reason};
@@ -14,39 +14,44 @@ const WILD: usize = 6;
 /// Steps without a better residual that end the polishing.
 const IDLE: usize = 3;
 
-/// The closed chain that is reached from this one.
+/// The closed iterate that is reached from this one.
 pub(crate) fn solved(map: &StrobeMap, start: ShootingIterate) -> Result<ShootingIterate, NoOrbit> {
     let mut best = start.clone();
-    let mut chain = start;
+    let mut iterate = start;
     let mut wild = 0;
     for _ in 0..STEPS {
-        if chain.residual < best.residual {
-            best = chain.clone();
+        if iterate.residual < best.residual {
+            best = iterate.clone();
         }
         if best.is_closed() {
             return Ok(polished(map, best));
         }
-        let step = chain.newton_step();
-        if let Some(next) = damped(map, &chain, &step) {
-            chain = next;
+        let step = iterate.newton_step();
+        if let Some(next) = damped(map, &iterate, &step) {
+            iterate = next;
             continue;
         }
         wild += 1;
-        let blind = chain.moved(map, &step, 1.0).filter(|_| wild <= WILD);
+        let blind = iterate.moved(map, &step, 1.0).filter(|_| wild <= WILD);
         let Some(next) = blind else {
             return Err(NoOrbit { residual: best.residual, reason: Reason::Stalled });
         };
-        chain = next;
+        iterate = next;
     }
     Err(NoOrbit { residual: best.residual, reason: Reason::Slow })
 }
 
 /// The longest share of the step that comes closer.
-fn damped(map: &StrobeMap, chain: &ShootingIterate, step: &[[f64; 3]]) -> Option<ShootingIterate> {
+fn damped(
+    map: &StrobeMap,
+    iterate: &ShootingIterate,
+    step: &[[f64; 3]],
+) -> Option<ShootingIterate> {
     let mut share = 1.0;
     while share >= SHORTEST {
-        let next = chain.moved(map, step, share);
-        let closer = |next: &ShootingIterate| next.residual <= (1.0 - 0.1 * share) * chain.residual;
+        let next = iterate.moved(map, step, share);
+        let closer =
+            |next: &ShootingIterate| next.residual <= (1.0 - 0.1 * share) * iterate.residual;
         if let Some(next) = next.filter(closer) {
             return Some(next);
         }
@@ -58,16 +63,16 @@ fn damped(map: &StrobeMap, chain: &ShootingIterate, step: &[[f64; 3]]) -> Option
 /// Newton's steps as long as they gain anything.
 pub(crate) fn polished(map: &StrobeMap, start: ShootingIterate) -> ShootingIterate {
     let mut best = start.clone();
-    let mut chain = start;
+    let mut iterate = start;
     let mut idle = 0;
     while idle < IDLE && best.residual > 0.0 {
-        let Some(next) = chain.moved(map, &chain.newton_step(), 1.0) else { break };
+        let Some(next) = iterate.moved(map, &iterate.newton_step(), 1.0) else { break };
         idle += 1;
         if next.residual < best.residual {
             best = next.clone();
             idle = 0;
         }
-        chain = next;
+        iterate = next;
     }
     best
 }

@@ -23,7 +23,7 @@ pub(crate) struct ShootingIterate {
     pub(crate) residual: f64,
 }
 
-/// The chain's linear recurrence from the first strobe once around: d -> `matrix` d + `offset`.
+/// The iterate's linear recurrence from the first strobe once around: d -> `matrix` d + `offset`.
 pub(crate) struct Around {
     pub(crate) matrix: Jacobian,
     pub(crate) offset: StrobePoint,
@@ -44,7 +44,7 @@ impl ShootingIterate {
     /// These strobes, each with its own forcing period; none where one is out of range.
     pub(crate) fn of(map: &StrobeMap, points: &[StrobePoint]) -> Option<Self> {
         let count = points.len();
-        let mut chain = Self {
+        let mut iterate = Self {
             points: Vec::with_capacity(count),
             passages: Vec::with_capacity(count),
             jacobians: Vec::with_capacity(count),
@@ -54,21 +54,21 @@ impl ShootingIterate {
         for point in points {
             let entry = map.entry(*point).ok()?;
             let passage = map.passage(&entry, 1);
-            chain.points.push(entry.point());
-            chain.jacobians.push(passage.free_jacobian());
-            chain.passages.push(passage);
+            iterate.points.push(entry.point());
+            iterate.jacobians.push(passage.free_jacobian());
+            iterate.passages.push(passage);
         }
-        for (k, passage) in chain.passages.iter().enumerate() {
-            let next = chain.points[(k + 1) % count];
+        for (k, passage) in iterate.passages.iter().enumerate() {
+            let next = iterate.points[(k + 1) % count];
             let image = passage.point();
             let defect: StrobePoint = std::array::from_fn(|i| image[i] - next[i]);
             let residual = size(&defect) / (1.0 + size(&next));
-            if residual > chain.residual || residual.is_nan() {
-                chain.residual = residual;
+            if residual > iterate.residual || residual.is_nan() {
+                iterate.residual = residual;
             }
-            chain.defects.push(defect);
+            iterate.defects.push(defect);
         }
-        chain.residual.is_finite().then_some(chain)
+        iterate.residual.is_finite().then_some(iterate)
     }
 
     /// What rounding leaves of the residual: a phase's roundings, carried to the period's end.
@@ -118,7 +118,7 @@ impl ShootingIterate {
         self.spread(first, &self.defects)
     }
 
-    /// The chain with a share of these changes made.
+    /// The iterate with a share of these changes made.
     pub(crate) fn moved(
         &self,
         map: &StrobeMap,
@@ -163,8 +163,8 @@ impl ShootingIterate {
         if self.points.len().is_multiple_of(2) { self.distance(&turned) } else { f64::INFINITY }
     }
 
-    /// The largest distance to another chain's strobes, over 1 + |strobe|; the other one may close
-    /// sooner.
+    /// The largest distance to another iterate's strobes, over 1 + |strobe|; the other one may
+    /// close sooner.
     pub(crate) fn distance(&self, other: &Self) -> f64 {
         let others = other.points.iter().cycle();
         let apart = self.points.iter().zip(others).map(|(a, b)| {

@@ -1,4 +1,4 @@
-//! A contact followed in strides of fixed length ([`crate::crossing::contact_parts`]).
+//! A contact followed in steps of fixed length ([`crate::crossing::contact_parts`]).
 //!
 //! Clearly above critical damping the free part is carried as two exponentials, so that what is
 //! left of it has the derivatives of the slow one when the quick one has died out. Steps then
@@ -96,35 +96,53 @@ impl<S: Simd> LaneParts<S> {
     }
 }
 
-/// The strides of a contact: the first one, and all others up to doubling.
+/// The steps of a contact: the first one, and all others up to doubling.
 #[derive(Clone, Copy)]
-pub struct Swings<S: Simd> {
-    /// The stride that is due.
+pub struct ContactSteps<S: Simd> {
+    /// The step that is due.
     pub now: ContactStep<Wide<S>>,
     full: ContactStep<Wide<S>>,
     forms: Forms,
 }
 
-impl<S: Simd> Swings<S> {
-    /// The strides of a guess.
+impl<S: Simd> ContactSteps<S> {
+    /// The steps of a guess.
     #[inline(always)]
     pub fn of_guess(shape: &Shape<Wide<S>>, forms: Forms) -> Self {
-        let Shape { swing, swing_sin, swing_cos, swing_c, swing_s, swing_s_rate, .. } = *shape;
-        let Shape { early_swing_sin, early_swing_cos, early_swing_c, early_swing_s_rate, .. } =
-            *shape;
+        let Shape {
+            contact_look,
+            contact_look_sin,
+            contact_look_cos,
+            contact_look_c,
+            contact_look_s,
+            contact_look_s_rate,
+            ..
+        } = *shape;
+        let Shape {
+            early_contact_look_sin,
+            early_contact_look_cos,
+            early_contact_look_c,
+            early_contact_look_s_rate,
+            ..
+        } = *shape;
         let full = ContactStep {
-            length: swing,
-            sin: swing_sin,
-            cos: swing_cos,
-            c: swing_c,
-            s: swing_s,
-            s_rate: swing_s_rate,
+            length: contact_look,
+            sin: contact_look_sin,
+            cos: contact_look_cos,
+            c: contact_look_c,
+            s: contact_look_s,
+            s_rate: contact_look_s_rate,
         };
-        let early = [early_swing_sin, early_swing_cos, early_swing_c, early_swing_s_rate];
+        let early = [
+            early_contact_look_sin,
+            early_contact_look_cos,
+            early_contact_look_c,
+            early_contact_look_s_rate,
+        ];
         Self::new(shape, forms, full, early)
     }
 
-    /// The strides from piece to piece of a certificate.
+    /// The steps from piece to piece of a certificate.
     #[inline(always)]
     pub fn of_pieces(shape: &Shape<Wide<S>>, forms: Forms) -> Self {
         let Shape { piece, piece_sin, piece_cos, piece_c, piece_s, piece_s_rate, .. } = *shape;
@@ -142,7 +160,7 @@ impl<S: Simd> Swings<S> {
         Self::new(shape, forms, full, early)
     }
 
-    /// The strides up to the full one, from the early one's sine, cosine, C and S'.
+    /// The steps up to the full one, from the early one's sine, cosine, C and S'.
     #[inline(always)]
     fn new(
         shape: &Shape<Wide<S>>,
@@ -160,7 +178,7 @@ impl<S: Simd> Swings<S> {
         Self { now, full, forms }
     }
 
-    /// Goes on to the next stride: twice as long, until the full length is reached.
+    /// Goes on to the next step: twice as long, until the full length is reached.
     #[inline(always)]
     pub fn next(&mut self) {
         if self.forms == Forms::Usual {
