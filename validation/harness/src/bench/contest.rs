@@ -3,7 +3,7 @@
 use super::contestant::{Contestant, TimedRun, ladder};
 use super::course::{Course, Score};
 use super::rounds::{Benchmark, PACE, RoundTimes, race};
-use crate::engine::{Accuracy, Failure, REFERENCE, Stepping, Work};
+use crate::engine::{Accuracy, Declaration, Failure, REFERENCE, Stepping, Work};
 
 /// A contestant at a setting, and what came of it.
 #[derive(Clone, Debug)]
@@ -42,7 +42,7 @@ pub fn contest(
     rounds: usize,
     done: &dyn Fn(),
 ) -> Vec<Finisher> {
-    let settings = |it: &&dyn Contestant| ladder(it.stepping());
+    let settings = |it: &&dyn Contestant| ladder(it.declaration().stepping);
     let asked = contestants.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
     contest_at(course, &asked.collect::<Vec<_>>(), rounds, done)
 }
@@ -80,12 +80,9 @@ pub fn contest_at(
         let harness_share = share.filter(|it| it.is_finite());
         Ok(Timed { score: timed.score()?, work: timed.work(), series, harness_share })
     };
-    let finisher = |((contestant, setting), entry): (&(&dyn Contestant, Accuracy), _)| Finisher {
-        name: contestant.name(),
-        library: contestant.library(),
-        stepping: contestant.stepping(),
-        setting: *setting,
-        result: result(entry),
+    let finisher = |((contestant, setting), entry): (&(&dyn Contestant, Accuracy), _)| {
+        let Declaration { name, library, stepping, .. } = contestant.declaration();
+        Finisher { name, library, stepping, setting: *setting, result: result(entry) }
     };
     asked.iter().zip(entries).map(finisher).collect()
 }
@@ -96,7 +93,7 @@ struct ContestEntry<'a> {
     alone: Option<Box<dyn Benchmark + 'a>>,
 }
 
-/// Those whose answer is right are raced.
+/// The contestants that are timed: those whose answer is right.
 fn qualified<'a>(
     contestant: &'a dyn Contestant,
     course: &'a Course,
@@ -111,7 +108,8 @@ fn qualified<'a>(
 /// How much work a contest is, for progress.
 #[must_use]
 pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
-    let settings: usize = contestants.iter().map(|it| ladder(it.stepping()).len()).sum();
+    let settings: usize =
+        contestants.iter().map(|it| ladder(it.declaration().stepping).len()).sum();
     (settings * (2 * rounds + 1)) as u64
 }
 

@@ -2,12 +2,14 @@
 //!
 //! An engine is one ([`EnteredEngine`]). Something that is no engine, such as many runs at once
 //! ([`super::lanes`]), implements [`Contestant`] in a file of its own and is named in
-//! [`super::registry`].
+//! [`super::contestants`].
 
 use super::alone::alone;
 use super::course::{Course, Score};
 use super::rounds::Benchmark;
-use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Role, Stepping, Work, contain};
+use crate::engine::{
+    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, Work, contain,
+};
 use crate::number::brief;
 
 /// Calls (right-hand sides, Jacobians, guards) beyond which a run is given up: a second or less.
@@ -15,17 +17,8 @@ const BUDGET: u64 = 5_000_000;
 
 /// Something that can be timed on a course.
 pub trait Contestant: Sync {
-    /// The contestant's name, as in `-e`.
-    fn name(&self) -> &'static str;
-
-    /// The library it is of.
-    fn library(&self) -> &'static str;
-
-    /// What it is run for beside its rows.
-    fn role(&self) -> Role;
-
-    /// How it chooses its steps: what an answer is asked for in.
-    fn stepping(&self) -> Stepping;
+    /// What the contestant says of itself: its name, its library, how its accuracy is chosen.
+    fn declaration(&self) -> Declaration;
 
     /// Made ready for a course; nothing of this is timed.
     ///
@@ -72,20 +65,8 @@ pub trait TimedRun: Benchmark {
 pub struct EnteredEngine(pub &'static dyn Engine);
 
 impl Contestant for EnteredEngine {
-    fn name(&self) -> &'static str {
-        self.0.declaration().name
-    }
-
-    fn library(&self) -> &'static str {
-        self.0.declaration().library
-    }
-
-    fn role(&self) -> Role {
-        self.0.declaration().role
-    }
-
-    fn stepping(&self) -> Stepping {
-        self.0.declaration().stepping
+    fn declaration(&self) -> Declaration {
+        self.0.declaration()
     }
 
     fn enter<'a>(

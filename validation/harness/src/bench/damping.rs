@@ -48,9 +48,10 @@ pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
 }
 
 fn asked<'a>(contestants: &[&'a dyn Contestant]) -> Vec<(&'a dyn Contestant, Accuracy)> {
-    let setting = |it: &&'a dyn Contestant| match it.stepping() {
+    let setting = |it: &&'a dyn Contestant| match it.declaration().stepping {
         Stepping::Exact => Some((*it, Accuracy::Exact)),
-        _ => (it.role() >= Role::Damping).then_some((*it, Accuracy::Tolerance(TOLERANCE))),
+        _ => (it.declaration().role >= Role::Damping)
+            .then_some((*it, Accuracy::Tolerance(TOLERANCE))),
     };
     contestants.iter().filter_map(setting).collect()
 }

@@ -6,6 +6,25 @@
 //! curve where the error is at most E. A curve is never extended: one that stays above E has no
 //! such time, and one whose loosest setting errs less than E already has that setting's own.
 
+/// What the engines are compared at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Basis {
+    /// Each engine at its most accurate setting.
+    MostAccurate,
+    /// Each engine where its work-precision curve has errors of at most [`TIGHT`].
+    Tight,
+    /// Each engine where its work-precision curve has errors of at most [`LOOSE`].
+    Loose,
+}
+
+/// The smaller error at which engines are compared.
+pub const TIGHT: f64 = 1e-9;
+/// The larger error at which engines are compared.
+pub const LOOSE: f64 = 1e-6;
+
+/// Every basis, in the order of tables.
+pub const BASES: [Basis; 3] = [Basis::MostAccurate, Basis::Tight, Basis::Loose];
+
 /// What a right answer errs, and its time in any unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AccuracyPoint {

@@ -7,7 +7,8 @@
 use super::contestant::{Contestant, TimedRun};
 use super::course::{Course, Score};
 use super::rounds::Benchmark;
-use crate::engine::{Accuracy, Failure, Outcome, Role, Stepping, Work, contain, run_in_lanes};
+use crate::engine::{Accuracy, Declaration, Failure, Outcome, Work};
+use crate::engine::{contain, exact, run_in_lanes};
 use percuss::lanes::Instructions;
 
 /// Runs a call: several times as many as are under way at once in the widest vectors.
@@ -17,20 +18,13 @@ const RUNS: usize = 256;
 pub struct ExactLanes;
 
 impl Contestant for ExactLanes {
-    fn name(&self) -> &'static str {
-        "exact-lanes"
-    }
-
-    fn library(&self) -> &'static str {
-        "percuss"
-    }
-
-    fn role(&self) -> Role {
-        Role::Representative
-    }
-
-    fn stepping(&self) -> Stepping {
-        Stepping::Exact
+    fn declaration(&self) -> Declaration {
+        Declaration {
+            name: "exact-lanes",
+            method: "closed forms of many runs at once, certified first crossings",
+            dense_output: false,
+            ..exact().declaration()
+        }
     }
 
     fn enter<'a>(

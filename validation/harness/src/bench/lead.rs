@@ -1,6 +1,7 @@
 //! How far the exact solver is ahead of its closest competitor, at its most accurate and at equal
 //! accuracy.
 
+use super::equal_accuracy::{Basis, LOOSE, TIGHT};
 use super::report::{Bench, BenchRow};
 use crate::engine::REFERENCE;
 use crate::number::{brief, shortest};
@@ -10,25 +11,6 @@ use crate::number::{brief, shortest};
 pub fn times(ratio: f64) -> String {
     format!("{:.0}", ratio.floor())
 }
-
-/// What the engines are compared at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Basis {
-    /// Each engine at its most accurate setting.
-    MostAccurate,
-    /// Each engine where its work-precision curve has errors of at most [`TIGHT`].
-    Tight,
-    /// Each engine where its work-precision curve has errors of at most [`LOOSE`].
-    Loose,
-}
-
-/// The smaller error at which engines are compared.
-pub const TIGHT: f64 = 1e-9;
-/// The larger error at which engines are compared.
-pub const LOOSE: f64 = 1e-6;
-
-/// Every basis, in the order of tables.
-pub const BASES: [Basis; 3] = [Basis::MostAccurate, Basis::Tight, Basis::Loose];
 
 /// The closest competitor of the exact solver on a case.
 #[derive(Clone, Debug)]

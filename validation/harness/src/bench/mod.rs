@@ -22,7 +22,6 @@ pub mod lanes;
 pub mod lead;
 pub mod length;
 mod pictures;
-pub mod registry;
 pub mod report;
 pub mod rounds;
 mod summary;
@@ -33,3 +32,17 @@ pub use pictures::{history as history_picture, pictures};
 pub use report::Bench;
 pub use summary::summary;
 pub use table::table;
+
+use crate::engine;
+use contestant::{Contestant, EnteredEngine};
+use lanes::ExactLanes;
+
+/// Every contestant, the exact solver first.
+#[must_use]
+pub fn contestants() -> Vec<Box<dyn Contestant>> {
+    let engines = engine::all().iter();
+    let entered = engines.map(|engine| Box::new(EnteredEngine(*engine)) as Box<dyn Contestant>);
+    let mut all: Vec<_> = entered.collect();
+    all.insert(1, Box::new(ExactLanes));
+    all
+}

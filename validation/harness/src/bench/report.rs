@@ -3,9 +3,8 @@
 use super::contest::{Finisher, exact, most_accurate};
 use super::course::Course;
 use super::damping::DampingRung;
-use super::equal_accuracy::{AccuracyPoint, time_at};
+use super::equal_accuracy::{AccuracyPoint, Basis, LOOSE, TIGHT, time_at};
 use super::floor::Floors;
-use super::lead::{Basis, LOOSE, TIGHT};
 use super::length::Length;
 use crate::build::Build;
 use crate::engine::{REFERENCE, Stepping};
@@ -210,7 +209,7 @@ fn entry(course: &Course) -> CaseEntry {
         case: course.name.clone(),
         regime: course.regime.clone(),
         periods: course.periods(),
-        events: course.truth.switches.len(),
+        events: course.truth.events.len(),
     }
 }
 

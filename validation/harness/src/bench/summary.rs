@@ -1,7 +1,8 @@
 //! What a bench says in brief: the cost of an event, and the closest competitor on each case.
 
+use super::equal_accuracy::BASES;
 use super::grid::{plain, shown};
-use super::lead::{BASES, errs_least, lead, times};
+use super::lead::{errs_least, lead, times};
 use super::report::{Bench, BenchRow};
 use crate::engine::REFERENCE;
 use crate::number::brief;

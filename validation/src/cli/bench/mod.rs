@@ -3,23 +3,25 @@
 mod compare;
 mod history;
 mod record;
-mod worker;
 
 use super::names::{CASES, Selection};
 use super::output::{Destination, make_folder, reader_left, write_whole};
 use super::{DONE, OUT_OF_BOUNDS, format, output, parse, work};
+use crate::bench::compare::worker::serve;
 use crate::bench::contest::{self, Finisher, contest};
 use crate::bench::contestant::Contestant;
 use crate::bench::course::Course;
 use crate::bench::report::Measurement;
-use crate::bench::{Bench, cases, damping, floor, length, pictures, registry, table};
+use crate::bench::{Bench, cases, contestants, damping, floor, length, pictures};
+use crate::bench::{table, workload};
 use crate::build;
 use crate::case::{self, Case};
-use crate::engine::{REFERENCE, Stepping, hush_contained_panics};
+use crate::engine::{Declaration, REFERENCE, Stepping, hush_contained_panics};
 use crate::truth::Library;
 use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
 use regex::Regex;
+use std::io;
 use std::path::{Path, PathBuf};
 
 /// Time every engine against the exact solver in interleaved rounds
@@ -61,7 +63,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         Some(Other::Record(record)) => record::run(record).map(|()| DONE),
         Some(Other::Compare(compare)) => compare::run(compare),
         Some(Other::History(history)) => history::run(history).map(|()| DONE),
-        Some(Other::Worker) => worker::run().map(|()| DONE),
+        Some(Other::Worker) => worker().map(|()| DONE),
     }
 }
 
@@ -69,7 +71,7 @@ fn race(arguments: &Arguments) -> Result<u8> {
     if arguments.long && !arguments.case.is_empty() {
         bail!("--long has no effect with --case: long runs are of no case");
     }
-    let all = registry::all();
+    let all = contestants();
     let contestants = chosen_engines(&all, &arguments.engine)?;
     let courses = courses(&chosen_cases(&arguments.case)?)?;
     if let Some(folder) = &arguments.out {
@@ -85,6 +87,13 @@ fn race(arguments: &Arguments) -> Result<u8> {
     let shown = Destination::Stdout.write(|out| Ok(out.write_all(text.as_bytes())?));
     shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
     Ok(DONE)
+}
+
+/// Serves one side of a comparison of two binaries.
+fn worker() -> Result<()> {
+    let courses = courses(&cases_by_default()?)?;
+    let workloads = workload::all(&courses);
+    serve(&build::this(), &workloads, io::stdin().lock(), io::stdout().lock()).context("worker")
 }
 
 fn measured(
@@ -132,12 +141,16 @@ fn chosen_engines<'a>(
     patterns: &[Regex],
 ) -> Result<Vec<&'a dyn Contestant>> {
     let matches = |it: &dyn Contestant| {
-        patterns.is_empty() || patterns.iter().any(|pattern| pattern.is_match(it.name()))
+        patterns.is_empty()
+            || patterns.iter().any(|pattern| pattern.is_match(it.declaration().name))
     };
     let listed = "percuss engines lists those of validate, and exact-lanes is one of bench";
     let selection = Selection { flag: "--engine", what: "engine", listed };
-    selection.check(patterns, all.iter().map(|it| it.name()))?;
-    let is_unit = |it: &dyn Contestant| it.name() == REFERENCE && it.stepping() == Stepping::Exact;
+    selection.check(patterns, all.iter().map(|it| it.declaration().name))?;
+    let is_unit = |it: &dyn Contestant| {
+        let Declaration { name, stepping, .. } = it.declaration();
+        name == REFERENCE && stepping == Stepping::Exact
+    };
     Ok(all.iter().map(AsRef::as_ref).filter(|it| is_unit(*it) || matches(*it)).collect())
 }
 
