@@ -1,11 +1,11 @@
 //! What each bench has been recorded to take, with the reason of the last change.
 
-/// By how many instructions any count may exceed its record. Four of the small benches took 12 more
+/// Instructions by which any count may exceed its record. Four of the small benches took 12 more
 /// on another machine at the very commit that wrote their record; a third of that is room for a
 /// third machine.
 const BETWEEN_MACHINES: f64 = 16.0;
 
-/// By how much a count may exceed its record, where that is more than `BETWEEN_MACHINES`.
+/// Excess over its record that a count may have, where that is more than `BETWEEN_MACHINES`.
 #[derive(Clone, Copy, Debug)]
 pub enum Grain {
     /// One thing done once or a few times: half a per cent.

@@ -155,7 +155,7 @@ impl Bench {
         (0..SHARDS).filter_map(read).collect()
     }
 
-    /// Of what was finished before, how many shards are gone or are others now.
+    /// Counts the shards that were finished before and are gone or changed now.
     fn lost(out: &Path, before: &[(u32, Vec<u8>)]) -> u32 {
         let is_there = |(shard, bytes): &&(u32, Vec<u8>)| {
             fs::read(Self::shard(out, *shard)).is_ok_and(|it| it == *bytes)

@@ -56,7 +56,7 @@ fn the_usual_cases_are_there_and_the_exact_solver_is_right_on_them() {
             contest_at(&course, &[(&EnteredEngine(exact_solver()), Accuracy::Exact)], 1, &|| ());
         let timed = found[0].result.as_ref().expect("right");
         assert!(timed.score.state_error < 1e-10, "{name}: {:?}", timed.score);
-        assert_eq!(timed.work.steps, course.truth.switches.len() as u64 + 1);
+        assert_eq!(timed.work.steps, course.truth.events.len() as u64 + 1);
     }
 }
 

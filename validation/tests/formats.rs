@@ -94,7 +94,7 @@ fn cases() {
     let names: Vec<_> = listed.iter().map(|it| it["name"].as_str().unwrap_or_default()).collect();
     assert_eq!(names, all.iter().map(|it| it.name.as_str()).collect::<Vec<_>>());
     let of = |name: &str| listed.iter().find(|it| it["name"] == name).cloned().expect("listed");
-    // Table 1 of the paper is 79 switches up to tau = 1268 at omega = 0.1.
+    // Table 1 of the paper is 79 events up to tau = 1268 at omega = 0.1.
     let table1 = of("table1-from-rest");
     assert_eq!(table1["events"], 79);
     let periods = table1["periods"].as_f64().expect("a number");

@@ -13,11 +13,12 @@ use percuss_validation::engine::{SampleGrid, Task};
 use percuss_validation::score::RunGrowth;
 use percuss_validation::truth::{DoubleDouble, Library, Replay, Truth};
 
-/// Of the largest growth so far: both are products of matrices in f64 (4e-12 is the most in regular
-/// motion; where a growth passes through a minimum, less of its own digits are left).
+/// Allowed difference, as a share of the largest growth so far: both are products of matrices in
+/// f64 (4e-12 is the most in regular motion; where a growth passes through a minimum, less of its
+/// own digits are left).
 const AGREEMENT: f64 = 1e-11;
-/// In chaos the rows they follow are off by eps times the growth, and the derivatives by some times
-/// that (8 where most): a grazing impact bends them.
+/// Allowed difference in chaos, where the rows are off by eps times the growth, and the derivatives
+/// by some times that (8 where most): a grazing impact bends them.
 const BENT: f64 = 20.0 * f64::EPSILON;
 
 const CASES: [&str; 12] = [
@@ -82,11 +83,11 @@ fn products_of_the_solver_agree_with_matrix_exponentials() {
             }
             if let Some(found) = recorder.pass(&segment) {
                 let what = format!("switch {}", switch + 1);
-                compare(values(found), growth.switches[switch], &what);
+                compare(values(found), growth.events[switch], &what);
                 switch += 1;
             }
         }
-        assert_eq!((switch, sample), (truth.switches.len(), truth.samples.len()), "{name}");
+        assert_eq!((switch, sample), (truth.events.len(), truth.samples.len()), "{name}");
     }
     println!("the two growths agree to {worst:.1e}");
 }
@@ -98,7 +99,7 @@ const STEP: f64 = 1e-11;
 const DIFFERENCE: f64 = 1e-10;
 
 /// tau, p, y, q and v of every switch of a run in 106 bits.
-fn switches(
+fn events(
     case: &Case,
     entry: &Entry,
     state: [DoubleDouble; 3],
@@ -152,7 +153,7 @@ fn the_solvers_products_are_what_differences_in_106_bits_say() {
             Y => state[1] = state[1] + DoubleDouble::exact(step),
             _ => state[2] = state[2] + DoubleDouble::exact(step),
         }
-        switches(&case, &entry, state, end)
+        events(&case, &entry, state, end)
     };
     let mut worst = 0.0_f64;
     for column in [ANGLE, P, Y, Q] {
@@ -169,5 +170,5 @@ fn the_solvers_products_are_what_differences_in_106_bits_say() {
             }
         }
     }
-    println!("{} switches, derivatives agree to {worst:.1e}", found.len());
+    println!("{} events, derivatives agree to {worst:.1e}", found.len());
 }

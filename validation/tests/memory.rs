@@ -10,7 +10,7 @@ use std::alloc::System;
 #[global_allocator]
 static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
 
-/// Follows chaos from rest for this many forcing periods; its switches, and the most that is held
+/// Follows chaos from rest for this many forcing periods; its events, and the most that is held
 /// on the heap when a phase has been found, bytes.
 fn followed(periods: u64) -> (u64, usize) {
     let model = Model::new(Parameters { omega: 1.4, ..Parameters::default() }).expect("a model");
@@ -30,8 +30,8 @@ fn held(region: &Region<'_, System>) -> usize {
 /// usual harness: what its threads hold would be counted too.
 fn main() {
     for periods in [1_000, 1_000_000] {
-        let (switches, held) = followed(periods);
-        assert!(switches * 2 > periods, "{switches}");
+        let (events, held) = followed(periods);
+        assert!(events * 2 > periods, "{events}");
         assert_eq!(held, 0, "{periods} periods");
     }
     // The counter counts.

@@ -15,7 +15,7 @@ const HALF_A_DIGIT: f64 = 0.5e-24;
 /// They are read into two words in a dozen roundings.
 const READING: f64 = 16.0 * UNIT;
 
-/// k of |error| <= k u (1 + |value| + time) growth switches, beyond the tables' own rounding, with
+/// k of |error| <= k u (1 + |value| + time) growth events, beyond the tables' own rounding, with
 /// u = 2^-106. Ten-odd roundings a switch would let it be ten; 0.13 is reached, where 25 digits do
 /// not hide it.
 const ROUNDINGS: f64 = 1.0;
@@ -44,17 +44,17 @@ fn units(found: TwoWord, proved: TwoWord, time: f64) -> f64 {
     left / (UNIT * (1.0 + value + time))
 }
 
-/// Where a row stands: how many switches came before, and how long ago the last of them was.
+/// The place of a row: how many events came before, and how long ago the last of them was.
 #[derive(Clone, Copy)]
 struct Place {
-    switches: usize,
+    events: usize,
     time: f64,
 }
 
 fn compare(
     (found, proved): (&TruthRow, &TruthRow),
     growth: &[f64; 5],
-    Place { switches, time }: Place,
+    Place { events, time }: Place,
     what: &str,
     worst: &mut Worst,
 ) {
@@ -65,7 +65,7 @@ fn compare(
         [row.elapsed, p, y, q, v]
     };
     for (i, (found, proved)) in values(found).into_iter().zip(values(proved)).enumerate() {
-        let units = units(found, proved, time) / (growth[i] * switches as f64);
+        let units = units(found, proved, time) / (growth[i] * events as f64);
         if units > worst.units || units.is_nan() {
             *worst = Worst { units, place: format!("{} of {what}", names[i]) };
         }
@@ -75,7 +75,7 @@ fn compare(
 #[test]
 fn every_proved_digit_of_every_case_is_met() {
     let mut worst = Worst { units: 0.0, place: "none".into() };
-    let (mut switches, mut samples) = (0, 0);
+    let (mut events, mut samples) = (0, 0);
     for case in embedded().expect("the cases are read") {
         let (task, truth) = prepared(&case);
         let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
@@ -84,20 +84,20 @@ fn every_proved_digit_of_every_case_is_met() {
         let replayed = replayed.unwrap_or_else(|undecided| panic!("{}: {undecided}", case.name));
         let name = &case.name;
         let mut here = Worst { units: 0.0, place: "none".into() };
-        assert_eq!(replayed.switches.len(), truth.switches.len(), "{name}");
+        assert_eq!(replayed.events.len(), truth.events.len(), "{name}");
         let mut begins = 0.0;
-        for (n, (found, proved)) in replayed.switches.iter().zip(&truth.switches).enumerate() {
+        for (n, (found, proved)) in replayed.events.iter().zip(&truth.events).enumerate() {
             let what = format!("switch {} of {name}", n + 1);
-            let place = Place { switches: n + 1, time: proved.elapsed.value() - begins };
+            let place = Place { events: n + 1, time: proved.elapsed.value() - begins };
             begins = proved.elapsed.value();
-            compare((found, proved), &growth.switches[n], place, &what, &mut here);
+            compare((found, proved), &growth.events[n], place, &what, &mut here);
         }
         let plain = |growth: [f64; 4]| [1.0, growth[0], growth[1], growth[2], growth[3]];
         let place = |row: &TruthRow| {
             let since = |switch: &TruthRow| row.elapsed.minus(switch.elapsed).value();
-            let passed = truth.switches.iter().take_while(|switch| since(switch) >= 0.0).count();
-            let last = passed.checked_sub(1).map_or(&truth.start, |n| &truth.switches[n]);
-            Place { switches: passed.max(1), time: since(last) }
+            let passed = truth.events.iter().take_while(|switch| since(switch) >= 0.0).count();
+            let last = passed.checked_sub(1).map_or(&truth.start, |n| &truth.events[n]);
+            Place { events: passed.max(1), time: since(last) }
         };
         for (k, rows) in replayed.samples.iter().zip(&truth.samples).enumerate() {
             let what = format!("sample {k} of {name}");
@@ -107,13 +107,13 @@ fn every_proved_digit_of_every_case_is_met() {
         let ends = (&replayed.end, &truth.end);
         compare(ends, &plain(growth.end), place(&truth.end), &what, &mut here);
         assert_eq!(replayed.samples.len(), truth.samples.len(), "{name}");
-        (switches, samples) = (switches + truth.switches.len(), samples + truth.samples.len());
+        (events, samples) = (events + truth.events.len(), samples + truth.samples.len());
         println!("{name}: {:.2} at {}", here.units, here.place);
         if here.units > worst.units || here.units.is_nan() {
             worst = here;
         }
     }
-    println!("{switches} switches, {samples} samples: {:.2} at {}", worst.units, worst.place);
+    println!("{events} events, {samples} samples: {:.2} at {}", worst.units, worst.place);
     assert!(worst.units <= ROUNDINGS, "{:.2} roundings: {}", worst.units, worst.place);
 }
 
@@ -124,7 +124,7 @@ fn graze(shift: f64) -> Result<usize, Undecided> {
     let given = Given { parameters: case.parameters, start, ..Given::default() };
     let entry = given.check().expect("the start is accepted").entry;
     let horizon = entry.instant.after_periods(5, 1);
-    Truth::replayed(&case.parameters, &entry, horizon, (0, 1)).map(|truth| truth.switches.len())
+    Truth::replayed(&case.parameters, &entry, horizon, (0, 1)).map(|truth| truth.events.len())
 }
 
 /// A graze that f64 cannot tell from a miss with room to spare has no truth here, and says so; one

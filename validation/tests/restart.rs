@@ -10,8 +10,8 @@ use percuss_validation::case::{Case, Problem, embedded};
 use percuss_validation::engine::{Failure, Outcome, Task};
 use percuss_validation::score::{Restart, RestartTest};
 
-/// Of the runs with an impact, in eps (1 + |value|) x growth: twice the largest median measured
-/// (1.0, fast forcing; 0.35 in chaos). The last addition alone makes a quarter.
+/// Largest median of the runs with an impact, in eps (1 + |value|) x growth: twice the largest
+/// median measured (1.0, fast forcing; 0.35 in chaos). The last addition alone makes a quarter.
 const MEDIAN: f64 = 2.0;
 /// The promise of ten roundings; 4.9 is the largest of 430,000 runs (fast forcing), 2.7 in chaos.
 const LARGEST: f64 = 10.0;
@@ -58,7 +58,7 @@ fn holds_its_digits(case: &Case, test: &RestartTest, how: &str, run: &Run) {
         absolute.q99,
         absolute.max
     );
-    let unhappy = (restart.undecided, restart.failed, restart.wrong_words);
+    let unhappy = (restart.undecided, restart.failed, restart.wrong_sequences);
     assert_eq!((restart.runs, unhappy), (count, (0, 0, 0)), "{}", case.name);
     if WITHOUT_IMPACT.contains(&case.name.as_str()) {
         assert_eq!(*with_impact, 0, "{}", case.name);
@@ -126,9 +126,9 @@ fn starts_lie_in_every_phase_and_runs_end_at_a_strobe() {
         assert_eq!(entry.instant.cycle(), 0);
         let horizon = run.task.horizon;
         assert!(horizon.angle() == 0.0 && (1..=8).contains(&horizon.cycle()), "{horizon:?}");
-        assert_eq!(run.growth.switches.len(), run.truth.switches.len());
+        assert_eq!(run.growth.events.len(), run.truth.events.len());
     }
-    let counted: usize = restart.by_switches.values().map(|(runs, _)| runs).sum();
+    let counted: usize = restart.by_events.values().map(|(runs, _)| runs).sum();
     assert_eq!(counted, restart.with_impact);
     assert_eq!(restart.histogram.counts.iter().sum::<usize>(), restart.with_impact);
 }
@@ -171,5 +171,5 @@ fn an_error_of_the_drift_alone_is_seen() {
     let restart = test.score(f64::EPSILON, drifted);
     assert!(restart.with_impact > 0);
     assert!(restart.units.median > LARGEST, "{}", restart.units.median);
-    assert_eq!((restart.failed, restart.wrong_words), (0, 0));
+    assert_eq!((restart.failed, restart.wrong_sequences), (0, 0));
 }

@@ -13,9 +13,9 @@ use percuss_validation::truth::{DoubleDouble, Replay};
 /// rounding, and its quotient leaves 106 bits fifteen digits. Next to a graze, at a distance of
 /// 1e-10, the third derivative is 1e-10^(-3/2).
 const STEP: f64 = 1e-15;
-/// Of the derivative's largest entry: products of matrices in f64 along a run that is itself
-/// rounded, 1e-14 at most. A distance d from a graze is known to eps, and the derivative there to
-/// eps/sqrt(d): 2e-11 at 1e-10.
+/// Allowed error, as a share of the derivative's largest entry: products of matrices in f64 along a
+/// run that is itself rounded, 1e-14 at most. A distance d from a graze is known to eps, and the
+/// derivative there to eps/sqrt(d): 2e-11 at 1e-10.
 const AGREEMENT: f64 = 1e-11;
 
 fn map_of(xi: f64, omega: f64, a: f64, b: f64, g: f64) -> StrobeMap {
@@ -114,7 +114,7 @@ impl Graze {
         self.model.trajectory(self.entry(distance)).next().unwrap()
     }
 
-    /// Where the flight's end leaps from its first approach to a later one.
+    /// Finds where the flight's end leaps from its first approach to a later one.
     fn found() -> Self {
         let model = Model::new(Parameters { xi: 0.1, ..Parameters::default() }).unwrap();
         let start = Instant::at(model.parameters().omega, 0.0, 0);

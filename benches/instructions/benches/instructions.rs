@@ -28,7 +28,7 @@ fn segment(phase: Phase) -> Segment {
         .expect("all phases occur")
 }
 
-/// Where a phase begins, with its model.
+/// The entry at which a phase begins, with its model.
 fn beginning(phase: Phase) -> (Model, Entry) {
     (model(CHAOS), *segment(phase).entry())
 }

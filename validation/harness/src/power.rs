@@ -17,7 +17,7 @@ use std::collections::BTreeMap;
 pub enum Gate {
     /// Events missed, spurious, or of another phase.
     Events,
-    /// Errors at the switches.
+    /// Errors at the events.
     EventErrors,
     /// Errors on the fixed sample, drift included.
     StateErrors,
@@ -55,7 +55,9 @@ impl Gate {
 
     const fn of(quantity: Quantity) -> Self {
         match quantity {
-            Quantity::EventsMissed | Quantity::EventsSpurious | Quantity::PhaseWord => Self::Events,
+            Quantity::EventsMissed | Quantity::EventsSpurious | Quantity::PhaseSequence => {
+                Self::Events
+            }
             Quantity::EventTimeError | Quantity::EventConstant => Self::EventErrors,
             Quantity::StateError
             | Quantity::DriftError

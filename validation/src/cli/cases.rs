@@ -61,7 +61,7 @@ fn line(case: &Case, library: &Library) -> Result<Line, FileError> {
         name: case.name.clone(),
         regime: case.regime.clone(),
         system: SYSTEM,
-        events: library.truth(case)?.switches.len(),
+        events: library.truth(case)?.events.len(),
         periods: periods(case),
         table: library.table(case).unwrap_or_default(),
         why: case.why.clone(),

@@ -14,7 +14,7 @@ pub(super) fn write(value: &impl Serialize, out: impl Write) -> serde_json::Resu
 #[derive(Default)]
 struct CompactLines {
     indented: PrettyFormatter<'static>,
-    /// For each list or object that is open: whether it stands on lines of its own.
+    /// Whether each list or object that is open stands on lines of its own.
     open: Vec<bool>,
     /// Whether a value of a list comes next whose separator is not written yet; true for the first.
     waiting: Option<bool>,

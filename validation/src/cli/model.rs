@@ -65,7 +65,7 @@ impl ModelFlags {
         self.given()?.check().map_err(|line| anyhow!(line))
     }
 
-    /// The same flags at a point of a sweep.
+    /// The model's flags at a point of a sweep.
     pub(super) fn at(&self, point: &Point) -> Self {
         let mut at = self.clone();
         for (parameter, value) in &point.values {

@@ -34,7 +34,7 @@ pub struct EngineEntry {
     pub name: &'static str,
     /// The library it is of.
     pub library: &'static str,
-    /// That library's version.
+    /// The library's version.
     pub version: String,
     /// The method.
     pub method: &'static str,
@@ -88,7 +88,7 @@ pub struct ReportRow {
     pub event_time_error: Spread,
     pub state_error: Spread,
     pub drift_error: f64,
-    /// How much of it the errors of the switches' times explain to first order.
+    /// How much of it the errors of the events' times explain to first order.
     pub drift_error_by_event_times: f64,
     pub valid_periods: f64,
     /// How long runs from many states in chaos stay right.
@@ -239,7 +239,7 @@ impl ReportRow {
             events_matched: Some(measures.matched),
             events_missed: Some(measures.mismatch.missed.len()),
             events_spurious: Some(measures.mismatch.spurious.len()),
-            phase_word_ok: Some(measures.phase_word_ok),
+            phase_word_ok: Some(measures.phase_sequence_ok),
             event_time_error: measures.event_time,
             state_error: measures.state,
             drift_error: measures.drift,

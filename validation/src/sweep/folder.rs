@@ -231,7 +231,8 @@ fn temporary(shard: u32) -> String {
     format!(".percuss-{shard:05}-")
 }
 
-/// As any new file: what the umask leaves. Workers may be of several users.
+/// Gives a file the permissions of any new file: what the umask leaves. Workers may be of several
+/// users.
 fn readable(builder: &mut tempfile::Builder<'_, '_>) {
     #[cfg(unix)]
     {

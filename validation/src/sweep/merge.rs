@@ -38,7 +38,7 @@ impl fmt::Display for NotMerged {
 /// A sweep whose shards are all there and whole.
 pub struct Merge<'a> {
     sweep: &'a Sweep<'a>,
-    /// Where each tile is.
+    /// The place of each tile.
     places: Vec<Place>,
 }
 
@@ -98,7 +98,7 @@ fn archive(sweep: &Sweep<'_>, spools: Vec<Spool>, out: &mut dyn Write) -> Result
     Ok(())
 }
 
-/// Where each tile is, if all are there.
+/// The place of each tile, if all are there.
 fn places(sweep: &Sweep<'_>) -> Result<Vec<Place>> {
     let mut places = Vec::new();
     let mut not_merged = Vec::new();

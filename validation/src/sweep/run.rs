@@ -26,7 +26,7 @@ pub trait Told: Sync {
     fn redone(&self, shard: u32, why: &Damage);
     /// Another process computes this shard as well.
     fn doubled(&self, shard: u32);
-    /// So many tiles are to be done.
+    /// Says how many tiles are to be done.
     fn begun(&self, tiles: u64);
     /// One more is.
     fn tile(&self);

@@ -14,7 +14,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 pub struct Head {
     /// What the shard is one of.
     pub identity: Identity,
-    /// Its number, from 0.
+    /// The shard's number, from 0.
     pub shard: u32,
     /// Seconds that it took.
     pub seconds: f64,
@@ -38,9 +38,9 @@ pub struct Identity {
 /// A shard's file that is whole and belongs to the sweep.
 #[derive(Debug)]
 pub struct Shard {
-    /// Its first line.
+    /// The file's first line.
     pub head: Head,
-    /// Where the tiles begin.
+    /// The place at which the tiles begin.
     from: u64,
 }
 
@@ -147,7 +147,7 @@ impl Shard {
     }
 }
 
-/// Where a tile's bytes are.
+/// The place of a tile's bytes.
 #[derive(Clone, Copy, Debug)]
 pub struct Place {
     shard: u32,

@@ -12,7 +12,8 @@ pub enum Quantity {
     /// Events of the engine that the truth does not have.
     EventsSpurious,
     /// Number of differences between the engine's sequence of phases and the truth's (0 or 1).
-    PhaseWord,
+    #[serde(rename = "phase_word")]
+    PhaseSequence,
     /// Error of the matched events' times, units of time.
     EventTimeError,
     /// max(|dp|, |dy|, |dq|) on the fixed sample, units of displacement.
@@ -46,7 +47,7 @@ impl Quantity {
         match self {
             Self::EventsMissed => "events missed",
             Self::EventsSpurious => "spurious events",
-            Self::PhaseWord => "phase word",
+            Self::PhaseSequence => "phase word",
             Self::EventTimeError => "event time error",
             Self::StateError => "state error",
             Self::DriftError => "drift error",

@@ -50,7 +50,7 @@ pub struct Declaration {
     pub name: &'static str,
     /// The library it is of.
     pub library: &'static str,
-    /// That library's version, pinned.
+    /// The library's version, which is pinned.
     pub version: String,
     /// The method.
     pub method: &'static str,

@@ -15,7 +15,7 @@ pub struct Course {
     pub name: String,
     /// The regime it stands for.
     pub regime: String,
-    /// The run. It asks for no samples: switches and the end are the answer.
+    /// The run. It asks for no samples: events and the end are the answer.
     pub task: Task,
     /// The truth.
     pub truth: Truth,
@@ -24,7 +24,7 @@ pub struct Course {
 /// How good a right answer is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Score {
-    /// max(|dp|, |dy|, |dq|) over the switches, each at its own time, and the end of the run.
+    /// max(|dp|, |dy|, |dq|) over the events, each at its own time, and the end of the run.
     pub state_error: f64,
     /// Largest error of a switch's time.
     pub event_time_error: f64,
@@ -44,7 +44,7 @@ impl Score {
     }
 }
 
-/// Only the switches and the end are asked for.
+/// Only the events and the end are asked for.
 const NO_SAMPLES: SampleGrid = SampleGrid { per_period: 1, count: 0 };
 
 impl Course {
@@ -92,7 +92,7 @@ impl Course {
     /// # Errors
     /// What is wrong with it.
     pub fn score(&self, answer: &Outcome) -> Result<Score, Failure> {
-        let truth = &self.truth.switches;
+        let truth = &self.truth.events;
         let window = WINDOW * self.task.problem.model.period();
         let same = truth.len() == answer.events.len()
             && truth.iter().zip(&answer.events).all(|(row, event)| is_same(row, event, window));

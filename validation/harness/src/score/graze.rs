@@ -48,8 +48,8 @@ impl Graze {
 #[must_use]
 pub fn grazes(task: &Task, truth: &Truth, growth: &RunGrowth) -> Vec<Graze> {
     let scan = Scan { task, truth, growth };
-    let ends = truth.switches.iter().chain([&truth.end]);
-    let begins = std::iter::once(&truth.start).chain(&truth.switches);
+    let ends = truth.events.iter().chain([&truth.end]);
+    let begins = std::iter::once(&truth.start).chain(&truth.events);
     begins.zip(ends).enumerate().flat_map(|(n, (begin, end))| scan.segment(n, begin, end)).collect()
 }
 
@@ -160,7 +160,7 @@ impl Scan<'_> {
         let guard = usize::from(guards[1] > guards[0]);
         let beyond = length + self.task.problem.model.period();
         let at = segment.maximum(guard, (length, beyond), self.step())?;
-        let returns = self.truth.switches.get(n + 1).is_some_and(|next| {
+        let returns = self.truth.events.get(n + 1).is_some_and(|next| {
             let soon = next.elapsed.value() - segment.began - length <= 4.0 * (at - length);
             next.phase == Some(segment.phase) && soon
         });

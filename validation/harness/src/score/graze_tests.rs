@@ -130,17 +130,17 @@ fn rates_are_the_slopes_of_guards_in_segments_that_begin_late() {
 #[test]
 fn a_phase_that_comes_back_soon_belongs_to_the_graze() {
     let (task, truth, growth) = followed("graze-overlap-1e-3");
-    let length = truth.switches[0].elapsed.value();
+    let length = truth.events[0].elapsed.value();
     let events_with_return_at = |turns: f64| {
         let whole = Scan { task: &task, truth: &truth, growth: &growth };
-        let found = whole.segment(0, &truth.start, &truth.switches[0]);
+        let found = whole.segment(0, &truth.start, &truth.events[0]);
         let Some(graze) = found.iter().find(|it| it.events.start < it.events.end) else {
             unreachable!("the case has a graze at its first event")
         };
         let mut truth = truth.clone();
-        truth.switches[1].elapsed = TwoWord::new(length + turns * (graze.elapsed - length));
+        truth.events[1].elapsed = TwoWord::new(length + turns * (graze.elapsed - length));
         let scan = Scan { task: &task, truth: &truth, growth: &growth };
-        let found = scan.segment(0, &truth.start, &truth.switches[0]);
+        let found = scan.segment(0, &truth.start, &truth.events[0]);
         found.into_iter().find(|it| it.elapsed == graze.elapsed).map(|it| it.events)
     };
     assert_eq!(events_with_return_at(3.9), Some(0..2));

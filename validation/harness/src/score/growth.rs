@@ -18,7 +18,7 @@ use percuss::{Parameters, Phase};
 pub const SCORED_ERROR: f64 = 1e-3;
 /// The scored horizon is where this times the engine's unit of error times the growth passes
 /// [`SCORED_ERROR`]. One: up to there a method that keeps to its tolerance is still close enough
-/// for its switches to be told apart.
+/// for its events to be told apart.
 pub const SCORED_FACTOR: f64 = 1.0;
 
 /// p, y, q, v, cos, sin and 1.
@@ -38,14 +38,14 @@ type Times = SMatrix<f64, 1, DIRECTIONS>;
 #[derive(Clone, Debug)]
 pub struct RunGrowth {
     /// The growth at each event: of tau, p, y, q and v.
-    pub switches: Vec<[f64; 5]>,
+    pub events: Vec<[f64; 5]>,
     /// The growth at each sample: of p, y, q and v.
     pub samples: Vec<[f64; 4]>,
     /// The growth at the horizon: of p, y, q and v.
     pub end: [f64; 4],
 }
 
-/// Perturbations that began just before one of the switches: what they have become.
+/// Perturbations that began just before one of the events: what they have become.
 #[derive(Clone, Copy)]
 struct Descent {
     state: Bundle,
@@ -63,11 +63,11 @@ impl RunGrowth {
     #[must_use]
     pub fn along(truth: &Truth, parameters: &Parameters, angle: f64) -> Self {
         let motion = GrowthMotion { omega: parameters.omega, angle, parameters: *parameters };
-        let mut growth = Self { switches: Vec::new(), samples: Vec::new(), end: [1.0; 4] };
+        let mut growth = Self { events: Vec::new(), samples: Vec::new(), end: [1.0; 4] };
         let mut descents =
             vec![Descent { state: motion.directions(&truth.start), times: Times::zeros() }];
         let mut begin = truth.start;
-        for next in truth.switches.iter().chain([&truth.end]) {
+        for next in truth.events.iter().chain([&truth.end]) {
             let Some(phase) = begin.phase else { break };
             let linear = motion.linear(phase);
             let samples = &truth.samples[growth.samples.len()..];
@@ -82,7 +82,7 @@ impl RunGrowth {
                 break;
             }
             motion.switch(phase, &linear, &mut descents, &begin, next);
-            growth.switches.push(largest(&descents, |it| {
+            growth.events.push(largest(&descents, |it| {
                 let row = |i: usize| it.state.row(i).norm();
                 [it.times.norm(), row(0), row(1), row(2), row(3)]
             }));
@@ -216,8 +216,8 @@ mod tests {
     use crate::truth::Library;
     use percuss::{Exit, Start};
 
-    /// tau, p, y, q and v of the exact solver's first switches from a start.
-    fn switches(case: &Case, start: Start) -> Vec<[f64; 5]> {
+    /// tau, p, y, q and v of the exact solver's first events from a start.
+    fn events(case: &Case, start: Start) -> Vec<[f64; 5]> {
         let given = Given { parameters: case.parameters, start, ..Given::default() };
         let Ok(problem) = given.check() else { return Vec::new() };
         let begin = problem.entry.instant;
@@ -255,8 +255,8 @@ mod tests {
             let mut descents =
                 vec![Descent { state: motion.directions(&truth.start), times: Times::zeros() }];
             let mut begin = truth.start;
-            let p = |step: f64| switches(case, Start { p: case.start.p + step, ..case.start });
-            let y = |step: f64| switches(case, Start { y: case.start.y + step, ..case.start });
+            let p = |step: f64| events(case, Start { p: case.start.p + step, ..case.start });
+            let y = |step: f64| events(case, Start { y: case.start.y + step, ..case.start });
             let (by_p, by_y) = ([p(STEP), p(-STEP)], [y(STEP), y(-STEP)]);
             for n in 0..SWITCHES {
                 let phase = begin.phase.unwrap_or(Phase::Contact);
@@ -265,9 +265,9 @@ mod tests {
                     &motion.linear(phase),
                     &mut descents,
                     &begin,
-                    &truth.switches[n],
+                    &truth.events[n],
                 );
-                begin = truth.switches[n];
+                begin = truth.events[n];
                 for (direction, [plus, minus]) in [(1, &by_p), (2, &by_y)] {
                     let descent = &descents[0];
                     let ours = [

@@ -83,7 +83,7 @@ impl HorizonTest {
         let mut events = 0;
         for run in &mut runs {
             run.events_before = events;
-            events += run.truth.switches.len() as u64;
+            events += run.truth.events.len() as u64;
         }
         Self { undecided: count - runs.len(), runs, periods }
     }

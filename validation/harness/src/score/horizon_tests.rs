@@ -89,7 +89,7 @@ fn a_score_counts_what_failed_and_what_was_gained() {
     // In so few periods no unit of rounding grows to 1e-3, and a unit of 1e-3 is there at once.
     assert!(!test.decides(1e-15) && test.decides(1e-3));
     assert_eq!(test.length(1e-15), 3 * u64::from(PERIODS));
-    let second = test.runs[0].truth.switches.len() as u64;
+    let second = test.runs[0].truth.events.len() as u64;
     assert_eq!((test.runs[0].events_before, test.runs[1].events_before), (0, second));
     let found = test.score(1e-15, |task| {
         let run = test.runs.iter().find(|it| it.events_before == task.events_before);

@@ -20,7 +20,7 @@ impl Matching {
     pub fn of(truth: &[TruthRow], engine: &[Event], window: f64) -> Self {
         let width = engine.len() + 1;
         let better = |a: (usize, f64), b: (usize, f64)| a.0 > b.0 || (a.0 == b.0 && a.1 < b.1);
-        // best[i * width + j]: pairs and their cost among the first i and j switches.
+        // best[i * width + j]: pairs and their cost among the first i and j events.
         let mut best = vec![(0_usize, 0.0_f64); (truth.len() + 1) * width];
         let paired = |i: usize, j: usize, best: &[(usize, f64)]| {
             let apart = (truth[i - 1].elapsed.value() - engine[j - 1].elapsed).abs();
@@ -65,22 +65,22 @@ mod tests {
     use percuss::Phase::{Contact, NoContact, Progression};
     use percuss::TwoWord;
 
-    fn rows(switches: &[(f64, Phase)]) -> Vec<TruthRow> {
+    fn rows(events: &[(f64, Phase)]) -> Vec<TruthRow> {
         let row = |(t, phase): &(f64, Phase)| TruthRow {
             phase: Some(*phase),
             elapsed: TwoWord::new(*t),
             state: [TwoWord::ZERO; 4],
         };
-        switches.iter().map(row).collect()
+        events.iter().map(row).collect()
     }
 
-    fn events(switches: &[(f64, Phase)]) -> Vec<Event> {
+    fn events(events: &[(f64, Phase)]) -> Vec<Event> {
         let event = |(elapsed, phase): &(f64, Phase)| Event {
             phase: *phase,
             elapsed: *elapsed,
             state: [0.0; 4],
         };
-        switches.iter().map(event).collect()
+        events.iter().map(event).collect()
     }
 
     const TRUTH: [(f64, Phase); 4] =

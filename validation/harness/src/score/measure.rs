@@ -5,7 +5,7 @@ use super::growth::RunGrowth;
 use super::matching::{Matching, WINDOW};
 use super::mismatch::{Excused, Mismatch};
 use super::probed::ProbeResults;
-use super::statistics::Spread;
+use super::statistics::{Spread, worst};
 use crate::case::{Quantity, Statistic};
 use crate::engine::{Event, Outcome, Task};
 use crate::truth::{Truth, TruthRow};
@@ -28,7 +28,7 @@ pub struct Measures {
     /// Which events the engine and the truth do not share.
     pub mismatch: Mismatch,
     /// Whether the phases follow each other as in the truth.
-    pub phase_word_ok: bool,
+    pub phase_sequence_ok: bool,
     /// Errors of matched events' times.
     pub event_time: Spread,
     /// max(|dp|, |dy|, |dq|) on the sample.
@@ -62,7 +62,7 @@ impl Measures {
         match quantity {
             Quantity::EventsMissed => self.mismatch.missed.len() as f64,
             Quantity::EventsSpurious => self.mismatch.spurious.len() as f64,
-            Quantity::PhaseWord => f64::from(u8::from(!self.phase_word_ok)),
+            Quantity::PhaseSequence => f64::from(u8::from(!self.phase_sequence_ok)),
             Quantity::EventTimeError => of(&self.event_time),
             Quantity::StateError => of(&self.state),
             Quantity::DriftError => self.drift,
@@ -132,7 +132,7 @@ pub fn measure(
         if whole { truth.span() } else { truth.samples[scored.saturating_sub(1)].elapsed.value() };
     let window = WINDOW * period;
     // A switch just past the horizon may be the partner of one just before it.
-    let rows = prefix(&truth.switches, |row| row.elapsed.value() <= horizon + window);
+    let rows = prefix(&truth.events, |row| row.elapsed.value() <= horizon + window);
     let found = prefix(&outcome.events, |event| event.elapsed <= horizon + window);
     let matching = Matching::of(rows, found, window);
     let expected = prefix(rows, |row| row.elapsed.value() <= horizon).len();
@@ -143,10 +143,10 @@ pub fn measure(
     Measures {
         horizon_periods: horizon / period,
         whole,
-        total: truth.switches.len(),
+        total: truth.events.len(),
         expected,
         matched: pairs.len(),
-        phase_word_ok: mismatch.same_word(rows, found, &Excused::default()),
+        phase_sequence_ok: mismatch.same_phases(rows, found, &Excused::default()),
         event_time: Spread::of(
             pairs.iter().map(|(i, j)| time_error(&rows[*i], &found[*j])).collect(),
         ),
@@ -157,7 +157,7 @@ pub fn measure(
         valid_periods: valid_periods(task, truth, &state_errors, period),
         event_time_units: pairs
             .iter()
-            .map(|(i, j)| time_units(&rows[*i], &found[*j], growth.switches[*i][0], unit, *i))
+            .map(|(i, j)| time_units(&rows[*i], &found[*j], growth.events[*i][0], unit, *i))
             .collect(),
         event_constant: event_constant(rows, found, &pairs, growth, unit),
         state_constant: state_constant(truth, outcome, growth, scored, unit),
@@ -177,12 +177,6 @@ fn off(truth: TwoWord, value: f64) -> f64 {
 
 fn time_error(row: &TruthRow, event: &Event) -> f64 {
     off(row.elapsed, event.elapsed)
-}
-
-/// The largest error, at least 0; a NaN among them is the largest.
-pub(crate) fn worst(errors: impl Iterator<Item = f64>) -> f64 {
-    errors
-        .fold(0.0, |worst: f64, error| if error > worst || error.is_nan() { error } else { worst })
 }
 
 /// max(|dp|, |dy|, |dq|) at each sample of the truth; NaN at one that the engine did not deliver.
@@ -237,9 +231,9 @@ fn event_constant(
     worst(pairs.iter().map(|(i, j)| {
         let (row, event) = (&rows[*i], &found[*j]);
         let time =
-            time_error(row, event) / (1.0 + row.elapsed.value().abs()) / growth.switches[*i][0];
+            time_error(row, event) / (1.0 + row.elapsed.value().abs()) / growth.events[*i][0];
         let state =
-            (0..4).map(|k| relative(row.state[k], event.state[k]) / growth.switches[*i][k + 1]);
+            (0..4).map(|k| relative(row.state[k], event.state[k]) / growth.events[*i][k + 1]);
         worst(state.chain([time])) / (unit * (i + 1) as f64)
     }))
 }
@@ -255,14 +249,14 @@ fn state_constant(
     if scored <= 1 {
         return f64::NAN;
     }
-    let mut switches = 0;
+    let mut events = 0;
     worst((1..scored).map(|n| {
         let (row, growth) = (&truth.samples[n], &growth.samples[n]);
         let state = outcome.samples.get(n).copied().unwrap_or([f64::NAN; 4]);
         let passed = |switch: &&TruthRow| switch.elapsed.minus(row.elapsed).value() <= 0.0;
-        switches += truth.switches[switches..].iter().take_while(passed).count();
+        events += truth.events[events..].iter().take_while(passed).count();
         let largest = worst((0..4).map(|k| relative(row.state[k], state[k]) / growth[k]));
-        largest / (unit * (switches.max(1)) as f64)
+        largest / (unit * (events.max(1)) as f64)
     }))
 }
 

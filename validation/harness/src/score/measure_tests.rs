@@ -35,17 +35,17 @@ impl Planted {
         let states = [[0.5, -0.25, 0.5, 0.0], [1.0, 2.0, 0.75, 0.0], [3.0, 0.0, -1.0, 1.5]];
         let phases = [Contact, Progression, NoContact];
         let times = [1.0, 2.0, 8.0];
-        let switches: Vec<TruthRow> = (0..3).map(|i| row(times[i], phases[i], states[i])).collect();
+        let events: Vec<TruthRow> = (0..3).map(|i| row(times[i], phases[i], states[i])).collect();
         let period = problem.model.period();
         let sample = |k: usize| row(k as f64 * period / 8.0, NoContact, [0.25, 1.0, 0.0, 0.0]);
         let truth = Truth {
             start: row(0.0, NoContact, [0.25, 1.0, 0.0, 0.0]),
-            switches,
+            events,
             end: row(task.span, NoContact, [0.25, 1.0, 0.0, 1.5]),
             samples: (0..17).map(sample).collect(),
         };
         let growth = RunGrowth {
-            switches: vec![[2.0, 4.0, 5.0, 8.0, 10.0], [3.0, 1.0, 6.0, 1.0, 1.0], [7.0; 5]],
+            events: vec![[2.0, 4.0, 5.0, 8.0, 10.0], [3.0, 1.0, 6.0, 1.0, 1.0], [7.0; 5]],
             samples: vec![[1.0, 2.0, 4.0, 8.0]; 17],
             end: [1.0; 4],
         };
@@ -55,7 +55,7 @@ impl Planted {
             state: row.rounded(),
         };
         let outcome = Outcome {
-            events: truth.switches.iter().map(event).collect(),
+            events: truth.events.iter().map(event).collect(),
             samples: truth.samples.iter().map(TruthRow::rounded).collect(),
             end: truth.end.rounded(),
             ..Outcome::default()
@@ -75,7 +75,7 @@ fn near(found: f64, expected: f64) {
 #[test]
 fn a_perfect_answer_has_no_error() {
     let found = Planted::new().measures();
-    assert!(found.whole && found.phase_word_ok && found.is_scored());
+    assert!(found.whole && found.phase_sequence_ok && found.is_scored());
     assert_eq!((found.total, found.expected, found.matched), (3, 3, 3));
     near(found.horizon_periods, 2.0);
     near(found.valid_periods, 2.0);
@@ -100,7 +100,7 @@ fn an_events_state_counts_over_its_size_its_growth_and_the_events_so_far() {
     for (k, growth, size) in [(0, 1.0, 2.0), (1, 6.0, 3.0), (2, 1.0, 1.75), (3, 1.0, 1.0)] {
         let mut planted = Planted::new();
         planted.outcome.events[1].state[k] += 1e-4;
-        let off = planted.outcome.events[1].state[k] - planted.truth.switches[1].rounded()[k];
+        let off = planted.outcome.events[1].state[k] - planted.truth.events[1].rounded()[k];
         near(planted.measures().event_constant, off / (UNIT * growth * size * 2.0));
     }
 }
@@ -181,7 +181,7 @@ fn an_event_just_past_the_horizon_is_the_partner_of_one_just_before_it() {
     }
     let horizon = planted.truth.samples[7].elapsed.value();
     let window = WINDOW * problem().model.period();
-    planted.truth.switches[1].elapsed = TwoWord::new(horizon - 0.4 * window);
+    planted.truth.events[1].elapsed = TwoWord::new(horizon - 0.4 * window);
     planted.outcome.events[1].elapsed = horizon + 0.4 * window;
     let found = planted.measures();
     assert_eq!((found.expected, found.matched), (2, 2));

@@ -64,7 +64,7 @@ impl Mismatch {
 
     /// Whether the phases follow each other alike once what is excused is left out.
     #[must_use]
-    pub fn same_word(&self, rows: &[TruthRow], found: &[Event], excused: &Excused) -> bool {
+    pub fn same_phases(&self, rows: &[TruthRow], found: &[Event], excused: &Excused) -> bool {
         let truth = (0..self.expected).filter(|i| !excused.missed.contains(i));
         let own = self.counted.iter().filter(|j| !excused.spurious.contains(j));
         truth.map(|i| rows[i].phase).eq(own.map(|j| Some(found[*j].phase)))
@@ -154,7 +154,7 @@ mod tests {
         let end = [(1.0, Contact), (2.0, NoContact), (3.0, Contact), (3.1, NoContact)];
         let (found, rows, own) = mismatch(&truth, &end);
         assert_eq!((found.missed.len(), found.spurious.clone()), (0, vec![2, 3]));
-        assert!(!found.same_word(&rows, &own, &Excused::default()));
+        assert!(!found.same_phases(&rows, &own, &Excused::default()));
         let middle = [(1.0, Contact), (1.3, NoContact), (1.6, Contact), (2.0, NoContact)];
         let (found, ..) = mismatch(&truth, &middle);
         assert_eq!(found.spurious, [1, 2]);
@@ -167,7 +167,7 @@ mod tests {
         let grazes = [graze(1.005, 1e-6, 0..2)];
         let excused = found.excused(&grazes, &own, WINDOW, 1e-6);
         assert_eq!(excused.missed, [0, 1]);
-        assert!(found.same_word(&rows, &own, &excused));
+        assert!(found.same_phases(&rows, &own, &excused));
         assert_eq!(found.excused(&grazes, &own, WINDOW, 0.9e-6), Excused::default());
         // Half of a touch is no answer.
         let (half, _, own) = mismatch(&truth, &truth[1..]);
@@ -188,7 +188,7 @@ mod tests {
         let near_miss = [graze(1.0, -1e-6, 0..0)];
         let excused = spurious.excused(&near_miss, &found, WINDOW, 1e-6);
         assert_eq!(excused.spurious, [0]);
-        assert!(spurious.same_word(&[], &found, &excused));
+        assert!(spurious.same_phases(&[], &found, &excused));
         let rows: Vec<_> = pair.into_iter().map(row).collect();
         let missed = Mismatch::of(&Matching::of(&rows, &[], WINDOW), (2, 1), (0, 0));
         let excused = missed.excused(&[graze(1.005, 1e-6, 0..2)], &[], WINDOW, 1e-6);

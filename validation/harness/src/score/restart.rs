@@ -8,9 +8,8 @@
 
 use super::growth::RunGrowth;
 use super::histogram::Histogram;
-use super::measure::worst;
 use super::starts::on_attractor;
-use super::statistics::Spread;
+use super::statistics::{Spread, worst};
 use crate::case::Problem;
 use crate::engine::{Failure, Outcome, SampleGrid, Task};
 use crate::truth::{Truth, TruthRow};
@@ -55,7 +54,7 @@ pub struct RestartError {
     /// The largest error of p, y, q and v itself.
     pub absolute: f64,
     /// Whether the phases follow each other as in the truth.
-    pub same_word: bool,
+    pub same_phases: bool,
 }
 
 /// The score of an engine.
@@ -63,7 +62,7 @@ pub struct RestartError {
 pub struct Restart {
     /// Runs made.
     pub runs: usize,
-    /// Runs with an impact. The spreads and the histogram are of these; `failed` and `wrong_words`
+    /// Runs with an impact. The spreads and the histogram are of these; `failed` and `wrong_sequences`
     /// count all runs.
     pub with_impact: usize,
     /// Runs that the truth leaves undecided, which are not made.
@@ -71,7 +70,7 @@ pub struct Restart {
     /// Runs that gave no result. They are bounded by themselves and are in none of the errors.
     pub failed: usize,
     /// Runs with a result whose phases follow each other otherwise than in the truth.
-    pub wrong_words: usize,
+    pub wrong_sequences: usize,
     /// Errors at the strobe in units of error x (1 + |value|) x growth.
     pub units: Spread,
     /// The errors of the drift alone, in units.
@@ -80,8 +79,8 @@ pub struct Restart {
     pub time_units: Spread,
     /// Errors at the strobe themselves.
     pub absolute: Spread,
-    /// `units` of the runs with this many switches, and how many these are.
-    pub by_switches: BTreeMap<usize, (usize, Spread)>,
+    /// `units` of the runs with this many events, and how many these are.
+    pub by_events: BTreeMap<usize, (usize, Spread)>,
     /// How `units` are distributed.
     pub histogram: Histogram,
 }
@@ -96,7 +95,7 @@ impl RestartTest {
         let mut events = 0;
         for run in &mut runs {
             run.task.events_before = events;
-            events += run.truth.switches.len() as u64;
+            events += run.truth.events.len() as u64;
         }
         Self { undecided: count - runs.len(), runs }
     }
@@ -127,25 +126,25 @@ impl RestartTest {
             results().map(|(_, error)| figure(error)).collect()
         };
         let units = figures(|error| error.units);
-        let mut by_switches: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
+        let mut by_events: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
         for ((run, _), units) in results().zip(&units) {
-            by_switches.entry(run.truth.switches.len()).or_default().push(*units);
+            by_events.entry(run.truth.events.len()).or_default().push(*units);
         }
         Restart {
             runs: runs.len(),
             with_impact: with_impact().count(),
             undecided: self.undecided,
             failed: errors.iter().filter(|error| error.is_err()).count(),
-            wrong_words: errors.iter().flatten().filter(|error| !error.same_word).count(),
+            wrong_sequences: errors.iter().flatten().filter(|error| !error.same_phases).count(),
             units: Spread::of(units.clone()),
             drift_units: Spread::of(figures(|error| error.drift_units)),
             time_units: Spread::of(
                 figures(|error| error.time_units).into_iter().filter(|it| !it.is_nan()).collect(),
             ),
             absolute: Spread::of(figures(|error| error.absolute)),
-            by_switches: by_switches
+            by_events: by_events
                 .into_iter()
-                .map(|(switches, units)| (switches, (units.len(), Spread::of(units))))
+                .map(|(events, units)| (events, (units.len(), Spread::of(units))))
                 .collect(),
             histogram: Histogram::of(&units),
         }
@@ -179,22 +178,22 @@ impl RestartRun {
         let truth = &self.truth.end.state;
         let off = |k: usize| off(truth[k], outcome.end[k]);
         let units = |k: usize| off(k) / scale(unit, truth[k], self.growth.end[k]);
-        let same_word = self.same_word(outcome);
-        let pairs = self.truth.switches.iter().zip(&outcome.events).zip(&self.growth.switches);
+        let same_phases = self.same_phases(outcome);
+        let pairs = self.truth.events.iter().zip(&outcome.events).zip(&self.growth.events);
         let late = pairs.map(|((truth, found), growth)| {
             self::off(truth.elapsed, found.elapsed) / scale(unit, truth.elapsed, growth[0])
         });
         RestartError {
             units: worst((0..4).map(units)),
             drift_units: units(3),
-            time_units: if same_word { worst(late) } else { f64::NAN },
+            time_units: if same_phases { worst(late) } else { f64::NAN },
             absolute: worst((0..4).map(off)),
-            same_word,
+            same_phases,
         }
     }
 
-    fn same_word(&self, outcome: &Outcome) -> bool {
-        let truth = self.truth.switches.iter().map(|switch| switch.phase);
+    fn same_phases(&self, outcome: &Outcome) -> bool {
+        let truth = self.truth.events.iter().map(|switch| switch.phase);
         truth.eq(outcome.events.iter().map(|event| Some(event.phase)))
     }
 }
@@ -211,7 +210,7 @@ fn scale(unit: f64, truth: TwoWord, growth: f64) -> f64 {
 fn passage(truth: &Truth) -> (bool, Option<TruthRow>) {
     let mut before = truth.start.phase;
     let mut impact = false;
-    for switch in &truth.switches {
+    for switch in &truth.events {
         if switch.phase == Some(Phase::NoContact) {
             if impact {
                 return (true, Some(*switch));

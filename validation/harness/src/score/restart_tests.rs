@@ -23,7 +23,7 @@ fn perfect(run: &RestartRun) -> Outcome {
         state: row.rounded(),
     };
     Outcome {
-        events: run.truth.switches.iter().map(event).collect(),
+        events: run.truth.events.iter().map(event).collect(),
         end: run.truth.end.rounded(),
         ..Outcome::default()
     }
@@ -35,9 +35,8 @@ fn truth(start: Phase, phases: &[Phase]) -> Truth {
         elapsed: TwoWord::new(k as f64),
         state: [TwoWord::ZERO; 4],
     };
-    let switches: Vec<TruthRow> =
-        phases.iter().enumerate().map(|(k, it)| row((k + 1, it))).collect();
-    Truth { start: row((0, &start)), end: row((9, &start)), samples: Vec::new(), switches }
+    let events: Vec<TruthRow> = phases.iter().enumerate().map(|(k, it)| row((k + 1, it))).collect();
+    Truth { start: row((0, &start)), end: row((9, &start)), samples: Vec::new(), events }
 }
 
 fn near(found: f64, expected: f64) {
@@ -61,7 +60,7 @@ fn a_passage_is_an_impact_and_the_separation_after_it() {
 #[test]
 fn an_error_counts_over_its_size_and_growth() {
     let run = run();
-    assert!(run.impact && run.truth.switches.len() >= 2);
+    assert!(run.impact && run.truth.events.len() >= 2);
     for k in 0..4 {
         let mut outcome = perfect(&run);
         outcome.end[k] += 1e-5;
@@ -71,7 +70,7 @@ fn an_error_counts_over_its_size_and_growth() {
         near(found.units, off / (UNIT * size * run.growth.end[k]));
         near(found.absolute, off);
         near(found.drift_units, if k == 3 { found.units } else { 0.0 });
-        assert!(found.same_word && found.time_units < 1e-3);
+        assert!(found.same_phases && found.time_units < 1e-3);
     }
 }
 
@@ -81,12 +80,12 @@ fn a_time_counts_where_the_phases_are_right() {
     let mut outcome = perfect(&run);
     outcome.events[1].elapsed += 1e-5;
     let found = run.error(&outcome, UNIT);
-    let row = &run.truth.switches[1];
+    let row = &run.truth.events[1];
     let off = off(row.elapsed, outcome.events[1].elapsed);
-    near(found.time_units, off / (UNIT * (1.0 + row.elapsed.value()) * run.growth.switches[1][0]));
+    near(found.time_units, off / (UNIT * (1.0 + row.elapsed.value()) * run.growth.events[1][0]));
     outcome.events.truncate(1);
     let found = run.error(&outcome, UNIT);
-    assert!(!found.same_word && found.time_units.is_nan());
+    assert!(!found.same_phases && found.time_units.is_nan());
 }
 
 #[test]
@@ -119,13 +118,13 @@ fn runs_that_fail_or_go_another_way_are_counted() {
     };
     let found = test.score(UNIT, answer);
     assert_eq!((found.runs, found.with_impact), (12, with_impact));
-    assert_eq!((found.failed, found.wrong_words, found.undecided), (1, 1, 0));
+    assert_eq!((found.failed, found.wrong_sequences, found.undecided), (1, 1, 0));
     // What gave no result is counted as failed and spoils no error of the others.
     assert!(found.units.max < 1e-3 && found.units.median < 1e-3);
-    let counted: usize = found.by_switches.values().map(|(count, _)| count).sum();
+    let counted: usize = found.by_events.values().map(|(count, _)| count).sum();
     assert_eq!(counted, with_impact - 1);
     assert_eq!(test.score_first(3, UNIT, answer).runs, 3);
     // A run counts its events after those of the runs before it.
-    let before: u64 = test.runs[..5].iter().map(|run| run.truth.switches.len() as u64).sum();
+    let before: u64 = test.runs[..5].iter().map(|run| run.truth.events.len() as u64).sum();
     assert_eq!(test.runs[5].task.events_before, before);
 }

@@ -1,7 +1,7 @@
 //! Expected failures held against a row: each excuses the one quantity that it names.
 
 use super::mismatch::Excused;
-use super::verdict::{Checked, ScoredRun, Verdict};
+use super::scored::{Checked, ScoredRun, Verdict};
 use crate::case::Shortcoming;
 use crate::number::brief;
 

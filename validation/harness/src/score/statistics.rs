@@ -1,4 +1,4 @@
-//! Median, 99 % quantile and maximum.
+//! Median, 99 % quantile and maximum of errors.
 
 use serde::Serialize;
 
@@ -27,6 +27,12 @@ impl Spread {
         };
         Self { median: rank(0.5), q99: rank(0.99), max: rank(1.0) }
     }
+}
+
+/// The largest error, at least 0; a NaN among them is the largest.
+pub(crate) fn worst(errors: impl Iterator<Item = f64>) -> f64 {
+    errors
+        .fold(0.0, |worst: f64, error| if error > worst || error.is_nan() { error } else { worst })
 }
 
 #[cfg(test)]

@@ -184,7 +184,7 @@ fn one(
         role: declaration.role,
         accuracy,
         unit,
-        events: prepared.truth.switches.len(),
+        events: prepared.truth.events.len(),
         status,
         wall,
         judgement,

@@ -8,7 +8,7 @@ use percuss::{Entry, Instant, Parameters};
 
 /// The longest case without tables, in forcing periods: what is longer is not to be had in seconds.
 const PERIODS: f64 = 1000.0;
-/// The most switches that a replayed run may have.
+/// The most events that a replayed run may have.
 const SWITCHES: usize = 1_000_000;
 
 impl Truth {
@@ -67,12 +67,12 @@ impl Truth {
             if passage.next.is_none() {
                 let end = row(None, &horizon, passage.at(&horizon));
                 let start = rows.remove(0);
-                return Ok(Self { start, switches: rows, end, samples: sampled });
+                return Ok(Self { start, events: rows, end, samples: sampled });
             }
             if rows.len() > SWITCHES {
                 break;
             }
         }
-        Err(Undecided { what: "the end of so many switches", elapsed: 0.0 })
+        Err(Undecided { what: "the end of so many events", elapsed: 0.0 })
     }
 }

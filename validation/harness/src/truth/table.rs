@@ -1,4 +1,4 @@
-//! One case's tables: its switches and its sample.
+//! One case's tables: its events and its sample.
 
 use super::decimal;
 use crate::case::{Case, FileError, Horizon};
@@ -25,7 +25,7 @@ pub struct Truth {
     /// The start.
     pub start: TruthRow,
     /// The state at which each phase after the first begins.
-    pub switches: Vec<TruthRow>,
+    pub events: Vec<TruthRow>,
     /// The horizon.
     pub end: TruthRow,
     /// Eight instants a forcing period, the start among them.
@@ -55,7 +55,7 @@ impl Truth {
         match (rows.len() >= 2).then(|| rows.pop()).flatten() {
             Some(end) if end.phase.is_none() && rows.iter().all(|row| row.phase.is_some()) => {
                 let start = rows.remove(0);
-                Ok(Self { start, switches: rows, end, samples })
+                Ok(Self { start, events: rows, end, samples })
             }
             _ => Err(FileError::of(
                 events.0,

@@ -1,4 +1,4 @@
-//! `simulate`: one run, as a table of switches, a table of samples, or a picture.
+//! `simulate`: one run, as a table of events, a table of samples, or a picture.
 
 mod csv;
 mod json;
@@ -86,7 +86,7 @@ fn write_rows(plan: &Plan, samples: Option<u32>, sink: &mut dyn rows::Sink) -> R
     sink.begin(plan, samples.is_some())?;
     let ending = match samples {
         Some(per_period) => rows::samples(plan, per_period, sink)?,
-        None => rows::switches(plan, sink)?,
+        None => rows::events(plan, sink)?,
     };
     sink.finish(&ending)?;
     Ok(ending)

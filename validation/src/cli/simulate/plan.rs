@@ -9,7 +9,7 @@ use crate::cli::work::Bar;
 use anyhow::{Result, bail};
 use percuss::{Endless, Exit, Instant, Segment, Trajectory};
 
-/// Forcing periods after which a run that counts switches stops, where `--max-periods` is not
+/// Forcing periods after which a run that counts events stops, where `--max-periods` is not
 /// given.
 const USUAL_MAX_PERIODS: u64 = 1_000_000;
 
@@ -21,7 +21,7 @@ pub(super) struct Plan {
     pub(super) problem: Problem,
     /// The instant at which the run ends at the latest.
     pub(super) horizon: Instant,
-    /// It ends after so many switches, if that is sooner.
+    /// It ends after so many events, if that is sooner.
     pub(super) events: Option<u64>,
     max_periods: u64,
     pub(super) progress: Progress,
@@ -49,7 +49,7 @@ impl Plan {
     /// The run's phases, the last one ending with the run; none where no switch is wanted.
     pub(super) fn segments(&self) -> Segments<'_> {
         let run = self.problem.model.trajectory(self.problem.entry).until(self.horizon);
-        Segments { run, wanted: self.events, switches: 0, progress: &self.progress }
+        Segments { run, wanted: self.events, events: 0, progress: &self.progress }
     }
 
     /// What to say of a run whose last phase is `last` after the phases of `segments`.
@@ -57,7 +57,7 @@ impl Plan {
         let undecided = last.filter(|segment| *segment.exit() == Exit::Undecidable);
         let how = match undecided {
             Some(segment) => Some(self.undecided(segment)),
-            None => last.and_then(|last| self.how_it_ends(last, segments.switches)),
+            None => last.and_then(|last| self.how_it_ends(last, segments.events)),
         };
         RunEnding { how, touches: segments.touches(), undecided: undecided.is_some() }
     }
@@ -82,16 +82,16 @@ impl Plan {
         }
     }
 
-    fn how_it_ends(&self, last: &Segment, switches: u64) -> Option<String> {
+    fn how_it_ends(&self, last: &Segment, events: u64) -> Option<String> {
         let found = self.endless(last).map(|endless| {
             let since = last.entry().instant.tau(self.omega());
             format!("{} after tau = {since:?}", words(endless))
         });
         match (self.events, found) {
-            (Some(wanted), _) if switches >= wanted => None,
-            (Some(wanted), Some(found)) => Some(format!("{found}: {switches} of {wanted} events")),
+            (Some(wanted), _) if events >= wanted => None,
+            (Some(wanted), Some(found)) => Some(format!("{found}: {events} of {wanted} events")),
             (Some(wanted), None) => Some(format!(
-                "stopped after {} forcing periods with {switches} of {wanted} events",
+                "stopped after {} forcing periods with {events} of {wanted} events",
                 self.max_periods
             )),
             (None, Some(found)) => Some(format!("{found}: the run ends at its horizon")),
@@ -151,7 +151,7 @@ impl Plan {
 pub(super) struct Segments<'a> {
     run: Trajectory,
     wanted: Option<u64>,
-    switches: u64,
+    events: u64,
     progress: &'a Progress,
 }
 
@@ -166,12 +166,12 @@ impl Iterator for Segments<'_> {
     type Item = Segment;
 
     fn next(&mut self) -> Option<Segment> {
-        if self.wanted == Some(self.switches) {
+        if self.wanted == Some(self.events) {
             return None;
         }
         let segment = self.run.next()?;
-        self.switches += u64::from(matches!(segment.exit(), Exit::Switch(_)));
-        let share = self.wanted.map_or(0.0, |wanted| self.switches as f64 / wanted as f64);
+        self.events += u64::from(matches!(segment.exit(), Exit::Switch(_)));
+        let share = self.wanted.map_or(0.0, |wanted| self.events as f64 / wanted as f64);
         self.progress.at_least(&segment.entry().instant, share);
         Some(segment)
     }

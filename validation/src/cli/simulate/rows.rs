@@ -7,7 +7,7 @@ use percuss::{Exit, Instant, Sample, Segment};
 /// A row of the output.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RunRow {
-    /// Counts the rows of switches from 0.
+    /// Counts the rows of events from 0.
     pub(super) index: u64,
     pub(super) phase: &'static str,
     pub(super) instant: Instant,
@@ -30,7 +30,7 @@ fn state(sample: &Sample) -> [f64; 4] {
 
 /// Row 0 is the start, then each switch, and the horizon if that is what ends the run, or where it
 /// is no longer decided.
-pub(super) fn switches(plan: &Plan, sink: &mut dyn Sink) -> Result<RunEnding> {
+pub(super) fn events(plan: &Plan, sink: &mut dyn Sink) -> Result<RunEnding> {
     let mut index = 0;
     let mut last = None;
     let mut entry = plan.problem.entry;

@@ -109,12 +109,12 @@ impl Scene<'_> {
     }
 
     fn truth_events(&self) -> Vec<(f64, Phase, bool)> {
-        let Truth { switches, .. } = &self.prepared.truth;
+        let Truth { events, .. } = &self.prepared.truth;
         let is_known = |i: usize| self.it.pairs.iter().any(|pair| pair.0 == i);
         let mark = |(i, row): (usize, &crate::truth::TruthRow)| {
             Some((row.elapsed.value(), row.phase?, is_known(i)))
         };
-        switches.iter().enumerate().filter_map(mark).collect()
+        events.iter().enumerate().filter_map(mark).collect()
     }
 
     fn engine_events(&self) -> Vec<(f64, Phase, bool)> {

@@ -103,7 +103,7 @@ impl Sides {
         let horizon = measures.horizon_periods * period * (1.0 + HORIZON_ROUNDING);
         let window = WINDOW * period;
         let near = |t: f64| t <= horizon + window;
-        let rows = truth.switches.iter().take_while(|row| near(row.elapsed.value()));
+        let rows = truth.events.iter().take_while(|row| near(row.elapsed.value()));
         let rows: Vec<TruthRow> = rows.copied().collect();
         let found = outcome.events.iter().take_while(|event| near(event.elapsed));
         let found: Vec<Event> = found.copied().collect();
@@ -155,7 +155,7 @@ fn farthest(
 ) -> Option<(usize, usize)> {
     let share = |(i, j): &(usize, usize)| {
         let error = TwoWord::new(truth.times[*i]).minus(TwoWord::new(engine.times[*j]));
-        error.value().abs() / (growth.switches[*i][0] * (*i + 1) as f64)
+        error.value().abs() / (growth.events[*i][0] * (*i + 1) as f64)
     };
     let counted = pairs.iter().filter(|(i, _)| *i < truth.counted);
     counted.max_by(|a, b| share(a).total_cmp(&share(b))).copied()

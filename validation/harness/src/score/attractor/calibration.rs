@@ -150,7 +150,7 @@ mod tests {
     fn drift_and_exponent_differ_with_their_signs() {
         let section = |drift: f64, lyapunov: f64| RunSection {
             points: vec![[0.0; 3]; 3],
-            words: BTreeMap::new(),
+            phase_sequences: BTreeMap::new(),
             drift,
             lyapunov,
             map_errors: vec![0.0; 3],

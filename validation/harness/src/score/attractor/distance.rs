@@ -45,8 +45,8 @@ pub fn is_sampled(name: &str) -> bool {
 
 /// All distances: Wasserstein and Kolmogorov-Smirnov of p, y and q and of the sums and differences
 /// of successive p and y (their delay pairs, along the diagonals), total variation of the phase
-/// words, differences of exponent and drift per period; median and share of large values among the
-/// errors of single periods.
+/// sequences, differences of exponent and drift per period; median and share of large values among
+/// the errors of single periods.
 #[must_use]
 pub fn distances(section: &RunSection, reference: &RunSection) -> Distances {
     let mut result = Distances::new();
@@ -56,7 +56,10 @@ pub fn distances(section: &RunSection, reference: &RunSection) -> Distances {
         result.insert(STATISTICS[k], wasserstein);
         result.insert(STATISTICS[SERIES + k], ks);
     }
-    result.insert("phase_words", total_variation(&section.words, &reference.words));
+    result.insert(
+        "phase_words",
+        total_variation(&section.phase_sequences, &reference.phase_sequences),
+    );
     result.insert("lyapunov", (section.lyapunov - reference.lyapunov).abs());
     result.insert("drift", (section.drift - reference.drift).abs());
     let errors = &section.map_errors;
@@ -111,9 +114,13 @@ fn exceeds(a: &[f64], b: &[f64]) -> f64 {
 }
 
 fn total_variation(a: &BTreeMap<String, f64>, b: &BTreeMap<String, f64>) -> f64 {
-    let words: BTreeSet<_> = a.keys().chain(b.keys()).collect();
-    let share = |of: &BTreeMap<String, f64>, word: &String| of.get(word).copied().unwrap_or(0.0);
-    0.5 * words.into_iter().map(|word| (share(a, word) - share(b, word)).abs()).sum::<f64>()
+    let sequences: BTreeSet<_> = a.keys().chain(b.keys()).collect();
+    let frequency =
+        |of: &BTreeMap<String, f64>, sequence: &String| of.get(sequence).copied().unwrap_or(0.0);
+    0.5 * sequences
+        .into_iter()
+        .map(|sequence| (frequency(a, sequence) - frequency(b, sequence)).abs())
+        .sum::<f64>()
 }
 
 #[cfg(test)]
@@ -146,7 +153,7 @@ mod tests {
     }
 
     #[test]
-    fn words_that_never_meet_are_one_apart() {
+    fn sequences_that_never_meet_are_one_apart() {
         let a = BTreeMap::from([("cn".to_owned(), 1.0)]);
         let b = BTreeMap::from([("cpcn".to_owned(), 0.25), (String::new(), 0.75)]);
         approx::assert_relative_eq!(total_variation(&a, &b), 1.0, max_relative = 1e-12);
@@ -160,18 +167,18 @@ mod tests {
                 (0..10).map(|n| f64::from(n) + shift * (0.25 + k as f64)).collect()
             })
         };
-        let words =
+        let sequences =
             |share: f64| BTreeMap::from([("cn".to_owned(), share), ("n".to_owned(), 1.0 - share)]);
         let reference = RunSection {
             sorted: sorted(0.0),
-            words: words(0.5),
+            phase_sequences: sequences(0.5),
             lyapunov: 0.1,
             drift: 0.01,
             ..RunSection::default()
         };
         let section = RunSection {
             sorted: sorted(1.0),
-            words: words(0.75),
+            phase_sequences: sequences(0.75),
             lyapunov: -0.2,
             drift: 0.03,
             map_errors: vec![1.0, 2e-9, 5e-9, 2.0 * SCORED_ERROR, 0.5 * SCORED_ERROR],

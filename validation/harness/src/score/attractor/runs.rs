@@ -9,11 +9,11 @@ use percuss::{Parameters, Start};
 /// Which runs of the exact solver: no two kinds share a start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunKind {
-    /// Those that limits are measured by.
+    /// Runs by which limits are measured.
     Calibration,
-    /// Those that the rate of false alarms is measured by.
+    /// Runs by which the rate of false alarms is measured.
     Fresh,
-    /// Those with parameters that are changed.
+    /// Runs with changed parameters.
     Changed,
 }
 

@@ -1,4 +1,4 @@
-//! What a run visits: its stroboscopic section, phase words, drift and exponent; and how far its
+//! What a run visits: its stroboscopic section, phase sequences, drift and exponent; and how far its
 //! periods are from the exact map's.
 
 use crate::case::{Given, Problem};
@@ -13,8 +13,8 @@ use std::collections::BTreeMap;
 pub struct RunSection {
     /// p, y and q at successive strobes.
     pub points: Vec<[f64; 3]>,
-    /// How often each sequence of phases begins within a forcing period, as shares.
-    pub words: BTreeMap<String, f64>,
+    /// How often each sequence of phases begins within a forcing period, as frequencies.
+    pub phase_sequences: BTreeMap<String, f64>,
     /// Mean drift per forcing period.
     pub drift: f64,
     /// Mean growth of a small error per forcing period, in the exact map's derivative along these
@@ -64,13 +64,13 @@ impl RunSection {
         let periods = (points.len() - 1) as f64;
         let drift = (states[states.len() - 1][3] - states[0][3]) / periods;
         let period = task.problem.model.period();
-        let words = words(&outcome.events, period, transient, points.len() - 1);
+        let phase_sequences = phase_sequences(&outcome.events, period, transient, points.len() - 1);
         let (lyapunov, map_errors) = mapped(truth, &points);
         let sorted = series(&points).map(|mut values| {
             values.sort_by(f64::total_cmp);
             values
         });
-        Ok(Self { points, words, drift, lyapunov, map_errors, sorted })
+        Ok(Self { points, phase_sequences, drift, lyapunov, map_errors, sorted })
     }
 }
 
@@ -87,23 +87,29 @@ fn series(points: &[[f64; 3]]) -> [Vec<f64>; SERIES] {
 }
 
 /// Shares of the sequences of phases that begin within one period.
-fn words(events: &[Event], period: f64, transient: u32, periods: usize) -> BTreeMap<String, f64> {
+fn phase_sequences(
+    events: &[Event],
+    period: f64,
+    transient: u32,
+    periods: usize,
+) -> BTreeMap<String, f64> {
     let mut spelled = vec![String::new(); periods];
     for event in events {
         let number = event.elapsed / period - f64::from(transient);
-        if let Some(word) = (number >= 0.0).then(|| spelled.get_mut(number as usize)).flatten() {
-            word.push(match event.phase {
+        if let Some(sequence) = (number >= 0.0).then(|| spelled.get_mut(number as usize)).flatten()
+        {
+            sequence.push(match event.phase {
                 Phase::NoContact => 'n',
                 Phase::Contact => 'c',
                 Phase::Progression => 'p',
             });
         }
     }
-    let mut shares = BTreeMap::new();
-    for word in spelled {
-        *shares.entry(word).or_insert(0.0) += 1.0 / periods as f64;
+    let mut frequencies = BTreeMap::new();
+    for sequence in spelled {
+        *frequencies.entry(sequence).or_insert(0.0) += 1.0 / periods as f64;
     }
-    shares
+    frequencies
 }
 
 /// The largest exponent per period, by the exact strobe map's derivative point by point along the
@@ -144,9 +150,9 @@ mod tests {
     use std::f64::consts::PI;
 
     /// An event belongs to the period in which it lies; one at the section's first strobe begins
-    /// the first word, and one before it belongs to none.
+    /// the first sequence, and one before it belongs to none.
     #[test]
-    fn words_are_spelled_by_the_events_of_each_period() {
+    fn sequences_are_spelled_by_the_events_of_each_period() {
         let event = |elapsed: f64, phase| Event { phase, elapsed, state: [0.0; 4] };
         let events = [
             event(3.9, Phase::Progression),
@@ -157,10 +163,10 @@ mod tests {
             event(10.5, Phase::NoContact),
             event(12.0, Phase::Contact),
         ];
-        let shares = words(&events, 2.0, 2, 4);
+        let frequencies = phase_sequences(&events, 2.0, 2, 4);
         let expected = [("", 0.25), ("cn", 0.25), ("cp", 0.25), ("n", 0.25)];
-        let expected = expected.map(|(word, share)| (word.to_owned(), share));
-        assert_eq!(shares, BTreeMap::from(expected));
+        let expected = expected.map(|(sequence, share)| (sequence.to_owned(), share));
+        assert_eq!(frequencies, BTreeMap::from(expected));
     }
 
     #[test]
