@@ -85,27 +85,27 @@ fn false_alarms(cases: &[(Case, AttractorTest)]) -> Result<String> {
 }
 
 /// The shares of one case, parameter and sign, along [`SIZES`].
-struct Ladder {
+struct PowerCurve {
     case: String,
     changed: Changed,
     sign: f64,
     steps: Vec<Alarms>,
 }
 
-fn power(cases: &[(Case, AttractorTest)]) -> Result<Vec<Ladder>> {
-    let mut ladders = Vec::new();
+fn power(cases: &[(Case, AttractorTest)]) -> Result<Vec<PowerCurve>> {
+    let mut curves = Vec::new();
     for (case, test) in cases {
         for (changed, sign) in Changed::ALL.into_iter().flat_map(|it| [(it, 1.0), (it, -1.0)]) {
             let step =
                 |size: &f64| test.alarms_of_changed(case, changed, sign * size, CHANGED_RUNS);
             let steps = SIZES.iter().map(step).collect::<Result<_, _>>()?;
-            ladders.push(Ladder { case: case.name.clone(), changed, sign, steps });
+            curves.push(PowerCurve { case: case.name.clone(), changed, sign, steps });
         }
     }
-    Ok(ladders)
+    Ok(curves)
 }
 
-fn power_table(power: &[Ladder]) -> String {
+fn power_table(power: &[PowerCurve]) -> String {
     let mut table = String::from("| case | change |");
     for size in SIZES {
         write!(table, " {} |", percent(size)).ok();
@@ -113,10 +113,10 @@ fn power_table(power: &[Ladder]) -> String {
     table += " notices first |\n|---|---|";
     table += &"---|".repeat(SIZES.len() + 1);
     table.push('\n');
-    for ladder in power {
-        let sign = if ladder.sign > 0.0 { '+' } else { '-' };
-        write!(table, "| `{}` | {} {sign} |", ladder.case, ladder.changed.name()).ok();
-        for step in &ladder.steps {
+    for curve in power {
+        let sign = if curve.sign > 0.0 { '+' } else { '-' };
+        write!(table, "| `{}` | {} {sign} |", curve.case, curve.changed.name()).ok();
+        for step in &curve.steps {
             write!(
                 table,
                 " {}/{} |",
@@ -125,7 +125,7 @@ fn power_table(power: &[Ladder]) -> String {
             )
             .ok();
         }
-        writeln!(table, " {} |", first(ladder)).ok();
+        writeln!(table, " {} |", first(curve)).ok();
     }
     table
 }
@@ -135,11 +135,11 @@ fn hundredths(count: u32, of: &Alarms) -> String {
 }
 
 /// The distances that notice at the smallest change of which half of the runs are caught.
-fn first(ladder: &Ladder) -> String {
+fn first(curve: &PowerCurve) -> String {
     let caught =
-        |count: fn(&Alarms) -> u32| ladder.steps.iter().position(|it| 2 * count(it) >= it.runs);
+        |count: fn(&Alarms) -> u32| curve.steps.iter().position(|it| 2 * count(it) >= it.runs);
     let named = |at: Option<usize>, sampled: bool| {
-        let found = at.and_then(|at| Some((SIZES[at], ladder.steps[at].first(sampled)?.0)));
+        let found = at.and_then(|at| Some((SIZES[at], curve.steps[at].first(sampled)?.0)));
         found.map_or("none".to_owned(), |(size, name)| format!("`{name}` at {}", percent(size)))
     };
     let all = named(caught(|it| it.raised), false);
@@ -147,17 +147,17 @@ fn first(ladder: &Ladder) -> String {
     if all == sampled { all } else { format!("{all}; of the section's: {sampled}") }
 }
 
-fn picture(power: &[Ladder]) -> Curves {
+fn picture(power: &[PowerCurve]) -> Curves {
     const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Triangle];
     let mut curves = Vec::new();
-    let rising = power.iter().filter(|ladder| ladder.sign > 0.0);
-    for ladder in rising {
-        let place = Changed::ALL.iter().position(|it| *it == ladder.changed).unwrap_or(0);
-        let names = power.iter().filter(|it| it.sign > 0.0 && it.changed == ladder.changed);
-        let row = names.take_while(|it| it.case != ladder.case).count();
+    let rising = power.iter().filter(|curve| curve.sign > 0.0);
+    for of in rising {
+        let place = Changed::ALL.iter().position(|it| *it == of.changed).unwrap_or(0);
+        let names = power.iter().filter(|it| it.sign > 0.0 && it.changed == of.changed);
+        let row = names.take_while(|it| it.case != of.case).count();
         let points = |count: fn(&Alarms) -> u32| {
             let share = |it: &Alarms| 100.0 * f64::from(count(it)) / f64::from(it.runs.max(1));
-            SIZES.into_iter().zip(ladder.steps.iter().map(share)).collect()
+            SIZES.into_iter().zip(of.steps.iter().map(share)).collect()
         };
         let curve = |name: String, dashed, points| Curve {
             name,
@@ -168,7 +168,7 @@ fn picture(power: &[Ladder]) -> Curves {
             points,
         };
         curves.push(curve(
-            format!("{}, {}", ladder.changed.name(), ladder.case),
+            format!("{}, {}", of.changed.name(), of.case),
             false,
             points(|it| it.raised),
         ));

@@ -6,7 +6,7 @@ use crate::support::{refused, run, stdout, text};
 use percuss_validation::bench::alone::alone;
 use percuss_validation::bench::cases::USUAL;
 use percuss_validation::bench::contest::{contest_at, most_accurate};
-use percuss_validation::bench::contestant::{Contestant, EnteredEngine, ladder};
+use percuss_validation::bench::contestant::{Contestant, EnteredEngine, settings};
 use percuss_validation::bench::course::Course;
 use percuss_validation::engine::{Accuracy, CONTROL, Engine, Limits, Location, Script, all, wrong};
 use percuss_validation::truth::Library;
@@ -65,7 +65,7 @@ fn the_usual_cases_are_there_and_the_exact_solver_is_right_on_them() {
 fn an_engine_that_is_told_its_events_makes_the_same_run() {
     let course = course("impact-into-progression");
     for engine in all() {
-        let settings = ladder(engine.declaration().stepping);
+        let settings = settings(engine.declaration().stepping);
         let setting = settings[2.min(settings.len() - 1)];
         let told = alone(*engine, &course, setting, Limits::default()).expect("the same run");
         let mut told = told.expect("something is left out");
@@ -86,7 +86,7 @@ fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
     let limits = Limits::default();
     let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
     for engine in integrators {
-        let accuracy = ladder(engine.declaration().stepping)[2];
+        let accuracy = settings(engine.declaration().stepping)[2];
         let found = none.follow(|| engine.run(&course.task, accuracy, &limits));
         let (name, by) = (engine.declaration().name, engine.declaration().events);
         let found = found.map(|it| it.events.len()).unwrap_or_default();

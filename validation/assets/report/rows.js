@@ -105,7 +105,7 @@ const WORDS = {
   wasserstein_p: "Wasserstein distance of p", wasserstein_y: "Wasserstein distance of y", wasserstein_q: "Wasserstein distance of q",
   wasserstein_p_sum: "Wasserstein distance of sums of successive p", wasserstein_p_step: "Wasserstein distance of differences of successive p",
   wasserstein_y_sum: "Wasserstein distance of sums of successive y", wasserstein_y_step: "Wasserstein distance of differences of successive y",
-  phase_words: "frequencies of phase words", lyapunov: "Lyapunov exponent", drift: "mean drift",
+  phase_words: "frequencies of phase sequences", lyapunov: "Lyapunov exponent", drift: "mean drift",
   map_error_median: "median error of a period", map_error_share: "share of periods with a large error",
   wall_ns: "nanoseconds", restart: "restart test", distance: "distance of attractors",
 };

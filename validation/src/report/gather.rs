@@ -97,7 +97,7 @@ fn in_words(name: &str) -> String {
     let (kind, of) = match name {
         "drift" => return "mean drift".to_owned(),
         "lyapunov" => return "Lyapunov exponent".to_owned(),
-        "phase_words" => return "frequencies of phase words".to_owned(),
+        "phase_words" => return "frequencies of phase sequences".to_owned(),
         _ => name.split_once('_').unwrap_or((name, "")),
     };
     let kind = match kind {
@@ -142,6 +142,6 @@ mod tests {
             in_words("wasserstein_q_step"),
             "Wasserstein distance, difference of successive q"
         );
-        assert_eq!(in_words("phase_words"), "frequencies of phase words");
+        assert_eq!(in_words("phase_words"), "frequencies of phase sequences");
     }
 }

@@ -12,7 +12,7 @@ pub struct Order {
     pub claimed: u32,
     /// The median over the cases.
     pub found: f64,
-    /// How many cases have a ladder long enough.
+    /// How many cases have settings enough.
     pub cases: usize,
 }
 
@@ -26,16 +26,17 @@ impl Order {
 
 /// How far the median of a right method may lie below its order.
 ///
-/// Measured on the ladders of `full` over 14 cases, of which 13 or 14 have one for each method.
+/// Measured on the settings of `full` over 14 cases, of which 13 or 14 have enough for each method.
 /// Medians of adaptive methods are 0 to 4 above the order claimed; of 20,000 draws of ten cases
 /// with repetition one in a thousand is up to 0.47 below it (Verner 7(6)). The classical method
 /// with fixed steps is 0.28 below. A method that claims one order too much is 0.9 below (ESDIRK
 /// 3(4) taken for order 4) and has to be named.
 const SLACK: f64 = 0.6;
-/// The least number of cases with a ladder: with five the same draws reach 2.7 below the order.
+/// The least number of cases with settings enough: with five the same draws reach 2.7 below the
+/// order.
 const ENOUGH: usize = 10;
 
-/// The orders of all engines that claim one and have ladders.
+/// The orders of all engines that claim one and have settings enough.
 #[must_use]
 pub fn orders(engines: &[EngineEntry], rows: &[ReportRow]) -> Vec<Order> {
     engines.iter().filter_map(|engine| of(engine, rows)).collect()

@@ -152,14 +152,14 @@ fn in_tolerances(scored: &Scored, units: &[f64]) -> Vec<f64> {
 fn rhs_per_event(rows: &[(&Scored, &ReportRow)], exact: bool) -> Option<f64> {
     let costs = rows.chunk_by(|a, b| a.1.case == b.1.case).filter_map(|case| {
         let events = case.first()?.0.events;
-        let rung = |(scored, row): &(&Scored, &ReportRow)| {
+        let point = |(scored, row): &(&Scored, &ReportRow)| {
             let Status::Ok(measures, outcome) = &scored.status else { return None };
             let whole = measures.whole && measures.matched == measures.total && events > 0;
             let error = row.event_time_error.max;
             let cost = outcome.work.rhs_evaluations as f64 / events as f64;
             (whole && error.is_finite()).then_some((error, cost))
         };
-        let curve: Vec<_> = case.iter().filter_map(rung).collect();
+        let curve: Vec<_> = case.iter().filter_map(point).collect();
         if exact { curve.first().map(|it| it.1) } else { at_error(curve, COMPARED_AT) }
     });
     Some(Spread::of(costs.collect()).median).filter(|it| it.is_finite())

@@ -159,18 +159,18 @@ impl Report {
     }
 }
 
-/// The rows of one engine on one case are its ladder, as far as they are scored to the same
-/// horizon: over a longer one in chaos errors grow by more.
+/// The rows of one engine on one case are settings of one method, as far as they are scored to the
+/// same horizon: over a longer one in chaos errors grow by more.
 fn fill_orders(rows: &mut [ReportRow]) {
-    for ladder in rows.chunk_by_mut(|a, b| a.case == b.case && a.engine == b.engine) {
-        let longest = ladder.iter().map(|row| row.horizon_periods).fold(0.0, f64::max);
-        let rung = |row: &ReportRow| {
+    for rows in rows.chunk_by_mut(|a, b| a.case == b.case && a.engine == b.engine) {
+        let longest = rows.iter().map(|row| row.horizon_periods).fold(0.0, f64::max);
+        let point = |row: &ReportRow| {
             let comparable = row.horizon_periods == longest;
             Some((row.steps.filter(|_| comparable)? as f64, row.state_error.max))
         };
-        let rungs: Vec<_> = ladder.iter().filter_map(rung).collect();
-        let found = order(&rungs);
-        ladder.iter_mut().for_each(|row| row.order = found);
+        let points: Vec<_> = rows.iter().filter_map(point).collect();
+        let found = order(&points);
+        rows.iter_mut().for_each(|row| row.order = found);
     }
 }
 

@@ -1,6 +1,6 @@
 //! One course, all contestants: who answers rightly at which setting, and how fast.
 
-use super::contestant::{Contestant, TimedRun, ladder};
+use super::contestant::{Contestant, TimedRun, settings as settings_of};
 use super::course::{Course, Score};
 use super::rounds::{Benchmark, PACE, RoundTimes, race};
 use crate::engine::{Accuracy, Declaration, Failure, REFERENCE, Stepping, Work};
@@ -42,7 +42,7 @@ pub fn contest(
     rounds: usize,
     done: &dyn Fn(),
 ) -> Vec<Finisher> {
-    let settings = |it: &&dyn Contestant| ladder(it.declaration().stepping);
+    let settings = |it: &&dyn Contestant| settings_of(it.declaration().stepping);
     let asked = contestants.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
     contest_at(course, &asked.collect::<Vec<_>>(), rounds, done)
 }
@@ -109,7 +109,7 @@ fn qualified<'a>(
 #[must_use]
 pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
     let settings: usize =
-        contestants.iter().map(|it| ladder(it.declaration().stepping).len()).sum();
+        contestants.iter().map(|it| settings_of(it.declaration().stepping).len()).sum();
     (settings * (2 * rounds + 1)) as u64
 }
 

@@ -142,7 +142,7 @@ impl TimedRun for EngineHeat<'_> {
 /// What a contestant is asked for: every decade of tolerance from where events are first found
 /// right down to where rounding rules, or halved steps.
 #[must_use]
-pub fn ladder(stepping: Stepping) -> Vec<Accuracy> {
+pub fn settings(stepping: Stepping) -> Vec<Accuracy> {
     const TOLERANCES: [f64; 10] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13];
     match stepping {
         Stepping::Exact => vec![Accuracy::Exact],

@@ -16,29 +16,29 @@ const TOLERANCE: f64 = 1e-9;
 
 /// All contestants at one damping ratio.
 #[derive(Clone, Debug)]
-pub struct DampingRung {
+pub struct DampingPoint {
     /// The damping ratio.
     pub xi: f64,
     /// What came of it.
     pub finishers: Vec<Finisher>,
 }
 
-/// Races a few engines of every library, and the exact solver, down the ladder of xi.
+/// Races a few engines of every library, and the exact solver, at falling damping ratios xi.
 ///
 /// # Errors
 /// [`Failure`] for a run that 106 bits do not decide.
-pub fn ladder(
+pub fn over_xi(
     contestants: &[&dyn Contestant],
     rounds: usize,
     done: &dyn Fn(),
-) -> Result<Vec<DampingRung>, Failure> {
+) -> Result<Vec<DampingPoint>, Failure> {
     let asked = asked(contestants);
-    let rung = |xi: f64| {
+    let point = |xi: f64| {
         let parameters = Parameters { xi, omega: OMEGA, ..Parameters::default() };
         let course = Course::from_rest(parameters, PERIODS)?;
-        Ok(DampingRung { xi, finishers: contest_at(&course, &asked, rounds, done) })
+        Ok(DampingPoint { xi, finishers: contest_at(&course, &asked, rounds, done) })
     };
-    XI.into_iter().map(rung).collect()
+    XI.into_iter().map(point).collect()
 }
 
 /// How much work that is, for progress.

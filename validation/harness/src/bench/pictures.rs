@@ -1,8 +1,8 @@
 //! Work-precision of every case, and cost against length and against xi.
 
+use super::contestants;
 use super::report::{Bench, BenchRow, Damped};
 use crate::bench::history::{History, Record};
-use crate::engine;
 use crate::picture::{
     Axis, AxisScale, Curve, Curves, DrawError, INK, Marker, Picture, Stroke, basin_colours, looks,
     png, svg,
@@ -162,8 +162,8 @@ fn logarithmic(label: &str) -> Axis {
 
 /// A curve that looks as its engine does everywhere.
 fn curve(engine: &str, points: Vec<(f64, f64)>) -> Curve {
-    let known = engine::all().iter().map(|it| it.declaration());
-    let library = known.into_iter().find(|it| it.name == engine).map_or("", |it| it.library);
+    let mut known = contestants().into_iter().map(|it| it.declaration());
+    let library = known.find(|it| it.name == engine).map_or("", |it| it.library);
     let look = looks(&[(engine, library)]).into_iter().next();
     Curve {
         name: engine.to_owned(),

@@ -2,7 +2,7 @@
 
 use super::contest::{Finisher, exact, most_accurate};
 use super::course::Course;
-use super::damping::DampingRung;
+use super::damping::DampingPoint;
 use super::equal_accuracy::{AccuracyPoint, Basis, LOOSE, TIGHT, time_at};
 use super::floor::Floors;
 use super::length::Length;
@@ -175,8 +175,8 @@ pub struct Measurement<'a> {
     pub floors: &'a Floors,
     /// The lengths.
     pub length: Vec<Length>,
-    /// The ladder of xi.
-    pub damping: &'a [DampingRung],
+    /// What was measured at each damping ratio.
+    pub damping: &'a [DampingPoint],
 }
 
 impl Bench {
@@ -258,11 +258,11 @@ fn at_equal_accuracy(mut rows: Vec<BenchRow>) -> Vec<BenchRow> {
     rows
 }
 
-fn damped(rung: &DampingRung) -> Vec<Damped> {
+fn damped(point: &DampingPoint) -> Vec<Damped> {
     let row = |it: &Finisher| {
         let timed = it.result.as_ref().ok();
         Damped {
-            xi: rung.xi,
+            xi: point.xi,
             engine: it.name.to_owned(),
             tolerance: it.setting.tolerance(),
             ns_per_period: timed.map(|it| it.series.median()),
@@ -270,5 +270,5 @@ fn damped(rung: &DampingRung) -> Vec<Damped> {
             why: it.result.as_ref().err().map(ToString::to_string),
         }
     };
-    rung.finishers.iter().map(row).collect()
+    point.finishers.iter().map(row).collect()
 }

@@ -2,31 +2,32 @@
 //!
 //! The error of a method of order k falls as the k-th power of its number of steps, whether the
 //! steps are prescribed or chosen by a tolerance. So the slope of log(error) against log(steps)
-//! over a ladder is the order in practice: a method below the order it claims is shown as such.
+//! over several settings is the order in practice: a method below the order it claims is shown as
+//! such.
 
-/// A rung: steps taken, error reached.
-pub type OrderRung = (f64, f64);
+/// What a setting leads to: steps taken, error reached.
+pub type OrderPoint = (f64, f64);
 
 /// Errors below this are rounding, above [`LARGEST`] no convergence yet.
 const SMALLEST: f64 = 1e-12;
 const LARGEST: f64 = 1e-2;
-/// Fewer rungs say nothing, nor does a ladder over less than this factor in steps.
-const RUNGS: usize = 3;
+/// Fewer settings say nothing, nor do settings over less than this factor in steps.
+const FEWEST: usize = 3;
 const SPAN: f64 = 1.5;
 
-/// The slope by least squares; `None` where the ladder is too short for one.
+/// The slope by least squares; `None` where there are too few settings for one.
 #[must_use]
-pub fn order(ladder: &[OrderRung]) -> Option<f64> {
-    let usable = |(steps, error): &&OrderRung| *steps > 0.0 && (SMALLEST..LARGEST).contains(error);
+pub fn order(points: &[OrderPoint]) -> Option<f64> {
+    let usable = |(steps, error): &&OrderPoint| *steps > 0.0 && (SMALLEST..LARGEST).contains(error);
     let logarithms: Vec<_> =
-        ladder.iter().filter(usable).map(|(steps, error)| (steps.ln(), error.ln())).collect();
+        points.iter().filter(usable).map(|(steps, error)| (steps.ln(), error.ln())).collect();
     let count = logarithms.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| logarithms.iter().map(of).sum::<f64>() / count;
     let (x, y) = (mean(|it| it.0), mean(|it| it.1));
     let square: f64 = logarithms.iter().map(|it| (it.0 - x).powi(2)).sum();
     let product: f64 = logarithms.iter().map(|it| (it.0 - x) * (it.1 - y)).sum();
     let widest = logarithms.iter().map(|it| (it.0 - x).abs()).fold(0.0, f64::max);
-    let enough = logarithms.len() >= RUNGS && 2.0 * widest >= SPAN.ln();
+    let enough = logarithms.len() >= FEWEST && 2.0 * widest >= SPAN.ln();
     enough.then(|| -product / square)
 }
 
@@ -36,22 +37,23 @@ mod tests {
 
     #[test]
     fn a_power_law_is_its_exponent() {
-        let ladder: Vec<OrderRung> =
+        let points: Vec<OrderPoint> =
             [50.0, 100.0, 200.0, 400.0].map(|n: f64| (n, 3.0 * n.powi(-4))).to_vec();
-        let found = order(&ladder);
+        let found = order(&points);
         assert!(found.is_some_and(|order| (order - 4.0).abs() < 1e-12), "{found:?}");
     }
 
     #[test]
     fn any_number_of_steps_counts() {
-        let ladder: Vec<OrderRung> = [0.25, 0.5, 1.0].map(|n: f64| (n, 1e-6 * n.powi(-3))).to_vec();
-        assert!(order(&ladder).is_some_and(|order| (order - 3.0).abs() < 1e-12));
+        let points: Vec<OrderPoint> =
+            [0.25, 0.5, 1.0].map(|n: f64| (n, 1e-6 * n.powi(-3))).to_vec();
+        assert!(order(&points).is_some_and(|order| (order - 3.0).abs() < 1e-12));
     }
 
     #[test]
     fn rounding_and_divergence_do_not_count() {
-        let ladder = [(10.0, 1.0), (100.0, 1e-4), (200.0, 1e-4 / 16.0), (1e5, 1e-15)];
-        assert_eq!(order(&ladder), None);
+        let points = [(10.0, 1.0), (100.0, 1e-4), (200.0, 1e-4 / 16.0), (1e5, 1e-15)];
+        assert_eq!(order(&points), None);
         assert_eq!(order(&[(100.0, 1e-5), (101.0, 9e-6), (102.0, 8e-6)]), None);
     }
 }

@@ -111,7 +111,7 @@ fn measured(
     let floors = floor::floors(&[], FLOOR_ROUNDS * rounds, &done)?;
     let contests: Vec<(&Course, Vec<Finisher>)> =
         courses.iter().map(|it| (it, contest(it, contestants, rounds, &done))).collect();
-    let damping = if whole { damping::ladder(contestants, rounds, &done)? } else { Vec::new() };
+    let damping = if whole { damping::over_xi(contestants, rounds, &done)? } else { Vec::new() };
     bar.finish_and_clear();
     let measured = Measurement { contests: &contests, floors: &floors, length, damping: &damping };
     Ok(Bench::new(build::this(), rounds, measured))

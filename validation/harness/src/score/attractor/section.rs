@@ -1,5 +1,5 @@
-//! What a run visits: its stroboscopic section, phase sequences, drift and exponent; and how far its
-//! periods are from the exact map's.
+//! What a run visits: its stroboscopic section, phase sequences, drift and exponent; and how far
+//! its periods are from the exact map's.
 
 use crate::case::{Given, Problem};
 use crate::engine::{Event, Failure, Outcome, SampleGrid, Task};
