@@ -55,7 +55,7 @@ class BeyondGuard(Exception):
 
 
 class Ended(Exception):
-    """The run is over before its horizon."""
+    """The run is over before its horizon, with a last row still to write if there is a word for it."""
 
 
 class Run:
@@ -98,7 +98,8 @@ class Run:
             while self.pass_segment():
                 pass
         except Ended as ending:
-            self.add(str(ending), self.place, self.present_growth())
+            if ending.args:
+                self.add(str(ending), self.place, self.present_growth())
 
     def enter_at_start(self) -> None:
         try:
@@ -221,12 +222,21 @@ class Run:
 
     def counted(self, event: Event, place: Place) -> None:
         """A row for an event of `watch`."""
-        matrix = self.matrices[place.mode]
-        identity = modal.identity(self.system.size)
-        passing = self.growth.passing(event.guard, matrix, identity, matrix, place.z)
         self.sources = [*self.sources, self.growth.identity]
-        measured = self.growth.measured(passing.time, passing.state, self.sources)
-        self.add(event.name, place, measured)
+        self.add(event.name, place, self.growth_without_reset(event, place, None))
+
+    def leave_domain(self, event: Event, place: Place) -> None:
+        """Back in time, the boundary of a mode ends the run."""
+        single = multiplicity(event.guard, self.matrices[place.mode], place.space) == 1
+        at_once = None if single else arb_mat(1, self.growth.width)
+        self.sources = [*self.sources, self.growth.identity]
+        self.add("leaves-domain", place, self.growth_without_reset(event, place, at_once))
+        raise Ended
+
+    def growth_without_reset(self, event: Event, place: Place, shared) -> list:
+        matrix, identity = self.matrices[place.mode], modal.identity(self.system.size)
+        passing = self.growth.passing(event.guard, matrix, identity, matrix, place.z, shared)
+        return self.growth.measured(passing.time, passing.state, self.sources)
 
     def present_growth(self) -> list:
         """Growth of the states at fixed time."""
@@ -237,7 +247,7 @@ class Run:
         """Ends a segment by the first of `events`; whatever fires in the same instant follows."""
         self.place = place
         if self.case.backward:
-            raise Ended("leaves-domain")
+            self.leave_domain(events[0], place)
         instant = Instant(self, place, events)
         for (event, after), growth in zip(instant.fired, instant.growths(), strict=True):
             self.add(event.name, after, growth)
