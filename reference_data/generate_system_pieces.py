@@ -172,8 +172,11 @@ def series(matrix: list, z: list) -> list:
 
 
 def step_length(coefficients: list):
-    """The step whose last Taylor terms are as small as TRUNCATION asks, at most 1/2."""
-    scale, length = 1 + max(map(abs, coefficients[0])), mpf(1) / 2
+    """The step whose last Taylor terms are as small as TRUNCATION asks, at most 1/e.
+
+    A rational bound would let steps end on events at rational instants.
+    """
+    scale, length = 1 + max(map(abs, coefficients[0])), mp.exp(-1)
     for k in (ORDER - 1, ORDER):
         last = max(map(abs, coefficients[k])) / scale
         if last > 0:
