@@ -5,6 +5,7 @@ from typing import NamedTuple
 from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from crossing import Undecided
+from modal import identity
 from structural import Space
 
 WORTH_TRYING = 4  # times the limit: an estimate above it is not worth a proof
@@ -100,7 +101,7 @@ def accumulation(event, mode, matrix: fmpq_mat, space: Space, z: arb_mat, unit: 
     if e is None:
         return None
     size = matrix.nrows()
-    change = event.reset - fmpq_mat([[int(i == j) for j in range(size)] for i in range(size)])
+    change = event.reset - identity(size)
     rate, rows = event.guard * matrix, [row_of(change, i) for i in range(size)]
     jumps = [proportion(row, rate, space) for row in rows]
     tube = Tube(event, e, matrix, z, jumps)

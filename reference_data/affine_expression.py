@@ -1,4 +1,4 @@
-"""Expressions of a system file: rational combinations of states, cos, sin and 1, without rounding."""
+"""Expressions of a system file: exact rational combinations of states, cos, sin and 1."""
 
 import re
 
@@ -7,7 +7,9 @@ from flint import fmpq
 LARGEST_EXPONENT = 64
 LARGEST_INTEGER = 2**63
 LARGEST_BITS = 16384
-TOKEN = re.compile(r"\s*(?:(?P<integer>\d+(?![\d.eE]))|(?P<name>[A-Za-z]\w*)|(?P<sign>[-+*/^()<>]))")
+TOKEN = re.compile(
+    r"\s*(?:(?P<integer>\d+(?![\d.eE]))|(?P<name>[A-Za-z]\w*)|(?P<sign>[-+*/^()<>]))"
+)
 
 
 class Refused(Exception):
@@ -33,7 +35,7 @@ def tokens(text: str) -> list:
     while text[position:].strip():
         match = TOKEN.match(text, position)
         if match is None:
-            raise Refused(f"{text!r} holds {text[position:].strip()[0]!r} where nothing like it fits")
+            raise Refused(f"{text!r}: {text[position:].strip()[0]!r} fits nowhere")
         found.append((match.lastgroup, match.group(match.lastgroup)))
         position = match.end()
     return found
@@ -69,7 +71,7 @@ class Reader:
         return value
 
     def condition(self) -> list:
-        """The guard of a text `left > right` or `left < right`: positive where the condition holds."""
+        """The guard of `left > right` or `left < right`: positive where the condition holds."""
         left = self.sum()
         sign = self.take(">", "<") or self.refuse("a condition is `left > right` or `left < right`")
         right = self.whole()

@@ -197,14 +197,14 @@ class Guard:
         """(when, rising) of each change of sign seen within the step."""
         if self.rest is None or len(self.rest) < 2:
             return []
-        polynomial, found = self.rest, []
-        for sign in (1, -1):
-            turned = [sign * c for c in polynomial]
-            times = sorted(set(knots(turned, length)) | {mpf(0)})
-            values = [mp.polyval(turned, d) for d in times]
-            for a, b, low, high in zip(values, values[1:], times, times[1:], strict=False):
-                if a < 0 <= b:
-                    found.append((root(turned, low, high), sign > 0))
+        turned = [-c for c in self.rest]
+        times = sorted({mpf(0), *knots(self.rest, length), *knots(turned, length)})
+        values, found = [mp.polyval(self.rest, d) for d in times], []
+        for a, b, low, high in zip(values, values[1:], times, times[1:], strict=False):
+            if a < 0 <= b:
+                found.append((root(self.rest, low, high), True))
+            elif a > 0 >= b:
+                found.append((root(turned, low, high), False))
         return sorted(found)
 
 
@@ -300,13 +300,17 @@ def table_rows(model: Model, count: int):
     for index, (event, mode, elapsed, z) in enumerate(walk.rows(count)):
         clock = walk.clock - elapsed if model.backward else walk.clock + elapsed
         numbers = [elapsed, clock, *z[: len(model.states)]]
-        cells = (mp.nstr(n if abs(n) > ZERO else mpf(0), DIGITS, strip_zeros=False) for n in numbers)
-        yield ",".join([str(index), event, mode, *cells])
+        yield ",".join([str(index), event, mode, *map(cell, numbers)])
+
+
+def cell(value) -> str:
+    return mp.nstr(value if abs(value) > ZERO else mpf(0), DIGITS, strip_zeros=False)
 
 
 def model_of(path: Path, systems: Path) -> Model:
     case = tomllib.loads(path.read_text())
-    return Model(case, tomllib.loads((systems / f"{case['case']['system']}.system.toml").read_text()))
+    system = systems / f"{case['case']['system']}.system.toml"
+    return Model(case, tomllib.loads(system.read_text()))
 
 
 def generate(path: Path, systems: Path, out: Path) -> None:
@@ -339,7 +343,8 @@ def check(out: Path) -> bool:
         good = same and worst <= AGREEMENT
         agreed = agreed and good
         verdict = "" if good else "  FAILS"
-        print(f"{path.stem}: {len(piece) - 1} events, worst difference {mp.nstr(worst, 2)}{verdict}")
+        far = mp.nstr(worst, 2)
+        print(f"{path.stem}: {len(piece) - 1} events, worst difference {far}{verdict}")
     return agreed
 
 
@@ -355,7 +360,7 @@ def main() -> None:
     parser.add_argument("--cases", type=Path, default=CASES, metavar="DIR")
     parser.add_argument("--systems", type=Path, default=SYSTEMS, metavar="DIR")
     parser.add_argument("--out", type=Path, default=HERE, metavar="DIR")
-    parser.add_argument("--check", action="store_true", help="compare with the event tables in --out")
+    parser.add_argument("--check", action="store_true", help="compare with the tables in --out")
     arguments = parser.parse_args()
     mp.dps = WORKING_DIGITS
     if arguments.check:

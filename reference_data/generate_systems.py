@@ -72,7 +72,7 @@ def sample_rows(case: SystemCase, run: Run):
 
 
 def check_sample_margins(case: SystemCase, run: Run, spacing: fmpq) -> None:
-    """Refuses a case with an event closer to a sample than the margin; the start is no such event."""
+    """Refuses a case with an event, other than its start, within the margin of a sample."""
     margin = arb(case.system.time_scale) * MARGIN
     for row in run.rows[1:]:
         nearest = round(float((row.elapsed.ball / arb(spacing)).mid()))
@@ -109,7 +109,8 @@ def heading(case: SystemCase, run: Run, what: str) -> list:
         pairs.append(("accumulation.latest", bound(case.clock(ends).upper())))
     if run.order_matters:
         pairs.append(("order_matters", " ".join(map(str, run.order_matters))))
-    return [f"# {key} = {value}" for key, value in [*pairs, ("digits", DIGITS), ("decimals", DECIMALS)]]
+    pairs += [("digits", DIGITS), ("decimals", DECIMALS)]
+    return [f"# {key} = {value}" for key, value in pairs]
 
 
 def bound(x: arb) -> str:

@@ -112,7 +112,7 @@ class Flow:
         key = tuple(map(str, row.entries()))
         if key not in self.rows:
             real = acb_mat(row)
-            self.rows[key] = [[real * component for component in block] for block in self.components]
+            self.rows[key] = [[real * part for part in block] for block in self.components]
         state, terms = acb_mat(state), []
         for root, block in zip(self.roots, self.rows[key], strict=True):
             values = [(part * state)[0, 0] / factorial(j) for j, part in enumerate(block)]

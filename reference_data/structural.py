@@ -59,7 +59,7 @@ class Space:
         return Space(left_kernel(self.rest(matrix)))
 
     def carried(self, matrix: fmpq_mat) -> "Space":
-        """The largest part that r -> r `matrix` maps into itself: what stays zero along a segment."""
+        """The largest part that r -> r `matrix` maps into itself: it stays zero along a segment."""
         space = self
         while True:
             kept = left_kernel(space.rest(space.basis * matrix))

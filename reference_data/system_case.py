@@ -8,7 +8,7 @@ from flint import fmpq
 
 import system_file
 from affine_expression import Refused, number
-from system_file import System, only
+from system_file import System, check_trouble, only
 
 SAMPLES = 100
 LARGEST_SAMPLES = 100_000
@@ -32,6 +32,7 @@ class SystemCase:
         table = tomllib.loads(path.read_text())
         only(table, "case parameters start horizon", str(path))
         only(table["case"], "name system why trouble", f"{path}: case")
+        check_trouble(table["case"], str(path))
         only(table["horizon"], "until samples backward", f"{path}: horizon")
         name, horizon = table["case"]["name"], table["horizon"]
         if name != path.stem:

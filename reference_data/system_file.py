@@ -18,14 +18,19 @@ LARGEST_COUNT = 64
 NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 SYMBOL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 RESERVED = ("cos", "sin", "omega", "phi")
-ENDINGS = ("end", "accumulation", "leaves-domain", "no-progress", "beyond-guard", "undecided")
+ENDINGS = "end accumulation leaves-domain no-progress beyond-guard undecided".split()
 DIRECTIONS = ("rising", "falling", "both")
-FILE_KEYS = "schema name why trouble source states scales time_scale forcing parameters let mode start"
+FILE_KEYS = (
+    "schema name why trouble source states scales time_scale forcing parameters let mode start"
+)
+TROUBLE = """jump accumulation simultaneous sliding chatter clock start-on-guard many-guards
+    stiffness graze double-crossing multiple-zero restart-on-zero side-of-root output-at-events backward
+    direction hysteresis chaos""".split()
 
 
 @dataclass
 class Event:
-    """An `until` or a `watch`: its guard, and what an `until` does where the guard becomes positive.
+    """An `until` or a `watch`: its guard, and what an `until` does where it becomes positive.
 
     `successors` are pairs (row of the condition, mode), the last with None for its row.
     """
@@ -70,7 +75,7 @@ class System:
 
 
 def read(path: Path, parameters: dict | None = None, start: dict | None = None) -> System:
-    """The system of a file, with some parameters overridden and its start replaced if one is given."""
+    """The system of a file, with parameters overridden and its start replaced, if given."""
     try:
         return Builder(tomllib.loads(path.read_text()), parameters or {}, start).system()
     except Refused as refusal:
@@ -86,9 +91,22 @@ def only(table: dict, keys: str, what: str) -> None:
 
 def named(table: dict, what: str) -> str:
     name = table.get("name")
-    if not isinstance(name, str) or not NAME.fullmatch(name) or name in ENDINGS:
-        raise Refused(f"{what}: {name!r} is not lower-case words joined by hyphens, or is an ending")
+    if not isinstance(name, str) or not NAME.fullmatch(name):
+        raise Refused(f"{what}: {name!r} is not lower-case words joined by hyphens")
     return name
+
+
+def event_name(table: dict, what: str) -> str:
+    """The name of an event, which no way of ending a run has."""
+    if table.get("name") in ENDINGS:
+        raise Refused(f"{what}: {table['name']!r} is the name of an ending")
+    return named(table, what)
+
+
+def check_trouble(table: dict, what: str) -> None:
+    unknown = [word for word in table.get("trouble", []) if word not in TROUBLE]
+    if unknown:
+        raise Refused(f"{what}: trouble {unknown[0]!r} is not one of {', '.join(TROUBLE)}")
 
 
 class Builder:
@@ -98,6 +116,7 @@ class Builder:
         only(table, FILE_KEYS, "the file")
         if table.get("schema") != 1:
             raise Refused("schema is 1")
+        check_trouble(table, "the file")
         self.table, self.forced = table, "forcing" in table
         self.states = table["states"]
         self.parameters = dict(table.get("parameters", {}))
@@ -125,7 +144,7 @@ class Builder:
         names = [*self.states, *self.parameters, *self.lets]
         wrong = [n for n in names if not SYMBOL.fullmatch(n) or n in RESERVED or names.count(n) > 1]
         if wrong:
-            raise Refused(f"{wrong[0]!r} is reserved, used twice, or not a letter and what may follow it")
+            raise Refused(f"{wrong[0]!r} is reserved, used twice, or not letters, digits and _")
         if not 1 <= len(self.states) or self.size > LARGEST_SIZE:
             raise Refused(f"the state with cos, sin and 1 appended has 2 to {LARGEST_SIZE} entries")
 
@@ -196,7 +215,7 @@ class Builder:
     def until(self, table: dict, mode: str) -> Event:
         only(table, "name guard reset next", f"until of {mode}")
         successors = self.successors(table.get("next", [{"mode": mode}]))
-        name, guard = named(table, f"until of {mode}"), self.guard(table["guard"])
+        name, guard = event_name(table, f"until of {mode}"), self.guard(table["guard"])
         return Event(name, guard, False, "rising", self.reset(table.get("reset", [])), successors)
 
     def successors(self, tables: list) -> list:
@@ -204,7 +223,7 @@ class Builder:
         for position, table in enumerate(tables):
             only(table, "when mode", "next")
             if ("when" in table) == (position == len(tables) - 1):
-                raise Refused("in `next` every entry but the last has a `when`, and the last has none")
+                raise Refused("in `next` every entry has a `when`, but not the last")
             found.append((self.guard(table["when"]) if "when" in table else None, table["mode"]))
         if not 1 <= len(found) <= LARGEST_COUNT:
             raise Refused(f"`next` has 1 to {LARGEST_COUNT} entries")
@@ -215,7 +234,8 @@ class Builder:
         direction = table.get("direction", "rising")
         if direction not in DIRECTIONS:
             raise Refused(f"direction {direction!r} is not one of {', '.join(DIRECTIONS)}")
-        return Event(named(table, f"watch of {mode}"), self.guard(table["guard"]), True, direction)
+        name = event_name(table, f"watch of {mode}")
+        return Event(name, self.guard(table["guard"]), True, direction)
 
     def mode(self, table: dict) -> Mode:
         only(table, "name equations until watch", "mode")
@@ -224,7 +244,7 @@ class Builder:
         watch = [self.watch(t, name) for t in table.get("watch", [])]
         events = [event.name for event in until + watch]
         if len(set(events)) < len(events) or len(events) > LARGEST_COUNT:
-            raise Refused(f"mode {name}: at most {LARGEST_COUNT} events, each with a name of its own")
+            raise Refused(f"mode {name}: at most {LARGEST_COUNT} events, with different names")
         return Mode(name, self.matrix(table["equations"]), until, watch)
 
     def scales(self) -> list:
@@ -243,7 +263,7 @@ class Builder:
         raise Refused(why)
 
     def start_values(self, modes: dict) -> dict:
-        """{mode, t, state}: the mode's name, the clock, and a row of coefficients for each state."""
+        """{mode, t, state}: the mode's name, the clock, a row of coefficients for each state."""
         only(self.start, " ".join(["mode", "t", *self.states]), "start")
         if self.start.get("mode") not in modes:
             raise Refused(f"start: {self.start.get('mode')!r} is not a mode")

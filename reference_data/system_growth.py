@@ -8,6 +8,7 @@ by the time scale before any norm.
 
 from flint import arb, arb_mat, fmpq_mat
 
+from modal import identity
 from system_file import System
 
 
@@ -36,7 +37,7 @@ class Growth:
         self.width = self.count + self.forced
         self.scales = [arb(1)] * self.forced + [arb(s) for s in system.scales]
         self.time_scale = arb(system.time_scale)
-        self.identity = arb_mat([[int(i == j) for j in range(self.width)] for i in range(self.width)])
+        self.identity = arb_mat(identity(self.width))
 
     def lift(self, z: arb_mat) -> arb_mat:
         """Changes of z by changes of theta and the states."""

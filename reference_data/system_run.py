@@ -55,7 +55,7 @@ class BeyondGuard(Exception):
 
 
 class Ended(Exception):
-    """The run is over before its horizon, with a last row still to write if there is a word for it."""
+    """The run is over before its horizon; the word, if any, is for a last row still to write."""
 
 
 class Run:
@@ -99,7 +99,7 @@ class Run:
                 pass
         except Ended as ending:
             if ending.args:
-                self.add(str(ending), self.place, self.present_growth())
+                self.add(str(ending), self.place, self.rows[-1].growth)
 
     def enter_at_start(self) -> None:
         try:
@@ -349,7 +349,8 @@ class Instant:
         if stage == len(self.measured):
             self.measured.append(growth)
         else:
-            self.measured[stage] = [a.max(b) for a, b in zip(self.measured[stage], growth, strict=True)]
+            pairs = zip(self.measured[stage], growth, strict=True)
+            self.measured[stage] = [a.max(b) for a, b in pairs]
 
 
 def differ(a: Place, b: Place) -> bool:
