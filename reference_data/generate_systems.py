@@ -19,7 +19,7 @@ from affine_expression import Refused
 from crossing import Undecided
 from generate_events import FIRST_BITS, HERE, LAST_BITS, select
 from system_case import SystemCase
-from system_run import MARGIN, Run
+from system_run import Run
 from tables import DECIMALS, DIGITS, proved_decimal
 
 SYSTEMS = HERE.parent / "validation" / "systems"
@@ -73,12 +73,11 @@ def sample_rows(case: SystemCase, run: Run):
 
 def check_sample_margins(case: SystemCase, run: Run, spacing: fmpq) -> None:
     """Refuses a case with an event, other than its start, within the margin of a sample."""
-    margin = arb(case.system.time_scale) * MARGIN
     for row in run.rows[1:]:
         nearest = round(float((row.elapsed.ball / arb(spacing)).mid()))
         distance = abs(row.elapsed.ball - arb(spacing * nearest))
-        if 0 < nearest < case.samples and not distance > margin:
-            raise Refused(f"{case.name}: event at {row.elapsed.ball} within {MARGIN} of a sample")
+        if 0 < nearest < case.samples and not distance > arb(run.margin):
+            raise Refused(f"{case.name}: event at {row.elapsed.ball.str(10)} close to a sample")
 
 
 def tables(case: SystemCase):

@@ -66,8 +66,6 @@ def crossings(guards: list, space: Space, span: Moment, first_step: arb):
     found = rational(guards, span) if exact else swept(guards, span, first_step)
     for batch in found:
         for crossing in joined(batch, guards, space):
-            if crossing.time.ball > span.ball and crossing.time.exact is None:
-                return
             yield crossing
             if crossing.untils:
                 return
@@ -153,12 +151,20 @@ def rational(guards: list, span: Moment):
     """All roots of odd order of rational polynomials within the span, as one batch."""
     found = []
     for guard in guards:
-        for root, multiplicity in polynomial_roots(guard.exact):
-            if multiplicity % 2 and 0 < root.ball and not root.ball > span.ball:
-                if span.exact is None or root.exact is None or root.exact <= span.exact:
-                    if guard.wanted(rises(guard.exact, root, multiplicity)):
-                        found.append((root, guard))
+        for root, order in polynomial_roots(guard.exact):
+            if order % 2 and within(root, span) and guard.wanted(rises(guard.exact, root, order)):
+                found.append((root, guard))
     yield found
+
+
+def within(root: Moment, span: Moment) -> bool:
+    """Does a root lie after the entry and not beyond the span?"""
+    if root.exact is not None and span.exact is not None:
+        return root.exact > 0 and root.exact <= span.exact
+    after, beyond = root.ball > 0, root.ball > span.ball
+    if not (after or root.ball <= 0) or not (beyond or root.ball <= span.ball):
+        raise Undecided("root at an end of the span")
+    return after and not beyond
 
 
 def polynomial_roots(polynomial: fmpq_poly):
@@ -202,5 +208,3 @@ def exact_polynomial(row: fmpq_mat, matrix: fmpq_mat, state: fmpq_mat) -> fmpq_p
 def nilpotent(matrix: fmpq_mat) -> bool:
     polynomial = matrix.minpoly()
     return all(polynomial[k] == 0 for k in range(polynomial.degree()))
-
-

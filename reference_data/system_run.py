@@ -19,7 +19,7 @@ MOST_IN_AN_INSTANT = 64
 MOST_ORDERED = 3  # guards that fire together, all of whose orders are followed
 MOST_VISITS = 4000  # of orders at one instant; beyond, the order of the file alone is followed
 FIRST_STEP = arb(1) / 8
-MARGIN = 1e-6  # of the time scale: between any event and the horizon or a tabulated instant
+MARGIN = fmpq(1, 10**6)  # of the time scale: between any event and the horizon or a tabulated instant
 
 
 @dataclass
@@ -64,6 +64,7 @@ class Run:
     def __init__(self, case: SystemCase):
         self.case, self.system = case, case.system
         self.growth = Growth(self.system)
+        self.margin = MARGIN * self.system.time_scale
         self.flows, self.matrices, self.polynomial = {}, {}, {}
         for name, mode in self.system.modes.items():
             self.matrices[name] = -mode.matrix if case.backward else mode.matrix
@@ -183,7 +184,8 @@ class Run:
         space = place.space.carried(self.matrices[place.mode])
         left, self.anchor = self.left(), Leg(place, begins, self.sources)
         step = FIRST_STEP / (self.flow(place.mode).rates + 1 / arb(self.system.time_scale))
-        for crossing in crossings(self.guards(place), space, left, step):
+        reach = left.plus(Moment.of(self.margin))
+        for crossing in crossings(self.guards(place), space, reach, step):
             self.check_margin(crossing.time, left)
             rows = [guard.event.guard for guard in crossing.watches + crossing.untils]
             here = self.advanced(place, crossing.time, space.with_rows(rows))
@@ -206,10 +208,12 @@ class Run:
         return Moment(self.span.ball - self.elapsed.ball, None)
 
     def check_margin(self, time: Moment, left: Moment) -> None:
-        """No event of a proved table is close to its horizon."""
-        margin = arb(self.system.time_scale) * MARGIN
-        if not abs(left.ball - time.ball) > margin:
-            raise Refused(f"{self.case.name}: an event within {MARGIN} of the horizon")
+        """No event of a proved table is close to its horizon, before or after it."""
+        if left.ball - time.ball > arb(self.margin):
+            return
+        if left.ball - time.ball <= arb(self.margin):
+            raise Refused(f"{self.case.name}: an event close to the horizon")
+        raise Undecided("an event close to the horizon")
 
     def advance_sources(self, elapsed: Moment) -> None:
         """Takes the clock and the derivatives from the anchor, within its mode, to `elapsed`."""
