@@ -10,6 +10,7 @@ precision cannot prove doubles it and starts the case again.
 import argparse
 import sys
 import time
+import tomllib
 from pathlib import Path
 
 from flint import arb, arb_mat, ctx, fmpq
@@ -77,7 +78,7 @@ def check_sample_margins(case: SystemCase, run: Run, spacing: fmpq) -> None:
         nearest = round(float((row.elapsed.ball / arb(spacing)).mid()))
         distance = abs(row.elapsed.ball - arb(spacing * nearest))
         if 0 < nearest < case.samples and not distance > arb(run.margin):
-            raise Refused(f"{case.name}: event at {row.elapsed.ball.str(10)} close to a sample")
+            raise Refused(f"event at {row.elapsed.ball.str(10)} close to a sample")
 
 
 def tables(case: SystemCase):
@@ -91,7 +92,7 @@ def tables(case: SystemCase):
             return bits, run, list(event_rows(case, run)), list(sample_rows(case, run))
         except Undecided as undecided:
             reason, bits = undecided, 2 * bits
-    raise Refused(f"{case.name}: undecided at {LAST_BITS} bits: {reason}")
+    raise Refused(f"undecided at {LAST_BITS} bits: {reason}")
 
 
 def heading(case: SystemCase, run: Run, what: str) -> list:
@@ -158,7 +159,10 @@ def main() -> None:
     arguments = parser.parse_args()
     for path in select(arguments.cases, arguments.case):
         if not path.name.endswith(".system.toml"):
-            generate(SystemCase.read(path, arguments.systems), arguments.out)
+            try:
+                generate(SystemCase.read(path, arguments.systems), arguments.out)
+            except (Refused, tomllib.TOMLDecodeError) as refusal:
+                raise SystemExit(f"{path.stem}: {refusal}") from None
 
 
 if __name__ == "__main__":

@@ -80,6 +80,8 @@ def read(path: Path, parameters: dict | None = None, start: dict | None = None) 
         return Builder(tomllib.loads(path.read_text()), parameters or {}, start).system()
     except Refused as refusal:
         raise Refused(f"{path}: {refusal}") from None
+    except KeyError as missing:
+        raise Refused(f"{path}: {missing} is missing") from None
 
 
 def only(table: dict, keys: str, what: str) -> None:

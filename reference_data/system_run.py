@@ -106,7 +106,7 @@ class Run:
         try:
             firing = self.firing(self.place)
         except BeyondGuard:
-            raise Refused(f"{self.case.name}: the start lies beyond a guard") from None
+            raise Refused("the start lies beyond a guard") from None
         if firing:
             self.leave(self.place, firing)
 
@@ -124,7 +124,7 @@ class Run:
         if value > 0 or value < 0:
             return 1 if value > 0 else -1
         if place.exact is not None:
-            raise Refused(f"{self.case.name}: a derivative is zero by coincidence")
+            raise Refused("a derivative is zero by coincidence")
         raise Undecided("sign")
 
     def first_sign(self, row: fmpq_mat, place: Place) -> tuple:
@@ -212,7 +212,7 @@ class Run:
         if left.ball - time.ball > arb(self.margin):
             return
         if left.ball - time.ball <= arb(self.margin):
-            raise Refused(f"{self.case.name}: an event close to the horizon")
+            raise Refused("an event close to the horizon")
         raise Undecided("an event close to the horizon")
 
     def advance_sources(self, elapsed: Moment) -> None:
