@@ -32,8 +32,8 @@ def horner(coefficients, x):
     return value
 
 
-def derivatives(function, left: arb, right: arb) -> list:
-    """Enclosures over [left, right] of `function` and its first two derivatives.
+def derivatives(function, left: arb, right: arb, count: int = 3) -> list:
+    """Enclosures over [left, right] of `function` and its derivatives, `count` in all.
 
     Taylor form about the midpoint; the coefficient of highest order is enclosed over the whole
     interval, which makes the form a mean value theorem, not an approximation.
@@ -43,7 +43,7 @@ def derivatives(function, left: arb, right: arb) -> list:
     coefficients = taylor(function, centre, TAYLOR_ORDER - 1)
     coefficients.append(taylor(function, interval, TAYLOR_ORDER)[TAYLOR_ORDER])
     enclosures = []
-    for _ in range(3):
+    for _ in range(count):
         enclosures.append(horner(coefficients, interval - centre))
         coefficients = [k * c for k, c in enumerate(coefficients)][1:]
     return enclosures

@@ -24,6 +24,8 @@
 //! - `serde`: parameters, starts, states, samples, growths, counters and names are read and
 //!   written. With `serde_json` enable its `float_roundtrip`: its usual parser may be a unit off.
 
+#[cfg(feature = "affine")]
+pub mod affine;
 mod crossing;
 pub mod dynamics;
 mod error;

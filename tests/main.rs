@@ -7,6 +7,8 @@
     reason = "a panic is a failed test"
 )]
 
+#[cfg(feature = "affine")]
+mod affine;
 mod attack;
 mod attractors;
 mod closed_forms;

@@ -1,0 +1,294 @@
+"""A system file read into exact rational matrices: `docs/SYSTEM_FORMAT.md` says what it means.
+
+With cos and sin (where the system is forced) and 1 appended the state is z, and z' = M z. A guard
+is a row w with value w z, a reset a matrix R with z+ = R z.
+"""
+
+import re
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from flint import fmpq, fmpq_mat
+
+from affine_expression import Reader, Refused, constant, number
+
+LARGEST_SIZE = 12
+LARGEST_COUNT = 64
+NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
+SYMBOL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+RESERVED = ("cos", "sin", "omega", "phi")
+ENDINGS = "end accumulation leaves-domain no-progress beyond-guard undecided".split()
+DIRECTIONS = ("rising", "falling", "both")
+FILE_KEYS = (
+    "schema name why trouble source states scales time_scale forcing parameters let mode start"
+)
+TROUBLE = """jump accumulation simultaneous sliding chatter clock start-on-guard many-guards
+    stiffness graze double-crossing multiple-zero restart-on-zero side-of-root output-at-events backward
+    direction hysteresis chaos""".split()
+
+
+@dataclass
+class Event:
+    """An `until` or a `watch`: its guard, and what an `until` does where it becomes positive.
+
+    `successors` are pairs (row of the condition, mode), the last with None for its row.
+    """
+
+    name: str
+    guard: fmpq_mat
+    watched: bool
+    direction: str = "rising"
+    reset: fmpq_mat | None = None
+    successors: list = field(default_factory=list)
+
+
+@dataclass
+class Mode:
+    """z' = M z, and the events in the order of the file, those of `until` first."""
+
+    name: str
+    matrix: fmpq_mat
+    until: list
+    watch: list
+
+
+@dataclass
+class System:
+    """What a system file says with its parameters put in."""
+
+    name: str
+    states: list
+    forced: bool
+    omega: fmpq
+    phi: fmpq
+    parameters: dict
+    scales: list
+    time_scale: fmpq
+    modes: dict
+    start: dict
+
+    @property
+    def size(self) -> int:
+        """Entries of z."""
+        return len(self.states) + (3 if self.forced else 1)
+
+
+def read(path: Path, parameters: dict | None = None, start: dict | None = None) -> System:
+    """The system of a file, with parameters overridden and its start replaced, if given."""
+    try:
+        return Builder(tomllib.loads(path.read_text()), parameters or {}, start).system()
+    except Refused as refusal:
+        raise Refused(f"{path}: {refusal}") from None
+    except KeyError as missing:
+        raise Refused(f"{path}: {missing} is missing") from None
+
+
+def only(table: dict, keys: str, what: str) -> None:
+    """Refuses a key that the format does not know."""
+    unknown = [key for key in table if key not in keys.split()]
+    if unknown:
+        raise Refused(f"{what}: {unknown[0]!r} is not one of {', '.join(keys.split())}")
+
+
+def named(table: dict, what: str) -> str:
+    name = table.get("name")
+    if not isinstance(name, str) or not NAME.fullmatch(name):
+        raise Refused(f"{what}: {name!r} is not lower-case words joined by hyphens")
+    return name
+
+
+def event_name(table: dict, what: str) -> str:
+    """The name of an event, which no way of ending a run has."""
+    if table.get("name") in ENDINGS:
+        raise Refused(f"{what}: {table['name']!r} is the name of an ending")
+    return named(table, what)
+
+
+def check_trouble(table: dict, what: str) -> None:
+    unknown = [word for word in table.get("trouble", []) if word not in TROUBLE]
+    if unknown:
+        raise Refused(f"{what}: trouble {unknown[0]!r} is not one of {', '.join(TROUBLE)}")
+
+
+class Builder:
+    """Turns the tables of a system file into a `System`."""
+
+    def __init__(self, table: dict, overriding: dict, start: dict | None):
+        only(table, FILE_KEYS, "the file")
+        if table.get("schema") != 1:
+            raise Refused("schema is 1")
+        check_trouble(table, "the file")
+        self.table, self.forced = table, "forcing" in table
+        self.states = table["states"]
+        self.parameters = dict(table.get("parameters", {}))
+        only(overriding, " ".join(self.parameters), "parameters of the case")
+        self.parameters |= overriding
+        self.start = table["start"] if start is None else start
+        self.lets = table.get("let", {})
+        self.size = len(self.states) + (3 if self.forced else 1)
+        self.check_names()
+        self.known = {key: self.constant(number(value)) for key, value in self.parameters.items()}
+        forcing = table.get("forcing", {})
+        only(forcing, "omega phi", "forcing")
+        self.omega = self.amount(forcing["omega"]) if self.forced else fmpq(0)
+        self.phi = self.amount(forcing.get("phi", 0)) if self.forced else fmpq(0)
+        if self.forced and not self.omega > 0:
+            raise Refused("omega is positive")
+        self.at_start = dict(self.known)
+        if self.forced:
+            self.at_start |= {"omega": self.constant(self.omega), "phi": self.constant(self.phi)}
+            self.at_start |= {"cos": self.unit(-3), "sin": self.unit(-2)}
+        units = {name: self.unit(index) for index, name in enumerate(self.states)}
+        self.known = self.at_start | units
+
+    def check_names(self) -> None:
+        names = [*self.states, *self.parameters, *self.lets]
+        wrong = [n for n in names if not SYMBOL.fullmatch(n) or n in RESERVED or names.count(n) > 1]
+        if wrong:
+            raise Refused(f"{wrong[0]!r} is reserved, used twice, or not letters, digits and _")
+        if not 1 <= len(self.states) or self.size > LARGEST_SIZE:
+            raise Refused(f"the state with cos, sin and 1 appended has 2 to {LARGEST_SIZE} entries")
+
+    def constant(self, value: fmpq) -> list:
+        return [fmpq(0)] * (self.size - 1) + [value]
+
+    def unit(self, index: int) -> list:
+        row = [fmpq(0)] * self.size
+        row[index] = fmpq(1)
+        return row
+
+    def amount(self, value) -> fmpq:
+        """A number, or an expression of parameters."""
+        if not isinstance(value, str):
+            return number(value)
+        return Reader(value, lambda name: self.look_up(name, self.known), self.size).whole()[-1]
+
+    def look_up(self, name: str, values: dict) -> list:
+        if name not in values:
+            raise Refused(f"{name!r} means nothing here")
+        return values[name]
+
+    def value_of(self, name: str, within: tuple = ()) -> list:
+        """The coefficients of a state, a parameter, a reserved word or a `let`."""
+        if name not in self.lets:
+            return self.look_up(name, self.known)
+        if name in within:
+            raise Refused(f"{name!r} is defined by itself")
+        if name not in self.known:
+            inner = Reader(self.lets[name], lambda n: self.value_of(n, (*within, name)), self.size)
+            self.known[name] = inner.whole()
+        return self.known[name]
+
+    def row(self, text: str) -> list:
+        return Reader(text, self.value_of, self.size).whole()
+
+    def guard(self, text: str) -> fmpq_mat:
+        return fmpq_mat(1, self.size, Reader(text, self.value_of, self.size).condition())
+
+    def assignments(self, texts: list, pattern: str, what: str) -> dict:
+        """{index of a state: coefficients} of texts such as `x' = v`."""
+        found = {}
+        for text in texts:
+            match = re.fullmatch(rf"\s*([A-Za-z]\w*){pattern}\s*=(.*)", text, re.DOTALL)
+            if not match or match[1] not in self.states:
+                raise Refused(f"{what} {text!r}: it is `state{pattern} = expression`")
+            index = self.states.index(match[1])
+            if index in found:
+                raise Refused(f"{what} {text!r}: {match[1]} has one already")
+            found[index] = self.row(match[2])
+        return found
+
+    def matrix(self, texts: list) -> fmpq_mat:
+        """M of a mode, from its equations."""
+        rows = self.assignments(texts, "'", "equation")
+        if len(rows) != len(self.states):
+            raise Refused("a mode has one equation for each state")
+        matrix = [rows[i] for i in range(len(self.states))]
+        if self.forced:
+            matrix.append([-self.omega * c for c in self.unit(-2)])
+            matrix.append([self.omega * c for c in self.unit(-3)])
+        return fmpq_mat([*matrix, [fmpq(0)] * self.size])
+
+    def reset(self, texts: list) -> fmpq_mat:
+        rows = self.assignments(texts, "", "reset")
+        return fmpq_mat([rows.get(i, self.unit(i)) for i in range(self.size)])
+
+    def until(self, table: dict, mode: str) -> Event:
+        only(table, "name guard reset next", f"until of {mode}")
+        successors = self.successors(table.get("next", [{"mode": mode}]))
+        name, guard = event_name(table, f"until of {mode}"), self.guard(table["guard"])
+        return Event(name, guard, False, "rising", self.reset(table.get("reset", [])), successors)
+
+    def successors(self, tables: list) -> list:
+        found = []
+        for position, table in enumerate(tables):
+            only(table, "when mode", "next")
+            if ("when" in table) == (position == len(tables) - 1):
+                raise Refused("in `next` every entry has a `when`, but not the last")
+            found.append((self.guard(table["when"]) if "when" in table else None, table["mode"]))
+        if not 1 <= len(found) <= LARGEST_COUNT:
+            raise Refused(f"`next` has 1 to {LARGEST_COUNT} entries")
+        return found
+
+    def watch(self, table: dict, mode: str) -> Event:
+        only(table, "name guard direction", f"watch of {mode}")
+        direction = table.get("direction", "rising")
+        if direction not in DIRECTIONS:
+            raise Refused(f"direction {direction!r} is not one of {', '.join(DIRECTIONS)}")
+        name = event_name(table, f"watch of {mode}")
+        return Event(name, self.guard(table["guard"]), True, direction)
+
+    def mode(self, table: dict) -> Mode:
+        only(table, "name equations until watch", "mode")
+        name = named(table, "mode")
+        until = [self.until(t, name) for t in table.get("until", [])]
+        watch = [self.watch(t, name) for t in table.get("watch", [])]
+        events = [event.name for event in until + watch]
+        if len(set(events)) < len(events) or len(events) > LARGEST_COUNT:
+            raise Refused(f"mode {name}: at most {LARGEST_COUNT} events, with different names")
+        return Mode(name, self.matrix(table["equations"]), until, watch)
+
+    def scales(self) -> list:
+        scales = [self.amount(s) for s in self.table.get("scales", [1] * len(self.states))]
+        if len(scales) != len(self.states) or not all(s > 0 for s in scales):
+            raise Refused("scales are positive, one for each state")
+        return scales
+
+    def time_scale(self) -> fmpq:
+        if "time_scale" in self.table:
+            scale = self.amount(self.table["time_scale"])
+            return scale if scale > 0 else self.refuse("time_scale is positive")
+        return 1 / self.omega if self.forced else fmpq(1)
+
+    def refuse(self, why: str):
+        raise Refused(why)
+
+    def start_values(self, modes: dict) -> dict:
+        """{mode, t, state}: the mode's name, the clock, a row of coefficients for each state."""
+        only(self.start, " ".join(["mode", "t", *self.states]), "start")
+        if self.start.get("mode") not in modes:
+            raise Refused(f"start: {self.start.get('mode')!r} is not a mode")
+        constants = {name: value for name, value in self.at_start.items() if constant(value)}
+        time = self.start_row(self.start.get("t", 0), constants)[-1]
+        state = [self.start_row(self.start[name], self.at_start) for name in self.states]
+        return {"mode": self.start["mode"], "t": time, "state": state}
+
+    def start_row(self, value, names: dict) -> list:
+        if not isinstance(value, str):
+            return self.constant(number(value))
+        return Reader(value, lambda name: self.look_up(name, names), self.size).whole()
+
+    def system(self) -> System:
+        modes = [self.mode(table) for table in self.table["mode"]]
+        by_name = {mode.name: mode for mode in modes}
+        if len(by_name) < len(modes) or len(modes) > LARGEST_COUNT:
+            raise Refused(f"at most {LARGEST_COUNT} modes, each with a name of its own")
+        for mode in modes:
+            for _, name in (s for event in mode.until for s in event.successors):
+                if name not in by_name:
+                    raise Refused(f"mode {mode.name}: {name!r} is not a mode")
+        return System(
+            named(self.table, "the file"), self.states, self.forced, self.omega, self.phi,
+            self.parameters, self.scales(), self.time_scale(), by_name, self.start_values(by_name),
+        )  # fmt: skip

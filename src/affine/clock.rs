@@ -1,0 +1,76 @@
+//! Time, and the angle of the forcing, as a sum of two numbers that is never rounded to one.
+
+use super::flow::unit;
+use super::modal::Real;
+use super::system::{Forcing, StartPoint};
+use crate::number::Number;
+use dashu_ratio::RBig;
+
+/// A time in two words of an arithmetic.
+#[derive(Clone, Copy, Debug)]
+pub struct Time<T> {
+    /// The time, rounded.
+    pub high: T,
+    /// What rounding left.
+    pub low: T,
+}
+
+/// theta = omega t + phi.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Clock<T> {
+    omega: Time<T>,
+    phi: Time<T>,
+}
+
+impl<T: Number> Time<T> {
+    fn of(number: &RBig) -> Self {
+        let real = Real::of(number);
+        let (high, low) = real.words();
+        if unit::<T>() > 1e-20 {
+            return Self { high: T::exact(high), low: T::exact(low) };
+        }
+        Self { high: T::exact(high) + T::exact(low), low: T::zero() }
+    }
+
+    /// A time later, or earlier.
+    #[must_use]
+    pub fn after(&self, elapsed: T) -> Self {
+        let Self { high, low } = sum(self.high, elapsed);
+        sum(high, low + self.low)
+    }
+
+    /// Rounded to one number.
+    #[must_use]
+    pub fn value(&self) -> T {
+        self.high + self.low
+    }
+}
+
+/// A sum and what rounding took from it.
+fn sum<T: Number>(a: T, b: T) -> Time<T> {
+    let high = a + b;
+    let seen = high - a;
+    Time { high, low: (a - (high - seen)) + (b - seen) }
+}
+
+/// The time of a start.
+pub(super) fn start<T: Number>(start: &StartPoint) -> Time<T> {
+    Time::of(&start.time)
+}
+
+impl<T: Number> Clock<T> {
+    pub fn of(forcing: &Forcing) -> Self {
+        Self { omega: Time::of(&forcing.omega), phi: Time::of(&forcing.phi) }
+    }
+
+    /// Sine and cosine of theta at a time.
+    pub fn sin_cos(&self, time: &Time<T>) -> (T, T) {
+        let product = self.omega.high * time.high;
+        let rest = self.omega.high.product_error(time.high)
+            + (self.omega.high * time.low + self.omega.low * time.high);
+        let Time { high, low } = sum(product, self.phi.high);
+        let low = low + (rest + self.phi.low);
+        let (sin, cos) = high.sin_cos();
+        (sin + low * cos, cos - low * sin)
+    }
+}

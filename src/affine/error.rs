@@ -1,0 +1,62 @@
+//! Errors in a system's file, each with its place.
+
+use std::fmt;
+use std::ops::Range;
+
+/// An error in a system's file, in one line: file, line, culprit and what is accepted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct SystemError(String);
+
+impl SystemError {
+    /// An error at a place, such as `ball.system.toml:7` or `--set`.
+    #[must_use]
+    pub fn at(place: &str, what: &str) -> Self {
+        Self(format!("{place}: {}", what.split_whitespace().collect::<Vec<_>>().join(" ")))
+    }
+}
+
+impl fmt::Display for SystemError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl std::error::Error for SystemError {}
+
+/// A text with its file's name.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Source<'a> {
+    pub file: &'a str,
+    pub text: &'a str,
+}
+
+impl Source<'_> {
+    /// The text's tables.
+    pub fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, SystemError> {
+        toml::from_str(self.text).map_err(|error| match error.span() {
+            Some(span) => self.error(&span, &self.explained(error.message(), &span)),
+            None => SystemError::at(self.file, error.message()),
+        })
+    }
+
+    /// The file and the line in which a span begins.
+    pub fn place(&self, span: &Range<usize>) -> String {
+        let before = self.text.bytes().take(span.start);
+        format!("{}:{}", self.file, 1 + before.filter(|byte| *byte == b'\n').count())
+    }
+
+    pub fn error(&self, span: &Range<usize>, what: &str) -> SystemError {
+        SystemError::at(&self.place(span), what)
+    }
+
+    /// What the TOML reader says, with the line that it means.
+    fn explained(&self, message: &str, span: &Range<usize>) -> String {
+        let message = match message.strip_prefix("missing field `") {
+            Some(key) => format!("{} is missing here", key.trim_end_matches('`')),
+            None => message.replace("invalid type: ", "not accepted: "),
+        };
+        let start = self.text.get(..span.start).map_or(0, |it| it.rfind('\n').map_or(0, |n| n + 1));
+        let line = self.text.get(start..).and_then(|it| it.lines().next()).unwrap_or_default();
+        format!("{message}, in `{}`", line.trim())
+    }
+}

@@ -1,0 +1,243 @@
+//! The tables of a `*.system.toml`, as they are written; docs/SYSTEM_FORMAT.md has the format.
+
+use super::build;
+use super::error::{Source, SystemError};
+use super::system::System;
+use serde::Deserialize;
+use serde::de::{self, Deserializer, IgnoredAny, Visitor};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::ops::Range;
+use toml::Spanned;
+
+/// A system's file, read but not yet checked for what it means: parameters and start can be
+/// replaced.
+#[derive(Clone, Debug)]
+pub struct SystemFile {
+    pub(super) file: String,
+    pub(super) text: String,
+    pub(super) tables: Tables,
+    pub(super) parameters: BTreeMap<String, Parameter>,
+    pub(super) start: Option<StartTable>,
+}
+
+/// A parameter's value and the place that gave it.
+#[derive(Clone, Debug)]
+pub(super) struct Parameter {
+    pub value: Scalar,
+    pub place: String,
+}
+
+/// The entries of a `[start]`, each with its place.
+#[derive(Clone, Debug)]
+pub(super) struct StartTable {
+    pub place: String,
+    pub entries: BTreeMap<String, Parameter>,
+}
+
+type Entries = BTreeMap<String, Spanned<Scalar>>;
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the tables of a system")]
+pub(super) struct Tables {
+    pub schema: Spanned<i64>,
+    pub name: Spanned<String>,
+    #[serde(default)]
+    pub why: String,
+    #[serde(default)]
+    pub trouble: Vec<Spanned<String>>,
+    #[serde(default)]
+    pub source: String,
+    pub states: Spanned<Vec<Spanned<String>>>,
+    pub scales: Option<Spanned<Vec<Spanned<Scalar>>>>,
+    pub time_scale: Option<Spanned<Scalar>>,
+    pub forcing: Option<ForcingTable>,
+    #[serde(default)]
+    parameters: Entries,
+    #[serde(default, rename = "let")]
+    pub lets: BTreeMap<String, Spanned<String>>,
+    #[serde(default)]
+    pub mode: Vec<ModeTable>,
+    start: Option<Spanned<Entries>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table, { omega = ..., phi = ... }")]
+pub(super) struct ForcingTable {
+    pub omega: Spanned<Scalar>,
+    pub phi: Spanned<Scalar>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table, [[mode]]")]
+pub(super) struct ModeTable {
+    pub name: Spanned<String>,
+    pub equations: Spanned<Vec<Spanned<String>>>,
+    #[serde(default)]
+    pub until: Vec<UntilTable>,
+    #[serde(default)]
+    pub watch: Vec<WatchTable>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table, [[mode.until]]")]
+pub(super) struct UntilTable {
+    pub name: Spanned<String>,
+    pub guard: Spanned<String>,
+    #[serde(default)]
+    pub reset: Vec<Spanned<String>>,
+    pub next: Option<Spanned<Vec<NextTable>>>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table, { when = \"...\", mode = \"...\" }")]
+pub(super) struct NextTable {
+    pub when: Option<Spanned<String>>,
+    pub mode: Spanned<String>,
+}
+
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table, [[mode.watch]]")]
+pub(super) struct WatchTable {
+    pub name: Spanned<String>,
+    pub guard: Spanned<String>,
+    pub direction: Option<Spanned<String>>,
+}
+
+/// The tables of another file that replace a system's.
+#[derive(Deserialize)]
+struct Replacing {
+    #[serde(default)]
+    parameters: Entries,
+    start: Option<Spanned<Entries>>,
+}
+
+/// A number, or an expression.
+#[derive(Clone, Debug)]
+pub(super) enum Scalar {
+    Integer(i64),
+    Decimal(f64),
+    Text(String),
+}
+
+impl<'de> Deserialize<'de> for Scalar {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        struct Read;
+        impl Visitor<'_> for Read {
+            type Value = Scalar;
+            fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                f.write_str("a number or an expression")
+            }
+            fn visit_i64<E: de::Error>(self, value: i64) -> Result<Scalar, E> {
+                Ok(Scalar::Integer(value))
+            }
+            fn visit_f64<E: de::Error>(self, value: f64) -> Result<Scalar, E> {
+                Ok(Scalar::Decimal(value))
+            }
+            fn visit_str<E: de::Error>(self, value: &str) -> Result<Scalar, E> {
+                Ok(Scalar::Text(value.to_owned()))
+            }
+        }
+        deserializer.deserialize_any(Read)
+    }
+}
+
+impl SystemFile {
+    /// Reads the text of a system's file; `file` is its name in errors.
+    ///
+    /// # Errors
+    /// Text that is not TOML of this shape, with file and line.
+    pub fn read(file: &str, text: &str) -> Result<Self, SystemError> {
+        let source = Source { file, text };
+        let mut tables: Tables = source.parse()?;
+        let parameters = placed(source, std::mem::take(&mut tables.parameters));
+        let start = tables.start.take().map(|it| start(source, it));
+        Ok(Self { file: file.to_owned(), text: text.to_owned(), tables, parameters, start })
+    }
+
+    /// The name that the file gives the system.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        self.tables.name.get_ref()
+    }
+
+    /// Replaces the value of a parameter; `place` says in errors where the value is from.
+    ///
+    /// # Errors
+    /// A name that is no parameter of the system.
+    pub fn set(&mut self, name: &str, value: f64, place: &str) -> Result<(), SystemError> {
+        let place = place.to_owned();
+        self.replace(name, Parameter { value: Scalar::Decimal(value), place })
+    }
+
+    /// Replaces parameters and start by those of another file's `[parameters]` and `[start]`. Its
+    /// other tables are refused, unless they belong to something else.
+    ///
+    /// # Errors
+    /// A text that is not TOML, unknown parameters, and other tables where they are not accepted.
+    pub fn replace_from(
+        &mut self,
+        file: &str,
+        text: &str,
+        others_accepted: bool,
+    ) -> Result<(), SystemError> {
+        let source = Source { file, text };
+        let tables: BTreeMap<String, Spanned<IgnoredAny>> = source.parse()?;
+        let other = |key: &&String| !["parameters", "start"].contains(&key.as_str());
+        if let (Some(key), false) = (tables.keys().find(other), others_accepted) {
+            let what = format!("{key} is not accepted here: [start] and [parameters] are");
+            return Err(source.error(&tables[key].span(), &what));
+        }
+        let replacing: Replacing = source.parse()?;
+        for (name, parameter) in placed(source, replacing.parameters) {
+            self.replace(&name, parameter)?;
+        }
+        if let Some(table) = replacing.start {
+            self.start = Some(start(source, table));
+        }
+        Ok(())
+    }
+
+    /// The system that the file describes.
+    ///
+    /// # Errors
+    /// Whatever does not make sense, with its place and what is accepted.
+    pub fn system(&self) -> Result<System, SystemError> {
+        build::system(self)
+    }
+
+    fn replace(&mut self, name: &str, parameter: Parameter) -> Result<(), SystemError> {
+        if let Some(old) = self.parameters.get_mut(name) {
+            *old = parameter;
+            return Ok(());
+        }
+        let known: Vec<_> = self.parameters.keys().map(String::as_str).collect();
+        let what = format!(
+            "{name:?} is no parameter of {}: accepted is one of {}",
+            self.name(),
+            if known.is_empty() { "none".to_owned() } else { known.join(", ") }
+        );
+        Err(SystemError::at(&parameter.place, &what))
+    }
+
+    pub(super) fn source(&self) -> Source<'_> {
+        Source { file: &self.file, text: &self.text }
+    }
+
+    pub(super) fn error(&self, span: &Range<usize>, what: &str) -> SystemError {
+        self.source().error(span, what)
+    }
+}
+
+fn placed(source: Source<'_>, entries: Entries) -> BTreeMap<String, Parameter> {
+    let place = |(name, value): (String, Spanned<Scalar>)| {
+        let place = source.place(&value.span());
+        (name, Parameter { value: value.into_inner(), place })
+    };
+    entries.into_iter().map(place).collect()
+}
+
+fn start(source: Source<'_>, table: Spanned<Entries>) -> StartTable {
+    let place = source.place(&table.span());
+    StartTable { place, entries: placed(source, table.into_inner()) }
+}

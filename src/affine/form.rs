@@ -1,0 +1,113 @@
+//! Affine forms with exact coefficients: rational combinations of the states, cos theta, sin theta
+//! and 1.
+
+use dashu_int::ops::BitTest;
+use dashu_ratio::RBig;
+
+/// The largest number of bits of a coefficient's numerator or denominator.
+const LARGEST_BITS: usize = 16_384;
+
+/// The coefficients of the states, then of cos theta, sin theta and 1.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Form(pub Vec<RBig>);
+
+impl Form {
+    /// The form that is zero.
+    pub fn zero(states: usize) -> Self {
+        Self(vec![RBig::ZERO; states + 3])
+    }
+
+    /// A number.
+    pub fn number(states: usize, value: RBig) -> Self {
+        Self::unit(states, states + 2).times_number(&value)
+    }
+
+    /// A single one of the states, cos theta, sin theta or 1, by its index.
+    pub fn unit(states: usize, index: usize) -> Self {
+        let mut form = Self::zero(states);
+        form.0[index] = RBig::ONE;
+        form
+    }
+
+    /// The number that it is, if it has neither states nor cos theta or sin theta.
+    pub fn constant(&self) -> Option<&RBig> {
+        let (last, others) = self.0.split_last()?;
+        others.iter().all(RBig::is_zero).then_some(last)
+    }
+
+    /// Whether a state is in it.
+    pub fn has_states(&self) -> bool {
+        let states = self.0.len() - 3;
+        self.0[..states].iter().any(|it| !it.is_zero())
+    }
+
+    /// `self + other`.
+    pub fn plus(&self, other: &Self) -> Self {
+        Self(self.0.iter().zip(&other.0).map(|(a, b)| a + b).collect())
+    }
+
+    /// `self - other`.
+    pub fn minus(&self, other: &Self) -> Self {
+        Self(self.0.iter().zip(&other.0).map(|(a, b)| a - b).collect())
+    }
+
+    /// `self * factor`.
+    pub fn times_number(&self, factor: &RBig) -> Self {
+        Self(self.0.iter().map(|it| it * factor).collect())
+    }
+
+    /// `self * other`, one of which is a number.
+    pub fn times(&self, other: &Self) -> Result<Self, String> {
+        match (self.constant(), other.constant()) {
+            (_, Some(factor)) => Ok(self.times_number(factor)),
+            (Some(factor), _) => Ok(other.times_number(factor)),
+            _ => Err("a product with a state, cos or sin in both factors is not accepted: \
+                      expressions are affine"
+                .to_owned()),
+        }
+    }
+
+    /// `self / divisor`, which is a number.
+    pub fn over(&self, divisor: &Self) -> Result<Self, String> {
+        match divisor.constant() {
+            Some(divisor) if divisor.is_zero() => Err("a division by zero".to_owned()),
+            Some(divisor) => Ok(self.times_number(&(RBig::ONE / divisor))),
+            None => Err("a divisor with a state, cos or sin in it is not accepted: expressions \
+                         are affine"
+                .to_owned()),
+        }
+    }
+
+    /// A power of a number; the first power of anything.
+    pub fn to_the(&self, exponent: usize) -> Result<Self, String> {
+        let Some(base) = self.constant() else {
+            return if exponent == 1 {
+                Ok(self.clone())
+            } else {
+                Err("a power of a state, of cos or of sin is not accepted: expressions are affine"
+                    .to_owned())
+            };
+        };
+        let mut power = RBig::ONE;
+        for _ in 0..exponent {
+            power *= base;
+            check_size(&power)?;
+        }
+        Ok(Self::number(self.0.len() - 3, power))
+    }
+
+    /// Refuses coefficients that are too long to be meant.
+    pub fn check_size(&self) -> Result<(), String> {
+        self.0.iter().try_for_each(check_size)
+    }
+}
+
+fn check_size(number: &RBig) -> Result<(), String> {
+    let bits = number.numerator().bit_len().max(number.denominator().bit_len());
+    if bits > LARGEST_BITS {
+        return Err(format!(
+            "a coefficient of {bits} bits is too long: up to {LARGEST_BITS} are accepted"
+        ));
+    }
+    Ok(())
+}

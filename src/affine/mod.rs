@@ -1,0 +1,30 @@
+//! Any piecewise-affine hybrid system, solved in closed form between its events.
+
+mod accumulation;
+mod build;
+mod clock;
+mod error;
+mod expression;
+mod file;
+mod flow;
+mod form;
+mod hull;
+mod modal;
+mod residue;
+mod run;
+mod search;
+mod solver;
+mod structural;
+mod structure;
+mod system;
+
+pub use clock::Time;
+pub use dashu_ratio::RBig as Rational;
+pub use error::SystemError;
+pub use file::SystemFile;
+pub use run::{Ending, Event, Run, What};
+pub use search::Work;
+pub use solver::{Solver, Unprepared};
+pub use system::{
+    Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, Until, Watch,
+};

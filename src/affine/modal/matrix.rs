@@ -1,0 +1,131 @@
+//! Matrices of wide numbers, as rows.
+
+use super::real::Real;
+
+pub type Matrix = Vec<Vec<Real>>;
+
+/// What is left of a zero after elimination, beside what was there: 2^-320.
+const NOTHING: isize = -320;
+
+pub fn identity(size: usize) -> Matrix {
+    let entry = |same| if same { Real::one() } else { Real::zero() };
+    (0..size).map(|i| (0..size).map(|j| entry(i == j)).collect()).collect()
+}
+
+pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
+    a.iter().map(|row| row_times(row, b)).collect()
+}
+
+pub fn row_times(row: &[Real], matrix: &Matrix) -> Vec<Real> {
+    let columns = matrix.first().map_or(0, Vec::len);
+    let mut sums = vec![Real::zero(); columns];
+    for (factor, matrix_row) in row.iter().zip(matrix).filter(|(factor, _)| !factor.is_zero()) {
+        for (sum, entry) in sums.iter_mut().zip(matrix_row) {
+            *sum = &*sum + &(factor * entry);
+        }
+    }
+    sums
+}
+
+/// `matrix + factor * identity`.
+pub fn shifted(matrix: &Matrix, factor: &Real) -> Matrix {
+    let mut shifted = matrix.clone();
+    for (n, row) in shifted.iter_mut().enumerate() {
+        row[n] = &row[n] + factor;
+    }
+    shifted
+}
+
+pub fn transposed(matrix: &Matrix) -> Matrix {
+    let columns = matrix.first().map_or(0, Vec::len);
+    (0..columns).map(|j| matrix.iter().map(|row| row[j].clone()).collect()).collect()
+}
+
+/// The largest size of an entry.
+pub fn largest(matrix: &Matrix) -> Real {
+    let larger = |a: Real, b: Real| if a < b { b } else { a };
+    matrix.iter().flatten().map(Real::abs).fold(Real::zero(), larger)
+}
+
+/// Eliminates with complete pivoting, and gives the right null space as columns, each with a 1 in a
+/// row of its own; none if the rank is another one than said.
+pub fn null_space(matrix: &Matrix, nullity: usize) -> Option<Matrix> {
+    let mut rows = matrix.clone();
+    let size = rows.len();
+    let rank = size.checked_sub(nullity)?;
+    let mut order: Vec<usize> = (0..size).collect();
+    let nothing = largest(&rows).scaled(NOTHING);
+    for step in 0..size {
+        let (size_of_pivot, at, column) = pivot(&rows, step)?;
+        let is_nothing = size_of_pivot < nothing || size_of_pivot.is_zero();
+        if is_nothing != (step >= rank) {
+            return None;
+        }
+        if is_nothing {
+            break;
+        }
+        rows.swap(step, at);
+        rows.iter_mut().for_each(|row| row.swap(step, column));
+        order.swap(step, column);
+        eliminate(&mut rows, step);
+    }
+    let mut columns = vec![vec![Real::zero(); nullity]; size];
+    for free in 0..nullity {
+        columns[order[rank + free]][free] = Real::one();
+        for (step, row) in rows.iter().enumerate().take(rank) {
+            columns[order[step]][free] = -&row[rank + free];
+        }
+    }
+    Some(columns)
+}
+
+/// The largest entry that is left, with its row and column.
+fn pivot(rows: &Matrix, step: usize) -> Option<(Real, usize, usize)> {
+    let mut best: Option<(Real, usize, usize)> = None;
+    for (at, row) in rows.iter().enumerate().skip(step) {
+        for (column, entry) in row.iter().enumerate().skip(step) {
+            let size = entry.abs();
+            if best.as_ref().is_none_or(|(most, ..)| *most < size) {
+                best = Some((size, at, column));
+            }
+        }
+    }
+    best
+}
+
+/// Makes the pivot 1, and the rest of its column 0.
+fn eliminate(rows: &mut Matrix, step: usize) {
+    let pivot = rows[step][step].clone();
+    rows[step].iter_mut().for_each(|entry| *entry = &*entry / &pivot);
+    let pivot_row = rows[step].clone();
+    for (n, row) in rows.iter_mut().enumerate() {
+        let factor = row[step].clone();
+        if n == step || factor.is_zero() {
+            continue;
+        }
+        for (entry, other) in row.iter_mut().zip(&pivot_row) {
+            *entry = &*entry - &(&factor * other);
+        }
+    }
+}
+
+/// The inverse of a small matrix, by the same elimination with rows' pivots; none if it has none.
+pub fn inverse(matrix: &Matrix) -> Option<Matrix> {
+    let size = matrix.len();
+    let mut rows: Matrix = matrix.clone();
+    for (row, unit) in rows.iter_mut().zip(identity(size)) {
+        row.extend(unit);
+    }
+    for step in 0..size {
+        let best = (step..size).max_by(|a, b| {
+            let (a, b) = (rows[*a][step].abs(), rows[*b][step].abs());
+            a.partial_cmp(&b).unwrap_or(std::cmp::Ordering::Equal)
+        })?;
+        rows.swap(step, best);
+        if rows[step][step].is_zero() {
+            return None;
+        }
+        eliminate(&mut rows, step);
+    }
+    Some(rows.into_iter().map(|row| row[size..].to_vec()).collect())
+}

@@ -1,0 +1,176 @@
+//! A mode's matrix, taken apart into blocks that do not act on each other.
+//!
+//! With columns X and rows W of a block, W X = 1 and M X = X B, the motion is the sum over the
+//! blocks of X exp(B t) W z. Eigenvalues that are so close to each other that their
+//! eigenvectors nearly coincide stay together in one block. This is done once a mode, in numbers of
+//! several hundred bits.
+
+mod matrix;
+mod polynomial;
+mod real;
+
+use self::matrix::{
+    Matrix, identity, inverse, null_space, product, row_times, shifted, transposed,
+};
+use self::polynomial::{Root, eigenvalues};
+pub(super) use self::real::Real;
+use super::system::Row;
+
+/// Eigenvalues stay together if their distance is below this share of the larger one: the
+/// projectors of others are then at most some tens in size.
+const CLOSE: f64 = 0.125;
+
+/// Eigenvalues stay together if their distance times the system's unit of time is below this:
+/// over such a time their exponentials are nearly alike.
+const SLOW: f64 = 0.05;
+
+/// How a block moves.
+#[derive(Clone, Debug)]
+pub(super) enum Kind {
+    /// One simple real eigenvalue.
+    Real(Real),
+    /// One pair of simple eigenvalues: rate and frequency; B = ((rate, frequency), (-frequency,
+    /// rate)).
+    Pair(Real, Real),
+    /// One real eigenvalue, and B less it is nilpotent.
+    Nilpotent(Real),
+    /// Eigenvalues that are close to each other.
+    Cluster,
+}
+
+/// A block.
+#[derive(Clone, Debug)]
+pub(super) struct Block {
+    pub kind: Kind,
+    /// X, as rows.
+    pub columns: Matrix,
+    /// W.
+    pub rows: Matrix,
+    /// B.
+    pub matrix: Matrix,
+}
+
+/// The blocks of a matrix; none if it cannot be taken apart at this precision.
+pub(super) fn blocks(exact: &[Row], time_scale: f64) -> Option<Vec<Block>> {
+    let matrix: Matrix = exact.iter().map(|row| row.iter().map(Real::of).collect()).collect();
+    let clusters = clusters(eigenvalues(exact)?, time_scale);
+    let blocks: Option<Vec<_>> = clusters.iter().map(|it| block(&matrix, it)).collect();
+    Some(blocks.unwrap_or_else(|| vec![whole(&matrix)]))
+}
+
+/// `row * columns * matrix^k` of a block for k from 0 to `count` - 1: a row's derivatives.
+pub(super) fn derivatives(row: &[Real], block: &Block, count: usize) -> Vec<Vec<Real>> {
+    let first = row_times(row, &block.columns);
+    let next = |last: &Vec<Real>| Some(row_times(last, &block.matrix));
+    std::iter::successors(Some(first), next).take(count).collect()
+}
+
+fn whole(matrix: &Matrix) -> Block {
+    let unit = identity(matrix.len());
+    Block { kind: Kind::Cluster, columns: unit.clone(), rows: unit, matrix: matrix.clone() }
+}
+
+/// Eigenvalues that are chained by small distances.
+fn clusters(roots: Vec<Root>, time_scale: f64) -> Vec<Vec<Root>> {
+    let mut clusters: Vec<Vec<Root>> = Vec::new();
+    for root in roots {
+        let near = |cluster: &Vec<Root>| cluster.iter().any(|it| close(it, &root, time_scale));
+        let (joined, apart): (Vec<_>, Vec<_>) = clusters.into_iter().partition(near);
+        clusters = apart;
+        clusters.push(joined.into_iter().flatten().chain([root]).collect());
+    }
+    clusters
+}
+
+/// Whether two eigenvalues, or the one and the other's conjugate, are close.
+fn close(a: &Root, b: &Root, time_scale: f64) -> bool {
+    let gap = (&a.value - &b.value).norm().to_f64();
+    is_close(gap, a, b, time_scale)
+}
+
+fn is_close(gap: f64, a: &Root, b: &Root, time_scale: f64) -> bool {
+    let larger = a.value.norm().to_f64().max(b.value.norm().to_f64());
+    gap < CLOSE * larger || gap * time_scale < SLOW
+}
+
+fn block(matrix: &Matrix, cluster: &[Root]) -> Option<Block> {
+    let dimensions = cluster.iter().map(Root::dimensions).sum();
+    let annihilator = cluster.iter().fold(identity(matrix.len()), |product_so_far, root| {
+        let factor = factor(matrix, root);
+        (0..root.multiplicity).fold(product_so_far, |it, _| product(&it, &factor))
+    });
+    let columns = null_space(&annihilator, dimensions)?;
+    let left = transposed(&null_space(&transposed(&annihilator), dimensions)?);
+    let rows = product(&inverse(&product(&left, &columns))?, &left);
+    let inner = product(&product(&rows, matrix), &columns);
+    let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner };
+    Some(named(block, cluster))
+}
+
+/// (M - root), or (M - root)(M - conjugate).
+fn factor(matrix: &Matrix, root: &Root) -> Matrix {
+    if root.is_real() {
+        return shifted(matrix, &-&root.value.re);
+    }
+    let twice = -&(&root.value.re + &root.value.re);
+    shifted(&product(matrix, &shifted(matrix, &twice)), &root.value.norm_square())
+}
+
+/// The block in the form of its kind.
+fn named(mut block: Block, cluster: &[Root]) -> Block {
+    let [root] = cluster else { return block };
+    if root.is_real() {
+        let rate = root.value.re.clone();
+        block.kind = if root.multiplicity == 1 { Kind::Real(rate) } else { Kind::Nilpotent(rate) };
+        return block;
+    }
+    let steep = (&root.value.im + &root.value.im).to_f64() >= CLOSE * root.value.norm().to_f64();
+    if root.multiplicity > 1 || !steep {
+        return block;
+    }
+    rotating(&block, root).unwrap_or(block)
+}
+
+/// Co-ordinates in which a pair's matrix is ((rate, frequency), (-frequency, rate)): the real and
+/// the imaginary part of an eigenvector.
+fn rotating(block: &Block, root: &Root) -> Option<Block> {
+    let (rate, frequency) = (&root.value.re, &root.value.im);
+    let [[p, q], [r, s]] = [0, 1].map(|i| [0, 1].map(|j| &block.matrix[i][j]));
+    let zero = Real::zero();
+    let turned: Matrix = if q.abs() >= r.abs() {
+        vec![vec![q.clone(), zero], vec![rate - p, frequency.clone()]]
+    } else {
+        vec![vec![rate - s, frequency.clone()], vec![r.clone(), zero]]
+    };
+    let columns = product(&block.columns, &turned);
+    let rows = product(&inverse(&turned)?, &block.rows);
+    let matrix = vec![vec![rate.clone(), frequency.clone()], vec![-frequency, rate.clone()]];
+    Some(Block { kind: Kind::Pair(rate.clone(), frequency.clone()), columns, rows, matrix })
+}
+
+/// The largest row sum of a matrix.
+pub(super) fn norm(matrix: &[Vec<Real>]) -> f64 {
+    let sums = matrix.iter().map(|row| row.iter().map(|it| it.to_f64().abs()).sum());
+    sums.fold(0.0, f64::max)
+}
+
+/// exp(B 2^exponent), where |B 2^exponent| is at most 1/2: a Taylor series to the last bit.
+pub(super) fn exponential(matrix: &[Vec<Real>], exponent: isize) -> Matrix {
+    const TERMS: usize = 120;
+    let scaled: Matrix =
+        matrix.iter().map(|row| row.iter().map(|it| it.scaled(exponent)).collect()).collect();
+    let mut sum = identity(matrix.len());
+    for k in (1..=TERMS).rev() {
+        let factor = Real::exact(k as f64);
+        sum = product(&scaled, &sum);
+        sum.iter_mut().flatten().for_each(|it| *it = &*it / &factor);
+        sum = shifted(&sum, &Real::one());
+    }
+    sum
+}
+
+/// The first, second, ... power of a matrix.
+pub(super) fn multiples(matrix: &Matrix, count: usize) -> Vec<Matrix> {
+    let next = |last: &Matrix| Some(product(last, matrix));
+    std::iter::successors(Some(matrix.clone()), next).take(count).collect()
+}

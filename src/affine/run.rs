@@ -1,0 +1,430 @@
+//! A run: segments joined at their events, by the rules of docs/SYSTEM_FORMAT.md.
+
+use super::accumulation::Restitution;
+use super::clock::{self, Time};
+use super::flow::{ORDERS, Vector, dot, unit};
+use super::search::{Early, Found, Point, Segment, Track, Work};
+use super::solver::Solver;
+use super::structure::{Firing, Structure};
+use super::system::{Direction, LARGEST_DIMENSION, StartPoint};
+use crate::number::Number;
+use std::collections::VecDeque;
+
+/// How many events of `until` one instant may have.
+const MOST_AT_ONCE: u32 = 64;
+
+/// What happens at an event of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum What<T> {
+    /// The mode of this index ends by its `until` of this index.
+    Until(usize, usize),
+    /// In the mode of this index the `watch` of this index is crossed.
+    Watch(usize, usize),
+    /// The run ends.
+    End(Ending<T>),
+}
+
+/// How a run ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ending<T> {
+    /// The horizon is reached.
+    Horizon,
+    /// Infinitely many impacts follow, and come to an end between these times after the last.
+    Accumulation(T, T),
+    /// A backward run reaches the boundary of its mode.
+    LeavesDomain,
+    /// Too many events in one instant.
+    NoProgress,
+    /// A mode is entered where one of its guards is positive already.
+    BeyondGuard,
+    /// The arithmetic has no digits left to decide what comes next.
+    Undecided,
+}
+
+/// An event of a run.
+#[derive(Clone, Debug)]
+pub struct Event<T> {
+    /// What happens.
+    pub what: What<T>,
+    /// The time.
+    pub time: Time<T>,
+    /// The state just after it.
+    pub state: Vec<T>,
+    /// The mode just after it.
+    pub mode: usize,
+}
+
+/// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
+pub struct Run<'a, T> {
+    pub(super) solver: &'a Solver<T>,
+    pub(super) structure: Structure,
+    work: Work,
+    horizon: T,
+    pub(super) node: usize,
+    /// The time at which the segment was entered, and the state there.
+    entered: Time<T>,
+    state: Vector<T>,
+    /// Where the search goes on.
+    tracks: Vec<Track>,
+    point: Option<Point<T>>,
+    early: Option<Early<T>>,
+    pub(super) modal: Vector<T>,
+    /// The coefficient of restitution of an impact, from its fastest occurrence.
+    pub(super) restitution: Option<Restitution<T>>,
+    /// Guards that fire at the instant of entry.
+    at_entry: u64,
+    at_once: u32,
+    /// A first length to look at.
+    length: f64,
+    queue: VecDeque<Event<T>>,
+    ended: bool,
+}
+
+impl<T: Number> Solver<T> {
+    /// A run from a start up to a time.
+    ///
+    /// # Errors
+    /// A start whose structural zeros cannot be told.
+    pub fn run(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
+        let mut structure = self.structure.clone();
+        let node = structure.start(&self.system, start)?;
+        let entered = clock::start(start);
+        let mut run = Run {
+            solver: self,
+            structure,
+            work: Work::default(),
+            horizon: until,
+            node,
+            entered,
+            state: [T::zero(); LARGEST_DIMENSION],
+            tracks: Vec::new(),
+            point: None,
+            early: None,
+            modal: [T::zero(); LARGEST_DIMENSION],
+            restitution: None,
+            at_entry: 0,
+            at_once: 0,
+            length: self.system.time_scale,
+            queue: VecDeque::new(),
+            ended: false,
+        };
+        let (sin, cos) = self.sin_cos(&entered);
+        for (entry, [c, s, one]) in run.state.iter_mut().zip(&start.state) {
+            let number = |it| super::flow::rounded::<T>(&super::modal::Real::of(it));
+            *entry = number(c) * cos + number(s) * sin + number(one);
+        }
+        run.complete();
+        run.enter();
+        Some(run)
+    }
+
+    fn sin_cos(&self, time: &Time<T>) -> (T, T) {
+        match &self.clock {
+            Some(clock) if self.backward => {
+                let time = Time { high: -time.high, low: -time.low };
+                clock.sin_cos(&time)
+            }
+            Some(clock) => clock.sin_cos(time),
+            None => (T::zero(), T::one()),
+        }
+    }
+}
+
+impl<T: Number> Run<'_, T> {
+    /// What the run has cost so far.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    pub(super) fn tracks_live(&self, guard: usize) -> bool {
+        self.tracks[guard].live
+    }
+
+    /// Fills in cos theta, sin theta and 1.
+    fn complete(&mut self) {
+        let (sin, cos) = self.solver.sin_cos(&self.entered);
+        complete(&mut self.state, self.solver, sin, cos);
+    }
+
+    /// Begins the segment of the present node: looks at each guard's first derivative that is not a
+    /// structural zero.
+    fn enter(&mut self) {
+        let node = self.structure.node(self.node);
+        let (mode, orders) = (node.mode, node.multiplicities.clone());
+        let solver = self.solver;
+        let solver_mode = &solver.modes[mode];
+        let flow = &solver_mode.flow;
+        let until = solver.system.modes[mode].until.len();
+        self.modal = flow.modal(&self.state);
+        self.tracks.clear();
+        self.at_entry = 0;
+        for (n, (row, order)) in solver_mode.guards.iter().zip(orders.iter()).enumerate() {
+            let Some(order) = *order else {
+                self.tracks.push(Track { outward: 1.0, zeros: 0, live: false });
+                continue;
+            };
+            let value = dot(&row.orders[order], &self.modal, flow.dimension).to_f64();
+            let size = row.size_of(order, &self.modal, flow.dimension);
+            let slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
+            let doubtful = value.abs() <= slack;
+            self.work.undecidable += u64::from(doubtful);
+            let outward = if n >= until && value > 0.0 { -1.0 } else { 1.0 };
+            self.tracks.push(Track { outward, zeros: order, live: true });
+            if n < until && value > 0.0 {
+                if order == 0 && !doubtful {
+                    self.end(Ending::BeyondGuard);
+                } else if solver.backward {
+                    self.end(Ending::LeavesDomain);
+                }
+                self.at_entry |= 1 << n;
+            }
+        }
+        self.early = self.early_series(mode);
+        let segment = segment(solver, mode, self.modal, self.early.take());
+        self.point = Some(segment.point(T::zero(), &mut self.work));
+        self.early = segment.early;
+    }
+
+    /// Taylor series at entry, where a guard has structural zeros.
+    fn early_series(&self, mode: usize) -> Option<Early<T>> {
+        if !self.tracks.iter().any(|track| track.live && track.zeros > 0) {
+            return None;
+        }
+        let solver_mode = &self.solver.modes[mode];
+        let flow = &solver_mode.flow;
+        let growth = flow.fastest_growth();
+        let longest = if growth > 0.0 { 1.0 / growth } else { f64::INFINITY };
+        let mut early = Early { limit: longest, orders: Vec::new() };
+        for (row, track) in solver_mode.guards.iter().zip(&self.tracks) {
+            let mut orders = [T::zero(); ORDERS];
+            if track.live {
+                for (k, order) in orders.iter_mut().enumerate().skip(track.zeros) {
+                    *order = dot(&row.orders[k], &self.modal, flow.dimension);
+                }
+                let last = flow.bound(row, ORDERS - 1, &self.modal, longest.min(1e300));
+                let lead = orders[track.zeros].to_f64().abs();
+                early.limit = early.limit.min(series_limit::<T>(lead, track.zeros, last));
+            }
+            early.orders.push(orders);
+        }
+        Some(early)
+    }
+
+    /// Ends the run here.
+    fn end(&mut self, ending: Ending<T>) {
+        if !self.ended {
+            self.ended = true;
+            let event = self.event(What::End(ending), self.entered, &self.state);
+            self.queue.push_back(event);
+        }
+    }
+
+    fn event(&self, what: What<T>, time: Time<T>, state: &Vector<T>) -> Event<T> {
+        let states = self.solver.system.states.len();
+        let mode = self.structure.node(self.node).mode;
+        Event { what, time, state: state[..states].to_vec(), mode }
+    }
+
+    /// Goes on to the next event.
+    fn advance(&mut self) {
+        if self.at_entry != 0 {
+            let guards = self.structure.tied(self.node, self.at_entry, true);
+            let until = self.at_entry.trailing_zeros() as usize;
+            self.fire(Firing { until, guards, at_entry: true }, self.entered, self.state);
+            return;
+        }
+        let mode = self.structure.node(self.node).mode;
+        let limit = self.limit();
+        let Some(point) = self.point.take() else { return self.end(Ending::Undecided) };
+        let segment = segment(self.solver, mode, self.modal, self.early.take());
+        let found = segment.first(&mut self.tracks, point, limit, self.length, &mut self.work);
+        match found {
+            Found::Lost => self.end(Ending::Undecided),
+            Found::Nothing => {
+                let limit = if limit > T::zero() { limit } else { T::zero() };
+                let last = segment.point(limit, &mut self.work);
+                (self.entered, self.state) = self.at(&last);
+                self.end(Ending::Horizon);
+            }
+            Found::Crossing(point, guards) => {
+                self.early = segment.early;
+                self.crossed(point, guards);
+            }
+        }
+    }
+
+    /// Time that is left until the horizon.
+    fn limit(&self) -> T {
+        let ahead = (self.horizon - self.entered.high) - self.entered.low;
+        if self.solver.backward { -ahead } else { ahead }
+    }
+
+    /// Time and state at a point of the segment.
+    fn at(&self, point: &Point<T>) -> (Time<T>, Vector<T>) {
+        let elapsed = if self.solver.backward { -point.time } else { point.time };
+        let time = self.entered.after(elapsed);
+        let mode = self.structure.node(self.node).mode;
+        let mut state = self.solver.modes[mode].flow.state(&point.y);
+        let (sin, cos) = self.solver.sin_cos(&time);
+        complete(&mut state, self.solver, sin, cos);
+        (time, state)
+    }
+
+    /// The guards of these bits are crossed.
+    fn crossed(&mut self, mut point: Point<T>, guards: u64) {
+        let mode = self.structure.node(self.node).mode;
+        let until = self.solver.system.modes[mode].until.len();
+        let (time, state) = self.at(&point);
+        let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
+        self.work.undecidable += u64::from(guards & !tied != 0);
+        for n in bits(guards).filter(|n| *n >= until) {
+            self.watched(mode, n, until, time, &state);
+            self.tracks[n].outward = -self.tracks[n].outward;
+        }
+        let ending = guards & low_bits(until);
+        if ending == 0 {
+            self.tracks.iter_mut().for_each(|track| track.zeros = 0);
+            for n in bits(guards) {
+                self.tracks[n].zeros = 1;
+                point.orders[n][0] = T::zero();
+            }
+            self.point = Some(point);
+            return;
+        }
+        if self.solver.backward {
+            (self.entered, self.state) = (time, state);
+            return self.end(Ending::LeavesDomain);
+        }
+        self.length = 2.0 * point.time.to_f64();
+        let guards = self.structure.tied(self.node, guards, false);
+        let until = ending.trailing_zeros() as usize;
+        self.fire(Firing { until, guards, at_entry: false }, time, state);
+    }
+
+    fn watched(&mut self, mode: usize, n: usize, until: usize, time: Time<T>, state: &Vector<T>) {
+        let rising = self.tracks[n].outward > 0.0;
+        let counted = match self.solver.system.modes[mode].watch[n - until].direction {
+            Direction::Rising => rising,
+            Direction::Falling => !rising,
+            Direction::Both => true,
+        };
+        if counted {
+            let event = self.event(What::Watch(mode, n - until), time, state);
+            self.queue.push_back(event);
+        }
+    }
+
+    /// An `until` ends the mode: reset, successor, and the entry of the next segment.
+    fn fire(&mut self, firing: Firing, time: Time<T>, before: Vector<T>) {
+        let solver = self.solver;
+        let mode = self.structure.node(self.node).mode;
+        self.at_once = if firing.at_entry { self.at_once + 1 } else { 1 };
+        let mut state = [T::zero(); LARGEST_DIMENSION];
+        for (entry, row) in state.iter_mut().zip(&solver.modes[mode].resets[firing.until]) {
+            *entry = dot(row, &before, solver.modes[mode].flow.dimension);
+        }
+        let successor = self.successor(mode, firing, &state);
+        let arrival = self.structure.arrival(self.node, firing);
+        let impact = arrival.impact;
+        let from = self.node;
+        let next = self.structure.enter(from, firing, successor);
+        let modal_before = solver.modes[mode].flow.modal(&before);
+        self.node = next;
+        (self.entered, self.state) = (time, state);
+        let event = self.event(What::Until(mode, firing.until), time, &self.state);
+        self.queue.push_back(event);
+        self.enter();
+        if impact && next == from {
+            let (below, above) = (&modal_before, successor);
+            if let Some((earliest, latest)) = self.accumulation(mode, firing, below, above) {
+                return self.end(Ending::Accumulation(earliest, latest));
+            }
+        }
+        if self.at_once >= MOST_AT_ONCE {
+            self.end(Ending::NoProgress);
+        }
+    }
+
+    /// The first successor whose condition holds.
+    fn successor(&mut self, mode: usize, firing: Firing, state: &Vector<T>) -> usize {
+        let solver = self.solver;
+        let orders = self.structure.arrival(self.node, firing).orders.clone();
+        let conditions = &solver.modes[mode].conditions[firing.until];
+        let next = &solver.system.modes[mode].until[firing.until].next;
+        for (n, (condition, order)) in conditions.iter().zip(orders.iter()).enumerate() {
+            let (Some(condition), Some(order)) = (condition, *order) else {
+                if condition.is_none() {
+                    return n;
+                }
+                continue;
+            };
+            let flow = &solver.modes[next[n].mode].flow;
+            let modal = flow.modal(state);
+            let value = dot(&condition.orders[order], &modal, flow.dimension).to_f64();
+            let size = condition.size_of(order, &modal, flow.dimension);
+            let slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
+            self.work.undecidable += u64::from(value.abs() <= slack);
+            if value > 0.0 {
+                return n;
+            }
+        }
+        conditions.len() - 1
+    }
+}
+
+impl<T: Number> Iterator for Run<'_, T> {
+    type Item = Event<T>;
+
+    fn next(&mut self) -> Option<Event<T>> {
+        loop {
+            if let Some(event) = self.queue.pop_front() {
+                return Some(event);
+            }
+            if self.ended {
+                return None;
+            }
+            self.advance();
+        }
+    }
+}
+
+impl<T: Number> std::iter::FusedIterator for Run<'_, T> {}
+
+fn segment<T: Number>(
+    solver: &Solver<T>,
+    mode: usize,
+    entry: Vector<T>,
+    early: Option<Early<T>>,
+) -> Segment<'_, T> {
+    let mode = &solver.modes[mode];
+    Segment { flow: &mode.flow, rows: &mode.guards, entry, early }
+}
+
+fn complete<T: Number>(state: &mut Vector<T>, solver: &Solver<T>, sin: T, cos: T) {
+    let (states, dimension) = (solver.system.states.len(), solver.system.dimension());
+    state[dimension - 1] = T::one();
+    if dimension > states + 1 {
+        state[states] = cos;
+        state[states + 1] = sin;
+    }
+}
+
+/// Up to which time a Taylor series without its last order is good to the last digit.
+fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64 {
+    if last == 0.0 {
+        return f64::INFINITY;
+    }
+    let order = ORDERS - 1;
+    let factorials: f64 = (zeros + 1..=order).map(|k| k as f64).product();
+    let power = unit::<T>() * lead * factorials / last;
+    libm::pow(power, 1.0 / (order - zeros) as f64)
+}
+
+fn bits(mask: u64) -> impl Iterator<Item = usize> {
+    (0..64).filter(move |n| mask >> n & 1 == 1)
+}
+
+fn low_bits(count: usize) -> u64 {
+    if count >= 64 { u64::MAX } else { (1 << count) - 1 }
+}

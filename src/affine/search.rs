@@ -1,0 +1,366 @@
+//! The first crossing of a mode's guards.
+//!
+//! A segment is passed in pieces. On each the Bernstein coefficients of a polynomial that lies above
+//! the guard show that it stays negative, or up to where it does. There a crossing is searched:
+//! Newton's method on the guard's own series finds the candidate, and bounds of its derivatives
+//! prove that the guard rises through zero once. What shows neither is looked at in shorter
+//! pieces. See the page docs/ROUNDING.md for what rounding may take.
+
+use super::flow::{Flow, ModalRow, ORDERS, Vector, unit};
+use super::hull;
+use super::system::LARGEST_DIMENSION;
+use crate::number::Number;
+use smallvec::SmallVec;
+
+/// The largest number of pieces of a segment.
+const MOST_PIECES: u64 = 1 << 22;
+
+/// 8! C(8, 4): see `crossing/certificate.rs`.
+const MIDDLE: f64 = crate::crossing::certificate::MIDDLE;
+
+/// The share of a guard's size that the remainder of a piece may have.
+const REMAINDER: f64 = 1e-4;
+
+/// Guards of this number take no memory of their own.
+const INLINE: usize = 4;
+
+/// What is known of a guard at the left end of what is searched.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Track {
+    /// 1 where a crossing rises, -1 where it falls: the guard times this is negative inside.
+    pub outward: f64,
+    /// How many derivatives, the value included, are zero at the left end.
+    pub zeros: usize,
+    /// Whether it can cross at all.
+    pub live: bool,
+}
+
+/// A segment, with all that its guards have at its entry.
+pub(super) struct Segment<'a, T> {
+    pub flow: &'a Flow<T>,
+    pub rows: &'a [ModalRow<T>],
+    pub entry: Vector<T>,
+    /// The guards' Taylor series at entry, whose structural zeros are exact.
+    pub early: Option<Early<T>>,
+}
+
+/// Taylor coefficients of the guards, good up to a time.
+pub(super) struct Early<T> {
+    pub limit: f64,
+    /// The derivatives at entry.
+    pub orders: Vec<[T; ORDERS]>,
+}
+
+/// The guards at an instant.
+#[derive(Clone, Debug)]
+pub(super) struct Point<T> {
+    pub time: T,
+    pub y: Vector<T>,
+    /// Value and three derivatives of each guard.
+    pub orders: SmallVec<[[T; 4]; INLINE]>,
+    /// What rounding may have done to each value.
+    pub slack: SmallVec<[f64; INLINE]>,
+}
+
+/// How a search ends.
+#[derive(Clone, Debug)]
+pub(super) enum Found<T> {
+    /// No guard crosses before the limit.
+    Nothing,
+    /// The first crossing, and all guards that cross there within what rounding may do, as bits.
+    Crossing(Point<T>, u64),
+    /// Too much work.
+    Lost,
+}
+
+/// What a search has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Evaluations of the closed form.
+    pub evaluations: u64,
+    /// Pieces that were certified.
+    pub pieces: u64,
+    /// Touches, entries, conditions and ties that rounding does not decide.
+    pub undecidable: u64,
+}
+
+/// A crossing that is proved to be the only one shortly after a point.
+struct Rising<T> {
+    after: T,
+    within: f64,
+    error: f64,
+}
+
+impl<T: Number> Segment<'_, T> {
+    /// Evaluates the closed form.
+    pub fn point(&self, time: T, work: &mut Work) -> Point<T> {
+        work.evaluations += 1;
+        let y = self.flow.at(&self.entry, time);
+        let mut point = Point { time, y, orders: SmallVec::new(), slack: SmallVec::new() };
+        match &self.early {
+            Some(early) if time.to_f64() <= early.limit => {
+                for orders in &early.orders {
+                    let (orders, size) = series(orders, time);
+                    point.orders.push(orders);
+                    point.slack.push(4.0 * unit::<T>() * size);
+                }
+            }
+            _ => self.evaluate(&mut point),
+        }
+        point
+    }
+
+    fn evaluate(&self, point: &mut Point<T>) {
+        let dimension = self.flow.dimension;
+        let margin = (dimension + 4) as f64 * unit::<T>();
+        for row in self.rows {
+            let order = |k: usize| super::flow::dot(&row.orders[k], &point.y, dimension);
+            point.orders.push([order(0), order(1), order(2), order(3)]);
+            point.slack.push(margin * row.size(&point.y, dimension));
+        }
+    }
+
+    /// The first crossing after a point and not after `limit`. `first` proposes the length of the
+    /// first piece.
+    pub fn first(
+        &self,
+        tracks: &mut [Track],
+        from: Point<T>,
+        limit: T,
+        first: f64,
+        work: &mut Work,
+    ) -> Found<T> {
+        let mut left = from;
+        let mut most = first;
+        for _ in 0..MOST_PIECES {
+            if left.time >= limit {
+                return Found::Nothing;
+            }
+            let (right, length) = self.right_end(tracks, &left, limit, most, work);
+            work.pieces += 1;
+            let Some(share) = self.clear_share(tracks, &left, &right, length, work) else {
+                left = right;
+                most = 4.0 * length.to_f64();
+                clear_zeros(tracks);
+                continue;
+            };
+            let step = length * T::exact(share);
+            if left.time + step > left.time {
+                left = self.point(left.time + step, work);
+                clear_zeros(tracks);
+            } else if length.to_f64() <= 8.0 * unit::<T>() * right.time.to_f64() {
+                // No shorter piece has two ends: what happens within rounding is a touch.
+                work.undecidable += 1;
+                left = right;
+                most = 64.0 * length.to_f64();
+                clear_zeros(tracks);
+                continue;
+            }
+            if let Some((time, guards)) = self.rising(tracks, &left, work) {
+                return self.settled(tracks, time, guards, limit, work);
+            }
+            most = 0.25 * length.to_f64();
+        }
+        Found::Lost
+    }
+
+    /// The right end of the next piece, and its length.
+    fn right_end(
+        &self,
+        tracks: &[Track],
+        left: &Point<T>,
+        limit: T,
+        most: f64,
+        work: &mut Work,
+    ) -> (Point<T>, T) {
+        let length = self.length(tracks, left).min(most);
+        let mut end = left.time + T::exact(length);
+        let inside = left.time < end && end < limit;
+        if !inside {
+            end = limit;
+        }
+        let right = self.point(end, work);
+        (right, end - left.time)
+    }
+
+    /// A length on which the remainders stay small beside the guards.
+    fn length(&self, tracks: &[Track], left: &Point<T>) -> f64 {
+        let growth = self.flow.fastest_growth();
+        let longest = if growth > 0.0 { 1.0 / growth } else { f64::INFINITY };
+        let mut length = longest;
+        for (n, track) in tracks.iter().enumerate().filter(|(_, track)| track.live) {
+            let row = &self.rows[n];
+            let eighth = self.flow.bound(row, 8, &left.y, longest.min(1e300));
+            if eighth > 0.0 {
+                let size = row.size(&left.y, self.flow.dimension);
+                let scale = left.orders[n][0].to_f64().abs().max(1e-3 * size);
+                let eighth_power = MIDDLE * REMAINDER * scale / eighth;
+                length = length.min(eighth_power.sqrt().sqrt().sqrt());
+            }
+            length = length.min(self.near_root(track, &left.orders[n]));
+        }
+        length
+    }
+
+    /// A length a little beyond the root that the first two terms of a guard suggest, if it begins at
+    /// zero and turns back.
+    fn near_root(&self, track: &Track, orders: &[T; 4]) -> f64 {
+        let (Some(first), Some(second)) = (orders.get(track.zeros), orders.get(track.zeros + 1))
+        else {
+            return f64::INFINITY;
+        };
+        let ratio = -(first.to_f64() / second.to_f64());
+        if track.zeros > 0 && ratio > 0.0 {
+            1.25 * ratio * (track.zeros + 1) as f64
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// The share of a piece on which all guards are proved to stay negative; none if it is all of it.
+    fn clear_share(
+        &self,
+        tracks: &[Track],
+        left: &Point<T>,
+        right: &Point<T>,
+        length: T,
+        work: &mut Work,
+    ) -> Option<f64> {
+        let mut share: Option<f64> = None;
+        for (n, track) in tracks.iter().enumerate().filter(|(_, track)| track.live) {
+            let eighth = self.flow.bound(&self.rows[n], 8, &left.y, length.to_f64());
+            let slack = left.slack[n].max(right.slack[n]);
+            let ends = [outward(&left.orders[n], track), outward(&right.orders[n], track)];
+            match hull::judge(&ends, length, eighth, slack, track.zeros) {
+                hull::Judged::Clear => {}
+                hull::Judged::Touch => work.undecidable += 1,
+                hull::Judged::Open(open) => share = Some(share.map_or(open, |it| it.min(open))),
+            }
+        }
+        share
+    }
+
+    /// The first crossing shortly after a point, if it is proved to be one.
+    fn rising(&self, tracks: &[Track], at: &Point<T>, work: &mut Work) -> Option<(T, u64)> {
+        let live = || tracks.iter().enumerate().filter(|(_, track)| track.live);
+        let rising: Vec<_> = live().map(|(n, track)| self.rises(n, track, at)).collect();
+        let first = rising.iter().flatten().map(|it| it.after);
+        let first = first.reduce(|a, b| if b < a { b } else { a })?;
+        let within = rising.iter().flatten().filter(|it| it.after <= first).map(|it| it.within);
+        let within = within.fold(0.0, f64::max);
+        let error = rising.iter().flatten().filter(|it| it.after <= first).map(|it| it.error);
+        let error = error.fold(0.0, f64::max);
+        let mut guards = 0;
+        for ((n, track), rises) in live().zip(&rising) {
+            match rises {
+                Some(rises) if (rises.after - first).to_f64() <= rises.error + error => {
+                    guards |= 1 << n;
+                }
+                Some(_) => {}
+                None => {
+                    let excess = self.excess(n, track, at, within);
+                    let below = excess <= 4.0 * at.slack[n];
+                    if !below {
+                        return None;
+                    }
+                    work.undecidable += u64::from(excess >= -at.slack[n]);
+                }
+            }
+        }
+        Some((at.time + first, guards))
+    }
+
+    /// Whether a guard rises through zero once, shortly after a point, and when.
+    fn rises(&self, n: usize, track: &Track, at: &Point<T>) -> Option<Rising<T>> {
+        let orders = outward(&at.orders[n], track);
+        let slack = at.slack[n];
+        let [value, slope, bend, third] = orders.map(Number::to_f64);
+        let rising = slope > 0.0 && value <= 4.0 * slack;
+        if track.zeros > 0 || !rising {
+            return None;
+        }
+        let within = (2.0 * value.abs() + 8.0 * slack) / slope;
+        let fourth = self.flow.bound(&self.rows[n], 4, &at.y, within);
+        let change = within * (bend.abs() + within * (0.5 * third.abs() + within * fourth / 6.0));
+        let steadily = change < 0.5 * slope;
+        steadily.then(|| Rising { after: newton(&orders), within, error: 2.0 * slack / slope })
+    }
+
+    /// A bound of a guard over a short time after a point.
+    fn excess(&self, n: usize, track: &Track, at: &Point<T>, within: f64) -> f64 {
+        let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::to_f64);
+        let fourth = self.flow.bound(&self.rows[n], 4, &at.y, within);
+        let rest = 0.5 * bend.abs() + within * (third.abs() / 6.0 + within * fourth / 24.0);
+        match track.zeros {
+            0 => value + within * (slope.max(0.0) + within * rest),
+            // It has left zero for the inside, and does not come back so soon.
+            1 if slope + within * rest < 0.0 => f64::NEG_INFINITY,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The crossing to the last digit.
+    fn settled(
+        &self,
+        tracks: &[Track],
+        time: T,
+        guards: u64,
+        limit: T,
+        work: &mut Work,
+    ) -> Found<T> {
+        const ROUNDS: usize = 8;
+        let n = guards.trailing_zeros() as usize;
+        let mut point = self.point(time, work);
+        for _ in 0..ROUNDS {
+            let step = newton(&outward(&point.orders[n], &tracks[n]));
+            let better = point.time + step;
+            let far = step.to_f64().abs() > unit::<T>() * point.time.to_f64().abs();
+            if !far || better <= T::zero() {
+                break;
+            }
+            point = self.point(better, work);
+        }
+        // A crossing exactly at the limit counts.
+        let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
+        if point.time > limit + room { Found::Nothing } else { Found::Crossing(point, guards) }
+    }
+}
+
+/// The step to the root of a cubic that is near zero, by Newton's method.
+fn newton<T: Number>(orders: &[T; 4]) -> T {
+    let [value, slope, bend, third] = *orders;
+    let (half, sixth) = (bend * T::exact(0.5), third / T::exact(6.0));
+    let mut step = -value / slope;
+    for _ in 0..3 {
+        let cubic = value + step * (slope + step * (half + step * sixth));
+        let tangent = slope + step * (bend + step * third * T::exact(0.5));
+        step = step - cubic / tangent;
+    }
+    step
+}
+
+fn outward<T: Number>(orders: &[T; 4], track: &Track) -> [T; 4] {
+    if track.outward < 0.0 { orders.map(|it| -it) } else { *orders }
+}
+
+fn clear_zeros(tracks: &mut [Track]) {
+    tracks.iter_mut().for_each(|track| track.zeros = 0);
+}
+
+/// Value and three derivatives of a Taylor series, and the size of what the value is summed from.
+fn series<T: Number>(orders: &[T; ORDERS], time: T) -> ([T; 4], f64) {
+    let size_of_time = time.to_f64().abs();
+    let mut values = [T::zero(); 4];
+    let mut size = 0.0;
+    for (k, value) in values.iter_mut().enumerate() {
+        for j in (k..ORDERS - 1).rev() {
+            *value = orders[j] + *value * time / T::exact((j - k + 1) as f64);
+        }
+    }
+    for j in (0..ORDERS - 1).rev() {
+        size = orders[j].to_f64().abs() + size * size_of_time / (j + 1) as f64;
+    }
+    (values, size)
+}
+
+const _: () = assert!(LARGEST_DIMENSION < ORDERS);

@@ -1,0 +1,111 @@
+//! A system made ready to run in one arithmetic.
+
+use super::clock::Clock;
+use super::flow::{Flow, ModalRow, Vector, rounded};
+use super::modal::{self, Real};
+use super::structure::Structure;
+use super::system::{LARGEST_DIMENSION, Mode, Row, System};
+use crate::number::Number;
+
+/// A piecewise-affine system in closed form, in an arithmetic of one or two words.
+#[derive(Clone, Debug)]
+pub struct Solver<T> {
+    pub(super) system: System,
+    pub(super) modes: Vec<SolverMode<T>>,
+    pub(super) clock: Option<Clock<T>>,
+    pub(super) structure: Structure,
+    pub(super) backward: bool,
+}
+
+/// One of its modes.
+#[derive(Clone, Debug)]
+pub(super) struct SolverMode<T> {
+    pub flow: Flow<T>,
+    /// Those of `until`, then those of `watch`.
+    pub guards: Vec<ModalRow<T>>,
+    /// The resets of `until`.
+    pub resets: Vec<Vec<Vector<T>>>,
+    /// The conditions of the successors of each `until`, in the co-ordinates of their modes.
+    pub conditions: Vec<Vec<Option<ModalRow<T>>>>,
+}
+
+/// Why a system cannot be made ready.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unprepared {
+    /// The mode whose matrix was not taken apart, or nothing.
+    pub mode: String,
+}
+
+impl std::fmt::Display for Unprepared {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the matrix of mode {} cannot be taken apart to the digits needed", self.mode)
+    }
+}
+
+impl std::error::Error for Unprepared {}
+
+impl<T: Number> Solver<T> {
+    /// Takes the modes of a system apart.
+    ///
+    /// # Errors
+    /// A mode whose eigenvalues are not found.
+    pub fn new(system: &System) -> Result<Self, Unprepared> {
+        Self::prepared(system.clone(), false)
+    }
+
+    /// A solver that runs back in time: its times decrease, only watched guards are events, and it
+    /// ends where a mode was entered.
+    ///
+    /// # Errors
+    /// A mode whose eigenvalues are not found.
+    pub fn backward(system: &System) -> Result<Self, Unprepared> {
+        Self::prepared(system.reversed(), true)
+    }
+
+    fn prepared(system: System, backward: bool) -> Result<Self, Unprepared> {
+        let mut blocks = Vec::new();
+        for mode in &system.modes {
+            let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale);
+            let unprepared = || Unprepared { mode: mode.name.clone() };
+            blocks.push(blocks_of_mode.ok_or_else(unprepared)?);
+        }
+        let structure = Structure::of(&system);
+        let structure = structure.ok_or_else(|| Unprepared { mode: system.name.clone() })?;
+        let flows: Vec<Flow<T>> = blocks.iter().map(|it| Flow::of(it)).collect();
+        let row = |row: &Row, mode: usize| flows[mode].row(row, &blocks[mode]);
+        let mode = |(n, mode): (usize, &Mode)| {
+            let until = mode.until.iter().map(|it| &it.guard);
+            let guards = until.chain(mode.watch.iter().map(|it| &it.guard));
+            let conditions = mode.until.iter().map(|until| {
+                let condition =
+                    |it: &super::system::Successor| it.when.as_ref().map(|when| row(when, it.mode));
+                until.next.iter().map(condition).collect()
+            });
+            let resets = mode.until.iter().map(|it| it.reset.iter().map(numbers).collect());
+            SolverMode {
+                flow: flows[n].clone(),
+                guards: guards.map(|guard| row(guard, n)).collect(),
+                resets: resets.collect(),
+                conditions: conditions.collect(),
+            }
+        };
+        let modes = system.modes.iter().enumerate().map(mode).collect();
+        let clock = system.forcing.as_ref().map(Clock::of);
+        Ok(Self { modes, clock, structure, backward, system })
+    }
+
+    /// The system; that of a backward run has its signs reversed.
+    #[must_use]
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+}
+
+/// A row in the arithmetic.
+pub(super) fn numbers<T: Number>(row: &Row) -> Vector<T> {
+    let mut vector = [T::zero(); LARGEST_DIMENSION];
+    for (entry, number) in vector.iter_mut().zip(row) {
+        *entry = rounded(&Real::of(number));
+    }
+    vector
+}

@@ -1,0 +1,257 @@
+//! The structural zeros of a run: which of them hold in which mode, and where its events lead.
+//!
+//! What is zero at the entry of a segment depends on the events that led there, not on numbers. A
+//! run therefore walks through a small graph, whose nodes are modes with their spaces of zeros;
+//! each is worked out once.
+
+use super::residue::{Residue, Residues, row_times};
+use super::structural::{Zeros, kernel};
+use super::system::{Mode, Row, StartPoint, Successor, System, Until};
+use dashu_ratio::RBig;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// More nodes than this are forgotten: a system that counts its own events has a new one at each.
+const MOST_NODES: usize = 4096;
+
+/// A mode's rows modulo primes.
+#[derive(Clone, Debug)]
+struct ModeResidues {
+    matrix: Vec<Residues>,
+    /// Those of `until`, then those of `watch`.
+    guards: Vec<Residues>,
+    resets: Vec<Vec<Residues>>,
+    /// The conditions of each event's successors, with their modes.
+    next: Vec<Vec<(Option<Residues>, usize)>>,
+}
+
+/// An event: the `until` that ends the mode, all guards that are zero there, as bits, and whether
+/// it is at the instant at which the mode was entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(super) struct Firing {
+    pub until: usize,
+    pub guards: u64,
+    pub at_entry: bool,
+}
+
+/// A mode that is entered with certain zeros.
+#[derive(Clone, Debug)]
+pub(super) struct Node {
+    pub mode: usize,
+    zeros: Zeros,
+    /// What stays zero along the segment.
+    lasting: Zeros,
+    /// Of each guard the order of its first derivative that is not a structural zero at entry;
+    /// none if it stays zero.
+    pub multiplicities: Arc<[Option<usize>]>,
+    /// Those that were asked for: few, and looked up at each event.
+    arrivals: Vec<(Firing, Arrival)>,
+    ties: Vec<(u64, bool, u64)>,
+}
+
+/// What an event leads to.
+#[derive(Clone, Debug)]
+pub(super) struct Arrival {
+    /// Of each successor's condition the order of its first derivative that is not a structural
+    /// zero; none if there is none, or no condition.
+    pub orders: Arc<[Option<usize>]>,
+    /// Whether the event reverses the rate of its guard by a factor and leaves it at zero.
+    pub impact: bool,
+    after: Zeros,
+    nodes: Vec<Option<usize>>,
+}
+
+/// The graph.
+#[derive(Clone, Debug)]
+pub(super) struct Structure {
+    modes: Vec<ModeResidues>,
+    nodes: Vec<Node>,
+    known: HashMap<(usize, Zeros), usize>,
+}
+
+impl Structure {
+    /// The graph of a system, without a node; none if a coefficient has no residue.
+    pub fn of(system: &System) -> Option<Self> {
+        let modes = system.modes.iter().map(ModeResidues::of).collect::<Option<_>>()?;
+        Some(Self { modes, nodes: Vec::new(), known: HashMap::new() })
+    }
+
+    pub fn node(&self, node: usize) -> &Node {
+        &self.nodes[node]
+    }
+
+    /// The node of a start.
+    pub fn start(&mut self, system: &System, start: &StartPoint) -> Option<usize> {
+        let zeros = zeros_at_start(system, start)?;
+        Some(self.intern(start.mode, zeros))
+    }
+
+    /// The guards that are zero at an event because others are.
+    pub fn tied(&mut self, node: usize, guards: u64, at_entry: bool) -> u64 {
+        let node = &mut self.nodes[node];
+        let known = node.ties.iter().find(|it| (it.0, it.1) == (guards, at_entry));
+        if let Some((.., tied)) = known {
+            return *tied;
+        }
+        let rows = &self.modes[node.mode].guards;
+        let zeros = with_rows(node.zeros_at(at_entry), rows, guards);
+        let also = |n: &usize| zeros.contains(&rows[*n]);
+        let tied = (0..rows.len()).filter(also).fold(guards, |mask, n| mask | 1 << n);
+        node.ties.push((guards, at_entry, tied));
+        tied
+    }
+
+    /// What an event leads to.
+    pub fn arrival(&mut self, node: usize, firing: Firing) -> &mut Arrival {
+        let Self { modes, nodes, .. } = self;
+        let node = &mut nodes[node];
+        let known = node.arrivals.iter().position(|(it, _)| *it == firing);
+        let at = known.unwrap_or_else(|| {
+            node.arrivals.push((firing, arrived(modes, node, firing)));
+            node.arrivals.len() - 1
+        });
+        &mut node.arrivals[at].1
+    }
+
+    /// The node that follows an event by the successor of this index.
+    pub fn enter(&mut self, node: usize, firing: Firing, successor: usize) -> usize {
+        let mode = self.modes[self.nodes[node].mode].next[firing.until][successor].1;
+        let arrival = self.arrival(node, firing);
+        if let Some(known) = arrival.nodes[successor] {
+            return known;
+        }
+        let after = arrival.after.clone();
+        if self.nodes.len() >= MOST_NODES {
+            self.nodes.clear();
+            self.known.clear();
+            return self.intern(mode, after);
+        }
+        let next = self.intern(mode, after);
+        self.arrival(node, firing).nodes[successor] = Some(next);
+        next
+    }
+
+    fn intern(&mut self, mode: usize, zeros: Zeros) -> usize {
+        if let Some(known) = self.known.get(&(mode, zeros.clone())) {
+            return *known;
+        }
+        let ModeResidues { matrix, guards, .. } = &self.modes[mode];
+        let multiplicity = |guard: &Residues| zeros.multiplicity(guard, matrix);
+        let node = Node {
+            mode,
+            lasting: zeros.invariant(matrix),
+            multiplicities: guards.iter().map(multiplicity).collect(),
+            zeros: zeros.clone(),
+            arrivals: Vec::new(),
+            ties: Vec::new(),
+        };
+        self.nodes.push(node);
+        self.known.insert((mode, zeros), self.nodes.len() - 1);
+        self.nodes.len() - 1
+    }
+}
+
+impl Node {
+    /// What is zero just before an event: at the instant of entry all that is zero there.
+    fn zeros_at(&self, entry: bool) -> &Zeros {
+        if entry { &self.zeros } else { &self.lasting }
+    }
+}
+
+fn arrived(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
+    let own = &modes[node.mode];
+    let zeros = with_rows(node.zeros_at(firing.at_entry), &own.guards, firing.guards);
+    let after = zeros.after(&own.resets[firing.until]);
+    let next = &own.next[firing.until];
+    let order = |(when, mode): &(Option<Residues>, usize)| {
+        when.as_ref().and_then(|row| after.multiplicity(row, &modes[*mode].matrix))
+    };
+    Arrival {
+        orders: next.iter().map(order).collect(),
+        impact: is_impact(own, firing.until, &zeros, &after),
+        nodes: vec![None; next.len()],
+        after,
+    }
+}
+
+fn with_rows(zeros: &Zeros, guards: &[Residues], fired: u64) -> Zeros {
+    let mut zeros = zeros.clone();
+    for (_, guard) in guards.iter().enumerate().filter(|(n, _)| fired >> n & 1 == 1) {
+        zeros.insert(guard);
+    }
+    zeros
+}
+
+/// h+ = 0 and h'+ = -e h' with the guard h; and all other changes are multiples of h'.
+fn is_impact(own: &ModeResidues, until: usize, zeros: &Zeros, after: &Zeros) -> bool {
+    let (guard, reset) = (&own.guards[until], &own.resets[until]);
+    let rate = row_times(guard, &own.matrix);
+    let changed = row_times(&rate, reset);
+    let proportional = |row: &Residues| zeros.contains(row) || zeros.ratio(row, &rate).is_some();
+    let jump = |(n, row): (usize, &Residues)| {
+        let mut jump = row.clone();
+        jump[n] = jump[n].minus(Residue::ONE);
+        jump
+    };
+    after.contains(guard)
+        && !zeros.contains(&rate)
+        && !zeros.contains(&changed)
+        && proportional(&changed)
+        && reset.iter().enumerate().map(jump).all(|row| proportional(&row))
+}
+
+impl ModeResidues {
+    fn of(mode: &Mode) -> Option<Self> {
+        let until = mode.until.iter().map(|it| &it.guard);
+        let guards = until.chain(mode.watch.iter().map(|it| &it.guard)).map(residues);
+        let next = |until: &Until| {
+            let one = |it: &Successor| match &it.when {
+                Some(row) => residues(row).map(|row| (Some(row), it.mode)),
+                None => Some((None, it.mode)),
+            };
+            until.next.iter().map(one).collect()
+        };
+        Some(Self {
+            matrix: matrix(&mode.matrix)?,
+            guards: guards.collect::<Option<_>>()?,
+            resets: mode.until.iter().map(|it| matrix(&it.reset)).collect::<Option<_>>()?,
+            next: mode.until.iter().map(next).collect::<Option<_>>()?,
+        })
+    }
+}
+
+fn residues(row: &Row) -> Option<Residues> {
+    row.iter().map(Residue::of).collect()
+}
+
+fn matrix(rows: &[Row]) -> Option<Vec<Residues>> {
+    rows.iter().map(residues).collect()
+}
+
+/// The left kernel of the start's coefficients over cos theta, sin theta and 1.
+fn zeros_at_start(system: &System, start: &StartPoint) -> Option<Zeros> {
+    let zero_angle = match &system.forcing {
+        Some(forcing) => (&forcing.omega * &start.time + &forcing.phi).is_zero(),
+        None => true,
+    };
+    let mut rows: Vec<[RBig; 3]> = start.state.clone();
+    if system.forcing.is_some() {
+        rows.push([RBig::ONE, RBig::ZERO, RBig::ZERO]);
+        rows.push([RBig::ZERO, RBig::ONE, RBig::ZERO]);
+    }
+    rows.push([RBig::ZERO, RBig::ZERO, RBig::ONE]);
+    let row = |[cos, sin, one]: &[RBig; 3]| {
+        // At theta = 0 the cosine is 1 and the sine 0.
+        let row = if zero_angle {
+            vec![RBig::ZERO, RBig::ZERO, cos + one]
+        } else {
+            vec![cos.clone(), sin.clone(), one.clone()]
+        };
+        residues(&row)
+    };
+    let mut zeros = Zeros::default();
+    for row in kernel(rows.iter().map(row).collect::<Option<_>>()?) {
+        zeros.insert(&row);
+    }
+    Some(zeros)
+}

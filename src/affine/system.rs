@@ -1,0 +1,154 @@
+//! A piecewise-affine hybrid system with exact coefficients.
+//!
+//! The state with cos theta and sin theta (of a forced system) and 1 appended is z, in this order.
+//! In each mode z' = M z; a guard is a row w, with the value w z; a reset is a matrix R, z+ = R z.
+
+use dashu_ratio::RBig;
+
+/// A row of exact coefficients, one for each entry of z.
+pub type Row = Vec<RBig>;
+
+/// The largest number of entries of z.
+pub const LARGEST_DIMENSION: usize = 12;
+
+/// A piecewise-affine hybrid system.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// Its name.
+    pub name: String,
+    /// What it is for, in one sentence, or nothing.
+    pub why: String,
+    /// The kinds of trouble that it makes.
+    pub trouble: Vec<String>,
+    /// Where it is from, or nothing.
+    pub source: String,
+    /// The names of the states.
+    pub states: Vec<String>,
+    /// By what each state is divided before any norm.
+    pub scales: Vec<f64>,
+    /// By what times are divided before any comparison.
+    pub time_scale: f64,
+    /// The forcing, of a forced system.
+    pub forcing: Option<Forcing>,
+    /// Its modes.
+    pub modes: Vec<Mode>,
+    /// Where a run begins, if the file says so.
+    pub start: Option<StartPoint>,
+}
+
+/// theta = omega t + phi.
+#[derive(Clone, Debug)]
+pub struct Forcing {
+    /// Radians a unit of time, positive; negative where a system runs backward.
+    pub omega: RBig,
+    /// Radians.
+    pub phi: RBig,
+}
+
+/// One of the system's modes.
+#[derive(Clone, Debug)]
+pub struct Mode {
+    /// Its name.
+    pub name: String,
+    /// The rows of M.
+    pub matrix: Vec<Row>,
+    /// The guards that end it, in the file's order.
+    pub until: Vec<Until>,
+    /// The guards whose crossings are counted, in the file's order.
+    pub watch: Vec<Watch>,
+}
+
+/// A guard that ends its mode where it becomes positive.
+#[derive(Clone, Debug)]
+pub struct Until {
+    /// The event's name.
+    pub name: String,
+    /// The guard, negative inside the mode.
+    pub guard: Row,
+    /// The rows of R.
+    pub reset: Vec<Row>,
+    /// Which mode follows: the first whose condition holds.
+    pub next: Vec<Successor>,
+}
+
+/// A mode that may follow an event.
+#[derive(Clone, Debug)]
+pub struct Successor {
+    /// The condition: that this row's first derivative that is not zero is positive.
+    pub when: Option<Row>,
+    /// The index of the mode.
+    pub mode: usize,
+}
+
+/// A guard whose crossings are counted.
+#[derive(Clone, Debug)]
+pub struct Watch {
+    /// The event's name.
+    pub name: String,
+    /// The guard.
+    pub guard: Row,
+    /// Which crossings are counted.
+    pub direction: Direction,
+}
+
+/// Which crossings of a watched guard are events.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// From negative to positive.
+    Rising,
+    /// From positive to negative.
+    Falling,
+    /// Either way.
+    Both,
+}
+
+/// Where a run begins.
+#[derive(Clone, Debug)]
+pub struct StartPoint {
+    /// The index of the mode.
+    pub mode: usize,
+    /// The time.
+    pub time: RBig,
+    /// Each state as coefficients of cos theta, sin theta and 1 at that time.
+    pub state: Vec<[RBig; 3]>,
+}
+
+impl System {
+    /// Reads a system from the text of its file; `file` is its name in errors.
+    ///
+    /// # Errors
+    /// What is not accepted, with file and line.
+    pub fn parse(file: &str, text: &str) -> Result<Self, super::SystemError> {
+        super::SystemFile::read(file, text)?.system()
+    }
+
+    /// Number of entries of z.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.states.len() + if self.forcing.is_some() { 3 } else { 1 }
+    }
+
+    /// The index of the mode of this name.
+    #[must_use]
+    pub fn mode(&self, name: &str) -> Option<usize> {
+        self.modes.iter().position(|mode| mode.name == name)
+    }
+
+    /// The system that runs back in time: its elapsed time is the one that has gone back. Only
+    /// watched guards and the boundaries of modes mean anything in it.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let mut reversed = self.clone();
+        for mode in &mut reversed.modes {
+            for row in &mut mode.matrix {
+                for entry in row {
+                    *entry = -std::mem::take(entry);
+                }
+            }
+        }
+        if let Some(forcing) = &mut reversed.forcing {
+            forcing.omega = -std::mem::take(&mut forcing.omega);
+        }
+        reversed
+    }
+}
