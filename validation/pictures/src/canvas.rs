@@ -1,10 +1,16 @@
-//! The text of an SVG, shape by shape.
+//! Where plotters draws: its shapes become the text of an SVG.
+//!
+//! Some things are written beside it, because plotters' SVG has no words for them: what a group
+//! says of its shapes (dashes, sharp edges, a turn), the outlines of letters, which have curves and
+//! holes, and clouds of dots, which would be an element each.
 
 use super::colour::{Colour, WHITE};
 use super::figure::Stroke;
 use super::font::{self, FAMILY};
 use super::look::Marker;
 use super::palette;
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::fmt::{self, Write};
 
 /// A place in pixels, from the left and from the top.
@@ -13,6 +19,7 @@ pub(super) type At = (f64, f64);
 /// A white sheet on which a [`super::Drawing`] draws.
 #[derive(Debug)]
 pub struct Canvas {
+    size: (u32, u32),
     svg: String,
     letters: Letters,
 }
@@ -35,11 +42,11 @@ pub(super) enum TextSide {
 }
 
 impl TextSide {
-    const fn anchor(self) -> &'static str {
+    const fn anchor(self) -> HPos {
         match self {
-            Self::Left => "start",
-            Self::Middle => "middle",
-            Self::Right => "end",
+            Self::Left => HPos::Left,
+            Self::Middle => HPos::Center,
+            Self::Right => HPos::Right,
         }
     }
 
@@ -53,44 +60,64 @@ impl TextSide {
     }
 }
 
+/// Units of the coordinates in a pixel: plotters places shapes on whole units, and no eye tells
+/// hundredths apart.
+const UNITS: f64 = 100.0;
 /// Half the height of a capital letter, as a share of the text's size.
 const HALF_CAPITAL: f64 = 0.31;
-/// Dots are placed on a grid of so many steps in a pixel, and drawn once where they coincide.
-const DOT_STEPS: f64 = 4.0;
+/// Half the height of a small letter, which plotters puts at a text's place.
+const HALF_SMALL: f64 = 0.235;
+/// Plotters divides the size of a font by it.
+const FONT_SHARE: f64 = 1.24;
+/// Dots are placed on a grid of so many units, and drawn once where they coincide.
+const DOT_STEP: f64 = 25.0;
 /// Dots in one path: a renderer sorts the edges of a whole path.
 const DOTS_IN_A_PATH: usize = 500;
 
-/// A length in hundredths of a pixel, which no eye tells apart.
-struct Px(f64);
-
-impl fmt::Display for Px {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        // The sum turns a negative zero into zero.
-        write!(f, "{}", (self.0 * 100.0).round() / 100.0 + 0.0)
-    }
+fn units(pixels: f64) -> i32 {
+    (UNITS * pixels).round() as i32
 }
 
-/// Places as the attribute `points` lists them.
-struct Places<'a>(&'a [At]);
+fn place((x, y): At) -> (i32, i32) {
+    (units(x), units(y))
+}
 
-impl fmt::Display for Places<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.iter().try_for_each(|at| write!(f, "{},{} ", Px(at.0), Px(at.1)))
-    }
+fn style(colour: Colour, width: f64) -> ShapeStyle {
+    RGBColor::from(colour).stroke_width(units(width).unsigned_abs())
 }
 
 impl Canvas {
-    pub(super) fn new((width, height): (u32, u32), letters: Letters) -> Self {
-        let svg = format!(
+    pub(super) fn new(size: (u32, u32), letters: Letters) -> Self {
+        let mut canvas = Self { size, svg: String::new(), letters };
+        let (width, height) = size;
+        let to = place((f64::from(width), f64::from(height)));
+        canvas.add(format_args!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\" font-family=\"{FAMILY}, sans-serif\" fill=\"none\">\n\
-             <rect width=\"{width}\" height=\"{height}\" fill=\"{WHITE}\"/>\n"
-        );
-        Self { svg, letters }
+             viewBox=\"0 0 {} {}\" stroke-linejoin=\"round\">",
+            to.0, to.1
+        ));
+        canvas.plot(|it| it.draw_rect((0, 0), to, &style(WHITE, 0.0), true));
+        canvas
     }
 
     pub(super) fn finish(self) -> String {
         self.svg + "</svg>\n"
+    }
+
+    /// Draws with plotters and keeps the shapes without the root around them.
+    fn plot<T>(&mut self, draw: impl FnOnce(&mut SVGBackend<'_>) -> T) {
+        let mut piece = String::new();
+        // A string takes all that is written.
+        let _ = draw(&mut SVGBackend::with_string(&mut piece, self.size));
+        let shapes = piece.split_once('\n').and_then(|it| it.1.strip_suffix("</svg>\n"));
+        self.svg.push_str(shapes.unwrap_or_default());
+    }
+
+    /// Gives all that is drawn an attribute that plotters does not write.
+    fn with(&mut self, attribute: fmt::Arguments<'_>, draw: impl FnOnce(&mut Self)) {
+        self.add(format_args!("<g {attribute}>"));
+        draw(self);
+        self.add(format_args!("</g>"));
     }
 
     fn add(&mut self, element: fmt::Arguments<'_>) {
@@ -112,20 +139,27 @@ impl Canvas {
         if places.len() < 2 {
             return;
         }
-        let (dashes, width, places) = (stroke.dashes(), Px(width), Places(places));
-        self.add(format_args!(
-            "<polyline points=\"{places}\" stroke=\"{colour}\" stroke-width=\"{width}\" \
-             stroke-linejoin=\"round\"{dashes}/>"
-        ));
+        let draw = |canvas: &mut Self| {
+            let places = places.iter().map(|at| place(*at));
+            canvas.plot(|it| it.draw_path(places, &style(colour, width)));
+        };
+        match stroke.dashes() {
+            None => draw(self),
+            Some(dashes) => self.with(format_args!("stroke-dasharray=\"{dashes}\""), draw),
+        }
     }
 
     /// Fills a rectangle up to whole pixels, so that nothing shows between neighbours.
     pub(super) fn fill(&mut self, from: At, to: At, colour: Colour) {
-        let (x, y, width, height) = (Px(from.0), Px(from.1), Px(to.0 - from.0), Px(to.1 - from.1));
-        self.add(format_args!(
-            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" fill=\"{colour}\" \
-             shape-rendering=\"crispEdges\"/>"
-        ));
+        self.crisp(|canvas| canvas.rectangle(from, to, colour));
+    }
+
+    fn crisp(&mut self, draw: impl FnOnce(&mut Self)) {
+        self.with(format_args!("shape-rendering=\"crispEdges\""), draw);
+    }
+
+    fn rectangle(&mut self, from: At, to: At, colour: Colour) {
+        self.plot(|it| it.draw_rect(place(from), place(to), &style(colour, 0.0), true));
     }
 
     /// Fills the rectangle between two corners with rows of cells, the lowest row first.
@@ -136,17 +170,24 @@ impl Canvas {
         rows: impl ExactSizeIterator<Item = &'a [Colour]>,
     ) {
         let height = (to.1 - from.1) / rows.len() as f64;
-        for (i, row) in rows.enumerate() {
-            let width = (to.0 - from.0) / row.len() as f64;
-            let bottom = to.1 - height * i as f64;
-            let x = |cell: usize| from.0 + width * cell as f64;
-            let mut begin = 0;
-            // Neighbours of one colour are one rectangle.
-            for run in row.chunk_by(|a, b| a == b) {
-                let end = begin + run.len();
-                self.fill((x(begin), bottom - height), (x(end), bottom), run[0]);
-                begin = end;
+        self.crisp(|canvas| {
+            for (i, row) in rows.enumerate() {
+                let bottom = to.1 - height * i as f64;
+                canvas.row((from.0, bottom - height), (to.0, bottom), row);
             }
+        });
+    }
+
+    /// Fills the rectangle between two corners with cells from left to right.
+    fn row(&mut self, from: At, to: At, cells: &[Colour]) {
+        let width = (to.0 - from.0) / cells.len() as f64;
+        let x = |cell: usize| from.0 + width * cell as f64;
+        let mut begin = 0;
+        // Neighbours of one colour are one rectangle.
+        for run in cells.chunk_by(|a, b| a == b) {
+            let end = begin + run.len();
+            self.rectangle((x(begin), from.1), (x(end), to.1), run[0]);
+            begin = end;
         }
     }
 
@@ -157,15 +198,16 @@ impl Canvas {
 
     /// Fills a small square around each place; `half` is half its width.
     pub(super) fn dots(&mut self, places: impl Iterator<Item = At>, half: f64, colour: Colour) {
-        let step = |value: f64| ((value - half) * DOT_STEPS).round() as i32;
+        let step = |value: f64| (UNITS * (value - half) / DOT_STEP).round() as i32;
         let mut corners: Vec<_> = places.map(|(x, y)| (step(y), step(x))).collect();
         corners.sort_unstable();
         corners.dedup();
-        let width = Px(2.0 * half);
+        let (width, step) = (units(2.0 * half), DOT_STEP as i32);
+        // Plotters writes an element for each square, and resvg refuses a million elements.
         for corners in corners.chunks(DOTS_IN_A_PATH) {
             self.svg.push_str("<path d=\"");
             for (y, x) in corners {
-                let (x, y) = (f64::from(*x) / DOT_STEPS, f64::from(*y) / DOT_STEPS);
+                let (x, y) = (x * step, y * step);
                 let _ = write!(self.svg, "M{x} {y}h{width}v{width}h-{width}z");
             }
             self.add(format_args!("\" fill=\"{colour}\"/>"));
@@ -176,46 +218,54 @@ impl Canvas {
         if text.is_empty() {
             return;
         }
-        let (x, y) = (at.0, at.1 + HALF_CAPITAL * size);
         match self.letters {
-            Letters::Text => {
-                let (x, y, anchor, text) = (Px(x), Px(y), side.anchor(), Escaped(text));
-                let em = Px(font::EM * size);
-                self.add(format_args!(
-                    "<text x=\"{x}\" y=\"{y}\" font-size=\"{em}\" text-anchor=\"{anchor}\" \
-                     fill=\"{colour}\">{text}</text>"
-                ));
-            }
-            Letters::Outlines => {
-                let (outline, width) = font::outline(text, size);
-                let (x, y) = (Px(x - side.share() * width), Px(y));
-                self.add(format_args!(
-                    "<path transform=\"translate({x} {y})\" fill=\"{colour}\" d=\"{outline}\"/>"
-                ));
-            }
+            Letters::Text => self.letters(text, at, size, side, colour),
+            Letters::Outlines => self.outlines(text, at, size, side, colour),
         }
+    }
+
+    fn letters(&mut self, text: &str, at: At, size: f64, side: TextSide, colour: Colour) {
+        let at = (at.0, at.1 + (HALF_CAPITAL - HALF_SMALL) * size);
+        let size = FONT_SHARE * font::EM * UNITS * size;
+        let colour = RGBColor::from(colour);
+        let style = TextStyle::from((FAMILY, size).into_font())
+            .color(&colour)
+            .pos(Pos::new(side.anchor(), VPos::Center));
+        self.plot(|it| it.draw_text(text, &style, place(at)));
+    }
+
+    /// Draws the outlines of letters, whose curves and holes are no shapes of plotters'.
+    fn outlines(&mut self, text: &str, at: At, size: f64, side: TextSide, colour: Colour) {
+        let (outline, width) = font::outline(text, UNITS * size);
+        let (x, y) = place((at.0, at.1 + HALF_CAPITAL * size));
+        let x = x - (side.share() * width).round() as i32;
+        self.add(format_args!(
+            "<path transform=\"translate({x} {y})\" fill=\"{colour}\" d=\"{outline}\"/>"
+        ));
     }
 
     /// Writes from below to above, with the text's middle at `at`.
     pub(super) fn upright(&mut self, text: &str, at: At, size: f64) {
-        self.add(format_args!("<g transform=\"rotate(-90 {} {})\">", Px(at.0), Px(at.1)));
-        self.text(text, at, size, TextSide::Middle, palette::INK);
-        self.add(format_args!("</g>"));
+        let (x, y) = place(at);
+        self.with(format_args!("transform=\"rotate(-90 {x} {y})\""), |canvas| {
+            canvas.text(text, at, size, TextSide::Middle, palette::INK);
+        });
     }
 
     fn polygon(&mut self, corners: &[At], colour: Colour) {
-        self.add(format_args!("<polygon points=\"{}\" fill=\"{colour}\"/>", Places(corners)));
+        let corners = corners.iter().map(|at| place(*at));
+        self.plot(|it| it.fill_polygon(corners, &RGBColor::from(colour)));
     }
 
     pub(super) fn disc(&mut self, at: At, radius: f64, colour: Colour) {
-        let (x, y, radius) = (Px(at.0), Px(at.1), Px(radius));
-        self.add(format_args!("<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"{colour}\"/>"));
+        let radius = units(radius).unsigned_abs();
+        self.plot(|it| it.draw_circle(place(at), radius, &style(colour, 0.0), true));
     }
 
     pub(super) fn marker(&mut self, marker: Marker, at: At, size: f64, colour: Colour) {
-        let place = |(x, y): At| (at.0 + size * x, at.1 + size * y);
+        let corner = |(x, y): At| (at.0 + size * x, at.1 + size * y);
         let mut shape = |corners: &[At]| {
-            let corners: Vec<_> = corners.iter().map(|it| place(*it)).collect();
+            let corners: Vec<_> = corners.iter().map(|it| corner(*it)).collect();
             self.polygon(&corners, colour);
         };
         match marker {
@@ -226,28 +276,15 @@ impl Canvas {
             Marker::Diamond => shape(&[(0.0, -1.3), (1.3, 0.0), (0.0, 1.3), (-1.3, 0.0)]),
             Marker::Cross => {
                 for (from, to) in [((-0.95, -0.95), (0.95, 0.95)), ((-0.95, 0.95), (0.95, -0.95))] {
-                    self.line(place(from), place(to), size / 2.5, colour);
+                    self.line(corner(from), corner(to), size / 2.5, colour);
                 }
             }
             Marker::Plus => {
                 for (from, to) in [((0.0, -1.25), (0.0, 1.25)), ((-1.25, 0.0), (1.25, 0.0))] {
-                    self.line(place(from), place(to), size / 2.5, colour);
+                    self.line(corner(from), corner(to), size / 2.5, colour);
                 }
             }
         }
-    }
-}
-
-/// Text in which what SVG would take for its own is replaced.
-struct Escaped<'a>(&'a str);
-
-impl fmt::Display for Escaped<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.0.chars().try_for_each(|c| match c {
-            '<' => f.write_str("&lt;"),
-            '&' => f.write_str("&amp;"),
-            _ => f.write_char(c),
-        })
     }
 }
 
@@ -260,13 +297,13 @@ mod tests {
         let mut canvas = Canvas::new((10, 10), Letters::Text);
         canvas.dots([(3.0, 4.0), (3.01, 4.0), (5.0, 4.0)].into_iter(), 0.5, WHITE);
         let svg = canvas.finish();
-        assert!(svg.contains("d=\"M2.5 3.5h1v1h-1zM4.5 3.5h1v1h-1z\""), "{svg}");
+        assert!(svg.contains("d=\"M250 350h100v100h-100zM450 350h100v100h-100z\""), "{svg}");
     }
 
     #[test]
     fn text_is_escaped() {
         let mut canvas = Canvas::new((10, 10), Letters::Text);
         canvas.text("a < b & c", (0.0, 0.0), 10.0, TextSide::Left, WHITE);
-        assert!(canvas.finish().contains(">a &lt; b &amp; c</text>"));
+        assert!(canvas.finish().contains(">\na &lt; b &amp; c\n</text>"));
     }
 }

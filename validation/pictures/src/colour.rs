@@ -1,5 +1,6 @@
 //! Colours by their shares of red, green and blue.
 
+use plotters::style::RGBColor;
 use std::fmt;
 
 /// Red, green and blue, each from 0 to 255.
@@ -13,6 +14,12 @@ pub(super) const WHITE: Colour = Colour(255, 255, 255);
 impl fmt::Display for Colour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "#{:02x}{:02x}{:02x}", self.0, self.1, self.2)
+    }
+}
+
+impl From<Colour> for RGBColor {
+    fn from(colour: Colour) -> Self {
+        Self(colour.0, colour.1, colour.2)
     }
 }
 

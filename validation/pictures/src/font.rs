@@ -4,8 +4,8 @@ use std::fmt::Write;
 use std::sync::LazyLock;
 use ttf_parser::{Face, OutlineBuilder};
 
-/// The one family used.
-pub(super) const FAMILY: &str = "DejaVu Sans";
+/// The one family used, and what stands in for it.
+pub(super) const FAMILY: &str = "DejaVu Sans, sans-serif";
 
 static FACE: LazyLock<Option<Face<'static>>> =
     LazyLock::new(|| Face::parse(dejavu::sans::regular(), 0).ok());
@@ -45,7 +45,7 @@ impl Outline {
         for (x, y) in places {
             let (x, y) = (self.x + self.scale * f64::from(*x), -self.scale * f64::from(*y));
             // A string takes all that is written.
-            let _ = write!(self.data, "{x:.2} {y:.2} ");
+            let _ = write!(self.data, "{x:.0} {y:.0} ");
         }
     }
 }

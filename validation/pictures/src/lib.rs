@@ -1,4 +1,5 @@
-//! Pictures, drawn by the program itself: PNG, and SVG where it stays small.
+//! Pictures, drawn by the program itself: PNG, and SVG where it stays small. Plotters draws the
+//! SVG, and resvg renders the PNG from it.
 
 mod axes;
 mod basin_map;

@@ -19,13 +19,13 @@ pub enum Stroke {
 }
 
 impl Stroke {
-    /// The attribute of an SVG's line that breaks it so, after a space; empty for a whole line.
-    pub(in super::super) const fn dashes(self) -> &'static str {
+    /// Lengths of dashes and gaps in turn, in hundredths of a pixel; `None` for a whole line.
+    pub(in super::super) const fn dashes(self) -> Option<&'static str> {
         match self {
-            Self::Solid => "",
-            Self::Dashed => " stroke-dasharray=\"9 6\"",
-            Self::DashDotted => " stroke-dasharray=\"11 4 2 4\"",
-            Self::Dotted => " stroke-dasharray=\"2 4\"",
+            Self::Solid => None,
+            Self::Dashed => Some("900 600"),
+            Self::DashDotted => Some("1100 400 200 400"),
+            Self::Dotted => Some("200 400"),
         }
     }
 }
