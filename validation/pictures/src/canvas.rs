@@ -226,7 +226,7 @@ impl Canvas {
 
     fn letters(&mut self, text: &str, at: At, size: f64, side: TextSide, colour: Colour) {
         let at = (at.0, at.1 + (HALF_CAPITAL - HALF_SMALL) * size);
-        let size = FONT_SHARE * font::EM * UNITS * size;
+        let size = FONT_SHARE * f64::from(units(font::EM * size));
         let colour = RGBColor::from(colour);
         let style = TextStyle::from((FAMILY, size).into_font())
             .color(&colour)

@@ -1,7 +1,7 @@
 //! Histograms below each other on one axis.
 
 use super::canvas::{Canvas, TextSide};
-use super::frame::{AxisScale, Ruler, power_of_ten};
+use super::frame::{AxisScale, Ruler};
 use super::{Colour, Drawing, palette};
 
 const ROW: u32 = 46;
@@ -55,18 +55,17 @@ impl Drawing for Histograms {
         canvas.title(&self.title);
         let edges =
             self.rows.iter().flat_map(HistogramRow::bins).flat_map(|(from, to, _)| [from, to]);
-        let Some(ruler) = Ruler::over(AxisScale::Linear, edges) else {
+        let values = edges.map(|edge| 10.0_f64.powf(edge));
+        let Some(ruler) = Ruler::over(AxisScale::Logarithmic, values) else {
             let at = (24.0, head + 20.0);
             return canvas.text("nothing was measured", at, TEXT, TextSide::Left, palette::INK);
         };
         let bottom = head + self.rows.len() as f64 * height;
         let across = |place: f64| LEFT + place * (RIGHT - LEFT);
         for (value, label) in &ruler.ticks {
-            let whole = (value - value.round()).abs() < 1e-9;
-            let label = if whole { power_of_ten(value.round() as i64) } else { label.clone() };
             let x = across(ruler.fraction(*value));
             canvas.line((x, head), (x, bottom), 1.0, palette::GRID);
-            canvas.text(&label, (x, bottom + 20.0), TEXT, TextSide::Middle, palette::INK);
+            canvas.text(label, (x, bottom + 20.0), TEXT, TextSide::Middle, palette::INK);
         }
         for (i, row) in self.rows.iter().enumerate() {
             let base = head + (i + 1) as f64 * height;
