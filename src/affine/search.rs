@@ -42,6 +42,8 @@ pub(super) struct Segment<'a, T> {
     pub entry: Vector<T>,
     /// The guards' Taylor series at entry, whose structural zeros are exact.
     pub early: Option<Early<T>>,
+    /// What errors made before the segment may do to each guard; empty where they are not followed.
+    pub inherited: &'a [f64],
 }
 
 /// Taylor coefficients of the guards, good up to a time.
@@ -107,6 +109,11 @@ impl<T: Number> Segment<'_, T> {
             }
             _ => self.evaluate(&mut point),
         }
+        if !self.inherited.is_empty() {
+            let growth = libm::exp(self.flow.fastest_growth() * time.to_f64().abs());
+            let errors = point.slack.iter_mut().zip(self.inherited);
+            errors.for_each(|(slack, inherited)| *slack += inherited * growth);
+        }
         point
     }
 
@@ -135,6 +142,9 @@ impl<T: Number> Segment<'_, T> {
         for _ in 0..MOST_PIECES {
             if left.time >= limit {
                 return Found::Nothing;
+            }
+            if work.undecidable > 0 && !self.inherited.is_empty() {
+                return Found::Lost;
             }
             let (right, length) = self.right_end(tracks, &left, limit, most, work);
             work.pieces += 1;

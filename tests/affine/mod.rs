@@ -4,6 +4,7 @@ mod brute;
 mod files;
 mod known;
 mod oscillator;
+mod tables;
 
 use crate::double_double::DoubleDouble;
 use percuss::affine::{Ending, Event, Solver, System, What};
