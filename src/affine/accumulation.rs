@@ -1,10 +1,10 @@
 //! Impacts that accumulate: infinitely many of them in a time that is enclosed.
 //!
-//! After an impact the gap h is zero and its rate is -u. As long as a1 <= h'' <= a2, the next impact is
-//! between 2 u/a2 and 2 u/a1 later, at a rate of at most u sqrt(a2/a1), and e times that follows.
-//! With q = e sqrt(a2/a1) < 1 the times form a geometric series. The bounds a1 and a2 hold for all
-//! states that the motion can reach in that time: along the flow, and by jumps that
-//! are proportional to the rates of the impacts.
+//! After an impact the gap h is zero and its rate is -u. As long as a1 <= h'' <= a2, the next
+//! impact is between 2 u/a2 and 2 u/a1 later, at a rate of at most u sqrt(a2/a1), and e times that
+//! follows. With q = e sqrt(a2/a1) < 1 the times form a geometric series. The bounds a1 and a2 hold
+//! for all states that the motion can reach in that time: along the flow, and by jumps that are
+//! proportional to the rates of the impacts.
 
 use super::flow::{Vector, dot};
 use super::run::Run;

@@ -31,6 +31,7 @@ pub(super) fn system(file: &SystemFile) -> Result<System, SystemError> {
         why: tables.why.clone(),
         trouble: tables.trouble.iter().map(|it| kebab(file, it)).collect::<Result<_, _>>()?,
         source: tables.source.clone(),
+        parameters: file.parameters.iter().filter_map(parameter).collect(),
         states: names.states.clone(),
         scales: names.scales()?,
         time_scale: names.time_scale(forcing.as_ref())?,
@@ -58,6 +59,11 @@ pub(super) fn system(file: &SystemFile) -> Result<System, SystemError> {
         system.start = Some(start_point(&mut names, start, &places)?);
     }
     Ok(system)
+}
+
+/// A parameter's name and value.
+fn parameter((name, it): (&String, &Parameter)) -> Option<(String, f64)> {
+    number(&it.value).map(|value| (name.clone(), value.to_f64().value()))
 }
 
 /// The index of each mode by its name.

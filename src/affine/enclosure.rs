@@ -1,9 +1,9 @@
 //! How far a run may be from the truth: the errors that rounding has made, carried along.
 //!
-//! Errors of the state and of the time are kept as columns, each with a factor between -1 and 1 that
-//! is not known. The flow and the derivative of an event (its saltation) act on each column; what an
-//! event adds in second order, and each new rounding, is a column of its own. When there are too
-//! many, the smallest are replaced by a box. So errors that cancel do so here.
+//! Errors of the state and of the time are kept as columns, each with a factor between -1 and 1
+//! that is not known. The flow and the derivative of an event (its saltation) act on each column;
+//! what an event adds in second order, and each new rounding, is a column of its own. When there
+//! are too many, the smallest are replaced by a box. So errors that cancel do so here.
 
 use super::flow::{Flow, ModalRow, Vector, dot};
 use super::system::LARGEST_DIMENSION;

@@ -1,5 +1,5 @@
-//! Whether a guard stays negative on a piece, by the Bernstein coefficients of a polynomial that lies
-//! above it: the same theorem as in `crossing/certificate.rs`, in any arithmetic.
+//! Whether a guard stays negative on a piece, by the Bernstein coefficients of a polynomial that
+//! lies above it: the same theorem as in `crossing/certificate.rs`, in any arithmetic.
 
 use super::flow::unit;
 use crate::crossing::certificate::MIDDLE;

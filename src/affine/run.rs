@@ -17,6 +17,8 @@ const MOST_AT_ONCE: u32 = 64;
 /// What happens at an event of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum What<T> {
+    /// The run begins.
+    Start,
     /// The mode of this index ends by its `until` of this index.
     Until(usize, usize),
     /// In the mode of this index the `watch` of this index is crossed.
@@ -177,6 +179,14 @@ impl<T: Number> Solver<T> {
 }
 
 impl<T: Number> Run<'_, T> {
+    /// The start, as an event at which nothing happens but that the run begins.
+    #[must_use]
+    pub fn start(&self) -> Event<T> {
+        let mut event = self.event(What::Start, self.entered, &self.state);
+        event.errors = self.enclosure.as_ref().map(|it| self.errors(it));
+        event
+    }
+
     /// What the run has cost so far.
     #[must_use]
     pub fn work(&self) -> Work {

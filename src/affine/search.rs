@@ -1,10 +1,10 @@
 //! The first crossing of a mode's guards.
 //!
-//! A segment is passed in pieces. On each the Bernstein coefficients of a polynomial that lies above
-//! the guard show that it stays negative, or up to where it does. There a crossing is searched:
-//! Newton's method on the guard's own series finds the candidate, and bounds of its derivatives
-//! prove that the guard rises through zero once. What shows neither is looked at in shorter
-//! pieces. See the page docs/ROUNDING.md for what rounding may take.
+//! A segment is passed in pieces. On each the Bernstein coefficients of a polynomial that lies
+//! above the guard show that it stays negative, or up to where it does. There a crossing is
+//! searched: Newton's method on the guard's own series finds the candidate, and bounds of its
+//! derivatives prove that the guard rises through zero once. What shows neither is looked at in
+//! shorter pieces. See the page docs/ROUNDING.md for what rounding may take.
 
 use super::flow::{Flow, ModalRow, ORDERS, Vector, unit};
 use super::hull;
@@ -212,8 +212,8 @@ impl<T: Number> Segment<'_, T> {
         length
     }
 
-    /// A length a little beyond the root that the first two terms of a guard suggest, if it begins at
-    /// zero and turns back.
+    /// A length a little beyond the root that the first two terms of a guard suggest, if it begins
+    /// at zero and turns back.
     fn near_root(&self, track: &Track, orders: &[T; 4]) -> f64 {
         let (Some(first), Some(second)) = (orders.get(track.zeros), orders.get(track.zeros + 1))
         else {
@@ -227,7 +227,8 @@ impl<T: Number> Segment<'_, T> {
         }
     }
 
-    /// The share of a piece on which all guards are proved to stay negative; none if it is all of it.
+    /// The share of a piece on which all guards are proved to stay negative; none if it is all of
+    /// it.
     fn clear_share(
         &self,
         tracks: &[Track],

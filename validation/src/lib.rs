@@ -8,6 +8,7 @@ pub mod build;
 pub mod cli;
 pub mod report;
 pub mod sweep;
+pub mod systems;
 mod unfinished;
 
 pub use percuss_engines::{case, engine, number};
