@@ -2,6 +2,7 @@
 
 use super::LONGEST_STEP;
 use crate::engine::Stepping;
+use crate::engine::joining::Times;
 use crate::engine::walk::longest_step;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{
@@ -10,6 +11,7 @@ use differential_equations::methods::{
 };
 use differential_equations::ode::OrdinaryNumericalMethod;
 use differential_equations::stats::Evals;
+use differential_equations::traits::State;
 
 /// More steps, or rejections of one, than the meter lets pass.
 const ENOUGH: usize = usize::MAX;
@@ -54,18 +56,19 @@ pub(in super::super) trait LibraryMethod {
     const STEPPING: Stepping =
         if Self::MULTISTEP { Stepping::PerStep { order: 5 } } else { Stepping::Adaptive };
 
-    /// A fresh method; a first step of zero is chosen by the library.
-    fn method(
+    /// A fresh method for so many states; a first step of zero is chosen by the library.
+    fn method<S: State<f64>>(
+        size: usize,
         tolerance: f64,
         longest: f64,
         first: f64,
-    ) -> impl OrdinaryNumericalMethod<f64, [f64; 4]> + Interpolation<f64, [f64; 4]>;
+    ) -> impl OrdinaryNumericalMethod<f64, S> + Interpolation<f64, S>;
 
-    /// The longest step, for a forcing period.
-    fn longest_step(period: f64) -> f64 {
+    /// The longest step.
+    fn longest_step(times: &Times) -> f64 {
         match Self::INSIDE {
-            Inside::Again => longest_step(period),
-            Inside::Interpolant | Inside::Cubic => LONGEST_STEP * period,
+            Inside::Again => longest_step(times),
+            Inside::Interpolant | Inside::Cubic => LONGEST_STEP * times.period,
         }
     }
 
@@ -89,12 +92,13 @@ macro_rules! methods {
             const ORDER: Option<u32> = $order;
             const INSIDE: Inside = Inside::$inside;
 
-            fn method(
+            fn method<S: State<f64>>(
+                size: usize,
                 tolerance: f64,
                 longest: f64,
                 $first: f64,
-            ) -> impl OrdinaryNumericalMethod<f64, [f64; 4]> + Interpolation<f64, [f64; 4]> {
-                let method = $new.rtol([tolerance; 4]).atol([tolerance; 4]);
+            ) -> impl OrdinaryNumericalMethod<f64, S> + Interpolation<f64, S> {
+                let method = $new.rtol(vec![tolerance; size]).atol(vec![tolerance; size]);
                 method.h0($first).h_min(0.0).h_max(longest).max_steps(ENOUGH)$(.$setting($value))*
             }
         }
