@@ -1,7 +1,7 @@
 //! A run of any system, and what comes of it.
 
 use super::joining::{Course, Times};
-use super::{Event, Outcome, Watched};
+use super::{Event, Failure, Numbers, Outcome, Watched};
 use crate::system::{Affine, CheckedSystem, Values};
 use std::sync::Arc;
 
@@ -26,6 +26,34 @@ pub struct SystemTask {
     pub samples: Vec<f64>,
     /// What is recorded beside the result; such a run ends when that is done.
     pub watched: Option<Watched>,
+}
+
+impl SystemTask {
+    /// A run from a state in a mode over a time, with the state taken at `samples`.
+    ///
+    /// # Errors
+    /// What the system does not have, or cannot begin with.
+    pub fn new(
+        system: Arc<CheckedSystem>,
+        mode: usize,
+        state: &[f64],
+        span: f64,
+        samples: Vec<f64>,
+    ) -> Result<Self, Failure> {
+        let (size, modes) = (system.system().states.len(), system.system().modes.len());
+        if mode >= modes {
+            return Err(Failure::new(format!(
+                "there are {modes} modes, and none is number {mode}"
+            )));
+        }
+        if state.len() != size || state.iter().any(|value| !value.is_finite()) {
+            return Err(Failure::new(format!("a start has {size} states, all of them finite")));
+        }
+        if !(span.is_finite() && span > 0.0 && samples.is_sorted()) {
+            return Err(Failure::new("a run takes a positive time, with samples in order"));
+        }
+        Ok(Self { system, mode, state: Values::of(state), span, samples, watched: None })
+    }
 }
 
 impl<'a> Course<'a, Affine<'a>> {

@@ -248,3 +248,7 @@ fn check_mode(mode: &Mode, size: usize, modes: usize) -> Result<(), String> {
         None => Ok(()),
     }
 }
+
+#[cfg(test)]
+#[path = "checked_tests.rs"]
+mod tests;

@@ -83,7 +83,7 @@ mod tests {
         let mut seen = 0;
         for phase in Phase::ALL {
             for (guard, value) in equations.guards(phase, 0.7, &state).into_iter().enumerate() {
-                let look = GuardSample { t: 0.0, phase, guard, value };
+                let look = GuardSample { t: 0.0, mode: phase, guard, value };
                 for it in [GuardCurve::Gap, GuardCurve::SlidingForce, GuardCurve::PartingForce] {
                     let Some(shown) = it.of_look(&look) else { continue };
                     seen += 1;

@@ -1,8 +1,12 @@
 //! The library's methods, each with its tolerances and limits.
 
-use super::LONGEST_STEP;
+use super::watch::again;
+use super::{LONGEST_STEP, ModeField};
 use crate::engine::Stepping;
+use crate::engine::cubic::CubicEnd;
+use crate::engine::equations::Equations;
 use crate::engine::joining::Times;
+use crate::engine::meter::Failure;
 use crate::engine::walk::longest_step;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{
@@ -64,6 +68,17 @@ pub(in super::super) trait LibraryMethod {
         first: f64,
     ) -> impl OrdinaryNumericalMethod<f64, S> + Interpolation<f64, S>;
 
+    /// The state at `t` by the method again from a point before it. Only methods that need it have
+    /// it, because each is compiled for each system.
+    fn again<E: Equations<State: State<f64>>>(
+        _field: &ModeField<'_, E>,
+        _tolerance: f64,
+        _from: CubicEnd<E::State>,
+        _t: f64,
+    ) -> Result<E::State, Failure> {
+        Err(Failure::new("does not integrate inside its steps"))
+    }
+
     /// The longest step.
     fn longest_step(times: &Times) -> f64 {
         match Self::INSIDE {
@@ -76,6 +91,21 @@ pub(in super::super) trait LibraryMethod {
     fn solves(evals: &Evals) -> usize {
         if Self::MULTISTEP { evals.function.saturating_sub(1) } else { evals.solves }
     }
+}
+
+/// How a state inside a step is had, where that is a function of the method.
+macro_rules! inside {
+    (Again) => {
+        fn again<E: Equations<State: State<f64>>>(
+            field: &ModeField<'_, E>,
+            tolerance: f64,
+            from: CubicEnd<E::State>,
+            t: f64,
+        ) -> Result<E::State, Failure> {
+            again::<Self, E>(field, tolerance, from, t)
+        }
+    };
+    ($other:ident) => {};
 }
 
 /// Methods with all that their builders have in common, and then with settings of their own.
@@ -91,6 +121,8 @@ macro_rules! methods {
             const DESCRIPTION: &'static str = $text;
             const ORDER: Option<u32> = $order;
             const INSIDE: Inside = Inside::$inside;
+
+            inside! { $inside }
 
             fn method<S: State<f64>>(
                 size: usize,

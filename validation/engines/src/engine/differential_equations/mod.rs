@@ -145,7 +145,7 @@ fn run<M: LibraryMethod, E: Equations<State: State<f64>>>(
 
 /// The right-hand side of one mode.
 #[derive(Clone, Copy)]
-struct ModeField<'a, E: Equations> {
+pub(super) struct ModeField<'a, E: Equations> {
     equations: E,
     mode: E::Mode,
     meter: &'a Meter<E::Mode>,

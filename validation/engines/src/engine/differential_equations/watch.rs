@@ -113,7 +113,7 @@ impl<M: LibraryMethod, E: Equations<State: State<f64>>> Solout<f64, E::State>
             _ if t <= begin => Ok(*before),
             _ if t >= end => Ok(*state),
             Inside::Interpolant => interpolator.interpolate(t).map_err(|error| reason(&error)),
-            Inside::Again => again::<M, E>(&field, tolerance, (begin, *before), t),
+            Inside::Again => M::again(&field, tolerance, (begin, *before), t),
             Inside::Cubic => Ok(cubic
                 .get_or_insert_with(|| {
                     Cubic::between([(begin, *before), (end, *state)], |(t, state), rates| {
@@ -134,7 +134,7 @@ impl<M: LibraryMethod, E: Equations<State: State<f64>>> Solout<f64, E::State>
 }
 
 /// The state at `t` by the method again from a point before it, in one step if that will do.
-fn again<M: LibraryMethod, E: Equations<State: State<f64>>>(
+pub(super) fn again<M: LibraryMethod, E: Equations<State: State<f64>>>(
     field: &ModeField<'_, E>,
     tolerance: f64,
     from: CubicEnd<E::State>,

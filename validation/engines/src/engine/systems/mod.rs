@@ -3,11 +3,12 @@
 mod events;
 mod known;
 mod models;
+mod oscillator;
 mod truth;
 
 use super::{Accuracy, Engine, Failure, Limits, Stepping, SystemOutcome, SystemTask};
-use super::{Numbers, all, answer_system, hush_contained_panics};
-use crate::system::{CheckedSystem, System, Values};
+use super::{all, answer_system, hush_contained_panics};
+use crate::system::{CheckedSystem, System};
 use std::sync::Arc;
 
 /// What is asked of every integrator.
@@ -28,14 +29,10 @@ impl Asked<'_> {
         let system = CheckedSystem::new(self.system.clone());
         let Ok(system) = system else { unreachable!("{:?}", system.err()) };
         let samples = (0..=SAMPLES).map(|k| self.span * f64::from(k) / f64::from(SAMPLES));
-        SystemTask {
-            system: Arc::new(system),
-            mode: self.mode,
-            state: Values::of(self.state),
-            span: self.span,
-            samples: samples.collect(),
-            watched: None,
-        }
+        let samples = samples.collect();
+        let task = SystemTask::new(Arc::new(system), self.mode, self.state, self.span, samples);
+        let Ok(task) = task else { unreachable!("{:?}", task.err()) };
+        task
     }
 
     /// The events by the closed form.
@@ -52,6 +49,17 @@ fn every(asked: &Asked<'_>) -> Vec<Answer> {
     every_on(&asked.task())
 }
 
+/// What is asked of an engine, if it is an integrator and in no co-ordinates of the oscillator's own.
+fn accuracy(engine: &dyn Engine) -> Option<Accuracy> {
+    let declaration = engine.declaration();
+    match declaration.stepping {
+        _ if declaration.name.ends_with("-original") => None,
+        Stepping::Exact => None,
+        Stepping::Fixed { .. } => Some(Accuracy::Step(STEP)),
+        _ => Some(Accuracy::Tolerance(TOLERANCE)),
+    }
+}
+
 /// An integrator's name, its unit of error, and its answer.
 type Answer = (&'static str, f64, Result<SystemOutcome, Failure>);
 
@@ -59,14 +67,7 @@ fn every_on(task: &SystemTask) -> Vec<Answer> {
     hush_contained_panics();
     let one = |engine: &&'static dyn Engine| {
         let declaration = engine.declaration();
-        let accuracy = match declaration.stepping {
-            Stepping::Exact => return None,
-            Stepping::Fixed { .. } => Accuracy::Step(STEP),
-            _ => Accuracy::Tolerance(TOLERANCE),
-        };
-        if declaration.name.ends_with("-original") {
-            return None;
-        }
+        let accuracy = accuracy(*engine)?;
         let limits = Limits { calls: 3_000_000, ..Limits::default() };
         let outcome = answer_system(*engine, task, accuracy, &limits);
         Some((declaration.name, declaration.stepping.unit(accuracy), outcome))
@@ -91,8 +92,7 @@ fn departure(
             return Some(format!("event {n} is {other:?}, not {:?}", (event, mode, t)));
         }
         let error = (found.elapsed - t).abs() / (unit * (time_scale + t) * (n + 1) as f64);
-        // Written so that a NaN is a departure.
-        if !(error <= most) {
+        if error > most || error.is_nan() {
             return Some(format!("event {n} at {t} is {error:.1} units of error off"));
         }
     }
