@@ -20,7 +20,8 @@ const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 pub(super) trait Coordinates:
     Equations<Mode = Phase, State = [f64; 4], Guards = [f64; GUARDS]>
 {
-    /// Whether these are the paper's bounded co-ordinates, in which the model is one system of many.
+    /// Whether these are the paper's bounded co-ordinates, in which the model is one system of
+    /// many.
     const BOUNDED: bool;
 
     /// The model's equations; `angle` is omega tau + phi at the start.

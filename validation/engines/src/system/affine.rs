@@ -35,8 +35,8 @@ impl<'a> Affine<'a> {
 
     /// The values of a derivative of all guards of a mode.
     fn all(&self, mode: usize, order: usize, t: f64, u: &[f64]) -> Guards {
-        let CheckedMode { guards, forced, .. } = self.mode(mode);
-        let forcing = if forced[1] { self.forcing(t) } else { [0.0; 2] };
+        let CheckedMode { guards, guards_forced, .. } = self.mode(mode);
+        let forcing = if guards_forced[order] { self.forcing(t) } else { [0.0; 2] };
         let mut values = Guards::all(self.system.most_guards, NO_GUARD);
         for (place, guard) in values.iter_mut().zip(guards) {
             *place = value(&guard.chain.rows[order], u, forcing).0;
@@ -84,7 +84,7 @@ impl Equations for Affine<'_> {
         for (rate, constant) in du.iter_mut().zip(&mode.c) {
             *rate += constant;
         }
-        if mode.forced[0] {
+        if mode.forced {
             let [cos, sin] = self.forcing(t);
             for (rate, [by_cos, by_sin]) in du.iter_mut().zip(&mode.b) {
                 *rate += by_cos * cos + by_sin * sin;

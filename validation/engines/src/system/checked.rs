@@ -24,8 +24,10 @@ pub(super) struct CheckedMode {
     pub(super) a: Vec<f64>,
     pub(super) b: Vec<[f64; 2]>,
     pub(super) c: Vec<f64>,
-    /// Whether rates, and guards or their rates, depend on theta.
-    pub(super) forced: [bool; 2],
+    /// Whether the states' rates depend on theta.
+    pub(super) forced: bool,
+    /// Whether the guards do, and their rates.
+    pub(super) guards_forced: [bool; 2],
     pub(super) guards: Vec<Guard>,
     pub(super) until: Vec<Passage>,
 }
@@ -72,7 +74,8 @@ impl CheckedSystem {
             a: mode.a.concat(),
             b: mode.b.clone(),
             c: mode.c.clone(),
-            forced: [mode.b.iter().flatten().any(|it| *it != 0.0), are_forced(guards, &system)],
+            forced: mode.b.iter().flatten().any(|it| *it != 0.0),
+            guards_forced: [0, 1].map(|order| are_forced(guards, order, &system)),
             guards: guards.clone(),
             until: passages(mode),
         };
@@ -170,10 +173,10 @@ fn guards(mode: &Mode, motion: &Motion) -> Vec<Guard> {
     until.chain(watch).collect()
 }
 
-fn are_forced(guards: &[Guard], system: &System) -> bool {
+fn are_forced(guards: &[Guard], order: usize, system: &System) -> bool {
     let size = system.states.len();
-    let rows = guards.iter().flat_map(|guard| guard.chain.rows.iter().take(2));
-    system.omega != 0.0 && rows.into_iter().any(|row| row[size] != 0.0 || row[size + 1] != 0.0)
+    let mut rows = guards.iter().map(|guard| &guard.chain.rows[order]);
+    rows.any(|row| row[size] != 0.0 || row[size + 1] != 0.0)
 }
 
 fn passage(until: &Until, motions: &[Motion], guards: &[Vec<Guard>]) -> Passage {

@@ -82,9 +82,9 @@ fn what_is_not_whole_is_refused() {
     let many = |it: &mut System| {
         let guard = it.modes[0].until[0].guard.clone();
         let one = Watch { guard, direction: Direction::Both, ..Watch::default() };
-        it.modes[0].watch = vec![one; 32];
+        it.modes[0].watch = vec![one; 12];
     };
-    assert!(refused(many).contains("65 guards"));
+    assert!(refused(many).contains("25 guards"));
     let mut system = table();
     system.modes[0].watch.push(watch());
     assert!(CheckedSystem::new(system).is_err());

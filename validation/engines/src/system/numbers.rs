@@ -6,8 +6,9 @@ use std::ops::{Deref, DerefMut};
 
 /// The most states of a system.
 pub const MOST_STATES: usize = 11;
-/// The most guards of a mode; a guard that is watched in both directions is two.
-pub const MOST_GUARDS: usize = 64;
+/// The most guards of a mode; a guard that is watched in both directions is two. The format accepts
+/// more: here they are copied with every look at them.
+pub const MOST_GUARDS: usize = 24;
 
 /// At most `MOST` numbers.
 #[derive(Clone, Copy, PartialEq)]

@@ -17,10 +17,10 @@
 //!   on it. What a root finder that looks only at the ends of steps still misses is what this
 //!   harness wants to know.
 
+mod fields;
 mod method;
 mod mode;
 
-use super::equations::Equations;
 use super::field::Oscillator;
 use super::joining::{Course, join};
 use super::meter::{Failure, Limits, Meter};
@@ -28,7 +28,8 @@ use super::{
     Accuracy, Colours, Declaration, Engine, Location, Outcome, SystemOutcome, SystemTask, Task,
     pins,
 };
-use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder};
+use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec};
+use fields::{Given, Known, problem};
 use method::{Bdf, DiffsolMethod, Esdirk34, TrBdf2, Tsit45};
 use mode::DiffsolRun;
 use std::cell::Cell;
@@ -85,7 +86,7 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
 }
 
 /// Runs a course with one of the library's methods.
-fn run<M: DiffsolMethod, E: Equations>(
+fn run<M: DiffsolMethod, E: Known>(
     course: &Course<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
@@ -94,31 +95,13 @@ fn run<M: DiffsolMethod, E: Equations>(
     let meter = Meter::new(limits);
     let Course { equations, span, times, .. } = *course;
     let mode = Cell::new(course.mode);
-    let problem = OdeBuilder::<DenseMatrix>::new()
-        .rtol(tolerance)
-        .atol([tolerance])
-        .h0(times.period * FIRST_STEP)
-        .rhs_implicit(
-            |u, _, t, du| {
-                equations.derivatives(mode.get(), t, u, du);
-                meter.rhs(du);
-            },
-            |_, _, _, w, dw| {
-                equations.jacobian_product(mode.get(), w, dw);
-                meter.jacobian();
-            },
-        )
-        .init(|_, _, u| u.copy_from_slice(course.state.as_ref()), equations.dimension())
-        .root(
-            |u, _, t, guards| {
-                let values = equations.guards(mode.get(), t, u);
-                meter.guards(t, mode.get(), &values.as_ref()[..equations.count(mode.get())]);
-                guards.copy_from_slice(values.as_ref());
-            },
-            equations.most_guards(),
-        )
-        .build()
-        .map_err(Failure::new)?;
+    let given = Given {
+        state: course.state.as_ref(),
+        guards: equations.most_guards(),
+        period: times.period,
+        tolerance,
+    };
+    let problem = problem(equations.field(&mode, &meter), &given)?;
     let longest = LONGEST_STEP * times.period;
     let run = DiffsolRun { span, longest, meter: &meter, equations };
     join(course, &meter, |from, sampler| {

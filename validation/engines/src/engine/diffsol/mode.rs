@@ -126,8 +126,23 @@ impl<E: Equations> DiffsolRun<'_, E> {
         self.meter.rhs(derivatives);
         state.dy.batch_as_mut_slice(0).copy_from_slice(derivatives);
         *state.t = from.t;
-        let order = M::ORDER.unwrap_or(1) as usize;
-        state.set_step_size(problem.h0, &problem.atol, problem.rtol, &problem.eqn, order);
+        first_step::<M, P>(problem, state);
+    }
+}
+
+/// The first step by the library's rule, a power of an error whose exponent is a half for methods
+/// that begin at order 1. LLVM makes that a square root where it sees no other exponent. The
+/// reference to the equations is a type of its own, which gives it such a place: digits then do not
+/// depend on how often the rest is compiled.
+#[inline(never)]
+fn first_step<M: DiffsolMethod, P: DiffsolProblem>(
+    problem: &OdeSolverProblem<P>,
+    state: &mut StateRefMut<'_, Vect>,
+) {
+    let OdeSolverProblem { h0, atol, rtol, eqn, .. } = problem;
+    match M::ORDER {
+        None => state.set_step_size(*h0, atol, *rtol, &eqn, 1),
+        Some(order) => state.set_step_size(*h0, atol, *rtol, eqn, order as usize),
     }
 }
 

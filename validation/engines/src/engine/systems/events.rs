@@ -24,9 +24,8 @@ fn three_collisions_in_one_instant() {
 }
 
 /// A ball that has come to rest makes no progress, and the run ends there. diffsol looks at guards
-/// where steps end, and its roots have a resolution: it loses an impact after 22 (bdf) or 45, and the
-/// ball falls on. Newton's iterations of kvaerno745 stop at 1e-11, above the height of late flights:
-/// its impacts then follow each other without end.
+/// where steps end, and its roots have a resolution: it loses an impact after 22 (bdf) or 45, and
+/// the ball falls on. The calls of kvaerno745 pass their limit before the ball is at rest.
 #[test]
 fn an_accumulation_ends_the_run() {
     let system = bouncing_ball(0.5);

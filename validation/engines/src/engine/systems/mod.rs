@@ -49,7 +49,8 @@ fn every(asked: &Asked<'_>) -> Vec<Answer> {
     every_on(&asked.task())
 }
 
-/// What is asked of an engine, if it is an integrator and in no co-ordinates of the oscillator's own.
+/// What is asked of an engine, if it is an integrator and in no co-ordinates of the oscillator's
+/// own.
 fn accuracy(engine: &dyn Engine) -> Option<Accuracy> {
     let declaration = engine.declaration();
     match declaration.stepping {

@@ -1,6 +1,6 @@
-//! The events of a system by its closed form, for tests: exp(M t) in short steps, with guards looked
-//! at between them and narrowed down by bisection. It shares nothing with what is tested but the
-//! system's numbers.
+//! The events of a system by its closed form, for tests: exp(M t) in short steps, with guards
+//! looked at between them and narrowed down by bisection. It shares nothing with what is tested but
+//! the system's numbers.
 
 use crate::system::{Row, System};
 
