@@ -111,7 +111,8 @@ pub(super) fn join<E: Equations>(
     let mut now = Moment::start(equations, course.mode, course.state);
     let mut instant = Instant::default();
     sampler.take(0.0, |_| Ok::<_, Failure>(now.state))?;
-    while span - now.t > SHORTEST * span && !meter.has_seen_enough(now.t) {
+    let goes_on = |now: &Moment<E>| now.entered.fires.is_some() || span - now.t > SHORTEST * span;
+    while goes_on(&now) && !meter.has_seen_enough(now.t) {
         let ended = match now.entered.fires {
             Some(guard) => StretchEnd::Switch { t: now.t, guard, state: now.state },
             None => stretch(&now, &mut sampler)?,

@@ -182,9 +182,8 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
             if !right.leaves(guard) {
                 return Ok(None);
             }
-            return self
-                .bisect(left, right, |look| look.leaves(guard), state_at)
-                .map(|at| Some(at.t));
+            let at = self.bisect(left, right, |look| look.leaves(guard), state_at)?;
+            return Ok(Some(at.t));
         }
         self.rise(guard, left, right, state_at)
     }
@@ -237,11 +236,8 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
     ) -> Result<Option<f64>, Failure> {
         let turned = |look: &GuardValues<E::Guards>| look.rate(guard) <= 0.0;
         let peak = self.bisect(left, right, turned, state_at)?;
-        if peak.value(guard) >= 0.0 {
-            self.root(guard, left, &peak, state_at).map(Some)
-        } else {
-            Ok(None)
-        }
+        let reaches = peak.value(guard) >= 0.0;
+        reaches.then(|| self.root(guard, left, &peak, state_at)).transpose()
     }
 
     /// The first instant, to the last bit, from which `is_past` holds.

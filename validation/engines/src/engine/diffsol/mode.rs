@@ -31,6 +31,10 @@ impl<E: Equations> DiffsolRun<'_, E> {
         from: &Moment<E>,
         sampler: &mut Sampler<E::State>,
     ) -> Result<StretchEnd<E::State>, Failure> {
+        if self.span - from.t <= RESOLUTION * self.span {
+            // The library refuses a stop that is as near as that.
+            return Ok(StretchEnd::Inside { t: self.span, state: from.state });
+        }
         let mut solver = M::solver(problem, |state| self.begin::<M, P>(problem, from, state))
             .map_err(Failure::new)?;
         solver.set_stop_time(self.span).map_err(Failure::new)?;
@@ -64,11 +68,12 @@ impl<E: Equations> DiffsolRun<'_, E> {
                 }
                 OdeSolverStopReason::RootFound(root, guard) => {
                     let state = state_at(root)?;
-                    if let Some(guard) = self.rising(from.mode, root, &state, guard) {
-                        if self.equations.ends(from.mode, guard) {
-                            sampler.take(root, state_at)?;
-                            return Ok(StretchEnd::Switch { t: root, guard, state });
-                        }
+                    let rising = self.rising(from.mode, root, &state, guard);
+                    if let Some(guard) = rising.iter().copied().find(|it| self.ends(from, *it)) {
+                        sampler.take(root, state_at)?;
+                        return Ok(StretchEnd::Switch { t: root, guard, state });
+                    }
+                    for guard in rising {
                         if !is_known(from, root, guard, sampler) {
                             sampler.counted.push(Crossing { t: root, guard, state });
                         }
@@ -89,13 +94,19 @@ impl<E: Equations> DiffsolRun<'_, E> {
         }
     }
 
-    /// The guard that rises at a root: the one that was found or, where an event counts crossings
-    /// in both directions, its other one, which has the same root.
-    fn rising(&self, mode: E::Mode, t: f64, state: &E::State, guard: usize) -> Option<usize> {
+    fn ends(&self, from: &Moment<E>, guard: usize) -> bool {
+        self.equations.ends(from.mode, guard)
+    }
+
+    /// The guards that rise at a root: the library names one, and others may have the same root.
+    fn rising(&self, mode: E::Mode, t: f64, state: &E::State, guard: usize) -> Vec<usize> {
+        let values = self.equations.guards(mode, t, state.as_ref());
         let rates = self.equations.rates(mode, t, state.as_ref());
-        let event = |guard| self.equations.event(mode, guard);
-        let mut guards = (0..self.equations.count(mode)).filter(|it| event(*it) == event(guard));
-        guards.find(|guard| rates.as_ref()[*guard] > 0.0)
+        let rises = |other: &usize| {
+            let (value, rate) = (values.as_ref()[*other], rates.as_ref()[*other]);
+            rate > 0.0 && (*other == guard || value.abs() <= RESOLUTION * t * rate)
+        };
+        (0..self.equations.count(mode)).filter(rises).collect()
     }
 
     /// Whether the rest of a step after a root that ends nothing hides another: a guard that ends

@@ -67,7 +67,8 @@ pub(super) fn bouncing_ball(restitution: f64) -> System {
     system("bouncing-ball", &["x", "v"], [0.0, 0.0], vec![flight])
 }
 
-/// x'' + 2 zeta x' + x = A cos theta with a stop at d; x = 0 is watched in both directions.
+/// x'' + 2 zeta x' + x = A cos theta with a stop at d; x = 0 is watched in each
+/// direction by an event of its own, v = 0 in both by one.
 pub(super) fn rigid_oscillator(zeta: f64, amplitude: f64, omega: f64, stop: f64) -> System {
     let rates = [state(2, 1), row(2, &[(0, -1.0), (1, -2.0 * zeta), (2, amplitude)])];
     let impact = until(
@@ -77,7 +78,11 @@ pub(super) fn rigid_oscillator(zeta: f64, amplitude: f64, omega: f64, stop: f64)
         vec![(None, 0)],
     );
     let mut free = mode("free", &rates, vec![impact]);
-    free.watch = vec![watch("middle", state(2, 0), Direction::Both)];
+    free.watch = vec![
+        watch("up", state(2, 0), Direction::Rising),
+        watch("down", state(2, 0), Direction::Falling),
+        watch("turn", state(2, 1), Direction::Both),
+    ];
     system("rigid-impact-oscillator", &["x", "v"], [omega, 0.0], vec![free])
 }
 
