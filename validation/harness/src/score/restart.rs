@@ -195,7 +195,7 @@ impl RestartRun {
 
     fn same_word(&self, outcome: &Outcome) -> bool {
         let truth = self.truth.switches.iter().map(|switch| switch.phase);
-        truth.eq(outcome.events.iter().map(|event| Some(event.phase)))
+        truth.eq(outcome.events.iter().map(|event| Some(event.mode)))
     }
 }
 

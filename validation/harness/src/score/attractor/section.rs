@@ -92,7 +92,7 @@ fn words(events: &[Event], period: f64, transient: u32, periods: usize) -> BTree
     for event in events {
         let number = event.elapsed / period - f64::from(transient);
         if let Some(word) = (number >= 0.0).then(|| spelled.get_mut(number as usize)).flatten() {
-            word.push(match event.phase {
+            word.push(match event.mode {
                 Phase::NoContact => 'n',
                 Phase::Contact => 'c',
                 Phase::Progression => 'p',
@@ -147,7 +147,7 @@ mod tests {
     /// the first word, and one before it belongs to none.
     #[test]
     fn words_are_spelled_by_the_events_of_each_period() {
-        let event = |elapsed: f64, phase| Event { phase, elapsed, state: [0.0; 4] };
+        let event = |elapsed: f64, phase| Event { event: 0, mode: phase, elapsed, state: [0.0; 4] };
         let events = [
             event(3.9, Phase::Progression),
             event(4.0, Phase::Contact),
