@@ -24,8 +24,8 @@ FILE_KEYS = (
     "schema name why trouble source states scales time_scale forcing parameters let mode start"
 )
 TROUBLE = """jump accumulation simultaneous sliding chatter clock start-on-guard many-guards
-    stiffness graze double-crossing multiple-zero restart-on-zero side-of-root output-at-events backward
-    direction hysteresis chaos""".split()
+    stiffness graze double-crossing multiple-zero restart-on-zero side-of-root output-at-events
+    backward direction hysteresis chaos""".split()
 
 
 @dataclass

@@ -19,7 +19,7 @@ MOST_IN_AN_INSTANT = 64
 MOST_ORDERED = 3  # guards that fire together, all of whose orders are followed
 MOST_VISITS = 4000  # of orders at one instant; beyond, the order of the file alone is followed
 FIRST_STEP = arb(1) / 8
-MARGIN = fmpq(1, 10**6)  # of the time scale: between any event and the horizon or a tabulated instant
+MARGIN = fmpq(1, 10**6)  # of the time scale: from any event to the horizon or a tabulated instant
 
 
 @dataclass

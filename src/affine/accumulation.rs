@@ -1,10 +1,10 @@
 //! Impacts that accumulate: infinitely many of them in a time that is enclosed.
 //!
-//! After an impact the gap h is zero and its rate is -u. As long as a1 <= h'' <= a2, the next impact is
-//! between 2 u/a2 and 2 u/a1 later, at a rate of at most u sqrt(a2/a1), and e times that follows.
-//! With q = e sqrt(a2/a1) < 1 the times form a geometric series. The bounds a1 and a2 hold for all
-//! states that the motion can reach in that time: along the flow, and by jumps that
-//! are proportional to the rates of the impacts.
+//! After an impact the gap h is zero and its rate is -u. As long as a1 <= h'' <= a2, the next
+//! impact is between 2 u/a2 and 2 u/a1 later, at a rate of at most u sqrt(a2/a1), and e times that
+//! follows. With q = e sqrt(a2/a1) < 1 the times form a geometric series. The bounds a1 and a2 hold
+//! for all states that the motion can reach in that time: along the flow, and by jumps that are
+//! proportional to the rates of the impacts.
 
 use super::flow::{Vector, dot};
 use super::run::Run;
@@ -78,8 +78,19 @@ impl<T: Number> Run<'_, T> {
         let one = T::one();
         let earliest = twice / (a2 * (one - e * (a1 / a2).sqrt()));
         let latest = twice / (a1 * (one - q));
+        let (earliest, latest) = self.widened(earliest, latest, gap, u);
         let proved = a1 > T::zero() && q < one && latest.to_f64() <= LEFT * scale;
         proved.then_some((earliest, latest))
+    }
+
+    /// The bounds with what errors, followed or not, may do to the rate of departure.
+    fn widened(&self, earliest: T, latest: T, gap: &super::flow::ModalRow<T>, rate: f64) -> (T, T) {
+        let flow = &self.solver.modes[self.structure.node(self.node).mode].flow;
+        let inherited = self.enclosure.as_ref().map_or(0.0, |it| it.of_row(flow, gap, 1));
+        let size = gap.size_of(1, &self.modal, flow.dimension);
+        let share = 4.0 * (inherited + 32.0 * super::flow::unit::<T>() * size) / rate;
+        let room = latest * T::exact(if self.enclosure.is_some() { share } else { 0.0 });
+        (earliest - room, latest + room)
     }
 
     /// The coefficient of restitution: it is a constant of the model, and the fastest impact shows

@@ -17,6 +17,10 @@ const MOST: usize = 64;
 /// Names that expressions cannot give to anything else.
 const RESERVED: [&str; 4] = ["cos", "sin", "omega", "phi"];
 
+/// How runs end, which is what no event may be called.
+const ENDINGS: [&str; 6] =
+    ["end", "accumulation", "leaves-domain", "no-progress", "beyond-guard", "undecided"];
+
 pub(super) fn system(file: &SystemFile) -> Result<System, SystemError> {
     let mut names = Names::of(file)?;
     let forcing = names.forcing()?;
@@ -27,6 +31,7 @@ pub(super) fn system(file: &SystemFile) -> Result<System, SystemError> {
         why: tables.why.clone(),
         trouble: tables.trouble.iter().map(|it| kebab(file, it)).collect::<Result<_, _>>()?,
         source: tables.source.clone(),
+        parameters: file.parameters.iter().filter_map(parameter).collect(),
         states: names.states.clone(),
         scales: names.scales()?,
         time_scale: names.time_scale(forcing.as_ref())?,
@@ -54,6 +59,11 @@ pub(super) fn system(file: &SystemFile) -> Result<System, SystemError> {
         system.start = Some(start_point(&mut names, start, &places)?);
     }
     Ok(system)
+}
+
+/// A parameter's name and value.
+fn parameter((name, it): (&String, &Parameter)) -> Option<(String, f64)> {
+    number(&it.value).map(|value| (name.clone(), value.to_f64().value()))
 }
 
 /// The index of each mode by its name.
@@ -290,6 +300,10 @@ impl ModeReader<'_> {
         let until = table.until.iter().map(|it| &it.name);
         let mut seen = BTreeSet::new();
         for name in until.chain(table.watch.iter().map(|it| &it.name)) {
+            if ENDINGS.contains(&name.get_ref().as_str()) {
+                let what = format!("{:?} is the name of an ending", name.get_ref());
+                return Err(self.file.error(&name.span(), &what));
+            }
             if !seen.insert(kebab(self.file, name)?) {
                 let what = format!("the event {:?} is there twice in its mode", name.get_ref());
                 return Err(self.file.error(&name.span(), &what));

@@ -24,6 +24,8 @@ pub(super) struct Flow<T> {
     blocks: Vec<Block<T>>,
     /// W of all blocks.
     to_modal: Vec<Vector<T>>,
+    /// W of all blocks, rounded to f64.
+    to_modal_rounded: Vec<Vector<f64>>,
     /// X of all blocks.
     from_modal: Vec<Vector<T>>,
 }
@@ -112,8 +114,13 @@ impl<T: Number> Flow<T> {
     /// A mode's closed form from its blocks.
     pub fn of(blocks: &[modal::Block]) -> Self {
         let dimension = blocks.iter().map(|it| it.matrix.len()).sum();
-        let mut flow =
-            Self { dimension, blocks: Vec::new(), to_modal: Vec::new(), from_modal: Vec::new() };
+        let mut flow = Self {
+            dimension,
+            blocks: Vec::new(),
+            to_modal: Vec::new(),
+            to_modal_rounded: Vec::new(),
+            from_modal: Vec::new(),
+        };
         for row in 0..dimension {
             let entries = blocks.iter().flat_map(|it| it.columns[row].iter().cloned());
             flow.from_modal.push(vector(&entries.collect::<Vec<_>>()));
@@ -123,6 +130,8 @@ impl<T: Number> Flow<T> {
             flow.to_modal.extend(block.rows.iter().map(|row| vector(row)));
             flow.blocks.push(Block::of(block, at));
         }
+        let rounded = |row: &Vector<T>| row.map(Number::to_f64);
+        flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
         flow
     }
 
@@ -163,6 +172,15 @@ impl<T: Number> Flow<T> {
         product
     }
 
+    /// The sizes of what each entry of the state is summed from.
+    pub fn sizes(&self, y: &Vector<T>) -> [f64; LARGEST_DIMENSION] {
+        let mut sizes = [0.0; LARGEST_DIMENSION];
+        for (size, row) in sizes.iter_mut().zip(&self.from_modal) {
+            *size = row.iter().zip(y).map(|(a, b)| (a.to_f64() * b.to_f64()).abs()).sum();
+        }
+        sizes
+    }
+
     /// The modal co-ordinates a time later.
     pub fn at(&self, y: &Vector<T>, time: T) -> Vector<T> {
         let mut later = *y;
@@ -173,8 +191,33 @@ impl<T: Number> Flow<T> {
         later
     }
 
+    /// The modal co-ordinates of an error, in f64.
+    pub fn modal_rounded(&self, z: &Vector<f64>) -> Vector<f64> {
+        let mut product = [0.0; LARGEST_DIMENSION];
+        for (entry, row) in product.iter_mut().zip(&self.to_modal_rounded) {
+            *entry = dot(row, z, self.dimension);
+        }
+        product
+    }
+
+    /// The columns of exp(M t), in f64.
+    pub fn transition(&self, time: T) -> Vec<Vector<f64>> {
+        let column = |n: usize| {
+            let mut unit = [T::zero(); LARGEST_DIMENSION];
+            unit[n] = T::one();
+            self.state(&self.at(&self.modal(&unit), time)).map(Number::to_f64)
+        };
+        (0..self.dimension).map(column).collect()
+    }
+
     /// A bound of a row's derivative of an order over `length` after a state.
-    pub fn bound(&self, row: &ModalRow<T>, order: usize, y: &Vector<T>, length: f64) -> f64 {
+    pub fn bound<U: Number>(
+        &self,
+        row: &ModalRow<T>,
+        order: usize,
+        y: &Vector<U>,
+        length: f64,
+    ) -> f64 {
         let mut sum = 0.0;
         for (block, norms) in self.blocks.iter().zip(&row.norms) {
             if norms[order] == 0.0 {

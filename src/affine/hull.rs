@@ -1,8 +1,8 @@
-//! Whether a guard stays negative on a piece, by the Bernstein coefficients of a polynomial that lies
-//! above it: the same theorem as in `crossing/certificate.rs`, in any arithmetic.
+//! Whether a guard stays negative on a piece, by the Bernstein coefficients of a polynomial that
+//! lies above it: the same theorem as in `crossing/certificate.rs`, in any arithmetic.
 
 use super::flow::unit;
-use crate::crossing::certificate::{MIDDLE, coefficients};
+use crate::crossing::certificate::MIDDLE;
 use crate::number::Number;
 
 /// Bernstein coefficients of degree eight.
@@ -31,12 +31,10 @@ pub(super) fn judge<T: Number>(
     slack: f64,
     zeros: usize,
 ) -> Judged {
-    let (pairs, middle) = coefficients(&ends[0], &ends[1], length);
-    let [[a, h], [b, g], [c, f], [d, e]] = pairs;
+    let mut hull = interpolant(ends, length);
     let square = length * length;
     let power = square * square * (square * square);
-    let middle = middle + power * T::exact(eighth / MIDDLE);
-    let hull = [a, b, c, d, middle, e, f, g, h];
+    hull[4] = hull[4] + power * T::exact(eighth / MIDDLE);
     let size = hull.iter().map(|it| it.to_f64().abs()).fold(0.0, f64::max);
     let slack = slack + 16.0 * unit::<T>() * size;
     if !size.is_finite() {
@@ -50,6 +48,33 @@ pub(super) fn judge<T: Number>(
         return Judged::Touch;
     }
     Judged::Open(clear_share(&hull, slack, zeros))
+}
+
+/// The coefficients of the polynomial of degree seven that shares value and three derivatives at
+/// both ends, raised to degree eight. The constants are quotients in the arithmetic itself, whose
+/// digits they have to have.
+fn interpolant<T: Number>(ends: &[[T; 4]; 2], length: T) -> Hull<T> {
+    let [left, right] = ends;
+    let [a, b, c, d] = next_to_an_end(left, length);
+    let [h, g, f, e] = next_to_an_end(right, -length);
+    let seventh = [a, b, c, d, e, f, g, h];
+    let mut hull = [a; 9];
+    hull[8] = h;
+    for n in 1..8 {
+        let share = T::exact(n as f64 * 0.125);
+        hull[n] = seventh[n] + share * (seventh[n - 1] - seventh[n]);
+    }
+    hull
+}
+
+/// The four coefficients of degree seven that belong to an end.
+fn next_to_an_end<T: Number>(orders: &[T; 4], length: T) -> [T; 4] {
+    let [value, slope, bend, third] = *orders;
+    let first = slope * length / T::exact(7.0);
+    let second = bend * length * length / T::exact(42.0);
+    let third = third * length * length * length / T::exact(210.0);
+    let (two, three) = (T::exact(2.0), T::exact(3.0));
+    [value, value + first, value + two * first + second, value + three * (first + second) + third]
 }
 
 /// With zeros at the left end the coefficients that belong to it are exact but for their own
@@ -89,19 +114,19 @@ fn clear_share<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> f64 {
 /// rule there is one root, and it is beyond.
 fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f64> {
     const STEPS: usize = 12;
-    let hull = hull.map(|it| it.to_f64() + slack);
-    let signs = hull.iter().skip(zeros.min(8));
-    let first = signs.clone().position(|it| *it >= 0.0)?;
-    if first == 0 || !signs.clone().skip(first).all(|it| *it >= 0.0) || hull[8] <= 0.0 {
+    let hull = hull.map(|it| it + T::exact(slack));
+    let signs = hull.iter().skip(zeros.min(8)).map(|it| it.to_f64());
+    let first = signs.clone().position(|it| it >= 0.0)?;
+    if first == 0 || !signs.skip(first).all(|it| it >= 0.0) || hull[8] <= T::zero() {
         return None;
     }
     let (mut low, mut high) = (0.0, 1.0);
-    let (mut below, mut above) = (f64::NAN, hull[8]);
+    let (mut below, mut above) = (f64::NAN, hull[8].to_f64());
     for step in 0..STEPS {
         // The secant, kept off the ends; every third step halves.
         let secant = low + (high - low) * (below / (below - above)).clamp(0.02, 0.98);
         let middle = if step % 3 == 2 || secant.is_nan() { 0.5 * (low + high) } else { secant };
-        let value = value(&hull, middle);
+        let value = value(&hull, T::exact(middle)).to_f64();
         if value < 0.0 {
             (low, below) = (middle, value);
         } else {
@@ -115,11 +140,11 @@ fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f6
 }
 
 /// De Casteljau's value.
-fn value(hull: &Hull<f64>, at: f64) -> f64 {
+fn value<T: Number>(hull: &Hull<T>, at: T) -> T {
     let mut row = *hull;
     for last in (0..8).rev() {
         for n in 0..=last {
-            row[n] += at * (row[n + 1] - row[n]);
+            row[n] = row[n] + at * (row[n + 1] - row[n]);
         }
     }
     row[0]

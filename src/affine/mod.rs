@@ -3,6 +3,7 @@
 mod accumulation;
 mod build;
 mod clock;
+mod enclosure;
 mod error;
 mod expression;
 mod file;
@@ -22,7 +23,7 @@ pub use clock::Time;
 pub use dashu_ratio::RBig as Rational;
 pub use error::SystemError;
 pub use file::SystemFile;
-pub use run::{Ending, Event, Run, What};
+pub use run::{Ending, Errors, Event, Run, What};
 pub use search::Work;
 pub use solver::{Solver, Unprepared};
 pub use system::{

@@ -2,9 +2,10 @@
 
 use super::accumulation::Restitution;
 use super::clock::{self, Time};
-use super::flow::{ORDERS, Vector, dot, unit};
+use super::enclosure::{Crossing, Enclosure};
+use super::flow::{Flow, ORDERS, Vector, dot, unit};
 use super::search::{Early, Found, Point, Segment, Track, Work};
-use super::solver::Solver;
+use super::solver::{self, Solver};
 use super::structure::{Firing, Structure};
 use super::system::{Direction, LARGEST_DIMENSION, StartPoint};
 use crate::number::Number;
@@ -16,6 +17,8 @@ const MOST_AT_ONCE: u32 = 64;
 /// What happens at an event of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum What<T> {
+    /// The run begins.
+    Start,
     /// The mode of this index ends by its `until` of this index.
     Until(usize, usize),
     /// In the mode of this index the `watch` of this index is crossed.
@@ -52,6 +55,17 @@ pub struct Event<T> {
     pub state: Vec<T>,
     /// The mode just after it.
     pub mode: usize,
+    /// Bounds of the errors, in a run that follows them.
+    pub errors: Option<Errors>,
+}
+
+/// Bounds of the errors of an event's time and state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Errors {
+    /// That of the time.
+    pub time: f64,
+    /// Those of the states.
+    pub state: Vec<f64>,
 }
 
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
@@ -78,6 +92,9 @@ pub struct Run<'a, T> {
     length: f64,
     queue: VecDeque<Event<T>>,
     ended: bool,
+    /// The errors at the entry of the segment, where they are followed.
+    pub(super) enclosure: Option<Enclosure>,
+    inherited: Vec<f64>,
 }
 
 impl<T: Number> Solver<T> {
@@ -86,6 +103,36 @@ impl<T: Number> Solver<T> {
     /// # Errors
     /// A start whose structural zeros cannot be told.
     pub fn run(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
+        let mut run = self.at_start(start, until)?;
+        run.enter();
+        Some(run)
+    }
+
+    /// A run that follows its own errors: each event has bounds of them, and what they leave open
+    /// ends the run as undecided.
+    ///
+    /// # Errors
+    /// A start whose structural zeros cannot be told.
+    pub fn run_enclosed(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
+        let mut run = self.at_start(start, until)?;
+        // Three products and two sums an entry; sine and cosine are good to two units.
+        let error = |size: T| 8.0 * unit::<T>() * size.to_f64().abs();
+        let mut sizes = [0.0; LARGEST_DIMENSION];
+        for (size, entry) in sizes.iter_mut().zip(&run.state) {
+            *size = error(*entry);
+        }
+        for (size, terms) in sizes.iter_mut().zip(&start.state) {
+            let terms = terms.iter().map(|it| it.to_f64().value().abs());
+            *size += error(T::exact(terms.sum()));
+        }
+        sizes[self.system.dimension() - 1] = 0.0;
+        run.enclosure = Some(Enclosure::of(&sizes));
+        run.enter();
+        Some(run)
+    }
+
+    /// A run whose first segment is not entered yet.
+    fn at_start(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
         let mut structure = self.structure.clone();
         let node = structure.start(&self.system, start)?;
         let entered = clock::start(start);
@@ -107,6 +154,8 @@ impl<T: Number> Solver<T> {
             length: self.system.time_scale,
             queue: VecDeque::new(),
             ended: false,
+            enclosure: None,
+            inherited: Vec::new(),
         };
         let (sin, cos) = self.sin_cos(&entered);
         for (entry, [c, s, one]) in run.state.iter_mut().zip(&start.state) {
@@ -114,7 +163,6 @@ impl<T: Number> Solver<T> {
             *entry = number(c) * cos + number(s) * sin + number(one);
         }
         run.complete();
-        run.enter();
         Some(run)
     }
 
@@ -131,6 +179,14 @@ impl<T: Number> Solver<T> {
 }
 
 impl<T: Number> Run<'_, T> {
+    /// The start, as an event at which nothing happens but that the run begins.
+    #[must_use]
+    pub fn start(&self) -> Event<T> {
+        let mut event = self.event(What::Start, self.entered, &self.state);
+        event.errors = self.enclosure.as_ref().map(|it| self.errors(it));
+        event
+    }
+
     /// What the run has cost so far.
     #[must_use]
     pub fn work(&self) -> Work {
@@ -166,7 +222,10 @@ impl<T: Number> Run<'_, T> {
             };
             let value = dot(&row.orders[order], &self.modal, flow.dimension).to_f64();
             let size = row.size_of(order, &self.modal, flow.dimension);
-            let slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
+            let mut slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
+            if let Some(errors) = &self.enclosure {
+                slack += errors.of_row(flow, row, order);
+            }
             let doubtful = value.abs() <= slack;
             self.work.undecidable += u64::from(doubtful);
             let outward = if n >= until && value > 0.0 { -1.0 } else { 1.0 };
@@ -181,7 +240,11 @@ impl<T: Number> Run<'_, T> {
             }
         }
         self.early = self.early_series(mode);
-        let segment = segment(solver, mode, self.modal, self.early.take());
+        self.inherited.clear();
+        if let Some(errors) = &self.enclosure {
+            self.inherited.extend(solver_mode.guards.iter().map(|row| errors.along(flow, row)));
+        }
+        let segment = segment(solver, mode, self.modal, self.early.take(), &self.inherited);
         self.point = Some(segment.point(T::zero(), &mut self.work));
         self.early = segment.early;
     }
@@ -215,7 +278,8 @@ impl<T: Number> Run<'_, T> {
     fn end(&mut self, ending: Ending<T>) {
         if !self.ended {
             self.ended = true;
-            let event = self.event(What::End(ending), self.entered, &self.state);
+            let mut event = self.event(What::End(ending), self.entered, &self.state);
+            event.errors = self.enclosure.as_ref().map(|it| self.errors(it));
             self.queue.push_back(event);
         }
     }
@@ -223,7 +287,13 @@ impl<T: Number> Run<'_, T> {
     fn event(&self, what: What<T>, time: Time<T>, state: &Vector<T>) -> Event<T> {
         let states = self.solver.system.states.len();
         let mode = self.structure.node(self.node).mode;
-        Event { what, time, state: state[..states].to_vec(), mode }
+        Event { what, time, state: state[..states].to_vec(), mode, errors: None }
+    }
+
+    fn errors(&self, enclosure: &Enclosure) -> Errors {
+        let states = self.solver.system.states.len();
+        let rounding = 2.0 * unit::<T>() * self.entered.high.to_f64().abs();
+        Errors { time: enclosure.time() + rounding, state: enclosure.state()[..states].to_vec() }
     }
 
     /// Goes on to the next event.
@@ -237,7 +307,7 @@ impl<T: Number> Run<'_, T> {
         let mode = self.structure.node(self.node).mode;
         let limit = self.limit();
         let Some(point) = self.point.take() else { return self.end(Ending::Undecided) };
-        let segment = segment(self.solver, mode, self.modal, self.early.take());
+        let segment = segment(self.solver, mode, self.modal, self.early.take(), &self.inherited);
         let found = segment.first(&mut self.tracks, point, limit, self.length, &mut self.work);
         match found {
             Found::Lost => self.end(Ending::Undecided),
@@ -245,6 +315,13 @@ impl<T: Number> Run<'_, T> {
                 let limit = if limit > T::zero() { limit } else { T::zero() };
                 let last = segment.point(limit, &mut self.work);
                 (self.entered, self.state) = self.at(&last);
+                let solver::SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
+                if let Some(errors) = &self.enclosure {
+                    let errors = errors.later(flow, limit);
+                    let mut errors = errors.at_given_time(flow, matrix, &self.state);
+                    errors.add_box(&roundings(flow, &last.y));
+                    self.enclosure = Some(errors);
+                }
                 self.end(Ending::Horizon);
             }
             Found::Crossing(point, guards) => {
@@ -278,8 +355,9 @@ impl<T: Number> Run<'_, T> {
         let (time, state) = self.at(&point);
         let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
         self.work.undecidable += u64::from(guards & !tied != 0);
+        let errors = self.errors_at(mode, guards, &point, &state);
         for n in bits(guards).filter(|n| *n >= until) {
-            self.watched(mode, n, until, time, &state);
+            self.watched(mode, n, until, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;
         }
         let ending = guards & low_bits(until);
@@ -293,16 +371,52 @@ impl<T: Number> Run<'_, T> {
             return;
         }
         if self.solver.backward {
-            (self.entered, self.state) = (time, state);
+            (self.entered, self.state, self.enclosure) = (time, state, errors);
             return self.end(Ending::LeavesDomain);
         }
         self.length = 2.0 * point.time.to_f64();
         let guards = self.structure.tied(self.node, guards, false);
         let until = ending.trailing_zeros() as usize;
+        self.enclosure = errors;
         self.fire(Firing { until, guards, at_entry: false }, time, state);
     }
 
-    fn watched(&mut self, mode: usize, n: usize, until: usize, time: Time<T>, state: &Vector<T>) {
+    /// The errors at a crossing, where they are followed.
+    fn errors_at(
+        &self,
+        mode: usize,
+        guards: u64,
+        point: &Point<T>,
+        state: &Vector<T>,
+    ) -> Option<Enclosure> {
+        let enclosure = self.enclosure.as_ref()?;
+        let solver_mode = &self.solver.modes[mode];
+        let first = guards.trailing_zeros() as usize;
+        let inherited = self.inherited[first]
+            * libm::exp(solver_mode.flow.fastest_growth() * point.time.to_f64());
+        let mut errors = enclosure.at_crossing(&Crossing {
+            flow: &solver_mode.flow,
+            matrix: &solver_mode.matrix,
+            guard: &solver_mode.guards[first],
+            y: point.y,
+            elapsed: point.time,
+            state: *state,
+            slack: (point.slack[first] - inherited).max(0.0) + 1e-3 * unit::<T>(),
+            unit: unit::<T>(),
+        });
+        errors.add_box(&roundings(&solver_mode.flow, &point.y));
+        Some(errors)
+    }
+
+    fn watched(
+        &mut self,
+        mode: usize,
+        n: usize,
+        until: usize,
+        time: Time<T>,
+        state: &Vector<T>,
+        errors: Option<&Enclosure>,
+    ) {
         let rising = self.tracks[n].outward > 0.0;
         let counted = match self.solver.system.modes[mode].watch[n - until].direction {
             Direction::Rising => rising,
@@ -310,7 +424,8 @@ impl<T: Number> Run<'_, T> {
             Direction::Both => true,
         };
         if counted {
-            let event = self.event(What::Watch(mode, n - until), time, state);
+            let mut event = self.event(What::Watch(mode, n - until), time, state);
+            event.errors = errors.map(|it| self.errors(it));
             self.queue.push_back(event);
         }
     }
@@ -332,7 +447,17 @@ impl<T: Number> Run<'_, T> {
         let modal_before = solver.modes[mode].flow.modal(&before);
         self.node = next;
         (self.entered, self.state) = (time, state);
-        let event = self.event(What::Until(mode, firing.until), time, &self.state);
+        let mut event = self.event(What::Until(mode, firing.until), time, &self.state);
+        if let Some(errors) = self.enclosure.take() {
+            let reset = &solver.modes[mode].resets[firing.until];
+            let sizes = reset.iter().map(|row| {
+                let terms = row.iter().zip(&before).map(|(a, b)| (a.to_f64() * b.to_f64()).abs());
+                (reset.len() + 2) as f64 * unit::<T>() * terms.sum::<f64>()
+            });
+            let errors = errors.after_reset(reset, &sizes.collect::<Vec<_>>());
+            event.errors = Some(self.errors(&errors));
+            self.enclosure = Some(errors);
+        }
         self.queue.push_back(event);
         self.enter();
         if impact && next == from {
@@ -363,7 +488,12 @@ impl<T: Number> Run<'_, T> {
             let modal = flow.modal(state);
             let value = dot(&condition.orders[order], &modal, flow.dimension).to_f64();
             let size = condition.size_of(order, &modal, flow.dimension);
-            let slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
+            let mut slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
+            if let Some(errors) = &self.enclosure {
+                // The errors before the reset bound those after it for all that follows here.
+                let reset = &solver.modes[mode].resets[firing.until];
+                slack += errors.after_reset(reset, &[]).of_row(flow, condition, order);
+            }
             self.work.undecidable += u64::from(value.abs() <= slack);
             if value > 0.0 {
                 return n;
@@ -385,20 +515,33 @@ impl<T: Number> Iterator for Run<'_, T> {
                 return None;
             }
             self.advance();
+            // What errors may have decided is no event of an enclosed run.
+            if self.enclosure.is_some() && self.work.undecidable > 0 {
+                self.queue.clear();
+                self.ended = false;
+                self.end(Ending::Undecided);
+            }
         }
     }
 }
 
 impl<T: Number> std::iter::FusedIterator for Run<'_, T> {}
 
-fn segment<T: Number>(
-    solver: &Solver<T>,
+fn segment<'a, T: Number>(
+    solver: &'a Solver<T>,
     mode: usize,
     entry: Vector<T>,
     early: Option<Early<T>>,
-) -> Segment<'_, T> {
+    inherited: &'a [f64],
+) -> Segment<'a, T> {
     let mode = &solver.modes[mode];
-    Segment { flow: &mode.flow, rows: &mode.guards, entry, early }
+    Segment { flow: &mode.flow, rows: &mode.guards, entry, early, inherited }
+}
+
+/// What rounding may have done to each entry of a state that is evaluated.
+fn roundings<T: Number>(flow: &Flow<T>, y: &Vector<T>) -> [f64; LARGEST_DIMENSION] {
+    let margin = (flow.dimension + 6) as f64 * unit::<T>();
+    flow.sizes(y).map(|size| margin * size)
 }
 
 fn complete<T: Number>(state: &mut Vector<T>, solver: &Solver<T>, sin: T, cos: T) {

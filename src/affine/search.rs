@@ -1,10 +1,10 @@
 //! The first crossing of a mode's guards.
 //!
-//! A segment is passed in pieces. On each the Bernstein coefficients of a polynomial that lies above
-//! the guard show that it stays negative, or up to where it does. There a crossing is searched:
-//! Newton's method on the guard's own series finds the candidate, and bounds of its derivatives
-//! prove that the guard rises through zero once. What shows neither is looked at in shorter
-//! pieces. See the page docs/ROUNDING.md for what rounding may take.
+//! A segment is passed in pieces. On each the Bernstein coefficients of a polynomial that lies
+//! above the guard show that it stays negative, or up to where it does. There a crossing is
+//! searched: Newton's method on the guard's own series finds the candidate, and bounds of its
+//! derivatives prove that the guard rises through zero once. What shows neither is looked at in
+//! shorter pieces. See the page docs/ROUNDING.md for what rounding may take.
 
 use super::flow::{Flow, ModalRow, ORDERS, Vector, unit};
 use super::hull;
@@ -42,6 +42,8 @@ pub(super) struct Segment<'a, T> {
     pub entry: Vector<T>,
     /// The guards' Taylor series at entry, whose structural zeros are exact.
     pub early: Option<Early<T>>,
+    /// What errors made before the segment may do to each guard; empty where they are not followed.
+    pub inherited: &'a [f64],
 }
 
 /// Taylor coefficients of the guards, good up to a time.
@@ -107,6 +109,11 @@ impl<T: Number> Segment<'_, T> {
             }
             _ => self.evaluate(&mut point),
         }
+        if !self.inherited.is_empty() {
+            let growth = libm::exp(self.flow.fastest_growth() * time.to_f64().abs());
+            let errors = point.slack.iter_mut().zip(self.inherited);
+            errors.for_each(|(slack, inherited)| *slack += inherited * growth);
+        }
         point
     }
 
@@ -135,6 +142,9 @@ impl<T: Number> Segment<'_, T> {
         for _ in 0..MOST_PIECES {
             if left.time >= limit {
                 return Found::Nothing;
+            }
+            if work.undecidable > 0 && !self.inherited.is_empty() {
+                return Found::Lost;
             }
             let (right, length) = self.right_end(tracks, &left, limit, most, work);
             work.pieces += 1;
@@ -202,8 +212,8 @@ impl<T: Number> Segment<'_, T> {
         length
     }
 
-    /// A length a little beyond the root that the first two terms of a guard suggest, if it begins at
-    /// zero and turns back.
+    /// A length a little beyond the root that the first two terms of a guard suggest, if it begins
+    /// at zero and turns back.
     fn near_root(&self, track: &Track, orders: &[T; 4]) -> f64 {
         let (Some(first), Some(second)) = (orders.get(track.zeros), orders.get(track.zeros + 1))
         else {
@@ -217,7 +227,8 @@ impl<T: Number> Segment<'_, T> {
         }
     }
 
-    /// The share of a piece on which all guards are proved to stay negative; none if it is all of it.
+    /// The share of a piece on which all guards are proved to stay negative; none if it is all of
+    /// it.
     fn clear_share(
         &self,
         tracks: &[Track],

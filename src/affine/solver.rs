@@ -21,6 +21,8 @@ pub struct Solver<T> {
 #[derive(Clone, Debug)]
 pub(super) struct SolverMode<T> {
     pub flow: Flow<T>,
+    /// M.
+    pub matrix: Vec<Vector<T>>,
     /// Those of `until`, then those of `watch`.
     pub guards: Vec<ModalRow<T>>,
     /// The resets of `until`.
@@ -84,6 +86,7 @@ impl<T: Number> Solver<T> {
             let resets = mode.until.iter().map(|it| it.reset.iter().map(numbers).collect());
             SolverMode {
                 flow: flows[n].clone(),
+                matrix: mode.matrix.iter().map(numbers).collect(),
                 guards: guards.map(|guard| row(guard, n)).collect(),
                 resets: resets.collect(),
                 conditions: conditions.collect(),

@@ -4,6 +4,7 @@
 //! In each mode z' = M z; a guard is a row w, with the value w z; a reset is a matrix R, z+ = R z.
 
 use dashu_ratio::RBig;
+use std::collections::BTreeMap;
 
 /// A row of exact coefficients, one for each entry of z.
 pub type Row = Vec<RBig>;
@@ -22,6 +23,8 @@ pub struct System {
     pub trouble: Vec<String>,
     /// Where it is from, or nothing.
     pub source: String,
+    /// The values of its parameters.
+    pub parameters: BTreeMap<String, f64>,
     /// The names of the states.
     pub states: Vec<String>,
     /// By what each state is divided before any norm.

@@ -4,6 +4,7 @@ mod brute;
 mod files;
 mod known;
 mod oscillator;
+mod tables;
 
 use crate::double_double::DoubleDouble;
 use percuss::affine::{Ending, Event, Solver, System, What};
@@ -31,6 +32,7 @@ fn name<T>(system: &System, event: &Event<T>) -> String {
     match &event.what {
         What::Until(mode, index) => system.modes[*mode].until[*index].name.clone(),
         What::Watch(mode, index) => system.modes[*mode].watch[*index].name.clone(),
+        What::Start => String::new(),
         What::End(Ending::Horizon) => "end".to_owned(),
         What::End(Ending::Accumulation(..)) => "accumulation".to_owned(),
         What::End(Ending::LeavesDomain) => "leaves-domain".to_owned(),

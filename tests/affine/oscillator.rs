@@ -5,7 +5,7 @@ use percuss::affine::{SystemFile, What};
 use percuss::{Model, Parameters, Start};
 use std::fmt::Write as _;
 
-const TEXT: &str = include_str!("oscillator.system.toml");
+const TEXT: &str = include_str!("../../validation/systems/percussive-oscillator.system.toml");
 
 /// Orbits that settle: errors die out, and what is left is rounding.
 const SETTLED: [(f64, f64, f64, f64); 3] =
@@ -14,7 +14,7 @@ const SETTLED: [(f64, f64, f64, f64); 3] =
 #[test]
 fn the_oscillator_as_a_system_has_the_events_of_its_own_solver() {
     for (a, b, xi, omega) in SETTLED {
-        let mut file = SystemFile::read("oscillator.system.toml", TEXT).unwrap();
+        let mut file = SystemFile::read("percussive-oscillator.system.toml", TEXT).unwrap();
         let mut parameters = "[parameters]\n".to_owned();
         for (name, value) in [("a", a), ("b", b), ("xi", xi), ("frequency", omega)] {
             writeln!(parameters, "{name} = {value:?}").unwrap();

@@ -54,8 +54,8 @@ impl Engine for Heun {
             t = if length < task.span - t { t + length } else { task.span };
             walk.work.steps += 1;
             if let Some(guard) = found {
-                (phase, state) = walk.equations.switch(phase, guard, &state);
-                outcome.events.push(Event { phase, elapsed: t, state });
+                (phase, state) = walk.equations.switch(phase, guard, t, &state);
+                outcome.events.push(Event { event: guard, mode: phase, elapsed: t, state });
             }
         }
         (outcome.end, outcome.work) = (state, walk.work);
@@ -89,7 +89,7 @@ impl Walk {
         length: f64,
     ) -> Option<usize> {
         let after = self.step(phase, t, state, length);
-        let guards = self.equations.guards(phase, &after);
+        let guards = self.equations.guards(phase, t + length, &after);
         let rates = self.equations.rates(phase, t + length, &after);
         (0..guards.len()).find(|k| guards[*k] > 0.0 && rates[*k] > 0.0)
     }

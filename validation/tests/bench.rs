@@ -82,7 +82,7 @@ fn an_engine_that_is_told_its_events_makes_the_same_run() {
 #[test]
 fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
     let course = course("impact-into-progression");
-    let none = Script::of(course.task.phase, &[]);
+    let none = Script::of(&[]);
     let limits = Limits::default();
     let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
     for engine in integrators {

@@ -6,7 +6,7 @@ use clap::Command;
 use percuss_validation::cli::command;
 
 /// Each verb with flags that make it complete; a flag under test takes the place of its own pair.
-const VERBS: [(&str, &[(&str, &str)]); 21] = [
+const VERBS: [(&str, &[(&str, &str)]); 23] = [
     ("simulate", &[("--periods", "1")]),
     ("poincare", &[("--transient", "1"), ("--periods", "1")]),
     ("lyapunov", &[("--transient", "1"), ("--periods", "1")]),
@@ -36,6 +36,8 @@ const VERBS: [(&str, &[(&str, &str)]); 21] = [
     ("validate", &[]),
     ("engines", &[]),
     ("cases", &[]),
+    ("systems", &[]),
+    ("events", &[("SYSTEM", "bouncing-ball"), ("--until", "1")]),
     ("sweep run", &[("--plan", "no.toml"), ("--out", "/proc/nowhere")]),
     ("sweep status", &[("--plan", "no.toml"), ("--out", "/proc/nowhere")]),
     ("sweep merge", &[("--plan", "no.toml"), ("--out", "/proc/nowhere"), ("--output", "a.npz")]),
@@ -83,7 +85,11 @@ const ROWS: &[Row] = &[
     (&[], "--problem", &["/no/such.toml", "/"], "accepted is a readable file"),
     (&["simulate"], "--periods", INTEGERS, "0 to 1000000000"),
     (&["simulate"], "--events", INTEGERS, "an integer, 0 to"),
-    (&["simulate"], "--until", NUMBERS, "at or after the start"),
+    (&["simulate", "events"], "--until", NUMBERS, "at or after the start"),
+    (&["events"], "--events", INTEGERS, "an integer, 1 to"),
+    (&["events"], "--digits", WORDS, "17, 25"),
+    (&["events"], "--set", &["", "x", "g=", "g=nan"], "NAME=VALUE with a finite number"),
+    (&["events"], "--start", &["/no/such.toml", "/"], "accepted is a readable file"),
     (&["simulate"], "--samples", INTEGERS, "1 to 4294967295"),
     (&["simulate"], "--max-periods", INTEGERS, "1 to 1000000000"),
     (&["poincare", "lyapunov"], "--periods", INTEGERS, "1 to 1000000000"),

@@ -1,7 +1,7 @@
 //! The JSON that the program writes, held to the schemas of the repository.
 
 use crate::support;
-use crate::support::stdout;
+use crate::support::{run, stdout, text};
 use serde_json::Value;
 use std::path::Path;
 
@@ -39,20 +39,20 @@ fn simulate_counts_touches_that_rounding_does_not_decide() {
     let touch = "simulate --until 3 --a 0 --b=-1 --g 0 --p=-0.5 --y 1 --q 0 --format json";
     for more in ["", " --samples 4"] {
         let line = format!("{touch}{more}");
-        let output = support::run(&line.split(' ').collect::<Vec<_>>());
+        let output = run(&line.split(' ').collect::<Vec<_>>());
         assert_eq!(output.status.code(), Some(0));
-        let value = json(&support::text(&output.stdout));
+        let value = json(&text(&output.stdout));
         assert_valid("simulate.schema.json", &value);
         let count = value["undecidable"].as_u64().expect("a number");
         assert!(count > 0);
-        let said = support::text(&output.stderr);
+        let said = text(&output.stderr);
         assert!(said.contains(&format!("percuss: {count} touch")), "{said}");
     }
     // A little lower it passes below.
     let line = touch.replace("-0.5", "-0.5000001");
-    let output = support::run(&line.split(' ').collect::<Vec<_>>());
-    assert_eq!(json(&support::text(&output.stdout)).get("undecidable"), None);
-    assert!(!support::text(&output.stderr).contains("touch"));
+    let output = run(&line.split(' ').collect::<Vec<_>>());
+    assert_eq!(json(&text(&output.stdout)).get("undecidable"), None);
+    assert!(!text(&output.stderr).contains("touch"));
 }
 
 #[test]
@@ -83,6 +83,31 @@ fn engines() {
         "{csv}"
     );
     assert_eq!(csv.lines().count(), 1 + value["engines"].as_array().map_or(0, Vec::len));
+}
+
+#[test]
+fn systems() {
+    let value = json(&stdout(&["systems", "--format", "json"]));
+    assert_valid("systems.schema.json", &value);
+    let csv = stdout(&["systems"]);
+    assert!(
+        csv.starts_with("name,states,modes,events,trouble,source\nbouncing-ball,x v,"),
+        "{csv}"
+    );
+    assert_eq!(csv.lines().count(), 1 + value["systems"].as_array().map_or(0, Vec::len));
+}
+
+#[test]
+fn events_of_a_system() {
+    let ball = ["events", "bouncing-ball", "--format", "json"];
+    let value = json(&stdout(&[&ball[..], &["--events", "3"]].concat()));
+    assert_valid("events.schema.json", &value);
+    assert_eq!(value["rows"][3]["state"]["v"], "0.18750000000000000");
+    assert!(value["accumulation"].is_null());
+    let output = run(&[&ball[..], &["--until", "9"]].concat());
+    let value = json(&text(&output.stdout));
+    assert_valid("events.schema.json", &value);
+    assert!(value["accumulation"]["latest"].as_str().is_some_and(|it| it.starts_with('3')));
 }
 
 #[test]
@@ -138,9 +163,9 @@ fn lyapunov() {
         } else {
             [&usual[..], more].concat()
         };
-        let output = support::run(&arguments);
+        let output = run(&arguments);
         assert!(output.status.success(), "{arguments:?}");
-        let value = json(&support::text(&output.stdout));
+        let value = json(&text(&output.stdout));
         assert_valid("lyapunov.schema.json", &value);
     }
 }
@@ -201,9 +226,9 @@ fn report() {
 
 /// stdout as JSON of a run that ends with `code`; what it says on stderr is not looked at.
 fn json_of(arguments: &[&str], code: i32) -> Value {
-    let output = support::run(arguments);
-    assert_eq!(output.status.code(), Some(code), "{}", support::text(&output.stderr));
-    json(&support::text(&output.stdout))
+    let output = run(arguments);
+    assert_eq!(output.status.code(), Some(code), "{}", text(&output.stderr));
+    json(&text(&output.stdout))
 }
 
 #[test]
@@ -333,16 +358,16 @@ fn bench_record() {
 fn sweep_status() {
     let folder = tempfile::tempdir().expect("a folder");
     let plan = folder.path().join("plan.toml");
-    let text = "[sweep]\nverb = \"lyapunov\"\nshards = 3\n[fixed]\ntransient = 1\nperiods = 2\n\
+    let plan_text = "[sweep]\nverb = \"lyapunov\"\nshards = 3\n[fixed]\ntransient = 1\nperiods = 2\n\
                 [[axis]]\nparameter = \"b\"\nfrom = 0.1\nto = 0.2\nsteps = 5\n";
-    std::fs::write(&plan, text).expect("written");
+    std::fs::write(&plan, plan_text).expect("written");
     let (plan, out) = (plan.display().to_string(), folder.path().join("out"));
     let words = |step: &'static str| ["sweep", step, "--plan", &plan, "--out"].map(str::to_owned);
     let status = |code: i32| {
         let words = [&words("status")[..], &[out.display().to_string()]].concat();
-        let output = support::run(&words.iter().map(String::as_str).collect::<Vec<_>>());
+        let output = run(&words.iter().map(String::as_str).collect::<Vec<_>>());
         assert_eq!(output.status.code(), Some(code));
-        let value = json(&support::text(&output.stdout));
+        let value = json(&text(&output.stdout));
         assert_valid("sweep-status.schema.json", &value);
         value
     };

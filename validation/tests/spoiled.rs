@@ -34,7 +34,7 @@ const fn spoiled(name: &'static str, change: fn(&mut Outcome)) -> Spoiled {
 
 /// Two events that are not there, from this time on.
 fn invent(outcome: &mut Outcome, at: usize, elapsed: f64) {
-    let event = |phase, elapsed| Event { phase, elapsed, state: [0.0; 4] };
+    let event = |phase, elapsed| Event { event: 0, mode: phase, elapsed, state: [0.0; 4] };
     let pair = [event(Phase::Contact, elapsed), event(Phase::NoContact, elapsed + 1e-9)];
     outcome.events.splice(at..at, pair);
 }

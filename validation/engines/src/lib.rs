@@ -6,3 +6,4 @@
 pub mod case;
 pub mod engine;
 pub mod number;
+pub mod system;

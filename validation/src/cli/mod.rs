@@ -8,6 +8,7 @@ mod compact;
 mod completions;
 mod endless;
 mod engines;
+mod events;
 mod format;
 mod list;
 mod lyapunov;
@@ -23,6 +24,7 @@ mod reports;
 mod reproduce;
 mod simulate;
 mod sweep;
+mod systems;
 mod terminal;
 mod validate;
 mod work;
@@ -75,6 +77,8 @@ enum Verb {
     Continue(Box<orbits::follow::Arguments>),
     Sweep(sweep::Arguments),
     Cases(cases::Arguments),
+    Events(events::Arguments),
+    Systems(systems::Arguments),
     Completions(completions::Arguments),
     Man(man::Arguments),
 }
@@ -132,6 +136,8 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Continue(branch) => orbits::follow::run(branch),
         Verb::Sweep(sweep) => sweep::run(sweep, arguments.threads),
         Verb::Cases(cases) => cases::run(cases).map(|()| DONE),
+        Verb::Events(events) => events::run(events),
+        Verb::Systems(systems) => systems::run(systems).map(|()| DONE),
         Verb::Completions(completions) => completions::run(completions).map(|()| DONE),
         Verb::Man(man) => man::run(man).map(|()| DONE),
     };

@@ -9,7 +9,6 @@
 
 use super::Event;
 use super::location::GuardRise;
-use percuss::Phase;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
@@ -29,15 +28,11 @@ struct AnswerLines {
 }
 
 impl Script {
-    /// The crossings of a run that began in `phase` and found these events.
+    /// The crossings of a run that found these events.
     #[must_use]
-    pub fn of(phase: Phase, events: &[Event]) -> Self {
-        let before = std::iter::once(phase).chain(events.iter().map(|event| event.phase));
-        let crossing = |(before, event): (Phase, &Event)| GuardRise {
-            t: event.elapsed,
-            guard: usize::from(before == Phase::Contact && event.phase == Phase::NoContact),
-        };
-        let crossings = before.zip(events).map(crossing).collect();
+    pub fn of(events: &[Event]) -> Self {
+        let crossing = |event: &Event| GuardRise { t: event.elapsed, guard: event.event };
+        let crossings = events.iter().map(crossing).collect();
         Self(Rc::new(AnswerLines { crossings, read: Cell::new(false) }))
     }
 

@@ -1,6 +1,6 @@
 //! An engine's answer, checked for completeness before anything is measured of it.
 
-use super::{Accuracy, Engine, Failure, Limits, Outcome, Task, contain};
+use super::{Accuracy, Engine, Failure, Limits, Outcome, SystemOutcome, SystemTask, Task, contain};
 
 /// Runs an engine, contains its panics and checks that its answer is complete.
 ///
@@ -13,13 +13,28 @@ pub fn answer(
     limits: &Limits,
 ) -> Result<Outcome, Failure> {
     let outcome = contain(|| engine.run(task, accuracy, limits))?;
-    complete(&outcome, task)?;
+    complete(&outcome, task.grid.count)?;
+    Ok(outcome)
+}
+
+/// As [`answer`], of any system.
+///
+/// # Errors
+/// The run's failure, or what its answer lacks.
+pub fn answer_system(
+    engine: &dyn Engine,
+    task: &SystemTask,
+    accuracy: Accuracy,
+    limits: &Limits,
+) -> Result<SystemOutcome, Failure> {
+    let outcome = contain(|| engine.run_system(task, accuracy, limits))?;
+    complete(&outcome, task.samples.len())?;
     Ok(outcome)
 }
 
 /// Checks that there is a sample for each instant asked for, and that events follow each other.
-fn complete(outcome: &Outcome, task: &Task) -> Result<(), Failure> {
-    let (given, asked) = (outcome.samples.len(), task.grid.count);
+fn complete<M, S>(outcome: &Outcome<M, S>, asked: usize) -> Result<(), Failure> {
+    let given = outcome.samples.len();
     if given != asked {
         return Err(Failure::new(format!("gave {given} samples where {asked} were asked for")));
     }
@@ -63,9 +78,9 @@ mod tests {
     fn missing_and_surplus_samples_are_refused() {
         let task = task();
         let mut outcome = whole(&task);
-        assert_eq!(complete(&outcome, &task), Ok(()));
+        assert_eq!(complete(&outcome, COUNT), Ok(()));
         outcome.samples.push([0.0; 4]);
-        let refused = |outcome: &Outcome| complete(outcome, &task).map_err(|it| it.0);
+        let refused = |outcome: &Outcome| complete(outcome, COUNT).map_err(|it| it.0);
         let said = |count| Err(format!("gave {count} samples where {COUNT} were asked for"));
         assert_eq!(refused(&outcome), said(COUNT + 1));
         outcome.samples.truncate(2);
@@ -78,10 +93,10 @@ mod tests {
         let outcome = whole(&task);
         let late = outcome.events.last().map_or(0.0, |it| it.elapsed);
         for elapsed in [f64::NAN, f64::INFINITY, 0.5 * late] {
-            let event = Event { phase: Phase::Contact, elapsed, state: [0.0; 4] };
+            let event = Event { event: 0, mode: Phase::Contact, elapsed, state: [0.0; 4] };
             let events = [outcome.events.as_slice(), &[event]].concat();
             let odd = Outcome { events, ..outcome.clone() };
-            assert!(complete(&odd, &task).is_err(), "{elapsed}");
+            assert!(complete(&odd, COUNT).is_err(), "{elapsed}");
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The exact solver, as an engine among others.
 
+use super::field::event_between;
 use super::meter::{Failure, Limits};
 use super::{Accuracy, Colours, Declaration, Engine, Event, Location, Outcome, Role, Stepping};
 use super::{REFERENCE, Task, Work, pins};
@@ -29,6 +30,7 @@ impl Engine for Exact {
         let mut outcome = Outcome { events: Vec::with_capacity(USUAL), ..Outcome::default() };
         let mut run = task.problem.model.trajectory(task.problem.entry).until(task.horizon);
         let mut elapsed = TwoWord::ZERO;
+        let mut before = task.phase;
         loop {
             let (duration, phase, state) = match passed(task, &mut run, &mut outcome.samples) {
                 Some(PassedPhase::Switch { duration, phase, state }) => (duration, phase, state),
@@ -42,7 +44,9 @@ impl Engine for Exact {
                 None => break,
             };
             elapsed = elapsed.plus(duration);
-            outcome.events.push(Event { phase, elapsed: elapsed.value(), state });
+            let event = event_between(before, phase);
+            outcome.events.push(Event { event, mode: phase, elapsed: elapsed.value(), state });
+            before = phase;
             if outcome.events.len() > limits.events {
                 return Err(Failure::new(format!("gave up after {} events", limits.events)));
             }

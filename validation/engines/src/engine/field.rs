@@ -7,38 +7,49 @@
 //! defines (p = q + g, and q = 0 or 1 - 2 xi y where the trial force is known), always by moving q
 //! and p, because y = (1 - q)/(2 xi) would multiply what is left of the error by 1/(2 xi).
 
+use super::equations::{Entered, Equations, NO_GUARD};
 use percuss::{Parameters, Phase};
 
 /// Number of guards; a phase that has one leaves the other at -1.
 pub const GUARDS: usize = 2;
-pub(super) const NO_GUARD: f64 = -1.0;
 
-/// The equations of motion in some co-ordinates, in the time elapsed since the start.
-pub trait Equations: Copy {
+/// How far from its surface rounding may put the beginning of a phase, relative to displacements.
+const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
+
+/// The oscillator in some co-ordinates.
+pub(super) trait Coordinates:
+    Equations<Mode = Phase, State = [f64; 4], Guards = [f64; GUARDS]>
+{
+    /// Whether these are the paper's bounded co-ordinates, in which the model is one system of
+    /// many.
+    const BOUNDED: bool;
+
     /// The model's equations; `angle` is omega tau + phi at the start.
     fn of(parameters: &Parameters, angle: f64) -> Self;
 
     /// p, y, q and v in these co-ordinates.
     fn of_bounded(&self, state: &[f64; 4]) -> [f64; 4];
+}
 
-    /// These co-ordinates as p, y, q and v.
-    fn bounded(&self, u: &[f64; 4]) -> [f64; 4];
+/// Which of a phase's guards has ended it, by the phase that follows.
+#[must_use]
+pub fn event_between(phase: Phase, next: Phase) -> usize {
+    usize::from(phase == Phase::Contact && next == Phase::NoContact)
+}
 
-    /// The right-hand side.
-    fn derivatives(&self, phase: Phase, t: f64, u: &[f64], du: &mut [f64]);
+/// How many guards a phase has: the gap in flight; the trial force at 1 and at 0 in contact; the
+/// trial force at 1 in progression.
+pub(super) fn count(phase: Phase) -> usize {
+    if phase == Phase::Contact { GUARDS } else { 1 }
+}
 
-    /// The derivatives' derivative along `w`.
-    fn jacobian_product(&self, phase: Phase, w: &[f64], dw: &mut [f64]);
-
-    /// The phase's guards, [`GUARDS`] of them: the gap in flight; the trial force at 1 and at 0 in
-    /// contact; the trial force at 1 in progression.
-    fn guards(&self, phase: Phase, u: &[f64]) -> [f64; GUARDS];
-
-    /// The guards' rates by the equations of motion.
-    fn rates(&self, phase: Phase, t: f64, u: &[f64]) -> [f64; GUARDS];
-
-    /// The phase that begins where a guard has risen to zero, with the state put on its surface.
-    fn switch(&self, phase: Phase, guard: usize, u: &[f64]) -> (Phase, [f64; 4]);
+/// A phase begins on a surface, but for the rounding of its displacements. Separation begins on a
+/// double zero, and a gap of some roundings that seems to close is none.
+pub(super) fn settle(u: &[f64], guards: &mut [f64; GUARDS]) {
+    let rounding = ROUNDINGS * u.iter().fold(1.0, |a: f64, b| a.max(b.abs()));
+    for guard in guards.iter_mut().filter(|guard| guard.abs() <= rounding) {
+        *guard = 0.0;
+    }
 }
 
 /// The phase that follows where a guard has risen to zero, and the trial force that is known there.
@@ -64,6 +75,13 @@ pub struct Oscillator {
 }
 
 impl Oscillator {
+    /// The model's equations; `angle` is omega tau + phi at the start.
+    #[must_use]
+    pub fn of(parameters: &Parameters, angle: f64) -> Self {
+        let Parameters { a, b, xi, omega, g, .. } = *parameters;
+        Self { a, b, omega, g, two_xi: 2.0 * xi, angle }
+    }
+
     fn force(&self, t: f64) -> f64 {
         self.a * (self.omega * t + self.angle).cos() + self.b
     }
@@ -73,18 +91,33 @@ impl Oscillator {
     }
 }
 
-impl Equations for Oscillator {
+impl Coordinates for Oscillator {
+    const BOUNDED: bool = true;
+
     fn of(parameters: &Parameters, angle: f64) -> Self {
-        let Parameters { a, b, xi, omega, g, .. } = *parameters;
-        Self { a, b, omega, g, two_xi: 2.0 * xi, angle }
+        Self::of(parameters, angle)
     }
 
     fn of_bounded(&self, state: &[f64; 4]) -> [f64; 4] {
         *state
     }
+}
 
-    fn bounded(&self, u: &[f64; 4]) -> [f64; 4] {
-        *u
+impl Equations for Oscillator {
+    type Mode = Phase;
+    type State = [f64; 4];
+    type Guards = [f64; GUARDS];
+
+    fn dimension(&self) -> usize {
+        4
+    }
+
+    fn most_guards(&self) -> usize {
+        GUARDS
+    }
+
+    fn count(&self, phase: Phase) -> usize {
+        count(phase)
     }
 
     /// Eqs. (11), (12), (13) and the drift's velocity.
@@ -115,7 +148,7 @@ impl Equations for Oscillator {
         dw[..4].copy_from_slice(&rates);
     }
 
-    fn guards(&self, phase: Phase, u: &[f64]) -> [f64; GUARDS] {
+    fn guards(&self, phase: Phase, _: f64, u: &[f64]) -> [f64; GUARDS] {
         match phase {
             Phase::NoContact => [u[0] - u[2] - self.g, NO_GUARD],
             Phase::Contact => [self.trial_force(u) - 1.0, -self.trial_force(u)],
@@ -133,13 +166,17 @@ impl Equations for Oscillator {
         if phase == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
     }
 
-    fn switch(&self, phase: Phase, guard: usize, u: &[f64]) -> (Phase, [f64; 4]) {
-        let mut state = [u[0], u[1], u[2], u[3]];
+    fn switch(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
+        let mut state = *u;
         let (next, imposed) = successor(phase, guard, self.trial_force(u));
         if let Some(force) = imposed {
             state[2] = force - self.two_xi * state[1];
         }
         state[0] = state[2] + self.g;
         (next, state)
+    }
+
+    fn settle(&self, _: Entered, u: &[f64], guards: &mut [f64; GUARDS]) {
+        settle(u, guards);
     }
 }

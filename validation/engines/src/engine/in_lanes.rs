@@ -1,11 +1,11 @@
 //! The exact solver's ensembles, as far as an outcome goes: switches and the end of a run, no
 //! samples.
 
-use super::{Event, Outcome, Task, Work};
+use super::{Event, Outcome, Task, Work, event_between};
 use crate::case::Problem;
 use percuss::dynamics::ensemble::{Member, Watcher, follow_by};
 use percuss::lanes::Instructions;
-use percuss::{Endless, Entry, Instant};
+use percuss::{Endless, Entry, Instant, Phase};
 use std::ops::ControlFlow;
 
 /// What a task asks for, of a motion in lanes.
@@ -13,6 +13,7 @@ struct LaneRecord {
     outcome: Outcome,
     start: Instant,
     omega: f64,
+    phase: Phase,
 }
 
 impl Watcher for LaneRecord {
@@ -24,8 +25,10 @@ impl Watcher for LaneRecord {
 
     fn enter(&mut self, phase: &Entry) {
         let [p, y, q] = phase.point();
+        let before = std::mem::replace(&mut self.phase, phase.phase());
         self.outcome.events.push(Event {
-            phase: phase.phase(),
+            event: event_between(before, self.phase),
+            mode: self.phase,
             elapsed: phase.instant.since(&self.start, self.omega).value(),
             state: [p, y, q, phase.v()],
         });
@@ -38,7 +41,7 @@ pub fn run_in_lanes(by: Instructions, task: &Task, times: usize) -> Vec<Outcome>
     let Problem { model, entry, .. } = &task.problem;
     let (done, _) = follow_by(by, times, |_| {
         let (start, omega) = (entry.instant, task.parameters.omega);
-        let watcher = LaneRecord { outcome: Outcome::default(), start, omega };
+        let watcher = LaneRecord { outcome: Outcome::default(), start, omega, phase: task.phase };
         let (first, horizon) = (task.horizon, Some(task.horizon));
         Member { model, entry: *entry, first, horizon, watcher }
     });

@@ -1,66 +1,178 @@
-//! Phases joined at their switches: what every integrator's run has in common.
+//! Modes joined at their events: what every integrator's run has in common.
 
-use super::field::Equations;
+use super::equations::{Entered, Equations};
+use super::field::Coordinates;
 use super::meter::{Failure, Meter};
 use super::sampler::Sampler;
-use super::{Event, Outcome, Task};
-use percuss::Phase;
+use super::trace::Watched;
+use super::{Ended, Event, Outcome, Task, shortest_time};
+use std::f64::consts::TAU;
 
-/// A state of a run, in the co-ordinates of its equations.
+/// The times in which a system changes; libraries that have to be told how long a step may be are
+/// told by these.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moment {
-    /// Time since the start.
-    pub(super) t: f64,
-    /// When the phase began.
-    pub(super) began: f64,
-    pub(super) phase: Phase,
-    pub(super) state: [f64; 4],
+pub(super) struct Times {
+    /// The forcing period, or what stands for it.
+    pub(super) period: f64,
+    /// The shortest turn of an oscillation.
+    pub(super) turn: f64,
+    /// The unit of fixed steps.
+    pub(super) shortest: f64,
 }
 
-/// How a stretch of one phase ended.
+/// A run that an integrator is asked for, in the time elapsed since its start.
+pub(super) struct Course<'a, E: Equations> {
+    pub(super) equations: E,
+    pub(super) mode: E::Mode,
+    pub(super) state: E::State,
+    pub(super) span: f64,
+    /// When the state is taken.
+    pub(super) samples: Vec<f64>,
+    pub(super) times: Times,
+    pub(super) watched: Option<&'a Watched>,
+}
+
+impl<'a, E: Coordinates> Course<'a, E> {
+    /// The course of the oscillator that a task asks for.
+    pub(super) fn of(task: &'a Task, equations: E) -> Self {
+        let period = task.problem.model.period();
+        Self {
+            equations,
+            mode: task.phase,
+            state: equations.of_bounded(&task.state),
+            span: task.span,
+            samples: task.sample_times(),
+            times: Times { period, turn: TAU, shortest: shortest_time(&task.parameters) },
+            watched: task.watched.as_ref(),
+        }
+    }
+}
+
+/// A state of a run, in the co-ordinates of its equations.
+#[derive(Debug)]
+pub(super) struct Moment<E: Equations> {
+    /// Time since the start.
+    pub(super) t: f64,
+    /// When the mode began.
+    pub(super) began: f64,
+    pub(super) mode: E::Mode,
+    pub(super) state: E::State,
+    /// What is known of the mode's entry.
+    pub(super) entered: Entered,
+}
+
+impl<E: Equations> Clone for Moment<E> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<E: Equations> Copy for Moment<E> {}
+
+impl<E: Equations> Moment<E> {
+    /// The start of a run.
+    pub(super) fn start(equations: &E, mode: E::Mode, state: E::State) -> Self {
+        let entered = equations.enter(None, mode, 0.0, &state);
+        Self { t: 0.0, began: 0.0, mode, state, entered }
+    }
+
+    /// The mode that begins where a guard has ended this one.
+    fn after(&self, equations: &E, t: f64, guard: usize, state: &E::State) -> Self {
+        let (mode, state) = equations.switch(self.mode, guard, t, state);
+        let entered = equations.enter(Some((self.mode, guard)), mode, t, &state);
+        Self { t, began: t, mode, state, entered }
+    }
+}
+
+/// How a stretch of one mode ended.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum StretchEnd {
+pub(super) enum StretchEnd<S> {
     /// A guard has risen to zero.
-    Switch { t: f64, guard: usize, state: [f64; 4] },
-    /// The phase goes on.
-    Inside { t: f64, state: [f64; 4] },
+    Switch { t: f64, guard: usize, state: S },
+    /// The mode goes on.
+    Inside { t: f64, state: S },
 }
 
 /// Less than this share of the whole run is no step for any library; the state does not change in
 /// it.
 const SHORTEST: f64 = 16.0 * f64::EPSILON;
 
-/// Runs a task by stretches of one phase, each from the moment given to a switch or to some later
-/// time in the same phase, the end of the task at the latest.
+/// Runs a course by stretches of one mode, each from the moment given to an event or to some later
+/// time in the same mode, the end of the course at the latest.
 pub(super) fn join<E: Equations>(
-    task: &Task,
-    equations: &E,
-    meter: &Meter,
-    mut stretch: impl FnMut(&Moment, &mut Sampler) -> Result<StretchEnd, Failure>,
-) -> Result<Outcome, Failure> {
+    course: &Course<'_, E>,
+    meter: &Meter<E::Mode>,
+    mut stretch: impl FnMut(&Moment<E>, &mut Sampler<E::State>) -> Result<StretchEnd<E::State>, Failure>,
+) -> Result<Outcome<E::Mode, E::State>, Failure> {
+    let Course { equations, span, .. } = course;
     let mut outcome = Outcome::default();
-    task.watched.iter().for_each(|watched| meter.watch(watched));
-    let mut sampler = Sampler::new(task.sample_times());
-    let mut now =
-        Moment { t: 0.0, began: 0.0, phase: task.phase, state: equations.of_bounded(&task.state) };
+    course.watched.iter().for_each(|watched| meter.watch(watched));
+    let mut sampler = Sampler::new(course.samples.clone());
+    let mut now = Moment::start(equations, course.mode, course.state);
+    let mut instant = Instant::default();
     sampler.take(0.0, |_| Ok::<_, Failure>(now.state))?;
-    while task.span - now.t > SHORTEST * task.span && !meter.has_seen_enough(now.t) {
-        now = match stretch(&now, &mut sampler)? {
+    let goes_on = |now: &Moment<E>| now.entered.fires.is_some() || span - now.t > SHORTEST * span;
+    while goes_on(&now) && !meter.has_seen_enough(now.t) {
+        let ended = match now.entered.fires {
+            Some(guard) => StretchEnd::Switch { t: now.t, guard, state: now.state },
+            None => stretch(&now, &mut sampler)?,
+        };
+        for crossing in sampler.counted.drain(..) {
+            meter.events(outcome.events.len())?;
+            let event = equations.event(now.mode, crossing.guard);
+            let state = equations.reported(&crossing.state);
+            outcome.events.push(Event { event, mode: now.mode, elapsed: crossing.t, state });
+        }
+        now = match ended {
             StretchEnd::Inside { t, state } => Moment { t, state, ..now },
+            StretchEnd::Switch { t, state, .. } if equations.leaves_domain() => {
+                now = Moment { t, state, ..now };
+                outcome.ended = Ended::LeavesDomain;
+                break;
+            }
             StretchEnd::Switch { t, guard, state } => {
                 meter.events(outcome.events.len())?;
                 meter.phase_ended(t);
-                let (phase, state) = equations.switch(now.phase, guard, &state);
-                let bounded = equations.bounded(&state);
-                outcome.events.push(Event { phase, elapsed: t, state: bounded });
-                Moment { t, began: t, phase, state }
+                let next = now.after(equations, t, guard, &state);
+                let event = equations.event(now.mode, guard);
+                let state = equations.reported(&next.state);
+                outcome.events.push(Event { event, mode: next.mode, elapsed: t, state });
+                now = next;
+                if instant.is_crowded(t) {
+                    outcome.ended = Ended::NoProgress;
+                    break;
+                }
+                now
             }
         };
     }
-    outcome.end = equations.bounded(&now.state);
-    let samples = sampler.finish(now.state);
-    outcome.samples = samples.iter().map(|state| equations.bounded(state)).collect();
+    outcome.end = equations.reported(&now.state);
+    outcome.samples = sampler.finish(now.state);
+    for state in &mut outcome.samples {
+        *state = equations.reported(state);
+    }
     outcome.work = meter.work();
     meter.hand_over(&mut outcome);
     Ok(outcome)
+}
+
+/// So many events in one instant end a run.
+const MOST_AT_ONCE: u32 = 64;
+/// Events that are no further apart than this, relative to their time, lie in one instant.
+const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
+
+/// The events of one instant, counted.
+#[derive(Default)]
+struct Instant {
+    last: f64,
+    count: u32,
+}
+
+impl Instant {
+    /// Counts an event; whether it is one too many in its instant.
+    fn is_crowded(&mut self, t: f64) -> bool {
+        self.count = if t - self.last <= ONE_INSTANT * t { self.count + 1 } else { 1 };
+        self.last = t;
+        self.count >= MOST_AT_ONCE
+    }
 }

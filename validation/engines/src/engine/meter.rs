@@ -4,7 +4,6 @@
 //! right-hand side and in the guards: they unwind to [`contain`].
 
 use super::alone::ToldCrossings;
-use super::field::GUARDS;
 use super::trace::{GuardSample, Recorder, Watched};
 use super::{Outcome, Work};
 use percuss::Phase;
@@ -42,7 +41,7 @@ impl Default for Limits {
 }
 
 /// Counts what a run calls and unwinds when a limit is passed.
-pub(super) struct Meter {
+pub(super) struct Meter<M = Phase> {
     limits: Limits,
     began: Instant,
     calls: Cell<u64>,
@@ -50,7 +49,7 @@ pub(super) struct Meter {
     jacobians: Cell<u64>,
     solves: Cell<u64>,
     steps: Cell<u64>,
-    recorder: OnceCell<Recorder>,
+    recorder: OnceCell<Recorder<M>>,
     /// The times of this run's events, if it is made without the harness's own part.
     told: Option<ToldCrossings>,
 }
@@ -58,7 +57,7 @@ pub(super) struct Meter {
 /// How often the clock is looked at, in calls.
 const CLOCK_EVERY: u64 = 4096;
 
-impl Meter {
+impl<M: Copy> Meter<M> {
     pub(super) fn new(limits: &Limits) -> Self {
         let zero = || Cell::new(0);
         Self {
@@ -150,18 +149,18 @@ impl Meter {
         self.recorder.get_or_init(|| Recorder::new(watched));
     }
 
-    /// Counts an evaluation of a phase's guards, and records it where that is wanted.
-    pub(super) fn guards(&self, t: f64, phase: Phase, guards: &[f64; GUARDS]) {
+    /// Counts an evaluation of a mode's guards, and records it where that is wanted.
+    pub(super) fn guards(&self, t: f64, mode: M, guards: &[f64]) {
         self.call();
         if let Some(recorder) = self.recorder.get() {
             for (guard, value) in guards.iter().copied().enumerate() {
-                recorder.look(GuardSample { t, phase, guard, value });
+                recorder.look(GuardSample { t, mode, guard, value });
             }
         }
     }
 
     /// Counts an evaluation of one guard, and records it where that is wanted.
-    pub(super) fn guard(&self, look: GuardSample) {
+    pub(super) fn guard(&self, look: GuardSample<M>) {
         self.call();
         if let Some(recorder) = self.recorder.get() {
             recorder.look(look);
@@ -175,7 +174,7 @@ impl Meter {
         }
     }
 
-    /// Records that a phase has ended at `t`, inside the last step.
+    /// Records that a mode has ended at `t`, inside the last step.
     pub(super) fn phase_ended(&self, t: f64) {
         if let Some(recorder) = self.recorder.get() {
             recorder.back_to(t);
@@ -188,7 +187,7 @@ impl Meter {
     }
 
     /// Hands over what was recorded.
-    pub(super) fn hand_over(&self, outcome: &mut Outcome) {
+    pub(super) fn hand_over<S>(&self, outcome: &mut Outcome<M, S>) {
         if let Some(recorder) = self.recorder.get() {
             recorder.hand_over(outcome);
         }
@@ -252,7 +251,7 @@ mod tests {
     fn limits_unwind_to_a_failure() {
         let limits = Limits { calls: 10, ..Limits::default() };
         let endless = || -> Result<(), Failure> {
-            let meter = Meter::new(&limits);
+            let meter = Meter::<Phase>::new(&limits);
             loop {
                 meter.rhs(&[0.0]);
             }
@@ -264,7 +263,7 @@ mod tests {
     fn a_nan_and_a_panic_are_failures() {
         let limits = Limits::default();
         let not_finite = contain(|| -> Result<(), Failure> {
-            Meter::new(&limits).rhs(&[f64::NAN]);
+            Meter::<Phase>::new(&limits).rhs(&[f64::NAN]);
             Ok(())
         });
         assert_eq!(not_finite, Err(Failure::new("a right-hand side is not finite")));

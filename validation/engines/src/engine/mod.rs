@@ -11,6 +11,7 @@ mod cubic;
 mod declaration;
 mod differential_equations;
 mod diffsol;
+mod equations;
 mod exact;
 mod field;
 mod in_lanes;
@@ -24,6 +25,9 @@ mod original;
 mod pins;
 mod registry;
 mod sampler;
+mod system_task;
+#[cfg(test)]
+mod systems;
 mod trace;
 mod walk;
 #[cfg(test)]
@@ -32,12 +36,15 @@ mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
 pub use alone::Script;
-pub use answer::answer;
+pub use answer::{answer, answer_system};
 pub use declaration::{Colours, Declaration, Location, REFERENCE, Role};
-pub use field::{Equations, GUARDS, Oscillator};
+pub(crate) use equations::NO_GUARD;
+pub use equations::{Entered, Equations, Numbers};
+pub use field::{GUARDS, Oscillator, event_between};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use registry::{add, all, exact, select};
+pub use system_task::{SystemEvent, SystemOutcome, SystemTask};
 pub use trace::{GuardSample, Trace, Watched};
 pub use wrong::{CONTROL, Closed, FAULTY_CONTROL, SOUND, Wrong, faulty, wrong};
 
@@ -81,15 +88,37 @@ pub struct Task {
     pub watched: Option<Watched>,
 }
 
-/// An event as an engine found it: the phase that begins, and the state at that instant.
+/// An event as an engine found it. Modes and states are the oscillator's, or those of any other
+/// system.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Event {
-    /// The phase that begins.
-    pub phase: Phase,
+pub struct Event<M = Phase, S = [f64; 4]> {
+    /// Which of the events of the mode in which it lies: those that end the mode come first, then
+    /// those that are only counted, in the order in which the system names them.
+    pub event: usize,
+    /// The mode that begins; the one that goes on where the event is only counted.
+    pub mode: M,
     /// Time since the start.
     pub elapsed: f64,
-    /// p, y, q and v.
-    pub state: [f64; 4],
+    /// The state as the mode begins; of the oscillator p, y, q and v.
+    pub state: S,
+}
+
+/// How a run ended, in the words of `docs/SYSTEM_FORMAT.md`.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Ended {
+    /// The run reached its horizon, or the end of what is watched.
+    #[default]
+    Horizon,
+    /// So many events lay in one instant that the run makes no progress.
+    NoProgress,
+    /// Infinitely many impacts follow in a time that is enclosed.
+    Accumulation,
+    /// A run back in time came to the boundary of its mode.
+    LeavesDomain,
+    /// A mode was entered where one of its guards is positive already.
+    BeyondGuard,
+    /// The arithmetic has no digits left to decide what comes next.
+    Undecided,
 }
 
 /// What a run costs.
@@ -105,19 +134,34 @@ pub struct Work {
     pub steps: u64,
 }
 
-/// A run that was made.
-#[derive(Clone, Debug, Default)]
-pub struct Outcome {
-    /// The events in the order in which they were found.
-    pub events: Vec<Event>,
+/// A run that was made, of the oscillator or of any other system.
+#[derive(Clone, Debug)]
+pub struct Outcome<M = Phase, S = [f64; 4]> {
+    /// The events in the order of their times.
+    pub events: Vec<Event<M, S>>,
     /// The states on the grid.
-    pub samples: Vec<[f64; 4]>,
-    /// The state at the horizon.
-    pub end: [f64; 4],
+    pub samples: Vec<S>,
+    /// The state at the run's end.
+    pub end: S,
+    /// How it ended.
+    pub ended: Ended,
     /// What it cost.
     pub work: Work,
     /// What was recorded of it, where the task asks for that and the engine can.
-    pub trace: Option<Trace>,
+    pub trace: Option<Trace<M>>,
+}
+
+impl<M, S: Default> Default for Outcome<M, S> {
+    fn default() -> Self {
+        Self {
+            events: Vec::new(),
+            samples: Vec::new(),
+            end: S::default(),
+            ended: Ended::default(),
+            work: Work::default(),
+            trace: None,
+        }
+    }
 }
 
 /// Something that can run a task.
@@ -138,11 +182,24 @@ pub trait Engine: Sync {
         0.0
     }
 
-    /// Runs a task as accurately as asked; what can be asked is its [`Stepping`].
+    /// Runs a task of the oscillator as accurately as asked; what can be asked is its [`Stepping`].
     ///
     /// # Errors
     /// [`Failure`] with the library's reason, or the limit that was passed.
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure>;
+
+    /// Runs a task of any other system, which the oscillator is the special case of.
+    ///
+    /// # Errors
+    /// [`Failure`] with the library's reason, the limit that was passed, or why the engine cannot.
+    fn run_system(
+        &self,
+        _task: &SystemTask,
+        _accuracy: Accuracy,
+        _limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        Err(Failure::new("runs the oscillator alone"))
+    }
 }
 
 impl Task {

@@ -5,7 +5,8 @@
 //! and the same drift come out is the paper's decoupling, tested. At a switch x and z move onto the
 //! surface and v stays, as in the bounded co-ordinates.
 
-use super::field::{Equations, GUARDS, NO_GUARD, successor};
+use super::equations::{Entered, Equations, NO_GUARD};
+use super::field::{Coordinates, GUARDS, count, settle, successor};
 use percuss::{Parameters, Phase};
 
 /// The model in the original co-ordinates.
@@ -30,7 +31,9 @@ impl OriginalOscillator {
     }
 }
 
-impl Equations for OriginalOscillator {
+impl Coordinates for OriginalOscillator {
+    const BOUNDED: bool = false;
+
     fn of(parameters: &Parameters, angle: f64) -> Self {
         let Parameters { a, b, xi, omega, g, .. } = *parameters;
         Self { a, b, omega, g, two_xi: 2.0 * xi, angle }
@@ -40,8 +43,26 @@ impl Equations for OriginalOscillator {
         let [p, y, q, v] = *state;
         [p + v, y, q + v, v]
     }
+}
 
-    fn bounded(&self, u: &[f64; 4]) -> [f64; 4] {
+impl Equations for OriginalOscillator {
+    type Mode = Phase;
+    type State = [f64; 4];
+    type Guards = [f64; GUARDS];
+
+    fn dimension(&self) -> usize {
+        4
+    }
+
+    fn most_guards(&self) -> usize {
+        GUARDS
+    }
+
+    fn count(&self, phase: Phase) -> usize {
+        count(phase)
+    }
+
+    fn reported(&self, u: &[f64; 4]) -> [f64; 4] {
         let [x, y, z, v] = *u;
         [x - v, y, z - v, v]
     }
@@ -67,7 +88,7 @@ impl Equations for OriginalOscillator {
         dw[..4].copy_from_slice(&rates);
     }
 
-    fn guards(&self, phase: Phase, u: &[f64]) -> [f64; GUARDS] {
+    fn guards(&self, phase: Phase, _: f64, u: &[f64]) -> [f64; GUARDS] {
         match phase {
             Phase::NoContact => [u[0] - u[2] - self.g, NO_GUARD],
             Phase::Contact => [self.contact_force(u) - 1.0, -self.contact_force(u)],
@@ -85,13 +106,17 @@ impl Equations for OriginalOscillator {
         if phase == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
     }
 
-    fn switch(&self, phase: Phase, guard: usize, u: &[f64]) -> (Phase, [f64; 4]) {
-        let [_, y, mut z, v] = [u[0], u[1], u[2], u[3]];
+    fn switch(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
+        let [_, y, mut z, v] = *u;
         let (next, imposed) = successor(phase, guard, self.contact_force(u));
         if let Some(force) = imposed {
             z = v + (force - self.two_xi * y);
         }
         (next, [z + self.g, y, z, v])
+    }
+
+    fn settle(&self, _: Entered, u: &[f64], guards: &mut [f64; GUARDS]) {
+        settle(u, guards);
     }
 }
 
@@ -115,18 +140,18 @@ mod tests {
             let (mut du, mut expected) = ([0.0; 4], [0.0; 4]);
             original.derivatives(phase, 0.7, &u, &mut du);
             bounded.derivatives(phase, 0.7, &state, &mut expected);
-            assert!(near(original.bounded(&du), expected), "{phase:?}");
+            assert!(near(original.reported(&du), expected), "{phase:?}");
             original.jacobian_product(phase, &u, &mut du);
             bounded.jacobian_product(phase, &state, &mut expected);
-            assert!(near(original.bounded(&du), expected), "{phase:?}");
+            assert!(near(original.reported(&du), expected), "{phase:?}");
             for guard in 0..GUARDS {
-                let (next, there) = original.switch(phase, guard, &u);
-                let (expected, state) = bounded.switch(phase, guard, &state);
+                let (next, there) = original.switch(phase, guard, 0.7, &u);
+                let (expected, state) = bounded.switch(phase, guard, 0.7, &state);
                 assert_eq!(next, expected);
-                assert!(near(original.bounded(&there), state), "{phase:?} {guard}");
+                assert!(near(original.reported(&there), state), "{phase:?} {guard}");
             }
             let differences = [
-                original.guards(phase, &u)[0] - bounded.guards(phase, &state)[0],
+                original.guards(phase, 0.7, &u)[0] - bounded.guards(phase, 0.7, &state)[0],
                 original.rates(phase, 0.7, &u)[0] - bounded.rates(phase, 0.7, &state)[0],
             ];
             assert!(differences.iter().all(|it| it.abs() < 1e-12), "{phase:?} {differences:?}");

@@ -17,25 +17,31 @@ pub struct Watched {
 
 /// A guard as a search for events saw it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GuardSample {
+pub struct GuardSample<M = Phase> {
     /// Time of the evaluation, since the start.
     pub t: f64,
-    /// The phase whose guard it is.
-    pub phase: Phase,
-    /// Which of the phase's guards.
+    /// The mode whose guard it is.
+    pub mode: M,
+    /// Which of the mode's guards.
     pub guard: usize,
-    /// The guard's value, which is negative inside the phase.
+    /// The guard's value, which is negative inside the mode.
     pub value: f64,
 }
 
 /// What was recorded.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Trace {
-    /// Ends of accepted steps, since the start, in ascending order; a step in which a phase ends
+#[derive(Clone, Debug, PartialEq)]
+pub struct Trace<M = Phase> {
+    /// Ends of accepted steps, since the start, in ascending order; a step in which a mode ends
     /// has none.
     pub steps: Vec<f64>,
     /// Evaluations of guards, in the order in which they were made.
-    pub looks: Vec<GuardSample>,
+    pub looks: Vec<GuardSample<M>>,
+}
+
+impl<M> Default for Trace<M> {
+    fn default() -> Self {
+        Self { steps: Vec::new(), looks: Vec::new() }
+    }
 }
 
 /// More records than this are not kept: a search that hangs would fill the memory.
@@ -43,12 +49,12 @@ const MOST: usize = 20_000;
 
 /// Records inside a window.
 #[derive(Debug)]
-pub(super) struct Recorder {
+pub(super) struct Recorder<M> {
     window: [f64; 2],
-    trace: RefCell<Trace>,
+    trace: RefCell<Trace<M>>,
 }
 
-impl Recorder {
+impl<M> Recorder<M> {
     pub(super) fn new(watched: &Watched) -> Self {
         Self { window: watched.window, trace: RefCell::default() }
     }
@@ -57,7 +63,7 @@ impl Recorder {
         self.window[0] <= t && t <= self.window[1]
     }
 
-    /// Takes back the ends of steps after `t`, where a phase has ended or a step begins anew.
+    /// Takes back the ends of steps after `t`, where a mode has ended or a step begins anew.
     pub(super) fn back_to(&self, t: f64) {
         let steps = &mut self.trace.borrow_mut().steps;
         while steps.last().is_some_and(|end| *end > t) {
@@ -74,11 +80,10 @@ impl Recorder {
         }
     }
 
-    /// Notes one guard, where the phase has it: only contact has two.
-    pub(super) fn look(&self, look: GuardSample) {
+    /// Notes one guard.
+    pub(super) fn look(&self, look: GuardSample<M>) {
         let looks = &mut self.trace.borrow_mut().looks;
-        let is_one = look.guard == 0 || look.phase == Phase::Contact;
-        if is_one && self.holds(look.t) && looks.len() < MOST {
+        if self.holds(look.t) && looks.len() < MOST {
             looks.push(look);
         }
     }
@@ -89,7 +94,7 @@ impl Recorder {
     }
 
     /// Hands over what was recorded.
-    pub(super) fn hand_over(&self, outcome: &mut Outcome) {
+    pub(super) fn hand_over<S>(&self, outcome: &mut Outcome<M, S>) {
         outcome.trace = Some(self.trace.take());
     }
 }
@@ -99,12 +104,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn only_what_lies_in_the_window_and_is_a_guard_is_kept() {
+    fn only_what_lies_in_the_window_is_kept() {
         let recorder = Recorder::new(&Watched { window: [1.0, 2.0], instants: Vec::new() });
         [0.5, 1.0, 2.0, 2.5].into_iter().for_each(|t| recorder.step(t));
-        let look = |t, guard| GuardSample { t, phase: Phase::NoContact, guard, value: -0.25 };
-        [look(1.5, 1), look(1.5, 0), look(3.0, 0)].into_iter().for_each(|it| recorder.look(it));
-        let mut outcome = Outcome::default();
+        let look = |t, guard| GuardSample { t, mode: Phase::Contact, guard, value: -0.25 };
+        [look(0.5, 1), look(1.5, 0), look(3.0, 0)].into_iter().for_each(|it| recorder.look(it));
+        let mut outcome: Outcome = Outcome::default();
         recorder.hand_over(&mut outcome);
         let expected = Trace { steps: vec![1.0, 2.0], looks: vec![look(1.5, 0)] };
         assert_eq!(outcome.trace, Some(expected));
@@ -112,7 +117,8 @@ mod tests {
 
     #[test]
     fn a_step_in_which_a_phase_ends_is_taken_back() {
-        let recorder = Recorder::new(&Watched { window: [0.0, 9.0], instants: Vec::new() });
+        let recorder =
+            Recorder::<Phase>::new(&Watched { window: [0.0, 9.0], instants: Vec::new() });
         [1.0, 2.0].into_iter().for_each(|t| recorder.step(t));
         recorder.back_to(1.5);
         [1.75, 4.0, 3.0].into_iter().for_each(|t| recorder.step(t));
@@ -121,7 +127,8 @@ mod tests {
 
     #[test]
     fn the_memory_is_bounded() {
-        let recorder = Recorder::new(&Watched { window: [0.0, 1.0], instants: Vec::new() });
+        let recorder =
+            Recorder::<Phase>::new(&Watched { window: [0.0, 1.0], instants: Vec::new() });
         (0..=MOST).for_each(|_| recorder.step(0.5));
         assert_eq!(recorder.trace.take().steps.len(), MOST);
     }

@@ -6,31 +6,30 @@
 //! elastic contact ([`longest_step`]), so that the rates at both ends of a step show a peak inside.
 
 use super::cubic::CubicEnd;
-use super::field::Equations;
-use super::joining::{Moment, StretchEnd};
+use super::equations::Equations;
+use super::joining::{Moment, StretchEnd, Times};
 use super::location::{GuardSearch, GuardValues};
 use super::meter::Failure;
 use super::sampler::Sampler;
-use std::f64::consts::TAU;
 
 /// The longest step, in forcing periods and in turns of the elastic contact.
 const LONGEST_STEP: f64 = 0.125;
 
-/// The longest step of a method that is walked, for a forcing period of this length.
-pub(super) fn longest_step(period: f64) -> f64 {
-    LONGEST_STEP * period.min(TAU)
+/// The longest step of a method that is walked.
+pub(super) fn longest_step(times: &Times) -> f64 {
+    LONGEST_STEP * times.period.min(times.turn)
 }
 
 /// A walk that has come to the end of a step.
-pub(super) struct Walk<'a, E> {
+pub(super) struct Walk<'a, E: Equations> {
     search: GuardSearch<'a, E>,
-    at: CubicEnd,
-    look: GuardValues,
+    at: CubicEnd<E::State>,
+    look: GuardValues<E::Guards>,
 }
 
 impl<'a, E: Equations> Walk<'a, E> {
     /// Starts a walk at the beginning of a stretch.
-    pub(super) fn new(search: GuardSearch<'a, E>, from: &Moment) -> Self {
+    pub(super) fn new(search: GuardSearch<'a, E>, from: &Moment<E>) -> Self {
         let look = search.look(from.t, &from.state);
         Self { search, at: (from.t, from.state), look }
     }
@@ -40,10 +39,14 @@ impl<'a, E: Equations> Walk<'a, E> {
     /// `inside` returns the state at a time between the two ends.
     pub(super) fn advance(
         &mut self,
-        right: CubicEnd,
-        sampler: &mut Sampler,
-        mut inside: impl FnMut(&CubicEnd, &CubicEnd, f64) -> Result<[f64; 4], Failure>,
-    ) -> Result<Option<StretchEnd>, Failure> {
+        right: CubicEnd<E::State>,
+        sampler: &mut Sampler<E::State>,
+        mut inside: impl FnMut(
+            &CubicEnd<E::State>,
+            &CubicEnd<E::State>,
+            f64,
+        ) -> Result<E::State, Failure>,
+    ) -> Result<Option<StretchEnd<E::State>>, Failure> {
         let left = self.at;
         let look = self.search.look(right.0, &right.1);
         let mut state_at = |t: f64| match t {
@@ -51,7 +54,7 @@ impl<'a, E: Equations> Walk<'a, E> {
             t if t >= right.0 => Ok(right.1),
             t => inside(&left, &right, t),
         };
-        let found = self.search.between(&self.look, &look, &mut state_at)?;
+        let found = self.search.between(&self.look, &look, &mut state_at, &mut sampler.counted)?;
         sampler.take(found.map_or(right.0, |it| it.t), &mut state_at)?;
         if let Some(it) = found {
             return Ok(Some(StretchEnd::Switch {
@@ -65,7 +68,7 @@ impl<'a, E: Equations> Walk<'a, E> {
     }
 
     /// The end of a stretch that met no switch.
-    pub(super) fn ended(&self) -> StretchEnd {
+    pub(super) fn ended(&self) -> StretchEnd<E::State> {
         StretchEnd::Inside { t: self.at.0, state: self.at.1 }
     }
 }
@@ -73,11 +76,11 @@ impl<'a, E: Equations> Walk<'a, E> {
 /// Walks along the ends of steps that are known beforehand.
 pub(super) fn walk<E: Equations>(
     search: GuardSearch<'_, E>,
-    from: &Moment,
-    points: impl IntoIterator<Item = CubicEnd>,
-    sampler: &mut Sampler,
-    mut inside: impl FnMut(&CubicEnd, &CubicEnd, f64) -> Result<[f64; 4], Failure>,
-) -> Result<StretchEnd, Failure> {
+    from: &Moment<E>,
+    points: impl IntoIterator<Item = CubicEnd<E::State>>,
+    sampler: &mut Sampler<E::State>,
+    mut inside: impl FnMut(&CubicEnd<E::State>, &CubicEnd<E::State>, f64) -> Result<E::State, Failure>,
+) -> Result<StretchEnd<E::State>, Failure> {
     let mut walk = Walk::new(search, from);
     for right in points {
         if let Some(ended) = walk.advance(right, sampler, &mut inside)? {
@@ -115,7 +118,7 @@ mod tests {
             let [one, other] = ["ode_solvers-dop853-time", "differential-equations-dop853"]
                 .map(|name| run(name, tolerance).unwrap_or_default());
             let phases =
-                |it: &Outcome| it.events.iter().map(|event| event.phase).collect::<Vec<_>>();
+                |it: &Outcome| it.events.iter().map(|event| event.mode).collect::<Vec<_>>();
             assert!(one.events.len() >= 6 && phases(&one) == phases(&other));
             let [one, other] = [one, other].map(|it| it.work.rhs_evaluations as f64);
             assert!(one.max(other) <= SAME_WORK * one.min(other), "{tolerance}: {one}, {other}");

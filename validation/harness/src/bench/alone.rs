@@ -30,7 +30,7 @@ pub fn alone<'a>(
     if engine.declaration().name == exact().declaration().name {
         return Ok(Some(Box::new(ExactSteps { course, end: answer.end, last: answer.end })));
     }
-    let script = Script::of(course.task.phase, &answer.events);
+    let script = Script::of(&answer.events);
     let last = answer.clone();
     let mut told = ToldRun { engine, course, setting, limits, script, answer, last };
     told.call()?;

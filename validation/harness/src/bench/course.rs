@@ -123,7 +123,7 @@ impl Course {
 }
 
 fn is_same(row: &TruthRow, event: &Event, window: f64) -> bool {
-    row.phase == Some(event.phase) && off(row.elapsed, event.elapsed) <= window
+    row.phase == Some(event.mode) && off(row.elapsed, event.elapsed) <= window
 }
 
 fn state_error(row: &TruthRow, state: &[f64; 4]) -> f64 {

@@ -69,7 +69,7 @@ struct GuardedSegment {
 
 impl GuardedSegment {
     fn guards(&self, d: f64) -> [f64; GUARDS] {
-        self.oscillator.guards(self.phase, &self.closed.at(d))
+        self.oscillator.guards(self.phase, self.began + d, &self.closed.at(d))
     }
 
     fn rates(&self, d: f64) -> [f64; GUARDS] {

@@ -24,7 +24,7 @@ impl Matching {
         let mut best = vec![(0_usize, 0.0_f64); (truth.len() + 1) * width];
         let paired = |i: usize, j: usize, best: &[(usize, f64)]| {
             let apart = (truth[i - 1].elapsed.value() - engine[j - 1].elapsed).abs();
-            let same = truth[i - 1].phase == Some(engine[j - 1].phase) && apart <= window;
+            let same = truth[i - 1].phase == Some(engine[j - 1].mode) && apart <= window;
             let (count, cost) = best[(i - 1) * width + j - 1];
             same.then_some((count + 1, cost + apart))
         };
@@ -76,7 +76,8 @@ mod tests {
 
     fn events(events: &[(f64, Phase)]) -> Vec<Event> {
         let event = |(elapsed, phase): &(f64, Phase)| Event {
-            phase: *phase,
+            event: 0,
+            mode: *phase,
             elapsed: *elapsed,
             state: [0.0; 4],
         };

@@ -50,7 +50,8 @@ impl Planted {
             end: [1.0; 4],
         };
         let event = |row: &TruthRow| Event {
-            phase: row.phase.unwrap_or(NoContact),
+            event: 0,
+            mode: row.phase.unwrap_or(NoContact),
             elapsed: row.elapsed.value(),
             state: row.rounded(),
         };

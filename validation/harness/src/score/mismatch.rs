@@ -67,7 +67,7 @@ impl Mismatch {
     pub fn same_phases(&self, rows: &[TruthRow], found: &[Event], excused: &Excused) -> bool {
         let truth = (0..self.expected).filter(|i| !excused.missed.contains(i));
         let own = self.counted.iter().filter(|j| !excused.spurious.contains(j));
-        truth.map(|i| rows[i].phase).eq(own.map(|j| Some(found[*j].phase)))
+        truth.map(|i| rows[i].phase).eq(own.map(|j| Some(found[*j].mode)))
     }
 
     /// What the grazes excuse that an engine which may err by `allowed` units need not decide: all
@@ -110,8 +110,8 @@ impl Mismatch {
             self.spurious.contains(&pair[0])
                 && pair[1] == pair[0] + 1
                 && pair.iter().all(|j| free(*j))
-                && found[pair[0]].phase != graze.phase
-                && found[pair[1]].phase == graze.phase
+                && found[pair[0]].mode != graze.phase
+                && found[pair[1]].mode == graze.phase
         })?;
         Some([pair[0], pair[1]])
     }
@@ -130,7 +130,7 @@ mod tests {
     }
 
     fn event((elapsed, phase): (f64, Phase)) -> Event {
-        Event { phase, elapsed, state: [0.0; 4] }
+        Event { event: 0, mode: phase, elapsed, state: [0.0; 4] }
     }
 
     fn graze(elapsed: f64, margin: f64, events: std::ops::Range<usize>) -> Graze {

@@ -194,7 +194,7 @@ impl RestartRun {
 
     fn same_phases(&self, outcome: &Outcome) -> bool {
         let truth = self.truth.events.iter().map(|switch| switch.phase);
-        truth.eq(outcome.events.iter().map(|event| Some(event.phase)))
+        truth.eq(outcome.events.iter().map(|event| Some(event.mode)))
     }
 }
 

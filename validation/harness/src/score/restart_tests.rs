@@ -18,7 +18,8 @@ fn run() -> RestartRun {
 
 fn perfect(run: &RestartRun) -> Outcome {
     let event = |row: &TruthRow| crate::engine::Event {
-        phase: row.phase.unwrap_or(NoContact),
+        event: 0,
+        mode: row.phase.unwrap_or(NoContact),
         elapsed: row.elapsed.value(),
         state: row.rounded(),
     };

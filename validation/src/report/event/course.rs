@@ -120,7 +120,7 @@ impl Scene<'_> {
     fn engine_events(&self) -> Vec<(f64, Phase, bool)> {
         let is_known = |j: usize| self.it.pairs.iter().any(|pair| pair.1 == j);
         let events = self.outcome.events.iter().enumerate();
-        events.map(|(j, event)| (event.elapsed, event.phase, is_known(j))).collect()
+        events.map(|(j, event)| (event.elapsed, event.mode, is_known(j))).collect()
     }
 
     fn course(

@@ -58,7 +58,7 @@ impl GuardCurve {
 
     /// The guard's value where a search looked at it; `None` where it looked at other guards.
     pub(super) fn of_look(self, look: &GuardSample) -> Option<f64> {
-        match (self, look.phase, look.guard) {
+        match (self, look.mode, look.guard) {
             (Self::Gap, Phase::NoContact, 0) | (Self::SlidingForce, Phase::Contact, 0) => {
                 Some(look.value)
             }
@@ -82,8 +82,8 @@ mod tests {
         let equations = Oscillator::of(&parameters, 0.3);
         let mut seen = 0;
         for phase in Phase::ALL {
-            for (guard, value) in equations.guards(phase, &state).into_iter().enumerate() {
-                let look = GuardSample { t: 0.0, phase, guard, value };
+            for (guard, value) in equations.guards(phase, 0.7, &state).into_iter().enumerate() {
+                let look = GuardSample { t: 0.0, mode: phase, guard, value };
                 for it in [GuardCurve::Gap, GuardCurve::SlidingForce, GuardCurve::PartingForce] {
                     let Some(shown) = it.of_look(&look) else { continue };
                     seen += 1;

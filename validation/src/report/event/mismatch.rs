@@ -122,7 +122,7 @@ impl Sides {
             ),
             engine: of(
                 found.iter().map(|event| event.elapsed).collect(),
-                found.iter().map(|event| event.phase).collect(),
+                found.iter().map(|event| event.mode).collect(),
             ),
             pairs,
         }

@@ -8,18 +8,24 @@
 //!   tolerance: times are good to 1e-4 or 1e-5 only.
 
 use super::method::{LibraryMethod, Rkv655e};
-use super::{COLOURS, LIBRARY, LONGEST_STEP, PhaseField, reason};
-use crate::engine::field::{Equations, GUARDS, Oscillator};
-use crate::engine::joining::{Moment, StretchEnd, join};
+use super::state::of_size;
+use super::{COLOURS, LIBRARY, LONGEST_STEP, ModeField, reason};
+use crate::engine::equations::Equations;
+use crate::engine::field::Oscillator;
+use crate::engine::joining::{Course, Moment, StretchEnd, join};
 use crate::engine::meter::{Failure, Limits, Meter};
-use crate::engine::sampler::Sampler;
+use crate::engine::sampler::{Crossing, Sampler};
 use crate::engine::trace::GuardSample;
-use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
+use crate::engine::{
+    Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
+    Task, pins,
+};
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::ode::solve_ode;
 use differential_equations::solout::{CrossingDirection, Event, EventConfig, EventSolout, Solout};
 use differential_equations::solution::Solution;
+use differential_equations::traits::State;
 
 /// `rkv655e` with the library's events.
 pub(in super::super) struct BuiltIn;
@@ -41,97 +47,140 @@ impl Engine for BuiltIn {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let tolerance = accuracy.wanted_tolerance()?;
-        let meter = Meter::new(limits);
-        let equations = Oscillator::of(&task.parameters, task.forcing_angle);
-        let longest = LONGEST_STEP * task.problem.model.period();
-        join(task, &equations, &meter, |from, sampler| {
-            let field = PhaseField { equations, phase: from.phase, meter: &meter };
-            let guards = [0, 1].map(|guard| Guard { field, guard });
-            let mut watch = BuiltinEvents::new(&guards, from, task.span, sampler);
-            let mut method = Rkv655e::method(tolerance, longest, 0.0);
-            solve_ode(&mut method, &field, from.t, task.span, &from.state, &mut watch)
-                .map_err(|error| reason(&error))?;
-            watch.ended.unwrap_or(Ok(StretchEnd::Inside { t: task.span, state: watch.last }))
-        })
+        let course = Course::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
+        run(&course, accuracy, limits)
     }
+
+    fn run_system(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        let course = Course::of_system(task);
+        of_size(course.state.as_ref().len(), || run(&course, accuracy, limits))
+    }
+}
+
+/// Runs a course with the library's events.
+fn run<E: Equations<State: State<f64>>>(
+    course: &Course<'_, E>,
+    accuracy: Accuracy,
+    limits: &Limits,
+) -> Result<Outcome<E::Mode, E::State>, Failure> {
+    let tolerance = accuracy.wanted_tolerance()?;
+    let meter = Meter::new(limits);
+    let Course { equations, span, times, .. } = *course;
+    let longest = LONGEST_STEP * times.period;
+    join(course, &meter, |from, sampler| {
+        let field = ModeField { equations, mode: from.mode, meter: &meter };
+        let guard = |guard| Guard { field, guard };
+        let guards: Vec<_> = (0..equations.most_guards()).map(guard).collect();
+        let mut watch = BuiltinEvents::new(field, &guards, from, span, sampler);
+        let mut method = Rkv655e::method(equations.dimension(), tolerance, longest, 0.0);
+        solve_ode(&mut method, &field, from.t, span, &from.state, &mut watch)
+            .map_err(|error| reason(&error))?;
+        watch.ended.unwrap_or(Ok(StretchEnd::Inside { t: span, state: watch.last }))
+    })
 }
 
 /// A guard as an event of the library's.
-struct Guard<'a> {
-    field: PhaseField<'a, Oscillator>,
+struct Guard<'a, E: Equations> {
+    field: ModeField<'a, E>,
     guard: usize,
 }
 
-impl Event<f64, [f64; 4]> for Guard<'_> {
+impl<E: Equations<State: State<f64>>> Event<f64, E::State> for Guard<'_, E> {
     fn config(&self) -> EventConfig {
-        EventConfig::new(CrossingDirection::Positive, Some(1))
+        let ends = self.field.equations.ends(self.field.mode, self.guard);
+        EventConfig::new(CrossingDirection::Positive, ends.then_some(1))
     }
 
-    fn event(&self, t: f64, u: &[f64; 4]) -> f64 {
-        let PhaseField { equations, phase, meter } = self.field;
-        let value = equations.guards(phase, u)[self.guard];
-        meter.guard(GuardSample { t, phase, guard: self.guard, value });
+    fn event(&self, t: f64, u: &E::State) -> f64 {
+        let ModeField { equations, mode, meter } = self.field;
+        let value = equations.guards(mode, t, u.as_ref()).as_ref()[self.guard];
+        if self.guard < equations.count(mode) {
+            meter.guard(GuardSample { t, mode, guard: self.guard, value });
+        } else {
+            meter.call();
+        }
         value
     }
 }
 
-/// The library's events, and samples up to the first of them.
-struct BuiltinEvents<'a> {
-    events: [EventSolout<'a, f64, [f64; 4], Guard<'a>>; GUARDS],
-    sampler: &'a mut Sampler,
-    meter: &'a Meter,
-    last: [f64; 4],
-    ended: Option<Result<StretchEnd, Failure>>,
+/// The library's events, and samples up to the first of them that ends the mode.
+struct BuiltinEvents<'a, E: Equations<State: State<f64>>> {
+    field: ModeField<'a, E>,
+    from: Moment<E>,
+    events: Vec<EventSolout<'a, f64, E::State, Guard<'a, E>>>,
+    sampler: &'a mut Sampler<E::State>,
+    last: E::State,
+    ended: Option<Result<StretchEnd<E::State>, Failure>>,
 }
 
-impl<'a> BuiltinEvents<'a> {
+impl<'a, E: Equations<State: State<f64>>> BuiltinEvents<'a, E> {
     fn new(
-        guards: &'a [Guard<'a>; GUARDS],
-        from: &Moment,
+        field: ModeField<'a, E>,
+        guards: &'a [Guard<'a, E>],
+        from: &Moment<E>,
         span: f64,
-        sampler: &'a mut Sampler,
+        sampler: &'a mut Sampler<E::State>,
     ) -> Self {
-        let events = guards.each_ref().map(|guard| EventSolout::new(guard, from.t, span));
-        Self { events, sampler, meter: guards[0].field.meter, last: from.state, ended: None }
+        let events = guards.iter().map(|guard| EventSolout::new(guard, from.t, span)).collect();
+        Self { field, from: *from, events, sampler, last: from.state, ended: None }
+    }
+
+    /// Keeps those crossings of a step that end nothing and come before the mode ends.
+    fn count(&mut self, mut crossings: Vec<Crossing<E::State>>, until: f64) {
+        crossings.retain(|crossing| crossing.t <= until);
+        crossings.sort_by(|one, other| one.t.total_cmp(&other.t));
+        self.sampler.counted.append(&mut crossings);
     }
 }
 
-impl Solout<f64, [f64; 4]> for BuiltinEvents<'_> {
+impl<E: Equations<State: State<f64>>> Solout<f64, E::State> for BuiltinEvents<'_, E> {
     fn solout<I>(
         &mut self,
         end: f64,
         begin: f64,
-        state: &[f64; 4],
-        before: &[f64; 4],
+        state: &E::State,
+        before: &E::State,
         interpolator: &mut I,
-        _: &mut Solution<f64, [f64; 4]>,
-    ) -> ControlFlag<f64, [f64; 4]>
+        _: &mut Solution<f64, E::State>,
+    ) -> ControlFlag<f64, E::State>
     where
-        I: Interpolation<f64, [f64; 4]> + ?Sized,
+        I: Interpolation<f64, E::State> + ?Sized,
     {
-        let mut first: Option<(f64, usize, [f64; 4])> = None;
+        let mut first: Option<Crossing<E::State>> = None;
+        let mut counted = Vec::new();
         for (guard, event) in self.events.iter_mut().enumerate() {
             let mut found = Solution::new();
             event.solout(end, begin, state, before, interpolator, &mut found);
-            if let (Some(t), Some(state)) = (found.t.last(), found.y.last())
-                && first.is_none_or(|(earliest, ..)| *t < earliest)
-            {
-                first = Some((*t, guard, *state));
+            let (Some(t), Some(state)) = (found.t.last(), found.y.last()) else { continue };
+            let crossing = Crossing { t: *t, guard, state: *state };
+            if !self.field.equations.ends(self.field.mode, guard) {
+                // A guard that is zero at its mode's entry has no sign there.
+                let no_sign = begin <= self.from.began && self.from.entered.is_zero(guard);
+                counted.extend((!no_sign).then_some(crossing));
+            } else if first.is_none_or(|earliest| *t < earliest.t) {
+                first = Some(crossing);
             }
         }
         self.last = *state;
         if end <= begin {
             return ControlFlag::Continue;
         }
-        self.meter.steps(1);
-        self.meter.stepped(end);
-        let until = first.map_or(end, |(t, ..)| t);
+        self.field.meter.steps(1);
+        self.field.meter.stepped(end);
+        let until = first.map_or(end, |first| first.t);
+        self.count(counted, until);
         let state_at = |t: f64| interpolator.interpolate(t).map_err(|error| reason(&error));
         let taken = self.sampler.take(until, state_at);
         self.ended = match (taken, first) {
             (Err(failure), _) => Some(Err(failure)),
-            (Ok(()), Some((t, guard, state))) => Some(Ok(StretchEnd::Switch { t, guard, state })),
+            (Ok(()), Some(Crossing { t, guard, state })) => {
+                Some(Ok(StretchEnd::Switch { t, guard, state }))
+            }
             (Ok(()), None) => return ControlFlag::Continue,
         };
         ControlFlag::Terminate

@@ -1,7 +1,12 @@
 //! The library's methods, each with its tolerances and limits.
 
-use super::LONGEST_STEP;
+use super::watch::again;
+use super::{LONGEST_STEP, ModeField};
 use crate::engine::Stepping;
+use crate::engine::cubic::CubicEnd;
+use crate::engine::equations::Equations;
+use crate::engine::joining::Times;
+use crate::engine::meter::Failure;
 use crate::engine::walk::longest_step;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{
@@ -10,6 +15,7 @@ use differential_equations::methods::{
 };
 use differential_equations::ode::OrdinaryNumericalMethod;
 use differential_equations::stats::Evals;
+use differential_equations::traits::State;
 
 /// More steps, or rejections of one, than the meter lets pass.
 const ENOUGH: usize = usize::MAX;
@@ -54,18 +60,30 @@ pub(in super::super) trait LibraryMethod {
     const STEPPING: Stepping =
         if Self::MULTISTEP { Stepping::PerStep { order: 5 } } else { Stepping::Adaptive };
 
-    /// A fresh method; a first step of zero is chosen by the library.
-    fn method(
+    /// A fresh method for so many states; a first step of zero is chosen by the library.
+    fn method<S: State<f64>>(
+        size: usize,
         tolerance: f64,
         longest: f64,
         first: f64,
-    ) -> impl OrdinaryNumericalMethod<f64, [f64; 4]> + Interpolation<f64, [f64; 4]>;
+    ) -> impl OrdinaryNumericalMethod<f64, S> + Interpolation<f64, S>;
 
-    /// The longest step, for a forcing period.
-    fn longest_step(period: f64) -> f64 {
+    /// The state at `t` by the method again from a point before it. Only methods that need it have
+    /// it, because each is compiled for each system.
+    fn again<E: Equations<State: State<f64>>>(
+        _field: &ModeField<'_, E>,
+        _tolerance: f64,
+        _from: CubicEnd<E::State>,
+        _t: f64,
+    ) -> Result<E::State, Failure> {
+        Err(Failure::new("does not integrate inside its steps"))
+    }
+
+    /// The longest step.
+    fn longest_step(times: &Times) -> f64 {
         match Self::INSIDE {
-            Inside::Again => longest_step(period),
-            Inside::Interpolant | Inside::Cubic => LONGEST_STEP * period,
+            Inside::Again => longest_step(times),
+            Inside::Interpolant | Inside::Cubic => LONGEST_STEP * times.period,
         }
     }
 
@@ -73,6 +91,21 @@ pub(in super::super) trait LibraryMethod {
     fn solves(evals: &Evals) -> usize {
         if Self::MULTISTEP { evals.function.saturating_sub(1) } else { evals.solves }
     }
+}
+
+/// How a state inside a step is had, where that is a function of the method.
+macro_rules! inside {
+    (Again) => {
+        fn again<E: Equations<State: State<f64>>>(
+            field: &ModeField<'_, E>,
+            tolerance: f64,
+            from: CubicEnd<E::State>,
+            t: f64,
+        ) -> Result<E::State, Failure> {
+            again::<Self, E>(field, tolerance, from, t)
+        }
+    };
+    ($other:ident) => {};
 }
 
 /// Methods with all that their builders have in common, and then with settings of their own.
@@ -89,12 +122,15 @@ macro_rules! methods {
             const ORDER: Option<u32> = $order;
             const INSIDE: Inside = Inside::$inside;
 
-            fn method(
+            inside! { $inside }
+
+            fn method<S: State<f64>>(
+                size: usize,
                 tolerance: f64,
                 longest: f64,
                 $first: f64,
-            ) -> impl OrdinaryNumericalMethod<f64, [f64; 4]> + Interpolation<f64, [f64; 4]> {
-                let method = $new.rtol([tolerance; 4]).atol([tolerance; 4]);
+            ) -> impl OrdinaryNumericalMethod<f64, S> + Interpolation<f64, S> {
+                let method = $new.rtol(vec![tolerance; size]).atol(vec![tolerance; size]);
                 method.h0($first).h_min(0.0).h_max(longest).max_steps(ENOUGH)$(.$setting($value))*
             }
         }

@@ -2,10 +2,10 @@
 //!
 //! - Events are located by the harness on that interpolant ([`StepWatch`]); the library's own event
 //!   location is an engine of its own ([`builtin`]).
-//! - Each phase is begun by a fresh method, because limits of steps and of rejections count over a
+//! - Each mode is begun by a fresh method, because limits of steps and of rejections count over a
 //!   method's life.
 //! - Tolerances are vectors, one for each co-ordinate.
-//! - Steps are at most an eighth of a forcing period, so that no step hides a whole phase, and,
+//! - Steps are at most an eighth of a forcing period, so that no step hides a whole mode, and,
 //!   where a method is walked, an eighth of a turn of the elastic contact. Limits of steps and
 //!   rejections are raised: the meter's limit is the one that counts.
 //! - Newton iterations are held to what rounding of the displacements allows where the library's
@@ -31,20 +31,24 @@
 
 mod builtin;
 mod method;
+mod state;
 mod watch;
 
-use super::field::{Equations, Oscillator};
-use super::joining::join;
+use super::equations::Equations;
+use super::field::{Coordinates, Oscillator};
+use super::joining::{Course, join};
 use super::meter::{Failure, Limits, Meter};
 use super::original::OriginalOscillator;
 use super::{
-    Accuracy, Colours, Declaration, Engine, Location, Outcome, Role, Task, pins, shortest_time,
+    Accuracy, Colours, Declaration, Engine, Location, Outcome, Role, SystemOutcome, SystemTask,
+    Task, pins,
 };
 use differential_equations::error::Error;
 use differential_equations::linalg::Matrix;
 use differential_equations::ode::{ODE, solve_ode};
+use differential_equations::traits::State;
 use method::{Bdf, Dop853, Kvaerno745, LibraryMethod, Radau5, Rkv655e, Rkv767e};
-use percuss::Phase;
+use state::of_size;
 use std::marker::PhantomData;
 use watch::StepWatch;
 
@@ -82,7 +86,7 @@ pub(super) static KVAERNO745: SteppedLibrary<Kvaerno745, Oscillator> =
 pub(super) static BDF: SteppedLibrary<Bdf, Oscillator> =
     stepped("differential-equations-bdf", Role::Damping);
 
-impl<M: LibraryMethod, E: Equations> Engine for SteppedLibrary<M, E> {
+impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
     fn declaration(&self) -> Declaration {
         Declaration {
             name: self.name,
@@ -99,46 +103,67 @@ impl<M: LibraryMethod, E: Equations> Engine for SteppedLibrary<M, E> {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let tolerance = accuracy.wanted_tolerance()?;
-        let meter = Meter::new(limits);
-        let equations = E::of(&task.parameters, task.forcing_angle);
-        let longest = M::longest_step(task.problem.model.period());
-        // The library begins its multistep method, at order 1, with steps below rounding.
-        let first =
-            if M::MULTISTEP { tolerance.sqrt() * shortest_time(&task.parameters) } else { 0.0 };
-        join(task, &equations, &meter, |from, sampler| {
-            let field = PhaseField { equations, phase: from.phase, meter: &meter };
-            let mut watch = StepWatch::<M, E>::new(field, from, (tolerance, task.span), sampler);
-            let mut method = M::method(tolerance, longest, first);
-            let solved = solve_ode(&mut method, &field, from.t, task.span, &from.state, &mut watch);
-            let solved = solved.map_err(|error| reason(&error));
-            watch.ended(solved.map(|it| meter.solves(M::solves(&it.evals))))
-        })
+        let course = Course::of(task, E::of(&task.parameters, task.forcing_angle));
+        run::<M, E>(&course, accuracy, limits)
+    }
+
+    fn run_system(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        if !E::BOUNDED {
+            return Err(Failure::new("its co-ordinates are the oscillator's"));
+        }
+        let course = Course::of_system(task);
+        of_size(course.state.as_ref().len(), || run::<M, _>(&course, accuracy, limits))
     }
 }
 
-/// The right-hand side of one phase.
+/// Runs a course with one of the library's methods.
+fn run<M: LibraryMethod, E: Equations<State: State<f64>>>(
+    course: &Course<'_, E>,
+    accuracy: Accuracy,
+    limits: &Limits,
+) -> Result<Outcome<E::Mode, E::State>, Failure> {
+    let tolerance = accuracy.wanted_tolerance()?;
+    let meter = Meter::new(limits);
+    let Course { equations, span, times, .. } = *course;
+    let longest = M::longest_step(&times);
+    // The library begins its multistep method, at order 1, with steps below rounding.
+    let first = if M::MULTISTEP { tolerance.sqrt() * times.shortest } else { 0.0 };
+    join(course, &meter, |from, sampler| {
+        let field = ModeField { equations, mode: from.mode, meter: &meter };
+        let mut watch = StepWatch::<M, E>::new(field, from, (tolerance, span), sampler);
+        let mut method = M::method(equations.dimension(), tolerance, longest, first);
+        let solved = solve_ode(&mut method, &field, from.t, span, &from.state, &mut watch);
+        let solved = solved.map_err(|error| reason(&error));
+        watch.ended(solved.map(|it| meter.solves(M::solves(&it.evals))))
+    })
+}
+
+/// The right-hand side of one mode.
 #[derive(Clone, Copy)]
-struct PhaseField<'a, E> {
+pub(super) struct ModeField<'a, E: Equations> {
     equations: E,
-    phase: Phase,
-    meter: &'a Meter,
+    mode: E::Mode,
+    meter: &'a Meter<E::Mode>,
 }
 
-impl<E: Equations> ODE<f64, [f64; 4]> for PhaseField<'_, E> {
-    fn diff(&self, t: f64, u: &[f64; 4], du: &mut [f64; 4]) {
-        self.equations.derivatives(self.phase, t, u, du);
-        self.meter.rhs(du);
+impl<E: Equations<State: State<f64>>> ODE<f64, E::State> for ModeField<'_, E> {
+    fn diff(&self, t: f64, u: &E::State, du: &mut E::State) {
+        self.equations.derivatives(self.mode, t, u.as_ref(), du.as_mut());
+        self.meter.rhs(du.as_ref());
     }
 
-    fn jacobian(&self, _: f64, _: &[f64; 4], matrix: &mut Matrix<f64>) {
-        for column in 0..4 {
-            let mut direction = [0.0; 4];
-            direction[column] = 1.0;
-            let mut product = [0.0; 4];
-            self.equations.jacobian_product(self.phase, &direction, &mut product);
-            for (row, entry) in product.into_iter().enumerate() {
-                matrix[(row, column)] = entry;
+    fn jacobian(&self, _: f64, u: &E::State, matrix: &mut Matrix<f64>) {
+        for column in 0..self.equations.dimension() {
+            let [mut direction, mut product] = [u.zeros_like(), u.zeros_like()];
+            direction.as_mut()[column] = 1.0;
+            self.equations.jacobian_product(self.mode, direction.as_ref(), product.as_mut());
+            for (row, entry) in product.as_ref().iter().enumerate() {
+                matrix[(row, column)] = *entry;
             }
         }
         self.meter.jacobian();
@@ -146,7 +171,7 @@ impl<E: Equations> ODE<f64, [f64; 4]> for PhaseField<'_, E> {
 }
 
 /// The library's error, which it can print only for states that print themselves.
-fn reason(error: &Error<f64, [f64; 4]>) -> Failure {
+fn reason<S: State<f64>>(error: &Error<f64, S>) -> Failure {
     let text = match error {
         Error::BadInput { msg } => msg.clone(),
         Error::MaxSteps { t, .. } => format!("passed its number of steps at {t}"),

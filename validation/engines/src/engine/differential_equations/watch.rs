@@ -1,47 +1,48 @@
 //! The end of each step, where the library hands its interpolant over.
 
 use super::method::{Inside, LibraryMethod};
-use super::{PhaseField, reason};
+use super::{ModeField, reason};
 use crate::engine::cubic::{Cubic, CubicEnd};
-use crate::engine::field::Equations;
+use crate::engine::equations::Equations;
 use crate::engine::joining::{Moment, StretchEnd};
-use crate::engine::location::{GuardRise, GuardSearch};
+use crate::engine::location::{GuardRise, GuardSearch, StateAt};
 use crate::engine::meter::Failure;
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::Walk;
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
-use differential_equations::ode::{ODE, solve_ode};
+use differential_equations::ode::solve_ode;
 use differential_equations::solout::Solout;
 use differential_equations::solution::Solution;
+use differential_equations::traits::State;
 use std::marker::PhantomData;
 
-/// Searches each step for the end of the phase, and takes samples on the way.
-pub(super) struct StepWatch<'a, M, E> {
-    field: PhaseField<'a, E>,
+/// Searches each step for the end of the mode, and takes samples on the way.
+pub(super) struct StepWatch<'a, M, E: Equations> {
+    field: ModeField<'a, E>,
     looks: Looks<'a, E>,
     tolerance: f64,
     span: f64,
-    sampler: &'a mut Sampler,
-    last: [f64; 4],
-    ended: Option<Result<StretchEnd, Failure>>,
+    sampler: &'a mut Sampler<E::State>,
+    last: E::State,
+    ended: Option<Result<StretchEnd<E::State>, Failure>>,
     method: PhantomData<M>,
 }
 
 /// The places inside a step at which the guards are looked at.
-enum Looks<'a, E> {
+enum Looks<'a, E: Equations> {
     /// The guards are looked at inside the step, whose interpolant costs nothing.
     Inside(GuardSearch<'a, E>),
     /// The guards are looked at at the step's ends, and inside only where these show something.
     Ends(Walk<'a, E>),
 }
 
-impl<'a, M: LibraryMethod, E: Equations> StepWatch<'a, M, E> {
+impl<'a, M: LibraryMethod, E: Equations<State: State<f64>>> StepWatch<'a, M, E> {
     pub(super) fn new(
-        field: PhaseField<'a, E>,
-        from: &Moment,
+        field: ModeField<'a, E>,
+        from: &Moment<E>,
         (tolerance, span): (f64, f64),
-        sampler: &'a mut Sampler,
+        sampler: &'a mut Sampler<E::State>,
     ) -> Self {
         let search = GuardSearch::new(field.equations, from, field.meter);
         let looks = match M::INSIDE {
@@ -53,7 +54,10 @@ impl<'a, M: LibraryMethod, E: Equations> StepWatch<'a, M, E> {
     }
 
     /// How the stretch ended, once the library has come back.
-    pub(super) fn ended(self, solved: Result<(), Failure>) -> Result<StretchEnd, Failure> {
+    pub(super) fn ended(
+        self,
+        solved: Result<(), Failure>,
+    ) -> Result<StretchEnd<E::State>, Failure> {
         match self.ended {
             Some(ended) => ended,
             None => solved.map(|()| StretchEnd::Inside { t: self.span, state: self.last }),
@@ -63,9 +67,9 @@ impl<'a, M: LibraryMethod, E: Equations> StepWatch<'a, M, E> {
     fn step(
         &mut self,
         begin: f64,
-        right: CubicEnd,
-        state_at: &mut dyn FnMut(f64) -> Result<[f64; 4], Failure>,
-    ) -> Result<Option<StretchEnd>, Failure> {
+        right: CubicEnd<E::State>,
+        state_at: &mut StateAt<'_, E::State>,
+    ) -> Result<Option<StretchEnd<E::State>>, Failure> {
         self.field.meter.steps(1);
         let search = match &mut self.looks {
             Looks::Inside(search) => search,
@@ -73,7 +77,8 @@ impl<'a, M: LibraryMethod, E: Equations> StepWatch<'a, M, E> {
                 return walk.advance(right, self.sampler, |_, _, t| state_at(t));
             }
         };
-        let Some(GuardRise { t, guard }) = search.step(begin, right.0, state_at)? else {
+        let counted = &mut self.sampler.counted;
+        let Some(GuardRise { t, guard }) = search.step(begin, right.0, state_at, counted)? else {
             self.sampler.take(right.0, state_at)?;
             return Ok(None);
         };
@@ -82,18 +87,20 @@ impl<'a, M: LibraryMethod, E: Equations> StepWatch<'a, M, E> {
     }
 }
 
-impl<M: LibraryMethod, E: Equations> Solout<f64, [f64; 4]> for StepWatch<'_, M, E> {
+impl<M: LibraryMethod, E: Equations<State: State<f64>>> Solout<f64, E::State>
+    for StepWatch<'_, M, E>
+{
     fn solout<I>(
         &mut self,
         end: f64,
         begin: f64,
-        state: &[f64; 4],
-        before: &[f64; 4],
+        state: &E::State,
+        before: &E::State,
         interpolator: &mut I,
-        _: &mut Solution<f64, [f64; 4]>,
-    ) -> ControlFlag<f64, [f64; 4]>
+        _: &mut Solution<f64, E::State>,
+    ) -> ControlFlag<f64, E::State>
     where
-        I: Interpolation<f64, [f64; 4]> + ?Sized,
+        I: Interpolation<f64, E::State> + ?Sized,
     {
         if end <= begin {
             // The call before the first step.
@@ -101,16 +108,17 @@ impl<M: LibraryMethod, E: Equations> Solout<f64, [f64; 4]> for StepWatch<'_, M, 
         }
         self.last = *state;
         let (field, tolerance) = (self.field, self.tolerance);
-        let mut cubic: Option<Cubic> = None;
+        let mut cubic: Option<Cubic<E::State>> = None;
         let mut state_at = |t: f64| match M::INSIDE {
             _ if t <= begin => Ok(*before),
             _ if t >= end => Ok(*state),
             Inside::Interpolant => interpolator.interpolate(t).map_err(|error| reason(&error)),
-            Inside::Again => again::<M, E>(&field, tolerance, (begin, *before), t),
+            Inside::Again => M::again(&field, tolerance, (begin, *before), t),
             Inside::Cubic => Ok(cubic
                 .get_or_insert_with(|| {
                     Cubic::between([(begin, *before), (end, *state)], |(t, state), rates| {
-                        field.diff(t, &state, rates);
+                        field.equations.derivatives(field.mode, t, state.as_ref(), rates);
+                        field.meter.rhs(rates);
                     })
                 })
                 .at(t)),
@@ -126,15 +134,15 @@ impl<M: LibraryMethod, E: Equations> Solout<f64, [f64; 4]> for StepWatch<'_, M, 
 }
 
 /// The state at `t` by the method again from a point before it, in one step if that will do.
-fn again<M: LibraryMethod, E: Equations>(
-    field: &PhaseField<'_, E>,
+pub(super) fn again<M: LibraryMethod, E: Equations<State: State<f64>>>(
+    field: &ModeField<'_, E>,
     tolerance: f64,
-    from: CubicEnd,
+    from: CubicEnd<E::State>,
     t: f64,
-) -> Result<[f64; 4], Failure> {
+) -> Result<E::State, Failure> {
     let length = t - from.0;
     let mut last = Last(from.1);
-    let mut method = M::method(tolerance, length, length);
+    let mut method = M::method(field.equations.dimension(), tolerance, length, length);
     let solved = solve_ode(&mut method, field, from.0, t, &from.1, &mut last)
         .map_err(|error| reason(&error))?;
     field.meter.solves(M::solves(&solved.evals));
@@ -142,20 +150,20 @@ fn again<M: LibraryMethod, E: Equations>(
 }
 
 /// Remembers the last state.
-struct Last([f64; 4]);
+struct Last<S>(S);
 
-impl Solout<f64, [f64; 4]> for Last {
+impl<S: State<f64> + Copy> Solout<f64, S> for Last<S> {
     fn solout<I>(
         &mut self,
         _: f64,
         _: f64,
-        state: &[f64; 4],
-        _: &[f64; 4],
+        state: &S,
+        _: &S,
         _: &mut I,
-        _: &mut Solution<f64, [f64; 4]>,
-    ) -> ControlFlag<f64, [f64; 4]>
+        _: &mut Solution<f64, S>,
+    ) -> ControlFlag<f64, S>
     where
-        I: Interpolation<f64, [f64; 4]> + ?Sized,
+        I: Interpolation<f64, S> + ?Sized,
     {
         self.0 = *state;
         ControlFlag::Continue

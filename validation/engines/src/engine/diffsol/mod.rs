@@ -1,6 +1,6 @@
 //! diffsol with its own root finding, as an expert user sets it up.
 //!
-//! - The phase is a `Cell` that the closures read; the problem is built once, the solver anew from
+//! - The mode is a `Cell` that the closures read; the problem is built once, the solver anew from
 //!   the state at each switch, because its limit of 50 failed Newton iterations is cumulative.
 //! - On restart the derivative is written afresh and the step chosen anew: a stale derivative makes
 //!   the first steps collapse.
@@ -17,16 +17,21 @@
 //!   on it. What a root finder that looks only at the ends of steps still misses is what this
 //!   harness wants to know.
 
+mod fields;
 mod method;
-mod phase;
+mod mode;
 
-use super::field::{Equations, GUARDS, Oscillator};
-use super::joining::join;
+use super::field::Oscillator;
+use super::joining::{Course, join};
 use super::meter::{Failure, Limits, Meter};
-use super::{Accuracy, Colours, Declaration, Engine, Location, Outcome, Task, pins};
-use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec, OdeBuilder};
+use super::{
+    Accuracy, Colours, Declaration, Engine, Location, Outcome, SystemOutcome, SystemTask, Task,
+    pins,
+};
+use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec};
+use fields::{Given, Known, problem};
 use method::{Bdf, DiffsolMethod, Esdirk34, TrBdf2, Tsit45};
-use phase::DiffsolRun;
+use mode::DiffsolRun;
 use std::cell::Cell;
 use std::marker::PhantomData;
 
@@ -66,44 +71,41 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let tolerance = accuracy.wanted_tolerance()?;
-        let meter = Meter::new(limits);
-        let oscillator = Oscillator::of(&task.parameters, task.forcing_angle);
-        let phase = Cell::new(task.phase);
-        let problem = OdeBuilder::<DenseMatrix>::new()
-            .rtol(tolerance)
-            .atol([tolerance])
-            .h0(task.problem.model.period() * FIRST_STEP)
-            .rhs_implicit(
-                |u, _, t, du| {
-                    oscillator.derivatives(phase.get(), t, u, du);
-                    meter.rhs(du);
-                },
-                |_, _, _, w, dw| {
-                    oscillator.jacobian_product(phase.get(), w, dw);
-                    meter.jacobian();
-                },
-            )
-            .init(|_, _, u| u.copy_from_slice(&task.state), task.state.len())
-            .root(
-                |u, _, t, guards| {
-                    let values = oscillator.guards(phase.get(), u);
-                    meter.guards(t, phase.get(), &values);
-                    guards.copy_from_slice(&values);
-                },
-                GUARDS,
-            )
-            .build()
-            .map_err(Failure::new)?;
-        let run = DiffsolRun {
-            span: task.span,
-            longest: LONGEST_STEP * task.problem.model.period(),
-            meter: &meter,
-            oscillator,
-        };
-        join(task, &oscillator, &meter, |from, sampler| {
-            phase.set(from.phase);
-            run.one_phase::<M, _>(&problem, from, sampler)
-        })
+        let course = Course::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
+        run::<M, _>(&course, accuracy, limits)
     }
+
+    fn run_system(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        run::<M, _>(&Course::of_system(task), accuracy, limits)
+    }
+}
+
+/// Runs a course with one of the library's methods.
+fn run<M: DiffsolMethod, E: Known>(
+    course: &Course<'_, E>,
+    accuracy: Accuracy,
+    limits: &Limits,
+) -> Result<Outcome<E::Mode, E::State>, Failure> {
+    let tolerance = accuracy.wanted_tolerance()?;
+    let meter = Meter::new(limits);
+    let Course { equations, span, times, .. } = *course;
+    let mode = Cell::new(course.mode);
+    let given = Given {
+        state: course.state.as_ref(),
+        guards: equations.most_guards(),
+        period: times.period,
+        tolerance,
+    };
+    let problem = problem(equations.field(&mode, &meter), &given)?;
+    let longest = LONGEST_STEP * times.period;
+    let run = DiffsolRun { span, longest, meter: &meter, equations };
+    join(course, &meter, |from, sampler| {
+        mode.set(from.mode);
+        run.one_mode::<M, _>(&problem, from, sampler)
+    })
 }

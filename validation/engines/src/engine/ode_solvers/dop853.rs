@@ -11,15 +11,21 @@
 
 use super::{COLOURS, LIBRARY, NEVER_STIFF, STEPS, TimedField, packed, plain};
 use crate::engine::cubic::CubicEnd;
-use crate::engine::field::{Equations, Oscillator};
-use crate::engine::joining::{Moment, StretchEnd, join};
+use crate::engine::equations::{Equations, Numbers};
+use crate::engine::field::Oscillator;
+use crate::engine::joining::{Course, Moment, StretchEnd, join};
 use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::{longest_step, walk};
-use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
+use crate::engine::{
+    Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
+    Task, pins,
+};
 use ::ode_solvers::OutputType;
-use percuss::Phase;
+use nalgebra::allocator::Allocator;
+use nalgebra::{DefaultAllocator, Dim, Dyn, U4, U5};
+use std::marker::PhantomData;
 
 const STAGES: f64 = 12.0;
 /// The least multiple in [`Engine::least_work`].
@@ -27,25 +33,28 @@ const FIRST_ORDER: f64 = 8e-4;
 /// The library keeps a stretch's steps in memory.
 const MOST_STEPS: f64 = 4096.0;
 /// A piece of a step shorter than this share of it is covered by one step of Euler, whose error
-/// there is below rounding; the library would call it an underflow.
+/// there is below rounding in the oscillator; the library would call it an underflow. Where impacts
+/// accumulate whole flights are as short: other systems have Heun's step.
 const TINY: f64 = 1e-10;
 
-/// ode_solvers' `Dop853` on N states: p, y, q, v and, where N is 5, time.
-pub(in super::super) struct Dop853<const N: usize> {
+/// ode_solvers' `Dop853`.
+pub(in super::super) struct Dop853 {
     pub(super) name: &'static str,
     pub(super) role: Role,
+    /// Whether time is one more state.
+    pub(super) clock: bool,
 }
 
-impl<const N: usize> Engine for Dop853<N> {
+impl Engine for Dop853 {
     fn declaration(&self) -> Declaration {
         Declaration {
             name: self.name,
             library: LIBRARY,
             version: pins::version(LIBRARY),
-            method: if N == 4 {
-                "Dormand-Prince 8(5,3)"
-            } else {
+            method: if self.clock {
                 "Dormand-Prince 8(5,3), time as a state"
+            } else {
+                "Dormand-Prince 8(5,3)"
             },
             order: Some(8),
             events: Location::Harness,
@@ -59,79 +68,130 @@ impl<const N: usize> Engine for Dop853<N> {
     /// At first order the error of a step h is a multiple of a omega h^2, and is held to the
     /// tolerance. The multiple is the least that was measured over the cases.
     fn least_work(&self, task: &Task, accuracy: Accuracy) -> f64 {
-        let Some(tolerance) = accuracy.tolerance().filter(|_| N == 4) else { return 0.0 };
+        let Some(tolerance) = accuracy.tolerance().filter(|_| !self.clock) else { return 0.0 };
         let rate = task.parameters.a * task.parameters.omega;
         STAGES * task.span * (FIRST_ORDER * rate / tolerance).sqrt()
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let tolerance = accuracy.wanted_tolerance()?;
-        let meter = Meter::new(limits);
-        let equations = Oscillator::of(&task.parameters, task.forcing_angle);
-        let run = Dop853Run::<N> { task, tolerance, meter: &meter, equations };
-        join(task, &equations, &meter, |from, sampler| run.stretch(from, sampler))
+        let course = Course::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
+        if self.clock {
+            run::<_, U5>(&course, [true, false], accuracy, limits)
+        } else {
+            run::<_, U4>(&course, [false; 2], accuracy, limits)
+        }
+    }
+
+    fn run_system(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        run::<_, Dyn>(&Course::of_system(task), [self.clock, true], accuracy, limits)
     }
 }
 
-struct Dop853Run<'a, const N: usize> {
-    task: &'a Task,
-    tolerance: f64,
-    meter: &'a Meter,
-    equations: Oscillator,
+/// Runs a course on vectors of so many dimensions.
+fn run<E: Equations, D: Dim>(
+    course: &Course<'_, E>,
+    [clock, heun]: [bool; 2],
+    accuracy: Accuracy,
+    limits: &Limits,
+) -> Result<Outcome<E::Mode, E::State>, Failure>
+where
+    DefaultAllocator: Allocator<D>,
+{
+    let tolerance = accuracy.wanted_tolerance()?;
+    let meter = Meter::new(limits);
+    let longest = longest_step(&course.times);
+    let vectors = PhantomData;
+    let run = Dop853Run::<E, D> { course, clock, heun, tolerance, longest, meter: &meter, vectors };
+    join(course, &meter, |from, sampler| run.stretch(from, sampler))
 }
 
-impl<const N: usize> Dop853Run<'_, N> {
-    fn stretch(&self, from: &Moment, sampler: &mut Sampler) -> Result<StretchEnd, Failure> {
-        let period = self.task.problem.model.period();
-        let longest = longest_step(period);
-        let until = (from.t + period.min(MOST_STEPS * longest)).min(self.task.span);
-        let mut points = self.integrate(from.phase, (from.t, from.state), until, longest, 0.0)?;
+/// A state moved on at these rates.
+fn moved<S: Numbers>(state: &S, rates: &S, length: f64) -> S {
+    let mut there = *state;
+    for (value, rate) in there.as_mut().iter_mut().zip(rates.as_ref()) {
+        *value += rate * length;
+    }
+    there
+}
+
+struct Dop853Run<'a, E: Equations, D> {
+    course: &'a Course<'a, E>,
+    clock: bool,
+    heun: bool,
+    tolerance: f64,
+    longest: f64,
+    meter: &'a Meter<E::Mode>,
+    vectors: PhantomData<fn() -> D>,
+}
+
+impl<E: Equations, D: Dim> Dop853Run<'_, E, D>
+where
+    DefaultAllocator: Allocator<D>,
+{
+    fn stretch(
+        &self,
+        from: &Moment<E>,
+        sampler: &mut Sampler<E::State>,
+    ) -> Result<StretchEnd<E::State>, Failure> {
+        let longest = self.longest;
+        let ahead = self.course.times.period.min(MOST_STEPS * longest);
+        let until = (from.t + ahead).min(self.course.span);
+        let mut points = self.integrate(from.mode, (from.t, from.state), until, longest, 0.0)?;
         if let Some(last) = points.last_mut().filter(|last| last.0 > until - TINY * longest) {
             // It is the end but for rounding.
             last.0 = until;
         }
-        let search = GuardSearch::new(self.equations, from, self.meter);
-        let inside = |left: &CubicEnd, t: f64| self.again(from.phase, left, t);
-        walk(search, from, points, sampler, |left, _, t| inside(left, t))
+        let search = GuardSearch::new(self.course.equations, from, self.meter);
+        walk(search, from, points, sampler, |left, _, t| self.again(from.mode, left, t))
     }
 
     /// The state at `t` by another integration from a point before it, in one step if that will do.
-    fn again(&self, phase: Phase, left: &CubicEnd, t: f64) -> Result<[f64; 4], Failure> {
+    fn again(&self, mode: E::Mode, left: &CubicEnd<E::State>, t: f64) -> Result<E::State, Failure> {
         let (begin, state) = *left;
         let length = t - begin;
-        if length <= TINY * longest_step(self.task.problem.model.period()) {
-            let mut rates = [0.0; 4];
-            self.equations.derivatives(phase, begin, &state, &mut rates);
-            self.meter.rhs(&rates);
-            return Ok([0, 1, 2, 3].map(|i| state[i] + rates[i] * length));
+        if length <= TINY * self.longest {
+            let rates = self.rates(mode, begin, &state);
+            let there = moved(&state, &rates, length);
+            if !self.heun {
+                return Ok(there);
+            }
+            let after = self.rates(mode, t, &there);
+            return Ok(moved(&moved(&state, &rates, 0.5 * length), &after, 0.5 * length));
         }
-        let points = self.integrate(phase, *left, t, length, length)?;
+        let points = self.integrate(mode, *left, t, length, length)?;
         points.last().map(|last| last.1).ok_or_else(|| Failure::new("took no step"))
     }
 
-    /// The ends of steps up to `until`, or to the first that is outside the phase.
+    fn rates(&self, mode: E::Mode, t: f64, state: &E::State) -> E::State {
+        let mut rates = *state;
+        self.course.equations.derivatives(mode, t, state.as_ref(), rates.as_mut());
+        self.meter.rhs(rates.as_ref());
+        rates
+    }
+
+    /// The ends of steps up to `until`, or to the first that is outside the mode.
     fn integrate(
         &self,
-        phase: Phase,
-        from: CubicEnd,
+        mode: E::Mode,
+        from: CubicEnd<E::State>,
         until: f64,
         longest: f64,
         first: f64,
-    ) -> Result<Vec<CubicEnd>, Failure> {
+    ) -> Result<Vec<CubicEnd<E::State>>, Failure> {
         let (begin, state) = from;
-        let field = TimedField {
-            equations: self.equations,
-            phase,
-            meter: self.meter,
-            from: state,
-            stale: None,
-        };
+        let equations = self.course.equations;
+        let field = TimedField { equations, mode, meter: self.meter, from: state, stale: None };
         let mut solver = ::ode_solvers::Dop853::from_param(
             field,
             begin,
             until,
             longest,
-            packed::<N>(begin, &state),
+            packed::<D>(begin, state.as_ref(), self.clock),
             self.tolerance,
             self.tolerance,
             0.9,
@@ -146,7 +206,7 @@ impl<const N: usize> Dop853Run<'_, N> {
         );
         let stats = solver.integrate().map_err(Failure::new)?;
         self.meter.steps(stats.accepted_steps.into());
-        let states = solver.y_out().iter().map(plain);
+        let states = solver.y_out().iter().map(|u| plain(&equations, u));
         Ok(solver.x_out().iter().copied().zip(states).skip(1).collect())
     }
 }

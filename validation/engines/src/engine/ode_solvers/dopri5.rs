@@ -4,14 +4,20 @@
 //! right state; in dense mode it does not.
 
 use super::{COLOURS, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, TimedField, packed, plain};
-use crate::engine::field::Equations;
-use crate::engine::joining::{Moment, StretchEnd, join};
+use crate::engine::equations::Equations;
+use crate::engine::field::Coordinates;
+use crate::engine::joining::{Course, Moment, StretchEnd, join};
 use crate::engine::location::{GuardRise, GuardSearch};
 use crate::engine::meter::{Failure, Limits, Meter};
-use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
+use crate::engine::sampler::Sampler;
+use crate::engine::{
+    Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
+    Task, pins,
+};
 use ::ode_solvers::continuous_output_model::ContinuousOutputModel;
-use ::ode_solvers::{OutputType, SVector};
-use percuss::Phase;
+use ::ode_solvers::{OVector, OutputType};
+use nalgebra::allocator::Allocator;
+use nalgebra::{DefaultAllocator, Dim, Dyn, U4};
 use std::marker::PhantomData;
 
 /// ode_solvers' `Dopri5` on some equations.
@@ -27,7 +33,7 @@ impl<E> Dopri5<E> {
     }
 }
 
-impl<E: Equations> Engine for Dopri5<E> {
+impl<E: Coordinates> Engine for Dopri5<E> {
     fn declaration(&self) -> Declaration {
         Declaration {
             name: self.name,
@@ -44,81 +50,121 @@ impl<E: Equations> Engine for Dopri5<E> {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let tolerance = accuracy.wanted_tolerance()?;
-        let meter = Meter::new(limits);
-        let equations = E::of(&task.parameters, task.forcing_angle);
-        let mut run = Dopri5Run::new(task, tolerance, &meter, equations);
-        join(task, &equations, &meter, |from, sampler| {
-            let stretch = run.integrate(from)?;
-            let crossing = run.first_crossing(from, &stretch)?;
-            let state_at = |t: f64| evaluate(&stretch.output, t);
-            let Some(GuardRise { t, guard }) = crossing else {
-                sampler.take(stretch.last(), state_at)?;
-                return Ok(StretchEnd::Inside { t: stretch.last(), state: stretch.end });
-            };
-            sampler.take(t, state_at)?;
-            run.step = 0.0;
-            Ok(StretchEnd::Switch { t, guard, state: state_at(t)? })
-        })
+        let course = Course::of(task, E::of(&task.parameters, task.forcing_angle));
+        run::<E, U4>(&course, accuracy, limits)
+    }
+
+    fn run_system(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        if !E::BOUNDED {
+            return Err(Failure::new("its co-ordinates are the oscillator's"));
+        }
+        run::<_, Dyn>(&Course::of_system(task), accuracy, limits)
     }
 }
 
-pub(in crate::engine) type Output = ContinuousOutputModel<f64, SVector<f64, 4>>;
+/// Runs a course on vectors of so many dimensions.
+fn run<E: Equations, D: Dim>(
+    course: &Course<'_, E>,
+    accuracy: Accuracy,
+    limits: &Limits,
+) -> Result<Outcome<E::Mode, E::State>, Failure>
+where
+    DefaultAllocator: Allocator<D>,
+{
+    let tolerance = accuracy.wanted_tolerance()?;
+    let meter = Meter::new(limits);
+    let mut run = Dopri5Run::<E, D>::new(course, tolerance, &meter);
+    join(course, &meter, |from, sampler| {
+        let stretch = run.integrate(from)?;
+        let crossing = run.first_crossing(from, &stretch, sampler)?;
+        let state_at = |t: f64| stretch.at(t);
+        let Some(GuardRise { t, guard }) = crossing else {
+            sampler.take(stretch.last(), state_at)?;
+            return Ok(StretchEnd::Inside { t: stretch.last(), state: stretch.end });
+        };
+        sampler.take(t, state_at)?;
+        run.step = 0.0;
+        Ok(StretchEnd::Switch { t, guard, state: state_at(t)? })
+    })
+}
 
-/// The library's method on one task.
-pub(in crate::engine) struct Dopri5Run<'a, E> {
-    task: &'a Task,
+/// The library's method on one course.
+pub(in crate::engine) struct Dopri5Run<'a, E: Equations, D> {
+    course: &'a Course<'a, E>,
     tolerance: f64,
-    meter: &'a Meter,
-    equations: E,
+    meter: &'a Meter<E::Mode>,
     /// The step to begin the next stretch with; zero: the library chooses.
     pub(in crate::engine) step: f64,
-    /// A phase whose derivative is taken at a stretch's begin instead of its own; a fault.
-    pub(in crate::engine) stale: Option<Phase>,
+    /// A mode whose derivative is taken at a stretch's begin instead of its own; a fault.
+    pub(in crate::engine) stale: Option<E::Mode>,
+    vectors: PhantomData<fn() -> D>,
 }
 
-/// A stretch of one phase, with the ends of its steps.
-pub(in crate::engine) struct Stretch {
-    pub(in crate::engine) output: Output,
+/// A stretch of one mode, with the ends of its steps.
+pub(in crate::engine) struct Stretch<E: Equations, D: Dim>
+where
+    DefaultAllocator: Allocator<D>,
+{
+    equations: E,
+    output: ContinuousOutputModel<f64, OVector<f64, D>>,
     pub(in crate::engine) begin: f64,
     pub(in crate::engine) ends: Vec<f64>,
-    pub(in crate::engine) end: [f64; 4],
+    pub(in crate::engine) end: E::State,
 }
 
-impl Stretch {
+impl<E: Equations, D: Dim> Stretch<E, D>
+where
+    DefaultAllocator: Allocator<D>,
+{
     pub(in crate::engine) fn last(&self) -> f64 {
         self.ends.last().copied().unwrap_or(self.begin)
     }
+
+    /// The state at a time, by the library's interpolant.
+    pub(in crate::engine) fn at(&self, t: f64) -> Result<E::State, Failure> {
+        let state = self.output.evaluate(t).map(|u| plain(&self.equations, &u));
+        state.ok_or_else(|| Failure::new("its continuous output has a hole"))
+    }
 }
 
-impl<'a, E: Equations> Dopri5Run<'a, E> {
+impl<'a, E: Equations, D: Dim> Dopri5Run<'a, E, D>
+where
+    DefaultAllocator: Allocator<D>,
+{
     pub(in crate::engine) fn new(
-        task: &'a Task,
+        course: &'a Course<'a, E>,
         tolerance: f64,
-        meter: &'a Meter,
-        equations: E,
+        meter: &'a Meter<E::Mode>,
     ) -> Self {
-        Self { task, tolerance, meter, equations, step: 0.0, stale: None }
+        Self { course, tolerance, meter, step: 0.0, stale: None, vectors: PhantomData }
     }
 
-    /// Integrates one phase for at most a forcing period, or to the first step's end outside it.
-    pub(in crate::engine) fn integrate(&mut self, from: &Moment) -> Result<Stretch, Failure> {
-        let period = self.task.problem.model.period();
+    /// Integrates one mode for at most a forcing period, or to the first step's end outside it.
+    pub(in crate::engine) fn integrate(
+        &mut self,
+        from: &Moment<E>,
+    ) -> Result<Stretch<E, D>, Failure> {
+        let Course { equations, span, times, .. } = self.course;
         let field = TimedField {
-            equations: self.equations,
-            phase: from.phase,
+            equations: *equations,
+            mode: from.mode,
             meter: self.meter,
             from: from.state,
-            stale: self.stale.map(|phase| (from.t, phase)),
+            stale: self.stale.map(|mode| (from.t, mode)),
         };
-        let until = (from.t + period).min(self.task.span);
-        let longest = LONGEST_STEP * period;
+        let until = (from.t + times.period).min(*span);
+        let longest = LONGEST_STEP * times.period;
         let mut solver = ::ode_solvers::Dopri5::from_param(
             field,
             from.t,
             until,
             longest,
-            packed::<4>(from.t, &from.state),
+            packed::<D>(from.t, from.state.as_ref(), false),
             self.tolerance,
             self.tolerance,
             0.9,
@@ -131,26 +177,29 @@ impl<'a, E: Equations> Dopri5Run<'a, E> {
             NEVER_STIFF,
             OutputType::Continuous,
         );
-        let mut output = Output::new();
+        let mut output = ContinuousOutputModel::new();
         let stats =
             solver.integrate_with_continuous_output_model(&mut output).map_err(Failure::new)?;
         self.meter.steps(stats.accepted_steps.into());
         let end = solver.y_out().last().ok_or_else(|| Failure::new("took no step"))?;
         let ends = solver.x_out().clone();
         self.step = ends.windows(2).last().map_or(0.0, |pair| pair[1] - pair[0]);
-        Ok(Stretch { output, begin: from.t, ends, end: plain(end) })
+        let end = plain(equations, end);
+        Ok(Stretch { equations: *equations, output, begin: from.t, ends, end })
     }
 
     /// The first instant of a stretch at which a guard has risen to zero.
     pub(in crate::engine) fn first_crossing(
         &self,
-        from: &Moment,
-        stretch: &Stretch,
+        from: &Moment<E>,
+        stretch: &Stretch<E, D>,
+        sampler: &mut Sampler<E::State>,
     ) -> Result<Option<GuardRise>, Failure> {
-        let search = GuardSearch::new(self.equations, from, self.meter);
+        let search = GuardSearch::new(self.course.equations, from, self.meter);
         let mut begin = stretch.begin;
+        let counted = &mut sampler.counted;
         for end in stretch.ends.iter().copied().filter(|end| *end > stretch.begin) {
-            let found = search.step(begin, end, &mut |t| evaluate(&stretch.output, t))?;
+            let found = search.step(begin, end, &mut |t| stretch.at(t), counted)?;
             if found.is_some() {
                 return Ok(found);
             }
@@ -158,9 +207,4 @@ impl<'a, E: Equations> Dopri5Run<'a, E> {
         }
         Ok(None)
     }
-}
-
-pub(in crate::engine) fn evaluate(output: &Output, t: f64) -> Result<[f64; 4], Failure> {
-    let state = output.evaluate(t);
-    state.map(|u| plain(&u)).ok_or_else(|| Failure::new("its continuous output has a hole"))
 }

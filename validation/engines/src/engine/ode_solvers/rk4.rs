@@ -9,15 +9,20 @@
 
 use super::{COLOURS, LIBRARY, TimedField, packed, plain};
 use crate::engine::cubic::Cubic;
-use crate::engine::field::{Equations, Oscillator};
-use crate::engine::joining::{Moment, StretchEnd, join};
+use crate::engine::equations::Equations;
+use crate::engine::field::Oscillator;
+use crate::engine::joining::{Course, Moment, StretchEnd, join};
 use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::walk;
 use crate::engine::{
-    Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins, shortest_time,
+    Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
+    Task, pins, shortest_time,
 };
+use nalgebra::allocator::Allocator;
+use nalgebra::{DefaultAllocator, Dim, Dyn, U4};
+use std::marker::PhantomData;
 
 /// ode_solvers' `Rk4`.
 pub(in super::super) struct Rk4;
@@ -49,53 +54,79 @@ impl Engine for Rk4 {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let step = accuracy.wanted_step()? * shortest_time(&task.parameters);
-        let meter = Meter::new(limits);
-        let equations = Oscillator::of(&task.parameters, task.forcing_angle);
-        let run = Rk4Run { task, step, meter: &meter, equations };
-        join(task, &equations, &meter, |from, sampler| run.stretch(from, sampler))
+        let course = Course::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
+        run::<_, U4>(&course, accuracy, limits)
+    }
+
+    fn run_system(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        run::<_, Dyn>(&Course::of_system(task), accuracy, limits)
     }
 }
 
-struct Rk4Run<'a> {
-    task: &'a Task,
-    step: f64,
-    meter: &'a Meter,
-    equations: Oscillator,
+/// Runs a course on vectors of so many dimensions.
+fn run<E: Equations, D: Dim>(
+    course: &Course<'_, E>,
+    accuracy: Accuracy,
+    limits: &Limits,
+) -> Result<Outcome<E::Mode, E::State>, Failure>
+where
+    DefaultAllocator: Allocator<D>,
+{
+    let step = accuracy.wanted_step()? * course.times.shortest;
+    let meter = Meter::new(limits);
+    let run = Rk4Run::<E, D> { course, step, meter: &meter, vectors: PhantomData };
+    join(course, &meter, |from, sampler| run.stretch(from, sampler))
 }
 
-impl Rk4Run<'_> {
-    fn stretch(&self, from: &Moment, sampler: &mut Sampler) -> Result<StretchEnd, Failure> {
-        let longest = self.task.problem.model.period().min(MOST_STEPS * self.step);
-        let length = longest.min(self.task.span - from.t);
+struct Rk4Run<'a, E: Equations, D> {
+    course: &'a Course<'a, E>,
+    step: f64,
+    meter: &'a Meter<E::Mode>,
+    vectors: PhantomData<fn() -> D>,
+}
+
+impl<E: Equations, D: Dim> Rk4Run<'_, E, D>
+where
+    DefaultAllocator: Allocator<D>,
+{
+    fn stretch(
+        &self,
+        from: &Moment<E>,
+        sampler: &mut Sampler<E::State>,
+    ) -> Result<StretchEnd<E::State>, Failure> {
+        let Course { equations, span, times, .. } = self.course;
+        let longest = times.period.min(MOST_STEPS * self.step);
+        let length = longest.min(span - from.t);
         let count = (length / self.step).ceil().max(1.0);
         self.meter.affords(STAGES * count)?;
         let step = length / count;
-        let field = TimedField {
-            equations: self.equations,
-            phase: from.phase,
-            meter: self.meter,
-            from: from.state,
-            stale: None,
-        };
+        let (mode, state) = (from.mode, from.state);
+        let field =
+            TimedField { equations: *equations, mode, meter: self.meter, from: state, stale: None };
         // The library makes it a whole number of steps, upwards: half a step short of the end is
         // safe.
         let until = from.t + (count - 0.5) * step;
-        let mut solver =
-            ::ode_solvers::Rk4::new(field, from.t, packed::<4>(from.t, &from.state), until, step);
+        let begin = packed::<D>(from.t, state.as_ref(), false);
+        let mut solver = ::ode_solvers::Rk4::new(field, from.t, begin, until, step);
         let stats = solver.integrate().map_err(Failure::new)?;
         self.meter.steps(stats.accepted_steps.into());
-        let search = GuardSearch::new(self.equations, from, self.meter);
+        let search = GuardSearch::new(*equations, from, self.meter);
         // The library's own times are sums of steps.
         let time = |k: usize| from.t + length * (k as f64 / count);
-        let points = solver.y_out().iter().enumerate().skip(1).map(|(k, u)| (time(k), plain(u)));
-        let mut cubic: Option<Cubic> = None;
+        let points = solver.y_out().iter().enumerate().skip(1);
+        let points = points.map(|(k, u)| (time(k), plain(equations, u)));
+        let mut cubic: Option<Cubic<E::State>> = None;
         walk(search, from, points, sampler, |left, right, t| {
             let known = cubic.take().filter(|known| known.begins_at(left.0));
             let here = known.unwrap_or_else(|| {
                 let ends = [*left, *right];
                 Cubic::between(ends, |(t, state), rates| {
-                    self.equations.derivatives(from.phase, t, &state, rates);
+                    equations.derivatives(mode, t, state.as_ref(), rates);
                     self.meter.rhs(rates);
                 })
             });

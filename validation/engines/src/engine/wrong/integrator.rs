@@ -4,14 +4,18 @@
 //! Without a fault it is the engine `ode_solvers-dopri5`, whose bounds it is held to.
 
 use super::super::cubic::{Cubic, CubicEnd};
-use super::super::field::{Equations, GUARDS, Oscillator};
-use super::super::joining::{Moment, StretchEnd, join};
+use super::super::equations::Equations;
+use super::super::field::{GUARDS, Oscillator};
+use super::super::joining::{Course, Moment, StretchEnd, join};
 use super::super::location::GuardRise;
 use super::super::meter::{Failure, Limits, Meter};
 use super::super::ode_solvers::DOPRI5;
-use super::super::ode_solvers::dopri5::{Dopri5Run, Stretch, evaluate};
+use super::super::ode_solvers::dopri5::{self, Dopri5Run};
 use super::super::{Accuracy, Declaration, Engine, Outcome, Role, Task};
+use nalgebra::U4;
 use percuss::{Parameters, Phase};
+
+type Stretch = dopri5::Stretch<Oscillator, U4>;
 
 /// What is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +68,8 @@ impl Engine for Faulty {
         }
         let meter = Meter::new(limits);
         let equations = Oscillator::of(&self.parameters(task), task.forcing_angle);
-        let mut run = Dopri5Run::new(task, tolerance, &meter, equations);
+        let course = Course::of(task, equations);
+        let mut run = Dopri5Run::<_, U4>::new(&course, tolerance, &meter);
         let mut watch = FaultyWatch {
             slip: self.slip,
             equations,
@@ -73,18 +78,18 @@ impl Engine for Faulty {
             overlooking: false,
             before: None,
         };
-        join(task, &equations, &meter, |from, sampler| {
+        join(&course, &meter, |from, sampler| {
             run.stale = watch.stale(from);
             let stretch = run.integrate(from)?;
-            let sound = run.first_crossing(from, &stretch)?;
+            let sound = run.first_crossing(from, &stretch, sampler)?;
             let Some(GuardRise { t, guard }) = watch.notice(&stretch, from, sound)? else {
-                sampler.take(stretch.last(), |t| watch.state_at(&stretch, from.phase, t))?;
+                sampler.take(stretch.last(), |t| watch.state_at(&stretch, from.mode, t))?;
                 return Ok(StretchEnd::Inside { t: stretch.last(), state: stretch.end });
             };
-            sampler.take(t, |t| watch.state_at(&stretch, from.phase, t))?;
+            sampler.take(t, |t| watch.state_at(&stretch, from.mode, t))?;
             run.step = 0.0;
-            watch.before = Some(from.phase);
-            let state = watch.state_at(&stretch, from.phase, t)?;
+            watch.before = Some(from.mode);
+            let state = watch.state_at(&stretch, from.mode, t)?;
             Ok(StretchEnd::Switch { t, guard, state })
         })
     }
@@ -116,7 +121,7 @@ struct FaultyWatch {
 impl FaultyWatch {
     /// The phase whose derivative begins a stretch: that before the last event, if that is the
     /// fault.
-    fn stale(&self, from: &Moment) -> Option<Phase> {
+    fn stale(&self, from: &Moment<Oscillator>) -> Option<Phase> {
         self.before.filter(|_| self.slip == IntegratorFault::OldDerivative && from.t == from.began)
     }
 
@@ -124,14 +129,14 @@ impl FaultyWatch {
     fn notice(
         &mut self,
         stretch: &Stretch,
-        from: &Moment,
+        from: &Moment<Oscillator>,
         sound: Option<GuardRise>,
     ) -> Result<Option<GuardRise>, Failure> {
         let found = match self.slip {
-            IntegratorFault::SignAtEnds => self.by_sign(stretch, from.phase, false)?,
-            IntegratorFault::AnyDirection => self.by_sign(stretch, from.phase, true)?,
+            IntegratorFault::SignAtEnds => self.by_sign(stretch, from.mode, false)?,
+            IntegratorFault::AnyDirection => self.by_sign(stretch, from.mode, true)?,
             IntegratorFault::Dropped(_) if self.overlooking => {
-                self.by_sign(stretch, from.phase, false)?
+                self.by_sign(stretch, from.mode, false)?
             }
             IntegratorFault::Dropped(every) => sound.filter(|_| !self.drops(every)),
             IntegratorFault::AtStepEnd => {
@@ -199,22 +204,21 @@ impl FaultyWatch {
     }
 
     fn guards(&self, stretch: &Stretch, phase: Phase, t: f64) -> Result<[f64; GUARDS], Failure> {
-        Ok(self.equations.guards(phase, &self.state_at(stretch, phase, t)?))
+        Ok(self.equations.guards(phase, t, &self.state_at(stretch, phase, t)?))
     }
 
     /// The state inside a stretch, by the interpolant that this integrator has.
     fn state_at(&self, stretch: &Stretch, phase: Phase, t: f64) -> Result<[f64; 4], Failure> {
         if self.slip != IntegratorFault::LowOrder {
-            return evaluate(&stretch.output, t);
+            return stretch.at(t);
         }
         let end = end_of_step(stretch, t);
         let begin =
             stretch.ends.iter().copied().filter(|it| *it < end).fold(stretch.begin, f64::max);
         if end <= begin {
-            return evaluate(&stretch.output, t);
+            return stretch.at(t);
         }
-        let point =
-            |t: f64| -> Result<CubicEnd, Failure> { Ok((t, evaluate(&stretch.output, t)?)) };
+        let point = |t: f64| -> Result<CubicEnd<[f64; 4]>, Failure> { Ok((t, stretch.at(t)?)) };
         let cubic = Cubic::between([point(begin)?, point(end)?], |(t, state), rates| {
             self.equations.derivatives(phase, t, &state, rates);
         });

@@ -4,8 +4,9 @@
 //! Without a fault it looks finely enough for what the power test asks of it. It is no peer: it has
 //! no proof, and its steps miss what is shorter than they are.
 
+use super::super::equations::Equations;
 use super::super::exact::Exact;
-use super::super::field::{Equations, GUARDS, Oscillator};
+use super::super::field::{GUARDS, Oscillator};
 use super::super::sampler::Sampler;
 use super::super::{Accuracy, Declaration, Engine, Event, Failure, Limits, Location, Outcome};
 use super::super::{Role, Task, Work};
@@ -86,9 +87,9 @@ impl WrongRun<'_> {
                 outcome.end = there;
                 break;
             };
-            let (next, on_surface) = self.switch(phase, guard, &there);
+            let (next, on_surface) = self.switch(phase, guard, at, &there);
             (t, phase, state) = (at, next, on_surface);
-            outcome.events.push(Event { phase, elapsed: t, state });
+            outcome.events.push(Event { event: guard, mode: phase, elapsed: t, state });
             if outcome.events.len() > limits.events {
                 return Err(Failure::new(format!("gave up after {} events", limits.events)));
             }
@@ -105,8 +106,8 @@ impl WrongRun<'_> {
         Closed::new(&self.task.parameters, phase, state, angle, printed)
     }
 
-    fn switch(&self, phase: Phase, guard: usize, there: &[f64; 4]) -> (Phase, [f64; 4]) {
-        let (next, state) = self.oscillator.switch(phase, guard, there);
+    fn switch(&self, phase: Phase, guard: usize, t: f64, there: &[f64; 4]) -> (Phase, [f64; 4]) {
+        let (next, state) = self.oscillator.switch(phase, guard, t, there);
         let impact = phase == Phase::NoContact && self.fault == WalkFault::ContactAtImpact;
         (if impact { Phase::Contact } else { next }, state)
     }
@@ -150,7 +151,7 @@ impl WrongRun<'_> {
     fn is_out(&mut self, closed: &Closed, phase: Phase, guard: usize, from: f64, t: f64) -> bool {
         self.evaluations += 1;
         let state = closed.at(t - from);
-        let positive = self.oscillator.guards(phase, &state)[guard] > 0.0;
+        let positive = self.oscillator.guards(phase, t, &state)[guard] > 0.0;
         let blind = self.fault == WalkFault::SignChange;
         positive && (blind || self.oscillator.rates(phase, t, &state)[guard] > 0.0)
     }

@@ -98,7 +98,7 @@ fn phase_sequences(
         let number = event.elapsed / period - f64::from(transient);
         if let Some(sequence) = (number >= 0.0).then(|| spelled.get_mut(number as usize)).flatten()
         {
-            sequence.push(match event.phase {
+            sequence.push(match event.mode {
                 Phase::NoContact => 'n',
                 Phase::Contact => 'c',
                 Phase::Progression => 'p',
@@ -153,7 +153,7 @@ mod tests {
     /// the first sequence, and one before it belongs to none.
     #[test]
     fn sequences_are_spelled_by_the_events_of_each_period() {
-        let event = |elapsed: f64, phase| Event { phase, elapsed, state: [0.0; 4] };
+        let event = |elapsed: f64, phase| Event { event: 0, mode: phase, elapsed, state: [0.0; 4] };
         let events = [
             event(3.9, Phase::Progression),
             event(4.0, Phase::Contact),

@@ -1,0 +1,201 @@
+//! How far a run may be from the truth: the errors that rounding has made, carried along.
+//!
+//! Errors of the state and of the time are kept as columns, each with a factor between -1 and 1
+//! that is not known. The flow and the derivative of an event (its saltation) act on each column;
+//! what an event adds in second order, and each new rounding, is a column of its own. When there
+//! are too many, the smallest are replaced by a box. So errors that cancel do so here.
+
+use super::flow::{Flow, ModalRow, Vector, dot};
+use super::system::LARGEST_DIMENSION;
+use crate::number::Number;
+
+/// Columns beyond this are made a box.
+const MOST_COLUMNS: usize = 160;
+
+/// How many of the largest stay columns then.
+const KEPT: usize = 80;
+
+/// Bounds that rounding in f64 does not weaken.
+const OUTWARD: f64 = 1.0 + 1e-9;
+
+/// An error of z and of the time.
+#[derive(Clone, Copy, Debug)]
+struct Column {
+    state: [f64; LARGEST_DIMENSION],
+    time: f64,
+}
+
+/// The errors of a state and its time.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Enclosure {
+    columns: Vec<Column>,
+}
+
+/// What the errors at an event follow from.
+pub(super) struct Crossing<'a, T> {
+    pub flow: &'a Flow<T>,
+    pub matrix: &'a [Vector<T>],
+    pub guard: &'a ModalRow<T>,
+    /// The modal co-ordinates at the crossing, and the time since the entry.
+    pub y: Vector<T>,
+    pub elapsed: T,
+    /// The state at the crossing.
+    pub state: Vector<T>,
+    /// What rounding may have done to the guard.
+    pub slack: f64,
+    pub unit: f64,
+}
+
+impl Enclosure {
+    /// Errors of each entry of a state by themselves.
+    pub fn of(errors: &[f64]) -> Self {
+        let mut enclosure = Self::default();
+        enclosure.add_box(errors);
+        enclosure
+    }
+
+    /// Bounds of the errors of z.
+    pub fn state(&self) -> [f64; LARGEST_DIMENSION] {
+        std::array::from_fn(|n| self.sum(|column| column.state[n]))
+    }
+
+    /// A bound of the error of the time.
+    pub fn time(&self) -> f64 {
+        self.sum(|column| column.time)
+    }
+
+    /// A bound of the error of a derivative of a row, just after the entry of a segment.
+    pub fn of_row<T: Number>(&self, flow: &Flow<T>, row: &ModalRow<T>, order: usize) -> f64 {
+        let row = row.orders[order].map(Number::to_f64);
+        self.sum(|column| dot(&row, &flow.modal_rounded(&column.state), flow.dimension))
+    }
+
+    /// A bound of the error of a row at any time after the entry, but for growing blocks.
+    pub fn along<T: Number>(&self, flow: &Flow<T>, row: &ModalRow<T>) -> f64 {
+        self.sum(|column| flow.bound(row, 0, &flow.modal_rounded(&column.state), 0.0))
+    }
+
+    fn sum(&self, entry: impl Fn(&Column) -> f64) -> f64 {
+        self.columns.iter().map(|column| entry(column).abs()).sum::<f64>() * OUTWARD
+    }
+
+    /// The errors at a fixed time after the entry.
+    pub fn later<T: Number>(&self, flow: &Flow<T>, elapsed: T) -> Self {
+        let transition = flow.transition(elapsed);
+        let later = |column: &Column| {
+            let mut state = [0.0; LARGEST_DIMENSION];
+            for (factor, own) in column.state.iter().zip(&transition) {
+                state.iter_mut().zip(own).for_each(|(sum, entry)| *sum += factor * entry);
+            }
+            Column { state, time: column.time }
+        };
+        Self { columns: self.columns.iter().map(later).collect() }
+    }
+
+    /// The errors of a state at a time that is given, not found: those of the time before it are
+    /// made up for along the flow.
+    pub fn at_given_time<T: Number>(
+        mut self,
+        flow: &Flow<T>,
+        matrix: &[Vector<T>],
+        state: &Vector<T>,
+    ) -> Self {
+        let rates = rates(flow, matrix, state);
+        let whole = self.time();
+        for column in &mut self.columns {
+            column.delayed(-column.time, &rates);
+        }
+        self.add_box(&bends(matrix, &rates, whole));
+        self
+    }
+
+    /// The errors at a crossing, before its reset.
+    pub fn at_crossing<T: Number>(&self, crossing: &Crossing<'_, T>) -> Self {
+        let Crossing { flow, guard, y, .. } = crossing;
+        let order = |k: usize| dot(&guard.orders[k], y, flow.dimension).to_f64();
+        let (slope, bend) = (order(1), order(2));
+        let [value_row, slope_row] = [0, 1].map(|k| guard.orders[k].map(Number::to_f64));
+        let mut later = self.later(flow, crossing.elapsed);
+        let rates = rates(flow, crossing.matrix, &crossing.state);
+        let (mut shift, mut slope_error) = (0.0, 0.0);
+        for column in &mut later.columns {
+            let own = flow.modal_rounded(&column.state);
+            let delay = -dot(&value_row, &own, flow.dimension) / slope;
+            slope_error += dot(&slope_row, &own, flow.dimension).abs();
+            shift += delay.abs();
+            column.delayed(delay, &rates);
+        }
+        let rounded =
+            crossing.slack / slope.abs() + 4.0 * crossing.unit * crossing.elapsed.to_f64().abs();
+        // The second order of the crossing's time, and of the flow over it.
+        let whole = shift + rounded;
+        let second = 2.0 * whole * (bend.abs() * whole + slope_error) / slope.abs();
+        let mut own = Column { state: [0.0; LARGEST_DIMENSION], time: 0.0 };
+        own.delayed((rounded + second) * OUTWARD, &rates);
+        later.columns.push(own);
+        later.add_box(&bends(crossing.matrix, &rates, whole));
+        later
+    }
+
+    /// The errors after a reset, whose rows have the sizes given by the errors of their roundings.
+    pub fn after_reset<T: Number>(&self, reset: &[Vector<T>], roundings: &[f64]) -> Self {
+        let after = |column: &Column| {
+            let mut state = [0.0; LARGEST_DIMENSION];
+            for (entry, row) in state.iter_mut().zip(reset) {
+                *entry = row.iter().zip(&column.state).map(|(a, b)| a.to_f64() * b).sum();
+            }
+            Column { state, time: column.time }
+        };
+        let mut errors = Self { columns: self.columns.iter().map(after).collect() };
+        errors.add_box(roundings);
+        errors.reduce();
+        errors
+    }
+
+    /// Adds an error to each entry by itself.
+    pub fn add_box(&mut self, errors: &[f64]) {
+        for (n, error) in errors.iter().enumerate().filter(|(_, error)| **error > 0.0) {
+            let mut state = [0.0; LARGEST_DIMENSION];
+            state[n] = *error;
+            self.columns.push(Column { state, time: 0.0 });
+        }
+    }
+
+    fn reduce(&mut self) {
+        if self.columns.len() <= MOST_COLUMNS {
+            return;
+        }
+        let size = |column: &Column| {
+            column.state.iter().map(|it| it.abs()).sum::<f64>() + column.time.abs()
+        };
+        self.columns.sort_by(|a, b| size(b).total_cmp(&size(a)));
+        let small = Self { columns: self.columns.split_off(KEPT) };
+        self.add_box(&small.state());
+        let time = Column { state: [0.0; LARGEST_DIMENSION], time: small.time() };
+        self.columns.push(time);
+    }
+}
+
+/// M z in f64.
+fn rates<T: Number>(flow: &Flow<T>, matrix: &[Vector<T>], state: &Vector<T>) -> Vec<f64> {
+    matrix.iter().map(|row| dot(row, state, flow.dimension).to_f64()).collect()
+}
+
+/// What the flow's second derivative does over a time.
+fn bends<T: Number>(matrix: &[Vector<T>], rates: &[f64], time: f64) -> Vec<f64> {
+    let size = |row: &Vector<T>| {
+        let terms = row.iter().zip(rates).map(|(a, b)| (a.to_f64() * b).abs());
+        terms.sum::<f64>() * time * time
+    };
+    matrix.iter().map(size).collect()
+}
+
+impl Column {
+    /// The error where the crossing is later by `delay`.
+    fn delayed(&mut self, delay: f64, rates: &[f64]) {
+        for (entry, rate) in self.state.iter_mut().zip(rates) {
+            *entry += rate * delay;
+        }
+        self.time += delay;
+    }
+}

@@ -1,0 +1,197 @@
+//! Every proved table of a system, in f64 and in 106 bits.
+
+use super::name;
+use crate::double_double::{self, DoubleDouble};
+use percuss::affine::{Event, Solver, System, SystemFile};
+use percuss::number::Number;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// How many roundings an event may be off, amplified by its growth: a segment takes some ten, and
+/// the worst of all tables is 4.5.
+const ROUNDINGS: f64 = 16.0;
+
+struct Table {
+    header: BTreeMap<String, String>,
+    /// Event, mode, time, states, growth of the time, growths of the states.
+    rows: Vec<Row>,
+}
+
+struct Row {
+    event: String,
+    mode: String,
+    time: DoubleDouble,
+    state: Vec<DoubleDouble>,
+    growth_time: f64,
+    growth: Vec<f64>,
+}
+
+fn repository(path: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
+}
+
+/// A decimal of up to 30 digits in two words: integer arithmetic of its digits in 106 bits.
+fn decimal(text: &str) -> DoubleDouble {
+    let (negative, digits) = match text.strip_prefix('-') {
+        Some(rest) => (true, rest),
+        None => (false, text),
+    };
+    let (mantissa, exponent) = digits.split_once('e').unwrap_or((digits, "0"));
+    let (whole, fraction) = mantissa.split_once('.').unwrap_or((mantissa, ""));
+    let exponent = exponent.parse::<i32>().unwrap() - i32::try_from(fraction.len()).unwrap();
+    let ten = DoubleDouble::exact(10.0);
+    let mut value = DoubleDouble::zero();
+    for digit in whole.chars().chain(fraction.chars()) {
+        value = value * ten + DoubleDouble::exact(f64::from(digit.to_digit(10).unwrap()));
+    }
+    for _ in 0..exponent.abs() {
+        value = if exponent > 0 { value * ten } else { value / ten };
+    }
+    if negative { -value } else { value }
+}
+
+fn table(case: &str, states: usize) -> Table {
+    let path = repository(&format!("reference_data/events/{case}.csv"));
+    let text = std::fs::read_to_string(&path).unwrap();
+    let (header, rows): (Vec<_>, Vec<_>) = text.lines().partition(|line| line.starts_with('#'));
+    let header = header.iter().filter_map(|line| line[1..].split_once('='));
+    let header = header.map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()));
+    let row = |line: &&str| {
+        let cells: Vec<_> = line.split(',').collect();
+        let growth = &cells[5 + states..];
+        Row {
+            event: cells[1].to_owned(),
+            mode: cells[2].to_owned(),
+            time: decimal(cells[4]),
+            state: cells[5..5 + states].iter().map(|it| decimal(it)).collect(),
+            growth_time: growth[0].parse().unwrap(),
+            growth: growth[1..].iter().map(|it| it.parse().unwrap()).collect(),
+        }
+    };
+    Table { header: header.collect(), rows: rows[1..].iter().map(row).collect() }
+}
+
+/// The largest error of a run in units of rounding and growth.
+fn worst<T: Number>(
+    case: &str,
+    system: &System,
+    table: &Table,
+    unit: f64,
+    wide: fn(T) -> DoubleDouble,
+) -> f64 {
+    let backward = table.header.get("horizon.backward").is_some_and(|it| it == "true");
+    let until = table.header["horizon.until"].parse().unwrap();
+    let solver = if backward { Solver::<T>::backward(system) } else { Solver::<T>::new(system) };
+    let solver = solver.unwrap();
+    let start = system.start.as_ref().unwrap();
+    let events: Vec<Event<T>> = solver.run(start, T::exact(until)).unwrap().collect();
+    let found: Vec<_> = events.iter().map(|it| name(system, it)).collect();
+    let expected: Vec<_> = table.rows[1..].iter().map(|it| it.event.clone()).collect();
+    assert_eq!(found, expected, "{case}");
+    let mut worst = 0.0;
+    for (n, (event, row)) in events.iter().zip(&table.rows[1..]).enumerate() {
+        assert_eq!(system.modes[event.mode].name, row.mode, "{case}, row {}", n + 1);
+        let roundings = unit * (n + 1) as f64;
+        let time = (wide(event.time.high) + wide(event.time.low) - row.time).abs().to_f64()
+            / system.time_scale;
+        let size = 1.0 + row.time.to_f64().abs() / system.time_scale;
+        worst = f64::max(worst, time / (roundings * size * row.growth_time));
+        let states = event.state.iter().zip(&row.state).zip(&row.growth).zip(&system.scales);
+        for (((state, exact), growth), scale) in states {
+            let error = (wide(*state) - *exact).abs().to_f64() / scale;
+            let size = 1.0 + exact.to_f64().abs() / scale;
+            worst = f64::max(worst, error / (roundings * size * growth.max(row.growth_time)));
+        }
+    }
+    worst
+}
+
+/// The events of a run that follows its errors, each of which is smaller than said; how many there
+/// are, and the largest error of a time.
+fn enclosed<T: Number>(
+    case: &str,
+    system: &System,
+    table: &Table,
+    wide: fn(T) -> DoubleDouble,
+) -> (usize, f64) {
+    let backward = table.header.get("horizon.backward").is_some_and(|it| it == "true");
+    let until = table.header["horizon.until"].parse().unwrap();
+    let solver = if backward { Solver::<T>::backward(system) } else { Solver::<T>::new(system) };
+    let solver = solver.unwrap();
+    let run = solver.run_enclosed(system.start.as_ref().unwrap(), T::exact(until)).unwrap();
+    let mut largest = 0.0;
+    let mut count = 0;
+    for (event, row) in run.zip(&table.rows[1..]) {
+        if name(system, &event) == "undecided" {
+            break;
+        }
+        assert_eq!(name(system, &event), row.event, "{case}, row {}", count + 1);
+        let errors = event.errors.unwrap();
+        // Half a unit of the last of 25 digits.
+        let printed = |it: DoubleDouble| 5.1e-25 * it.to_f64().abs() + 1e-40;
+        let off = (wide(event.time.high) + wide(event.time.low) - row.time).abs().to_f64();
+        assert!(off <= errors.time + printed(row.time), "{case} {count}: {off:e} {errors:?}");
+        for ((state, exact), error) in event.state.iter().zip(&row.state).zip(&errors.state) {
+            let off = (wide(*state) - *exact).abs().to_f64();
+            assert!(off <= error + printed(*exact), "{case} {count}: {off:e} {error:e}");
+        }
+        largest = f64::max(largest, errors.time);
+        count += 1;
+    }
+    (count, largest)
+}
+
+#[test]
+fn errors_are_smaller_than_an_enclosed_run_says() {
+    let (mut whole, mut all) = (0, 0);
+    for (case, system) in cases() {
+        let table = table(&case, system.states.len());
+        let narrow = enclosed(&case, &system, &table, DoubleDouble::exact);
+        let wide = enclosed(&case, &system, &table, |it: DoubleDouble| it);
+        println!("{case}: {} of {}, {narrow:?} {wide:?}", wide.0, table.rows.len() - 1);
+        all += 1;
+        whole += usize::from(wide.0 == table.rows.len() - 1);
+        assert!(wide.1 < 1e-12, "{case}");
+    }
+    // Exact touches and ties are what no arithmetic of so many bits can decide.
+    assert!(whole >= all - 12, "{whole} of {all}");
+}
+
+#[test]
+fn every_proved_table_is_reproduced() {
+    let mut count = 0;
+    let mut failed = Vec::new();
+    for (case, system) in cases() {
+        let table = table(&case, system.states.len());
+        let outcome = std::panic::catch_unwind(|| {
+            let narrow = worst(&case, &system, &table, 0.5 * f64::EPSILON, DoubleDouble::exact);
+            // Tables hold 25 digits.
+            let wide = worst(&case, &system, &table, double_double::UNIT.max(1e-25), |it| it);
+            println!("{case}: {narrow:.2} {wide:.2}");
+            narrow.max(wide)
+        });
+        if !outcome.as_ref().is_ok_and(|it| *it <= ROUNDINGS) {
+            failed.push((case, outcome.unwrap_or(f64::NAN)));
+        }
+        count += 1;
+    }
+    assert!(failed.is_empty() && count >= 79, "{failed:?}");
+}
+
+/// Every case of a system, with its parameters and start.
+fn cases() -> Vec<(String, System)> {
+    let folder = std::fs::read_dir(repository("validation/systems/cases")).unwrap();
+    let mut paths: Vec<_> = folder.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    let case = |path: &PathBuf| {
+        let case = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let text = std::fs::read_to_string(path).unwrap();
+        let line = text.lines().find_map(|line| line.strip_prefix("system = ")).unwrap();
+        let file = format!("validation/systems/{}.system.toml", line.trim_matches('"'));
+        let system = std::fs::read_to_string(repository(&file)).unwrap();
+        let mut file = SystemFile::read(&file, &system).unwrap();
+        file.replace_from(&case, &text, true).unwrap();
+        (case, file.system().unwrap())
+    };
+    paths.iter().map(case).collect()
+}

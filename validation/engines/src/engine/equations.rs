@@ -1,0 +1,127 @@
+//! What an integrator is given of a system: the equations of each mode, the guards at which modes
+//! end, and what follows there.
+//!
+//! The types of states, guards and modes belong to the system, so that a system whose dimension is
+//! known beforehand is integrated on arrays of that size, and one whose dimension is read from a
+//! file on numbers that know how many they are. Integrators see the system's own dimension in both.
+
+use std::fmt::Debug;
+
+/// Numbers side by side: the states of a system, or a mode's guards.
+pub trait Numbers: Copy + Debug + Default + PartialEq + AsRef<[f64]> + AsMut<[f64]> {
+    /// These numbers.
+    fn of(values: &[f64]) -> Self;
+
+    /// One number so many times; arrays have a length of their own.
+    fn all(count: usize, value: f64) -> Self;
+}
+
+impl<const N: usize> Numbers for [f64; N]
+where
+    [f64; N]: Default,
+{
+    fn of(values: &[f64]) -> Self {
+        std::array::from_fn(|i| values[i])
+    }
+
+    fn all(_: usize, value: f64) -> Self {
+        [value; N]
+    }
+}
+
+/// What stands in place of a guard that a mode does not have.
+pub(crate) const NO_GUARD: f64 = -1.0;
+
+/// What is known of a mode at its entry.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Entered {
+    /// The guards that are zero there, a bit each.
+    pub zeros: u64,
+    /// The guard that ends the mode where it begins.
+    pub fires: Option<usize>,
+}
+
+impl Entered {
+    /// Whether a guard is zero at the entry.
+    #[must_use]
+    pub fn is_zero(self, guard: usize) -> bool {
+        self.zeros >> guard & 1 == 1
+    }
+}
+
+/// The equations of motion of a system with modes, in the time elapsed since the start.
+///
+/// Guards are negative inside a mode and rise to zero at an event.
+pub trait Equations: Copy {
+    /// Which mode it is.
+    type Mode: Copy + PartialEq + Debug;
+    /// The states, as many as the system has.
+    type State: Numbers;
+    /// Values of the guards of one mode.
+    type Guards: Numbers;
+
+    /// How many states there are.
+    fn dimension(&self) -> usize;
+
+    /// How many guards the mode with the most of them has; as many are asked of a library that
+    /// wants their number beforehand.
+    fn most_guards(&self) -> usize;
+
+    /// How many guards a mode has.
+    fn count(&self, mode: Self::Mode) -> usize;
+
+    /// The right-hand side.
+    fn derivatives(&self, mode: Self::Mode, t: f64, u: &[f64], du: &mut [f64]);
+
+    /// The derivatives' derivative along `w`.
+    fn jacobian_product(&self, mode: Self::Mode, w: &[f64], dw: &mut [f64]);
+
+    /// The mode's guards.
+    fn guards(&self, mode: Self::Mode, t: f64, u: &[f64]) -> Self::Guards;
+
+    /// The guards' rates by the equations of motion.
+    fn rates(&self, mode: Self::Mode, t: f64, u: &[f64]) -> Self::Guards;
+
+    /// The mode that begins where a guard has risen to zero, with the state put where it belongs.
+    fn switch(
+        &self,
+        mode: Self::Mode,
+        guard: usize,
+        t: f64,
+        u: &Self::State,
+    ) -> (Self::Mode, Self::State);
+
+    /// Whether a guard ends its mode; crossings of one that does not are counted only.
+    fn ends(&self, _mode: Self::Mode, _guard: usize) -> bool {
+        true
+    }
+
+    /// Which of its mode's events a guard belongs to.
+    fn event(&self, _mode: Self::Mode, guard: usize) -> usize {
+        guard
+    }
+
+    /// What is known of a mode that begins in a state, after a guard of another or at the start.
+    fn enter(
+        &self,
+        _after: Option<(Self::Mode, usize)>,
+        _mode: Self::Mode,
+        _t: f64,
+        _u: &Self::State,
+    ) -> Entered {
+        Entered::default()
+    }
+
+    /// Sets guards to zero that are zero at their mode's entry but for rounding.
+    fn settle(&self, entered: Entered, u: &[f64], guards: &mut Self::Guards);
+
+    /// Whether the end of a mode is the end of the run, as it is back in time.
+    fn leaves_domain(&self) -> bool {
+        false
+    }
+
+    /// A state in the co-ordinates that are compared.
+    fn reported(&self, u: &Self::State) -> Self::State {
+        *u
+    }
+}

@@ -1,0 +1,78 @@
+//! A run of any system, and what comes of it.
+
+use super::joining::{Course, Times};
+use super::{Event, Failure, Numbers, Outcome, Watched};
+use crate::system::{Affine, CheckedSystem, Values};
+use std::sync::Arc;
+
+/// An event of a system; its mode is the place of the mode in the system.
+pub type SystemEvent = Event<usize, Values>;
+
+/// A run of a system that was made.
+pub type SystemOutcome = Outcome<usize, Values>;
+
+/// A run of a system that is to be made.
+#[derive(Clone, Debug)]
+pub struct SystemTask {
+    /// The system, checked; its forcing angle is that at the start.
+    pub system: Arc<CheckedSystem>,
+    /// The mode at the start.
+    pub mode: usize,
+    /// The state at the start.
+    pub state: Values,
+    /// Time from the start to the horizon.
+    pub span: f64,
+    /// When the state is compared, in times since the start and in ascending order.
+    pub samples: Vec<f64>,
+    /// What is recorded beside the result; such a run ends when that is done.
+    pub watched: Option<Watched>,
+}
+
+impl SystemTask {
+    /// A run from a state in a mode over a time, with the state taken at `samples`.
+    ///
+    /// # Errors
+    /// What the system does not have, or cannot begin with.
+    pub fn new(
+        system: Arc<CheckedSystem>,
+        mode: usize,
+        state: &[f64],
+        span: f64,
+        samples: Vec<f64>,
+    ) -> Result<Self, Failure> {
+        let (size, modes) = (system.system().states.len(), system.system().modes.len());
+        if mode >= modes {
+            return Err(Failure::new(format!(
+                "there are {modes} modes, and none is number {mode}"
+            )));
+        }
+        if state.len() != size || state.iter().any(|value| !value.is_finite()) {
+            return Err(Failure::new(format!("a start has {size} states, all of them finite")));
+        }
+        if !(span.is_finite() && span > 0.0 && samples.is_sorted()) {
+            return Err(Failure::new("a run takes a positive time, with samples in order"));
+        }
+        Ok(Self { system, mode, state: Values::of(state), span, samples, watched: None })
+    }
+}
+
+impl<'a> Course<'a, Affine<'a>> {
+    /// The course of the system that a task asks for.
+    pub(super) fn of_system(task: &'a SystemTask) -> Self {
+        let system = &*task.system;
+        let instants = task.watched.as_ref().map_or(&task.samples, |watched| &watched.instants);
+        Self {
+            equations: Affine::of(system),
+            mode: task.mode,
+            state: task.state,
+            span: task.span,
+            samples: instants.iter().map(|time| time.min(task.span)).collect(),
+            times: Times {
+                period: system.period(),
+                turn: system.turn(),
+                shortest: system.shortest_time(),
+            },
+            watched: task.watched.as_ref(),
+        }
+    }
+}

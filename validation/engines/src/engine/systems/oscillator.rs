@@ -1,0 +1,76 @@
+//! The oscillator written down as any other system is run like the oscillator itself.
+
+use super::models::percussive;
+use super::{Asked, accuracy, every};
+use crate::case::Given;
+use crate::engine::{Event, Limits, Outcome, SampleGrid, SystemOutcome, Task, Watched, all};
+use percuss::{Phase, Start};
+
+/// Four forcing periods of the default model from rest.
+fn task() -> Task {
+    let given = Given { start: Start::default(), ..Given::default() };
+    let Ok(problem) = given.check() else { unreachable!("the default model is accepted") };
+    let horizon = problem.entry.instant.after_periods(4, 1);
+    Task::until(given.parameters, problem, horizon, SampleGrid { per_period: 4, count: 17 })
+}
+
+const MODES: [Phase; 3] = [Phase::NoContact, Phase::Contact, Phase::Progression];
+
+fn place(phase: Phase) -> usize {
+    MODES.iter().position(|mode| *mode == phase).unwrap_or(MODES.len())
+}
+
+/// Both find the same events, at times that are as near to each other as both are to the truth.
+#[test]
+fn both_ways_of_writing_it_down_are_run_alike() {
+    let task = task();
+    let system = percussive(&task.parameters, task.forcing_angle);
+    let mode = place(task.phase);
+    let asked = Asked { system: &system, mode, state: &task.state, span: task.span };
+    let mut compared = 0;
+    for (name, unit, outcome) in every(&asked) {
+        let outcome: SystemOutcome = outcome.unwrap_or_default();
+        let Some(engine) = all().iter().find(|it| it.declaration().name == name) else { continue };
+        let Some(accuracy) = accuracy(*engine) else { continue };
+        let own: Outcome = engine.run(&task, accuracy, &Limits::default()).unwrap_or_default();
+        let word = |it: &Event| (it.event, place(it.mode));
+        let words: Vec<_> = own.events.iter().map(word).collect();
+        let others: Vec<_> = outcome.events.iter().map(|it| (it.event, it.mode)).collect();
+        assert!(words.len() > 4 && words == others, "{name}: {words:?} {others:?}");
+        for (one, other) in own.events.iter().zip(&outcome.events) {
+            let apart = (one.elapsed - other.elapsed).abs() / (1.0 + one.elapsed);
+            assert!(apart <= 20.0 * unit, "{name}: {apart:e} at {}", one.elapsed);
+        }
+        compared += 1;
+    }
+    assert_eq!(compared, 15);
+}
+
+#[test]
+fn a_run_that_is_watched_is_the_same_run() {
+    let task = task();
+    let system = percussive(&task.parameters, task.forcing_angle);
+    let mode = place(task.phase);
+    let asked = Asked { system: &system, mode, state: &task.state, span: task.span };
+    let plain = asked.task();
+    let window = [0.3 * task.span, 0.6 * task.span];
+    let instants = vec![0.4 * task.span, 0.5 * task.span];
+    let watched =
+        super::SystemTask { watched: Some(Watched { window, instants }), ..plain.clone() };
+    for engine in all() {
+        let Some(accuracy) = accuracy(*engine) else { continue };
+        let name = engine.declaration().name;
+        let run = |task| engine.run_system(task, accuracy, &Limits::default()).unwrap_or_default();
+        let (plain, watched) = (run(&plain), run(&watched));
+        let before = |outcome: &SystemOutcome| -> Vec<_> {
+            outcome.events.iter().copied().filter(|it| it.elapsed <= window[1]).collect()
+        };
+        assert!(!before(&plain).is_empty() && before(&plain) == before(&watched), "{name}");
+        let trace = watched.trace.unwrap_or_default();
+        let has = |look: &crate::engine::GuardSample<usize>| {
+            look.guard < system.modes[look.mode].until.len() && look.t <= window[1]
+        };
+        assert!(trace.steps.len() > 2 && trace.looks.len() > 2, "{name}");
+        assert!(trace.looks.iter().all(has) && watched.samples.len() == 2, "{name}");
+    }
+}

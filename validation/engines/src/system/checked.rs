@@ -1,0 +1,257 @@
+//! A system that is whole: every row of the right length, every successor there, and what an
+//! integrator wants to know beforehand computed once.
+
+use super::chain::{Chain, Motion, Wide};
+use super::spectrum::spectrum;
+use super::{Direction, MOST_GUARDS, MOST_STATES, Mode, Row, System, Until};
+use crate::engine::Failure;
+use std::f64::consts::TAU;
+
+/// A system with what a run of it wants to know.
+#[derive(Clone, Debug)]
+pub struct CheckedSystem {
+    system: System,
+    backward: bool,
+    pub(super) modes: Vec<CheckedMode>,
+    pub(super) most_guards: usize,
+    fastest: f64,
+    turning: f64,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct CheckedMode {
+    /// The matrix A, row by row.
+    pub(super) a: Vec<f64>,
+    pub(super) b: Vec<[f64; 2]>,
+    pub(super) c: Vec<f64>,
+    /// Whether the states' rates depend on theta.
+    pub(super) forced: bool,
+    /// Whether the guards do, and their rates.
+    pub(super) guards_forced: [bool; 2],
+    pub(super) guards: Vec<Guard>,
+    pub(super) until: Vec<Passage>,
+}
+
+/// A guard of an event; an event that counts crossings in both directions has two.
+#[derive(Clone, Debug)]
+pub(super) struct Guard {
+    pub(super) event: usize,
+    pub(super) ends: bool,
+    pub(super) chain: Chain,
+}
+
+/// What follows where a mode ends.
+#[derive(Clone, Debug)]
+pub(super) struct Passage {
+    /// The matrix R of z+ = R z.
+    pub(super) reset: Vec<Wide>,
+    pub(super) next: Vec<Successor>,
+}
+
+#[derive(Clone, Debug)]
+pub(super) struct Successor {
+    pub(super) when: Option<Chain>,
+    pub(super) mode: usize,
+    /// Which derivatives of `when`, and of the guards of the mode, the event's guard makes zero.
+    pub(super) when_zeros: u16,
+    pub(super) zeros: Vec<u16>,
+}
+
+impl CheckedSystem {
+    /// Checks a system.
+    ///
+    /// # Errors
+    /// What is wrong with it, or more than this program runs.
+    pub fn new(system: System) -> Result<Self, Failure> {
+        check(&system)?;
+        let motions: Vec<Motion> = system.modes.iter().map(|mode| motion(&system, mode)).collect();
+        let guards: Vec<Vec<Guard>> =
+            system.modes.iter().zip(&motions).map(|(mode, motion)| guards(mode, motion)).collect();
+        let passages = |mode: &Mode| -> Vec<Passage> {
+            mode.until.iter().map(|until| passage(until, &motions, &guards)).collect()
+        };
+        let checked = |(mode, guards): (&Mode, &Vec<Guard>)| CheckedMode {
+            a: mode.a.concat(),
+            b: mode.b.clone(),
+            c: mode.c.clone(),
+            forced: mode.b.iter().flatten().any(|it| *it != 0.0),
+            guards_forced: [0, 1].map(|order| are_forced(guards, order, &system)),
+            guards: guards.clone(),
+            until: passages(mode),
+        };
+        let modes: Vec<CheckedMode> = system.modes.iter().zip(&guards).map(checked).collect();
+        let most_guards = guards.iter().map(Vec::len).max().unwrap_or_default();
+        if most_guards > MOST_GUARDS {
+            return Err(Failure::new(format!(
+                "a mode has {most_guards} guards, and at most {MOST_GUARDS} are accepted"
+            )));
+        }
+        let spectra: Vec<_> = system.modes.iter().map(|mode| spectrum(&mode.a)).collect();
+        let [fastest, turning] = [
+            spectra.iter().fold(0.0, |most: f64, it| most.max(it.fastest)),
+            spectra.iter().fold(0.0, |most: f64, it| most.max(it.turning)),
+        ];
+        Ok(Self { system, backward: false, modes, most_guards, fastest, turning })
+    }
+
+    /// The same system run back in time.
+    ///
+    /// # Errors
+    /// As [`CheckedSystem::new`].
+    pub fn backward(&self) -> Result<Self, Failure> {
+        Ok(Self { backward: true, ..Self::new(self.system.backward())? })
+    }
+
+    /// The system as it was given.
+    #[must_use]
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// Whether it is run back in time: it then has no resets, and the end of a mode is the end of
+    /// the run.
+    #[must_use]
+    pub fn is_backward(&self) -> bool {
+        self.backward
+    }
+
+    /// The forcing period, or what stands for it where the system is not forced.
+    pub(crate) fn period(&self) -> f64 {
+        TAU * self.system.time_scale
+    }
+
+    /// The shortest turn of a free oscillation.
+    pub(crate) fn turn(&self) -> f64 {
+        TAU / self.turning
+    }
+
+    /// The shortest of the times in which the system changes: its time scale, and those of its
+    /// matrices.
+    pub(crate) fn shortest_time(&self) -> f64 {
+        self.system.time_scale.min(1.0 / self.fastest)
+    }
+}
+
+fn wide(row: &Row) -> Wide {
+    std::array::from_fn(|i| row.get(i).copied().unwrap_or_default())
+}
+
+fn motion(system: &System, mode: &Mode) -> Motion {
+    let size = system.states.len();
+    let rate = |i: usize| {
+        let row = [mode.a[i].as_slice(), &mode.b[i], &[mode.c[i]]].concat();
+        wide(&row)
+    };
+    let mut rows: Vec<Wide> = (0..size).map(rate).collect();
+    let [mut cos, mut sin] = [Wide::default(); 2];
+    cos[size + 1] = -system.omega;
+    sin[size] = system.omega;
+    rows.extend([cos, sin, Wide::default()]);
+    Motion { size, rows }
+}
+
+fn guards(mode: &Mode, motion: &Motion) -> Vec<Guard> {
+    let chain = |row: &Wide| Chain::new(*row, motion);
+    let until = mode.until.iter().enumerate();
+    let until =
+        until.map(|(event, it)| Guard { event, ends: true, chain: chain(&wide(&it.guard)) });
+    let watch = mode.watch.iter().enumerate().flat_map(|(k, it)| {
+        let signs: &[f64] = match it.direction {
+            Direction::Rising => &[1.0],
+            Direction::Falling => &[-1.0],
+            Direction::Both => &[1.0, -1.0],
+        };
+        let row = wide(&it.guard);
+        let event = mode.until.len() + k;
+        let guard = move |sign: &f64| Guard {
+            event,
+            ends: false,
+            chain: chain(&row.map(|entry| sign * entry)),
+        };
+        signs.iter().map(guard)
+    });
+    until.chain(watch).collect()
+}
+
+fn are_forced(guards: &[Guard], order: usize, system: &System) -> bool {
+    let size = system.states.len();
+    let mut rows = guards.iter().map(|guard| &guard.chain.rows[order]);
+    rows.any(|row| row[size] != 0.0 || row[size + 1] != 0.0)
+}
+
+fn passage(until: &Until, motions: &[Motion], guards: &[Vec<Guard>]) -> Passage {
+    let size = motions.first().map_or(0, |motion| motion.size);
+    let unit = |i: usize| -> Wide { std::array::from_fn(|j| f64::from(u8::from(i == j))) };
+    let mut reset: Vec<Wide> = (0..size + 3).map(unit).collect();
+    if let Some(rows) = &until.reset {
+        reset.iter_mut().zip(rows).for_each(|(line, row)| *line = wide(row));
+    }
+    let guard = wide(&until.guard);
+    let successor = |(when, mode): &(Option<Row>, usize)| {
+        let when = when.as_ref().map(|row| Chain::new(wide(row), &motions[*mode]));
+        let zeros_of = |chain: &Chain| chain.zeros_after(&guard, &reset, size);
+        Successor {
+            when_zeros: when.as_ref().map_or(0, zeros_of),
+            zeros: guards[*mode].iter().map(|it| zeros_of(&it.chain)).collect(),
+            when,
+            mode: *mode,
+        }
+    };
+    let next = until.next.iter().map(successor).collect();
+    Passage { reset, next }
+}
+
+fn check(system: &System) -> Result<(), Failure> {
+    let size = system.states.len();
+    let wrong = |what: String| Err(Failure::new(format!("system {}: {what}", system.name)));
+    if !(1..=MOST_STATES).contains(&size) {
+        return wrong(format!("{size} states, accepted are 1 to {MOST_STATES}"));
+    }
+    if system.scales.len() != size || !system.scales.iter().all(|it| it.is_finite() && *it > 0.0) {
+        return wrong("each state needs a positive scale".to_owned());
+    }
+    let time = system.time_scale;
+    if !(time.is_finite() && time > 0.0 && system.omega.is_finite() && system.phi.is_finite()) {
+        return wrong("it needs a positive time scale and a finite forcing".to_owned());
+    }
+    if system.modes.is_empty() {
+        return wrong("it needs a mode".to_owned());
+    }
+    for mode in &system.modes {
+        check_mode(mode, size, system.modes.len())
+            .or_else(|what| wrong(format!("mode {}: {what}", mode.name)))?;
+    }
+    Ok(())
+}
+
+fn check_mode(mode: &Mode, size: usize, modes: usize) -> Result<(), String> {
+    let is_finite = |row: &[f64]| row.iter().all(|it| it.is_finite());
+    let is_row = |row: &Row| row.len() == size + 3 && is_finite(row);
+    let rates = mode.a.iter().all(|row| row.len() == size && is_finite(row))
+        && mode.b.iter().all(|row| is_finite(row))
+        && is_finite(&mode.c);
+    if [mode.a.len(), mode.b.len(), mode.c.len()] != [size; 3] || !rates {
+        return Err(format!("its equations are not those of {size} states"));
+    }
+    for until in &mode.until {
+        let whens = until.next.iter().filter_map(|(when, _)| when.as_ref());
+        let resets = until.reset.iter().flatten();
+        if !std::iter::once(&until.guard).chain(whens).chain(resets).all(is_row)
+            || until.reset.as_ref().is_some_and(|rows| rows.len() != size)
+        {
+            return Err(format!("event {}: a row of another length than {}", until.name, size + 3));
+        }
+        let last = until.next.last().is_some_and(|(when, _)| when.is_none());
+        if !last || until.next.iter().any(|(_, next)| *next >= modes) {
+            return Err(format!("event {}: no mode follows", until.name));
+        }
+    }
+    match mode.watch.iter().find(|watch| !is_row(&watch.guard)) {
+        Some(watch) => Err(format!("event {}: a row of another length", watch.name)),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+#[path = "checked_tests.rs"]
+mod tests;

@@ -1,0 +1,150 @@
+//! The verbs `systems` and `events`.
+
+use crate::support::{number, percuss, refused, rows, run, stdout, text};
+use percuss_validation::systems::SYSTEMS;
+use std::path::Path;
+
+#[test]
+fn every_file_of_the_folder_is_in_the_program_under_its_own_name() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("systems");
+    let mut files: Vec<String> = std::fs::read_dir(folder)
+        .expect("the folder is there")
+        .filter_map(|entry| entry.ok()?.file_name().into_string().ok())
+        .filter_map(|file| file.strip_suffix(".system.toml").map(str::to_owned))
+        .collect();
+    files.sort();
+    let names: Vec<_> = SYSTEMS.iter().map(|(name, _)| *name).collect();
+    assert_eq!(files, names);
+    for (name, text) in SYSTEMS {
+        let system = percuss::affine::System::parse(name, text).expect("it is accepted");
+        assert_eq!(system.name, *name);
+        assert!(system.start.is_some(), "{name}");
+        assert!(!system.trouble.is_empty() && !system.source.is_empty(), "{name}");
+    }
+}
+
+/// A ball that is thrown up on an incline of its own: none of the repository's systems.
+const THROWN: &str = "schema = 1
+name = \"thrown\"
+states = [\"height\", \"speed\"]
+[parameters]
+gravity = 3.0
+quotient = 0.25
+[[mode]]
+name = \"air\"
+equations = [\"height' = speed\", \"speed' = -gravity\"]
+[[mode.until]]
+name = \"ground\"
+guard = \"height < 0\"
+reset = [\"height = 0\", \"speed = -quotient*speed\"]
+[[mode.watch]]
+name = \"level\"
+guard = \"height > 1\"
+direction = \"both\"
+[start]
+mode = \"air\"
+height = 2
+speed = 0
+";
+
+/// sqrt n by Newton's method on integers, scaled by 10^(2 digits): its digits.
+fn root(n: u128, digits: u32) -> String {
+    let target = n * 10_u128.pow(digits);
+    let mut root = target;
+    loop {
+        let next = (root + target / root) / 2;
+        if next >= root {
+            return root.to_string();
+        }
+        root = next;
+    }
+}
+
+#[test]
+fn a_file_of_ones_own_has_events_to_the_digits_promised() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("thrown.system.toml");
+    std::fs::write(&file, THROWN).expect("written");
+    let file = file.to_str().expect("UTF-8");
+    let listed = rows(&stdout(&["events", file, "--until", "1.5", "--digits", "25"]));
+    let names: Vec<_> = listed.iter().map(|row| row[2].as_str()).collect();
+    // Dropped from 2 it passes 1, and bounces to 1/8.
+    assert_eq!(names[..3], ["", "level", "ground"]);
+    // sqrt(2/3) = sqrt 6/3 and sqrt(4/3) = sqrt 12/3, by integers.
+    for (row, n) in [(1, 6), (2, 12)] {
+        let third = root(n, 36).parse::<u128>().expect("digits") / 3;
+        let digits: String = listed[row][1].chars().filter(char::is_ascii_digit).collect();
+        let digits = digits.trim_start_matches('0');
+        // The last digits of the comparison's own 18 are cut, not rounded.
+        assert_eq!(digits[..16], third.to_string()[..16], "{row}");
+        assert_eq!(digits.len(), 25, "{row}");
+    }
+    let narrow = rows(&stdout(&["events", file, "--until", "1.5"]));
+    assert!((number(&narrow[1][1]) - (2.0_f64 / 3.0).sqrt()).abs() < 1e-15);
+    let heavier = rows(&stdout(&["events", file, "--until", "1", "--set", "gravity=8"]));
+    assert_eq!(heavier[1][1], "0.50000000000000000");
+    let start = folder.path().join("start.toml");
+    std::fs::write(&start, "[start]\nmode = \"air\"\nheight = 0\nspeed = 6\n").expect("written");
+    let start = start.to_str().expect("UTF-8");
+    let thrown = rows(&stdout(&["events", file, "--events", "3", "--start", start]));
+    assert_eq!(thrown.len(), 4);
+    assert_eq!((thrown[3][1].as_str(), thrown[3][4].as_str()), ("4.0000000000000000", "0"));
+    assert_eq!(thrown[3][5], "1.5000000000000000");
+}
+
+#[test]
+fn endings_have_their_exit_codes() {
+    let ended = |arguments: &[&str]| {
+        let output = run(arguments);
+        let csv = text(&output.stdout);
+        let last = rows(&csv).pop().expect("rows")[2].clone();
+        (output.status.code(), last, text(&output.stderr))
+    };
+    let (code, last, said) = ended(&["events", "bouncing-ball", "--until", "10"]);
+    assert_eq!((code, last.as_str()), (Some(0), "accumulation"));
+    assert!(said.contains("between 2.99999999") && said.contains(" and 3.00000000"), "{said}");
+    let (code, last, _) = ended(&["events", "bouncing-ball", "--until", "-1", "--backward"]);
+    assert_eq!((code, last.as_str()), (Some(0), "leaves-domain"));
+    let inelastic = ["events", "spheres-in-a-row", "--until", "3", "--set", "e=0.05"];
+    let (code, last, said) = ended(&inelastic);
+    assert_eq!((code, last.as_str()), (Some(1), "no-progress"), "{said}");
+    assert!(said.contains("64 events"), "{said}");
+    // A touch that is exact is decided by no number of bits.
+    let touched = ["events", "watched-ball", "--until", "1"];
+    assert_eq!(ended(&touched).1, "undecided");
+}
+
+#[test]
+fn what_is_not_accepted_is_named() {
+    refused(&["events", "bouncing-bull", "--until", "1"], &["bouncing-ball", "percuss systems"]);
+    refused(&["events", "bouncing-ball", "--until", "-1"], &["--until -1", "after the start"]);
+    refused(
+        &["events", "bouncing-ball", "--until", "1", "--backward"],
+        &["--until 1", "before the start"],
+    );
+    let set = |value| ["events", "bouncing-ball", "--until", "1", "--set", value];
+    refused(&set("mass=1"), &["--set", "\"mass\" is no parameter", "e, g"]);
+    refused(&set("g"), &["--set g is not accepted", "NAME=VALUE"]);
+    refused(&set("g=nan"), &["--set g=nan is not accepted", "finite"]);
+    refused(&["events", "bouncing-ball", "--until", "1", "--digits", "18"], &["18", "17, 25"]);
+    refused(&["events", "bouncing-ball"], &["--until", "--events"]);
+    refused(
+        &["events", "bouncing-ball", "--until", "1", "--start", "/no/such.toml"],
+        &["--start", "/no/such.toml"],
+    );
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = folder.path().join("odd.system.toml");
+    std::fs::write(&file, THROWN.replace("-gravity", "-9.81")).expect("written");
+    let file = file.to_str().expect("UTF-8");
+    refused(&["events", file, "--until", "1"], &["odd.system.toml:9: a decimal is not accepted"]);
+}
+
+#[test]
+fn a_file_is_written_whole() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("events.csv");
+    let to = path.to_str().expect("UTF-8");
+    percuss(&["events", "relay-feedback", "--until", "4", "--output", to]).assert().success();
+    let csv = std::fs::read_to_string(&path).expect("written");
+    assert!(csv.starts_with("n,time,event,mode,x1,x2,x3\n0,0,,up,"), "{csv}");
+}
