@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The folders and files of `src/`, each allowed to use those before it.
-const LAYERS: [&str; 11] = [
+const LAYERS: [&str; 12] = [
     "numeric",
     "phase",
     "error",
@@ -17,6 +17,7 @@ const LAYERS: [&str; 11] = [
     "run",
     "lanes",
     "dynamics",
+    "affine",
 ];
 
 type Uses = BTreeMap<String, Vec<String>>;

@@ -7,21 +7,12 @@
 //! proportional to the rates of the impacts.
 
 use super::flow::{Vector, dot};
-use super::run::Run;
+use super::run::{Restitution, Run};
 use super::structure::Firing;
 use crate::number::Number;
 
 /// A run ends at an accumulation once at most this share of the system's unit of time is left.
 const LEFT: f64 = 1.0 / (1u64 << 30) as f64;
-
-/// The quotient of the rates after and before an impact.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Restitution<T> {
-    node: usize,
-    until: usize,
-    rate: f64,
-    quotient: T,
-}
 
 impl<T: Number> Run<'_, T> {
     /// Between which times after the impact just passed infinitely many others come to an end, if

@@ -21,7 +21,17 @@ const RESERVED: [&str; 4] = ["cos", "sin", "omega", "phi"];
 const ENDINGS: [&str; 6] =
     ["end", "accumulation", "leaves-domain", "no-progress", "beyond-guard", "undecided"];
 
-pub(super) fn system(file: &SystemFile) -> Result<System, SystemError> {
+impl SystemFile {
+    /// The system that the file describes.
+    ///
+    /// # Errors
+    /// Whatever does not make sense, with its place and what is accepted.
+    pub fn system(&self) -> Result<System, SystemError> {
+        system(self)
+    }
+}
+
+fn system(file: &SystemFile) -> Result<System, SystemError> {
     let mut names = Names::of(file)?;
     let forcing = names.forcing()?;
     names.check_lets()?;

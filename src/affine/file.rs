@@ -1,8 +1,6 @@
 //! The tables of a `*.system.toml`, as they are written; docs/SYSTEM_FORMAT.md has the format.
 
-use super::build;
 use super::error::{Source, SystemError};
-use super::system::System;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, IgnoredAny, Visitor};
 use std::collections::BTreeMap;
@@ -196,14 +194,6 @@ impl SystemFile {
             self.start = Some(start(source, table));
         }
         Ok(())
-    }
-
-    /// The system that the file describes.
-    ///
-    /// # Errors
-    /// Whatever does not make sense, with its place and what is accepted.
-    pub fn system(&self) -> Result<System, SystemError> {
-        build::system(self)
     }
 
     fn replace(&mut self, name: &str, parameter: Parameter) -> Result<(), SystemError> {

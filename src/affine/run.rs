@@ -1,6 +1,5 @@
 //! A run: segments joined at their events, by the rules of docs/SYSTEM_FORMAT.md.
 
-use super::accumulation::Restitution;
 use super::clock::{self, Time};
 use super::enclosure::{Crossing, Enclosure};
 use super::flow::{Flow, ORDERS, Vector, dot, unit};
@@ -95,6 +94,15 @@ pub struct Run<'a, T> {
     /// The errors at the entry of the segment, where they are followed.
     pub(super) enclosure: Option<Enclosure>,
     inherited: Vec<f64>,
+}
+
+/// The quotient of the rates after and before an impact, from its fastest occurrence.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Restitution<T> {
+    pub node: usize,
+    pub until: usize,
+    pub rate: f64,
+    pub quotient: T,
 }
 
 impl<T: Number> Solver<T> {

@@ -73,12 +73,14 @@ pub fn folder(kind: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("reference_data").join(kind)
 }
 
-/// All tables of a kind (`events` or `samples`), by name.
+/// All tables of the oscillator of a kind (`events` or `samples`), by name; those of other systems
+/// name it in their header.
 pub fn tables(kind: &str) -> Vec<Table> {
+    let other = |path: &PathBuf| std::fs::read_to_string(path).unwrap().contains("\n# system = ");
     let mut paths: Vec<_> =
         std::fs::read_dir(folder(kind)).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.sort();
-    paths.iter().map(|path| Table::read(path)).collect()
+    paths.iter().filter(|path| !other(path)).map(|path| Table::read(path)).collect()
 }
 
 fn row(line: &str) -> Row {

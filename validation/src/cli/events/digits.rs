@@ -68,13 +68,14 @@ fn decimal(integer: &str, power: i32) -> String {
         None => ("", integer),
     };
     let leading = power + i32::try_from(digits.len()).unwrap_or(0) - 1;
-    if !(-6..=20).contains(&leading) {
+    // A zero before the point would look like a digit that is proved.
+    if power > 0 || leading < -6 {
         let (first, rest) = digits.split_at(1);
         let point = if rest.is_empty() { "" } else { "." };
         return format!("{sign}{first}{point}{rest}e{leading}");
     }
-    if power >= 0 {
-        return format!("{sign}{digits}{}", "0".repeat(power.unsigned_abs() as usize));
+    if power == 0 {
+        return format!("{sign}{digits}");
     }
     let after = power.unsigned_abs() as usize;
     let padded = format!("{}{digits}", "0".repeat((after + 1).saturating_sub(digits.len())));
@@ -93,14 +94,15 @@ mod tests {
     #[test]
     fn a_cell_holds_the_digits_on_which_both_ends_agree() {
         assert_eq!(shown(0.5, 0.0, 17), "0.50000000000000000");
-        assert_eq!(shown(1.25, 1e-4, 17), "1.25");
+        assert_eq!(shown(1.25, 1e-4, 17), "1.250");
         assert_eq!(shown(-1.25, 1e-3, 17), "-1.25");
-        assert_eq!(shown(123.4, 0.3, 17), "123");
+        assert_eq!(shown(123.4, 0.08, 17), "123");
+        assert_eq!(shown(123.4, 0.3, 17), "1.2e2");
         assert_eq!(shown(1.5e-9, 1e-12, 17), "1.50e-9");
         assert_eq!(shown(2.5e25, 1e22, 17), "2.50e25");
         assert_eq!(shown(0.0, 0.0, 17), "0");
         assert_eq!(shown(1e-30, 1e-28, 17), "0e-27");
-        assert_eq!(shown(0.9999, 0.01, 17), "1");
+        assert_eq!(shown(0.9999, 0.01, 17), "1.0");
         assert!(!has_digits(&shown(1e-30, 1e-28, 17)) && has_digits("0"));
     }
 
