@@ -24,7 +24,7 @@ from system_run import Run
 from tables import DECIMALS, DIGITS, proved_decimal
 
 SYSTEMS = HERE.parent / "validation" / "systems"
-CASES = SYSTEMS / "cases"
+CASES = HERE.parent / "validation" / "cases" / "systems"
 GROWTH_ERROR = 1e-6  # relative radius of a growth that is printed with four digits
 ENCLOSURE_DIGITS = 30
 
@@ -66,7 +66,7 @@ def sample_rows(case: SystemCase, run: Run):
         leg = run.legs[current]
         exponential = run.flow(leg.place.mode).matrix_at(elapsed - leg.begins.ball)
         z = exponential * leg.place.z
-        states = run.growth.of_states(run.growth.flow(exponential, leg.place.z))
+        states = run.growth.of_states(exponential * run.growth.lift(leg.place.z))
         numbers = cells([elapsed, case.clock(elapsed), *entries(case, z)])
         growth = map(growth_cell, run.growth.measured(None, states, leg.sources)[1:])
         yield ",".join([str(index), leg.place.mode, *numbers, *growth])

@@ -23,7 +23,9 @@ pub(super) struct Clock<T> {
 }
 
 impl<T: Number> Time<T> {
-    fn of(number: &RBig) -> Self {
+    /// A rational time, rounded to two words.
+    #[must_use]
+    pub fn of(number: &RBig) -> Self {
         let real = Real::of(number);
         let (high, low) = real.words();
         if unit::<T>() > 1e-20 {

@@ -174,6 +174,15 @@ impl<T: Number> Solver<T> {
         Some(run)
     }
 
+    /// The states at a time with cos theta, sin theta and 1 appended.
+    pub(super) fn complete(&self, states: &[T], time: &Time<T>) -> Vector<T> {
+        let mut state = [T::zero(); LARGEST_DIMENSION];
+        state[..states.len()].copy_from_slice(states);
+        let (sin, cos) = self.sin_cos(time);
+        complete(&mut state, self, sin, cos);
+        state
+    }
+
     fn sin_cos(&self, time: &Time<T>) -> (T, T) {
         match &self.clock {
             Some(clock) if self.backward => {

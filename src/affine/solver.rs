@@ -1,8 +1,9 @@
 //! A system made ready to run in one arithmetic.
 
-use super::clock::Clock;
+use super::clock::{Clock, Time};
 use super::flow::{Flow, ModalRow, Vector, rounded};
 use super::modal::{self, Real};
+use super::run::Event;
 use super::structure::Structure;
 use super::system::{LARGEST_DIMENSION, Mode, Row, System};
 use crate::number::Number;
@@ -95,6 +96,18 @@ impl<T: Number> Solver<T> {
         let modes = system.modes.iter().enumerate().map(mode).collect();
         let clock = system.forcing.as_ref().map(Clock::of);
         Ok(Self { modes, clock, structure, backward, system })
+    }
+
+    /// The state at a time in the segment that an event of a run of this solver begins.
+    #[must_use]
+    pub fn state_at(&self, event: &Event<T>, time: &Time<T>) -> Vec<T> {
+        let ahead = (time.high - event.time.high) + (time.low - event.time.low);
+        let elapsed = if self.backward { -ahead } else { ahead };
+        let flow = &self.modes[event.mode].flow;
+        let modal = flow.modal(&self.complete(&event.state, &event.time));
+        let mut state = flow.state(&flow.at(&modal, elapsed)).to_vec();
+        state.truncate(self.system.states.len());
+        state
     }
 
     /// The system; that of a backward run has its signs reversed.

@@ -180,7 +180,7 @@ fn every_proved_table_is_reproduced() {
 
 /// Every case of a system, with its parameters and start.
 fn cases() -> Vec<(String, System)> {
-    let folder = std::fs::read_dir(repository("validation/systems/cases")).unwrap();
+    let folder = std::fs::read_dir(repository("validation/cases/systems")).unwrap();
     let mut paths: Vec<_> = folder.map(|entry| entry.unwrap().path()).collect();
     paths.sort();
     let case = |path: &PathBuf| {

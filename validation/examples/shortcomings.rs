@@ -13,7 +13,8 @@ use std::collections::BTreeMap;
 /// there.
 const FACTOR: f64 = 3.0;
 /// Quantities that are counts.
-const COUNTS: [&str; 4] = ["events_missed", "events_spurious", "phase_word", "restarts_failed"];
+const COUNTS: [&str; 5] =
+    ["events_missed", "events_spurious", "phase_word", "restarts_failed", "runs_failed"];
 
 /// Case, setting (a step is negative), quantity and statistic.
 type Key = (String, String, String, String);
@@ -75,7 +76,7 @@ fn collect(row: &Value, defects: &mut BTreeMap<String, BTreeMap<Key, (f64, f64)>
 /// Floor and ceiling around a figure. One that cannot exceed `most` stays below it by half of what
 /// there is to it, because a ceiling above it would bound nothing.
 fn range(quantity: &str, value: f64, limit: f64, most: Option<f64>) -> (f64, f64) {
-    if quantity == "phase_word" {
+    if ["phase_word", "runs_failed"].contains(&quantity) {
         (1.0, 1.0)
     } else if COUNTS.contains(&quantity) {
         let halfway = most.map_or(f64::INFINITY, |most| (0.5 * (value + most)).floor());

@@ -8,9 +8,9 @@ pub mod build;
 pub mod cli;
 pub mod report;
 pub mod sweep;
-pub mod systems;
 mod unfinished;
 
+pub use percuss_engines::case::systems;
 pub use percuss_engines::{case, engine, number, system};
 pub use percuss_harness::{arrays, bench, power, reproduce, score, suite, truth};
 pub use percuss_pictures as picture;

@@ -43,7 +43,7 @@ fn a_wrong_answer_has_no_time() {
     }
     for finisher in &finishers[2..] {
         let failure = finisher.result.as_ref().expect_err("it is wrong");
-        assert!(failure.0.starts_with("wrong: "), "{finisher:?}");
+        assert!(failure.reason.starts_with("wrong: "), "{finisher:?}");
         assert!(most_accurate(&finishers, finisher.name).is_none());
     }
 }

@@ -5,7 +5,7 @@ use percuss::Phase;
 use percuss_validation::case::defaults;
 use percuss_validation::engine::select;
 use percuss_validation::report::{EventPicture, MismatchKind, View, event_pictures};
-use percuss_validation::suite::{self, Suite};
+use percuss_validation::suite::{self, CaseRun, Suite};
 use percuss_validation::truth::Library;
 use regex::Regex;
 
@@ -16,7 +16,8 @@ fn pictures(case: &str, engine: &str) -> Vec<EventPicture> {
     let engine = Regex::new(&format!("^{engine}$")).expect("a pattern");
     let engines = select(&[engine]).expect("an engine");
     let defaults = defaults().expect("bounds");
-    let rows = suite::run(&cases, &engines, Suite::Quick, &defaults, &|| ());
+    let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();
+    let rows = suite::run(&runs, &engines, Suite::Quick, &defaults, &|| ());
     event_pictures(&cases, &rows, Suite::Quick)
 }
 

@@ -140,10 +140,10 @@ fn its_accuracy_is_held_to_a_baseline() {
 fn names_that_mislead_are_refused() {
     // This process has not asked for any engine yet, so that only the names can be at fault.
     let refused = engines::add(&[engines::exact()]).expect_err("the reference is there already");
-    assert!(refused.0.contains("\"exact\""), "{refused}");
+    assert!(refused.reason.contains("\"exact\""), "{refused}");
     assert_eq!(engines::add(&[]), Ok(()));
     let late = engines::add(&[]).expect_err("once only");
-    assert!(late.0.contains("before any engine"), "{late}");
+    assert!(late.reason.contains("before any engine"), "{late}");
 }
 
 /// The transcript of CONTRIBUTING.md, and the code of docs/AUTHORS.md.

@@ -6,7 +6,7 @@ use percuss_validation::engine::{
     Accuracy, Declaration, Engine, Event, Failure, Limits, Outcome, Task, exact,
 };
 use percuss_validation::score::Verdict;
-use percuss_validation::suite::{Suite, prepare, run};
+use percuss_validation::suite::{CaseRun, Suite, prepare, run};
 use percuss_validation::truth::Library;
 
 /// The exact solver's answer with one change.
@@ -75,7 +75,8 @@ fn no_spoiled_answer_passes() {
     let cases = prepare(chosen, &library, Suite::Quick).expect("the case is made ready");
     let defaults = defaults().expect("the bounds are read");
     let verdict = |engine: &'static Spoiled| {
-        let rows = run(&cases, &[engine], Suite::Quick, &defaults, &|| ());
+        let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();
+        let rows = run(&runs, &[engine], Suite::Quick, &defaults, &|| ());
         assert_eq!(rows.len(), 1);
         rows[0].judgement.verdict
     };

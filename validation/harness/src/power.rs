@@ -7,7 +7,7 @@ use crate::case::{Bound, Quantity};
 use crate::engine::{Accuracy, Limits, REFERENCE, SOUND, Wrong, faulty, wrong};
 use crate::number::brief;
 use crate::score::{Checked, Expected, Subject, Verdict, judge};
-use crate::suite::{Extent, Prepared};
+use crate::suite::{CaseRun, Extent, Prepared};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
@@ -55,9 +55,10 @@ impl Gate {
 
     const fn of(quantity: Quantity) -> Self {
         match quantity {
-            Quantity::EventsMissed | Quantity::EventsSpurious | Quantity::PhaseSequence => {
-                Self::Events
-            }
+            Quantity::EventsMissed
+            | Quantity::EventsSpurious
+            | Quantity::PhaseSequence
+            | Quantity::RunsFailed => Self::Events,
             Quantity::EventTimeError | Quantity::EventConstant => Self::EventErrors,
             Quantity::StateError
             | Quantity::DriftError
@@ -199,8 +200,8 @@ fn held(
     let limits = Limits::default();
     let extent = |_| standard.extent(&prepared.case);
     let measured = prepared.measured(wrong.engine, accuracy, unit, &limits, extent);
-    let (measures, outcome, _) = measured.ok()?;
+    let (measures, ..) = measured.ok()?;
     let bounds: Vec<_> = prepared.case.bounds.iter().chain(defaults).collect();
     let expected = Expected { bounds: &bounds, of_classes: defaults, shortcomings: &[] };
-    Some(judge(&subject, &prepared.as_run(&measures, &outcome), &expected).bounds)
+    Some(judge(&subject, &prepared.as_run(&measures), &expected).bounds)
 }

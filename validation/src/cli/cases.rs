@@ -2,7 +2,7 @@
 
 use super::format::OutputFlags;
 use super::list::{self, Format};
-use crate::case::{self, Case, FileError, Horizon, Regime};
+use crate::case::{Case, Cases, FileError, Horizon, SystemCase};
 use crate::truth::Library;
 use anyhow::{Context, Result};
 use clap::Args;
@@ -20,14 +20,14 @@ pub(super) struct Arguments {
     output: OutputFlags<Format>,
 }
 
-/// The model that all cases are of.
+/// The model of the paper, which is no system of a file.
 const SYSTEM: &str = "oscillator";
 
 #[derive(Serialize)]
 struct Line {
     name: String,
-    regime: Regime,
-    system: &'static str,
+    regime: String,
+    system: String,
     events: usize,
     periods: f64,
     table: String,
@@ -45,13 +45,15 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let format = arguments.output.format(Format::Csv)?;
     let (cases, library) = match &arguments.cases {
         Some(folder) => {
-            let cases = case::from_directory(folder).context("--cases")?;
+            let cases = Cases::from_directory(folder).context("--cases")?;
             (cases, Library::embedded()?.replaying())
         }
-        None => (case::embedded()?, Library::embedded()?),
+        None => (Cases::embedded()?, Library::embedded()?),
     };
-    let lines: Vec<Line> =
-        cases.iter().map(|case| line(case, &library)).collect::<Result<_, _>>()?;
+    let oscillator = cases.oscillator.iter().map(|case| line(case, &library));
+    let systems = cases.systems.iter().map(|case| line_of_system(case, &library));
+    let mut lines: Vec<Line> = oscillator.chain(systems).collect::<Result<_, _>>()?;
+    lines.sort_by(|a, b| a.name.cmp(&b.name));
     let list = List { schema: 1, percuss: env!("CARGO_PKG_VERSION"), cases: &lines };
     list::write(&arguments.output, format, &list, &lines)
 }
@@ -59,11 +61,24 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 fn line(case: &Case, library: &Library) -> Result<Line, FileError> {
     Ok(Line {
         name: case.name.clone(),
-        regime: case.regime.clone(),
-        system: SYSTEM,
+        regime: case.regime.to_string(),
+        system: SYSTEM.to_owned(),
         events: library.truth(case)?.events.len(),
         periods: periods(case),
-        table: library.table(case).unwrap_or_default(),
+        table: library.table(&case.name).unwrap_or_default(),
+        why: case.why.clone(),
+    })
+}
+
+fn line_of_system(case: &SystemCase, library: &Library) -> Result<Line, FileError> {
+    let period = std::f64::consts::TAU * case.system.time_scale;
+    Ok(Line {
+        name: case.name.clone(),
+        regime: case.trouble.join(" "),
+        system: case.system.name.clone(),
+        events: library.system_truth(case)?.events.len(),
+        periods: case.span() / period,
+        table: library.table(&case.name).unwrap_or_default(),
         why: case.why.clone(),
     })
 }

@@ -3,14 +3,14 @@
 use super::names::{CASES, ENGINES};
 use super::output::{Destination, reader_left};
 use super::{DONE, OUT_OF_BOUNDS, note, parse, reports, say, work};
-use crate::case::{self, Case};
+use crate::case::{self, Cases};
 use crate::engine::{self, Engine, Wrong, hush_contained_panics};
 use crate::power::{self, Finding, Standard};
 use crate::report::{
     Baseline, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary, event_pictures,
     ranking_text, screen,
 };
-use crate::suite::{self, Prepared, Suite};
+use crate::suite::{self, CaseRun, Prepared, PreparedSystem, Suite};
 use crate::truth::Library;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
@@ -78,6 +78,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let baseline = arguments.baseline.as_deref().map(read_baseline).transpose()?;
     let engines = chosen_engines(&arguments.engine)?;
     let cases = prepared_cases(arguments)?;
+    let all = cases.all();
     if let Some(folder) = &arguments.out {
         std::fs::create_dir_all(folder).map_err(|error| {
             anyhow!(
@@ -93,27 +94,31 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     hush_contained_panics();
     let pool = work::pool(threads)?;
     let wrong = wrong_engines(arguments);
-    let bar = work::bar(
-        (suite::size(cases.len(), &engines, arguments.suite) + wrong.len()) as u64,
-        "rows",
-    );
+    let bar =
+        work::bar((suite::size(&all, &engines, arguments.suite) + wrong.len()) as u64, "rows");
     let rows =
-        pool.install(|| suite::run(&cases, &engines, arguments.suite, &defaults, &|| bar.inc(1)));
-    let asked = suite::size(cases.len(), &engines, arguments.suite);
+        pool.install(|| suite::run(&all, &engines, arguments.suite, &defaults, &|| bar.inc(1)));
+    let asked = suite::size(&all, &engines, arguments.suite);
     if rows.len() != asked {
         bail!("{} rows were made where {asked} were asked for", rows.len());
     }
     let examine = |(it, held): &(Wrong, Standard)| {
-        let finding = power::examine(it, &cases, *held, &defaults.bounds);
+        let finding = power::examine(it, &cases.oscillator, *held, &defaults.bounds);
         bar.inc(1);
         finding
     };
     let findings: Vec<_> = pool.install(|| wrong.iter().map(examine).collect());
     bar.finish_and_clear();
-    let mut evidence = ReportEvidence::gather(&cases, &rows, &findings, arguments.cases.is_none());
+    let mut evidence = ReportEvidence::gather(
+        (&cases.oscillator, &cases.systems),
+        &rows,
+        &findings,
+        arguments.cases.is_none(),
+    );
     evidence.folders = folders(arguments);
     if arguments.out.is_some() {
-        evidence.events = pool.install(|| event_pictures(&cases, &rows, arguments.suite));
+        evidence.events =
+            pool.install(|| event_pictures(&cases.oscillator, &rows, arguments.suite));
     }
     let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
     let report = Report::new(arguments.suite, &declarations, &rows);
@@ -121,7 +126,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         Some(baseline) => worse(arguments, baseline, &report)?,
         None => Vec::new(),
     };
-    write(arguments, &report, &evidence, cases.len())?;
+    write(arguments, &report, &evidence, all.len())?;
     Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code(arguments, &report, &evidence) })
 }
 
@@ -218,27 +223,42 @@ fn chosen_engines(patterns: &[Regex]) -> Result<Vec<&'static dyn Engine>> {
     Ok(engines)
 }
 
-fn prepared_cases(arguments: &Arguments) -> Result<Vec<Prepared>> {
-    let all = match &arguments.cases {
-        Some(folder) => case::from_directory(folder).context("--cases")?,
-        None => case::embedded()?,
+/// All cases that are asked for, made ready.
+struct PreparedCases {
+    oscillator: Vec<Prepared>,
+    systems: Vec<PreparedSystem>,
+}
+
+impl PreparedCases {
+    /// Those of the oscillator, then those of other systems.
+    fn all(&self) -> Vec<&dyn CaseRun> {
+        let oscillator = self.oscillator.iter().map(|it| it as &dyn CaseRun);
+        oscillator.chain(self.systems.iter().map(|it| it as &dyn CaseRun)).collect()
+    }
+}
+
+fn prepared_cases(arguments: &Arguments) -> Result<PreparedCases> {
+    let mut cases = match &arguments.cases {
+        Some(folder) => Cases::from_directory(folder).context("--cases")?,
+        None => Cases::embedded()?,
     };
-    CASES.check(&arguments.case, all.iter().map(|it| it.name.as_str()))?;
-    let wanted = |case: &Case| {
-        arguments.case.is_empty() || arguments.case.iter().any(|it| it.is_match(&case.name))
-    };
-    let cases: Vec<_> = all.into_iter().filter(wanted).collect();
+    CASES.check(&arguments.case, cases.names())?;
+    cases.retain(|name| {
+        arguments.case.is_empty() || arguments.case.iter().any(|it| it.is_match(name))
+    });
     let library = match &arguments.reference {
         Some(folder) => Library::from_directory(folder).context("--reference")?,
         // Cases of a user's own may come before their tables.
         None if arguments.cases.is_some() => Library::embedded()?.replaying(),
         None => Library::embedded()?,
     };
-    for case in cases.iter().filter(|case| library.is_replayed(case)) {
+    for name in cases.names().filter(|name| library.is_replayed(name)) {
         note(&format!(
-            "{}: without tables: its truth is the exact solver's run made again in 106 bits",
-            case.name
+            "{name}: without tables: its truth is the exact solver's run made again in 106 bits"
         ));
     }
-    Ok(suite::prepare(cases, &library, arguments.suite)?)
+    Ok(PreparedCases {
+        oscillator: suite::prepare(cases.oscillator, &library, arguments.suite)?,
+        systems: suite::prepare_systems(cases.systems, &library)?,
+    })
 }

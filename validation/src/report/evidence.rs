@@ -4,7 +4,7 @@
 //! Any part may be empty; the report then says that it was not run.
 
 use super::EventPicture;
-use crate::case::Case;
+use crate::case::{Case, SystemCase};
 use serde::Serialize;
 
 /// Everything that is shown beside the rows.
@@ -40,8 +40,10 @@ pub struct CaseNote {
     pub file: String,
     /// The text of that file.
     pub toml: String,
-    /// The regime it stands for.
+    /// The regime it stands for, or the kinds of trouble that it makes.
     pub regime: String,
+    /// The kinds of trouble that a system's case makes; none of the oscillator's.
+    pub trouble: Vec<String>,
     /// Why it is here.
     pub why: String,
     /// How far the gap's first maximum reaches beyond the surface (negative: stays short of it).
@@ -141,6 +143,22 @@ impl CaseNote {
             regime: case.regime.to_string(),
             why: case.why.clone(),
             margin: case.margin,
+            trouble: Vec::new(),
+        }
+    }
+
+    /// What this case of a system says of itself; `embedded`: it stands inside the binary.
+    #[must_use]
+    pub fn of_system(case: &SystemCase, embedded: bool) -> Self {
+        let folder = if embedded { "validation/" } else { "" };
+        Self {
+            name: case.name.clone(),
+            file: format!("{folder}{}", case.file),
+            toml: case.text.clone(),
+            regime: case.trouble.join(", "),
+            why: case.why.clone(),
+            margin: None,
+            trouble: case.trouble.clone(),
         }
     }
 }

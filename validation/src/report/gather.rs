@@ -6,19 +6,21 @@ use super::evidence::{
 use crate::power::{Finding, Gate};
 use crate::score::attractor::{AttractorTest, Comparison};
 use crate::score::{Histogram, Measures, sample_errors};
-use crate::suite::{Prepared, Scored, Status, is_shown};
+use crate::suite::{Prepared, PreparedSystem, Scored, Status, is_shown};
 
 impl ReportEvidence {
     /// Collects it; `embedded`: the cases stand inside the binary.
     #[must_use]
     pub fn gather(
-        cases: &[Prepared],
+        (cases, systems): (&[Prepared], &[PreparedSystem]),
         rows: &[Scored],
         findings: &[Finding],
         embedded: bool,
     ) -> Self {
+        let of_systems = systems.iter().map(|it| CaseNote::of_system(&it.case, embedded));
+        let notes = cases.iter().map(|it| CaseNote::of(&it.case, embedded)).chain(of_systems);
         let mut evidence = Self {
-            cases: cases.iter().map(|it| CaseNote::of(&it.case, embedded)).collect(),
+            cases: notes.collect(),
             faults: findings.iter().map(fault).collect(),
             ..Self::default()
         };
@@ -58,10 +60,10 @@ fn fault(finding: &Finding) -> FaultRow {
 }
 
 fn growth(prepared: &Prepared, row: &Scored) -> Option<ErrorGrowth> {
-    let Status::Ok(_, outcome) = &row.status else { return None };
+    let Status::Ok(_, answered) = &row.status else { return None };
     let per_period = f64::from(crate::truth::Truth::SAMPLES_PER_PERIOD);
     let largest = |growth: &[f64; 4]| growth[..3].iter().fold(1.0_f64, |a, b| a.max(*b));
-    let error = sample_errors(&prepared.truth, outcome);
+    let error = sample_errors(&prepared.truth, answered.oscillator()?);
     Some(ErrorGrowth {
         case: row.case.clone(),
         engine: row.engine.to_owned(),

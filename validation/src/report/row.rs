@@ -232,7 +232,8 @@ impl ReportRow {
 
     fn of(scored: &Scored) -> Self {
         let empty = Self::empty(scored);
-        let Status::Ok(measures, outcome) = &scored.status else { return empty };
+        let Status::Ok(measures, answered) = &scored.status else { return empty };
+        let work = answered.work();
         Self {
             horizon_periods: measures.horizon_periods,
             events_expected: Some(measures.expected),
@@ -245,10 +246,10 @@ impl ReportRow {
             drift_error: measures.drift,
             drift_error_by_event_times: measures.drift_by_times,
             valid_periods: measures.valid_periods,
-            rhs_evaluations: Some(outcome.work.rhs_evaluations),
-            jacobian_evaluations: Some(outcome.work.jacobian_evaluations),
-            linear_solves: Some(outcome.work.linear_solves),
-            steps: Some(outcome.work.steps),
+            rhs_evaluations: Some(work.rhs_evaluations),
+            jacobian_evaluations: Some(work.jacobian_evaluations),
+            linear_solves: Some(work.linear_solves),
+            steps: Some(work.steps),
             wall_ns: u64::try_from(scored.wall.as_nanos()).ok(),
             valid_horizon: measures.probed.horizons.as_ref().map(ValidHorizons::of),
             restart: measures.probed.restart.as_ref().map(RestartFigures::of),

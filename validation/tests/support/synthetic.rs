@@ -307,6 +307,7 @@ pub fn evidence() -> ReportEvidence {
         toml: "[case]\nname = \"graze\" # </script>\n".to_owned(),
         regime: "grazing".to_owned(),
         why: NASTY.to_owned(),
+        trouble: Vec::new(),
         margin: Some(margin),
     };
     let graze = |engine: &str, tolerance: Option<f64>, (case, margin): (String, f64)| GrazeRow {

@@ -9,6 +9,7 @@ pub fn accepted(name: &str) -> Option<&'static str> {
         "cycle" => Some("an integer, -2^53 to 2^53"),
         "periods" => Some("an integer, 0 to 1000000000"),
         "until" => Some("a number, at or after the start, at most 1000000000 periods later"),
+        "samples" => Some("an integer, 1 to 100000"),
         "valid_within" => Some("an integer, 1 to 1000"),
         "phase" => Some("\"no-contact\", \"contact\" or \"progression\""),
         "margin" => Some("a finite number"),

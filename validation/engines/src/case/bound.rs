@@ -36,6 +36,8 @@ pub enum Quantity {
     RestartError,
     /// Restarts that gave no result.
     RestartsFailed,
+    /// Whether the run gave no result (0 or 1).
+    RunsFailed,
     /// The largest distance of the section from the reference's, over its calibrated limit.
     AttractorDistance,
 }
@@ -57,6 +59,7 @@ impl Quantity {
             Self::ValidGain => "valid gain",
             Self::RestartError => "restart error",
             Self::RestartsFailed => "restarts failed",
+            Self::RunsFailed => "runs failed",
             Self::AttractorDistance => "attractor distance",
         }
     }

@@ -4,6 +4,7 @@ use super::Case;
 use super::expectations::{Defaults, read_bounds};
 use super::known::read_shortcomings;
 use super::located::FileError;
+use super::system::{SystemCase, is_of_a_system, parse_system_case};
 use super::wire::parse_case;
 use include_dir::{Dir, include_dir};
 use std::path::{Path, PathBuf};
@@ -12,40 +13,106 @@ static CASES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/cases");
 const BOUNDS: &str = include_str!("../../bounds.toml");
 const SHORTCOMINGS: &str = include_str!("../../shortcomings.toml");
 
-/// The cases inside the binary, by name.
+/// Cases of the oscillator and of other systems, each by name.
+#[derive(Clone, Debug, Default)]
+pub struct Cases {
+    /// Those of the oscillator.
+    pub oscillator: Vec<Case>,
+    /// Those of other systems.
+    pub systems: Vec<SystemCase>,
+}
+
+impl Cases {
+    /// The cases inside the binary.
+    ///
+    /// # Errors
+    /// [`FileError`]; a test shows that there is none.
+    pub fn embedded() -> Result<Self, FileError> {
+        let mut cases = Self::default();
+        cases.collect(&CASES)?;
+        cases.ordered()
+    }
+
+    /// The cases of a folder and the folders in it; the systems' files are beside their cases, or
+    /// inside the binary.
+    ///
+    /// # Errors
+    /// [`FileError`] for the first file that cannot be read or understood, or a folder without
+    /// cases.
+    pub fn from_directory(folder: &Path) -> Result<Self, FileError> {
+        let mut cases = Self::default();
+        for path in case_files(folder)? {
+            let text = std::fs::read_to_string(&path)
+                .map_err(|error| FileError::unreadable(&path, &error))?;
+            cases.read(&path.display().to_string(), &text, path.parent())?;
+        }
+        if cases.names().next().is_none() {
+            return Err(FileError::of(&folder.display().to_string(), "holds no case (*.toml)"));
+        }
+        cases.ordered()
+    }
+
+    /// The names of all cases.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        let systems = self.systems.iter().map(|it| it.name.as_str());
+        self.oscillator.iter().map(|it| it.name.as_str()).chain(systems)
+    }
+
+    /// Keeps the cases whose names are wanted.
+    pub fn retain(&mut self, wanted: impl Fn(&str) -> bool) {
+        self.oscillator.retain(|it| wanted(&it.name));
+        self.systems.retain(|it| wanted(&it.name));
+    }
+
+    fn collect(&mut self, folder: &Dir<'_>) -> Result<(), FileError> {
+        for file in folder.files().filter(|file| is_case(file.path())) {
+            let name = format!("cases/{}", file.path().display());
+            let text = file.contents_utf8().ok_or_else(|| FileError::of(&name, "not UTF-8"))?;
+            self.read(&name, text, None)?;
+        }
+        folder.dirs().try_for_each(|inner| self.collect(inner))
+    }
+
+    fn read(&mut self, name: &str, text: &str, folder: Option<&Path>) -> Result<(), FileError> {
+        if is_of_a_system(text) {
+            self.systems.push(parse_system_case(name, text, folder)?);
+        } else {
+            self.oscillator.push(parse_case(name, text)?);
+        }
+        Ok(())
+    }
+
+    fn ordered(mut self) -> Result<Self, FileError> {
+        self.oscillator.sort_by(|a, b| a.name.cmp(&b.name));
+        self.systems.sort_by(|a, b| a.name.cmp(&b.name));
+        let mut names: Vec<_> = self.names().collect();
+        names.sort_unstable();
+        match names.windows(2).find(|pair| pair[0] == pair[1]) {
+            Some(pair) => Err(FileError(format!("two cases are called {:?}", pair[0]))),
+            None => Ok(self),
+        }
+    }
+}
+
+/// The oscillator's cases inside the binary, by name.
 ///
 /// # Errors
 /// [`FileError`]; a test shows that there is none.
 pub fn embedded() -> Result<Vec<Case>, FileError> {
-    let mut cases = Vec::new();
-    collect(&CASES, &mut cases)?;
-    ordered(cases)
+    Ok(Cases::embedded()?.oscillator)
 }
 
-fn collect(folder: &Dir<'_>, cases: &mut Vec<Case>) -> Result<(), FileError> {
-    for file in folder.files().filter(|file| is_case(file.path())) {
-        let name = format!("cases/{}", file.path().display());
-        let text = file.contents_utf8().ok_or_else(|| FileError::of(&name, "not UTF-8"))?;
-        cases.push(parse_case(&name, text)?);
-    }
-    folder.dirs().try_for_each(|inner| collect(inner, cases))
-}
-
-/// The cases of a folder and the folders in it, by name.
+/// The oscillator's cases of a folder and the folders in it, by name.
 ///
 /// # Errors
-/// [`FileError`] for the first file that cannot be read or understood, or a folder without cases.
+/// As [`Cases::from_directory`], and a folder without cases of the oscillator.
 pub fn from_directory(folder: &Path) -> Result<Vec<Case>, FileError> {
-    let mut cases = Vec::new();
-    for path in case_files(folder)? {
-        let text =
-            std::fs::read_to_string(&path).map_err(|error| FileError::unreadable(&path, &error))?;
-        cases.push(parse_case(&path.display().to_string(), &text)?);
-    }
+    let cases = Cases::from_directory(folder)?.oscillator;
     if cases.is_empty() {
-        return Err(FileError::of(&folder.display().to_string(), "holds no case (*.toml)"));
+        let what = "holds no case of the oscillator (*.toml)";
+        return Err(FileError::of(&folder.display().to_string(), what));
     }
-    ordered(cases)
+    Ok(cases)
 }
 
 fn case_files(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
@@ -68,16 +135,10 @@ fn case_files(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     Ok(files)
 }
 
+/// Whether a file is a case; that of a system is none.
 fn is_case(path: &Path) -> bool {
-    path.extension().is_some_and(|extension| extension == "toml")
-}
-
-fn ordered(mut cases: Vec<Case>) -> Result<Vec<Case>, FileError> {
-    cases.sort_by(|a, b| a.name.cmp(&b.name));
-    match cases.windows(2).find(|pair| pair[0].name == pair[1].name) {
-        Some(pair) => Err(FileError(format!("two cases are called {:?}", pair[0].name))),
-        None => Ok(cases),
-    }
+    let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
+    name.ends_with(".toml") && !name.ends_with(".system.toml")
 }
 
 /// What is expected on every case inside the binary, after what the case says itself.

@@ -171,12 +171,7 @@ pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
     let horizon =
         source.horizon(&wire.horizon, &start, problem.model.period(), given.parameters.omega)?;
     let name = wire.case.name;
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
-    if name.get_ref().is_empty() || !name.get_ref().chars().all(plain) {
-        let what =
-            format!("name {:?} is not accepted: letters, digits, '-', '_' and '.'", name.get_ref());
-        return Err(source.error(&name, &what));
-    }
+    source.plain_name(&name)?;
     let margin = match &wire.case.margin {
         Some(margin) if !margin.get_ref().is_finite() => {
             return Err(source.refused("margin", margin));
@@ -200,6 +195,17 @@ pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
 }
 
 impl Source<'_> {
+    /// Refuses a name that is none of a file.
+    pub(super) fn plain_name(&self, name: &Spanned<String>) -> Result<(), FileError> {
+        let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
+        if !name.get_ref().is_empty() && name.get_ref().chars().all(plain) {
+            return Ok(());
+        }
+        let what =
+            format!("name {:?} is not accepted: letters, digits, '-', '_' and '.'", name.get_ref());
+        Err(self.error(name, &what))
+    }
+
     fn horizon(
         &self,
         table: &Spanned<HorizonTable>,

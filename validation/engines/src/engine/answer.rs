@@ -80,7 +80,7 @@ mod tests {
         let mut outcome = whole(&task);
         assert_eq!(complete(&outcome, COUNT), Ok(()));
         outcome.samples.push([0.0; 4]);
-        let refused = |outcome: &Outcome| complete(outcome, COUNT).map_err(|it| it.0);
+        let refused = |outcome: &Outcome| complete(outcome, COUNT).map_err(|it| it.reason);
         let said = |count| Err(format!("gave {count} samples where {COUNT} were asked for"));
         assert_eq!(refused(&outcome), said(COUNT + 1));
         outcome.samples.truncate(2);

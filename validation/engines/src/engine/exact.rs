@@ -3,7 +3,7 @@
 use super::field::event_between;
 use super::meter::{Failure, Limits};
 use super::{Accuracy, Colours, Declaration, Engine, Event, Location, Outcome, Role, Stepping};
-use super::{REFERENCE, Task, Work, pins};
+use super::{REFERENCE, SystemOutcome, SystemTask, Task, Work, pins};
 use percuss::TwoWord;
 use percuss::{Entry, Exit, Phase, Sample, Segment, Step, Trajectory};
 
@@ -57,7 +57,17 @@ impl Engine for Exact {
             steps: outcome.events.len() as u64 + 1,
             ..Work::default()
         };
+        outcome.ended_at = task.span;
         Ok(outcome)
+    }
+
+    fn run_system(
+        &self,
+        task: &SystemTask,
+        _: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        super::exact_system::run(task, limits)
     }
 }
 

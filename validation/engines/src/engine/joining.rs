@@ -147,6 +147,7 @@ pub(super) fn join<E: Equations>(
         };
     }
     outcome.end = equations.reported(&now.state);
+    outcome.ended_at = now.t;
     outcome.samples = sampler.finish(now.state);
     for state in &mut outcome.samples {
         *state = equations.reported(state);

@@ -11,15 +11,26 @@ use std::cell::{Cell, OnceCell};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::{Duration, Instant};
 
-/// Why a run has no result, in one line.
+/// Why a run has no result.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{0}")]
-pub struct Failure(pub String);
+#[error("{reason}")]
+pub struct Failure {
+    /// The reason, in one line.
+    pub reason: String,
+    /// Whether the run was given up because it took more calls or time than it was allowed.
+    pub is_beyond_limits: bool,
+}
 
 impl Failure {
     /// A failure for this reason.
     pub fn new(reason: impl std::fmt::Display) -> Self {
-        Self(reason.to_string().split_whitespace().collect::<Vec<_>>().join(" "))
+        let reason = reason.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
+        Self { reason, is_beyond_limits: false }
+    }
+
+    /// A run that took, or would take, more than it was allowed.
+    pub fn beyond_limits(reason: impl std::fmt::Display) -> Self {
+        Self { is_beyond_limits: true, ..Self::new(reason) }
     }
 }
 
@@ -87,7 +98,7 @@ impl<M: Copy> Meter<M> {
         self.rhs.set(self.rhs.get() + 1);
         // Some libraries loop for ever on a NaN.
         if derivatives.iter().any(|derivative| !derivative.is_finite()) {
-            stop("a right-hand side is not finite");
+            stop(Failure::new("a right-hand side is not finite"));
         }
         self.call();
     }
@@ -109,10 +120,10 @@ impl<M: Copy> Meter<M> {
         let calls = self.calls.get() + 1;
         self.calls.set(calls);
         if calls > self.limits.calls {
-            stop(&format!("gave up after {} calls", self.limits.calls));
+            stop(Failure::beyond_limits(format!("gave up after {} calls", self.limits.calls)));
         }
         if calls.is_multiple_of(CLOCK_EVERY) && self.began.elapsed() > self.limits.wall {
-            stop(&format!("gave up after {} s", self.limits.wall.as_secs()));
+            stop(Failure::beyond_limits(format!("gave up after {} s", self.limits.wall.as_secs())));
         }
     }
 
@@ -121,7 +132,10 @@ impl<M: Copy> Meter<M> {
         if self.calls.get() as f64 + calls <= self.limits.calls as f64 {
             Ok(())
         } else {
-            Err(Failure::new(format!("gave up before {calls:e} calls, of {}", self.limits.calls)))
+            Err(Failure::beyond_limits(format!(
+                "gave up before {calls:e} calls, of {}",
+                self.limits.calls
+            )))
         }
     }
 
@@ -205,8 +219,8 @@ impl<M: Copy> Meter<M> {
 }
 
 /// Unwinds without the panic hook: this is no fault of the program.
-fn stop(reason: &str) -> ! {
-    resume_unwind(Box::new(Failure::new(reason)))
+fn stop(failure: Failure) -> ! {
+    resume_unwind(Box::new(failure))
 }
 
 thread_local! {
@@ -256,7 +270,7 @@ mod tests {
                 meter.rhs(&[0.0]);
             }
         };
-        assert_eq!(contain(endless), Err(Failure::new("gave up after 10 calls")));
+        assert_eq!(contain(endless), Err(Failure::beyond_limits("gave up after 10 calls")));
     }
 
     #[test]
@@ -270,7 +284,8 @@ mod tests {
         let empty: Vec<f64> = Vec::new();
         let panicked = contain(|| Ok(empty[0]));
         assert!(
-            panicked.is_err_and(|failure| failure.0.starts_with("panicked: index out of bounds"))
+            panicked
+                .is_err_and(|failure| failure.reason.starts_with("panicked: index out of bounds"))
         );
     }
 }

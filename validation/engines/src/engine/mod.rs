@@ -13,6 +13,7 @@ mod differential_equations;
 mod diffsol;
 mod equations;
 mod exact;
+mod exact_system;
 mod field;
 mod in_lanes;
 mod joining;
@@ -145,6 +146,8 @@ pub struct Outcome<M = Phase, S = [f64; 4]> {
     pub end: S,
     /// How it ended.
     pub ended: Ended,
+    /// When it ended, since the start.
+    pub ended_at: f64,
     /// What it cost.
     pub work: Work,
     /// What was recorded of it, where the task asks for that and the engine can.
@@ -158,6 +161,7 @@ impl<M, S: Default> Default for Outcome<M, S> {
             samples: Vec::new(),
             end: S::default(),
             ended: Ended::default(),
+            ended_at: 0.0,
             work: Work::default(),
             trace: None,
         }
@@ -179,6 +183,16 @@ pub trait Engine: Sync {
 
     /// Right-hand sides that a run takes at the least, as far as that is known beforehand.
     fn least_work(&self, _task: &Task, _accuracy: Accuracy) -> f64 {
+        0.0
+    }
+
+    /// Whether it runs other systems than the oscillator.
+    fn runs_systems(&self) -> bool {
+        true
+    }
+
+    /// [`Engine::least_work`] of a run of any other system.
+    fn least_work_on(&self, _task: &SystemTask, _accuracy: Accuracy) -> f64 {
         0.0
     }
 

@@ -2,7 +2,7 @@
 
 use super::joining::{Course, Times};
 use super::{Event, Failure, Numbers, Outcome, Watched};
-use crate::system::{Affine, CheckedSystem, Values};
+use crate::system::{Affine, CheckedSystem, SystemProblem, Values};
 use std::sync::Arc;
 
 /// An event of a system; its mode is the place of the mode in the system.
@@ -26,6 +26,8 @@ pub struct SystemTask {
     pub samples: Vec<f64>,
     /// What is recorded beside the result; such a run ends when that is done.
     pub watched: Option<Watched>,
+    /// The system with exact coefficients, which the exact solver wants to have.
+    pub exact: Option<Arc<SystemProblem>>,
 }
 
 impl SystemTask {
@@ -52,7 +54,18 @@ impl SystemTask {
         if !(span.is_finite() && span > 0.0 && samples.is_sorted()) {
             return Err(Failure::new("a run takes a positive time, with samples in order"));
         }
-        Ok(Self { system, mode, state: Values::of(state), span, samples, watched: None })
+        let state = Values::of(state);
+        Ok(Self { system, mode, state, span, samples, watched: None, exact: None })
+    }
+
+    /// The run of a problem over a time.
+    ///
+    /// # Errors
+    /// As [`SystemTask::new`].
+    pub fn of(problem: &Arc<SystemProblem>, span: f64, samples: Vec<f64>) -> Result<Self, Failure> {
+        let system = Arc::clone(&problem.checked);
+        let task = Self::new(system, problem.start.mode, &problem.state(), span, samples)?;
+        Ok(Self { exact: Some(Arc::clone(problem)), ..task })
     }
 }
 

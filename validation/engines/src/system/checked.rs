@@ -1,7 +1,7 @@
 //! A system that is whole: every row of the right length, every successor there, and what an
 //! integrator wants to know beforehand computed once.
 
-use super::chain::{Chain, Motion, Wide};
+use super::chain::{Chain, Motion, Wide, value};
 use super::spectrum::spectrum;
 use super::{Direction, MOST_GUARDS, MOST_STATES, Mode, Row, System, Until};
 use crate::engine::Failure;
@@ -116,8 +116,35 @@ impl CheckedSystem {
     }
 
     /// The forcing period, or what stands for it where the system is not forced.
-    pub(crate) fn period(&self) -> f64 {
+    #[must_use]
+    pub fn period(&self) -> f64 {
         TAU * self.system.time_scale
+    }
+
+    /// What decides which mode follows an event: for each condition that is looked at the first
+    /// derivative that the event's guard does not make zero, as a row and its value in the state
+    /// after the event.
+    #[must_use]
+    pub fn decisions(
+        &self,
+        (mode, until): (usize, usize),
+        elapsed: f64,
+        after: &[f64],
+    ) -> Vec<(Row, f64)> {
+        let (sin, cos) = (self.system.omega * elapsed + self.system.phi).sin_cos();
+        let passage = self.modes.get(mode).and_then(|mode| mode.until.get(until));
+        let mut found = Vec::new();
+        for successor in passage.map_or(&[][..], |passage| &passage.next) {
+            let Some(when) = &successor.when else { break };
+            let order = (0..when.rows.len()).find(|k| successor.when_zeros & 1 << k == 0);
+            let Some(row) = order.map(|k| &when.rows[k]) else { continue };
+            let (value, _) = value(row, after, [cos, sin]);
+            found.push((row[..after.len() + 3].to_vec(), value));
+            if value > 0.0 {
+                break;
+            }
+        }
+        found
     }
 
     /// The shortest turn of a free oscillation.

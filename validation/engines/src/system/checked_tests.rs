@@ -69,7 +69,7 @@ fn what_is_not_whole_is_refused() {
     let refused = |change: fn(&mut System)| {
         let mut system = table();
         change(&mut system);
-        CheckedSystem::new(system).err().map(|it| it.0).unwrap_or_default()
+        CheckedSystem::new(system).err().map(|it| it.reason).unwrap_or_default()
     };
     assert!(refused(|it| it.modes.clear()).contains("needs a mode"));
     assert!(refused(|it| it.time_scale = f64::NAN).contains("time scale"));

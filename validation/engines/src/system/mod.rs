@@ -8,12 +8,15 @@
 mod affine;
 mod chain;
 mod checked;
+mod given;
 mod numbers;
+mod problem;
 mod spectrum;
 
 pub use affine::Affine;
 pub use checked::CheckedSystem;
 pub use numbers::{MOST_GUARDS, MOST_STATES, Values};
+pub use problem::SystemProblem;
 
 /// Coefficients of x, cos theta, sin theta and 1.
 pub type Row = Vec<f64>;

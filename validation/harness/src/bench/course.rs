@@ -4,7 +4,7 @@
 use crate::case::{Case, FileError, Given};
 use crate::engine::{Event, Failure, Outcome, SampleGrid, Task};
 use crate::number::brief;
-use crate::score::{Matching, SCORED_ERROR, WINDOW, worst};
+use crate::score::{Matching, SCORED_ERROR, WINDOW, occurrences, worst};
 use crate::truth::{Library, Truth, TruthRow};
 use percuss::{Parameters, Start};
 
@@ -97,7 +97,8 @@ impl Course {
         let same = truth.len() == answer.events.len()
             && truth.iter().zip(&answer.events).all(|(row, event)| is_same(row, event, window));
         if !same {
-            let matched = Matching::of(truth, &answer.events, window).pairs.len();
+            let matched =
+                Matching::of(&occurrences(truth), &occurrences(&answer.events), window).pairs.len();
             let (missed, spurious) = (truth.len() - matched, answer.events.len() - matched);
             return Err(Failure::new(format!(
                 "wrong: {missed} events missed, {spurious} spurious"

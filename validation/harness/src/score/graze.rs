@@ -6,6 +6,7 @@
 //! guard is watched, continued past the event where there is one.
 
 use super::growth::RunGrowth;
+use super::occurrence::{Occurrence, number};
 use crate::engine::{Closed, Equations, GUARDS, Oscillator, Task};
 use crate::truth::{Truth, TruthRow};
 use percuss::{Parameters, Phase};
@@ -32,8 +33,15 @@ pub struct Graze {
     pub growth: f64,
     /// The truth's events that this graze makes: none where the guard stays short.
     pub events: Range<usize>,
-    /// The phase in which the guard is watched.
-    pub phase: Phase,
+    /// The mode in which the guard is looked at.
+    pub mode: usize,
+    /// The event that a crossing there would be; `None` in the oscillator, where any other phase
+    /// that begins is one.
+    pub event: Option<usize>,
+    /// Whether a crossing there ends the mode.
+    pub ends: bool,
+    /// How many events a touch makes: two where the mode is left and entered again.
+    pub makes: usize,
 }
 
 impl Graze {
@@ -41,6 +49,14 @@ impl Graze {
     #[must_use]
     pub fn is_undecidable(&self, allowed: f64) -> bool {
         self.margin.abs() <= allowed * self.growth
+    }
+
+    /// Whether an event may be the first that a crossing there makes.
+    pub(super) fn begins_with(&self, found: &Occurrence) -> bool {
+        match self.event {
+            Some(event) => found.event == event,
+            None => found.mode != Some(self.mode),
+        }
     }
 }
 
@@ -183,7 +199,10 @@ impl Scan<'_> {
             margin: segment.guards(at)[guard],
             growth: growth * n.max(1) as f64,
             events,
-            phase: segment.phase,
+            mode: number(segment.phase),
+            event: None,
+            ends: true,
+            makes: 2,
         }
     }
 

@@ -52,8 +52,16 @@ fn the_double_zero_after_a_separation_is_no_graze() {
 
 #[test]
 fn only_what_is_allowed_anyway_is_undecidable() {
-    let graze =
-        Graze { elapsed: 1.0, margin: -1e-6, growth: 2.0, events: 3..3, phase: Phase::Contact };
+    let graze = Graze {
+        elapsed: 1.0,
+        margin: -1e-6,
+        growth: 2.0,
+        events: 3..3,
+        mode: 1,
+        event: None,
+        ends: true,
+        makes: 2,
+    };
     assert!(graze.is_undecidable(5e-7));
     assert!(!graze.is_undecidable(4.9e-7));
     assert!(!graze.is_undecidable(f64::NAN));

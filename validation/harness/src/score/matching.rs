@@ -1,10 +1,8 @@
 //! Which events of the engine are which of the truth's.
 
-use crate::engine::Event;
-use crate::truth::TruthRow;
+use super::occurrence::Occurrence;
 
-/// Two events are the same if the same phase begins and they are at most this apart, in forcing
-/// periods.
+/// Two events are the same if they are alike and at most this apart, in forcing periods.
 pub const WINDOW: f64 = 0.05;
 
 /// A pairing of events in order.
@@ -17,14 +15,14 @@ pub struct Matching {
 impl Matching {
     /// The pairing in order with the most pairs, and among those the least sum of time differences.
     #[must_use]
-    pub fn of(truth: &[TruthRow], engine: &[Event], window: f64) -> Self {
+    pub fn of(truth: &[Occurrence], engine: &[Occurrence], window: f64) -> Self {
         let width = engine.len() + 1;
         let better = |a: (usize, f64), b: (usize, f64)| a.0 > b.0 || (a.0 == b.0 && a.1 < b.1);
         // best[i * width + j]: pairs and their cost among the first i and j events.
         let mut best = vec![(0_usize, 0.0_f64); (truth.len() + 1) * width];
         let paired = |i: usize, j: usize, best: &[(usize, f64)]| {
-            let apart = (truth[i - 1].elapsed.value() - engine[j - 1].elapsed).abs();
-            let same = truth[i - 1].phase == Some(engine[j - 1].mode) && apart <= window;
+            let apart = (truth[i - 1].elapsed - engine[j - 1].elapsed).abs();
+            let same = truth[i - 1].is_like(&engine[j - 1]) && apart <= window;
             let (count, cost) = best[(i - 1) * width + j - 1];
             same.then_some((count + 1, cost + apart))
         };
@@ -61,25 +59,15 @@ impl Matching {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::score::occurrence::number;
     use percuss::Phase;
     use percuss::Phase::{Contact, NoContact, Progression};
-    use percuss::TwoWord;
 
-    fn rows(events: &[(f64, Phase)]) -> Vec<TruthRow> {
-        let row = |(t, phase): &(f64, Phase)| TruthRow {
-            phase: Some(*phase),
-            elapsed: TwoWord::new(*t),
-            state: [TwoWord::ZERO; 4],
-        };
-        events.iter().map(row).collect()
-    }
-
-    fn events(events: &[(f64, Phase)]) -> Vec<Event> {
-        let event = |(elapsed, phase): &(f64, Phase)| Event {
-            event: 0,
-            mode: *phase,
+    fn events(events: &[(f64, Phase)]) -> Vec<Occurrence> {
+        let event = |(elapsed, phase): &(f64, Phase)| Occurrence {
             elapsed: *elapsed,
-            state: [0.0; 4],
+            event: 0,
+            mode: Some(number(*phase)),
         };
         events.iter().map(event).collect()
     }
@@ -90,20 +78,28 @@ mod tests {
     #[test]
     fn a_missed_and_a_spurious_switch_are_told_apart() {
         let found = [(1.01, Contact), (3.0, Contact), (3.1, NoContact), (3.2, Progression)];
-        let matching = Matching::of(&rows(&TRUTH), &events(&found), 0.05);
+        let matching = Matching::of(&events(&TRUTH), &events(&found), 0.05);
         assert_eq!(matching.pairs, [(0, 0), (2, 1), (3, 3)]);
     }
 
     #[test]
     fn the_nearer_of_two_candidates_is_taken() {
         let found = [(0.96, Contact), (1.001, Contact)];
-        let matching = Matching::of(&rows(&TRUTH), &events(&found), 0.05);
+        let matching = Matching::of(&events(&TRUTH), &events(&found), 0.05);
         assert_eq!(matching.pairs, [(0, 1)]);
     }
 
     #[test]
+    fn events_of_other_names_are_not_the_same() {
+        let named = |event, mode| Occurrence { elapsed: 1.0, event, mode };
+        assert!(Matching::of(&[named(1, Some(2))], &[named(0, Some(2))], 0.05).pairs.is_empty());
+        // Between events of one instant the mode is a matter of their order.
+        assert_eq!(Matching::of(&[named(1, None)], &[named(1, Some(2))], 0.05).pairs, [(0, 0)]);
+    }
+
+    #[test]
     fn a_nan_matches_nothing() {
-        let matching = Matching::of(&rows(&TRUTH), &events(&[(f64::NAN, Contact)]), 0.05);
+        let matching = Matching::of(&events(&TRUTH), &events(&[(f64::NAN, Contact)]), 0.05);
         assert!(matching.pairs.is_empty());
     }
 }

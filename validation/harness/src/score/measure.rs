@@ -4,6 +4,7 @@ use super::SCORED_ERROR;
 use super::growth::RunGrowth;
 use super::matching::{Matching, WINDOW};
 use super::mismatch::{Excused, Mismatch};
+use super::occurrence::{Occurrence, occurrences};
 use super::probed::ProbeResults;
 use super::statistics::{Spread, worst};
 use crate::case::{Quantity, Statistic};
@@ -21,10 +22,16 @@ pub struct Measures {
     pub whole: bool,
     /// The truth's events on the case's whole horizon.
     pub total: usize,
+    /// The truth's samples on the case's whole horizon, the start left out.
+    pub samples: usize,
+    /// Samples before the scored horizon, the start left out.
+    pub sampled: usize,
     /// The truth's events before the scored horizon.
     pub expected: usize,
     /// Events that are matched, of the `expected` ones.
     pub matched: usize,
+    /// The engine's events, as matching sees them.
+    pub found: Vec<Occurrence>,
     /// Which events the engine and the truth do not share.
     pub mismatch: Mismatch,
     /// Whether the phases follow each other as in the truth.
@@ -78,6 +85,7 @@ impl Measures {
             Quantity::RestartsFailed => {
                 self.probed.restart.as_ref().map_or(f64::NAN, |it| it.failed as f64)
             }
+            Quantity::RunsFailed => 0.0,
             Quantity::AttractorDistance => self.probed.share(),
         }
     }
@@ -88,6 +96,7 @@ impl Measures {
     pub fn concerns(&self, quantity: Quantity) -> bool {
         match quantity {
             Quantity::EventTimeError | Quantity::EventConstant => self.total > 0,
+            Quantity::StateError | Quantity::StateConstant => self.samples > 0,
             Quantity::ValidGain => self.probed.horizons.is_some(),
             Quantity::RestartError => self.probed.restarted(),
             Quantity::RestartsFailed => self.probed.restart.is_some(),
@@ -102,7 +111,7 @@ impl Measures {
     pub fn lacks(&self, quantity: Quantity) -> bool {
         match quantity {
             Quantity::EventTimeError | Quantity::EventConstant => self.matched == 0,
-            Quantity::StateError | Quantity::StateConstant => self.horizon_periods == 0.0,
+            Quantity::StateError | Quantity::StateConstant => self.sampled == 0,
             Quantity::DriftError => !self.whole,
             _ => false,
         }
@@ -134,7 +143,8 @@ pub fn measure(
     // A switch just past the horizon may be the partner of one just before it.
     let rows = prefix(&truth.events, |row| row.elapsed.value() <= horizon + window);
     let found = prefix(&outcome.events, |event| event.elapsed <= horizon + window);
-    let matching = Matching::of(rows, found, window);
+    let (truths, own) = (occurrences(rows), occurrences(&outcome.events));
+    let matching = Matching::of(&truths, &own[..found.len()], window);
     let expected = prefix(rows, |row| row.elapsed.value() <= horizon).len();
     let counted = prefix(found, |event| event.elapsed <= horizon).len();
     let pairs: Vec<_> = matching.pairs.iter().copied().filter(|(i, _)| *i < expected).collect();
@@ -144,9 +154,11 @@ pub fn measure(
         horizon_periods: horizon / period,
         whole,
         total: truth.events.len(),
+        samples: truth.samples.len().saturating_sub(1),
+        sampled: scored.saturating_sub(1),
         expected,
         matched: pairs.len(),
-        phase_sequence_ok: mismatch.same_phases(rows, found, &Excused::default()),
+        phase_sequence_ok: mismatch.same_phases(&truths, &own, &Excused::default()),
         event_time: Spread::of(
             pairs.iter().map(|(i, j)| time_error(&rows[*i], &found[*j])).collect(),
         ),
@@ -161,6 +173,7 @@ pub fn measure(
             .collect(),
         event_constant: event_constant(rows, found, &pairs, growth, unit),
         state_constant: state_constant(truth, outcome, growth, scored, unit),
+        found: own,
         mismatch,
         probed: ProbeResults::default(),
     }

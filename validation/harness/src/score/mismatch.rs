@@ -2,8 +2,7 @@
 
 use super::graze::Graze;
 use super::matching::Matching;
-use crate::engine::Event;
-use crate::truth::TruthRow;
+use super::occurrence::Occurrence;
 
 /// Missed and spurious events up to the scored horizon.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -64,84 +63,102 @@ impl Mismatch {
 
     /// Whether the phases follow each other alike once what is excused is left out.
     #[must_use]
-    pub fn same_phases(&self, rows: &[TruthRow], found: &[Event], excused: &Excused) -> bool {
+    pub fn same_phases(
+        &self,
+        rows: &[Occurrence],
+        found: &[Occurrence],
+        excused: &Excused,
+    ) -> bool {
         let truth = (0..self.expected).filter(|i| !excused.missed.contains(i));
         let own = self.counted.iter().filter(|j| !excused.spurious.contains(j));
-        truth.map(|i| rows[i].phase).eq(own.map(|j| Some(found[*j].mode)))
+        truth.clone().count() == own.clone().count()
+            && truth.zip(own).all(|(i, j)| rows[i].is_like(&found[*j]))
     }
 
     /// What the grazes excuse that an engine which may err by `allowed` units need not decide: all
-    /// events of a touch together, or a pair of spurious ones within `window` of a near miss that
-    /// leaves the phase and comes back to it. The scored horizon may lie between the two.
+    /// events of a touch together, or the spurious ones within `window` of a near miss that a
+    /// crossing there would make. The scored horizon may lie between them.
     #[must_use]
-    pub fn excused(&self, grazes: &[Graze], found: &[Event], window: f64, allowed: f64) -> Excused {
+    pub fn excused(
+        &self,
+        grazes: &[Graze],
+        found: &[Occurrence],
+        window: f64,
+        allowed: f64,
+    ) -> Excused {
         let mut excused = Excused::default();
         for graze in grazes.iter().filter(|it| it.is_undecidable(allowed)) {
             let missed: Vec<_> = graze.events.clone().filter(|i| self.missed.contains(i)).collect();
             let whole = graze.events.clone().all(|i| self.lost.contains(&i));
-            let touch = graze.events.len() == 2 && whole && !missed.is_empty();
-            let pair = if graze.events.is_empty() {
-                self.spurious_pair(graze, found, window, &excused)
+            let touch = graze.events.len() == graze.makes && whole && !missed.is_empty();
+            let crossing = if graze.events.is_empty() {
+                self.spurious_crossing(graze, found, window, &excused)
             } else {
                 None
             };
-            if touch || pair.is_some() {
+            if touch || crossing.is_some() {
                 excused.grazes.push((graze.elapsed, graze.margin));
             }
             excused.missed.extend(missed.into_iter().filter(|_| touch));
             let scored = |j: &usize| self.spurious.contains(j);
-            excused.spurious.extend(pair.into_iter().flatten().filter(scored));
+            excused.spurious.extend(crossing.into_iter().flatten().filter(scored));
         }
         excused
     }
 
-    /// Two spurious events in a row near a near miss: out of its phase and back into it. The second
-    /// may lie beyond the scored horizon.
-    fn spurious_pair(
+    /// The spurious events in a row that a crossing at a near miss would make: out of the mode and
+    /// back into it, or one that comes back by itself. The last may lie beyond the scored horizon.
+    fn spurious_crossing(
         &self,
         graze: &Graze,
-        found: &[Event],
+        found: &[Occurrence],
         window: f64,
         excused: &Excused,
-    ) -> Option<[usize; 2]> {
+    ) -> Option<Vec<usize>> {
         let near = |j: usize| (found[j].elapsed - graze.elapsed).abs() <= window;
         let free = |j: usize| near(j) && !excused.spurious.contains(&j);
-        let pair = self.extra.windows(2).find(|pair| {
-            self.spurious.contains(&pair[0])
-                && pair[1] == pair[0] + 1
-                && pair.iter().all(|j| free(*j))
-                && found[pair[0]].mode != graze.phase
-                && found[pair[1]].mode == graze.phase
+        let crossing = self.extra.windows(graze.makes).find(|own| {
+            let (first, last) = (own[0], own[graze.makes - 1]);
+            self.spurious.contains(&first)
+                && last + 1 == first + graze.makes
+                && own.iter().all(|j| free(*j))
+                && graze.begins_with(&found[first])
+                && found[last].mode == Some(graze.mode)
         })?;
-        Some([pair[0], pair[1]])
+        Some(crossing.to_vec())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::score::occurrence::number;
     use percuss::Phase::{self, Contact, NoContact};
-    use percuss::TwoWord;
 
     const WINDOW: f64 = 0.1;
 
-    fn row((elapsed, phase): (f64, Phase)) -> TruthRow {
-        TruthRow { phase: Some(phase), elapsed: TwoWord::new(elapsed), state: [TwoWord::ZERO; 4] }
-    }
-
-    fn event((elapsed, phase): (f64, Phase)) -> Event {
-        Event { event: 0, mode: phase, elapsed, state: [0.0; 4] }
+    fn event((elapsed, phase): (f64, Phase)) -> Occurrence {
+        Occurrence { elapsed, event: 0, mode: Some(number(phase)) }
     }
 
     fn graze(elapsed: f64, margin: f64, events: std::ops::Range<usize>) -> Graze {
-        Graze { elapsed, margin, growth: 1.0, events, phase: NoContact }
+        Graze {
+            elapsed,
+            margin,
+            growth: 1.0,
+            events,
+            mode: number(NoContact),
+            event: None,
+            ends: true,
+            makes: 2,
+        }
     }
 
     fn mismatch(
         truth: &[(f64, Phase)],
         own: &[(f64, Phase)],
-    ) -> (Mismatch, Vec<TruthRow>, Vec<Event>) {
-        let rows: Vec<_> = truth.iter().copied().map(row).collect();
+    ) -> (Mismatch, Vec<Occurrence>, Vec<Occurrence>) {
+        let rows: Vec<_> = truth.iter().copied().map(event).collect();
         let found: Vec<_> = own.iter().copied().map(event).collect();
         let matching = Matching::of(&rows, &found, WINDOW);
         let (all, own) = (rows.len(), found.len());
@@ -189,7 +206,7 @@ mod tests {
         let excused = spurious.excused(&near_miss, &found, WINDOW, 1e-6);
         assert_eq!(excused.spurious, [0]);
         assert!(spurious.same_phases(&[], &found, &excused));
-        let rows: Vec<_> = pair.into_iter().map(row).collect();
+        let rows: Vec<_> = pair.into_iter().map(event).collect();
         let missed = Mismatch::of(&Matching::of(&rows, &[], WINDOW), (2, 1), (0, 0));
         let excused = missed.excused(&[graze(1.005, 1e-6, 0..2)], &[], WINDOW, 1e-6);
         assert_eq!((excused.missed.as_slice(), excused.grazes.len()), (&[0][..], 1));

@@ -3,10 +3,9 @@
 
 use super::graze::Graze;
 use super::measure::Measures;
+use super::occurrence::Occurrence;
 use crate::case::{Quantity, Statistic};
-use crate::engine::Outcome;
 use crate::number::brief;
-use crate::truth::Truth;
 use serde::Serialize;
 
 /// A run that has a result, with what tells whether its events are decidable.
@@ -14,10 +13,8 @@ use serde::Serialize;
 pub struct ScoredRun<'a> {
     /// What was measured.
     pub measures: &'a Measures,
-    /// The engine's answer.
-    pub outcome: &'a Outcome,
-    /// The truth it was measured against.
-    pub truth: &'a Truth,
+    /// The truth's events.
+    pub truth: &'a [Occurrence],
     /// The truth's grazes.
     pub grazes: &'a [Graze],
     /// Events further apart than this, in units of time, are not the same.

@@ -29,6 +29,33 @@ impl RowJudgement {
     pub const fn without_result(verdict: Verdict, why: String) -> Self {
         Self { bounds: Vec::new(), verdict, why }
     }
+
+    /// The verdict on a run that has no result, which may be expected of the engine.
+    #[must_use]
+    pub fn failed(subject: &Subject<'_>, reason: &str, shortcomings: &[&Shortcoming]) -> Self {
+        let said = |it: &&&Shortcoming| {
+            it.quantity == Quantity::RunsFailed
+                && it.is_for(subject.case, subject.engine, subject.accuracy)
+        };
+        let expected = shortcomings.iter().find(said);
+        let (verdict, bound) = match expected {
+            Some(_) => (Verdict::Known, Verdict::Known),
+            None => (Verdict::Error, Verdict::Fail),
+        };
+        let why = match expected {
+            Some(known) => format!("{reason}: {}", known.why),
+            None => reason.to_owned(),
+        };
+        let bound = Checked {
+            quantity: Quantity::RunsFailed,
+            statistic: Statistic::Value,
+            limit: 0.0,
+            value: 1.0,
+            verdict: bound,
+            why: "a run has a result".to_owned(),
+        };
+        Self { bounds: vec![bound], verdict, why }
+    }
 }
 
 /// What is judged.
@@ -140,8 +167,8 @@ fn excused(subject: &Subject<'_>, run: &ScoredRun<'_>, of_classes: &[Bound]) -> 
     });
     let Some(constant) = constant else { return Excused::default() };
     let allowed = constant.limit * subject.unit;
-    let ScoredRun { measures, outcome, grazes, window, .. } = *run;
-    measures.mismatch.excused(grazes, &outcome.events, window, allowed)
+    let ScoredRun { measures, grazes, window, .. } = *run;
+    measures.mismatch.excused(grazes, &measures.found, window, allowed)
 }
 
 fn check(
@@ -190,9 +217,8 @@ impl ScoredRun<'_> {
             Quantity::EventsMissed => all - excused.missed.len() as f64,
             Quantity::EventsSpurious => all - excused.spurious.len() as f64,
             Quantity::PhaseSequence => {
-                let Self { measures, outcome, truth, .. } = self;
-                let mismatch = &measures.mismatch;
-                let same = mismatch.same_phases(&truth.events, &outcome.events, excused);
+                let Self { measures, truth, .. } = self;
+                let same = measures.mismatch.same_phases(truth, &measures.found, excused);
                 f64::from(u8::from(!same))
             }
             _ => all,

@@ -2,13 +2,15 @@
 
 use super::probes::{Extent, Probes};
 use super::scope::Suite;
-use crate::case::{Case, Defaults, FileError};
-use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Role, SampleGrid, Task, answer};
+use crate::case::{Bound, Case, Defaults, FileError, Shortcoming};
+use crate::engine::{
+    Accuracy, Engine, Failure, Limits, Outcome, Role, SampleGrid, SystemOutcome, Task, Work, answer,
+};
 use crate::number::brief;
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
 use crate::score::{
-    Expected, Graze, Measures, RowJudgement, RunGrowth, ScoredRun, Subject, Verdict, WINDOW,
-    grazes, judge, measure,
+    Expected, Graze, Measures, Occurrence, RowJudgement, RunGrowth, ScoredRun, Subject, Verdict,
+    WINDOW, grazes, judge, measure, occurrences,
 };
 use crate::truth::{Library, Truth};
 use rayon::prelude::*;
@@ -24,15 +26,95 @@ pub struct Prepared {
     pub growth: RunGrowth,
     /// The places at which the case's guards come close to a threshold.
     pub grazes: Vec<Graze>,
+    occurrences: Vec<Occurrence>,
     task: Task,
     probes: Probes,
+}
+
+/// A case that engines are run on.
+pub trait CaseRun: Sync {
+    /// The case's name.
+    fn name(&self) -> &str;
+
+    /// The truth's events on the case's horizon.
+    fn events(&self) -> usize;
+
+    /// Whether an engine can be run on it at all; rows of those that cannot are not made.
+    fn takes(&self, _engine: &dyn Engine) -> bool {
+        true
+    }
+
+    /// The case's own bounds and expected failures.
+    fn expectations(&self) -> (&[Bound], &[Shortcoming]);
+
+    /// Right-hand sides that a run takes at the least, as far as that is known beforehand.
+    fn least_work(&self, engine: &dyn Engine, accuracy: Accuracy) -> f64;
+
+    /// What a run may cost before it is given up.
+    fn limits(&self, suite: Suite) -> Limits {
+        suite.limits()
+    }
+
+    /// Runs an engine and measures what it answers, in units of its error.
+    ///
+    /// # Errors
+    /// The engine's failure in the run itself.
+    fn attempt(
+        &self,
+        engine: &dyn Engine,
+        asked: (Accuracy, f64),
+        limits: &Limits,
+        suite: Suite,
+    ) -> Result<Measured, Failure>;
+
+    /// A measured run as it is judged.
+    fn as_run<'a>(&'a self, measures: &'a Measures) -> ScoredRun<'a>;
+}
+
+/// A run that was measured.
+pub struct Measured {
+    /// What was measured.
+    pub measures: Measures,
+    /// What the engine answered.
+    pub answered: Answered,
+    /// Wall time.
+    pub wall: Duration,
+}
+
+/// What an engine answered.
+#[derive(Clone, Debug)]
+pub enum Answered {
+    /// A run of the oscillator.
+    Oscillator(Outcome),
+    /// A run of another system.
+    System(SystemOutcome),
+}
+
+impl Answered {
+    /// What the run cost.
+    #[must_use]
+    pub const fn work(&self) -> Work {
+        match self {
+            Self::Oscillator(outcome) => outcome.work,
+            Self::System(outcome) => outcome.work,
+        }
+    }
+
+    /// The run of the oscillator, if it is one.
+    #[must_use]
+    pub const fn oscillator(&self) -> Option<&Outcome> {
+        match self {
+            Self::Oscillator(outcome) => Some(outcome),
+            Self::System(_) => None,
+        }
+    }
 }
 
 /// How a run ended.
 #[derive(Clone, Debug)]
 pub enum Status {
     /// The run has a result.
-    Ok(Box<Measures>, Outcome),
+    Ok(Box<Measures>, Answered),
     /// The run has no result; the reason.
     Failed(Failure),
     /// The engine is not installed.
@@ -92,7 +174,8 @@ fn prepare_one(
     let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
     let grazes = grazes(&task, &truth, &growth);
     let probes = Probes::new(&case, &problem, suite, limits)?;
-    Ok(Prepared { case, truth, growth, grazes, task, probes })
+    let occurrences = occurrences(&truth.events);
+    Ok(Prepared { case, truth, growth, grazes, occurrences, task, probes })
 }
 
 impl Prepared {
@@ -119,13 +202,6 @@ impl Prepared {
         Ok((measures, outcome, wall))
     }
 
-    /// A measured run as it is judged.
-    #[must_use]
-    pub fn as_run<'a>(&'a self, measures: &'a Measures, outcome: &'a Outcome) -> ScoredRun<'a> {
-        let window = WINDOW * self.task.problem.model.period();
-        ScoredRun { measures, outcome, truth: &self.truth, grazes: &self.grazes, window }
-    }
-
     /// The same-attractor test, where the case has one.
     #[must_use]
     pub fn attractor(&self) -> Option<&AttractorTest> {
@@ -133,58 +209,105 @@ impl Prepared {
     }
 }
 
+impl CaseRun for Prepared {
+    fn name(&self) -> &str {
+        &self.case.name
+    }
+
+    fn events(&self) -> usize {
+        self.truth.events.len()
+    }
+
+    fn expectations(&self) -> (&[Bound], &[Shortcoming]) {
+        (&self.case.bounds, &self.case.shortcomings)
+    }
+
+    fn least_work(&self, engine: &dyn Engine, accuracy: Accuracy) -> f64 {
+        engine.least_work(&self.task, accuracy)
+    }
+
+    fn attempt(
+        &self,
+        engine: &dyn Engine,
+        asked: (Accuracy, f64),
+        limits: &Limits,
+        suite: Suite,
+    ) -> Result<Measured, Failure> {
+        let role = engine.declaration().role;
+        let extent = |work| self.probes.extent(suite, &self.case, role, asked, work);
+        let (measures, outcome, wall) = self.measured(engine, asked.0, asked.1, limits, extent)?;
+        Ok(Measured { measures, answered: Answered::Oscillator(outcome), wall })
+    }
+
+    fn as_run<'a>(&'a self, measures: &'a Measures) -> ScoredRun<'a> {
+        let window = WINDOW * self.task.problem.model.period();
+        ScoredRun { measures, truth: &self.occurrences, grazes: &self.grazes, window }
+    }
+}
+
 /// Runs everything; rows come case by case in the order of `cases` and `engines`.
 pub fn run(
-    cases: &[Prepared],
+    cases: &[&dyn CaseRun],
     engines: &[&'static dyn Engine],
     suite: Suite,
     defaults: &Defaults,
     done: &(impl Fn() + Sync),
 ) -> Vec<Scored> {
-    let jobs: Vec<_> =
-        cases.iter().flat_map(|case| engines.iter().map(move |engine| (case, *engine))).collect();
-    let jobs: Vec<_> = jobs
-        .into_iter()
-        .flat_map(|(case, engine)| {
-            accuracies(engine, suite).into_iter().map(move |it| (case, engine, it))
-        })
-        .collect();
-    let row = |(case, engine, accuracy): (&Prepared, &'static dyn Engine, Accuracy)| {
+    let row = |(case, engine, accuracy): Job<'_>| {
         let row = one(case, engine, accuracy, suite, defaults);
         done();
         row
     };
     // Heavy rows lie side by side: handed out one by one they do not pile up on one thread.
-    jobs.into_par_iter().with_max_len(1).map(row).collect()
+    jobs(cases, engines, suite).into_par_iter().with_max_len(1).map(row).collect()
 }
 
 /// How many rows [`run`] makes.
 #[must_use]
-pub fn size(cases: usize, engines: &[&'static dyn Engine], suite: Suite) -> usize {
-    cases * engines.iter().map(|engine| accuracies(*engine, suite).len()).sum::<usize>()
+pub fn size(cases: &[&dyn CaseRun], engines: &[&'static dyn Engine], suite: Suite) -> usize {
+    jobs(cases, engines, suite).len()
 }
 
-fn accuracies(engine: &dyn Engine, suite: Suite) -> Vec<Accuracy> {
+/// A row to be made.
+type Job<'a> = (&'a dyn CaseRun, &'static dyn Engine, Accuracy);
+
+/// The rows to be made, in their order.
+fn jobs<'a>(
+    cases: &[&'a dyn CaseRun],
+    engines: &[&'static dyn Engine],
+    suite: Suite,
+) -> Vec<Job<'a>> {
+    let mut jobs = Vec::new();
+    for case in cases {
+        for engine in engines.iter().filter(|engine| case.takes(**engine)) {
+            jobs.extend(accuracies(*engine, suite).into_iter().map(|it| (*case, *engine, it)));
+        }
+    }
+    jobs
+}
+
+/// What a suite asks an engine for.
+#[must_use]
+pub fn accuracies(engine: &dyn Engine, suite: Suite) -> Vec<Accuracy> {
     suite.accuracies(engine.declaration().stepping)
 }
 
 fn one(
-    prepared: &Prepared,
+    case: &dyn CaseRun,
     engine: &'static dyn Engine,
     accuracy: Accuracy,
     suite: Suite,
     defaults: &Defaults,
 ) -> Scored {
-    let Prepared { case, task, .. } = prepared;
     let declaration = engine.declaration();
     let unit = declaration.stepping.unit(accuracy);
     let row = |status, wall, judgement| Scored {
-        case: case.name.clone(),
+        case: case.name().to_owned(),
         engine: declaration.name,
         role: declaration.role,
         accuracy,
         unit,
-        events: prepared.truth.events.len(),
+        events: case.events(),
         status,
         wall,
         judgement,
@@ -195,27 +318,29 @@ fn one(
     if let Err(reason) = engine.available() {
         return without(Status::Unavailable, Verdict::Unavailable, reason);
     }
-    let (least, budget) = (engine.least_work(task, accuracy), suite.budget());
+    let (least, budget) = (case.least_work(engine, accuracy), suite.budget());
     if least > budget {
         let reason =
             format!("at least {} right-hand sides, the budget is {}", brief(least), brief(budget));
         return without(Status::NotRun, Verdict::NotRun, reason);
     }
-    let subject = Subject { case: &case.name, engine: declaration.name, accuracy, unit };
-    let bounds: Vec<_> = case.bounds.iter().chain(&defaults.bounds).collect();
-    let shortcomings: Vec<_> = case.shortcomings.iter().chain(&defaults.shortcomings).collect();
+    let subject = Subject { case: case.name(), engine: declaration.name, accuracy, unit };
+    let (own_bounds, own_shortcomings) = case.expectations();
+    let bounds: Vec<_> = own_bounds.iter().chain(&defaults.bounds).collect();
+    let shortcomings: Vec<_> = own_shortcomings.iter().chain(&defaults.shortcomings).collect();
     let expected =
         Expected { bounds: &bounds, of_classes: &defaults.bounds, shortcomings: &shortcomings };
-    let asked = (accuracy, unit);
-    let extent = |work| prepared.probes.extent(suite, case, declaration.role, asked, work);
-    match prepared.measured(engine, accuracy, unit, &suite.limits(), extent) {
-        Ok((measures, outcome, wall)) => {
-            let judgement = judge(&subject, &prepared.as_run(&measures, &outcome), &expected);
-            row(Status::Ok(Box::new(measures), outcome), wall, judgement)
+    match case.attempt(engine, (accuracy, unit), &case.limits(suite), suite) {
+        Ok(Measured { measures, answered, wall }) => {
+            let judgement = judge(&subject, &case.as_run(&measures), &expected);
+            row(Status::Ok(Box::new(measures), answered), wall, judgement)
+        }
+        Err(failure) if failure.is_beyond_limits => {
+            without(Status::NotRun, Verdict::NotRun, failure.reason)
         }
         Err(failure) => {
-            let reason = failure.0.clone();
-            without(Status::Failed(failure), Verdict::Error, reason)
+            let judgement = RowJudgement::failed(&subject, &failure.reason, &shortcomings);
+            row(Status::Failed(failure), Duration::ZERO, judgement)
         }
     }
 }

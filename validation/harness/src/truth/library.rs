@@ -1,7 +1,7 @@
 //! The reference data inside the binary or in a folder, with their hashes checked.
 
-use super::Truth;
-use crate::case::{Case, FileError};
+use super::{SystemTruth, Truth};
+use crate::case::{Case, FileError, SystemCase};
 use include_dir::{Dir, include_dir};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
@@ -66,15 +66,15 @@ impl Library {
 
     /// Whether a case's truth is a run made again, for want of tables.
     #[must_use]
-    pub fn is_replayed(&self, case: &Case) -> bool {
-        let listed = |kind| self.manifest.files.contains_key(&format!("{kind}/{}.csv", case.name));
+    pub fn is_replayed(&self, case: &str) -> bool {
+        let listed = |kind| self.manifest.files.contains_key(&format!("{kind}/{case}.csv"));
         self.replays && !["events", "samples"].into_iter().any(listed)
     }
 
     /// The file of a case's event table; `None` where its truth is a run made again.
     #[must_use]
-    pub fn table(&self, case: &Case) -> Option<String> {
-        (!self.is_replayed(case)).then(|| self.full_name(&format!("events/{}.csv", case.name)))
+    pub fn table(&self, case: &str) -> Option<String> {
+        (!self.is_replayed(case)).then(|| self.full_name(&format!("events/{case}.csv")))
     }
 
     /// What is true of a case.
@@ -83,14 +83,32 @@ impl Library {
     /// [`FileError`] names a file that is missing, altered (its hash differs), malformed, or of
     /// another case; or a case that has no table and that 106 bits do not decide.
     pub fn truth(&self, case: &Case) -> Result<Truth, FileError> {
-        if self.is_replayed(case) {
+        if self.is_replayed(&case.name) {
             return Truth::without_tables(case);
         }
-        let [events, samples] =
-            ["events", "samples"].map(|kind| format!("{kind}/{}.csv", case.name));
-        let texts = [self.text(&events)?, self.text(&samples)?];
-        let [events, samples] = [self.full_name(&events), self.full_name(&samples)];
-        Truth::read(case, (&events, &texts[0]), (&samples, &texts[1]))
+        let [events, samples] = self.tables(&case.name)?;
+        Truth::read(case, (&events.0, &events.1), (&samples.0, &samples.1))
+    }
+
+    /// What is true of a case of a system.
+    ///
+    /// # Errors
+    /// As [`Library::truth`].
+    pub fn system_truth(&self, case: &SystemCase) -> Result<SystemTruth, FileError> {
+        if self.is_replayed(&case.name) {
+            return SystemTruth::without_tables(case);
+        }
+        let [events, samples] = self.tables(&case.name)?;
+        SystemTruth::read(case, (&events.0, &events.1), (&samples.0, &samples.1))
+    }
+
+    /// The tables of a case's events and samples, each with its file's name.
+    fn tables(&self, case: &str) -> Result<[(String, Cow<'static, str>); 2], FileError> {
+        let table = |kind: &str| {
+            let name = format!("{kind}/{case}.csv");
+            Ok((self.full_name(&name), self.text(&name)?))
+        };
+        Ok([table("events")?, table("samples")?])
     }
 
     fn full_name(&self, name: &str) -> String {

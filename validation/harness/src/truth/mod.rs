@@ -9,9 +9,13 @@ mod landing;
 mod library;
 mod replay;
 mod replayed;
+mod system;
+mod system_growth;
+mod system_replay;
 mod table;
 
 pub use double_double::{DoubleDouble, LARGEST_ANGLE, UNIT};
 pub use library::Library;
 pub use replay::{Beginning, Replay, ReplayedPhase, Undecided};
+pub use system::{SystemTruth, SystemTruthRow};
 pub use table::{Truth, TruthRow};

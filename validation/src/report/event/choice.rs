@@ -57,7 +57,8 @@ impl RowChoice<'_> {
 }
 
 fn candidate<'a>(cases: &'a [Prepared], row: &'a Scored) -> Option<RowChoice<'a>> {
-    let Status::Ok(measures, outcome) = &row.status else { return None };
+    let Status::Ok(measures, answered) = &row.status else { return None };
+    let outcome = answered.oscillator()?;
     let mismatch = &measures.mismatch;
     let wrong = !(mismatch.missed.is_empty() && mismatch.spurious.is_empty());
     let affordable = outcome.work.rhs_evaluations <= MOST_WORK;

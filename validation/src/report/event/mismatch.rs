@@ -2,7 +2,7 @@
 
 use super::guarded::GuardCurve;
 use crate::engine::{Event, Outcome, Task};
-use crate::score::{Matching, Measures, RunGrowth, Verdict, WINDOW};
+use crate::score::{Matching, Measures, RunGrowth, Verdict, WINDOW, occurrences};
 use crate::suite::{Prepared, Scored, Status};
 use crate::truth::{Truth, TruthRow};
 use percuss::Phase;
@@ -42,7 +42,8 @@ impl EventMismatch {
     /// The first missed or spurious event before the scored horizon; in a row that is out of bounds
     /// without one, the event that is farthest from its place.
     pub(super) fn first(prepared: &Prepared, task: &Task, row: &Scored) -> Option<Self> {
-        let Status::Ok(measures, outcome) = &row.status else { return None };
+        let Status::Ok(measures, answered) = &row.status else { return None };
+        let outcome = answered.oscillator()?;
         let Sides { truth, engine, pairs } = Sides::of(&prepared.truth, task, measures, outcome);
         let missed = (0..truth.counted).find(|i| pairs.iter().all(|pair| pair.0 != *i));
         let missed = missed.map(|i| (truth.times[i], MismatchKind::Missed, i));
@@ -107,7 +108,7 @@ impl Sides {
         let rows: Vec<TruthRow> = rows.copied().collect();
         let found = outcome.events.iter().take_while(|event| near(event.elapsed));
         let found: Vec<Event> = found.copied().collect();
-        let pairs = Matching::of(&rows, &found, window).pairs;
+        let pairs = Matching::of(&occurrences(&rows), &occurrences(&found), window).pairs;
         let phase = |row: &TruthRow| row.phase.unwrap_or(task.phase);
         let of = |times: Vec<f64>, phases| EventsOf {
             first: task.phase,

@@ -85,7 +85,12 @@ impl<E: Equations> DiffsolRun<'_, E> {
                         sampler.take(root, state_at)?;
                         solver.state_mut_back(root).map_err(Failure::new)?;
                     } else {
-                        sampler.take(solver.state().t, state_at)?;
+                        let t = solver.state().t;
+                        sampler.take(t, state_at)?;
+                        if self.span - t <= RESOLUTION * self.span {
+                            // The step with the root ends at the stop, from where none goes on.
+                            return Ok(StretchEnd::Inside { t: self.span, state: end });
+                        }
                         // Touched, so that the root finder takes a new bracket.
                         let _ = solver.state_mut();
                     }

@@ -22,6 +22,7 @@ use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
     Task, pins,
 };
+use crate::system::Mode;
 use ::ode_solvers::OutputType;
 use nalgebra::allocator::Allocator;
 use nalgebra::{DefaultAllocator, Dim, Dyn, U4, U5};
@@ -71,6 +72,19 @@ impl Engine for Dop853 {
         let Some(tolerance) = accuracy.tolerance().filter(|_| !self.clock) else { return 0.0 };
         let rate = task.parameters.a * task.parameters.omega;
         STAGES * task.span * (FIRST_ORDER * rate / tolerance).sqrt()
+    }
+
+    /// As of the oscillator, with the largest rate at which theta changes a state's rate over its
+    /// scale; a mode in which theta changes nothing costs nothing.
+    fn least_work_on(&self, task: &SystemTask, accuracy: Accuracy) -> f64 {
+        let Some(tolerance) = accuracy.tolerance().filter(|_| !self.clock) else { return 0.0 };
+        let system = task.system.system();
+        let forcing = |mode: &Mode| {
+            let sizes = mode.b.iter().zip(&system.scales);
+            sizes.map(|([cos, sin], scale)| cos.hypot(*sin) / scale).fold(0.0, f64::max)
+        };
+        let least = system.modes.iter().map(forcing).fold(f64::INFINITY, f64::min);
+        STAGES * task.span * (FIRST_ORDER * least * system.omega.abs() / tolerance).sqrt()
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {

@@ -54,6 +54,10 @@ impl<E: Coordinates> Engine for Dopri5<E> {
         run::<E, U4>(&course, accuracy, limits)
     }
 
+    fn runs_systems(&self) -> bool {
+        E::BOUNDED
+    }
+
     fn run_system(
         &self,
         task: &SystemTask,

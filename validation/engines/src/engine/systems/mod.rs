@@ -117,7 +117,7 @@ fn check(asked: &Asked<'_>, truth: &[truth::Found], most: f64, excused: &[&str])
                 assert_eq!(outcome.samples.len(), SAMPLES as usize + 1, "{name}");
                 departure(&outcome, truth, (unit, asked.system.time_scale), most)
             }
-            Err(failure) => Some(failure.0),
+            Err(failure) => Some(failure.reason),
         };
         departures.extend(departure.map(|what| (name, what)));
     }

@@ -72,7 +72,7 @@ fn best(
     let mut best = f64::INFINITY;
     for _ in 0..batches {
         let watch = Stopwatch::start();
-        workload.run(units).map_err(|failure| failure.0)?;
+        workload.run(units).map_err(|failure| failure.reason)?;
         best = best.min(watch.nanoseconds());
     }
     Ok(format!("ns {best}"))
@@ -80,7 +80,7 @@ fn best(
 
 fn ran(workloads: Workloads<'_, '_>, name: &str, units: &str) -> Result<String, String> {
     let evaluations = named(workloads, name)?.run(count(units, MOST_UNITS)?);
-    evaluations.map(|it| format!("ran {it}")).map_err(|failure| failure.0)
+    evaluations.map(|it| format!("ran {it}")).map_err(|failure| failure.reason)
 }
 
 fn named<'a>(workloads: Workloads<'a, 'a>, name: &str) -> Result<&'a dyn Workload, String> {

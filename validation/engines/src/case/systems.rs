@@ -7,7 +7,7 @@ macro_rules! systems {
     ($($name:literal),+ $(,)?) => {
         /// All systems, by name.
         pub const SYSTEMS: &[SystemText] = &[
-            $(($name, include_str!(concat!("../systems/", $name, ".system.toml"))),)+
+            $(($name, include_str!(concat!("../../systems/", $name, ".system.toml"))),)+
         ];
     };
 }

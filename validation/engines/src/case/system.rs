@@ -1,0 +1,191 @@
+//! A case of a piecewise-affine system.
+
+use super::expectations::{BoundTable, ShortcomingTable};
+use super::located::{FileError, Source};
+use super::systems::named;
+use super::{Bound, Shortcoming};
+use crate::system::SystemProblem;
+use percuss::affine::{System, SystemFile};
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use std::path::Path;
+use toml::Spanned;
+
+/// At how many instants a state is tabulated where a case does not say it, and at most.
+const SAMPLES: i64 = 100;
+const MOST_SAMPLES: i64 = 100_000;
+
+/// A case of a piecewise-affine system, as `docs/SYSTEM_FORMAT.md` has it.
+#[derive(Clone, Debug)]
+pub struct SystemCase {
+    /// Name, as in `-c` and in the reference data's file names.
+    pub name: String,
+    /// The file it stands in; beginning with `cases/` where that is inside the binary.
+    pub file: String,
+    /// The text of that file.
+    pub text: String,
+    /// Why it is here.
+    pub why: String,
+    /// The kinds of trouble that it makes.
+    pub trouble: Vec<String>,
+    /// The system with the case's parameters and start.
+    pub system: System,
+    /// The clock's time at the horizon.
+    pub until: f64,
+    /// Whether the run goes back in time.
+    pub backward: bool,
+    /// At how many instants after the start the state is tabulated.
+    pub samples: u32,
+    /// Bounds of this case; they come before the default ones.
+    pub bounds: Vec<Bound>,
+    /// Expected failures of engines, with their reasons.
+    pub shortcomings: Vec<Shortcoming>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "the tables of a case of a system")]
+struct SystemCaseFile {
+    case: SystemCaseTable,
+    #[serde(rename = "parameters")]
+    _parameters: Option<IgnoredAny>,
+    #[serde(rename = "start")]
+    _start: Option<IgnoredAny>,
+    horizon: SystemHorizonTable,
+    #[serde(default)]
+    bounds: Vec<BoundTable>,
+    #[serde(default)]
+    shortcomings: Vec<ShortcomingTable>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table, [case]")]
+struct SystemCaseTable {
+    name: Spanned<String>,
+    system: Spanned<String>,
+    why: String,
+    #[serde(default)]
+    trouble: Vec<String>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "a table, [horizon]")]
+struct SystemHorizonTable {
+    until: Spanned<f64>,
+    samples: Option<Spanned<i64>>,
+    #[serde(default)]
+    backward: bool,
+}
+
+/// Whether the text of a case names a system; those of the oscillator do not.
+pub(super) fn is_of_a_system(text: &str) -> bool {
+    let table = text.parse::<toml::Table>().ok();
+    table.is_some_and(|it| it.get("case").and_then(|case| case.get("system")).is_some())
+}
+
+/// Reads a case; `folder` holds the systems' files that are not inside the binary.
+///
+/// # Errors
+/// [`FileError`] names the file's line, the field, its value and what is accepted.
+pub fn parse_system_case(
+    file: &str,
+    text: &str,
+    folder: Option<&Path>,
+) -> Result<SystemCase, FileError> {
+    let source = Source { file, text };
+    let wire: SystemCaseFile = source.parse()?;
+    let SystemCaseTable { name, system, why, trouble } = wire.case;
+    source.plain_name(&name)?;
+    let mut read = source.system(&system, folder)?;
+    let of_file = |error: percuss::affine::SystemError| FileError(error.to_string());
+    read.replace_from(file, text, true).map_err(of_file)?;
+    let exact = read.system().map_err(of_file)?;
+    let Some(begin) = begin(&exact) else {
+        let what = "the system has no [start]: accepted is one in its file, or in the case";
+        return Err(source.error(&system, what));
+    };
+    let (until, backward) = (*wire.horizon.until.get_ref(), wire.horizon.backward);
+    let ahead = if backward { begin - until } else { until - begin };
+    if !(ahead.is_finite() && ahead > 0.0) {
+        let side = if backward { "before" } else { "after" };
+        let what = format!("until = {until:?} is not accepted: a time {side} the start, {begin:?}");
+        return Err(source.error(&wire.horizon.until, &what));
+    }
+    let each_bound = wire.bounds.into_iter().map(|it| source.bound(it));
+    let each_shortcoming = wire.shortcomings.into_iter().map(|it| source.shortcoming(it));
+    Ok(SystemCase {
+        name: name.into_inner(),
+        file: file.to_owned(),
+        text: text.to_owned(),
+        why,
+        trouble,
+        system: exact,
+        until,
+        backward,
+        samples: source.samples(wire.horizon.samples)?,
+        bounds: each_bound.collect::<Result<_, _>>()?,
+        shortcomings: each_shortcoming.collect::<Result<_, _>>()?,
+    })
+}
+
+/// The clock's time at the start, rounded.
+fn begin(system: &System) -> Option<f64> {
+    Some(system.start.as_ref()?.time.to_f64().value())
+}
+
+impl SystemCase {
+    /// Time from the start to the horizon.
+    #[must_use]
+    pub fn span(&self) -> f64 {
+        (self.until - begin(&self.system).unwrap_or_default()).abs()
+    }
+
+    /// The system made ready to be run from the case's start.
+    ///
+    /// # Errors
+    /// [`FileError`] for a system that the solver or the engines do not take.
+    pub fn problem(&self) -> Result<SystemProblem, FileError> {
+        SystemProblem::new(self.system.clone(), self.backward)
+            .map_err(|failure| FileError::of(&self.file, failure))
+    }
+
+    /// The times since the start at which the state is tabulated, as far as `end`.
+    #[must_use]
+    pub fn sample_times(&self, end: f64) -> Vec<f64> {
+        let time = |k: u32| self.span() * f64::from(k) / f64::from(self.samples);
+        (0..self.samples).map(time).take_while(|time| *time <= end).collect()
+    }
+}
+
+impl Source<'_> {
+    /// The system's file of this name: that in the folder, or that inside the binary.
+    fn system(
+        &self,
+        name: &Spanned<String>,
+        folder: Option<&Path>,
+    ) -> Result<SystemFile, FileError> {
+        let file = format!("{}.system.toml", name.get_ref());
+        let beside = folder.map(|folder| folder.join(&file)).filter(|path| path.is_file());
+        let of_file = |error: percuss::affine::SystemError| FileError(error.to_string());
+        if let Some(path) = beside {
+            let text = std::fs::read_to_string(&path)
+                .map_err(|error| FileError::unreadable(&path, &error))?;
+            return SystemFile::read(&path.display().to_string(), &text).map_err(of_file);
+        }
+        let text = named(name.get_ref()).ok_or_else(|| {
+            let what = format!(
+                "system = {:?} is not accepted: {file} beside the case, or a name that percuss \
+                 systems lists",
+                name.get_ref()
+            );
+            self.error(name, &what)
+        })?;
+        SystemFile::read(&format!("systems/{file}"), text).map_err(of_file)
+    }
+
+    fn samples(&self, samples: Option<Spanned<i64>>) -> Result<u32, FileError> {
+        let Some(samples) = samples else { return Ok(SAMPLES as u32) };
+        let count = u32::try_from(*samples.get_ref()).ok();
+        let count = count.filter(|_| (1..=MOST_SAMPLES).contains(samples.get_ref()));
+        count.ok_or_else(|| self.refused("samples", &samples))
+    }
+}

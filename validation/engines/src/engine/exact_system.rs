@@ -1,0 +1,90 @@
+//! The exact solver on any piecewise-affine system.
+
+use super::{Ended, Failure, Limits, Numbers, SystemEvent, SystemOutcome, SystemTask, Work};
+use crate::system::{SystemProblem, Values};
+use percuss::affine::{self, Ending, Time, What};
+
+/// Runs a task in closed form; the system has to be there with its exact coefficients.
+pub(super) fn run(task: &SystemTask, limits: &Limits) -> Result<SystemOutcome, Failure> {
+    let problem = task.exact.as_deref();
+    let problem =
+        problem.ok_or_else(|| Failure::new("the system's exact coefficients are not there"))?;
+    let horizon = problem.clock(task.span);
+    let run = problem.solver.run(&problem.start, horizon);
+    let mut run = run.ok_or_else(|| Failure::new("the start is not decided"))?;
+    let mut record = Record { problem, task, outcome: SystemOutcome::default() };
+    let mut segment = run.start();
+    while let Some(event) = run.next() {
+        record.sample(&segment, record.elapsed(&event.time));
+        if let What::End(ending) = event.what {
+            record.end(&event, ending)?;
+            break;
+        }
+        record.push(&event);
+        if record.outcome.events.len() > limits.events {
+            return Err(Failure::new(format!("gave up after {} events", limits.events)));
+        }
+        segment = event;
+    }
+    let mut outcome = record.outcome;
+    let evaluations = run.work().evaluations;
+    let steps = outcome.events.len() as u64 + 1;
+    outcome.work = Work { rhs_evaluations: evaluations, steps, ..Work::default() };
+    Ok(outcome)
+}
+
+struct Record<'a> {
+    problem: &'a SystemProblem,
+    task: &'a SystemTask,
+    outcome: SystemOutcome,
+}
+
+impl Record<'_> {
+    fn elapsed(&self, time: &Time<f64>) -> f64 {
+        let begin: Time<f64> = Time::of(&self.problem.start.time);
+        let ahead = (time.high - begin.high) + (time.low - begin.low);
+        if self.problem.backward { -ahead } else { ahead }
+    }
+
+    /// The states asked for in the segment that `segment` begins, those at its end left out.
+    fn sample(&mut self, segment: &affine::Event<f64>, end: f64) {
+        let asked = &self.task.samples[self.outcome.samples.len()..];
+        let (problem, begin) = (self.problem, Time::of(&self.problem.start.time));
+        for elapsed in asked.iter().take_while(|elapsed| **elapsed < end) {
+            let time = begin.after(if problem.backward { -elapsed } else { *elapsed });
+            let state = problem.solver.state_at(segment, &time);
+            self.outcome.samples.push(Values::of(&state));
+        }
+    }
+
+    fn push(&mut self, event: &affine::Event<f64>) {
+        let modes = &self.problem.exact.modes;
+        let number = match event.what {
+            What::Watch(mode, watch) => modes[mode].until.len() + watch,
+            What::Until(_, until) => until,
+            What::Start | What::End(_) => return,
+        };
+        self.outcome.events.push(SystemEvent {
+            event: number,
+            mode: event.mode,
+            elapsed: self.elapsed(&event.time),
+            state: Values::of(&event.state),
+        });
+    }
+
+    fn end(&mut self, event: &affine::Event<f64>, ending: Ending<f64>) -> Result<(), Failure> {
+        self.outcome.ended = match ending {
+            Ending::Horizon => Ended::Horizon,
+            Ending::Accumulation(..) => Ended::Accumulation,
+            Ending::LeavesDomain => Ended::LeavesDomain,
+            Ending::NoProgress => Ended::NoProgress,
+            Ending::BeyondGuard => Ended::BeyondGuard,
+            Ending::Undecided => return Err(Failure::new("rounding hides how a mode ends")),
+        };
+        self.outcome.ended_at = self.elapsed(&event.time);
+        self.outcome.end = Values::of(&event.state);
+        // A run that ends early stays where it is, and one at its horizon has a sample there.
+        self.outcome.samples.resize(self.task.samples.len(), self.outcome.end);
+        Ok(())
+    }
+}

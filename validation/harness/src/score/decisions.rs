@@ -1,0 +1,38 @@
+//! Where a true run's next mode hangs by little: the value that decides it is close to zero.
+//!
+//! An engine whose error may be larger than that value cannot be asked for the mode that the model
+//! says, and what follows depends on it.
+
+use super::system_grazes::guard_growth;
+use crate::system::SystemProblem;
+use crate::truth::SystemTruth;
+
+/// An event whose successor is decided by the sign of a value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Decision {
+    /// Time of the event since the start.
+    pub elapsed: f64,
+    /// The size of the value.
+    pub margin: f64,
+    /// Largest error of the value that one unit of error may have become.
+    pub growth: f64,
+}
+
+/// The decisions of a true run, in the order of time.
+#[must_use]
+pub fn decisions(problem: &SystemProblem, truth: &SystemTruth) -> Vec<Decision> {
+    let system = problem.checked.system();
+    let mut mode = truth.start.mode;
+    let mut found = Vec::new();
+    for (n, row) in truth.events.iter().enumerate() {
+        let elapsed = row.elapsed.value();
+        let after: Vec<f64> = row.state.iter().map(|it| it.value()).collect();
+        for (deciding, value) in problem.checked.decisions((mode, row.event), elapsed, &after) {
+            let growth = guard_growth(&deciding, &after, &row.growth, &system.scales);
+            let growth = growth * (n + 1) as f64;
+            found.push(Decision { elapsed, margin: value.abs(), growth });
+        }
+        mode = row.mode;
+    }
+    found
+}

@@ -1,0 +1,110 @@
+//! A piecewise-affine system's case made ready.
+
+use super::matrix::{Answered, CaseRun, Measured};
+use super::scope::Suite;
+use crate::case::{Bound, FileError, Shortcoming, SystemCase};
+use crate::engine::{Accuracy, Engine, Failure, Limits, SystemTask, answer_system};
+use crate::score::{
+    Decision, EventNames, Graze, Measures, Occurrence, ScoredRun, SystemScale, WINDOW, decisions,
+    measure_system, system_grazes,
+};
+use crate::truth::{Library, SystemTruth};
+use rayon::prelude::*;
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A case of a system made ready: checked, with its truth.
+pub struct PreparedSystem {
+    /// The case.
+    pub case: SystemCase,
+    /// The case's truth, with the growth along it.
+    pub truth: SystemTruth,
+    /// The run that is asked of engines.
+    pub task: SystemTask,
+    /// The places at which guards come close to a threshold.
+    pub grazes: Vec<Graze>,
+    /// The events whose successors hang by little.
+    pub decisions: Vec<Decision>,
+    names: EventNames,
+    occurrences: Vec<Occurrence>,
+}
+
+/// Reads the truth of every case of a system.
+///
+/// # Errors
+/// [`FileError`] for reference data that are missing, altered or of another case, and for a system
+/// that engines do not take.
+pub fn prepare_systems(
+    cases: Vec<SystemCase>,
+    library: &Library,
+) -> Result<Vec<PreparedSystem>, FileError> {
+    cases.into_par_iter().map(|case| PreparedSystem::new(case, library)).collect()
+}
+
+impl PreparedSystem {
+    fn new(case: SystemCase, library: &Library) -> Result<Self, FileError> {
+        let truth = library.system_truth(&case)?;
+        let problem = Arc::new(case.problem()?);
+        let refused = |failure: Failure| FileError::of(&case.file, failure);
+        let task = SystemTask::of(&problem, truth.span, truth.sample_times()).map_err(refused)?;
+        let names = EventNames::of(task.system.system());
+        let occurrences = names.of_truth(&truth);
+        let grazes = system_grazes(&problem, &truth, &names);
+        let decisions = decisions(&problem, &truth);
+        Ok(Self { case, truth, task, grazes, decisions, names, occurrences })
+    }
+
+    /// The time that stands for a forcing period.
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        self.task.system.period()
+    }
+}
+
+impl CaseRun for PreparedSystem {
+    fn name(&self) -> &str {
+        &self.case.name
+    }
+
+    fn events(&self) -> usize {
+        self.truth.events.len()
+    }
+
+    fn takes(&self, engine: &dyn Engine) -> bool {
+        engine.runs_systems()
+    }
+
+    fn limits(&self, suite: Suite) -> Limits {
+        suite.limits_of_systems()
+    }
+
+    fn expectations(&self) -> (&[Bound], &[Shortcoming]) {
+        (&self.case.bounds, &self.case.shortcomings)
+    }
+
+    fn least_work(&self, engine: &dyn Engine, accuracy: Accuracy) -> f64 {
+        engine.least_work_on(&self.task, accuracy)
+    }
+
+    fn attempt(
+        &self,
+        engine: &dyn Engine,
+        (accuracy, unit): (Accuracy, f64),
+        limits: &Limits,
+        _: Suite,
+    ) -> Result<Measured, Failure> {
+        let began = Instant::now();
+        let outcome = answer_system(engine, &self.task, accuracy, limits)?;
+        let wall = began.elapsed();
+        // The exact solver knows which values are zero by the model.
+        let decisions = if accuracy == Accuracy::Exact { &[][..] } else { &self.decisions };
+        let scale = SystemScale { unit, grazes: &self.grazes, decisions };
+        let measures = measure_system(&self.task, &self.truth, &self.names, &outcome, scale);
+        Ok(Measured { measures, answered: Answered::System(outcome), wall })
+    }
+
+    fn as_run<'a>(&'a self, measures: &'a Measures) -> ScoredRun<'a> {
+        let window = WINDOW * self.period();
+        ScoredRun { measures, truth: &self.occurrences, grazes: &self.grazes, window }
+    }
+}
