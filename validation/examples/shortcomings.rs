@@ -2,12 +2,15 @@
 //!
 //! `cargo run --release --example shortcomings -- REPORT...` prints the file: every bound that
 //! fails in one of the reports becomes a row of its engine's defect, with a floor and a ceiling
-//! around the figure that was measured. Reasons are people's: those of the present file are kept, a
-//! new defect gets an empty one, which the program refuses to read.
+//! around the figure that was measured; rows of cases that no report has stay as they are. An
+//! engine has one defect on the oscillator and one on other systems. Reasons are people's: those of
+//! the present file are kept, a new defect gets an empty one, which the program refuses to read.
 
 use anyhow::{Context, Result, bail};
+use percuss_validation::case::Cases;
+use serde::Deserialize;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// A figure may differ by this factor on another processor: a step that is accepted here is refused
 /// there.
@@ -19,20 +22,31 @@ const COUNTS: [&str; 5] =
 /// Case, setting (a step is negative), quantity and statistic.
 type Key = (String, String, String, String);
 
+/// An engine and a group of its rows: those of the oscillator, or of other systems the events, the
+/// errors and the runs without a result. Each group has a reason of its own.
+type Group = (String, &'static str);
+
+/// The rows of each group, with floor and ceiling.
+type Defects = BTreeMap<Group, BTreeMap<Key, (f64, f64)>>;
+
 fn main() -> Result<()> {
-    let mut defects: BTreeMap<String, BTreeMap<Key, (f64, f64)>> = BTreeMap::new();
+    let mut defects = Defects::new();
+    let mut reported = BTreeSet::new();
     let reports: Vec<String> = std::env::args().skip(1).collect();
     if reports.is_empty() {
         bail!("name one report.json or more");
     }
+    let systems: BTreeSet<String> =
+        Cases::embedded()?.systems.into_iter().map(|case| case.name).collect();
     for path in reports {
         let text = std::fs::read_to_string(&path).with_context(|| path.clone())?;
         let report: Value = serde_json::from_str(&text).with_context(|| path.clone())?;
         for row in report["results"].as_array().context("a report has results")? {
-            collect(row, &mut defects)?;
+            reported.insert(row["case"].as_str().unwrap_or_default().to_owned());
+            collect(row, &systems, &mut defects)?;
         }
     }
-    let whys = reasons()?;
+    let whys = present(&systems, &reported, &mut defects)?;
     println!(
         "# Known shortcomings of engines on the cases inside the binary, row by row: case, tolerance (or"
     );
@@ -42,8 +56,8 @@ fn main() -> Result<()> {
     println!(
         "# Made by `cargo run --release --example shortcomings -- REPORT`; the reasons are people's."
     );
-    for (engine, rows) in defects {
-        let why = whys.get(&engine).cloned().unwrap_or_default();
+    for (group, rows) in defects {
+        let (why, engine) = (whys.get(&group).cloned().unwrap_or_default(), group.0);
         println!("\n[[defects]]\nengine = {engine:?}\nwhy = {why:?}\nrows = [");
         for ((case, setting, quantity, statistic), (floor, ceiling)) in rows {
             println!("    [{case:?}, {setting}, {quantity:?}, {statistic:?}, {floor}, {ceiling}],");
@@ -53,7 +67,19 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-fn collect(row: &Value, defects: &mut BTreeMap<String, BTreeMap<Key, (f64, f64)>>) -> Result<()> {
+/// The group of an engine's row.
+fn group(engine: &str, case: &str, quantity: &str, systems: &BTreeSet<String>) -> Group {
+    let events = ["events_missed", "events_spurious", "phase_word"];
+    let group = match quantity {
+        _ if !systems.contains(case) => "",
+        "runs_failed" => "runs",
+        quantity if events.contains(&quantity) => "events",
+        _ => "errors",
+    };
+    (engine.to_owned(), group)
+}
+
+fn collect(row: &Value, systems: &BTreeSet<String>, defects: &mut Defects) -> Result<()> {
     let text = |value: &Value| value.as_str().map(str::to_owned).context("a string");
     for bound in row["bounds"].as_array().context("a row has bounds")? {
         let failing = matches!(bound["verdict"].as_str(), Some("fail" | "known"));
@@ -65,9 +91,11 @@ fn collect(row: &Value, defects: &mut BTreeMap<String, BTreeMap<Key, (f64, f64)>
             _ => continue,
         };
         let quantity = text(&bound["quantity"])?;
-        let key = (text(&row["case"])?, setting, quantity.clone(), text(&bound["statistic"])?);
-        let own = defects.entry(text(&row["engine"])?).or_default();
+        let case = text(&row["case"])?;
+        let group = group(&text(&row["engine"])?, &case, &quantity, systems);
+        let key = (case, setting, quantity.clone(), text(&bound["statistic"])?);
         let most = if quantity == "events_missed" { row["events_expected"].as_f64() } else { None };
+        let own = defects.entry(group).or_default();
         own.insert(key, range(&quantity, value, limit, most));
     }
     Ok(())
@@ -92,13 +120,38 @@ fn float(value: f64) -> String {
     format!("{value:e}")
 }
 
-/// The reasons of the present file, by engine.
-fn reasons() -> Result<BTreeMap<String, String>> {
+/// The reasons of the present file; its rows of cases that no report has are kept.
+fn present(
+    systems: &BTreeSet<String>,
+    reported: &BTreeSet<String>,
+    defects: &mut Defects,
+) -> Result<BTreeMap<Group, String>> {
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/shortcomings.toml");
-    let file: toml::Table = std::fs::read_to_string(path).context(path)?.parse()?;
-    let defects = file.get("defects").and_then(toml::Value::as_array).cloned().unwrap_or_default();
-    let reason = |it: &toml::Value| {
-        Some((it.get("engine")?.as_str()?.to_owned(), it.get("why")?.as_str()?.to_owned()))
-    };
-    Ok(defects.iter().filter_map(reason).collect())
+    let text = std::fs::read_to_string(path).context(path)?;
+    let file: PresentFile = toml::from_str(&text).context(path)?;
+    let mut reasons = BTreeMap::new();
+    for PresentDefect { engine, why, rows } in file.defects {
+        for (case, setting, quantity, statistic, floor, ceiling) in rows {
+            let group = group(&engine, &case, &quantity, systems);
+            reasons.entry(group.clone()).or_insert_with(|| why.clone());
+            if !reported.contains(&case) {
+                let key = (case, float(setting), quantity, statistic);
+                defects.entry(group).or_default().insert(key, (floor, ceiling));
+            }
+        }
+    }
+    Ok(reasons)
+}
+
+/// The file as it is.
+#[derive(Deserialize)]
+struct PresentFile {
+    defects: Vec<PresentDefect>,
+}
+
+#[derive(Deserialize)]
+struct PresentDefect {
+    engine: String,
+    why: String,
+    rows: Vec<(String, f64, String, String, f64, f64)>,
 }

@@ -2,8 +2,8 @@
 
 use crate::support;
 use percuss_validation::case::Cases;
-use percuss_validation::engine::{Engine, all};
-use percuss_validation::suite::{Suite, accuracies};
+use percuss_validation::engine::all;
+use percuss_validation::suite::{Suite, size};
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
@@ -95,11 +95,7 @@ fn the_readmes_summary_is_of_todays_suite() {
         assert!(block.contains(&format!(" {name} ")), "{name}");
     }
     let cases = Cases::embedded().expect("the cases are read");
-    let rows_of = |engine: &dyn Engine| {
-        let systems = if engine.runs_systems() { cases.systems.len() } else { 0 };
-        (cases.oscillator.len() + systems) * accuracies(engine, Suite::Quick).len()
-    };
-    let rows: usize = all().iter().map(|it| rows_of(*it)).sum();
+    let rows = size(cases.names().count(), all(), Suite::Quick);
     assert!(block.contains(&format!("\n{rows} rows: ")), "{rows}");
     assert!(block.contains(" 0 fail, 0 error, ") && block.contains("power: "), "{block}");
 }

@@ -95,10 +95,10 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let pool = work::pool(threads)?;
     let wrong = wrong_engines(arguments);
     let bar =
-        work::bar((suite::size(&all, &engines, arguments.suite) + wrong.len()) as u64, "rows");
+        work::bar((suite::size(all.len(), &engines, arguments.suite) + wrong.len()) as u64, "rows");
     let rows =
         pool.install(|| suite::run(&all, &engines, arguments.suite, &defaults, &|| bar.inc(1)));
-    let asked = suite::size(&all, &engines, arguments.suite);
+    let asked = suite::size(all.len(), &engines, arguments.suite);
     if rows.len() != asked {
         bail!("{} rows were made where {asked} were asked for", rows.len());
     }

@@ -22,6 +22,7 @@ mod screen;
 mod setting;
 mod summary;
 mod table;
+mod trouble;
 
 pub use annotations::{annotations, under_the_service};
 pub use baseline::{Baseline, Compared, RowPlace};

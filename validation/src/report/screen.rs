@@ -5,6 +5,7 @@
 
 use super::ranking::{COMPARED_AT, Ranked};
 use super::table::{reasons, row_table};
+use super::trouble::{Trouble, TroubleCell};
 use super::{Order, Report, ReportEvidence, ReportRow, orders};
 use crate::engine::REFERENCE;
 use crate::number::brief;
@@ -22,6 +23,7 @@ pub fn screen(report: &Report, evidence: &ReportEvidence, with_rows: bool) -> St
     let parts = [
         rows,
         ranking_table(&report.ranking),
+        trouble_table(report, evidence),
         failing_cases(report),
         reasons(&report.results),
         not_run(&report.results),
@@ -87,6 +89,30 @@ fn ranking_table(ranking: &[Ranked]) -> String {
          is no failure. exact is the reference; `percuss engines` says what each engine is."
     );
     text(&table) + &wrapped(&legend) + "\n"
+}
+
+/// Kinds of trouble by engines, which stand under their ranks.
+fn trouble_table(report: &Report, evidence: &ReportEvidence) -> String {
+    let trouble = Trouble::of(report, evidence);
+    if trouble.lines.is_empty() {
+        return String::new();
+    }
+    let rank = |(name, rank): &(&str, usize)| match rank {
+        0 => (*name).to_owned(),
+        rank => rank.to_string(),
+    };
+    let ranks: Vec<String> = trouble.engines.iter().map(rank).collect();
+    let mut header = vec!["trouble", "cases"];
+    header.extend(ranks.iter().map(String::as_str));
+    let mut table = plain(&header, 1);
+    for (kind, cases, cells) in &trouble.lines {
+        let cell = |cell: &TroubleCell| cell.percent().map_or("-".to_owned(), |it| it.to_string());
+        let cells = cells.iter().map(cell);
+        table.add_row([kind.clone(), cases.to_string()].into_iter().chain(cells));
+    }
+    let legend = "trouble: events found less spurious ones, in per cent of the scored events of the \
+                  cases of each kind, rounded down; the columns are the engines by their ranks.";
+    text(&table) + &wrapped(legend) + "\n"
 }
 
 pub(super) fn figure(value: f64) -> String {

@@ -16,8 +16,10 @@ struct BoundsFile {
 /// What is expected of engines on every case, after what the case says itself.
 #[derive(Clone, Debug, Default)]
 pub struct Defaults {
-    /// Bounds that come after the case's own.
+    /// Bounds on the oscillator's cases, after the case's own.
     pub bounds: Vec<Bound>,
+    /// Bounds on cases of other systems, after the case's own.
+    pub of_systems: Vec<Bound>,
     /// Shortcomings that show on many cases.
     pub shortcomings: Vec<Shortcoming>,
 }
@@ -34,6 +36,9 @@ enum Several {
 #[serde(deny_unknown_fields, expecting = "a table, [[bounds]]")]
 pub(super) struct BoundTable {
     engine: Spanned<String>,
+    /// Whether it is for cases of other systems than the oscillator alone.
+    #[serde(default)]
+    systems: bool,
     tolerance: Option<Several>,
     step: Option<Several>,
     quantity: Quantity,
@@ -58,11 +63,17 @@ pub(super) struct ShortcomingTable {
     why: String,
 }
 
-/// Reads the bounds of every case.
-pub(super) fn read_bounds(file: &str, text: &str) -> Result<Vec<Bound>, FileError> {
+/// Reads the bounds of every case: those that are for other systems alone come first there.
+pub(super) fn read_bounds(file: &str, text: &str) -> Result<Defaults, FileError> {
     let source = Source { file, text };
     let wire: BoundsFile = source.parse()?;
-    wire.bounds.into_iter().map(|it| source.bound(it)).collect()
+    let (systems, all): (Vec<_>, Vec<_>) = wire.bounds.into_iter().partition(|it| it.systems);
+    let read = |tables: Vec<BoundTable>| {
+        tables.into_iter().map(|it| source.bound(it)).collect::<Result<Vec<_>, _>>()
+    };
+    let (bounds, mut of_systems) = (read(all)?, read(systems)?);
+    of_systems.extend(bounds.iter().cloned());
+    Ok(Defaults { bounds, of_systems, shortcomings: Vec::new() })
 }
 
 /// The tolerances and steps that are named.

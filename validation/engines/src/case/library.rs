@@ -146,8 +146,8 @@ fn is_case(path: &Path) -> bool {
 /// # Errors
 /// [`FileError`]; a test shows that there is none.
 pub fn defaults() -> Result<Defaults, FileError> {
-    let bounds = read_bounds("bounds.toml", BOUNDS)?;
-    Ok(Defaults { bounds, shortcomings: read_shortcomings("shortcomings.toml", SHORTCOMINGS)? })
+    let shortcomings = read_shortcomings("shortcomings.toml", SHORTCOMINGS)?;
+    Ok(Defaults { shortcomings, ..read_bounds("bounds.toml", BOUNDS)? })
 }
 
 /// What is expected on a case of a user's own: the bounds alone, because the shortcomings that are
@@ -156,7 +156,7 @@ pub fn defaults() -> Result<Defaults, FileError> {
 /// # Errors
 /// [`FileError`]; a test shows that there is none.
 pub fn defaults_of_own_cases() -> Result<Defaults, FileError> {
-    Ok(Defaults { bounds: read_bounds("bounds.toml", BOUNDS)?, ..Defaults::default() })
+    read_bounds("bounds.toml", BOUNDS)
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ pub(super) fn run(task: &SystemTask, limits: &Limits) -> Result<SystemOutcome, F
     let mut run = run.ok_or_else(|| Failure::new("the start is not decided"))?;
     let mut record = Record { problem, task, outcome: SystemOutcome::default() };
     let mut segment = run.start();
-    while let Some(event) = run.next() {
+    for event in run.by_ref() {
         record.sample(&segment, record.elapsed(&event.time));
         if let What::End(ending) = event.what {
             record.end(&event, ending)?;

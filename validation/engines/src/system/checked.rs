@@ -122,25 +122,26 @@ impl CheckedSystem {
     }
 
     /// What decides which mode follows an event: for each condition that is looked at the first
-    /// derivative that the event's guard does not make zero, as a row and its value in the state
-    /// after the event.
+    /// derivative that the event's guard does not make zero, as a row with its value in the state
+    /// after the event, and the value's rate.
     #[must_use]
     pub fn decisions(
         &self,
         (mode, until): (usize, usize),
         elapsed: f64,
         after: &[f64],
-    ) -> Vec<(Row, f64)> {
+    ) -> Vec<(Row, [f64; 2])> {
         let (sin, cos) = (self.system.omega * elapsed + self.system.phi).sin_cos();
         let passage = self.modes.get(mode).and_then(|mode| mode.until.get(until));
         let mut found = Vec::new();
         for successor in passage.map_or(&[][..], |passage| &passage.next) {
             let Some(when) = &successor.when else { break };
             let order = (0..when.rows.len()).find(|k| successor.when_zeros & 1 << k == 0);
-            let Some(row) = order.map(|k| &when.rows[k]) else { continue };
-            let (value, _) = value(row, after, [cos, sin]);
-            found.push((row[..after.len() + 3].to_vec(), value));
-            if value > 0.0 {
+            let Some(order) = order else { continue };
+            let at = |k: usize| when.rows.get(k).map_or(0.0, |row| value(row, after, [cos, sin]).0);
+            let row = when.rows[order][..after.len() + 3].to_vec();
+            found.push((row, [at(order), at(order + 1)]));
+            if at(order) > 0.0 {
                 break;
             }
         }

@@ -27,9 +27,12 @@ pub fn decisions(problem: &SystemProblem, truth: &SystemTruth) -> Vec<Decision> 
     for (n, row) in truth.events.iter().enumerate() {
         let elapsed = row.elapsed.value();
         let after: Vec<f64> = row.state.iter().map(|it| it.value()).collect();
-        for (deciding, value) in problem.checked.decisions((mode, row.event), elapsed, &after) {
-            let growth = guard_growth(&deciding, &after, &row.growth, &system.scales);
-            let growth = growth * (n + 1) as f64;
+        for (deciding, [value, rate]) in
+            problem.checked.decisions((mode, row.event), elapsed, &after)
+        {
+            let by_state = guard_growth(&deciding, &after, &row.growth, &system.scales);
+            let by_time = rate.abs() * (system.time_scale + elapsed) * row.growth_time;
+            let growth = by_state.max(by_time) * (n + 1) as f64;
             found.push(Decision { elapsed, margin: value.abs(), growth });
         }
         mode = row.mode;

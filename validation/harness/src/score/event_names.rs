@@ -114,22 +114,54 @@ impl EventNames {
     }
 }
 
-/// Gives the events of an engine that are those of one instant in another order the truth's order;
-/// their times stay as they are.
+/// Takes as many events of an engine in a row as one instant has in the truth, all of them of its
+/// names, for those of the truth; their times stay as they are. Three balls that meet may do so in
+/// two or three collisions of one kind or of the other: what comes of it is the same.
 fn order_like(group: &[Occurrence], found: &mut [Occurrence]) {
     let count = group.len();
-    let mut wanted: Vec<usize> = group.iter().map(|it| it.event).collect();
-    wanted.sort_unstable();
-    let same = |own: &[Occurrence]| {
-        let mut events: Vec<usize> = own.iter().map(|it| it.event).collect();
-        events.sort_unstable();
-        events == wanted
-    };
+    let known = |own: &Occurrence| group.iter().any(|it| it.event == own.event);
     let far = |j: &usize| (found[*j].elapsed - group[0].elapsed).abs();
-    let places =
-        (0..(found.len() + 1).saturating_sub(count)).filter(|j| same(&found[*j..*j + count]));
+    let places = 0..(found.len() + 1).saturating_sub(count);
+    let places = places.filter(|j| found[*j..*j + count].iter().all(known));
     let Some(nearest) = places.min_by(|a, b| far(a).total_cmp(&far(b))) else { return };
     for (own, truth) in found[nearest..nearest + count].iter_mut().zip(group) {
         own.event = truth.event;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn events(list: &[(f64, usize)]) -> Vec<Occurrence> {
+        let event = |(elapsed, event): &(f64, usize)| Occurrence {
+            elapsed: *elapsed,
+            event: *event,
+            mode: Some(0),
+        };
+        list.iter().map(event).collect()
+    }
+
+    fn names(events: &[Occurrence]) -> Vec<usize> {
+        events.iter().map(|it| it.event).collect()
+    }
+
+    #[test]
+    fn events_of_one_instant_may_come_in_any_order() {
+        let group = events(&[(1.0, 2), (1.0, 3), (1.0, 2)]);
+        let mut found = events(&[(0.5, 1), (1.0, 3), (1.0, 2), (1.1, 3), (2.0, 1)]);
+        order_like(&group, &mut found);
+        assert_eq!(names(&found), [1, 2, 3, 2, 1]);
+        assert_eq!(found[3].elapsed, 1.1);
+    }
+
+    #[test]
+    fn other_events_and_other_counts_are_left_as_they_are() {
+        let group = events(&[(1.0, 2), (1.0, 3)]);
+        for list in [vec![(1.0, 2), (1.0, 1)], vec![(1.0, 3)], vec![]] {
+            let mut found = events(&list);
+            order_like(&group, &mut found);
+            assert_eq!(found, events(&list));
+        }
     }
 }

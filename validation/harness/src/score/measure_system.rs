@@ -101,7 +101,10 @@ fn scored_horizon(task: &SystemTask, truth: &SystemTruth, scale: SystemScale<'_>
     let times: Vec<f64> = truth.events.iter().map(|it| it.elapsed.value()).collect();
     let unit_of_time = unit * task.system.system().time_scale;
     let mixed_up = |n: usize, row: &SystemTruthRow| unit_of_time * row.growth_time > gap(&times, n);
-    let event = truth.events.iter().enumerate().find(|(n, row)| is_lost(row) || mixed_up(*n, row));
+    // Events of one instant are lost together, with the first of them.
+    let is_first = |n: usize| n == 0 || times[n] > times[n - 1];
+    let mut firsts = truth.events.iter().enumerate().filter(|(n, _)| is_first(*n));
+    let event = firsts.find(|(n, row)| is_lost(row) || mixed_up(*n, row));
     let sample = truth.samples.iter().find(|row| is_lost(row));
     let first = event.map(|(_, row)| row).into_iter().chain(sample);
     let lost = first.map(|row| row.elapsed.value()).chain(in_doubt(&times, scale));

@@ -120,7 +120,9 @@ impl Mismatch {
         let crossing = self.extra.windows(graze.makes).find(|own| {
             let (first, last) = (own[0], own[graze.makes - 1]);
             self.spurious.contains(&first)
-                && last + 1 == first + graze.makes
+                // Of a system other events may lie between the two.
+                && (graze.event.is_some() || last + 1 == first + graze.makes)
+                && own.iter().all(|j| graze.event.is_none_or(|event| found[*j].event == event))
                 && own.iter().all(|j| free(*j))
                 && graze.begins_with(&found[first])
                 && found[last].mode == Some(graze.mode)

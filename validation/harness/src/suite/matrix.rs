@@ -39,9 +39,17 @@ pub trait CaseRun: Sync {
     /// The truth's events on the case's horizon.
     fn events(&self) -> usize;
 
-    /// Whether an engine can be run on it at all; rows of those that cannot are not made.
-    fn takes(&self, _engine: &dyn Engine) -> bool {
-        true
+    /// Whether an engine can be run on it at all.
+    ///
+    /// # Errors
+    /// Why it cannot.
+    fn takes(&self, _engine: &dyn Engine) -> Result<(), &'static str> {
+        Ok(())
+    }
+
+    /// The bounds that come after the case's own.
+    fn defaults<'a>(&self, defaults: &'a Defaults) -> &'a [Bound] {
+        &defaults.bounds
     }
 
     /// The case's own bounds and expected failures.
@@ -114,7 +122,7 @@ impl Answered {
 #[derive(Clone, Debug)]
 pub enum Status {
     /// The run has a result.
-    Ok(Box<Measures>, Answered),
+    Ok(Box<Measures>, Box<Answered>),
     /// The run has no result; the reason.
     Failed(Failure),
     /// The engine is not installed.
@@ -246,49 +254,36 @@ impl CaseRun for Prepared {
 }
 
 /// Runs everything; rows come case by case in the order of `cases` and `engines`.
-pub fn run(
-    cases: &[&dyn CaseRun],
+pub fn run<'a>(
+    cases: &[&'a dyn CaseRun],
     engines: &[&'static dyn Engine],
     suite: Suite,
     defaults: &Defaults,
     done: &(impl Fn() + Sync),
 ) -> Vec<Scored> {
-    let row = |(case, engine, accuracy): Job<'_>| {
+    let settings = |case: &'a dyn CaseRun, engine: &'static dyn Engine| {
+        accuracies(engine, suite).into_iter().map(move |it| (case, engine, it))
+    };
+    let of_case = |case: &&'a dyn CaseRun| -> Vec<_> {
+        engines.iter().flat_map(|it| settings(*case, *it)).collect()
+    };
+    let jobs: Vec<_> = cases.iter().flat_map(of_case).collect();
+    let row = |(case, engine, accuracy): (&dyn CaseRun, &'static dyn Engine, Accuracy)| {
         let row = one(case, engine, accuracy, suite, defaults);
         done();
         row
     };
     // Heavy rows lie side by side: handed out one by one they do not pile up on one thread.
-    jobs(cases, engines, suite).into_par_iter().with_max_len(1).map(row).collect()
+    jobs.into_par_iter().with_max_len(1).map(row).collect()
 }
 
 /// How many rows [`run`] makes.
 #[must_use]
-pub fn size(cases: &[&dyn CaseRun], engines: &[&'static dyn Engine], suite: Suite) -> usize {
-    jobs(cases, engines, suite).len()
+pub fn size(cases: usize, engines: &[&'static dyn Engine], suite: Suite) -> usize {
+    cases * engines.iter().map(|engine| accuracies(*engine, suite).len()).sum::<usize>()
 }
 
-/// A row to be made.
-type Job<'a> = (&'a dyn CaseRun, &'static dyn Engine, Accuracy);
-
-/// The rows to be made, in their order.
-fn jobs<'a>(
-    cases: &[&'a dyn CaseRun],
-    engines: &[&'static dyn Engine],
-    suite: Suite,
-) -> Vec<Job<'a>> {
-    let mut jobs = Vec::new();
-    for case in cases {
-        for engine in engines.iter().filter(|engine| case.takes(**engine)) {
-            jobs.extend(accuracies(*engine, suite).into_iter().map(|it| (*case, *engine, it)));
-        }
-    }
-    jobs
-}
-
-/// What a suite asks an engine for.
-#[must_use]
-pub fn accuracies(engine: &dyn Engine, suite: Suite) -> Vec<Accuracy> {
+fn accuracies(engine: &dyn Engine, suite: Suite) -> Vec<Accuracy> {
     suite.accuracies(engine.declaration().stepping)
 }
 
@@ -318,6 +313,9 @@ fn one(
     if let Err(reason) = engine.available() {
         return without(Status::Unavailable, Verdict::Unavailable, reason);
     }
+    if let Err(reason) = case.takes(engine) {
+        return without(Status::NotRun, Verdict::NotRun, reason.to_owned());
+    }
     let (least, budget) = (case.least_work(engine, accuracy), suite.budget());
     if least > budget {
         let reason =
@@ -326,14 +324,14 @@ fn one(
     }
     let subject = Subject { case: case.name(), engine: declaration.name, accuracy, unit };
     let (own_bounds, own_shortcomings) = case.expectations();
-    let bounds: Vec<_> = own_bounds.iter().chain(&defaults.bounds).collect();
+    let of_classes = case.defaults(defaults);
+    let bounds: Vec<_> = own_bounds.iter().chain(of_classes).collect();
     let shortcomings: Vec<_> = own_shortcomings.iter().chain(&defaults.shortcomings).collect();
-    let expected =
-        Expected { bounds: &bounds, of_classes: &defaults.bounds, shortcomings: &shortcomings };
+    let expected = Expected { bounds: &bounds, of_classes, shortcomings: &shortcomings };
     match case.attempt(engine, (accuracy, unit), &case.limits(suite), suite) {
         Ok(Measured { measures, answered, wall }) => {
             let judgement = judge(&subject, &case.as_run(&measures), &expected);
-            row(Status::Ok(Box::new(measures), answered), wall, judgement)
+            row(Status::Ok(Box::new(measures), Box::new(answered)), wall, judgement)
         }
         Err(failure) if failure.is_beyond_limits => {
             without(Status::NotRun, Verdict::NotRun, failure.reason)

@@ -5,9 +5,7 @@ mod probes;
 mod scope;
 mod system;
 
-pub use matrix::{
-    Answered, CaseRun, Measured, Prepared, Scored, Status, accuracies, prepare, run, size,
-};
+pub use matrix::{Answered, CaseRun, Measured, Prepared, Scored, Status, prepare, run, size};
 pub use probes::{Extent, is_shown};
 pub use scope::Suite;
 pub use system::{PreparedSystem, prepare_systems};

@@ -2,7 +2,7 @@
 
 use super::matrix::{Answered, CaseRun, Measured};
 use super::scope::Suite;
-use crate::case::{Bound, FileError, Shortcoming, SystemCase};
+use crate::case::{Bound, Defaults, FileError, Shortcoming, SystemCase};
 use crate::engine::{Accuracy, Engine, Failure, Limits, SystemTask, answer_system};
 use crate::score::{
     Decision, EventNames, Graze, Measures, Occurrence, ScoredRun, SystemScale, WINDOW, decisions,
@@ -70,12 +70,17 @@ impl CaseRun for PreparedSystem {
         self.truth.events.len()
     }
 
-    fn takes(&self, engine: &dyn Engine) -> bool {
-        engine.runs_systems()
+    fn takes(&self, engine: &dyn Engine) -> Result<(), &'static str> {
+        let runs = engine.runs_systems();
+        if runs { Ok(()) } else { Err("its co-ordinates are the oscillator's") }
     }
 
     fn limits(&self, suite: Suite) -> Limits {
         suite.limits_of_systems()
+    }
+
+    fn defaults<'a>(&self, defaults: &'a Defaults) -> &'a [Bound] {
+        &defaults.of_systems
     }
 
     fn expectations(&self) -> (&[Bound], &[Shortcoming]) {

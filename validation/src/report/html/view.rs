@@ -2,6 +2,7 @@
 
 use super::super::grazing::{Grazing, Seen, Touches};
 use super::super::summary::{EngineSummary, SettingSummary};
+use super::super::trouble::{Trouble, TroubleCell};
 use super::super::{Report, ReportEvidence};
 use crate::number::brief;
 use crate::picture::{Look, Marker};
@@ -180,6 +181,56 @@ pub(super) struct SeenCell {
     pub class: &'static str,
     pub glyph: &'static str,
     pub title: String,
+}
+
+/// The kinds of trouble by engines.
+pub(super) struct TroubleTable {
+    pub engines: Vec<(&'static str, usize)>,
+    pub lines: Vec<TroubleLine>,
+}
+
+/// A kind of trouble, how many cases are of it, and a cell an engine.
+pub(super) struct TroubleLine {
+    pub kind: String,
+    pub cases: usize,
+    pub cells: Vec<TroubleSign>,
+}
+
+/// A cell as it is shown.
+pub(super) struct TroubleSign {
+    /// The level, as of [`RecallCell`]; 5 where nothing was scored.
+    pub level: u8,
+    pub shown: String,
+    pub title: String,
+}
+
+/// The matrix of kinds of trouble, as it is shown.
+pub(super) fn trouble(report: &Report, evidence: &ReportEvidence) -> TroubleTable {
+    let trouble = Trouble::of(report, evidence);
+    let sign = |cell: &TroubleCell| {
+        let level = match cell.percent() {
+            None => 5,
+            Some(100) if cell.failing == 0 => 4,
+            Some(100) => 3,
+            Some(99) => 2,
+            Some(1..) => 1,
+            Some(0) => 0,
+        };
+        let TroubleCell { checked, found, spurious, failing } = cell;
+        TroubleSign {
+            level,
+            shown: cell.percent().map_or("\u{2013}".to_owned(), |it| it.to_string()),
+            title: format!(
+                "{found} of {checked} scored events found, {spurious} spurious, {failing} rows fail"
+            ),
+        }
+    };
+    let line = |(kind, cases, cells): (String, usize, Vec<TroubleCell>)| TroubleLine {
+        kind,
+        cases,
+        cells: cells.iter().map(sign).collect(),
+    };
+    TroubleTable { engines: trouble.engines, lines: trouble.lines.into_iter().map(line).collect() }
 }
 
 pub(super) fn grazing(report: &Report, evidence: &ReportEvidence) -> GrazingTable {

@@ -1,0 +1,67 @@
+//! Which engine stands which kind of trouble: the events of systems' cases, kind by kind.
+
+use super::{Ranked, Report, ReportEvidence, ReportRow};
+use crate::score::Verdict;
+
+/// What an engine made of the cases of one kind of trouble.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct TroubleCell {
+    /// The truth's events that were scored.
+    pub checked: usize,
+    /// Those of them that it has.
+    pub found: usize,
+    /// Its events that the truth does not have.
+    pub spurious: usize,
+    /// Rows without a result, and rows that fail, expected failures included.
+    pub failing: usize,
+}
+
+impl TroubleCell {
+    fn add(&mut self, row: &ReportRow) {
+        let judged = !matches!(row.verdict, Verdict::NotScored | Verdict::NotRun);
+        let count = |count: Option<usize>| count.filter(|_| judged).unwrap_or_default();
+        self.checked += count(row.events_expected);
+        self.found += count(row.events_matched);
+        self.spurious += row.events_spurious.unwrap_or_default();
+        let fails = matches!(row.verdict, Verdict::Error | Verdict::Fail | Verdict::Known);
+        self.failing += usize::from(fails);
+    }
+
+    /// Events found less spurious ones in per cent of those that were scored, rounded down: 100 is
+    /// all of them and none besides. Nothing where nothing was scored.
+    pub fn percent(&self) -> Option<usize> {
+        let right = self.found.saturating_sub(self.spurious);
+        (self.checked > 0).then(|| 100 * right / self.checked)
+    }
+}
+
+/// Kinds of trouble by engines, in the order of the ranking.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Trouble {
+    /// The engines with their ranks.
+    pub engines: Vec<(&'static str, usize)>,
+    /// A kind of trouble, how many cases are of it, and a cell an engine.
+    pub lines: Vec<(String, usize, Vec<TroubleCell>)>,
+}
+
+impl Trouble {
+    /// The matrix of a report; without lines where none of its cases is of a system.
+    pub fn of(report: &Report, evidence: &ReportEvidence) -> Self {
+        let mut kinds: Vec<&String> = evidence.cases.iter().flat_map(|it| &it.trouble).collect();
+        kinds.sort();
+        kinds.dedup();
+        let engines = report.ranking.iter().map(|it: &Ranked| (it.engine, it.rank)).collect();
+        let line = |kind: &String| {
+            let cases = evidence.cases.iter().filter(|case| case.trouble.contains(kind));
+            let cases: Vec<&str> = cases.map(|case| case.name.as_str()).collect();
+            let cell = |it: &Ranked| {
+                let mut cell = TroubleCell::default();
+                let rows = report.results.iter().filter(|row| row.engine == it.engine);
+                rows.filter(|row| cases.contains(&row.case.as_str())).for_each(|row| cell.add(row));
+                cell
+            };
+            (kind.clone(), cases.len(), report.ranking.iter().map(cell).collect())
+        };
+        Self { engines, lines: kinds.into_iter().map(line).collect() }
+    }
+}
