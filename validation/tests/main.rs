@@ -37,6 +37,7 @@ mod simulate;
 mod spoiled;
 mod strobe_derivative;
 mod sweep;
+mod system_cases;
 mod systems;
 mod terminal;
 mod validate;

@@ -1,0 +1,176 @@
+//! `validate` on cases of piecewise-affine systems: those inside the program, and a user's own.
+
+use crate::support::{refused, run, stdout, text};
+use percuss_validation::case::Cases;
+use percuss_validation::engine::{Accuracy, Limits, SystemTask, answer_system, exact};
+use percuss_validation::truth::{Library, SystemTruth};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A heater with hysteresis: no system of the repository.
+const HEATER: &str = "schema = 1
+name = \"heater\"
+states = [\"warmth\"]
+[parameters]
+band = 0.25
+[[mode]]
+name = \"on\"
+equations = [\"warmth' = 2 - warmth\"]
+[[mode.until]]
+name = \"off-at\"
+guard = \"warmth > 1 + band\"
+next = [{ mode = \"off\" }]
+[[mode]]
+name = \"off\"
+equations = [\"warmth' = -warmth\"]
+[[mode.until]]
+name = \"on-at\"
+guard = \"warmth < 1 - band\"
+next = [{ mode = \"on\" }]
+[start]
+mode = \"on\"
+warmth = 0
+";
+
+const CASE: &str = "[case]
+name = \"warming-up\"
+system = \"heater\"
+why = \"It is cold.\"
+trouble = [\"hysteresis\"]
+[horizon]
+until = 5.0
+";
+
+/// A folder with the heater and its case, as changed.
+fn folder(change: impl Fn(&str) -> String) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().expect("a folder");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text);
+    write("heater.system.toml", HEATER).expect("written");
+    write("warming-up.toml", &change(CASE)).expect("written");
+    folder
+}
+
+fn name(folder: &Path) -> String {
+    folder.display().to_string()
+}
+
+#[test]
+fn the_exact_solver_misses_nothing_and_invents_nothing() {
+    let summary = stdout(&["validate", "-e", "^exact$", "-c", "^(ball|relay|spheres|plastic|c5)-"]);
+    let counts = summary.lines().find(|line| line.contains(" rows: ")).expect("the counts");
+    assert!(
+        counts.contains("rows: 27 pass, 0 not-scored, 0 undecidable, 0 known, 0 fail"),
+        "{counts}"
+    );
+}
+
+#[test]
+fn every_kind_of_trouble_has_two_cases_and_every_system_three() {
+    let cases = Cases::embedded().expect("the cases are read").systems;
+    let mut kinds: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut systems: BTreeMap<&str, usize> = BTreeMap::new();
+    for case in &cases {
+        case.trouble.iter().for_each(|kind| *kinds.entry(kind).or_default() += 1);
+        *systems.entry(&case.system.name).or_default() += 1;
+    }
+    assert!(kinds.len() >= 19 && kinds.values().all(|count| *count >= 2), "{kinds:?}");
+    assert!(systems.len() >= 10 && systems.values().all(|count| *count >= 3), "{systems:?}");
+}
+
+#[test]
+fn a_case_of_ones_own_system_is_held_against_a_run_in_106_bits() {
+    let folder = folder(str::to_owned);
+    let output = run(&["validate", "--cases", &name(folder.path()), "-e", "exact|dopri5$"]);
+    let (table, said) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{table}{said}");
+    assert!(said.contains("warming-up: without tables"), "{said}");
+    assert!(table.contains("hysteresis"), "{table}");
+    assert!(table.contains("4 rows: 4 pass"), "{table}");
+    let listed = stdout(&["cases", "--cases", &name(folder.path())]);
+    assert!(listed.contains("\nwarming-up,hysteresis,heater,"), "{listed}");
+}
+
+/// The truth of a case without tables is what the proved table says, where there is one.
+#[test]
+fn a_run_in_106_bits_is_the_table() {
+    let cases = Cases::embedded().expect("the cases are read").systems;
+    let library = Library::embedded().expect("the manifest is read");
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("manifest.json"), "{\"files\": {}}").expect("written");
+    let none = Library::from_directory(folder.path()).expect("it is read").replaying();
+    let chosen =
+        ["ball-forty-impacts", "buck-periodic", "percussive-chaos", "watched-backward-to-stop"];
+    for case in cases.iter().filter(|case| chosen.contains(&case.name.as_str())) {
+        let proved = library.system_truth(case).expect("its table");
+        let own = none.system_truth(case).expect("its run");
+        assert_eq!(own.ended, proved.ended, "{}", case.name);
+        assert_eq!(own.events.len(), proved.events.len(), "{}", case.name);
+        for (own, proved) in own.events.iter().zip(&proved.events) {
+            assert_eq!((own.event, own.mode), (proved.event, proved.mode), "{}", case.name);
+            let off = own.elapsed.minus(proved.elapsed).value().abs();
+            assert!(off <= 1e-20 * proved.growth_time * case.span(), "{}: {off:e}", case.name);
+        }
+        assert_eq!(own.samples.len(), proved.samples.len(), "{}", case.name);
+        let ends = own.span - proved.span;
+        assert!(ends.abs() <= 1e-8 * case.span(), "{}: {ends:e}", case.name);
+    }
+}
+
+#[test]
+fn what_is_not_accepted_in_a_case_is_named() {
+    let wrong: [(&str, &str, &[&str]); 7] = [
+        ("until = 5.0", "until = -1.0", &["warming-up.toml:7:", "until = -1.0", "after the start"]),
+        ("until = 5.0", "until = 5.0\nsamples = 0", &["warming-up.toml:8:", "1 to 100000"]),
+        ("\"heater\"", "\"cooler\"", &["warming-up.toml:3:", "cooler.system.toml beside the case"]),
+        ("[horizon]", "[probes]\nintegrators = true\n[horizon]", &["probes"]),
+        ("name = \"warming-up\"", "name = \"../up\"", &["warming-up.toml:2:", "name"]),
+        ("[horizon]", "[parameters]\nbond = 1.0\n[horizon]", &["bond", "accepted is one of band"]),
+        ("[horizon]", "[start]\nmode = \"in\"\nwarmth = 0\n[horizon]", &["in", "on"]),
+    ];
+    for (from, to, wanted) in wrong {
+        let folder = folder(|case| case.replacen(from, to, 1));
+        refused(&["validate", "--cases", &name(folder.path())], wanted);
+    }
+    let broken = folder(str::to_owned);
+    let system = broken.path().join("heater.system.toml");
+    fs::write(system, HEATER.replace("2 - warmth", "2 - warmt")).expect("written");
+    let wanted = ["heater.system.toml:8:", "warmt"];
+    refused(&["validate", "--cases", &name(broken.path())], &wanted);
+}
+
+/// Tables that were made for another case are refused, in either direction of time.
+#[test]
+fn a_table_of_another_case_is_refused() {
+    let folder = folder(|case| {
+        case.replace("warming-up", "ball-geometric").replace("\"heater\"", "\"bouncing-ball\"")
+    });
+    let output = run(&["validate", "--cases", &name(folder.path()), "-e", "^exact$"]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(said.contains("ball-geometric.csv") && said.contains("was made for"), "{said}");
+}
+
+/// A state between events is that of the table, backward too.
+#[test]
+fn the_exact_solver_is_sampled_between_events() {
+    let library = Library::embedded().expect("the manifest is read");
+    for case in Cases::embedded().expect("the cases are read").systems {
+        if !["watched-backward", "buck-dense-output"].contains(&case.name.as_str()) {
+            continue;
+        }
+        let truth: SystemTruth = library.system_truth(&case).expect("its table");
+        let problem = Arc::new(case.problem().expect("it is taken"));
+        let task = SystemTask::of(&problem, truth.span, truth.sample_times()).expect("a task");
+        let run = answer_system(exact(), &task, Accuracy::Exact, &Limits::default());
+        let outcome = run.expect("it runs");
+        for (row, state) in truth.samples.iter().zip(&outcome.samples) {
+            for (k, (proved, own)) in row.state.iter().zip(state.iter()).enumerate() {
+                let scale = case.system.scales[k] + proved.value().abs();
+                let off = (proved.value() - own).abs();
+                assert!(off <= 1e-13 * row.growth[k] * scale, "{}: {off:e}", case.name);
+            }
+        }
+    }
+}
