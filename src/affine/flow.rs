@@ -1,6 +1,8 @@
 //! The closed form of a mode: z(t) = exp(M t) z, block by block.
 
-use super::modal::{self, Kind, Real};
+use super::bound::{self, Later};
+use super::modal::{self, Real};
+use super::motion::{BlockMotion, vector};
 use super::system::{LARGEST_DIMENSION, Row};
 use crate::number::Number;
 
@@ -10,18 +12,11 @@ pub(super) type Vector<T> = [T; LARGEST_DIMENSION];
 /// How many derivatives of a row are held, its value included.
 pub(super) const ORDERS: usize = 17;
 
-/// A number in two words of an arithmetic.
-#[derive(Clone, Copy, Debug)]
-struct Words<T> {
-    high: T,
-    low: T,
-}
-
 /// A mode's closed form.
 #[derive(Clone, Debug)]
 pub(super) struct Flow<T> {
     pub dimension: usize,
-    blocks: Vec<Block<T>>,
+    pub blocks: Vec<Block<T>>,
     /// W of all blocks.
     to_modal: Vec<Vector<T>>,
     /// W of all blocks, rounded to f64.
@@ -30,31 +25,16 @@ pub(super) struct Flow<T> {
     from_modal: Vec<Vector<T>>,
 }
 
+/// A block of modal co-ordinates that move by themselves.
 #[derive(Clone, Debug)]
-struct Block<T> {
-    at: usize,
-    size: usize,
+pub(super) struct Block<T> {
+    pub at: usize,
+    pub size: usize,
     motion: BlockMotion<T>,
     /// A bound of the rate at which a vector of it grows, not negative.
     growth: f64,
-}
-
-#[derive(Clone, Debug)]
-enum BlockMotion<T> {
-    Still,
-    Real { rate: Words<T> },
-    Pair { rate: Option<Words<T>>, frequency: Words<T> },
-    Nilpotent { rate: Option<Words<T>>, matrix: Vec<Vector<T>> },
-    Cluster(Box<Powers<T>>),
-}
-
-/// exp(B t) by tables: t = step (d_0 + 16 d_1 + ...) + rest.
-#[derive(Clone, Debug)]
-struct Powers<T> {
-    step: f64,
-    /// exp(B step 16^j d) for d from 1 to 15.
-    tables: Vec<Vec<Vec<Vector<T>>>>,
-    matrix: Vec<Vector<T>>,
+    /// What is known of it at all later times.
+    pub later: Later,
 }
 
 /// A row of z with its derivatives, in modal co-ordinates.
@@ -64,8 +44,11 @@ pub(super) struct ModalRow<T> {
     pub orders: Vec<Vector<T>>,
     /// The sizes of the entries of the row itself.
     sizes: [f64; LARGEST_DIMENSION],
-    /// The norms of the derivatives' parts that belong to each block.
-    norms: Vec<[f64; ORDERS]>,
+    /// The norms of the derivatives' parts that belong to each block, and of what they become
+    /// where the block's co-ordinates only turn and decay.
+    pub norms: Vec<[f64; ORDERS]>,
+    /// The blocks that it is made of, as bits.
+    pub blocks: u16,
 }
 
 /// The distance from 1 to the next smaller number of an arithmetic.
@@ -73,31 +56,6 @@ pub(super) fn unit<T: Number>() -> f64 {
     const HALF: f64 = 0.5 * f64::EPSILON;
     // Double-double arithmetic is good to a few units of 2^-106.
     if T::TERMS <= <f64 as Number>::TERMS { HALF } else { HALF * HALF * 4.0 }
-}
-
-/// A wide number, rounded to an arithmetic of one or two words.
-pub(super) fn rounded<T: Number>(value: &Real) -> T {
-    let (high, low) = value.words();
-    T::exact(high) + T::exact(low)
-}
-
-fn words<T: Number>(value: &Real) -> Words<T> {
-    let high: T = rounded(value);
-    // What is left beyond an arithmetic of two words is not resolved by it either.
-    let rest = if unit::<T>() > 1e-20 { value.words().1 } else { 0.0 };
-    Words { high, low: T::exact(rest) }
-}
-
-fn nonzero<T: Number>(value: &Real) -> Option<Words<T>> {
-    (!value.is_zero()).then(|| words(value))
-}
-
-fn vector<T: Number>(row: &[Real]) -> Vector<T> {
-    let mut vector = [T::zero(); LARGEST_DIMENSION];
-    for (entry, value) in vector.iter_mut().zip(row) {
-        *entry = rounded(value);
-    }
-    vector
 }
 
 /// The sum of products of the first entries.
@@ -138,20 +96,18 @@ impl<T: Number> Flow<T> {
     /// A row of z in modal co-ordinates.
     pub fn row(&self, row: &Row, blocks: &[modal::Block]) -> ModalRow<T> {
         let row: Vec<Real> = row.iter().map(Real::of).collect();
-        let parts: Vec<_> =
-            blocks.iter().map(|block| modal::derivatives(&row, block, ORDERS)).collect();
+        let parts: Vec<_> = blocks.iter().map(|block| bound::derivatives(&row, block)).collect();
         let order = |k: usize| {
             let entries: Vec<_> = parts.iter().flat_map(|part| part[k].iter().cloned()).collect();
             vector(&entries)
         };
         let orders: Vec<Vector<T>> = (0..ORDERS).map(order).collect();
-        let norm = |part: &Vec<Vec<Real>>, k: usize| {
-            let squares = part[k].iter().map(|it| it.to_f64() * it.to_f64());
-            squares.sum::<f64>().sqrt() * (1.0 + 1e-12)
-        };
-        let norms = parts.iter().map(|part| std::array::from_fn(|k| norm(part, k))).collect();
+        let norms: Vec<_> =
+            blocks.iter().zip(&parts).map(|(block, part)| bound::norms(block, part)).collect();
         let sizes = orders[0].map(|it| it.to_f64().abs());
-        ModalRow { orders, sizes, norms }
+        let seen = norms.iter().enumerate().filter(|(_, it)| it.iter().any(|it| *it > 0.0));
+        let blocks = seen.fold(0, |mask, (n, _)| mask | 1 << n);
+        ModalRow { orders, sizes, norms, blocks }
     }
 
     /// The modal co-ordinates of a state.
@@ -184,11 +140,31 @@ impl<T: Number> Flow<T> {
     /// The modal co-ordinates a time later.
     pub fn at(&self, y: &Vector<T>, time: T) -> Vector<T> {
         let mut later = *y;
-        for block in &self.blocks {
-            let range = block.at..block.at + block.size;
-            block.motion.advance(&mut later[range], time);
-        }
+        self.advance(&mut later, time, u16::MAX);
         later
+    }
+
+    /// Advances the co-ordinates of these blocks.
+    #[inline]
+    pub fn advance(&self, y: &mut Vector<T>, time: T, blocks: u16) {
+        for (n, block) in self.blocks.iter().enumerate() {
+            if blocks >> n & 1 == 1 {
+                block.motion.advance(&mut y[block.at..block.at + block.size], time);
+            }
+        }
+    }
+
+    /// The norms of each block's co-ordinates.
+    #[inline]
+    pub fn norms<U: Number>(&self, y: &Vector<U>) -> Vector<f64> {
+        let mut norms = [0.0; LARGEST_DIMENSION];
+        for (norm, block) in norms.iter_mut().zip(&self.blocks) {
+            *norm = match &y[block.at..block.at + block.size] {
+                [one] => one.to_f64().abs(),
+                many => many.iter().map(|it| it.to_f64() * it.to_f64()).sum::<f64>().sqrt(),
+            };
+        }
+        norms
     }
 
     /// The modal co-ordinates of an error, in f64.
@@ -218,20 +194,29 @@ impl<T: Number> Flow<T> {
         y: &Vector<U>,
         length: f64,
     ) -> f64 {
-        let mut sum = 0.0;
-        for (block, norms) in self.blocks.iter().zip(&row.norms) {
-            if norms[order] == 0.0 {
-                continue;
-            }
-            let own = &y[block.at..block.at + block.size];
-            let size = match own {
-                [one] => one.to_f64().abs(),
-                many => many.iter().map(|it| it.to_f64() * it.to_f64()).sum::<f64>().sqrt(),
-            };
-            let growth = if block.growth == 0.0 { 1.0 } else { libm::exp(block.growth * length) };
-            sum += norms[order] * size * growth;
-        }
-        sum * (1.0 + 1e-12)
+        self.bound_by(row, order, &self.norms(y), length)
+    }
+
+    /// The same, from the norms of the blocks' co-ordinates.
+    #[inline]
+    pub fn bound_by(
+        &self,
+        row: &ModalRow<T>,
+        order: usize,
+        sizes: &Vector<f64>,
+        length: f64,
+    ) -> f64 {
+        let parts = self.blocks.iter().zip(&row.norms).zip(sizes);
+        let parts =
+            parts.map(|((block, norms), size)| block.later.bound(norms, order, length) * size);
+        parts.sum::<f64>() * (1.0 + 1e-12)
+    }
+
+    /// How long a bound may be asked for: a growing block grows by at most e.
+    pub fn longest(&self) -> f64 {
+        let rate =
+            |block: &Block<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
+        1.0 / self.blocks.iter().map(rate).fold(0.0, f64::max)
     }
 
     /// The largest growth rate of a block.
@@ -256,150 +241,8 @@ impl<T: Number> ModalRow<T> {
 
 impl<T: Number> Block<T> {
     fn of(block: &modal::Block, at: usize) -> Self {
-        let size = block.matrix.len();
-        let motion = match &block.kind {
-            Kind::Real(rate) if rate.is_zero() => BlockMotion::Still,
-            Kind::Real(rate) => BlockMotion::Real { rate: words(rate) },
-            Kind::Pair(rate, frequency) => {
-                BlockMotion::Pair { rate: nonzero(rate), frequency: words(frequency) }
-            }
-            Kind::Nilpotent(rate) => {
-                let nilpotent = block.matrix.iter().enumerate().map(|(n, row)| {
-                    let mut row = row.clone();
-                    row[n] = &row[n] - rate;
-                    vector(&row)
-                });
-                BlockMotion::Nilpotent { rate: nonzero(rate), matrix: nilpotent.collect() }
-            }
-            Kind::Cluster => BlockMotion::Cluster(Box::new(Powers::of(&block.matrix))),
-        };
-        Self { at, size, motion, growth: growth(block) }
-    }
-}
-
-/// A bound of a block's logarithmic norm, not negative: by the rows of its symmetric part.
-fn growth(block: &modal::Block) -> f64 {
-    if let Kind::Real(rate) | Kind::Pair(rate, _) = &block.kind {
-        return rate.to_f64().max(0.0);
-    }
-    let entry = |i: usize, j: usize| block.matrix[i][j].to_f64();
-    let size = block.matrix.len();
-    let row = |i: usize| {
-        let others = (0..size).filter(|j| *j != i);
-        entry(i, i) + others.map(|j| 0.5 * (entry(i, j) + entry(j, i)).abs()).sum::<f64>()
-    };
-    (0..size).map(row).fold(0.0, f64::max) * (1.0 + 1e-12)
-}
-
-impl<T: Number> BlockMotion<T> {
-    fn advance(&self, y: &mut [T], time: T) {
-        match self {
-            Self::Still => {}
-            Self::Real { rate } => y[0] = y[0] * exponential(*rate, time),
-            Self::Pair { rate, frequency } => {
-                let (sin, cos) = circular(*frequency, time);
-                let (first, second) = (y[0], y[1]);
-                y[0] = cos * first + sin * second;
-                y[1] = cos * second - sin * first;
-                decay(*rate, time, y);
-            }
-            Self::Nilpotent { rate, matrix } => {
-                let start: Vector<T> = copied(y);
-                for k in (1..y.len()).rev() {
-                    let factor = time / T::exact(k as f64);
-                    step(matrix, factor, &start, y);
-                }
-                decay(*rate, time, y);
-            }
-            Self::Cluster(powers) => powers.advance(y, time),
-        }
-    }
-}
-
-/// `y = start + factor * matrix * y`.
-fn step<T: Number>(matrix: &[Vector<T>], factor: T, start: &Vector<T>, y: &mut [T]) {
-    let last: Vector<T> = copied(y);
-    let size = y.len();
-    for (n, entry) in y.iter_mut().enumerate() {
-        *entry = start[n] + factor * dot(&matrix[n], &last, size);
-    }
-}
-
-fn copied<T: Number>(y: &[T]) -> Vector<T> {
-    let mut copy = [T::zero(); LARGEST_DIMENSION];
-    copy[..y.len()].copy_from_slice(y);
-    copy
-}
-
-fn decay<T: Number>(rate: Option<Words<T>>, time: T, y: &mut [T]) {
-    let Some(rate) = rate else { return };
-    let factor = exponential(rate, time);
-    y.iter_mut().for_each(|entry| *entry = *entry * factor);
-}
-
-/// A product with a rate, and what rounding took from it.
-fn product<T: Number>(rate: Words<T>, time: T) -> (T, T) {
-    let high = rate.high * time;
-    (high, rate.high.product_error(time) + rate.low * time)
-}
-
-fn exponential<T: Number>(rate: Words<T>, time: T) -> T {
-    let (high, low) = product(rate, time);
-    let value = high.exp();
-    value + value * low
-}
-
-fn circular<T: Number>(frequency: Words<T>, time: T) -> (T, T) {
-    let (high, low) = product(frequency, time);
-    let (sin, cos) = high.sin_cos();
-    (sin + low * cos, cos - low * sin)
-}
-
-impl<T: Number> Powers<T> {
-    /// Tables up to 16^12 steps, beyond any horizon.
-    const LEVELS: usize = 12;
-
-    fn of(matrix: &[Vec<Real>]) -> Self {
-        let size = modal::norm(matrix);
-        let exponent = if size > 0.0 { -libm::ceil(libm::log2(size)) - 1.0 } else { 0.0 };
-        let step = libm::exp2(exponent);
-        let mut tables = Vec::new();
-        let mut first = modal::exponential(matrix, exponent as isize);
-        for _ in 0..Self::LEVELS {
-            let multiples = modal::multiples(&first, 16);
-            let (last, table) = match multiples.split_last() {
-                Some(split) => split,
-                None => break,
-            };
-            let rounded = |it: &Vec<Vec<Real>>| it.iter().map(|row| vector(row)).collect();
-            tables.push(table.iter().map(rounded).collect());
-            first = last.clone();
-        }
-        Self { step, tables, matrix: matrix.iter().map(|row| vector(row)).collect() }
-    }
-
-    fn advance(&self, y: &mut [T], time: T) {
-        let size = y.len();
-        let steps = libm::floor(time.to_f64() / self.step).max(0.0);
-        let rest = time - T::exact(steps * self.step);
-        let mut digits = steps as u64;
-        for table in &self.tables {
-            let digit = (digits & 15) as usize;
-            digits >>= 4;
-            if digit > 0 {
-                let last: Vector<T> = copied(y);
-                for (entry, row) in y.iter_mut().zip(&table[digit - 1]) {
-                    *entry = dot(row, &last, size);
-                }
-            }
-            if digits == 0 {
-                break;
-            }
-        }
-        let start: Vector<T> = copied(y);
-        // With |B rest| below 1/2 the terms beyond fall under the last digit.
-        for k in (1..2 * T::TERMS).rev() {
-            step(&self.matrix, rest / T::exact(k as f64), &start, y);
-        }
+        let motion = BlockMotion::of(block);
+        let (growth, later) = (bound::growth(block), Later::of(block));
+        Self { at, size: block.matrix.len(), motion, growth, later }
     }
 }

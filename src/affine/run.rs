@@ -2,8 +2,9 @@
 
 use super::clock::{self, Time};
 use super::enclosure::{Crossing, Enclosure};
-use super::flow::{Flow, ORDERS, Vector, dot, unit};
-use super::search::{Early, Found, Point, Segment, Track, Work};
+use super::flow::{Flow, Vector, dot, unit};
+use super::point::{Point, Segment};
+use super::search::{Found, Track, Work};
 use super::solver::{self, Solver};
 use super::structure::{Firing, Structure};
 use super::system::{Direction, LARGEST_DIMENSION, StartPoint};
@@ -80,20 +81,19 @@ pub struct Run<'a, T> {
     /// Where the search goes on.
     tracks: Vec<Track>,
     point: Option<Point<T>>,
-    early: Option<Early<T>>,
+    segment: Option<Segment<'a, T>>,
     pub(super) modal: Vector<T>,
     /// The coefficient of restitution of an impact, from its fastest occurrence.
     pub(super) restitution: Option<Restitution<T>>,
     /// Guards that fire at the instant of entry.
     at_entry: u64,
     at_once: u32,
-    /// A first length to look at.
-    length: f64,
+    /// A first length to look at in each mode.
+    lengths: Vec<f64>,
     queue: VecDeque<Event<T>>,
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
     pub(super) enclosure: Option<Enclosure>,
-    inherited: Vec<f64>,
 }
 
 /// The quotient of the rates after and before an impact, from its fastest occurrence.
@@ -154,20 +154,19 @@ impl<T: Number> Solver<T> {
             state: [T::zero(); LARGEST_DIMENSION],
             tracks: Vec::new(),
             point: None,
-            early: None,
+            segment: None,
             modal: [T::zero(); LARGEST_DIMENSION],
             restitution: None,
             at_entry: 0,
             at_once: 0,
-            length: self.system.time_scale,
+            lengths: vec![self.system.time_scale; self.modes.len()],
             queue: VecDeque::new(),
             ended: false,
             enclosure: None,
-            inherited: Vec::new(),
         };
         let (sin, cos) = self.sin_cos(&entered);
         for (entry, [c, s, one]) in run.state.iter_mut().zip(&start.state) {
-            let number = |it| super::flow::rounded::<T>(&super::modal::Real::of(it));
+            let number = |it| super::motion::rounded::<T>(&super::modal::Real::of(it));
             *entry = number(c) * cos + number(s) * sin + number(one);
         }
         run.complete();
@@ -186,7 +185,7 @@ impl<T: Number> Solver<T> {
     }
 }
 
-impl<T: Number> Run<'_, T> {
+impl<'a, T: Number> Run<'a, T> {
     /// The start, as an event at which nothing happens but that the run begins.
     #[must_use]
     pub fn start(&self) -> Event<T> {
@@ -247,39 +246,12 @@ impl<T: Number> Run<'_, T> {
                 self.at_entry |= 1 << n;
             }
         }
-        self.early = self.early_series(mode);
-        self.inherited.clear();
-        if let Some(errors) = &self.enclosure {
-            self.inherited.extend(solver_mode.guards.iter().map(|row| errors.along(flow, row)));
-        }
-        let segment = segment(solver, mode, self.modal, self.early.take(), &self.inherited);
-        self.point = Some(segment.point(T::zero(), &mut self.work));
-        self.early = segment.early;
-    }
-
-    /// Taylor series at entry, where a guard has structural zeros.
-    fn early_series(&self, mode: usize) -> Option<Early<T>> {
-        if !self.tracks.iter().any(|track| track.live && track.zeros > 0) {
-            return None;
-        }
-        let solver_mode = &self.solver.modes[mode];
-        let flow = &solver_mode.flow;
-        let growth = flow.fastest_growth();
-        let longest = if growth > 0.0 { 1.0 / growth } else { f64::INFINITY };
-        let mut early = Early { limit: longest, orders: Vec::new() };
-        for (row, track) in solver_mode.guards.iter().zip(&self.tracks) {
-            let mut orders = [T::zero(); ORDERS];
-            if track.live {
-                for (k, order) in orders.iter_mut().enumerate().skip(track.zeros) {
-                    *order = dot(&row.orders[k], &self.modal, flow.dimension);
-                }
-                let last = flow.bound(row, ORDERS - 1, &self.modal, longest.min(1e300));
-                let lead = orders[track.zeros].to_f64().abs();
-                early.limit = early.limit.min(series_limit::<T>(lead, track.zeros, last));
-            }
-            early.orders.push(orders);
-        }
-        Some(early)
+        let inherited = self.enclosure.as_ref().map_or_else(Vec::new, |errors| {
+            solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect()
+        });
+        let segment = Segment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
+        self.point = Some(segment.beginning());
+        self.segment = Some(segment);
     }
 
     /// Ends the run here.
@@ -315,13 +287,14 @@ impl<T: Number> Run<'_, T> {
         let mode = self.structure.node(self.node).mode;
         let limit = self.limit();
         let Some(point) = self.point.take() else { return self.end(Ending::Undecided) };
-        let segment = segment(self.solver, mode, self.modal, self.early.take(), &self.inherited);
-        let found = segment.first(&mut self.tracks, point, limit, self.length, &mut self.work);
-        match found {
+        let Some(segment) = self.segment.take() else { return self.end(Ending::Undecided) };
+        let length = self.lengths[mode];
+        match segment.first(&mut self.tracks, point, limit, length, &mut self.work) {
             Found::Lost => self.end(Ending::Undecided),
             Found::Nothing => {
                 let limit = if limit > T::zero() { limit } else { T::zero() };
-                let last = segment.point(limit, &mut self.work);
+                let mut last = segment.point(limit, &mut self.work);
+                last.y = segment.whole(&last);
                 (self.entered, self.state) = self.at(&last);
                 let solver::SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
                 if let Some(errors) = &self.enclosure {
@@ -332,9 +305,9 @@ impl<T: Number> Run<'_, T> {
                 }
                 self.end(Ending::Horizon);
             }
-            Found::Crossing(point, guards) => {
-                self.early = segment.early;
-                self.crossed(point, guards);
+            Found::Crossing(mut point, guards) => {
+                point.y = segment.whole(&point);
+                self.crossed(point, guards, segment);
             }
         }
     }
@@ -357,13 +330,13 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// The guards of these bits are crossed.
-    fn crossed(&mut self, mut point: Point<T>, guards: u64) {
+    fn crossed(&mut self, mut point: Point<T>, guards: u64, segment: Segment<'a, T>) {
         let mode = self.structure.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
         let (time, state) = self.at(&point);
         let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
         self.work.undecidable += u64::from(guards & !tied != 0);
-        let errors = self.errors_at(mode, guards, &point, &state);
+        let errors = self.errors_at(mode, guards, &point, &state, &segment.inherited);
         for n in bits(guards).filter(|n| *n >= until) {
             self.watched(mode, n, until, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;
@@ -375,14 +348,14 @@ impl<T: Number> Run<'_, T> {
                 self.tracks[n].zeros = 1;
                 point.orders[n][0] = T::zero();
             }
-            self.point = Some(point);
+            (self.point, self.segment) = (Some(point), Some(segment));
             return;
         }
         if self.solver.backward {
             (self.entered, self.state, self.enclosure) = (time, state, errors);
             return self.end(Ending::LeavesDomain);
         }
-        self.length = 2.0 * point.time.to_f64();
+        self.lengths[mode] = 2.0 * point.time.to_f64();
         let guards = self.structure.tied(self.node, guards, false);
         let until = ending.trailing_zeros() as usize;
         self.enclosure = errors;
@@ -396,12 +369,13 @@ impl<T: Number> Run<'_, T> {
         guards: u64,
         point: &Point<T>,
         state: &Vector<T>,
+        inherited: &[f64],
     ) -> Option<Enclosure> {
         let enclosure = self.enclosure.as_ref()?;
         let solver_mode = &self.solver.modes[mode];
         let first = guards.trailing_zeros() as usize;
-        let inherited = self.inherited[first]
-            * libm::exp(solver_mode.flow.fastest_growth() * point.time.to_f64());
+        let inherited =
+            inherited[first] * libm::exp(solver_mode.flow.fastest_growth() * point.time.to_f64());
         let mut errors = enclosure.at_crossing(&Crossing {
             flow: &solver_mode.flow,
             matrix: &solver_mode.matrix,
@@ -535,17 +509,6 @@ impl<T: Number> Iterator for Run<'_, T> {
 
 impl<T: Number> std::iter::FusedIterator for Run<'_, T> {}
 
-fn segment<'a, T: Number>(
-    solver: &'a Solver<T>,
-    mode: usize,
-    entry: Vector<T>,
-    early: Option<Early<T>>,
-    inherited: &'a [f64],
-) -> Segment<'a, T> {
-    let mode = &solver.modes[mode];
-    Segment { flow: &mode.flow, rows: &mode.guards, entry, early, inherited }
-}
-
 /// What rounding may have done to each entry of a state that is evaluated.
 fn roundings<T: Number>(flow: &Flow<T>, y: &Vector<T>) -> [f64; LARGEST_DIMENSION] {
     let margin = (flow.dimension + 6) as f64 * unit::<T>();
@@ -559,17 +522,6 @@ fn complete<T: Number>(state: &mut Vector<T>, solver: &Solver<T>, sin: T, cos: T
         state[states] = cos;
         state[states + 1] = sin;
     }
-}
-
-/// Up to which time a Taylor series without its last order is good to the last digit.
-fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64 {
-    if last == 0.0 {
-        return f64::INFINITY;
-    }
-    let order = ORDERS - 1;
-    let factorials: f64 = (zeros + 1..=order).map(|k| k as f64).product();
-    let power = unit::<T>() * lead * factorials / last;
-    libm::pow(power, 1.0 / (order - zeros) as f64)
 }
 
 fn bits(mask: u64) -> impl Iterator<Item = usize> {

@@ -1,8 +1,10 @@
 //! A system made ready to run in one arithmetic.
 
+use super::bound;
 use super::clock::Clock;
-use super::flow::{Flow, ModalRow, Vector, rounded};
+use super::flow::{Flow, ModalRow, Vector};
 use super::modal::{self, Real};
+use super::motion::rounded;
 use super::structure::Structure;
 use super::system::{LARGEST_DIMENSION, Mode, Row, System};
 use crate::number::Number;
@@ -69,7 +71,7 @@ impl<T: Number> Solver<T> {
         for mode in &system.modes {
             let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale);
             let unprepared = || Unprepared { mode: mode.name.clone() };
-            blocks.push(blocks_of_mode.ok_or_else(unprepared)?);
+            blocks.push(bound::ordered(blocks_of_mode.ok_or_else(unprepared)?));
         }
         let structure = Structure::of(&system);
         let structure = structure.ok_or_else(|| Unprepared { mode: system.name.clone() })?;

@@ -1,0 +1,204 @@
+//! A segment's guards at an instant, evaluated from the entry's modal co-ordinates.
+
+use super::flow::{Flow, ModalRow, ORDERS, Vector, dot, unit};
+use super::search::{Track, Work};
+use super::system::LARGEST_DIMENSION;
+use crate::number::Number;
+use smallvec::SmallVec;
+use std::cell::OnceCell;
+
+/// Guards of this number take no memory of their own.
+const INLINE: usize = 4;
+
+/// One thing for each guard.
+pub(super) type PerGuard<T> = SmallVec<[T; INLINE]>;
+
+/// A segment, with all that its guards have at its entry.
+pub(super) struct Segment<'a, T> {
+    pub flow: &'a Flow<T>,
+    pub rows: &'a [ModalRow<T>],
+    pub entry: Vector<T>,
+    /// What errors made before the segment may do to each guard; empty where they are not followed.
+    pub inherited: Vec<f64>,
+    /// Up to which time the guards' Taylor series at entry are good; negative where no guard begins
+    /// with a structural zero, which they keep.
+    pub early: f64,
+    /// The series, once they are asked for.
+    series: OnceCell<PerGuard<[T; ORDERS]>>,
+    /// How many orders of each guard are structural zeros at entry.
+    zeros: PerGuard<usize>,
+    /// The blocks that a guard which can cross is made of.
+    blocks: u16,
+}
+
+/// The guards at an instant.
+#[derive(Clone, Debug)]
+pub(super) struct Point<T> {
+    pub time: T,
+    /// The modal co-ordinates; those of blocks that no guard is made of are the entry's.
+    pub y: Vector<T>,
+    /// The norms of each block's co-ordinates.
+    pub norms: Vector<f64>,
+    /// Value and three derivatives of each guard.
+    pub orders: PerGuard<[T; 4]>,
+    /// What rounding may have done to each value.
+    pub slack: PerGuard<f64>,
+}
+
+impl<'a, T: Number> Segment<'a, T> {
+    /// The segment that begins with these co-ordinates.
+    pub fn new(
+        flow: &'a Flow<T>,
+        rows: &'a [ModalRow<T>],
+        entry: Vector<T>,
+        tracks: &[Track],
+        inherited: Vec<f64>,
+    ) -> Self {
+        let live = || tracks.iter().zip(rows).filter(|(track, _)| track.live);
+        let blocks = live().fold(0, |mask, (_, row)| mask | row.blocks);
+        let zeros = tracks.iter().map(|it| if it.live { it.zeros } else { ORDERS }).collect();
+        let series = OnceCell::new();
+        let mut segment = Self { flow, rows, entry, inherited, early: -1.0, series, zeros, blocks };
+        if live().any(|(track, _)| track.zeros > 0) {
+            segment.early = segment.series_limit();
+        }
+        segment
+    }
+
+    /// Up to which time the series of all guards are good without their last order.
+    fn series_limit(&self) -> f64 {
+        let norms = self.flow.norms(&self.entry);
+        let longest = self.flow.longest();
+        let mut limit = longest;
+        for (row, zeros) in self.rows.iter().zip(&self.zeros).filter(|(_, it)| **it < ORDERS) {
+            let last = self.flow.bound_by(row, ORDERS - 1, &norms, longest.min(1e300));
+            let lead = dot(&row.orders[*zeros], &self.entry, self.flow.dimension).to_f64().abs();
+            limit = limit.min(series_limit::<T>(lead, *zeros, last));
+        }
+        limit
+    }
+
+    /// The guards' Taylor coefficients at entry.
+    fn series(&self) -> &PerGuard<[T; ORDERS]> {
+        self.series.get_or_init(|| {
+            let guard = |(row, zeros): (&ModalRow<T>, &usize)| {
+                let mut coefficients = [T::zero(); ORDERS];
+                let mut factorial = T::one();
+                for (k, coefficient) in coefficients.iter_mut().enumerate() {
+                    if k > 1 {
+                        factorial = factorial * T::exact(k as f64);
+                    }
+                    if k >= *zeros {
+                        let order = dot(&row.orders[k], &self.entry, self.flow.dimension);
+                        *coefficient = order / factorial;
+                    }
+                }
+                coefficients
+            };
+            self.rows.iter().zip(&self.zeros).map(guard).collect()
+        })
+    }
+
+    /// The guards at entry.
+    pub fn beginning(&self) -> Point<T> {
+        let mut point = self.empty(T::zero());
+        self.fill(&mut point);
+        point
+    }
+
+    fn empty(&self, time: T) -> Point<T> {
+        let norms = [0.0; LARGEST_DIMENSION];
+        let (orders, slack) = (SmallVec::new(), SmallVec::new());
+        Point { time, y: self.entry, norms, orders, slack }
+    }
+
+    /// Evaluates the closed form, as far as guards need it.
+    pub fn point(&self, time: T, work: &mut Work) -> Point<T> {
+        work.evaluations += 1;
+        let mut point = self.empty(time);
+        self.flow.advance(&mut point.y, time, self.blocks);
+        self.fill(&mut point);
+        point
+    }
+
+    /// The co-ordinates of all blocks at a point.
+    pub fn whole(&self, point: &Point<T>) -> Vector<T> {
+        let mut y = point.y;
+        self.flow.advance(&mut y, point.time, !self.blocks);
+        y
+    }
+
+    /// The guards from the co-ordinates.
+    fn fill(&self, point: &mut Point<T>) {
+        point.norms = self.flow.norms(&point.y);
+        if point.time.to_f64() <= self.early {
+            for coefficients in self.series() {
+                let (orders, size) = series(coefficients, point.time);
+                point.orders.push(orders);
+                point.slack.push(4.0 * unit::<T>() * size);
+            }
+        } else {
+            self.evaluate(point);
+        }
+        if !self.inherited.is_empty() {
+            let growth = libm::exp(self.flow.fastest_growth() * point.time.to_f64().abs());
+            let errors = point.slack.iter_mut().zip(&self.inherited);
+            errors.for_each(|(slack, inherited)| *slack += inherited * growth);
+        }
+    }
+
+    fn evaluate(&self, point: &mut Point<T>) {
+        let dimension = self.flow.dimension;
+        let margin = (dimension + 4) as f64 * unit::<T>();
+        for (row, zeros) in self.rows.iter().zip(&self.zeros) {
+            if *zeros == ORDERS {
+                point.orders.push([T::zero(); 4]);
+                point.slack.push(0.0);
+                continue;
+            }
+            let order = |k: usize| dot(&row.orders[k], &point.y, dimension);
+            point.orders.push([order(0), order(1), order(2), order(3)]);
+            point.slack.push(margin * row.size(&point.y, dimension));
+        }
+    }
+}
+
+/// Value and three derivatives of a Taylor series, and the size of what the value is summed from.
+fn series<T: Number>(coefficients: &[T; ORDERS], time: T) -> ([T; 4], f64) {
+    let [mut value, mut slope, mut bend, mut third] = [T::zero(); 4];
+    let (mut size, size_of_time) = (0.0, time.to_f64().abs());
+    let is_there = |it: &T| *it != T::zero();
+    let last = coefficients[..ORDERS - 1].iter().rposition(is_there).map_or(0, |it| it + 1);
+    for coefficient in coefficients[..last].iter().rev() {
+        third = third * time + bend;
+        bend = bend * time + slope;
+        slope = slope * time + value;
+        value = value * time + *coefficient;
+        size = size * size_of_time + coefficient.to_f64().abs();
+    }
+    ([value, slope, bend + bend, T::exact(6.0) * third], size)
+}
+
+/// Up to which time a Taylor series without its last order is good to the last digit.
+fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64 {
+    if last == 0.0 {
+        return f64::INFINITY;
+    }
+    let order = ORDERS - 1;
+    let factorials: f64 = (zeros + 1..=order).map(|k| k as f64).product();
+    let power = unit::<T>() * lead * factorials / last;
+    0.9 * root(power, order - zeros)
+}
+
+/// A root to some per cent: by a division of the logarithm that a number's bits are.
+pub(super) fn root(value: f64, degree: usize) -> f64 {
+    const ONE: u64 = 1.0_f64.to_bits();
+    if value == 0.0 || value == f64::INFINITY || value.is_nan() {
+        return value;
+    }
+    let bits = value.to_bits();
+    let share = |bits: u64| bits / degree as u64;
+    f64::from_bits(if bits >= ONE { ONE + share(bits - ONE) } else { ONE - share(ONE - bits) })
+}
+
+const _: () = assert!(LARGEST_DIMENSION < ORDERS);
