@@ -17,11 +17,11 @@ pub(super) const ORDERS: usize = 17;
 pub(super) struct Flow<T> {
     pub dimension: usize,
     pub blocks: Vec<Block<T>>,
-    /// W of all blocks.
+    /// W of all blocks, by columns.
     to_modal: Vec<Vector<T>>,
-    /// W of all blocks, rounded to f64.
+    /// W of all blocks, rounded to f64, by columns.
     to_modal_rounded: Vec<Vector<f64>>,
-    /// X of all blocks.
+    /// X of all blocks, by columns.
     from_modal: Vec<Vector<T>>,
 }
 
@@ -42,13 +42,36 @@ pub(super) struct Block<T> {
 pub(super) struct ModalRow<T> {
     /// The row's derivatives.
     pub orders: Vec<Vector<T>>,
-    /// The sizes of the entries of the row itself.
-    sizes: [f64; LARGEST_DIMENSION],
-    /// The norms of the derivatives' parts that belong to each block, and of what they become
-    /// where the block's co-ordinates only turn and decay.
-    pub norms: Vec<[f64; ORDERS]>,
-    /// The blocks that it is made of, as bits.
+    /// The co-ordinates that it is made of, in their order.
+    pub columns: Vec<Column<T>>,
+    /// The blocks that it is made of, in their order.
+    pub parts: Vec<RowPart>,
+    /// The same blocks, as bits.
     pub blocks: u16,
+}
+
+/// A co-ordinate's factors in a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Column<T> {
+    pub at: usize,
+    /// In the value and three derivatives.
+    pub orders: [T; 4],
+    /// The size of the first.
+    size: f64,
+}
+
+/// A block's part in a row.
+#[derive(Clone, Debug)]
+pub(super) struct RowPart {
+    /// The block's index.
+    pub block: usize,
+    /// Its first column and the one after its last, among those of the row.
+    pub columns: (usize, usize),
+    /// What is known of the block at all later times.
+    pub later: Later,
+    /// The norms of the derivatives' parts, and of what they become where the block's co-ordinates
+    /// only turn and decay.
+    pub norms: [f64; ORDERS],
 }
 
 /// The distance from 1 to the next smaller number of an arithmetic.
@@ -79,15 +102,14 @@ impl<T: Number> Flow<T> {
             to_modal_rounded: Vec::new(),
             from_modal: Vec::new(),
         };
-        for row in 0..dimension {
-            let entries = blocks.iter().flat_map(|it| it.columns[row].iter().cloned());
-            flow.from_modal.push(vector(&entries.collect::<Vec<_>>()));
-        }
+        let mut to_modal = Vec::new();
         for block in blocks {
-            let at = flow.to_modal.len();
-            flow.to_modal.extend(block.rows.iter().map(|row| vector(row)));
+            flow.from_modal.extend(transposed(&block.columns));
+            let at = to_modal.len();
+            to_modal.extend(block.rows.iter().cloned());
             flow.blocks.push(Block::of(block, at));
         }
+        flow.to_modal = transposed(&to_modal);
         let rounded = |row: &Vector<T>| row.map(Number::to_f64);
         flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
         flow
@@ -102,37 +124,32 @@ impl<T: Number> Flow<T> {
             vector(&entries)
         };
         let orders: Vec<Vector<T>> = (0..ORDERS).map(order).collect();
-        let norms: Vec<_> =
-            blocks.iter().zip(&parts).map(|(block, part)| bound::norms(block, part)).collect();
-        let sizes = orders[0].map(|it| it.to_f64().abs());
-        let seen = norms.iter().enumerate().filter(|(_, it)| it.iter().any(|it| *it > 0.0));
-        let blocks = seen.fold(0, |mask, (n, _)| mask | 1 << n);
-        ModalRow { orders, sizes, norms, blocks }
+        let mut modal = ModalRow { orders, columns: Vec::new(), parts: Vec::new(), blocks: 0 };
+        for (n, (block, part)) in blocks.iter().zip(&parts).enumerate() {
+            let norms = bound::norms(block, part);
+            if norms.iter().any(|it| *it > 0.0) {
+                modal.add_part(n, &self.blocks[n], norms);
+            }
+        }
+        modal
     }
 
     /// The modal co-ordinates of a state.
     pub fn modal(&self, z: &Vector<T>) -> Vector<T> {
-        self.times(&self.to_modal, z)
+        times(&self.to_modal, z)
     }
 
     /// The state with these modal co-ordinates.
     pub fn state(&self, y: &Vector<T>) -> Vector<T> {
-        self.times(&self.from_modal, y)
-    }
-
-    fn times(&self, rows: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
-        let mut product = [T::zero(); LARGEST_DIMENSION];
-        for (entry, row) in product.iter_mut().zip(rows) {
-            *entry = dot(row, vector, self.dimension);
-        }
-        product
+        times(&self.from_modal, y)
     }
 
     /// The sizes of what each entry of the state is summed from.
     pub fn sizes(&self, y: &Vector<T>) -> [f64; LARGEST_DIMENSION] {
         let mut sizes = [0.0; LARGEST_DIMENSION];
-        for (size, row) in sizes.iter_mut().zip(&self.from_modal) {
-            *size = row.iter().zip(y).map(|(a, b)| (a.to_f64() * b.to_f64()).abs()).sum();
+        for (column, entry) in self.from_modal.iter().zip(y) {
+            let terms = column.iter().map(|it| (it.to_f64() * entry.to_f64()).abs());
+            sizes.iter_mut().zip(terms).for_each(|(size, term)| *size += term);
         }
         sizes
     }
@@ -169,11 +186,7 @@ impl<T: Number> Flow<T> {
 
     /// The modal co-ordinates of an error, in f64.
     pub fn modal_rounded(&self, z: &Vector<f64>) -> Vector<f64> {
-        let mut product = [0.0; LARGEST_DIMENSION];
-        for (entry, row) in product.iter_mut().zip(&self.to_modal_rounded) {
-            *entry = dot(row, z, self.dimension);
-        }
-        product
+        times(&self.to_modal_rounded, z)
     }
 
     /// The columns of exp(M t), in f64.
@@ -206,9 +219,8 @@ impl<T: Number> Flow<T> {
         sizes: &Vector<f64>,
         length: f64,
     ) -> f64 {
-        let parts = self.blocks.iter().zip(&row.norms).zip(sizes);
-        let parts =
-            parts.map(|((block, norms), size)| block.later.bound(norms, order, length) * size);
+        let parts = row.parts.iter();
+        let parts = parts.map(|it| it.later.bound(&it.norms, order, length) * sizes[it.block]);
         parts.sum::<f64>() * (1.0 + 1e-12)
     }
 
@@ -226,16 +238,69 @@ impl<T: Number> Flow<T> {
 }
 
 impl<T: Number> ModalRow<T> {
-    /// The sum of the sizes of what the row's value is summed from.
-    pub fn size(&self, y: &Vector<T>, dimension: usize) -> f64 {
-        let terms = self.sizes[..dimension].iter().zip(y);
-        terms.map(|(size, entry)| size * entry.to_f64().abs()).sum()
+    fn add_part(&mut self, n: usize, block: &Block<T>, norms: [f64; ORDERS]) {
+        let first = self.columns.len();
+        for at in block.at..block.at + block.size {
+            let orders = [0, 1, 2, 3].map(|k: usize| self.orders[k][at]);
+            let used = self.orders.iter().any(|order| order[at] != T::zero());
+            if used {
+                self.columns.push(Column { at, orders, size: orders[0].to_f64().abs() });
+            }
+        }
+        let columns = (first, self.columns.len());
+        self.parts.push(RowPart { block: n, columns, later: block.later, norms });
+        self.blocks |= 1 << n;
     }
 
-    /// The sizes of what a derivative is summed from.
-    pub fn size_of(&self, order: usize, y: &Vector<T>, dimension: usize) -> f64 {
-        let terms = self.orders[order][..dimension].iter().zip(y);
-        terms.map(|(factor, entry)| (factor.to_f64() * entry.to_f64()).abs()).sum()
+    /// The first column of a part, or the end of them.
+    #[inline]
+    pub fn first_column(&self, part: usize) -> usize {
+        self.parts.get(part).map_or(self.columns.len(), |it| it.columns.0)
+    }
+
+    /// Value and three derivatives, from a column on.
+    #[inline]
+    pub fn first_orders(&self, y: &Vector<T>, from: usize) -> [T; 4] {
+        let mut sums = [T::zero(); 4];
+        for column in &self.columns[from..] {
+            let entry = y[column.at];
+            for (sum, factor) in sums.iter_mut().zip(column.orders) {
+                *sum = *sum + factor * entry;
+            }
+        }
+        sums
+    }
+
+    /// Value and three derivatives, and the sum of the sizes of what the value is summed from.
+    #[inline]
+    pub fn sized_orders(&self, y: &Vector<T>) -> ([T; 4], f64) {
+        let (mut sums, mut size) = ([T::zero(); 4], 0.0);
+        for column in &self.columns {
+            let entry = y[column.at];
+            for (sum, factor) in sums.iter_mut().zip(column.orders) {
+                *sum = *sum + factor * entry;
+            }
+            size += column.size * entry.to_f64().abs();
+        }
+        (sums, size)
+    }
+
+    /// The sum of the sizes of what the row's value is summed from.
+    #[inline]
+    pub fn size(&self, y: &Vector<T>) -> f64 {
+        self.columns.iter().map(|it| it.size * y[it.at].to_f64().abs()).sum()
+    }
+
+    /// A derivative, and the sum of the sizes of what it is summed from.
+    pub fn order(&self, order: usize, y: &Vector<T>) -> (T, f64) {
+        let row = &self.orders[order];
+        let (mut sum, mut size) = (T::zero(), 0.0);
+        for Column { at, .. } in &self.columns {
+            let term = row[*at] * y[*at];
+            sum = sum + term;
+            size += term.to_f64().abs();
+        }
+        (sum, size)
     }
 }
 
@@ -245,4 +310,27 @@ impl<T: Number> Block<T> {
         let (growth, later) = (bound::growth(block), Later::of(block));
         Self { at, size: block.matrix.len(), motion, growth, later }
     }
+}
+
+/// The product of a matrix, given by its columns, with a vector; entries beyond its rows are zero.
+#[inline]
+fn times<T: Number>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
+    const LANES: usize = 4;
+    let mut product = [T::zero(); LARGEST_DIMENSION];
+    let lanes = columns.len().div_ceil(LANES);
+    for (column, factor) in columns.iter().zip(vector) {
+        let chunks = product.chunks_exact_mut(LANES).zip(column.chunks_exact(LANES));
+        for (sums, entries) in chunks.take(lanes) {
+            for (sum, entry) in sums.iter_mut().zip(entries) {
+                *sum = *sum + *entry * *factor;
+            }
+        }
+    }
+    product
+}
+
+fn transposed<T: Number>(matrix: &[Vec<Real>]) -> Vec<Vector<T>> {
+    let columns = matrix.first().map_or(0, Vec::len);
+    let column = |n: usize| vector(&matrix.iter().map(|row| row[n].clone()).collect::<Vec<_>>());
+    (0..columns).map(column).collect()
 }

@@ -12,6 +12,9 @@ type Hull<T> = [T; 9];
 /// The narrowest part of a piece that is looked at without an evaluation.
 const NARROWEST: f64 = 1.0 / 65_536.0;
 
+/// How near to a root a place before it is, as a share of it: Newton's method does the rest.
+const NEAR: f64 = 1e-3;
+
 /// What is known of a guard on a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Judged {
@@ -165,42 +168,43 @@ fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f6
 /// A place just before the root of a hull that has one: where it is negative beyond rounding.
 fn negative_until(hull: &[f64; 9]) -> f64 {
     const STEPS: usize = 16;
-    const CHOOSE: [f64; 9] = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
-    let mut terms = *hull;
-    terms.iter_mut().zip(CHOOSE).for_each(|(term, choose)| *term *= choose);
-    let rounding = 64.0 * f64::EPSILON * hull.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+    /// A difference of order k is off by 2^k roundings of k sums, and has the weight C(8, k): 3^8
+    /// in all, and eight times that.
+    const ROUNDING: f64 = 8.0 * 6561.0 * f64::EPSILON;
+    let powers = powers(hull);
+    let size = hull.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
     let (mut low, mut high) = (0.0, 1.0);
-    let (mut below, mut above) = (f64::NAN, hull[8]);
+    let (mut below, mut above) = (hull[0], hull[8]);
     for step in 0..STEPS {
         // The secant, kept off the ends; every third step halves.
         let secant = low + (high - low) * (below / (below - above)).clamp(0.02, 0.98);
-        let middle = if step % 3 == 2 || secant.is_nan() { 0.5 * (low + high) } else { secant };
-        let value = value(&terms, middle) + rounding;
+        let halves = step % 3 == 2 || !(below < 0.0 && above > 0.0);
+        let middle = if halves { 0.5 * (low + high) } else { secant };
+        let value = powers.iter().rev().fold(0.0, |sum, it| sum * middle + it) + ROUNDING * size;
         if value < 0.0 {
             (low, below) = (middle, value);
         } else {
             (high, above) = (middle, value);
         }
-        if high - low < 1e-4 * high {
+        if high - low < NEAR * high {
             break;
         }
     }
     low
 }
 
-/// The value of a polynomial from its Bernstein coefficients times their binomials.
-fn value(terms: &[f64; 9], at: f64) -> f64 {
-    let rest = 1.0 - at;
-    let (mut sum, mut power) = (0.0, 1.0);
-    let mut rests = [1.0; 9];
-    for n in 1..9 {
-        rests[n] = rests[n - 1] * rest;
+/// The coefficients of a polynomial in powers, from its Bernstein coefficients: C(8, k) times their
+/// differences.
+fn powers(hull: &[f64; 9]) -> [f64; 9] {
+    const CHOOSE: [f64; 9] = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
+    let mut powers = *hull;
+    for order in 1..9 {
+        for n in (order..9).rev() {
+            powers[n] -= powers[n - 1];
+        }
     }
-    for n in 0..9 {
-        sum += terms[n] * power * rests[8 - n];
-        power *= at;
-    }
-    sum
+    powers.iter_mut().zip(CHOOSE).for_each(|(power, choose)| *power *= choose);
+    powers
 }
 
 fn halves<T: Number>(hull: &Hull<T>) -> (Hull<T>, Hull<T>) {

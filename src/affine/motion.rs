@@ -29,10 +29,18 @@ pub(super) enum BlockMotion<T> {
     /// The matrix to the power of `index` is zero.
     Nilpotent {
         rate: Option<Words<T>>,
-        matrix: Vec<Vector<T>>,
+        entries: Vec<Entry<T>>,
         index: usize,
     },
     Cluster(Box<Powers<T>>),
+}
+
+/// An entry of a matrix that is not zero.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry<T> {
+    row: usize,
+    column: usize,
+    value: T,
 }
 
 /// exp(B t) by tables: t = step (d_0 + 16 d_1 + ...) + rest.
@@ -98,8 +106,7 @@ impl<T: Number> BlockMotion<T> {
                 if index <= 1 && rate.is_zero() {
                     return Self::Still;
                 }
-                let matrix = matrix.iter().map(|row| vector(row)).collect();
-                Self::Nilpotent { rate: nonzero(rate), matrix, index }
+                Self::Nilpotent { rate: nonzero(rate), entries: entries(&matrix), index }
             }
             Kind::Cluster => Self::Cluster(Box::new(Powers::of(&block.matrix))),
         }
@@ -118,15 +125,35 @@ impl<T: Number> BlockMotion<T> {
                 y[1] = cos * second - sin * first;
                 decay(*rate, time, y);
             }
-            Self::Nilpotent { rate, matrix, index } => {
-                let start: Vector<T> = copied(y);
-                for k in (1..*index).rev() {
-                    let factor = if k == 1 { time } else { time / T::exact(k as f64) };
-                    step(matrix, factor, &start, y);
-                }
+            Self::Nilpotent { rate, entries, index } => {
+                polynomial(entries, *index, y, time);
                 decay(*rate, time, y);
             }
             Self::Cluster(powers) => powers.advance(y, time),
+        }
+    }
+}
+
+fn entries<T: Number>(matrix: &[Vec<Real>]) -> Vec<Entry<T>> {
+    let mut entries = Vec::new();
+    for (row, values) in matrix.iter().enumerate() {
+        for (column, value) in values.iter().enumerate().filter(|(_, it)| !it.is_zero()) {
+            entries.push(Entry { row, column, value: rounded(value) });
+        }
+    }
+    entries
+}
+
+/// `y = exp(N time) y` by Horner's scheme.
+#[inline]
+fn polynomial<T: Number>(entries: &[Entry<T>], index: usize, y: &mut [T], time: T) {
+    let start: Vector<T> = copied(y);
+    for k in (1..index).rev() {
+        let factor = if k == 1 { time } else { time / T::exact(k as f64) };
+        let last = if k + 1 == index { start } else { copied(y) };
+        y.copy_from_slice(&start[..y.len()]);
+        for Entry { row, column, value } in entries {
+            y[*row] = y[*row] + factor * (*value * last[*column]);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! A segment's guards at an instant, evaluated from the entry's modal co-ordinates.
 
-use super::flow::{Flow, ModalRow, ORDERS, Vector, dot, unit};
+use super::flow::{Flow, ModalRow, ORDERS, Vector, unit};
 use super::search::{Track, Work};
 use super::system::LARGEST_DIMENSION;
 use crate::number::Number;
@@ -24,7 +24,7 @@ pub(super) struct Segment<'a, T> {
     /// with a structural zero, which they keep.
     pub early: f64,
     /// The series, once they are asked for.
-    series: OnceCell<PerGuard<[T; ORDERS]>>,
+    series: OnceCell<Vec<[T; ORDERS]>>,
     /// How many orders of each guard are structural zeros at entry.
     zeros: PerGuard<usize>,
     /// The blocks that a guard which can cross is made of.
@@ -72,16 +72,16 @@ impl<'a, T: Number> Segment<'a, T> {
         let mut limit = longest;
         for (row, zeros) in self.rows.iter().zip(&self.zeros).filter(|(_, it)| **it < ORDERS) {
             let last = self.flow.bound_by(row, ORDERS - 1, &norms, longest.min(1e300));
-            let lead = dot(&row.orders[*zeros], &self.entry, self.flow.dimension).to_f64().abs();
+            let lead = row.order(*zeros, &self.entry).0.to_f64().abs();
             limit = limit.min(series_limit::<T>(lead, *zeros, last));
         }
         limit
     }
 
     /// The guards' Taylor coefficients at entry.
-    fn series(&self) -> &PerGuard<[T; ORDERS]> {
+    fn series(&self) -> &[[T; ORDERS]] {
         self.series.get_or_init(|| {
-            let guard = |(row, zeros): (&ModalRow<T>, &usize)| {
+            let guard = |(row, zeros): (&ModalRow<T>, &usize)| -> [T; ORDERS] {
                 let mut coefficients = [T::zero(); ORDERS];
                 let mut factorial = T::one();
                 for (k, coefficient) in coefficients.iter_mut().enumerate() {
@@ -89,8 +89,7 @@ impl<'a, T: Number> Segment<'a, T> {
                         factorial = factorial * T::exact(k as f64);
                     }
                     if k >= *zeros {
-                        let order = dot(&row.orders[k], &self.entry, self.flow.dimension);
-                        *coefficient = order / factorial;
+                        *coefficient = row.order(k, &self.entry).0 / factorial;
                     }
                 }
                 coefficients
@@ -99,67 +98,101 @@ impl<'a, T: Number> Segment<'a, T> {
         })
     }
 
-    /// The guards at entry.
-    pub fn beginning(&self) -> Point<T> {
-        let mut point = self.empty(T::zero());
-        self.fill(&mut point);
-        point
-    }
-
-    fn empty(&self, time: T) -> Point<T> {
-        let norms = [0.0; LARGEST_DIMENSION];
-        let (orders, slack) = (SmallVec::new(), SmallVec::new());
-        Point { time, y: self.entry, norms, orders, slack }
+    /// The guards at entry, with their structural zeros.
+    pub fn begin(&self, point: &mut Point<T>) {
+        (point.time, point.y) = (T::zero(), self.entry);
+        self.fill(point);
+        let guards = point.orders.iter_mut().zip(&mut point.slack).zip(&self.zeros);
+        for ((orders, slack), zeros) in guards.filter(|(_, zeros)| **zeros > 0) {
+            orders.iter_mut().take(*zeros).for_each(|order| *order = T::zero());
+            *slack = 0.0;
+        }
+        self.inherit(point);
     }
 
     /// Evaluates the closed form, as far as guards need it.
-    pub fn point(&self, time: T, work: &mut Work) -> Point<T> {
+    pub fn evaluate(&self, point: &mut Point<T>, time: T, work: &mut Work) {
         work.evaluations += 1;
-        let mut point = self.empty(time);
+        (point.time, point.y) = (time, self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);
-        self.fill(&mut point);
-        point
+        if time.to_f64() <= self.early {
+            self.fill_early(point);
+        } else {
+            self.fill(point);
+        }
+        self.inherit(point);
     }
 
-    /// The co-ordinates of all blocks at a point.
-    pub fn whole(&self, point: &Point<T>) -> Vector<T> {
-        let mut y = point.y;
-        self.flow.advance(&mut y, point.time, !self.blocks);
-        y
+    /// Evaluates the blocks of a point that no guard is made of.
+    pub fn complete(&self, point: &mut Point<T>) {
+        self.flow.advance(&mut point.y, point.time, !self.blocks);
     }
 
     /// The guards from the co-ordinates.
     fn fill(&self, point: &mut Point<T>) {
         point.norms = self.flow.norms(&point.y);
-        if point.time.to_f64() <= self.early {
-            for coefficients in self.series() {
-                let (orders, size) = series(coefficients, point.time);
-                point.orders.push(orders);
-                point.slack.push(4.0 * unit::<T>() * size);
-            }
-        } else {
-            self.evaluate(point);
-        }
-        if !self.inherited.is_empty() {
-            let growth = libm::exp(self.flow.fastest_growth() * point.time.to_f64().abs());
-            let errors = point.slack.iter_mut().zip(&self.inherited);
-            errors.for_each(|(slack, inherited)| *slack += inherited * growth);
-        }
-    }
-
-    fn evaluate(&self, point: &mut Point<T>) {
-        let dimension = self.flow.dimension;
-        let margin = (dimension + 4) as f64 * unit::<T>();
+        let margin = (self.flow.dimension + 4) as f64 * unit::<T>();
+        point.orders.clear();
+        point.slack.clear();
         for (row, zeros) in self.rows.iter().zip(&self.zeros) {
             if *zeros == ORDERS {
                 point.orders.push([T::zero(); 4]);
                 point.slack.push(0.0);
                 continue;
             }
-            let order = |k: usize| dot(&row.orders[k], &point.y, dimension);
-            point.orders.push([order(0), order(1), order(2), order(3)]);
-            point.slack.push(margin * row.size(&point.y, dimension));
+            let (orders, size) = row.sized_orders(&point.y);
+            point.orders.push(orders);
+            point.slack.push(margin * size);
         }
+    }
+
+    /// The guards from their Taylor series.
+    fn fill_early(&self, point: &mut Point<T>) {
+        point.norms = self.flow.norms(&point.y);
+        point.orders.clear();
+        point.slack.clear();
+        let margin = (self.flow.dimension + 4) as f64 * unit::<T>();
+        for ((coefficients, row), zeros) in self.series().iter().zip(self.rows).zip(&self.zeros) {
+            let (orders, size) = series(coefficients, point.time);
+            let value = if *zeros == 0 { margin * row.size(&self.entry) } else { 0.0 };
+            point.orders.push(orders);
+            point.slack.push(4.0 * unit::<T>() * size + value);
+        }
+    }
+
+    fn inherit(&self, point: &mut Point<T>) {
+        if !self.inherited.is_empty() {
+            let growth = libm::exp(self.flow.fastest_growth() * point.time.to_f64().abs());
+            let errors = point.slack.iter_mut().zip(&self.inherited);
+            errors.for_each(|(slack, inherited)| *slack += inherited * growth);
+        }
+    }
+}
+
+impl<T: Number> Default for Point<T> {
+    fn default() -> Self {
+        let (y, norms) = ([T::zero(); LARGEST_DIMENSION], [0.0; LARGEST_DIMENSION]);
+        Self { time: T::zero(), y, norms, orders: SmallVec::new(), slack: SmallVec::new() }
+    }
+}
+
+/// The two ends of a piece.
+#[derive(Clone, Debug)]
+pub(super) struct Ends<T> {
+    pub left: Point<T>,
+    pub right: Point<T>,
+}
+
+impl<T> Ends<T> {
+    /// Goes on to the right end.
+    pub fn step(&mut self) {
+        std::mem::swap(&mut self.left, &mut self.right);
+    }
+}
+
+impl<T: Number> Default for Ends<T> {
+    fn default() -> Self {
+        Self { left: Point::default(), right: Point::default() }
     }
 }
 

@@ -7,9 +7,9 @@
 //! only a constant, the piece has no end.
 
 use super::bound::Later;
-use super::flow::{Vector, dot};
+use super::flow::{ModalRow, RowPart, Vector};
 use super::hull::{self, Judged, Lengths};
-use super::point::{Point, Segment, root};
+use super::point::{Ends, Point, Segment, root};
 use super::search::{Track, outward};
 use crate::crossing::certificate::MIDDLE;
 use crate::number::Number;
@@ -40,37 +40,38 @@ pub(super) struct Reach {
 impl<T: Number> Segment<'_, T> {
     /// How far a guard is looked at from a point.
     pub fn reach(&self, n: usize, track: &Track, left: &Point<T>, longest: f64) -> Reach {
-        let (row, blocks) = (&self.rows[n], &self.flow.blocks);
+        let row = &self.rows[n];
         let orders = outward(&left.orders[n], track).map(Number::to_f64);
-        let eighth = |block: usize| {
-            blocks[block].later.bound(&row.norms[block], 8, longest) * left.norms[block]
-        };
-        let mut rest: f64 = (0..blocks.len()).map(eighth).sum();
-        let size = row.size(&left.y, self.flow.dimension);
-        let whole = length(&orders, rest, track.zeros, size).min(longest);
+        let eighth =
+            |part: &RowPart| part.later.bound(&part.norms, 8, longest) * left.norms[part.block];
+        let all: f64 = row.parts.iter().map(eighth).sum();
+        let size = || row.size(&left.y);
+        let whole = length(&orders, all, track.zeros, size).min(longest);
         let mut reach = Reach { cut: 0, length: whole, whole };
-        if track.zeros > 0 || whole >= longest {
-            return reach;
+        if track.zeros == 0 && whole < longest {
+            let mut value = orders[0];
+            for (k, part) in row.parts.iter().enumerate() {
+                let own = part_of(row, part, track, &left.y);
+                value += match part.later {
+                    Later::Fading => own.max(0.0) - own,
+                    Later::Steady => part.norms[0] * left.norms[part.block] - own,
+                    Later::Polynomial | Later::Growing(_) => break,
+                };
+                if value > LEFT * orders[0] {
+                    break;
+                }
+                let rest: f64 = row.parts[k + 1..].iter().map(eighth).sum();
+                let further = root(REMAINDER * MIDDLE * -value / rest, 8).min(longest);
+                if further > 1.5 * reach.length {
+                    reach = Reach { cut: k + 1, length: further, whole };
+                }
+            }
         }
-        let mut value = orders[0];
-        for block in 0..blocks.len() {
-            if row.blocks >> block & 1 == 0 {
-                continue;
-            }
-            let part = self.part(n, track, &left.y, block);
-            value += match blocks[block].later {
-                Later::Fading => part.max(0.0) - part,
-                Later::Steady => row.norms[block][0] * left.norms[block] - part,
-                Later::Polynomial | Later::Growing(_) => break,
-            };
-            if value > LEFT * orders[0] {
-                break;
-            }
-            rest = (block + 1..blocks.len()).map(eighth).sum();
-            let further = remaining(-value, rest).min(longest);
-            if further > 1.5 * reach.length {
-                reach = Reach { cut: block + 1, length: further, whole };
-            }
+        if reach.length == f64::INFINITY {
+            let orders = outward(&row.first_orders(&left.y, row.first_column(reach.cut)), track);
+            let orders = orders.map(Number::to_f64);
+            reach.length = polynomial_reach(&orders, track.zeros, left.slack[n]);
+            reach.whole = reach.whole.min(reach.length);
         }
         reach
     }
@@ -81,91 +82,99 @@ impl<T: Number> Segment<'_, T> {
         n: usize,
         track: &Track,
         reach: &Reach,
-        [left, right]: [&Point<T>; 2],
+        ends: &Ends<T>,
         lengths: &Lengths<T>,
     ) -> Judged {
+        let Ends { left, right } = ends;
+        let row = &self.rows[n];
         let slack = left.slack[n].max(right.slack[n]);
         let length = lengths.length.to_f64();
         if reach.cut == 0 || length <= reach.whole {
-            let ends = [outward(&left.orders[n], track), outward(&right.orders[n], track)];
-            let eighth = self.eighth(n, track, left, 0, length);
-            return hull::judge(&ends, lengths, eighth, [0.0; 2], slack, track.zeros);
+            let orders = [outward(&left.orders[n], track), outward(&right.orders[n], track)];
+            let eighth = eighth(row, track, left, 0, length);
+            return hull::judge(&orders, lengths, eighth, [0.0; 2], slack, track.zeros);
         }
-        let raise = self.raise(n, track, [left, right], reach.cut);
-        let ends = [left, right].map(|point| self.slow_orders(n, track, &point.y, reach.cut));
-        let eighth = self.eighth(n, track, left, reach.cut, length);
-        hull::judge(&ends, lengths, eighth, raise, slack, track.zeros)
+        let raise = raise(row, track, ends, reach.cut);
+        let from = row.first_column(reach.cut);
+        let orders = [left, right].map(|it| outward(&row.first_orders(&it.y, from), track));
+        let eighth = eighth(row, track, left, reach.cut, length);
+        hull::judge(&orders, lengths, eighth, raise, slack, track.zeros)
     }
+}
 
-    /// An upper bound of the eighth derivative of all blocks from `cut` on, not negative.
-    fn eighth(&self, n: usize, track: &Track, left: &Point<T>, cut: usize, length: f64) -> f64 {
-        let row = &self.rows[n];
-        let mut sum = 0.0;
-        for (k, block) in self.flow.blocks.iter().enumerate().skip(cut) {
-            // An even derivative of a decay has its sign.
-            let falls = block.later == Later::Fading && self.part(n, track, &left.y, k) <= 0.0;
-            if !falls {
-                sum += block.later.bound(&row.norms[k], 8, length) * left.norms[k];
-            }
+/// An upper bound of the eighth derivative of all blocks from `cut` on, not negative.
+fn eighth<T: Number>(
+    row: &ModalRow<T>,
+    track: &Track,
+    left: &Point<T>,
+    cut: usize,
+    length: f64,
+) -> f64 {
+    let mut sum = 0.0;
+    for part in &row.parts[cut..] {
+        // An even derivative of a decay has its sign.
+        let falls = part.later == Later::Fading && part_of(row, part, track, &left.y) <= 0.0;
+        if !falls {
+            sum += part.later.bound(&part.norms, 8, length) * left.norms[part.block];
         }
-        sum * OUTWARD
     }
+    sum * OUTWARD
+}
 
-    /// What the first blocks add to a guard on a piece at most, at its ends; between them it is
-    /// below the straight line.
-    fn raise(
-        &self,
-        n: usize,
-        track: &Track,
-        [left, right]: [&Point<T>; 2],
-        cut: usize,
-    ) -> [f64; 2] {
-        let row = &self.rows[n];
-        let mut raise = [0.0; 2];
-        for (k, block) in self.flow.blocks.iter().enumerate().take(cut) {
-            let ends = [left, right].map(|it| self.part(n, track, &it.y, k));
-            let own = match block.later {
-                Later::Fading if ends[0] > 0.0 => ends.map(|it| it * OUTWARD),
-                Later::Fading => [ends[1] / OUTWARD; 2],
-                _ => [row.norms[k][0] * left.norms[k] * OUTWARD; 2],
-            };
-            raise = [raise[0] + own[0], raise[1] + own[1]];
-        }
-        raise
+/// What the first blocks add to a guard on a piece at most, at its ends; between them it is below
+/// the straight line.
+fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize) -> [f64; 2] {
+    let mut raise = [0.0; 2];
+    for part in &row.parts[..cut] {
+        let [from, to] = [&ends.left, &ends.right].map(|it| part_of(row, part, track, &it.y));
+        let own = match part.later {
+            Later::Fading if from > 0.0 => [from * OUTWARD, to * OUTWARD],
+            Later::Fading => [to / OUTWARD; 2],
+            _ => [part.norms[0] * ends.left.norms[part.block] * OUTWARD; 2],
+        };
+        raise = [raise[0] + own[0], raise[1] + own[1]];
     }
+    raise
+}
 
-    /// What a block adds to the value of a guard.
-    fn part(&self, n: usize, track: &Track, y: &Vector<T>, block: usize) -> f64 {
-        let block = &self.flow.blocks[block];
-        let row = &self.rows[n].orders[0];
-        let part = (block.at..block.at + block.size).map(|k| row[k].to_f64() * y[k].to_f64());
-        track.outward * part.sum::<f64>()
-    }
+/// What a block adds to the value of a guard.
+#[inline]
+fn part_of<T: Number>(row: &ModalRow<T>, part: &RowPart, track: &Track, y: &Vector<T>) -> f64 {
+    let columns = &row.columns[part.columns.0..part.columns.1];
+    let terms = columns.iter().map(|it| it.orders[0].to_f64() * y[it.at].to_f64());
+    track.outward * terms.sum::<f64>()
+}
 
-    /// Value and three derivatives without the first blocks.
-    fn slow_orders(&self, n: usize, track: &Track, y: &Vector<T>, cut: usize) -> [T; 4] {
-        let (rows, dimension) = (&self.rows[n].orders, self.flow.dimension);
-        let from = self.flow.blocks.get(cut).map_or(dimension, |block| block.at);
-        let mut slow = *y;
-        slow[..from].iter_mut().for_each(|it| *it = T::zero());
-        let orders = [0, 1, 2, 3].map(|k| dot(&rows[k], &slow, dimension));
-        outward(&orders, track)
+/// A length that ends a little beyond the root that the first terms of a polynomial suggest, or
+/// where they have grown so much that rounding would hide the beginning.
+fn polynomial_reach(orders: &[f64; 4], zeros: usize, slack: f64) -> f64 {
+    const GROWTH: f64 = 1e6;
+    let [value, slope, bend, third] = *orders;
+    let size = value.abs().max(slack);
+    if zeros > 0 || size == 0.0 {
+        return f64::INFINITY;
     }
+    // value + slope s + bend s^2/2 = 0, in the form that does not cancel for a rise.
+    let square = slope * slope - 2.0 * value * bend;
+    let divisor = slope + square.max(0.0).sqrt();
+    let rises = value < -slack && divisor > 0.0 && square >= 0.0;
+    let rise = if rises { -2.0 * value / divisor } else { f64::INFINITY };
+    let by_slope = GROWTH * size / slope.abs();
+    let by_bend = root(GROWTH * size / bend.abs(), 2);
+    let by_third = root(GROWTH * size / third.abs(), 3);
+    (1.25 * rise).min(by_slope).min(by_bend).min(by_third)
 }
 
 /// A length on which the remainder stays small beside what a guard becomes by one of its first
 /// derivatives that are not zero.
-fn length(orders: &[f64; 4], eighth: f64, zeros: usize, size: f64) -> f64 {
-    let room = REMAINDER * MIDDLE / eighth;
-    if room == f64::INFINITY {
-        return room;
+fn length(orders: &[f64; 4], eighth: f64, zeros: usize, size: impl Fn() -> f64) -> f64 {
+    if eighth == 0.0 {
+        return f64::INFINITY;
     }
+    let room = REMAINDER * MIDDLE / eighth;
     let [value, slope, bend, _] = orders.map(f64::abs);
-    let by_value = if zeros > 0 { SMALLEST * size } else { value.max(SMALLEST * size) };
+    let smallest = SMALLEST * size();
+    let by_value = if zeros > 0 { smallest } else { value.max(smallest) };
     let by_slope = if zeros > 1 { 0.0 } else { root(0.5 * room * slope, 7) };
     root(room * by_value, 8).max(by_slope).max(root(0.125 * room * bend, 6))
-}
-
-fn remaining(size: f64, eighth: f64) -> f64 {
-    root(REMAINDER * MIDDLE * size / eighth, 8)
 }

@@ -3,7 +3,7 @@
 use super::clock::{self, Time};
 use super::enclosure::{Crossing, Enclosure};
 use super::flow::{Flow, Vector, dot, unit};
-use super::point::{Point, Segment};
+use super::point::{Ends, Segment};
 use super::search::{Found, Track, Work};
 use super::solver::{self, Solver};
 use super::structure::{Firing, Structure};
@@ -80,7 +80,7 @@ pub struct Run<'a, T> {
     state: Vector<T>,
     /// Where the search goes on.
     tracks: Vec<Track>,
-    point: Option<Point<T>>,
+    ends: Ends<T>,
     segment: Option<Segment<'a, T>>,
     pub(super) modal: Vector<T>,
     /// The coefficient of restitution of an impact, from its fastest occurrence.
@@ -88,8 +88,6 @@ pub struct Run<'a, T> {
     /// Guards that fire at the instant of entry.
     at_entry: u64,
     at_once: u32,
-    /// A first length to look at in each mode.
-    lengths: Vec<f64>,
     queue: VecDeque<Event<T>>,
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
@@ -153,13 +151,12 @@ impl<T: Number> Solver<T> {
             entered,
             state: [T::zero(); LARGEST_DIMENSION],
             tracks: Vec::new(),
-            point: None,
+            ends: Ends::default(),
             segment: None,
             modal: [T::zero(); LARGEST_DIMENSION],
             restitution: None,
             at_entry: 0,
             at_once: 0,
-            lengths: vec![self.system.time_scale; self.modes.len()],
             queue: VecDeque::new(),
             ended: false,
             enclosure: None,
@@ -185,7 +182,7 @@ impl<T: Number> Solver<T> {
     }
 }
 
-impl<'a, T: Number> Run<'a, T> {
+impl<T: Number> Run<'_, T> {
     /// The start, as an event at which nothing happens but that the run begins.
     #[must_use]
     pub fn start(&self) -> Event<T> {
@@ -227,8 +224,8 @@ impl<'a, T: Number> Run<'a, T> {
                 self.tracks.push(Track { outward: 1.0, zeros: 0, live: false });
                 continue;
             };
-            let value = dot(&row.orders[order], &self.modal, flow.dimension).to_f64();
-            let size = row.size_of(order, &self.modal, flow.dimension);
+            let (value, size) = row.order(order, &self.modal);
+            let value = value.to_f64();
             let mut slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
             if let Some(errors) = &self.enclosure {
                 slack += errors.of_row(flow, row, order);
@@ -250,7 +247,7 @@ impl<'a, T: Number> Run<'a, T> {
             solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect()
         });
         let segment = Segment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
-        self.point = Some(segment.beginning());
+        segment.begin(&mut self.ends.left);
         self.segment = Some(segment);
     }
 
@@ -286,30 +283,34 @@ impl<'a, T: Number> Run<'a, T> {
         }
         let mode = self.structure.node(self.node).mode;
         let limit = self.limit();
-        let Some(point) = self.point.take() else { return self.end(Ending::Undecided) };
-        let Some(segment) = self.segment.take() else { return self.end(Ending::Undecided) };
-        let length = self.lengths[mode];
-        match segment.first(&mut self.tracks, point, limit, length, &mut self.work) {
+        let Some(segment) = &self.segment else { return self.end(Ending::Undecided) };
+        let ends = &mut self.ends;
+        match segment.first(&mut self.tracks, ends, limit, &mut self.work) {
             Found::Lost => self.end(Ending::Undecided),
             Found::Nothing => {
                 let limit = if limit > T::zero() { limit } else { T::zero() };
-                let mut last = segment.point(limit, &mut self.work);
-                last.y = segment.whole(&last);
-                (self.entered, self.state) = self.at(&last);
-                let solver::SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
-                if let Some(errors) = &self.enclosure {
-                    let errors = errors.later(flow, limit);
-                    let mut errors = errors.at_given_time(flow, matrix, &self.state);
-                    errors.add_box(&roundings(flow, &last.y));
-                    self.enclosure = Some(errors);
-                }
-                self.end(Ending::Horizon);
+                segment.evaluate(&mut ends.left, limit, &mut self.work);
+                segment.complete(&mut ends.left);
+                self.at_horizon(mode, limit);
             }
-            Found::Crossing(mut point, guards) => {
-                point.y = segment.whole(&point);
-                self.crossed(point, guards, segment);
+            Found::Crossing(guards) => {
+                segment.complete(&mut ends.left);
+                self.crossed(guards);
             }
         }
+    }
+
+    /// The run ends a time after the entry.
+    fn at_horizon(&mut self, mode: usize, limit: T) {
+        (self.entered, self.state) = self.here();
+        let solver::SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
+        if let Some(errors) = &self.enclosure {
+            let errors = errors.later(flow, limit);
+            let mut errors = errors.at_given_time(flow, matrix, &self.state);
+            errors.add_box(&roundings(flow, &self.ends.left.y));
+            self.enclosure = Some(errors);
+        }
+        self.end(Ending::Horizon);
     }
 
     /// Time that is left until the horizon.
@@ -318,8 +319,9 @@ impl<'a, T: Number> Run<'a, T> {
         if self.solver.backward { -ahead } else { ahead }
     }
 
-    /// Time and state at a point of the segment.
-    fn at(&self, point: &Point<T>) -> (Time<T>, Vector<T>) {
+    /// Time and state where the search has come to.
+    fn here(&self) -> (Time<T>, Vector<T>) {
+        let point = &self.ends.left;
         let elapsed = if self.solver.backward { -point.time } else { point.time };
         let time = self.entered.after(elapsed);
         let mode = self.structure.node(self.node).mode;
@@ -330,13 +332,13 @@ impl<'a, T: Number> Run<'a, T> {
     }
 
     /// The guards of these bits are crossed.
-    fn crossed(&mut self, mut point: Point<T>, guards: u64, segment: Segment<'a, T>) {
+    fn crossed(&mut self, guards: u64) {
         let mode = self.structure.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
-        let (time, state) = self.at(&point);
+        let (time, state) = self.here();
         let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
         self.work.undecidable += u64::from(guards & !tied != 0);
-        let errors = self.errors_at(mode, guards, &point, &state, &segment.inherited);
+        let errors = self.errors_at(mode, guards, &state);
         for n in bits(guards).filter(|n| *n >= until) {
             self.watched(mode, n, until, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;
@@ -346,16 +348,14 @@ impl<'a, T: Number> Run<'a, T> {
             self.tracks.iter_mut().for_each(|track| track.zeros = 0);
             for n in bits(guards) {
                 self.tracks[n].zeros = 1;
-                point.orders[n][0] = T::zero();
+                self.ends.left.orders[n][0] = T::zero();
             }
-            (self.point, self.segment) = (Some(point), Some(segment));
             return;
         }
         if self.solver.backward {
             (self.entered, self.state, self.enclosure) = (time, state, errors);
             return self.end(Ending::LeavesDomain);
         }
-        self.lengths[mode] = 2.0 * point.time.to_f64();
         let guards = self.structure.tied(self.node, guards, false);
         let until = ending.trailing_zeros() as usize;
         self.enclosure = errors;
@@ -363,19 +363,13 @@ impl<'a, T: Number> Run<'a, T> {
     }
 
     /// The errors at a crossing, where they are followed.
-    fn errors_at(
-        &self,
-        mode: usize,
-        guards: u64,
-        point: &Point<T>,
-        state: &Vector<T>,
-        inherited: &[f64],
-    ) -> Option<Enclosure> {
-        let enclosure = self.enclosure.as_ref()?;
+    fn errors_at(&self, mode: usize, guards: u64, state: &Vector<T>) -> Option<Enclosure> {
+        let (enclosure, segment) = (self.enclosure.as_ref()?, self.segment.as_ref()?);
+        let point = &self.ends.left;
         let solver_mode = &self.solver.modes[mode];
         let first = guards.trailing_zeros() as usize;
-        let inherited =
-            inherited[first] * libm::exp(solver_mode.flow.fastest_growth() * point.time.to_f64());
+        let inherited = segment.inherited[first]
+            * libm::exp(solver_mode.flow.fastest_growth() * point.time.to_f64());
         let mut errors = enclosure.at_crossing(&Crossing {
             flow: &solver_mode.flow,
             matrix: &solver_mode.matrix,
@@ -426,7 +420,6 @@ impl<'a, T: Number> Run<'a, T> {
         let impact = arrival.impact;
         let from = self.node;
         let next = self.structure.enter(from, firing, successor);
-        let modal_before = solver.modes[mode].flow.modal(&before);
         self.node = next;
         (self.entered, self.state) = (time, state);
         let mut event = self.event(What::Until(mode, firing.until), time, &self.state);
@@ -443,8 +436,8 @@ impl<'a, T: Number> Run<'a, T> {
         self.queue.push_back(event);
         self.enter();
         if impact && next == from {
-            let (below, above) = (&modal_before, successor);
-            if let Some((earliest, latest)) = self.accumulation(mode, firing, below, above) {
+            let below = solver.modes[mode].flow.modal(&before);
+            if let Some((earliest, latest)) = self.accumulation(mode, firing, &below, successor) {
                 return self.end(Ending::Accumulation(earliest, latest));
             }
         }
@@ -468,8 +461,8 @@ impl<'a, T: Number> Run<'a, T> {
             };
             let flow = &solver.modes[next[n].mode].flow;
             let modal = flow.modal(state);
-            let value = dot(&condition.orders[order], &modal, flow.dimension).to_f64();
-            let size = condition.size_of(order, &modal, flow.dimension);
+            let (value, size) = condition.order(order, &modal);
+            let value = value.to_f64();
             let mut slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
             if let Some(errors) = &self.enclosure {
                 // The errors before the reset bound those after it for all that follows here.

@@ -8,7 +8,7 @@
 
 use super::flow::unit;
 use super::hull::{Judged, Lengths};
-use super::point::{PerGuard, Point, Segment};
+use super::point::{Ends, PerGuard, Point, Segment};
 use super::reach::Reach;
 use crate::number::Number;
 
@@ -27,12 +27,13 @@ pub(super) struct Track {
 }
 
 /// How a search ends.
-#[derive(Clone, Debug)]
-pub(super) enum Found<T> {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Found {
     /// No guard crosses before the limit.
     Nothing,
-    /// The first crossing, and all guards that cross there within what rounding may do, as bits.
-    Crossing(Point<T>, u64),
+    /// The first crossing is the left end: all guards that cross there within what rounding may do,
+    /// as bits.
+    Crossing(u64),
     /// Too much work.
     Lost,
 }
@@ -56,51 +57,49 @@ struct Rising<T> {
 }
 
 impl<T: Number> Segment<'_, T> {
-    /// The first crossing after a point and not after `limit`. `first` proposes the length of the
-    /// first piece.
+    /// The first crossing after the left end and not after `limit`.
     pub fn first(
         &self,
         tracks: &mut [Track],
-        from: Point<T>,
+        ends: &mut Ends<T>,
         limit: T,
-        first: f64,
         work: &mut Work,
-    ) -> Found<T> {
-        let mut left = from;
-        let mut most = first;
+    ) -> Found {
+        let mut most = f64::INFINITY;
         for _ in 0..MOST_PIECES {
-            if left.time >= limit {
+            if ends.left.time >= limit {
                 return Found::Nothing;
             }
             if work.undecidable > 0 && !self.inherited.is_empty() {
                 return Found::Lost;
             }
-            let reaches = self.reaches(tracks, &left);
-            let right = self.right_end(tracks, &left, &reaches, limit, most, work);
-            let length = right.time - left.time;
+            let reaches = self.reaches(tracks, &ends.left);
+            self.look_ahead(tracks, ends, &reaches, limit, most, work);
+            let length = (ends.right.time - ends.left.time).to_f64();
             work.pieces += 1;
-            let Some(share) = self.clear_share(tracks, &reaches, [&left, &right], work) else {
-                left = right;
-                most = 4.0 * length.to_f64();
+            let Some(share) = self.clear_share(tracks, &reaches, ends, work) else {
+                ends.step();
+                most = f64::INFINITY;
                 clear_zeros(tracks);
                 continue;
             };
-            let step = length * T::exact(share);
-            if left.time + step > left.time {
-                left = self.point(left.time + step, work);
+            let from = ends.left.time;
+            let to = from + (ends.right.time - from) * T::exact(share);
+            if to > from {
+                self.evaluate(&mut ends.left, to, work);
                 clear_zeros(tracks);
-            } else if length.to_f64() <= 8.0 * unit::<T>() * right.time.to_f64() {
+            } else if length <= 8.0 * unit::<T>() * ends.right.time.to_f64() {
                 // No shorter piece has two ends: what happens within rounding is a touch.
                 work.undecidable += 1;
-                left = right;
-                most = 64.0 * length.to_f64();
+                ends.step();
+                most = 64.0 * length;
                 clear_zeros(tracks);
                 continue;
             }
-            if let Some((time, guards)) = self.rising(tracks, &left, work) {
-                return self.settled(tracks, time, guards, limit, work);
+            if let Some((time, guards)) = self.rising(tracks, &ends.left, work) {
+                return self.settled(tracks, ends, (time, guards), limit, work);
             }
-            most = 0.25 * length.to_f64();
+            most = 0.25 * length;
         }
         Found::Lost
     }
@@ -115,16 +114,17 @@ impl<T: Number> Segment<'_, T> {
         tracks.iter().enumerate().map(guard).collect()
     }
 
-    /// The right end of the next piece.
-    fn right_end(
+    /// Evaluates the right end of the next piece.
+    fn look_ahead(
         &self,
         tracks: &[Track],
-        left: &Point<T>,
+        ends: &mut Ends<T>,
         reaches: &[Reach],
         limit: T,
         most: f64,
         work: &mut Work,
-    ) -> Point<T> {
+    ) {
+        let left = &ends.left;
         let mut length = most;
         for (n, track) in live(tracks) {
             length = length.min(reaches[n].length).min(self.near_root(track, &left.orders[n]));
@@ -134,7 +134,7 @@ impl<T: Number> Segment<'_, T> {
         if !inside {
             end = limit;
         }
-        self.point(end, work)
+        self.evaluate(&mut ends.right, end, work);
     }
 
     /// A length a little beyond the root that the first two terms of a guard suggest, if it begins
@@ -158,10 +158,10 @@ impl<T: Number> Segment<'_, T> {
         &self,
         tracks: &[Track],
         reaches: &[Reach],
-        ends: [&Point<T>; 2],
+        ends: &Ends<T>,
         work: &mut Work,
     ) -> Option<f64> {
-        let lengths = Lengths::of(ends[1].time - ends[0].time);
+        let lengths = Lengths::of(ends.right.time - ends.left.time);
         let mut share: Option<f64> = None;
         for (n, track) in live(tracks) {
             match self.judge(n, track, &reaches[n], ends, &lengths) {
@@ -215,7 +215,32 @@ impl<T: Number> Segment<'_, T> {
         let fourth = self.flow.bound_by(&self.rows[n], 4, &at.norms, within);
         let change = within * (bend.abs() + within * (0.5 * third.abs() + within * fourth / 6.0));
         let steadily = change < 0.5 * slope;
-        steadily.then(|| Rising { after: newton(&orders), within, error: 2.0 * slack / slope })
+        steadily.then(|| Rising {
+            after: self.root(n, track, at),
+            within,
+            error: 2.0 * slack / slope,
+        })
+    }
+
+    /// The time to a root that is near a point.
+    fn root(&self, n: usize, track: &Track, at: &Point<T>) -> T {
+        let first = outward(&at.orders[n], track);
+        let outward = T::exact(track.outward);
+        let mut terms = [T::zero(); 8];
+        for (k, term) in terms.iter_mut().enumerate() {
+            let order = if k < 4 { first[k] } else { self.rows[n].order(k, &at.y).0 * outward };
+            *term = order * T::inverse_factorial(k);
+        }
+        let mut step = newton(&first);
+        for _ in 0..2 {
+            let (mut value, mut slope) = (T::zero(), T::zero());
+            for term in terms.iter().rev() {
+                slope = slope * step + value;
+                value = value * step + *term;
+            }
+            step = step - value / slope;
+        }
+        step
     }
 
     /// A bound of a guard over a short time after a point.
@@ -235,14 +260,15 @@ impl<T: Number> Segment<'_, T> {
     fn settled(
         &self,
         tracks: &[Track],
-        time: T,
-        guards: u64,
+        ends: &mut Ends<T>,
+        (time, guards): (T, u64),
         limit: T,
         work: &mut Work,
-    ) -> Found<T> {
+    ) -> Found {
         const ROUNDS: usize = 8;
         let n = guards.trailing_zeros() as usize;
-        let mut point = self.point(time, work);
+        let point = &mut ends.left;
+        self.evaluate(point, time, work);
         let mut last = f64::INFINITY;
         for _ in 0..ROUNDS {
             let step = newton(&outward(&point.orders[n], &tracks[n]));
@@ -253,11 +279,11 @@ impl<T: Number> Segment<'_, T> {
                 break;
             }
             last = size;
-            point = self.point(better, work);
+            self.evaluate(point, better, work);
         }
         // A crossing exactly at the limit counts.
         let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
-        if point.time > limit + room { Found::Nothing } else { Found::Crossing(point, guards) }
+        if point.time > limit + room { Found::Nothing } else { Found::Crossing(guards) }
     }
 }
 
