@@ -11,6 +11,7 @@ mod file;
 mod flow;
 mod form;
 mod hull;
+mod known;
 mod modal;
 mod motion;
 mod point;

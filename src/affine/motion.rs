@@ -147,13 +147,17 @@ fn entries<T: Number>(matrix: &[Vec<Real>]) -> Vec<Entry<T>> {
 /// `y = exp(N time) y` by Horner's scheme.
 #[inline]
 fn polynomial<T: Number>(entries: &[Entry<T>], index: usize, y: &mut [T], time: T) {
-    let start: Vector<T> = copied(y);
+    let mut start = [T::zero(); LARGEST_DIMENSION];
+    start[..y.len()].copy_from_slice(y);
+    let mut last = start;
     for k in (1..index).rev() {
         let factor = if k == 1 { time } else { time / T::exact(k as f64) };
-        let last = if k + 1 == index { start } else { copied(y) };
         y.copy_from_slice(&start[..y.len()]);
         for Entry { row, column, value } in entries {
             y[*row] = y[*row] + factor * (*value * last[*column]);
+        }
+        if k > 1 {
+            last[..y.len()].copy_from_slice(y);
         }
     }
 }

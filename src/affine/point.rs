@@ -37,7 +37,7 @@ pub(super) struct Point<T> {
     pub time: T,
     /// The modal co-ordinates; those of blocks that no guard is made of are the entry's.
     pub y: Vector<T>,
-    /// The norms of each block's co-ordinates.
+    /// The norms of each block's co-ordinates, once [`Segment::measure`] was asked for them.
     pub norms: Vector<f64>,
     /// Value and three derivatives of each guard.
     pub orders: PerGuard<[T; 4]>,
@@ -123,6 +123,11 @@ impl<'a, T: Number> Segment<'a, T> {
         self.inherit(point);
     }
 
+    /// Works out the norms of a point's blocks.
+    pub fn measure(&self, point: &mut Point<T>) {
+        point.norms = self.flow.norms(&point.y);
+    }
+
     /// Evaluates the blocks of a point that no guard is made of.
     pub fn complete(&self, point: &mut Point<T>) {
         self.flow.advance(&mut point.y, point.time, !self.blocks);
@@ -130,7 +135,6 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// The guards from the co-ordinates.
     fn fill(&self, point: &mut Point<T>) {
-        point.norms = self.flow.norms(&point.y);
         let margin = (self.flow.dimension + 4) as f64 * unit::<T>();
         point.orders.clear();
         point.slack.clear();
@@ -148,7 +152,6 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// The guards from their Taylor series.
     fn fill_early(&self, point: &mut Point<T>) {
-        point.norms = self.flow.norms(&point.y);
         point.orders.clear();
         point.slack.clear();
         let margin = (self.flow.dimension + 4) as f64 * unit::<T>();

@@ -11,6 +11,7 @@ use super::flow::{ModalRow, RowPart, Vector};
 use super::hull::{self, Judged, Lengths};
 use super::point::{Ends, Point, Segment, root};
 use super::search::{Track, outward};
+use super::system::LARGEST_DIMENSION;
 use crate::crossing::certificate::MIDDLE;
 use crate::number::Number;
 
@@ -42,30 +43,11 @@ impl<T: Number> Segment<'_, T> {
     pub fn reach(&self, n: usize, track: &Track, left: &Point<T>, longest: f64) -> Reach {
         let row = &self.rows[n];
         let orders = outward(&left.orders[n], track).map(Number::to_f64);
-        let eighth =
-            |part: &RowPart| part.later.bound(&part.norms, 8, longest) * left.norms[part.block];
-        let all: f64 = row.parts.iter().map(eighth).sum();
-        let size = || row.size(&left.y);
-        let whole = length(&orders, all, track.zeros, size).min(longest);
+        let rests = eighths(row, left, longest);
+        let whole = length(&orders, rests[0], track.zeros, || row.size(&left.y)).min(longest);
         let mut reach = Reach { cut: 0, length: whole, whole };
         if track.zeros == 0 && whole < longest {
-            let mut value = orders[0];
-            for (k, part) in row.parts.iter().enumerate() {
-                let own = part_of(row, part, track, &left.y);
-                value += match part.later {
-                    Later::Fading => own.max(0.0) - own,
-                    Later::Steady => part.norms[0] * left.norms[part.block] - own,
-                    Later::Polynomial | Later::Growing(_) => break,
-                };
-                if value > LEFT * orders[0] {
-                    break;
-                }
-                let rest: f64 = row.parts[k + 1..].iter().map(eighth).sum();
-                let further = root(REMAINDER * MIDDLE * -value / rest, 8).min(longest);
-                if further > 1.5 * reach.length {
-                    reach = Reach { cut: k + 1, length: further, whole };
-                }
-            }
+            enclose(row, track, left, (&rests, longest), &mut reach);
         }
         if reach.length == f64::INFINITY {
             let orders = outward(&row.first_orders(&left.y, row.first_column(reach.cut)), track);
@@ -100,6 +82,50 @@ impl<T: Number> Segment<'_, T> {
         let eighth = eighth(row, track, left, reach.cut, length);
         hull::judge(&orders, lengths, eighth, raise, slack, track.zeros)
     }
+}
+
+/// Leaves as many blocks to their enclosures as lets a piece be longest.
+fn enclose<T: Number>(
+    row: &ModalRow<T>,
+    track: &Track,
+    left: &Point<T>,
+    (rests, longest): (&Vector<f64>, f64),
+    reach: &mut Reach,
+) {
+    /// A rest that is smaller by less makes a piece longer by less than a third.
+    const MUCH: f64 = 0.1;
+    let begin: f64 = row.parts.iter().map(|part| part_of(row, part, track, &left.y)).sum();
+    let (mut value, mut best) = (begin, rests[0]);
+    for (k, part) in row.parts.iter().enumerate() {
+        let own = part_of(row, part, track, &left.y);
+        value += match part.later {
+            Later::Fading => own.max(0.0) - own,
+            Later::Steady => part.norms[0] * left.norms[part.block] - own,
+            Later::Polynomial | Later::Growing(_) => break,
+        };
+        if value > LEFT * begin {
+            break;
+        }
+        let rest = if k + 1 < row.parts.len() { rests[k + 1] } else { 0.0 };
+        if rest < MUCH * best {
+            let length = root(REMAINDER * MIDDLE * -value / rest, 8).min(longest);
+            if length > reach.length {
+                best = rest;
+                (reach.cut, reach.length) = (k + 1, length);
+            }
+        }
+    }
+}
+
+/// Bounds of the eighth derivative of all blocks from each on.
+fn eighths<T: Number>(row: &ModalRow<T>, left: &Point<T>, longest: f64) -> Vector<f64> {
+    let mut rests = [0.0; LARGEST_DIMENSION];
+    let mut sum = 0.0;
+    for (rest, part) in rests.iter_mut().zip(&row.parts).rev() {
+        sum += part.later.bound(&part.norms, 8, longest) * left.norms[part.block];
+        *rest = sum;
+    }
+    rests
 }
 
 /// An upper bound of the eighth derivative of all blocks from `cut` on, not negative.

@@ -2,11 +2,12 @@
 
 use super::clock::{self, Time};
 use super::enclosure::{Crossing, Enclosure};
-use super::flow::{Flow, Vector, dot, unit};
+use super::flow::{Flow, Vector, unit};
+use super::known::Loan;
 use super::point::{Ends, Segment};
 use super::search::{Found, Track, Work};
 use super::solver::{self, Solver};
-use super::structure::{Firing, Structure};
+use super::structure::Firing;
 use super::system::{Direction, LARGEST_DIMENSION, StartPoint};
 use crate::number::Number;
 use std::collections::VecDeque;
@@ -71,7 +72,7 @@ pub struct Errors {
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
 pub struct Run<'a, T> {
     pub(super) solver: &'a Solver<T>,
-    pub(super) structure: Structure,
+    pub(super) structure: Loan<'a>,
     work: Work,
     horizon: T,
     pub(super) node: usize,
@@ -139,7 +140,7 @@ impl<T: Number> Solver<T> {
 
     /// A run whose first segment is not entered yet.
     fn at_start(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
-        let mut structure = self.structure.clone();
+        let mut structure = self.known.lend();
         let node = structure.start(&self.system, start)?;
         let entered = clock::start(start);
         let mut run = Run {
@@ -211,7 +212,7 @@ impl<T: Number> Run<'_, T> {
     /// structural zero.
     fn enter(&mut self) {
         let node = self.structure.node(self.node);
-        let (mode, orders) = (node.mode, node.multiplicities.clone());
+        let mode = node.mode;
         let solver = self.solver;
         let solver_mode = &solver.modes[mode];
         let flow = &solver_mode.flow;
@@ -219,7 +220,10 @@ impl<T: Number> Run<'_, T> {
         self.modal = flow.modal(&self.state);
         self.tracks.clear();
         self.at_entry = 0;
-        for (n, (row, order)) in solver_mode.guards.iter().zip(orders.iter()).enumerate() {
+        let mut ending = None;
+        for (n, (row, order)) in
+            solver_mode.guards.iter().zip(node.multiplicities.iter()).enumerate()
+        {
             let Some(order) = *order else {
                 self.tracks.push(Track { outward: 1.0, zeros: 0, live: false });
                 continue;
@@ -236,12 +240,15 @@ impl<T: Number> Run<'_, T> {
             self.tracks.push(Track { outward, zeros: order, live: true });
             if n < until && value > 0.0 {
                 if order == 0 && !doubtful {
-                    self.end(Ending::BeyondGuard);
+                    ending = ending.or(Some(Ending::BeyondGuard));
                 } else if solver.backward {
-                    self.end(Ending::LeavesDomain);
+                    ending = ending.or(Some(Ending::LeavesDomain));
                 }
                 self.at_entry |= 1 << n;
             }
+        }
+        if let Some(ending) = ending {
+            self.end(ending);
         }
         let inherited = self.enclosure.as_ref().map_or_else(Vec::new, |errors| {
             solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect()
@@ -411,9 +418,10 @@ impl<T: Number> Run<'_, T> {
         let solver = self.solver;
         let mode = self.structure.node(self.node).mode;
         self.at_once = if firing.at_entry { self.at_once + 1 } else { 1 };
-        let mut state = [T::zero(); LARGEST_DIMENSION];
-        for (entry, row) in state.iter_mut().zip(&solver.modes[mode].resets[firing.until]) {
-            *entry = dot(row, &before, solver.modes[mode].flow.dimension);
+        let mut state = before;
+        for (n, factors) in &solver.modes[mode].changes[firing.until] {
+            let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
+            state[*n] = terms.fold(T::zero(), |sum, term| sum + term);
         }
         let successor = self.successor(mode, firing, &state);
         let arrival = self.structure.arrival(self.node, firing);
@@ -449,7 +457,7 @@ impl<T: Number> Run<'_, T> {
     /// The first successor whose condition holds.
     fn successor(&mut self, mode: usize, firing: Firing, state: &Vector<T>) -> usize {
         let solver = self.solver;
-        let orders = self.structure.arrival(self.node, firing).orders.clone();
+        let orders = &self.structure.arrival(self.node, firing).orders;
         let conditions = &solver.modes[mode].conditions[firing.until];
         let next = &solver.system.modes[mode].until[firing.until].next;
         for (n, (condition, order)) in conditions.iter().zip(orders.iter()).enumerate() {

@@ -73,6 +73,7 @@ impl<T: Number> Segment<'_, T> {
             if work.undecidable > 0 && !self.inherited.is_empty() {
                 return Found::Lost;
             }
+            self.measure(&mut ends.left);
             let reaches = self.reaches(tracks, &ends.left);
             self.look_ahead(tracks, ends, &reaches, limit, most, work);
             let length = (ends.right.time - ends.left.time).to_f64();
@@ -96,6 +97,7 @@ impl<T: Number> Segment<'_, T> {
                 clear_zeros(tracks);
                 continue;
             }
+            self.measure(&mut ends.left);
             if let Some((time, guards)) = self.rising(tracks, &ends.left, work) {
                 return self.settled(tracks, ends, (time, guards), limit, work);
             }

@@ -3,6 +3,7 @@
 use super::bound;
 use super::clock::Clock;
 use super::flow::{Flow, ModalRow, Vector};
+use super::known::Known;
 use super::modal::{self, Real};
 use super::motion::rounded;
 use super::structure::Structure;
@@ -15,7 +16,7 @@ pub struct Solver<T> {
     pub(super) system: System,
     pub(super) modes: Vec<SolverMode<T>>,
     pub(super) clock: Option<Clock<T>>,
-    pub(super) structure: Structure,
+    pub(super) known: Known,
     pub(super) backward: bool,
 }
 
@@ -29,9 +30,14 @@ pub(super) struct SolverMode<T> {
     pub guards: Vec<ModalRow<T>>,
     /// The resets of `until`.
     pub resets: Vec<Vec<Vector<T>>>,
+    /// The entries that each reset changes, with their rows.
+    pub changes: Vec<Vec<Change<T>>>,
     /// The conditions of the successors of each `until`, in the co-ordinates of their modes.
     pub conditions: Vec<Vec<Option<ModalRow<T>>>>,
 }
+
+/// An entry of z that a reset changes, and the factors of the entries before it.
+pub(super) type Change<T> = (usize, Vec<(usize, T)>);
 
 /// Why a system cannot be made ready.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -91,12 +97,13 @@ impl<T: Number> Solver<T> {
                 matrix: mode.matrix.iter().map(numbers).collect(),
                 guards: guards.map(|guard| row(guard, n)).collect(),
                 resets: resets.collect(),
+                changes: mode.until.iter().map(|it| changes(&it.reset)).collect(),
                 conditions: conditions.collect(),
             }
         };
         let modes = system.modes.iter().enumerate().map(mode).collect();
         let clock = system.forcing.as_ref().map(Clock::of);
-        Ok(Self { modes, clock, structure, backward, system })
+        Ok(Self { modes, clock, known: Known::of(structure), backward, system })
     }
 
     /// The system; that of a backward run has its signs reversed.
@@ -113,4 +120,17 @@ pub(super) fn numbers<T: Number>(row: &Row) -> Vector<T> {
         *entry = rounded(&Real::of(number));
     }
     vector
+}
+
+/// The rows of a reset that are not those of the identity, without their zeros.
+fn changes<T: Number>(reset: &[Row]) -> Vec<Change<T>> {
+    let kept = |n: usize, row: &Row| {
+        row.iter().enumerate().all(|(k, it)| if k == n { it.is_one() } else { it.is_zero() })
+    };
+    let factors = |row: &Row| {
+        let there = row.iter().enumerate().filter(|(_, it)| !it.is_zero());
+        there.map(|(k, it)| (k, rounded(&Real::of(it)))).collect()
+    };
+    let changed = reset.iter().enumerate().filter(|(n, row)| !kept(*n, row));
+    changed.map(|(n, row)| (n, factors(row))).collect()
 }

@@ -62,7 +62,7 @@ pub(super) struct Arrival {
 }
 
 /// The graph.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Structure {
     modes: Vec<ModeResidues>,
     nodes: Vec<Node>,
