@@ -115,12 +115,22 @@ impl<'a, T: Number> Segment<'a, T> {
         work.evaluations += 1;
         (point.time, point.y) = (time, self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);
-        if time.to_f64() <= self.early {
+        if self.is_early(point) {
             self.fill_early(point);
         } else {
             self.fill(point);
         }
         self.inherit(point);
+    }
+
+    /// Whether the guards at a point are summed from their series.
+    pub fn is_early(&self, point: &Point<T>) -> bool {
+        point.time.to_f64() <= self.early
+    }
+
+    /// What rounding does to a row, in sizes of what it is summed from.
+    pub fn margin(&self) -> f64 {
+        (self.flow.dimension + 4) as f64 * unit::<T>()
     }
 
     /// Works out the norms of a point's blocks.
@@ -135,7 +145,7 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// The guards from the co-ordinates.
     fn fill(&self, point: &mut Point<T>) {
-        let margin = (self.flow.dimension + 4) as f64 * unit::<T>();
+        let margin = self.margin();
         point.orders.clear();
         point.slack.clear();
         for (row, zeros) in self.rows.iter().zip(&self.zeros) {
@@ -154,7 +164,7 @@ impl<'a, T: Number> Segment<'a, T> {
     fn fill_early(&self, point: &mut Point<T>) {
         point.orders.clear();
         point.slack.clear();
-        let margin = (self.flow.dimension + 4) as f64 * unit::<T>();
+        let margin = self.margin();
         for ((coefficients, row), zeros) in self.series().iter().zip(self.rows).zip(&self.zeros) {
             let (orders, size) = series(coefficients, point.time);
             let value = if *zeros == 0 { margin * row.size(&self.entry) } else { 0.0 };

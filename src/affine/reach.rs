@@ -69,17 +69,21 @@ impl<T: Number> Segment<'_, T> {
     ) -> Judged {
         let Ends { left, right } = ends;
         let row = &self.rows[n];
-        let slack = left.slack[n].max(right.slack[n]);
         let length = lengths.length.to_f64();
-        if reach.cut == 0 || length <= reach.whole {
+        let cut = if length <= reach.whole { 0 } else { reach.cut };
+        let mut slack = left.slack[n].max(right.slack[n]);
+        if !self.is_early(right) {
+            slack += self.margin() * derivatives(row, left, cut, length);
+        }
+        if cut == 0 {
             let orders = [outward(&left.orders[n], track), outward(&right.orders[n], track)];
             let eighth = eighth(row, track, left, 0, length);
             return hull::judge(&orders, lengths, eighth, [0.0; 2], slack, track.zeros);
         }
-        let raise = raise(row, track, ends, reach.cut);
-        let from = row.first_column(reach.cut);
+        let raise = raise(row, track, ends, cut);
+        let from = row.first_column(cut);
         let orders = [left, right].map(|it| outward(&row.first_orders(&it.y, from), track));
-        let eighth = eighth(row, track, left, reach.cut, length);
+        let eighth = eighth(row, track, left, cut, length);
         hull::judge(&orders, lengths, eighth, raise, slack, track.zeros)
     }
 }
@@ -145,6 +149,17 @@ fn eighth<T: Number>(
         }
     }
     sum * OUTWARD
+}
+
+/// The sizes of what derivatives are summed from, as far as a coefficient of a hull has them: the
+/// third and fourth have most, 3/7 L, L^2/14 and L^3/210 of the first three.
+fn derivatives<T: Number>(row: &ModalRow<T>, left: &Point<T>, cut: usize, length: f64) -> f64 {
+    let size = |part: &RowPart| {
+        let norm = |k: usize| part.later.bound(&part.norms, k, length);
+        let weighted = 3.0 / 7.0 * norm(1) + length * (norm(2) / 14.0 + length * norm(3) / 210.0);
+        weighted * length * left.norms[part.block]
+    };
+    row.parts[cut..].iter().map(size).sum()
 }
 
 /// What the first blocks add to a guard on a piece at most, at its ends; between them it is below
