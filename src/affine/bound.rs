@@ -57,6 +57,7 @@ impl Later {
 }
 
 /// The sum of `norms[j] length^j/j!`, where norms that are zero end it.
+#[inline]
 fn polynomial(norms: &[f64], length: f64) -> f64 {
     let (mut sum, mut factor) = (0.0, 1.0);
     for (j, norm) in norms.iter().enumerate() {

@@ -75,6 +75,7 @@ pub(super) struct RowPart {
 }
 
 /// The distance from 1 to the next smaller number of an arithmetic.
+#[inline]
 pub(super) fn unit<T: Number>() -> f64 {
     const HALF: f64 = 0.5 * f64::EPSILON;
     // Double-double arithmetic is good to a few units of 2^-106.
@@ -135,11 +136,13 @@ impl<T: Number> Flow<T> {
     }
 
     /// The modal co-ordinates of a state.
+    #[inline]
     pub fn modal(&self, z: &Vector<T>) -> Vector<T> {
         times(&self.to_modal, z)
     }
 
     /// The state with these modal co-ordinates.
+    #[inline]
     pub fn state(&self, y: &Vector<T>) -> Vector<T> {
         times(&self.from_modal, y)
     }
@@ -155,6 +158,7 @@ impl<T: Number> Flow<T> {
     }
 
     /// The modal co-ordinates a time later.
+    #[inline]
     pub fn at(&self, y: &Vector<T>, time: T) -> Vector<T> {
         let mut later = *y;
         self.advance(&mut later, time, u16::MAX);
@@ -175,10 +179,16 @@ impl<T: Number> Flow<T> {
     #[inline]
     pub fn norms<U: Number>(&self, y: &Vector<U>) -> Vector<f64> {
         let mut norms = [0.0; LARGEST_DIMENSION];
-        for (norm, block) in norms.iter_mut().zip(&self.blocks) {
-            *norm = match &y[block.at..block.at + block.size] {
-                [one] => one.to_f64().abs(),
-                many => many.iter().map(|it| it.to_f64() * it.to_f64()).sum::<f64>().sqrt(),
+        for (n, block) in self.blocks.iter().enumerate() {
+            let (first, size) = (y[block.at].to_f64(), block.size);
+            norms[n] = if size == 1 {
+                first.abs()
+            } else {
+                let mut sum = first * first;
+                for other in &y[block.at + 1..block.at + size] {
+                    sum += other.to_f64() * other.to_f64();
+                }
+                sum.sqrt()
             };
         }
         norms
@@ -200,6 +210,7 @@ impl<T: Number> Flow<T> {
     }
 
     /// A bound of a row's derivative of an order over `length` after a state.
+    #[inline]
     pub fn bound<U: Number>(
         &self,
         row: &ModalRow<T>,
@@ -219,12 +230,15 @@ impl<T: Number> Flow<T> {
         sizes: &Vector<f64>,
         length: f64,
     ) -> f64 {
-        let parts = row.parts.iter();
-        let parts = parts.map(|it| it.later.bound(&it.norms, order, length) * sizes[it.block]);
-        parts.sum::<f64>() * (1.0 + 1e-12)
+        let mut sum = 0.0;
+        for part in &row.parts {
+            sum += part.later.bound(&part.norms, order, length) * sizes[part.block];
+        }
+        sum * (1.0 + 1e-12)
     }
 
     /// How long a bound may be asked for: a growing block grows by at most e.
+    #[inline]
     pub fn longest(&self) -> f64 {
         let rate =
             |block: &Block<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
@@ -232,6 +246,7 @@ impl<T: Number> Flow<T> {
     }
 
     /// The largest growth rate of a block.
+    #[inline]
     pub fn fastest_growth(&self) -> f64 {
         self.blocks.iter().fold(0.0, |most: f64, block| most.max(block.growth))
     }
@@ -264,9 +279,7 @@ impl<T: Number> ModalRow<T> {
         let mut sums = [T::zero(); 4];
         for column in &self.columns[from..] {
             let entry = y[column.at];
-            for (sum, factor) in sums.iter_mut().zip(column.orders) {
-                *sum = *sum + factor * entry;
-            }
+            add_product(&mut sums, &column.orders, entry);
         }
         sums
     }
@@ -277,9 +290,7 @@ impl<T: Number> ModalRow<T> {
         let (mut sums, mut size) = ([T::zero(); 4], 0.0);
         for column in &self.columns {
             let entry = y[column.at];
-            for (sum, factor) in sums.iter_mut().zip(column.orders) {
-                *sum = *sum + factor * entry;
-            }
+            add_product(&mut sums, &column.orders, entry);
             size += column.size * entry.to_f64().abs();
         }
         (sums, size)
@@ -292,6 +303,7 @@ impl<T: Number> ModalRow<T> {
     }
 
     /// A derivative, and the sum of the sizes of what it is summed from.
+    #[inline]
     pub fn order(&self, order: usize, y: &Vector<T>) -> (T, f64) {
         let row = &self.orders[order];
         let (mut sum, mut size) = (T::zero(), 0.0);
@@ -315,18 +327,35 @@ impl<T: Number> Block<T> {
 /// The product of a matrix, given by its columns, with a vector; entries beyond its rows are zero.
 #[inline]
 fn times<T: Number>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
-    const LANES: usize = 4;
-    let mut product = [T::zero(); LARGEST_DIMENSION];
-    let lanes = columns.len().div_ceil(LANES);
-    for (column, factor) in columns.iter().zip(vector) {
-        let chunks = product.chunks_exact_mut(LANES).zip(column.chunks_exact(LANES));
-        for (sums, entries) in chunks.take(lanes) {
-            for (sum, entry) in sums.iter_mut().zip(entries) {
-                *sum = *sum + *entry * *factor;
-            }
-        }
+    match columns.len() {
+        0..=4 => times_in::<T, 4>(columns, vector),
+        5..=8 => times_in::<T, 8>(columns, vector),
+        _ => times_in::<T, LARGEST_DIMENSION>(columns, vector),
     }
+}
+
+/// The same, of the first `ROWS` entries.
+#[inline]
+fn times_in<T: Number, const ROWS: usize>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
+    let mut sums = [T::zero(); ROWS];
+    for (n, column) in columns.iter().enumerate() {
+        let factor = vector[n];
+        add_product(&mut sums, column, factor);
+    }
+    let mut product = [T::zero(); LARGEST_DIMENSION];
+    product[..ROWS].copy_from_slice(&sums);
     product
+}
+
+/// Adds a multiple of a vector. Indices are what every unit of a crate inlines; iterators that are
+/// joined are called.
+#[allow(clippy::needless_range_loop, reason = "an iterator costs a call")]
+#[inline(always)]
+fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: &[T], factor: T) {
+    let vector = &vector[..N];
+    for k in 0..N {
+        sums[k] = sums[k] + vector[k] * factor;
+    }
 }
 
 fn transposed<T: Number>(matrix: &[Vec<Real>]) -> Vec<Vector<T>> {

@@ -40,6 +40,7 @@ pub(super) struct Lengths<T> {
 }
 
 impl<T: Number> Lengths<T> {
+    #[inline]
     pub fn of(length: T) -> Self {
         let square = length * length;
         let power = square * square * (square * square);
@@ -56,6 +57,7 @@ impl<T: Number> Lengths<T> {
 /// Judges a guard from its orders at both ends, a bound of its eighth derivative, a line above what
 /// is not in the orders, what rounding may do to its values, and the number of its orders that are
 /// exactly zero at the left end.
+#[inline]
 pub(super) fn judge<T: Number>(
     ends: &[[T; 4]; 2],
     lengths: &Lengths<T>,
@@ -91,6 +93,7 @@ pub(super) fn judge<T: Number>(
 
 /// The coefficients of the polynomial of degree seven that shares value and three derivatives at
 /// both ends, raised to degree eight.
+#[inline]
 fn interpolant<T: Number>(ends: &[[T; 4]; 2], lengths: &Lengths<T>) -> Hull<T> {
     let Lengths { seventh, sixth, fifth, .. } = *lengths;
     let [left, right] = ends;
@@ -107,6 +110,7 @@ fn interpolant<T: Number>(ends: &[[T; 4]; 2], lengths: &Lengths<T>) -> Hull<T> {
 }
 
 /// The four coefficients of degree seven that belong to an end.
+#[inline]
 fn next_to_an_end<T: Number>(orders: &[T; 4], [seventh, sixth, fifth]: [T; 3]) -> [T; 4] {
     let [value, slope, bend, third] = *orders;
     let first = slope * seventh;
@@ -118,6 +122,7 @@ fn next_to_an_end<T: Number>(orders: &[T; 4], [seventh, sixth, fifth]: [T; 3]) -
 
 /// With zeros at the left end the coefficients that belong to it are exact but for their own
 /// roundings, however small they are beside the others' slack.
+#[inline]
 fn is_clear<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> bool {
     if zeros == 0 {
         return hull.iter().all(|it| it.to_f64() < -slack);
@@ -129,6 +134,7 @@ fn is_clear<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> bool {
 }
 
 /// The share of the piece up to which the hull is negative.
+#[inline]
 fn clear_share<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> f64 {
     if let Some(share) = simple_root(hull, slack, zeros) {
         return share;
@@ -155,6 +161,7 @@ fn clear_share<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> f64 {
 
 /// Where a hull whose coefficients change their sign once, upward, is still negative: by Descartes'
 /// rule there is one root, and it is beyond.
+#[inline]
 fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f64> {
     let hull = hull.map(|it| (it + T::exact(slack)).to_f64());
     let zeros = zeros.min(8);
@@ -166,6 +173,7 @@ fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f6
 }
 
 /// A place just before the root of a hull that has one: where it is negative beyond rounding.
+#[inline]
 fn negative_until(hull: &[f64; 9]) -> f64 {
     const STEPS: usize = 16;
     /// A difference of order k is off by 2^k roundings of k sums, and has the weight C(8, k): 3^8
@@ -195,6 +203,7 @@ fn negative_until(hull: &[f64; 9]) -> f64 {
 
 /// The coefficients of a polynomial in powers, from its Bernstein coefficients: C(8, k) times their
 /// differences.
+#[inline]
 fn powers(hull: &[f64; 9]) -> [f64; 9] {
     const CHOOSE: [f64; 9] = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
     let mut powers = *hull;
@@ -203,10 +212,13 @@ fn powers(hull: &[f64; 9]) -> [f64; 9] {
             powers[n] -= powers[n - 1];
         }
     }
-    powers.iter_mut().zip(CHOOSE).for_each(|(power, choose)| *power *= choose);
+    for n in 0..9 {
+        powers[n] *= CHOOSE[n];
+    }
     powers
 }
 
+#[inline]
 fn halves<T: Number>(hull: &Hull<T>) -> (Hull<T>, Hull<T>) {
     let half = T::exact(0.5);
     let (mut left, mut right) = (*hull, *hull);

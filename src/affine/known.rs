@@ -46,12 +46,14 @@ impl Drop for Loan<'_> {
 
 impl Deref for Loan<'_> {
     type Target = Structure;
+    #[inline]
     fn deref(&self) -> &Structure {
         &self.own
     }
 }
 
 impl DerefMut for Loan<'_> {
+    #[inline]
     fn deref_mut(&mut self) -> &mut Structure {
         &mut self.own
     }

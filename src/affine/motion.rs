@@ -163,6 +163,7 @@ fn polynomial<T: Number>(entries: &[Entry<T>], index: usize, y: &mut [T], time: 
 }
 
 /// `y = start + factor * matrix * y`.
+#[inline]
 fn step<T: Number>(matrix: &[Vector<T>], factor: T, start: &Vector<T>, y: &mut [T]) {
     let last: Vector<T> = copied(y);
     let size = y.len();
@@ -171,12 +172,14 @@ fn step<T: Number>(matrix: &[Vector<T>], factor: T, start: &Vector<T>, y: &mut [
     }
 }
 
+#[inline]
 fn copied<T: Number>(y: &[T]) -> Vector<T> {
     let mut copy = [T::zero(); LARGEST_DIMENSION];
     copy[..y.len()].copy_from_slice(y);
     copy
 }
 
+#[inline]
 fn decay<T: Number>(rate: Option<Words<T>>, time: T, y: &mut [T]) {
     let Some(rate) = rate else { return };
     let factor = exponential(rate, time);
@@ -184,17 +187,20 @@ fn decay<T: Number>(rate: Option<Words<T>>, time: T, y: &mut [T]) {
 }
 
 /// A product with a rate, and what rounding took from it.
+#[inline]
 fn product<T: Number>(rate: Words<T>, time: T) -> (T, T) {
     let high = rate.high * time;
     (high, rate.high.product_error(time) + rate.low * time)
 }
 
+#[inline]
 fn exponential<T: Number>(rate: Words<T>, time: T) -> T {
     let (high, low) = product(rate, time);
     let value = high.exp();
     value + value * low
 }
 
+#[inline]
 fn circular<T: Number>(frequency: Words<T>, time: T) -> (T, T) {
     let (high, low) = product(frequency, time);
     let (sin, cos) = high.sin_cos();
@@ -224,6 +230,7 @@ impl<T: Number> Powers<T> {
         Self { step, tables, matrix: matrix.iter().map(|row| vector(row)).collect() }
     }
 
+    #[inline]
     fn advance(&self, y: &mut [T], time: T) {
         let size = y.len();
         let steps = libm::floor(time.to_f64() / self.step).max(0.0);

@@ -47,6 +47,7 @@ pub(super) struct Point<T> {
 
 impl<'a, T: Number> Segment<'a, T> {
     /// The segment that begins with these co-ordinates.
+    #[inline]
     pub fn new(
         flow: &'a Flow<T>,
         rows: &'a [ModalRow<T>],
@@ -54,18 +55,24 @@ impl<'a, T: Number> Segment<'a, T> {
         tracks: &[Track],
         inherited: Vec<f64>,
     ) -> Self {
-        let live = || tracks.iter().zip(rows).filter(|(track, _)| track.live);
-        let blocks = live().fold(0, |mask, (_, row)| mask | row.blocks);
-        let zeros = tracks.iter().map(|it| if it.live { it.zeros } else { ORDERS }).collect();
+        let (mut blocks, mut zeros, mut early) = (0, PerGuard::new(), false);
+        for (n, track) in tracks.iter().enumerate() {
+            zeros.push(if track.live { track.zeros } else { ORDERS });
+            if track.live {
+                blocks |= rows[n].blocks;
+                early |= track.zeros > 0;
+            }
+        }
         let series = OnceCell::new();
         let mut segment = Self { flow, rows, entry, inherited, early: -1.0, series, zeros, blocks };
-        if live().any(|(track, _)| track.zeros > 0) {
+        if early {
             segment.early = segment.series_limit();
         }
         segment
     }
 
     /// Up to which time the series of all guards are good without their last order.
+    #[inline]
     fn series_limit(&self) -> f64 {
         let norms = self.flow.norms(&self.entry);
         let longest = self.flow.longest();
@@ -79,6 +86,7 @@ impl<'a, T: Number> Segment<'a, T> {
     }
 
     /// The guards' Taylor coefficients at entry.
+    #[inline]
     fn series(&self) -> &[[T; ORDERS]] {
         self.series.get_or_init(|| {
             let guard = |(row, zeros): (&ModalRow<T>, &usize)| -> [T; ORDERS] {
@@ -99,18 +107,19 @@ impl<'a, T: Number> Segment<'a, T> {
     }
 
     /// The guards at entry, with their structural zeros.
+    #[inline]
     pub fn begin(&self, point: &mut Point<T>) {
         (point.time, point.y) = (T::zero(), self.entry);
         self.fill(point);
-        let guards = point.orders.iter_mut().zip(&mut point.slack).zip(&self.zeros);
-        for ((orders, slack), zeros) in guards.filter(|(_, zeros)| **zeros > 0) {
-            orders.iter_mut().take(*zeros).for_each(|order| *order = T::zero());
-            *slack = 0.0;
+        for (n, zeros) in self.zeros.iter().enumerate().filter(|(_, zeros)| **zeros > 0) {
+            point.orders[n].iter_mut().take(*zeros).for_each(|order| *order = T::zero());
+            point.slack[n] = 0.0;
         }
         self.inherit(point);
     }
 
     /// Evaluates the closed form, as far as guards need it.
+    #[inline]
     pub fn evaluate(&self, point: &mut Point<T>, time: T, work: &mut Work) {
         work.evaluations += 1;
         (point.time, point.y) = (time, self.entry);
@@ -124,32 +133,37 @@ impl<'a, T: Number> Segment<'a, T> {
     }
 
     /// Whether the guards at a point are summed from their series.
+    #[inline]
     pub fn is_early(&self, point: &Point<T>) -> bool {
         point.time.to_f64() <= self.early
     }
 
     /// What rounding does to a row, in sizes of what it is summed from.
+    #[inline]
     pub fn margin(&self) -> f64 {
         (self.flow.dimension + 4) as f64 * unit::<T>()
     }
 
     /// Works out the norms of a point's blocks.
+    #[inline]
     pub fn measure(&self, point: &mut Point<T>) {
         point.norms = self.flow.norms(&point.y);
     }
 
     /// Evaluates the blocks of a point that no guard is made of.
+    #[inline]
     pub fn complete(&self, point: &mut Point<T>) {
         self.flow.advance(&mut point.y, point.time, !self.blocks);
     }
 
     /// The guards from the co-ordinates.
+    #[inline]
     fn fill(&self, point: &mut Point<T>) {
         let margin = self.margin();
         point.orders.clear();
         point.slack.clear();
-        for (row, zeros) in self.rows.iter().zip(&self.zeros) {
-            if *zeros == ORDERS {
+        for (n, row) in self.rows.iter().enumerate() {
+            if self.zeros[n] == ORDERS {
                 point.orders.push([T::zero(); 4]);
                 point.slack.push(0.0);
                 continue;
@@ -161,6 +175,7 @@ impl<'a, T: Number> Segment<'a, T> {
     }
 
     /// The guards from their Taylor series.
+    #[inline]
     fn fill_early(&self, point: &mut Point<T>) {
         point.orders.clear();
         point.slack.clear();
@@ -173,6 +188,7 @@ impl<'a, T: Number> Segment<'a, T> {
         }
     }
 
+    #[inline]
     fn inherit(&self, point: &mut Point<T>) {
         if !self.inherited.is_empty() {
             let growth = libm::exp(self.flow.fastest_growth() * point.time.to_f64().abs());
@@ -183,6 +199,7 @@ impl<'a, T: Number> Segment<'a, T> {
 }
 
 impl<T: Number> Default for Point<T> {
+    #[inline]
     fn default() -> Self {
         let (y, norms) = ([T::zero(); LARGEST_DIMENSION], [0.0; LARGEST_DIMENSION]);
         Self { time: T::zero(), y, norms, orders: SmallVec::new(), slack: SmallVec::new() }
@@ -198,18 +215,21 @@ pub(super) struct Ends<T> {
 
 impl<T> Ends<T> {
     /// Goes on to the right end.
+    #[inline]
     pub fn step(&mut self) {
         std::mem::swap(&mut self.left, &mut self.right);
     }
 }
 
 impl<T: Number> Default for Ends<T> {
+    #[inline]
     fn default() -> Self {
         Self { left: Point::default(), right: Point::default() }
     }
 }
 
 /// Value and three derivatives of a Taylor series, and the size of what the value is summed from.
+#[inline]
 fn series<T: Number>(coefficients: &[T; ORDERS], time: T) -> ([T; 4], f64) {
     let [mut value, mut slope, mut bend, mut third] = [T::zero(); 4];
     let (mut size, size_of_time) = (0.0, time.to_f64().abs());
@@ -226,6 +246,7 @@ fn series<T: Number>(coefficients: &[T; ORDERS], time: T) -> ([T; 4], f64) {
 }
 
 /// Up to which time a Taylor series without its last order is good to the last digit.
+#[inline]
 fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64 {
     if last == 0.0 {
         return f64::INFINITY;
@@ -237,6 +258,7 @@ fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64 {
 }
 
 /// A root to some per cent: by a division of the logarithm that a number's bits are.
+#[inline]
 pub(super) fn root(value: f64, degree: usize) -> f64 {
     const ONE: u64 = 1.0_f64.to_bits();
     if value == 0.0 || value == f64::INFINITY || value.is_nan() {

@@ -40,6 +40,7 @@ pub(super) struct Reach {
 
 impl<T: Number> Segment<'_, T> {
     /// How far a guard is looked at from a point.
+    #[inline]
     pub fn reach(&self, n: usize, track: &Track, left: &Point<T>, longest: f64) -> Reach {
         let row = &self.rows[n];
         let orders = outward(&left.orders[n], track).map(Number::to_f64);
@@ -59,6 +60,7 @@ impl<T: Number> Segment<'_, T> {
     }
 
     /// Judges a guard on a piece.
+    #[inline]
     pub fn judge(
         &self,
         n: usize,
@@ -89,6 +91,7 @@ impl<T: Number> Segment<'_, T> {
 }
 
 /// Leaves as many blocks to their enclosures as lets a piece be longest.
+#[inline]
 fn enclose<T: Number>(
     row: &ModalRow<T>,
     track: &Track,
@@ -122,17 +125,19 @@ fn enclose<T: Number>(
 }
 
 /// Bounds of the eighth derivative of all blocks from each on.
+#[inline]
 fn eighths<T: Number>(row: &ModalRow<T>, left: &Point<T>, longest: f64) -> Vector<f64> {
     let mut rests = [0.0; LARGEST_DIMENSION];
     let mut sum = 0.0;
-    for (rest, part) in rests.iter_mut().zip(&row.parts).rev() {
+    for (n, part) in row.parts.iter().enumerate().rev() {
         sum += part.later.bound(&part.norms, 8, longest) * left.norms[part.block];
-        *rest = sum;
+        rests[n] = sum;
     }
     rests
 }
 
 /// An upper bound of the eighth derivative of all blocks from `cut` on, not negative.
+#[inline]
 fn eighth<T: Number>(
     row: &ModalRow<T>,
     track: &Track,
@@ -153,6 +158,7 @@ fn eighth<T: Number>(
 
 /// The sizes of what derivatives are summed from, as far as a coefficient of a hull has them: the
 /// third and fourth have most, 3/7 L, L^2/14 and L^3/210 of the first three.
+#[inline]
 fn derivatives<T: Number>(row: &ModalRow<T>, left: &Point<T>, cut: usize, length: f64) -> f64 {
     let size = |part: &RowPart| {
         let norm = |k: usize| part.later.bound(&part.norms, k, length);
@@ -164,6 +170,7 @@ fn derivatives<T: Number>(row: &ModalRow<T>, left: &Point<T>, cut: usize, length
 
 /// What the first blocks add to a guard on a piece at most, at its ends; between them it is below
 /// the straight line.
+#[inline]
 fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize) -> [f64; 2] {
     let mut raise = [0.0; 2];
     for part in &row.parts[..cut] {
@@ -188,6 +195,7 @@ fn part_of<T: Number>(row: &ModalRow<T>, part: &RowPart, track: &Track, y: &Vect
 
 /// A length that ends a little beyond the root that the first terms of a polynomial suggest, or
 /// where they have grown so much that rounding would hide the beginning.
+#[inline]
 fn polynomial_reach(orders: &[f64; 4], zeros: usize, slack: f64) -> f64 {
     const GROWTH: f64 = 1e6;
     let [value, slope, bend, third] = *orders;
@@ -208,6 +216,7 @@ fn polynomial_reach(orders: &[f64; 4], zeros: usize, slack: f64) -> f64 {
 
 /// A length on which the remainder stays small beside what a guard becomes by one of its first
 /// derivatives that are not zero.
+#[inline]
 fn length(orders: &[f64; 4], eighth: f64, zeros: usize, size: impl Fn() -> f64) -> f64 {
     if eighth == 0.0 {
         return f64::INFINITY;

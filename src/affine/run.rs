@@ -171,6 +171,7 @@ impl<T: Number> Solver<T> {
         Some(run)
     }
 
+    #[inline]
     fn sin_cos(&self, time: &Time<T>) -> (T, T) {
         match &self.clock {
             Some(clock) if self.backward => {
@@ -203,6 +204,7 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// Fills in cos theta, sin theta and 1.
+    #[inline]
     fn complete(&mut self) {
         let (sin, cos) = self.solver.sin_cos(&self.entered);
         complete(&mut self.state, self.solver, sin, cos);
@@ -268,6 +270,7 @@ impl<T: Number> Run<'_, T> {
         }
     }
 
+    #[inline]
     fn event(&self, what: What<T>, time: Time<T>, state: &Vector<T>) -> Event<T> {
         let states = self.solver.system.states.len();
         let mode = self.structure.node(self.node).mode;
@@ -321,12 +324,14 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// Time that is left until the horizon.
+    #[inline]
     fn limit(&self) -> T {
         let ahead = (self.horizon - self.entered.high) - self.entered.low;
         if self.solver.backward { -ahead } else { ahead }
     }
 
     /// Time and state where the search has come to.
+    #[inline]
     fn here(&self) -> (Time<T>, Vector<T>) {
         let point = &self.ends.left;
         let elapsed = if self.solver.backward { -point.time } else { point.time };
@@ -391,6 +396,7 @@ impl<T: Number> Run<'_, T> {
         Some(errors)
     }
 
+    #[inline]
     fn watched(
         &mut self,
         mode: usize,
@@ -455,6 +461,7 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// The first successor whose condition holds.
+    #[inline]
     fn successor(&mut self, mode: usize, firing: Firing, state: &Vector<T>) -> usize {
         let solver = self.solver;
         let orders = &self.structure.arrival(self.node, firing).orders;
@@ -516,6 +523,7 @@ fn roundings<T: Number>(flow: &Flow<T>, y: &Vector<T>) -> [f64; LARGEST_DIMENSIO
     flow.sizes(y).map(|size| margin * size)
 }
 
+#[inline]
 fn complete<T: Number>(state: &mut Vector<T>, solver: &Solver<T>, sin: T, cos: T) {
     let (states, dimension) = (solver.system.states.len(), solver.system.dimension());
     state[dimension - 1] = T::one();
@@ -525,10 +533,12 @@ fn complete<T: Number>(state: &mut Vector<T>, solver: &Solver<T>, sin: T, cos: T
     }
 }
 
+#[inline]
 fn bits(mask: u64) -> impl Iterator<Item = usize> {
     (0..64).filter(move |n| mask >> n & 1 == 1)
 }
 
+#[inline]
 fn low_bits(count: usize) -> u64 {
     if count >= 64 { u64::MAX } else { (1 << count) - 1 }
 }

@@ -5,6 +5,10 @@
 //! searched: Newton's method on the guard's own series finds the candidate, and bounds of its
 //! derivatives prove that the guard rises through zero once. What shows neither is looked at in
 //! shorter pieces. See the page docs/ROUNDING.md for what rounding may take.
+//!
+//! What is generic is compiled by the crate that uses it, which may do so in many units without
+//! optimising across them; so what runs at every event is marked to be inlined, here and in the
+//! modules that this one uses.
 
 use super::flow::unit;
 use super::hull::{Judged, Lengths};
@@ -58,6 +62,7 @@ struct Rising<T> {
 
 impl<T: Number> Segment<'_, T> {
     /// The first crossing after the left end and not after `limit`.
+    #[inline]
     pub fn first(
         &self,
         tracks: &mut [Track],
@@ -107,16 +112,21 @@ impl<T: Number> Segment<'_, T> {
     }
 
     /// How far each guard is looked at from a point.
+    #[inline]
     fn reaches(&self, tracks: &[Track], left: &Point<T>) -> PerGuard<Reach> {
         let longest = self.flow.longest();
-        let guard = |(n, track): (usize, &Track)| match track.live {
-            true => self.reach(n, track, left, longest),
-            false => Reach::default(),
-        };
-        tracks.iter().enumerate().map(guard).collect()
+        let mut reaches = PerGuard::new();
+        for (n, track) in tracks.iter().enumerate() {
+            reaches.push(match track.live {
+                true => self.reach(n, track, left, longest),
+                false => Reach::default(),
+            });
+        }
+        reaches
     }
 
     /// Evaluates the right end of the next piece.
+    #[inline]
     fn look_ahead(
         &self,
         tracks: &[Track],
@@ -141,6 +151,7 @@ impl<T: Number> Segment<'_, T> {
 
     /// A length a little beyond the root that the first two terms of a guard suggest, if it begins
     /// at zero and turns back.
+    #[inline]
     fn near_root(&self, track: &Track, orders: &[T; 4]) -> f64 {
         let (Some(first), Some(second)) = (orders.get(track.zeros), orders.get(track.zeros + 1))
         else {
@@ -156,6 +167,7 @@ impl<T: Number> Segment<'_, T> {
 
     /// The share of a piece on which all guards are proved to stay negative; none if it is all of
     /// it.
+    #[inline]
     fn clear_share(
         &self,
         tracks: &[Track],
@@ -176,8 +188,12 @@ impl<T: Number> Segment<'_, T> {
     }
 
     /// The first crossing shortly after a point, if it is proved to be one.
+    #[inline]
     fn rising(&self, tracks: &[Track], at: &Point<T>, work: &mut Work) -> Option<(T, u64)> {
-        let rising: PerGuard<_> = live(tracks).map(|(n, track)| self.rises(n, track, at)).collect();
+        let mut rising = PerGuard::new();
+        for (n, track) in live(tracks) {
+            rising.push(self.rises(n, track, at));
+        }
         let first = rising.iter().flatten().map(|it| it.after);
         let first = first.reduce(|a, b| if b < a { b } else { a })?;
         let within = rising.iter().flatten().filter(|it| it.after <= first).map(|it| it.within);
@@ -205,6 +221,7 @@ impl<T: Number> Segment<'_, T> {
     }
 
     /// Whether a guard rises through zero once, shortly after a point, and when.
+    #[inline]
     fn rises(&self, n: usize, track: &Track, at: &Point<T>) -> Option<Rising<T>> {
         let orders = outward(&at.orders[n], track);
         let slack = at.slack[n];
@@ -225,6 +242,7 @@ impl<T: Number> Segment<'_, T> {
     }
 
     /// The time to a root that is near a point.
+    #[inline]
     fn root(&self, n: usize, track: &Track, at: &Point<T>) -> T {
         let first = outward(&at.orders[n], track);
         let outward = T::exact(track.outward);
@@ -246,6 +264,7 @@ impl<T: Number> Segment<'_, T> {
     }
 
     /// A bound of a guard over a short time after a point.
+    #[inline]
     fn excess(&self, n: usize, track: &Track, at: &Point<T>, within: f64) -> f64 {
         let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::to_f64);
         let fourth = self.flow.bound_by(&self.rows[n], 4, &at.norms, within);
@@ -259,6 +278,7 @@ impl<T: Number> Segment<'_, T> {
     }
 
     /// The crossing to the last digit.
+    #[inline]
     fn settled(
         &self,
         tracks: &[Track],
@@ -290,6 +310,7 @@ impl<T: Number> Segment<'_, T> {
 }
 
 /// The step to the root of a cubic that is near zero, by Newton's method.
+#[inline]
 fn newton<T: Number>(orders: &[T; 4]) -> T {
     let [value, slope, bend, third] = *orders;
     let (half, sixth) = (bend * T::exact(0.5), third / T::exact(6.0));
@@ -302,14 +323,17 @@ fn newton<T: Number>(orders: &[T; 4]) -> T {
     step
 }
 
+#[inline]
 pub(super) fn outward<T: Number>(orders: &[T; 4], track: &Track) -> [T; 4] {
     if track.outward < 0.0 { orders.map(|it| -it) } else { *orders }
 }
 
+#[inline]
 fn live(tracks: &[Track]) -> impl Iterator<Item = (usize, &Track)> {
     tracks.iter().enumerate().filter(|(_, track)| track.live)
 }
 
+#[inline]
 fn clear_zeros(tracks: &mut [Track]) {
     tracks.iter_mut().for_each(|track| track.zeros = 0);
 }
