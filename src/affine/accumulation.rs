@@ -78,7 +78,7 @@ impl<T: Number> Run<'_, T> {
     fn widened(&self, earliest: T, latest: T, gap: &super::flow::ModalRow<T>, rate: f64) -> (T, T) {
         let flow = &self.solver.modes[self.structure.node(self.node).mode].flow;
         let inherited = self.enclosure.as_ref().map_or(0.0, |it| it.of_row(flow, gap, 1));
-        let size = gap.size_of(1, &self.modal, flow.dimension);
+        let (_, size) = gap.order(1, &self.modal);
         let share = 4.0 * (inherited + 32.0 * super::flow::unit::<T>() * size) / rate;
         let room = latest * T::exact(if self.enclosure.is_some() { share } else { 0.0 });
         (earliest - room, latest + room)

@@ -36,6 +36,7 @@ impl<T: Number> Time<T> {
 
     /// A time later, or earlier.
     #[must_use]
+    #[inline]
     pub fn after(&self, elapsed: T) -> Self {
         let Self { high, low } = sum(self.high, elapsed);
         sum(high, low + self.low)
@@ -43,12 +44,14 @@ impl<T: Number> Time<T> {
 
     /// Rounded to one number.
     #[must_use]
+    #[inline]
     pub fn value(&self) -> T {
         self.high + self.low
     }
 }
 
 /// A sum and what rounding took from it.
+#[inline]
 fn sum<T: Number>(a: T, b: T) -> Time<T> {
     let high = a + b;
     let seen = high - a;
@@ -66,6 +69,7 @@ impl<T: Number> Clock<T> {
     }
 
     /// Sine and cosine of theta at a time.
+    #[inline]
     pub fn sin_cos(&self, time: &Time<T>) -> (T, T) {
         let product = self.omega.high * time.high;
         let rest = self.omega.high.product_error(time.high)

@@ -1,6 +1,8 @@
 //! The closed form of a mode: z(t) = exp(M t) z, block by block.
 
-use super::modal::{self, Kind, Real};
+use super::bound::{self, Later};
+use super::modal::{self, Real};
+use super::motion::{BlockMotion, vector};
 use super::system::{LARGEST_DIMENSION, Row};
 use crate::number::Number;
 
@@ -10,51 +12,29 @@ pub(super) type Vector<T> = [T; LARGEST_DIMENSION];
 /// How many derivatives of a row are held, its value included.
 pub(super) const ORDERS: usize = 17;
 
-/// A number in two words of an arithmetic.
-#[derive(Clone, Copy, Debug)]
-struct Words<T> {
-    high: T,
-    low: T,
-}
-
 /// A mode's closed form.
 #[derive(Clone, Debug)]
 pub(super) struct Flow<T> {
     pub dimension: usize,
-    blocks: Vec<Block<T>>,
-    /// W of all blocks.
+    pub blocks: Vec<Block<T>>,
+    /// W of all blocks, by columns.
     to_modal: Vec<Vector<T>>,
-    /// W of all blocks, rounded to f64.
+    /// W of all blocks, rounded to f64, by columns.
     to_modal_rounded: Vec<Vector<f64>>,
-    /// X of all blocks.
+    /// X of all blocks, by columns.
     from_modal: Vec<Vector<T>>,
 }
 
+/// A block of modal co-ordinates that move by themselves.
 #[derive(Clone, Debug)]
-struct Block<T> {
-    at: usize,
-    size: usize,
+pub(super) struct Block<T> {
+    pub at: usize,
+    pub size: usize,
     motion: BlockMotion<T>,
     /// A bound of the rate at which a vector of it grows, not negative.
     growth: f64,
-}
-
-#[derive(Clone, Debug)]
-enum BlockMotion<T> {
-    Still,
-    Real { rate: Words<T> },
-    Pair { rate: Option<Words<T>>, frequency: Words<T> },
-    Nilpotent { rate: Option<Words<T>>, matrix: Vec<Vector<T>> },
-    Cluster(Box<Powers<T>>),
-}
-
-/// exp(B t) by tables: t = step (d_0 + 16 d_1 + ...) + rest.
-#[derive(Clone, Debug)]
-struct Powers<T> {
-    step: f64,
-    /// exp(B step 16^j d) for d from 1 to 15.
-    tables: Vec<Vec<Vec<Vector<T>>>>,
-    matrix: Vec<Vector<T>>,
+    /// What is known of it at all later times.
+    pub later: Later,
 }
 
 /// A row of z with its derivatives, in modal co-ordinates.
@@ -62,42 +42,44 @@ struct Powers<T> {
 pub(super) struct ModalRow<T> {
     /// The row's derivatives.
     pub orders: Vec<Vector<T>>,
-    /// The sizes of the entries of the row itself.
-    sizes: [f64; LARGEST_DIMENSION],
-    /// The norms of the derivatives' parts that belong to each block.
-    norms: Vec<[f64; ORDERS]>,
+    /// The co-ordinates that it is made of, in their order.
+    pub columns: Vec<Column<T>>,
+    /// The blocks that it is made of, in their order.
+    pub parts: Vec<RowPart>,
+    /// The same blocks, as bits.
+    pub blocks: u16,
+}
+
+/// A co-ordinate's factors in a row.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Column<T> {
+    pub at: usize,
+    /// In the value and three derivatives.
+    pub orders: [T; 4],
+    /// The size of the first.
+    size: f64,
+}
+
+/// A block's part in a row.
+#[derive(Clone, Debug)]
+pub(super) struct RowPart {
+    /// The block's index.
+    pub block: usize,
+    /// Its first column and the one after its last, among those of the row.
+    pub columns: (usize, usize),
+    /// What is known of the block at all later times.
+    pub later: Later,
+    /// The norms of the derivatives' parts, and of what they become where the block's co-ordinates
+    /// only turn and decay.
+    pub norms: [f64; ORDERS],
 }
 
 /// The distance from 1 to the next smaller number of an arithmetic.
+#[inline]
 pub(super) fn unit<T: Number>() -> f64 {
     const HALF: f64 = 0.5 * f64::EPSILON;
     // Double-double arithmetic is good to a few units of 2^-106.
     if T::TERMS <= <f64 as Number>::TERMS { HALF } else { HALF * HALF * 4.0 }
-}
-
-/// A wide number, rounded to an arithmetic of one or two words.
-pub(super) fn rounded<T: Number>(value: &Real) -> T {
-    let (high, low) = value.words();
-    T::exact(high) + T::exact(low)
-}
-
-fn words<T: Number>(value: &Real) -> Words<T> {
-    let high: T = rounded(value);
-    // What is left beyond an arithmetic of two words is not resolved by it either.
-    let rest = if unit::<T>() > 1e-20 { value.words().1 } else { 0.0 };
-    Words { high, low: T::exact(rest) }
-}
-
-fn nonzero<T: Number>(value: &Real) -> Option<Words<T>> {
-    (!value.is_zero()).then(|| words(value))
-}
-
-fn vector<T: Number>(row: &[Real]) -> Vector<T> {
-    let mut vector = [T::zero(); LARGEST_DIMENSION];
-    for (entry, value) in vector.iter_mut().zip(row) {
-        *entry = rounded(value);
-    }
-    vector
 }
 
 /// The sum of products of the first entries.
@@ -121,15 +103,14 @@ impl<T: Number> Flow<T> {
             to_modal_rounded: Vec::new(),
             from_modal: Vec::new(),
         };
-        for row in 0..dimension {
-            let entries = blocks.iter().flat_map(|it| it.columns[row].iter().cloned());
-            flow.from_modal.push(vector(&entries.collect::<Vec<_>>()));
-        }
+        let mut to_modal = Vec::new();
         for block in blocks {
-            let at = flow.to_modal.len();
-            flow.to_modal.extend(block.rows.iter().map(|row| vector(row)));
+            flow.from_modal.extend(transposed(&block.columns));
+            let at = to_modal.len();
+            to_modal.extend(block.rows.iter().cloned());
             flow.blocks.push(Block::of(block, at));
         }
+        flow.to_modal = transposed(&to_modal);
         let rounded = |row: &Vector<T>| row.map(Number::to_f64);
         flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
         flow
@@ -138,66 +119,84 @@ impl<T: Number> Flow<T> {
     /// A row of z in modal co-ordinates.
     pub fn row(&self, row: &Row, blocks: &[modal::Block]) -> ModalRow<T> {
         let row: Vec<Real> = row.iter().map(Real::of).collect();
-        let parts: Vec<_> =
-            blocks.iter().map(|block| modal::derivatives(&row, block, ORDERS)).collect();
+        let parts: Vec<_> = blocks.iter().map(|block| bound::derivatives(&row, block)).collect();
         let order = |k: usize| {
             let entries: Vec<_> = parts.iter().flat_map(|part| part[k].iter().cloned()).collect();
             vector(&entries)
         };
         let orders: Vec<Vector<T>> = (0..ORDERS).map(order).collect();
-        let norm = |part: &Vec<Vec<Real>>, k: usize| {
-            let squares = part[k].iter().map(|it| it.to_f64() * it.to_f64());
-            squares.sum::<f64>().sqrt() * (1.0 + 1e-12)
-        };
-        let norms = parts.iter().map(|part| std::array::from_fn(|k| norm(part, k))).collect();
-        let sizes = orders[0].map(|it| it.to_f64().abs());
-        ModalRow { orders, sizes, norms }
+        let mut modal = ModalRow { orders, columns: Vec::new(), parts: Vec::new(), blocks: 0 };
+        for (n, (block, part)) in blocks.iter().zip(&parts).enumerate() {
+            let norms = bound::norms(block, part);
+            if norms.iter().any(|it| *it > 0.0) {
+                modal.add_part(n, &self.blocks[n], norms);
+            }
+        }
+        modal
     }
 
     /// The modal co-ordinates of a state.
+    #[inline]
     pub fn modal(&self, z: &Vector<T>) -> Vector<T> {
-        self.times(&self.to_modal, z)
+        times(&self.to_modal, z)
     }
 
     /// The state with these modal co-ordinates.
+    #[inline]
     pub fn state(&self, y: &Vector<T>) -> Vector<T> {
-        self.times(&self.from_modal, y)
-    }
-
-    fn times(&self, rows: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
-        let mut product = [T::zero(); LARGEST_DIMENSION];
-        for (entry, row) in product.iter_mut().zip(rows) {
-            *entry = dot(row, vector, self.dimension);
-        }
-        product
+        times(&self.from_modal, y)
     }
 
     /// The sizes of what each entry of the state is summed from.
     pub fn sizes(&self, y: &Vector<T>) -> [f64; LARGEST_DIMENSION] {
         let mut sizes = [0.0; LARGEST_DIMENSION];
-        for (size, row) in sizes.iter_mut().zip(&self.from_modal) {
-            *size = row.iter().zip(y).map(|(a, b)| (a.to_f64() * b.to_f64()).abs()).sum();
+        for (column, entry) in self.from_modal.iter().zip(y) {
+            let terms = column.iter().map(|it| (it.to_f64() * entry.to_f64()).abs());
+            sizes.iter_mut().zip(terms).for_each(|(size, term)| *size += term);
         }
         sizes
     }
 
     /// The modal co-ordinates a time later.
+    #[inline]
     pub fn at(&self, y: &Vector<T>, time: T) -> Vector<T> {
         let mut later = *y;
-        for block in &self.blocks {
-            let range = block.at..block.at + block.size;
-            block.motion.advance(&mut later[range], time);
-        }
+        self.advance(&mut later, time, u16::MAX);
         later
+    }
+
+    /// Advances the co-ordinates of these blocks.
+    #[inline]
+    pub fn advance(&self, y: &mut Vector<T>, time: T, blocks: u16) {
+        for (n, block) in self.blocks.iter().enumerate() {
+            if blocks >> n & 1 == 1 {
+                block.motion.advance(&mut y[block.at..block.at + block.size], time);
+            }
+        }
+    }
+
+    /// The norms of each block's co-ordinates.
+    #[inline]
+    pub fn norms<U: Number>(&self, y: &Vector<U>) -> Vector<f64> {
+        let mut norms = [0.0; LARGEST_DIMENSION];
+        for (n, block) in self.blocks.iter().enumerate() {
+            let (first, size) = (y[block.at].to_f64(), block.size);
+            norms[n] = if size == 1 {
+                first.abs()
+            } else {
+                let mut sum = first * first;
+                for other in &y[block.at + 1..block.at + size] {
+                    sum += other.to_f64() * other.to_f64();
+                }
+                sum.sqrt()
+            };
+        }
+        norms
     }
 
     /// The modal co-ordinates of an error, in f64.
     pub fn modal_rounded(&self, z: &Vector<f64>) -> Vector<f64> {
-        let mut product = [0.0; LARGEST_DIMENSION];
-        for (entry, row) in product.iter_mut().zip(&self.to_modal_rounded) {
-            *entry = dot(row, z, self.dimension);
-        }
-        product
+        times(&self.to_modal_rounded, z)
     }
 
     /// The columns of exp(M t), in f64.
@@ -211,6 +210,7 @@ impl<T: Number> Flow<T> {
     }
 
     /// A bound of a row's derivative of an order over `length` after a state.
+    #[inline]
     pub fn bound<U: Number>(
         &self,
         row: &ModalRow<T>,
@@ -218,188 +218,148 @@ impl<T: Number> Flow<T> {
         y: &Vector<U>,
         length: f64,
     ) -> f64 {
+        self.bound_by(row, order, &self.norms(y), length)
+    }
+
+    /// The same, from the norms of the blocks' co-ordinates.
+    #[inline]
+    pub fn bound_by(
+        &self,
+        row: &ModalRow<T>,
+        order: usize,
+        sizes: &Vector<f64>,
+        length: f64,
+    ) -> f64 {
         let mut sum = 0.0;
-        for (block, norms) in self.blocks.iter().zip(&row.norms) {
-            if norms[order] == 0.0 {
-                continue;
-            }
-            let own = &y[block.at..block.at + block.size];
-            let size = match own {
-                [one] => one.to_f64().abs(),
-                many => many.iter().map(|it| it.to_f64() * it.to_f64()).sum::<f64>().sqrt(),
-            };
-            let growth = if block.growth == 0.0 { 1.0 } else { libm::exp(block.growth * length) };
-            sum += norms[order] * size * growth;
+        for part in &row.parts {
+            sum += part.later.bound(&part.norms, order, length) * sizes[part.block];
         }
         sum * (1.0 + 1e-12)
     }
 
+    /// How long a bound may be asked for: a growing block grows by at most e.
+    #[inline]
+    pub fn longest(&self) -> f64 {
+        let rate =
+            |block: &Block<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
+        1.0 / self.blocks.iter().map(rate).fold(0.0, f64::max)
+    }
+
     /// The largest growth rate of a block.
+    #[inline]
     pub fn fastest_growth(&self) -> f64 {
         self.blocks.iter().fold(0.0, |most: f64, block| most.max(block.growth))
     }
 }
 
 impl<T: Number> ModalRow<T> {
-    /// The sum of the sizes of what the row's value is summed from.
-    pub fn size(&self, y: &Vector<T>, dimension: usize) -> f64 {
-        let terms = self.sizes[..dimension].iter().zip(y);
-        terms.map(|(size, entry)| size * entry.to_f64().abs()).sum()
+    fn add_part(&mut self, n: usize, block: &Block<T>, norms: [f64; ORDERS]) {
+        let first = self.columns.len();
+        for at in block.at..block.at + block.size {
+            let orders = [0, 1, 2, 3].map(|k: usize| self.orders[k][at]);
+            let used = self.orders.iter().any(|order| order[at] != T::zero());
+            if used {
+                self.columns.push(Column { at, orders, size: orders[0].to_f64().abs() });
+            }
+        }
+        let columns = (first, self.columns.len());
+        self.parts.push(RowPart { block: n, columns, later: block.later, norms });
+        self.blocks |= 1 << n;
     }
 
-    /// The sizes of what a derivative is summed from.
-    pub fn size_of(&self, order: usize, y: &Vector<T>, dimension: usize) -> f64 {
-        let terms = self.orders[order][..dimension].iter().zip(y);
-        terms.map(|(factor, entry)| (factor.to_f64() * entry.to_f64()).abs()).sum()
+    /// The first column of a part, or the end of them.
+    #[inline]
+    pub fn first_column(&self, part: usize) -> usize {
+        self.parts.get(part).map_or(self.columns.len(), |it| it.columns.0)
+    }
+
+    /// Value and three derivatives, from a column on.
+    #[inline]
+    pub fn first_orders(&self, y: &Vector<T>, from: usize) -> [T; 4] {
+        let mut sums = [T::zero(); 4];
+        for column in &self.columns[from..] {
+            let entry = y[column.at];
+            add_product(&mut sums, &column.orders, entry);
+        }
+        sums
+    }
+
+    /// Value and three derivatives, and the sum of the sizes of what the value is summed from.
+    #[inline]
+    pub fn sized_orders(&self, y: &Vector<T>) -> ([T; 4], f64) {
+        let (mut sums, mut size) = ([T::zero(); 4], 0.0);
+        for column in &self.columns {
+            let entry = y[column.at];
+            add_product(&mut sums, &column.orders, entry);
+            size += column.size * entry.to_f64().abs();
+        }
+        (sums, size)
+    }
+
+    /// The sum of the sizes of what the row's value is summed from.
+    #[inline]
+    pub fn size(&self, y: &Vector<T>) -> f64 {
+        self.columns.iter().map(|it| it.size * y[it.at].to_f64().abs()).sum()
+    }
+
+    /// A derivative, and the sum of the sizes of what it is summed from.
+    #[inline]
+    pub fn order(&self, order: usize, y: &Vector<T>) -> (T, f64) {
+        let row = &self.orders[order];
+        let (mut sum, mut size) = (T::zero(), 0.0);
+        for Column { at, .. } in &self.columns {
+            let term = row[*at] * y[*at];
+            sum = sum + term;
+            size += term.to_f64().abs();
+        }
+        (sum, size)
     }
 }
 
 impl<T: Number> Block<T> {
     fn of(block: &modal::Block, at: usize) -> Self {
-        let size = block.matrix.len();
-        let motion = match &block.kind {
-            Kind::Real(rate) if rate.is_zero() => BlockMotion::Still,
-            Kind::Real(rate) => BlockMotion::Real { rate: words(rate) },
-            Kind::Pair(rate, frequency) => {
-                BlockMotion::Pair { rate: nonzero(rate), frequency: words(frequency) }
-            }
-            Kind::Nilpotent(rate) => {
-                let nilpotent = block.matrix.iter().enumerate().map(|(n, row)| {
-                    let mut row = row.clone();
-                    row[n] = &row[n] - rate;
-                    vector(&row)
-                });
-                BlockMotion::Nilpotent { rate: nonzero(rate), matrix: nilpotent.collect() }
-            }
-            Kind::Cluster => BlockMotion::Cluster(Box::new(Powers::of(&block.matrix))),
-        };
-        Self { at, size, motion, growth: growth(block) }
+        let motion = BlockMotion::of(block);
+        let (growth, later) = (bound::growth(block), Later::of(block));
+        Self { at, size: block.matrix.len(), motion, growth, later }
     }
 }
 
-/// A bound of a block's logarithmic norm, not negative: by the rows of its symmetric part.
-fn growth(block: &modal::Block) -> f64 {
-    if let Kind::Real(rate) | Kind::Pair(rate, _) = &block.kind {
-        return rate.to_f64().max(0.0);
-    }
-    let entry = |i: usize, j: usize| block.matrix[i][j].to_f64();
-    let size = block.matrix.len();
-    let row = |i: usize| {
-        let others = (0..size).filter(|j| *j != i);
-        entry(i, i) + others.map(|j| 0.5 * (entry(i, j) + entry(j, i)).abs()).sum::<f64>()
-    };
-    (0..size).map(row).fold(0.0, f64::max) * (1.0 + 1e-12)
-}
-
-impl<T: Number> BlockMotion<T> {
-    fn advance(&self, y: &mut [T], time: T) {
-        match self {
-            Self::Still => {}
-            Self::Real { rate } => y[0] = y[0] * exponential(*rate, time),
-            Self::Pair { rate, frequency } => {
-                let (sin, cos) = circular(*frequency, time);
-                let (first, second) = (y[0], y[1]);
-                y[0] = cos * first + sin * second;
-                y[1] = cos * second - sin * first;
-                decay(*rate, time, y);
-            }
-            Self::Nilpotent { rate, matrix } => {
-                let start: Vector<T> = copied(y);
-                for k in (1..y.len()).rev() {
-                    let factor = time / T::exact(k as f64);
-                    step(matrix, factor, &start, y);
-                }
-                decay(*rate, time, y);
-            }
-            Self::Cluster(powers) => powers.advance(y, time),
-        }
+/// The product of a matrix, given by its columns, with a vector; entries beyond its rows are zero.
+#[inline]
+fn times<T: Number>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
+    match columns.len() {
+        0..=4 => times_in::<T, 4>(columns, vector),
+        5..=8 => times_in::<T, 8>(columns, vector),
+        _ => times_in::<T, LARGEST_DIMENSION>(columns, vector),
     }
 }
 
-/// `y = start + factor * matrix * y`.
-fn step<T: Number>(matrix: &[Vector<T>], factor: T, start: &Vector<T>, y: &mut [T]) {
-    let last: Vector<T> = copied(y);
-    let size = y.len();
-    for (n, entry) in y.iter_mut().enumerate() {
-        *entry = start[n] + factor * dot(&matrix[n], &last, size);
+/// The same, of the first `ROWS` entries.
+#[inline]
+fn times_in<T: Number, const ROWS: usize>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
+    let mut sums = [T::zero(); ROWS];
+    for (n, column) in columns.iter().enumerate() {
+        let factor = vector[n];
+        add_product(&mut sums, column, factor);
+    }
+    let mut product = [T::zero(); LARGEST_DIMENSION];
+    product[..ROWS].copy_from_slice(&sums);
+    product
+}
+
+/// Adds a multiple of a vector. Indices are what every unit of a crate inlines; iterators that are
+/// joined are called.
+#[allow(clippy::needless_range_loop, reason = "an iterator costs a call")]
+#[inline(always)]
+fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: &[T], factor: T) {
+    let vector = &vector[..N];
+    for k in 0..N {
+        sums[k] = sums[k] + vector[k] * factor;
     }
 }
 
-fn copied<T: Number>(y: &[T]) -> Vector<T> {
-    let mut copy = [T::zero(); LARGEST_DIMENSION];
-    copy[..y.len()].copy_from_slice(y);
-    copy
-}
-
-fn decay<T: Number>(rate: Option<Words<T>>, time: T, y: &mut [T]) {
-    let Some(rate) = rate else { return };
-    let factor = exponential(rate, time);
-    y.iter_mut().for_each(|entry| *entry = *entry * factor);
-}
-
-/// A product with a rate, and what rounding took from it.
-fn product<T: Number>(rate: Words<T>, time: T) -> (T, T) {
-    let high = rate.high * time;
-    (high, rate.high.product_error(time) + rate.low * time)
-}
-
-fn exponential<T: Number>(rate: Words<T>, time: T) -> T {
-    let (high, low) = product(rate, time);
-    let value = high.exp();
-    value + value * low
-}
-
-fn circular<T: Number>(frequency: Words<T>, time: T) -> (T, T) {
-    let (high, low) = product(frequency, time);
-    let (sin, cos) = high.sin_cos();
-    (sin + low * cos, cos - low * sin)
-}
-
-impl<T: Number> Powers<T> {
-    /// Tables up to 16^12 steps, beyond any horizon.
-    const LEVELS: usize = 12;
-
-    fn of(matrix: &[Vec<Real>]) -> Self {
-        let size = modal::norm(matrix);
-        let exponent = if size > 0.0 { -libm::ceil(libm::log2(size)) - 1.0 } else { 0.0 };
-        let step = libm::exp2(exponent);
-        let mut tables = Vec::new();
-        let mut first = modal::exponential(matrix, exponent as isize);
-        for _ in 0..Self::LEVELS {
-            let multiples = modal::multiples(&first, 16);
-            let (last, table) = match multiples.split_last() {
-                Some(split) => split,
-                None => break,
-            };
-            let rounded = |it: &Vec<Vec<Real>>| it.iter().map(|row| vector(row)).collect();
-            tables.push(table.iter().map(rounded).collect());
-            first = last.clone();
-        }
-        Self { step, tables, matrix: matrix.iter().map(|row| vector(row)).collect() }
-    }
-
-    fn advance(&self, y: &mut [T], time: T) {
-        let size = y.len();
-        let steps = libm::floor(time.to_f64() / self.step).max(0.0);
-        let rest = time - T::exact(steps * self.step);
-        let mut digits = steps as u64;
-        for table in &self.tables {
-            let digit = (digits & 15) as usize;
-            digits >>= 4;
-            if digit > 0 {
-                let last: Vector<T> = copied(y);
-                for (entry, row) in y.iter_mut().zip(&table[digit - 1]) {
-                    *entry = dot(row, &last, size);
-                }
-            }
-            if digits == 0 {
-                break;
-            }
-        }
-        let start: Vector<T> = copied(y);
-        // With |B rest| below 1/2 the terms beyond fall under the last digit.
-        for k in (1..2 * T::TERMS).rev() {
-            step(&self.matrix, rest / T::exact(k as f64), &start, y);
-        }
-    }
+fn transposed<T: Number>(matrix: &[Vec<Real>]) -> Vec<Vector<T>> {
+    let columns = matrix.first().map_or(0, Vec::len);
+    let column = |n: usize| vector(&matrix.iter().map(|row| row[n].clone()).collect::<Vec<_>>());
+    (0..columns).map(column).collect()
 }

@@ -4,12 +4,16 @@
 use super::flow::unit;
 use crate::crossing::certificate::MIDDLE;
 use crate::number::Number;
+use smallvec::SmallVec;
 
 /// Bernstein coefficients of degree eight.
 type Hull<T> = [T; 9];
 
 /// The narrowest part of a piece that is looked at without an evaluation.
 const NARROWEST: f64 = 1.0 / 65_536.0;
+
+/// How near to a root a place before it is, as a share of it: Newton's method does the rest.
+const NEAR: f64 = 1e-3;
 
 /// What is known of a guard on a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,19 +26,56 @@ pub(super) enum Judged {
     Open(f64),
 }
 
-/// Judges a guard from its orders at both ends, a bound of its eighth derivative, what rounding may
-/// do to its values, and the number of its orders that are exactly zero at the left end.
+/// A piece's length, and the quotients of it that all guards need. They are in the arithmetic
+/// itself, whose digits they have to have.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lengths<T> {
+    pub length: T,
+    seventh: T,
+    /// L/6 and L/5, by which the next derivative counts.
+    sixth: T,
+    fifth: T,
+    /// The middle coefficient of an eighth derivative of 1.
+    middle: T,
+}
+
+impl<T: Number> Lengths<T> {
+    #[inline]
+    pub fn of(length: T) -> Self {
+        let square = length * length;
+        let power = square * square * (square * square);
+        Self {
+            length,
+            seventh: length / T::exact(7.0),
+            sixth: length / T::exact(6.0),
+            fifth: length / T::exact(5.0),
+            middle: power / T::exact(MIDDLE),
+        }
+    }
+}
+
+/// Judges a guard from its orders at both ends, a bound of its eighth derivative, a line above what
+/// is not in the orders, what rounding may do to its values, and the number of its orders that are
+/// exactly zero at the left end.
+#[inline]
 pub(super) fn judge<T: Number>(
     ends: &[[T; 4]; 2],
-    length: T,
+    lengths: &Lengths<T>,
     eighth: f64,
+    [from, to]: [f64; 2],
     slack: f64,
     zeros: usize,
 ) -> Judged {
-    let mut hull = interpolant(ends, length);
-    let square = length * length;
-    let power = square * square * (square * square);
-    hull[4] = hull[4] + power * T::exact(eighth / MIDDLE);
+    let mut hull = interpolant(ends, lengths);
+    if eighth > 0.0 {
+        hull[4] = hull[4] + lengths.middle * T::exact(eighth);
+    }
+    if from != 0.0 || to != 0.0 {
+        for (n, entry) in hull.iter_mut().enumerate() {
+            let share = n as f64 * 0.125;
+            *entry = *entry + T::exact(from * (1.0 - share) + to * share);
+        }
+    }
     let size = hull.iter().map(|it| it.to_f64().abs()).fold(0.0, f64::max);
     let slack = slack + 16.0 * unit::<T>() * size;
     if !size.is_finite() {
@@ -51,12 +92,13 @@ pub(super) fn judge<T: Number>(
 }
 
 /// The coefficients of the polynomial of degree seven that shares value and three derivatives at
-/// both ends, raised to degree eight. The constants are quotients in the arithmetic itself, whose
-/// digits they have to have.
-fn interpolant<T: Number>(ends: &[[T; 4]; 2], length: T) -> Hull<T> {
+/// both ends, raised to degree eight.
+#[inline]
+fn interpolant<T: Number>(ends: &[[T; 4]; 2], lengths: &Lengths<T>) -> Hull<T> {
+    let Lengths { seventh, sixth, fifth, .. } = *lengths;
     let [left, right] = ends;
-    let [a, b, c, d] = next_to_an_end(left, length);
-    let [h, g, f, e] = next_to_an_end(right, -length);
+    let [a, b, c, d] = next_to_an_end(left, [seventh, sixth, fifth]);
+    let [h, g, f, e] = next_to_an_end(right, [-seventh, -sixth, -fifth]);
     let seventh = [a, b, c, d, e, f, g, h];
     let mut hull = [a; 9];
     hull[8] = h;
@@ -68,17 +110,19 @@ fn interpolant<T: Number>(ends: &[[T; 4]; 2], length: T) -> Hull<T> {
 }
 
 /// The four coefficients of degree seven that belong to an end.
-fn next_to_an_end<T: Number>(orders: &[T; 4], length: T) -> [T; 4] {
+#[inline]
+fn next_to_an_end<T: Number>(orders: &[T; 4], [seventh, sixth, fifth]: [T; 3]) -> [T; 4] {
     let [value, slope, bend, third] = *orders;
-    let first = slope * length / T::exact(7.0);
-    let second = bend * length * length / T::exact(42.0);
-    let third = third * length * length * length / T::exact(210.0);
+    let first = slope * seventh;
+    let second = bend * seventh * sixth;
+    let third = third * seventh * sixth * fifth;
     let (two, three) = (T::exact(2.0), T::exact(3.0));
     [value, value + first, value + two * first + second, value + three * (first + second) + third]
 }
 
 /// With zeros at the left end the coefficients that belong to it are exact but for their own
 /// roundings, however small they are beside the others' slack.
+#[inline]
 fn is_clear<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> bool {
     if zeros == 0 {
         return hull.iter().all(|it| it.to_f64() < -slack);
@@ -90,8 +134,13 @@ fn is_clear<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> bool {
 }
 
 /// The share of the piece up to which the hull is negative.
+#[inline]
 fn clear_share<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> f64 {
-    let mut parts = vec![(*hull, 0.0, 1.0, zeros)];
+    if let Some(share) = simple_root(hull, slack, zeros) {
+        return share;
+    }
+    let mut parts: SmallVec<[_; 20]> = SmallVec::new();
+    parts.push((*hull, 0.0, 1.0, zeros));
     while let Some((hull, from, width, zeros)) = parts.pop() {
         if is_clear(&hull, slack, zeros) {
             continue;
@@ -112,44 +161,64 @@ fn clear_share<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> f64 {
 
 /// Where a hull whose coefficients change their sign once, upward, is still negative: by Descartes'
 /// rule there is one root, and it is beyond.
+#[inline]
 fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f64> {
-    const STEPS: usize = 12;
-    let hull = hull.map(|it| it + T::exact(slack));
-    let signs = hull.iter().skip(zeros.min(8)).map(|it| it.to_f64());
-    let first = signs.clone().position(|it| it >= 0.0)?;
-    if first == 0 || !signs.skip(first).all(|it| it >= 0.0) || hull[8] <= T::zero() {
+    let hull = hull.map(|it| (it + T::exact(slack)).to_f64());
+    let zeros = zeros.min(8);
+    let first = zeros + hull[zeros..].iter().position(|it| *it >= 0.0)?;
+    if first == zeros || !hull[first..].iter().all(|it| *it >= 0.0) || hull[8] <= 0.0 {
         return None;
     }
+    Some(negative_until(&hull))
+}
+
+/// A place just before the root of a hull that has one: where it is negative beyond rounding.
+#[inline]
+fn negative_until(hull: &[f64; 9]) -> f64 {
+    const STEPS: usize = 16;
+    /// A difference of order k is off by 2^k roundings of k sums, and has the weight C(8, k): 3^8
+    /// in all, and eight times that.
+    const ROUNDING: f64 = 8.0 * 6561.0 * f64::EPSILON;
+    let powers = powers(hull);
+    let size = hull.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
     let (mut low, mut high) = (0.0, 1.0);
-    let (mut below, mut above) = (f64::NAN, hull[8].to_f64());
+    let (mut below, mut above) = (hull[0], hull[8]);
     for step in 0..STEPS {
         // The secant, kept off the ends; every third step halves.
         let secant = low + (high - low) * (below / (below - above)).clamp(0.02, 0.98);
-        let middle = if step % 3 == 2 || secant.is_nan() { 0.5 * (low + high) } else { secant };
-        let value = value(&hull, T::exact(middle)).to_f64();
+        let halves = step % 3 == 2 || !(below < 0.0 && above > 0.0);
+        let middle = if halves { 0.5 * (low + high) } else { secant };
+        let value = powers.iter().rev().fold(0.0, |sum, it| sum * middle + it) + ROUNDING * size;
         if value < 0.0 {
             (low, below) = (middle, value);
         } else {
             (high, above) = (middle, value);
         }
-        if high - low < 1e-4 * high {
+        if high - low < NEAR * high {
             break;
         }
     }
-    Some(low)
+    low
 }
 
-/// De Casteljau's value.
-fn value<T: Number>(hull: &Hull<T>, at: T) -> T {
-    let mut row = *hull;
-    for last in (0..8).rev() {
-        for n in 0..=last {
-            row[n] = row[n] + at * (row[n + 1] - row[n]);
+/// The coefficients of a polynomial in powers, from its Bernstein coefficients: C(8, k) times their
+/// differences.
+#[inline]
+fn powers(hull: &[f64; 9]) -> [f64; 9] {
+    const CHOOSE: [f64; 9] = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
+    let mut powers = *hull;
+    for order in 1..9 {
+        for n in (order..9).rev() {
+            powers[n] -= powers[n - 1];
         }
     }
-    row[0]
+    for n in 0..9 {
+        powers[n] *= CHOOSE[n];
+    }
+    powers
 }
 
+#[inline]
 fn halves<T: Number>(hull: &Hull<T>) -> (Hull<T>, Hull<T>) {
     let half = T::exact(0.5);
     let (mut left, mut right) = (*hull, *hull);

@@ -1,6 +1,7 @@
 //! Any piecewise-affine hybrid system, solved in closed form between its events.
 
 mod accumulation;
+mod bound;
 mod build;
 mod clock;
 mod enclosure;
@@ -10,7 +11,11 @@ mod file;
 mod flow;
 mod form;
 mod hull;
+mod known;
 mod modal;
+mod motion;
+mod point;
+mod reach;
 mod residue;
 mod run;
 mod search;

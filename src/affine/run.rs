@@ -2,10 +2,12 @@
 
 use super::clock::{self, Time};
 use super::enclosure::{Crossing, Enclosure};
-use super::flow::{Flow, ORDERS, Vector, dot, unit};
-use super::search::{Early, Found, Point, Segment, Track, Work};
+use super::flow::{Flow, Vector, unit};
+use super::known::Loan;
+use super::point::{Ends, Segment};
+use super::search::{Found, Track, Work};
 use super::solver::{self, Solver};
-use super::structure::{Firing, Structure};
+use super::structure::Firing;
 use super::system::{Direction, LARGEST_DIMENSION, StartPoint};
 use crate::number::Number;
 use std::collections::VecDeque;
@@ -70,7 +72,7 @@ pub struct Errors {
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
 pub struct Run<'a, T> {
     pub(super) solver: &'a Solver<T>,
-    pub(super) structure: Structure,
+    pub(super) structure: Loan<'a>,
     work: Work,
     horizon: T,
     pub(super) node: usize,
@@ -79,21 +81,18 @@ pub struct Run<'a, T> {
     state: Vector<T>,
     /// Where the search goes on.
     tracks: Vec<Track>,
-    point: Option<Point<T>>,
-    early: Option<Early<T>>,
+    ends: Ends<T>,
+    segment: Option<Segment<'a, T>>,
     pub(super) modal: Vector<T>,
     /// The coefficient of restitution of an impact, from its fastest occurrence.
     pub(super) restitution: Option<Restitution<T>>,
     /// Guards that fire at the instant of entry.
     at_entry: u64,
     at_once: u32,
-    /// A first length to look at.
-    length: f64,
     queue: VecDeque<Event<T>>,
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
     pub(super) enclosure: Option<Enclosure>,
-    inherited: Vec<f64>,
 }
 
 /// The quotient of the rates after and before an impact, from its fastest occurrence.
@@ -141,7 +140,7 @@ impl<T: Number> Solver<T> {
 
     /// A run whose first segment is not entered yet.
     fn at_start(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
-        let mut structure = self.structure.clone();
+        let mut structure = self.known.lend();
         let node = structure.start(&self.system, start)?;
         let entered = clock::start(start);
         let mut run = Run {
@@ -153,21 +152,19 @@ impl<T: Number> Solver<T> {
             entered,
             state: [T::zero(); LARGEST_DIMENSION],
             tracks: Vec::new(),
-            point: None,
-            early: None,
+            ends: Ends::default(),
+            segment: None,
             modal: [T::zero(); LARGEST_DIMENSION],
             restitution: None,
             at_entry: 0,
             at_once: 0,
-            length: self.system.time_scale,
             queue: VecDeque::new(),
             ended: false,
             enclosure: None,
-            inherited: Vec::new(),
         };
         let (sin, cos) = self.sin_cos(&entered);
         for (entry, [c, s, one]) in run.state.iter_mut().zip(&start.state) {
-            let number = |it| super::flow::rounded::<T>(&super::modal::Real::of(it));
+            let number = |it| super::motion::rounded::<T>(&super::modal::Real::of(it));
             *entry = number(c) * cos + number(s) * sin + number(one);
         }
         run.complete();
@@ -183,6 +180,7 @@ impl<T: Number> Solver<T> {
         state
     }
 
+    #[inline]
     fn sin_cos(&self, time: &Time<T>) -> (T, T) {
         match &self.clock {
             Some(clock) if self.backward => {
@@ -215,6 +213,7 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// Fills in cos theta, sin theta and 1.
+    #[inline]
     fn complete(&mut self) {
         let (sin, cos) = self.solver.sin_cos(&self.entered);
         complete(&mut self.state, self.solver, sin, cos);
@@ -224,7 +223,7 @@ impl<T: Number> Run<'_, T> {
     /// structural zero.
     fn enter(&mut self) {
         let node = self.structure.node(self.node);
-        let (mode, orders) = (node.mode, node.multiplicities.clone());
+        let mode = node.mode;
         let solver = self.solver;
         let solver_mode = &solver.modes[mode];
         let flow = &solver_mode.flow;
@@ -232,13 +231,16 @@ impl<T: Number> Run<'_, T> {
         self.modal = flow.modal(&self.state);
         self.tracks.clear();
         self.at_entry = 0;
-        for (n, (row, order)) in solver_mode.guards.iter().zip(orders.iter()).enumerate() {
+        let mut ending = None;
+        for (n, (row, order)) in
+            solver_mode.guards.iter().zip(node.multiplicities.iter()).enumerate()
+        {
             let Some(order) = *order else {
                 self.tracks.push(Track { outward: 1.0, zeros: 0, live: false });
                 continue;
             };
-            let value = dot(&row.orders[order], &self.modal, flow.dimension).to_f64();
-            let size = row.size_of(order, &self.modal, flow.dimension);
+            let (value, size) = row.order(order, &self.modal);
+            let value = value.to_f64();
             let mut slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
             if let Some(errors) = &self.enclosure {
                 slack += errors.of_row(flow, row, order);
@@ -249,46 +251,22 @@ impl<T: Number> Run<'_, T> {
             self.tracks.push(Track { outward, zeros: order, live: true });
             if n < until && value > 0.0 {
                 if order == 0 && !doubtful {
-                    self.end(Ending::BeyondGuard);
+                    ending = ending.or(Some(Ending::BeyondGuard));
                 } else if solver.backward {
-                    self.end(Ending::LeavesDomain);
+                    ending = ending.or(Some(Ending::LeavesDomain));
                 }
                 self.at_entry |= 1 << n;
             }
         }
-        self.early = self.early_series(mode);
-        self.inherited.clear();
-        if let Some(errors) = &self.enclosure {
-            self.inherited.extend(solver_mode.guards.iter().map(|row| errors.along(flow, row)));
+        if let Some(ending) = ending {
+            self.end(ending);
         }
-        let segment = segment(solver, mode, self.modal, self.early.take(), &self.inherited);
-        self.point = Some(segment.point(T::zero(), &mut self.work));
-        self.early = segment.early;
-    }
-
-    /// Taylor series at entry, where a guard has structural zeros.
-    fn early_series(&self, mode: usize) -> Option<Early<T>> {
-        if !self.tracks.iter().any(|track| track.live && track.zeros > 0) {
-            return None;
-        }
-        let solver_mode = &self.solver.modes[mode];
-        let flow = &solver_mode.flow;
-        let growth = flow.fastest_growth();
-        let longest = if growth > 0.0 { 1.0 / growth } else { f64::INFINITY };
-        let mut early = Early { limit: longest, orders: Vec::new() };
-        for (row, track) in solver_mode.guards.iter().zip(&self.tracks) {
-            let mut orders = [T::zero(); ORDERS];
-            if track.live {
-                for (k, order) in orders.iter_mut().enumerate().skip(track.zeros) {
-                    *order = dot(&row.orders[k], &self.modal, flow.dimension);
-                }
-                let last = flow.bound(row, ORDERS - 1, &self.modal, longest.min(1e300));
-                let lead = orders[track.zeros].to_f64().abs();
-                early.limit = early.limit.min(series_limit::<T>(lead, track.zeros, last));
-            }
-            early.orders.push(orders);
-        }
-        Some(early)
+        let inherited = self.enclosure.as_ref().map_or_else(Vec::new, |errors| {
+            solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect()
+        });
+        let segment = Segment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
+        segment.begin(&mut self.ends.left);
+        self.segment = Some(segment);
     }
 
     /// Ends the run here.
@@ -301,6 +279,7 @@ impl<T: Number> Run<'_, T> {
         }
     }
 
+    #[inline]
     fn event(&self, what: What<T>, time: Time<T>, state: &Vector<T>) -> Event<T> {
         let states = self.solver.system.states.len();
         let mode = self.structure.node(self.node).mode;
@@ -323,39 +302,47 @@ impl<T: Number> Run<'_, T> {
         }
         let mode = self.structure.node(self.node).mode;
         let limit = self.limit();
-        let Some(point) = self.point.take() else { return self.end(Ending::Undecided) };
-        let segment = segment(self.solver, mode, self.modal, self.early.take(), &self.inherited);
-        let found = segment.first(&mut self.tracks, point, limit, self.length, &mut self.work);
-        match found {
+        let Some(segment) = &self.segment else { return self.end(Ending::Undecided) };
+        let ends = &mut self.ends;
+        match segment.first(&mut self.tracks, ends, limit, &mut self.work) {
             Found::Lost => self.end(Ending::Undecided),
             Found::Nothing => {
                 let limit = if limit > T::zero() { limit } else { T::zero() };
-                let last = segment.point(limit, &mut self.work);
-                (self.entered, self.state) = self.at(&last);
-                let solver::SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
-                if let Some(errors) = &self.enclosure {
-                    let errors = errors.later(flow, limit);
-                    let mut errors = errors.at_given_time(flow, matrix, &self.state);
-                    errors.add_box(&roundings(flow, &last.y));
-                    self.enclosure = Some(errors);
-                }
-                self.end(Ending::Horizon);
+                segment.evaluate(&mut ends.left, limit, &mut self.work);
+                segment.complete(&mut ends.left);
+                self.at_horizon(mode, limit);
             }
-            Found::Crossing(point, guards) => {
-                self.early = segment.early;
-                self.crossed(point, guards);
+            Found::Crossing(guards) => {
+                segment.complete(&mut ends.left);
+                self.crossed(guards);
             }
         }
     }
 
+    /// The run ends a time after the entry.
+    fn at_horizon(&mut self, mode: usize, limit: T) {
+        (self.entered, self.state) = self.here();
+        let solver::SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
+        if let Some(errors) = &self.enclosure {
+            let errors = errors.later(flow, limit);
+            let mut errors = errors.at_given_time(flow, matrix, &self.state);
+            errors.add_box(&roundings(flow, &self.ends.left.y));
+            self.enclosure = Some(errors);
+        }
+        self.end(Ending::Horizon);
+    }
+
     /// Time that is left until the horizon.
+    #[inline]
     fn limit(&self) -> T {
         let ahead = (self.horizon - self.entered.high) - self.entered.low;
         if self.solver.backward { -ahead } else { ahead }
     }
 
-    /// Time and state at a point of the segment.
-    fn at(&self, point: &Point<T>) -> (Time<T>, Vector<T>) {
+    /// Time and state where the search has come to.
+    #[inline]
+    fn here(&self) -> (Time<T>, Vector<T>) {
+        let point = &self.ends.left;
         let elapsed = if self.solver.backward { -point.time } else { point.time };
         let time = self.entered.after(elapsed);
         let mode = self.structure.node(self.node).mode;
@@ -366,13 +353,13 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// The guards of these bits are crossed.
-    fn crossed(&mut self, mut point: Point<T>, guards: u64) {
+    fn crossed(&mut self, guards: u64) {
         let mode = self.structure.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
-        let (time, state) = self.at(&point);
+        let (time, state) = self.here();
         let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
         self.work.undecidable += u64::from(guards & !tied != 0);
-        let errors = self.errors_at(mode, guards, &point, &state);
+        let errors = self.errors_at(mode, guards, &state);
         for n in bits(guards).filter(|n| *n >= until) {
             self.watched(mode, n, until, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;
@@ -382,16 +369,14 @@ impl<T: Number> Run<'_, T> {
             self.tracks.iter_mut().for_each(|track| track.zeros = 0);
             for n in bits(guards) {
                 self.tracks[n].zeros = 1;
-                point.orders[n][0] = T::zero();
+                self.ends.left.orders[n][0] = T::zero();
             }
-            self.point = Some(point);
             return;
         }
         if self.solver.backward {
             (self.entered, self.state, self.enclosure) = (time, state, errors);
             return self.end(Ending::LeavesDomain);
         }
-        self.length = 2.0 * point.time.to_f64();
         let guards = self.structure.tied(self.node, guards, false);
         let until = ending.trailing_zeros() as usize;
         self.enclosure = errors;
@@ -399,17 +384,12 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// The errors at a crossing, where they are followed.
-    fn errors_at(
-        &self,
-        mode: usize,
-        guards: u64,
-        point: &Point<T>,
-        state: &Vector<T>,
-    ) -> Option<Enclosure> {
-        let enclosure = self.enclosure.as_ref()?;
+    fn errors_at(&self, mode: usize, guards: u64, state: &Vector<T>) -> Option<Enclosure> {
+        let (enclosure, segment) = (self.enclosure.as_ref()?, self.segment.as_ref()?);
+        let point = &self.ends.left;
         let solver_mode = &self.solver.modes[mode];
         let first = guards.trailing_zeros() as usize;
-        let inherited = self.inherited[first]
+        let inherited = segment.inherited[first]
             * libm::exp(solver_mode.flow.fastest_growth() * point.time.to_f64());
         let mut errors = enclosure.at_crossing(&Crossing {
             flow: &solver_mode.flow,
@@ -425,6 +405,7 @@ impl<T: Number> Run<'_, T> {
         Some(errors)
     }
 
+    #[inline]
     fn watched(
         &mut self,
         mode: usize,
@@ -452,16 +433,16 @@ impl<T: Number> Run<'_, T> {
         let solver = self.solver;
         let mode = self.structure.node(self.node).mode;
         self.at_once = if firing.at_entry { self.at_once + 1 } else { 1 };
-        let mut state = [T::zero(); LARGEST_DIMENSION];
-        for (entry, row) in state.iter_mut().zip(&solver.modes[mode].resets[firing.until]) {
-            *entry = dot(row, &before, solver.modes[mode].flow.dimension);
+        let mut state = before;
+        for (n, factors) in &solver.modes[mode].changes[firing.until] {
+            let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
+            state[*n] = terms.fold(T::zero(), |sum, term| sum + term);
         }
         let successor = self.successor(mode, firing, &state);
         let arrival = self.structure.arrival(self.node, firing);
         let impact = arrival.impact;
         let from = self.node;
         let next = self.structure.enter(from, firing, successor);
-        let modal_before = solver.modes[mode].flow.modal(&before);
         self.node = next;
         (self.entered, self.state) = (time, state);
         let mut event = self.event(What::Until(mode, firing.until), time, &self.state);
@@ -478,8 +459,8 @@ impl<T: Number> Run<'_, T> {
         self.queue.push_back(event);
         self.enter();
         if impact && next == from {
-            let (below, above) = (&modal_before, successor);
-            if let Some((earliest, latest)) = self.accumulation(mode, firing, below, above) {
+            let below = solver.modes[mode].flow.modal(&before);
+            if let Some((earliest, latest)) = self.accumulation(mode, firing, &below, successor) {
                 return self.end(Ending::Accumulation(earliest, latest));
             }
         }
@@ -489,9 +470,10 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// The first successor whose condition holds.
+    #[inline]
     fn successor(&mut self, mode: usize, firing: Firing, state: &Vector<T>) -> usize {
         let solver = self.solver;
-        let orders = self.structure.arrival(self.node, firing).orders.clone();
+        let orders = &self.structure.arrival(self.node, firing).orders;
         let conditions = &solver.modes[mode].conditions[firing.until];
         let next = &solver.system.modes[mode].until[firing.until].next;
         for (n, (condition, order)) in conditions.iter().zip(orders.iter()).enumerate() {
@@ -503,8 +485,8 @@ impl<T: Number> Run<'_, T> {
             };
             let flow = &solver.modes[next[n].mode].flow;
             let modal = flow.modal(state);
-            let value = dot(&condition.orders[order], &modal, flow.dimension).to_f64();
-            let size = condition.size_of(order, &modal, flow.dimension);
+            let (value, size) = condition.order(order, &modal);
+            let value = value.to_f64();
             let mut slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
             if let Some(errors) = &self.enclosure {
                 // The errors before the reset bound those after it for all that follows here.
@@ -544,23 +526,13 @@ impl<T: Number> Iterator for Run<'_, T> {
 
 impl<T: Number> std::iter::FusedIterator for Run<'_, T> {}
 
-fn segment<'a, T: Number>(
-    solver: &'a Solver<T>,
-    mode: usize,
-    entry: Vector<T>,
-    early: Option<Early<T>>,
-    inherited: &'a [f64],
-) -> Segment<'a, T> {
-    let mode = &solver.modes[mode];
-    Segment { flow: &mode.flow, rows: &mode.guards, entry, early, inherited }
-}
-
 /// What rounding may have done to each entry of a state that is evaluated.
 fn roundings<T: Number>(flow: &Flow<T>, y: &Vector<T>) -> [f64; LARGEST_DIMENSION] {
     let margin = (flow.dimension + 6) as f64 * unit::<T>();
     flow.sizes(y).map(|size| margin * size)
 }
 
+#[inline]
 fn complete<T: Number>(state: &mut Vector<T>, solver: &Solver<T>, sin: T, cos: T) {
     let (states, dimension) = (solver.system.states.len(), solver.system.dimension());
     state[dimension - 1] = T::one();
@@ -570,21 +542,12 @@ fn complete<T: Number>(state: &mut Vector<T>, solver: &Solver<T>, sin: T, cos: T
     }
 }
 
-/// Up to which time a Taylor series without its last order is good to the last digit.
-fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64 {
-    if last == 0.0 {
-        return f64::INFINITY;
-    }
-    let order = ORDERS - 1;
-    let factorials: f64 = (zeros + 1..=order).map(|k| k as f64).product();
-    let power = unit::<T>() * lead * factorials / last;
-    libm::pow(power, 1.0 / (order - zeros) as f64)
-}
-
+#[inline]
 fn bits(mask: u64) -> impl Iterator<Item = usize> {
     (0..64).filter(move |n| mask >> n & 1 == 1)
 }
 
+#[inline]
 fn low_bits(count: usize) -> u64 {
     if count >= 64 { u64::MAX } else { (1 << count) - 1 }
 }

@@ -5,24 +5,19 @@
 //! searched: Newton's method on the guard's own series finds the candidate, and bounds of its
 //! derivatives prove that the guard rises through zero once. What shows neither is looked at in
 //! shorter pieces. See the page docs/ROUNDING.md for what rounding may take.
+//!
+//! What is generic is compiled by the crate that uses it, which may do so in many units without
+//! optimising across them; so what runs at every event is marked to be inlined, here and in the
+//! modules that this one uses.
 
-use super::flow::{Flow, ModalRow, ORDERS, Vector, unit};
-use super::hull;
-use super::system::LARGEST_DIMENSION;
+use super::flow::unit;
+use super::hull::{Judged, Lengths};
+use super::point::{Ends, PerGuard, Point, Segment};
+use super::reach::Reach;
 use crate::number::Number;
-use smallvec::SmallVec;
 
 /// The largest number of pieces of a segment.
 const MOST_PIECES: u64 = 1 << 22;
-
-/// 8! C(8, 4): see `crossing/certificate.rs`.
-const MIDDLE: f64 = crate::crossing::certificate::MIDDLE;
-
-/// The share of a guard's size that the remainder of a piece may have.
-const REMAINDER: f64 = 1e-4;
-
-/// Guards of this number take no memory of their own.
-const INLINE: usize = 4;
 
 /// What is known of a guard at the left end of what is searched.
 #[derive(Clone, Copy, Debug)]
@@ -35,42 +30,14 @@ pub(super) struct Track {
     pub live: bool,
 }
 
-/// A segment, with all that its guards have at its entry.
-pub(super) struct Segment<'a, T> {
-    pub flow: &'a Flow<T>,
-    pub rows: &'a [ModalRow<T>],
-    pub entry: Vector<T>,
-    /// The guards' Taylor series at entry, whose structural zeros are exact.
-    pub early: Option<Early<T>>,
-    /// What errors made before the segment may do to each guard; empty where they are not followed.
-    pub inherited: &'a [f64],
-}
-
-/// Taylor coefficients of the guards, good up to a time.
-pub(super) struct Early<T> {
-    pub limit: f64,
-    /// The derivatives at entry.
-    pub orders: Vec<[T; ORDERS]>,
-}
-
-/// The guards at an instant.
-#[derive(Clone, Debug)]
-pub(super) struct Point<T> {
-    pub time: T,
-    pub y: Vector<T>,
-    /// Value and three derivatives of each guard.
-    pub orders: SmallVec<[[T; 4]; INLINE]>,
-    /// What rounding may have done to each value.
-    pub slack: SmallVec<[f64; INLINE]>,
-}
-
 /// How a search ends.
-#[derive(Clone, Debug)]
-pub(super) enum Found<T> {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Found {
     /// No guard crosses before the limit.
     Nothing,
-    /// The first crossing, and all guards that cross there within what rounding may do, as bits.
-    Crossing(Point<T>, u64),
+    /// The first crossing is the left end: all guards that cross there within what rounding may do,
+    /// as bits.
+    Crossing(u64),
     /// Too much work.
     Lost,
 }
@@ -94,126 +61,97 @@ struct Rising<T> {
 }
 
 impl<T: Number> Segment<'_, T> {
-    /// Evaluates the closed form.
-    pub fn point(&self, time: T, work: &mut Work) -> Point<T> {
-        work.evaluations += 1;
-        let y = self.flow.at(&self.entry, time);
-        let mut point = Point { time, y, orders: SmallVec::new(), slack: SmallVec::new() };
-        match &self.early {
-            Some(early) if time.to_f64() <= early.limit => {
-                for orders in &early.orders {
-                    let (orders, size) = series(orders, time);
-                    point.orders.push(orders);
-                    point.slack.push(4.0 * unit::<T>() * size);
-                }
-            }
-            _ => self.evaluate(&mut point),
-        }
-        if !self.inherited.is_empty() {
-            let growth = libm::exp(self.flow.fastest_growth() * time.to_f64().abs());
-            let errors = point.slack.iter_mut().zip(self.inherited);
-            errors.for_each(|(slack, inherited)| *slack += inherited * growth);
-        }
-        point
-    }
-
-    fn evaluate(&self, point: &mut Point<T>) {
-        let dimension = self.flow.dimension;
-        let margin = (dimension + 4) as f64 * unit::<T>();
-        for row in self.rows {
-            let order = |k: usize| super::flow::dot(&row.orders[k], &point.y, dimension);
-            point.orders.push([order(0), order(1), order(2), order(3)]);
-            point.slack.push(margin * row.size(&point.y, dimension));
-        }
-    }
-
-    /// The first crossing after a point and not after `limit`. `first` proposes the length of the
-    /// first piece.
+    /// The first crossing after the left end and not after `limit`.
+    #[inline]
     pub fn first(
         &self,
         tracks: &mut [Track],
-        from: Point<T>,
+        ends: &mut Ends<T>,
         limit: T,
-        first: f64,
         work: &mut Work,
-    ) -> Found<T> {
-        let mut left = from;
-        let mut most = first;
+    ) -> Found {
+        let mut most = f64::INFINITY;
         for _ in 0..MOST_PIECES {
-            if left.time >= limit {
+            if ends.left.time >= limit {
                 return Found::Nothing;
             }
             if work.undecidable > 0 && !self.inherited.is_empty() {
                 return Found::Lost;
             }
-            let (right, length) = self.right_end(tracks, &left, limit, most, work);
+            self.measure(&mut ends.left);
+            let reaches = self.reaches(tracks, &ends.left);
+            self.look_ahead(tracks, ends, &reaches, limit, most, work);
+            let length = (ends.right.time - ends.left.time).to_f64();
             work.pieces += 1;
-            let Some(share) = self.clear_share(tracks, &left, &right, length, work) else {
-                left = right;
-                most = 4.0 * length.to_f64();
+            let Some(share) = self.clear_share(tracks, &reaches, ends, work) else {
+                ends.step();
+                most = f64::INFINITY;
                 clear_zeros(tracks);
                 continue;
             };
-            let step = length * T::exact(share);
-            if left.time + step > left.time {
-                left = self.point(left.time + step, work);
+            let from = ends.left.time;
+            let to = from + (ends.right.time - from) * T::exact(share);
+            if to > from {
+                self.evaluate(&mut ends.left, to, work);
                 clear_zeros(tracks);
-            } else if length.to_f64() <= 8.0 * unit::<T>() * right.time.to_f64() {
+            } else if length <= 8.0 * unit::<T>() * ends.right.time.to_f64() {
                 // No shorter piece has two ends: what happens within rounding is a touch.
                 work.undecidable += 1;
-                left = right;
-                most = 64.0 * length.to_f64();
+                ends.step();
+                most = 64.0 * length;
                 clear_zeros(tracks);
                 continue;
             }
-            if let Some((time, guards)) = self.rising(tracks, &left, work) {
-                return self.settled(tracks, time, guards, limit, work);
+            self.measure(&mut ends.left);
+            if let Some((time, guards)) = self.rising(tracks, &ends.left, work) {
+                return self.settled(tracks, ends, (time, guards), limit, work);
             }
-            most = 0.25 * length.to_f64();
+            most = 0.25 * length;
         }
         Found::Lost
     }
 
-    /// The right end of the next piece, and its length.
-    fn right_end(
+    /// How far each guard is looked at from a point.
+    #[inline]
+    fn reaches(&self, tracks: &[Track], left: &Point<T>) -> PerGuard<Reach> {
+        let longest = self.flow.longest();
+        let mut reaches = PerGuard::new();
+        for (n, track) in tracks.iter().enumerate() {
+            reaches.push(match track.live {
+                true => self.reach(n, track, left, longest),
+                false => Reach::default(),
+            });
+        }
+        reaches
+    }
+
+    /// Evaluates the right end of the next piece.
+    #[inline]
+    fn look_ahead(
         &self,
         tracks: &[Track],
-        left: &Point<T>,
+        ends: &mut Ends<T>,
+        reaches: &[Reach],
         limit: T,
         most: f64,
         work: &mut Work,
-    ) -> (Point<T>, T) {
-        let length = self.length(tracks, left).min(most);
+    ) {
+        let left = &ends.left;
+        let mut length = most;
+        for (n, track) in live(tracks) {
+            length = length.min(reaches[n].length).min(self.near_root(track, &left.orders[n]));
+        }
         let mut end = left.time + T::exact(length);
         let inside = left.time < end && end < limit;
         if !inside {
             end = limit;
         }
-        let right = self.point(end, work);
-        (right, end - left.time)
-    }
-
-    /// A length on which the remainders stay small beside the guards.
-    fn length(&self, tracks: &[Track], left: &Point<T>) -> f64 {
-        let growth = self.flow.fastest_growth();
-        let longest = if growth > 0.0 { 1.0 / growth } else { f64::INFINITY };
-        let mut length = longest;
-        for (n, track) in tracks.iter().enumerate().filter(|(_, track)| track.live) {
-            let row = &self.rows[n];
-            let eighth = self.flow.bound(row, 8, &left.y, longest.min(1e300));
-            if eighth > 0.0 {
-                let size = row.size(&left.y, self.flow.dimension);
-                let scale = left.orders[n][0].to_f64().abs().max(1e-3 * size);
-                let eighth_power = MIDDLE * REMAINDER * scale / eighth;
-                length = length.min(eighth_power.sqrt().sqrt().sqrt());
-            }
-            length = length.min(self.near_root(track, &left.orders[n]));
-        }
-        length
+        self.evaluate(&mut ends.right, end, work);
     }
 
     /// A length a little beyond the root that the first two terms of a guard suggest, if it begins
     /// at zero and turns back.
+    #[inline]
     fn near_root(&self, track: &Track, orders: &[T; 4]) -> f64 {
         let (Some(first), Some(second)) = (orders.get(track.zeros), orders.get(track.zeros + 1))
         else {
@@ -229,32 +167,33 @@ impl<T: Number> Segment<'_, T> {
 
     /// The share of a piece on which all guards are proved to stay negative; none if it is all of
     /// it.
+    #[inline]
     fn clear_share(
         &self,
         tracks: &[Track],
-        left: &Point<T>,
-        right: &Point<T>,
-        length: T,
+        reaches: &[Reach],
+        ends: &Ends<T>,
         work: &mut Work,
     ) -> Option<f64> {
+        let lengths = Lengths::of(ends.right.time - ends.left.time);
         let mut share: Option<f64> = None;
-        for (n, track) in tracks.iter().enumerate().filter(|(_, track)| track.live) {
-            let eighth = self.flow.bound(&self.rows[n], 8, &left.y, length.to_f64());
-            let slack = left.slack[n].max(right.slack[n]);
-            let ends = [outward(&left.orders[n], track), outward(&right.orders[n], track)];
-            match hull::judge(&ends, length, eighth, slack, track.zeros) {
-                hull::Judged::Clear => {}
-                hull::Judged::Touch => work.undecidable += 1,
-                hull::Judged::Open(open) => share = Some(share.map_or(open, |it| it.min(open))),
+        for (n, track) in live(tracks) {
+            match self.judge(n, track, &reaches[n], ends, &lengths) {
+                Judged::Clear => {}
+                Judged::Touch => work.undecidable += 1,
+                Judged::Open(open) => share = Some(share.map_or(open, |it| it.min(open))),
             }
         }
         share
     }
 
     /// The first crossing shortly after a point, if it is proved to be one.
+    #[inline]
     fn rising(&self, tracks: &[Track], at: &Point<T>, work: &mut Work) -> Option<(T, u64)> {
-        let live = || tracks.iter().enumerate().filter(|(_, track)| track.live);
-        let rising: Vec<_> = live().map(|(n, track)| self.rises(n, track, at)).collect();
+        let mut rising = PerGuard::new();
+        for (n, track) in live(tracks) {
+            rising.push(self.rises(n, track, at));
+        }
         let first = rising.iter().flatten().map(|it| it.after);
         let first = first.reduce(|a, b| if b < a { b } else { a })?;
         let within = rising.iter().flatten().filter(|it| it.after <= first).map(|it| it.within);
@@ -262,7 +201,7 @@ impl<T: Number> Segment<'_, T> {
         let error = rising.iter().flatten().filter(|it| it.after <= first).map(|it| it.error);
         let error = error.fold(0.0, f64::max);
         let mut guards = 0;
-        for ((n, track), rises) in live().zip(&rising) {
+        for ((n, track), rises) in live(tracks).zip(&rising) {
             match rises {
                 Some(rises) if (rises.after - first).to_f64() <= rises.error + error => {
                     guards |= 1 << n;
@@ -282,6 +221,7 @@ impl<T: Number> Segment<'_, T> {
     }
 
     /// Whether a guard rises through zero once, shortly after a point, and when.
+    #[inline]
     fn rises(&self, n: usize, track: &Track, at: &Point<T>) -> Option<Rising<T>> {
         let orders = outward(&at.orders[n], track);
         let slack = at.slack[n];
@@ -291,16 +231,43 @@ impl<T: Number> Segment<'_, T> {
             return None;
         }
         let within = (2.0 * value.abs() + 8.0 * slack) / slope;
-        let fourth = self.flow.bound(&self.rows[n], 4, &at.y, within);
+        let fourth = self.flow.bound_by(&self.rows[n], 4, &at.norms, within);
         let change = within * (bend.abs() + within * (0.5 * third.abs() + within * fourth / 6.0));
         let steadily = change < 0.5 * slope;
-        steadily.then(|| Rising { after: newton(&orders), within, error: 2.0 * slack / slope })
+        steadily.then(|| Rising {
+            after: self.root(n, track, at),
+            within,
+            error: 2.0 * slack / slope,
+        })
+    }
+
+    /// The time to a root that is near a point.
+    #[inline]
+    fn root(&self, n: usize, track: &Track, at: &Point<T>) -> T {
+        let first = outward(&at.orders[n], track);
+        let outward = T::exact(track.outward);
+        let mut terms = [T::zero(); 8];
+        for (k, term) in terms.iter_mut().enumerate() {
+            let order = if k < 4 { first[k] } else { self.rows[n].order(k, &at.y).0 * outward };
+            *term = order * T::inverse_factorial(k);
+        }
+        let mut step = newton(&first);
+        for _ in 0..2 {
+            let (mut value, mut slope) = (T::zero(), T::zero());
+            for term in terms.iter().rev() {
+                slope = slope * step + value;
+                value = value * step + *term;
+            }
+            step = step - value / slope;
+        }
+        step
     }
 
     /// A bound of a guard over a short time after a point.
+    #[inline]
     fn excess(&self, n: usize, track: &Track, at: &Point<T>, within: f64) -> f64 {
         let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::to_f64);
-        let fourth = self.flow.bound(&self.rows[n], 4, &at.y, within);
+        let fourth = self.flow.bound_by(&self.rows[n], 4, &at.norms, within);
         let rest = 0.5 * bend.abs() + within * (third.abs() / 6.0 + within * fourth / 24.0);
         match track.zeros {
             0 => value + within * (slope.max(0.0) + within * rest),
@@ -311,33 +278,39 @@ impl<T: Number> Segment<'_, T> {
     }
 
     /// The crossing to the last digit.
+    #[inline]
     fn settled(
         &self,
         tracks: &[Track],
-        time: T,
-        guards: u64,
+        ends: &mut Ends<T>,
+        (time, guards): (T, u64),
         limit: T,
         work: &mut Work,
-    ) -> Found<T> {
+    ) -> Found {
         const ROUNDS: usize = 8;
         let n = guards.trailing_zeros() as usize;
-        let mut point = self.point(time, work);
+        let point = &mut ends.left;
+        self.evaluate(point, time, work);
+        let mut last = f64::INFINITY;
         for _ in 0..ROUNDS {
             let step = newton(&outward(&point.orders[n], &tracks[n]));
-            let better = point.time + step;
-            let far = step.to_f64().abs() > unit::<T>() * point.time.to_f64().abs();
+            let (better, size) = (point.time + step, step.to_f64().abs());
+            // Steps that do not shrink are rounding.
+            let far = size > unit::<T>() * point.time.to_f64().abs() && size < 0.25 * last;
             if !far || better <= T::zero() {
                 break;
             }
-            point = self.point(better, work);
+            last = size;
+            self.evaluate(point, better, work);
         }
         // A crossing exactly at the limit counts.
         let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
-        if point.time > limit + room { Found::Nothing } else { Found::Crossing(point, guards) }
+        if point.time > limit + room { Found::Nothing } else { Found::Crossing(guards) }
     }
 }
 
 /// The step to the root of a cubic that is near zero, by Newton's method.
+#[inline]
 fn newton<T: Number>(orders: &[T; 4]) -> T {
     let [value, slope, bend, third] = *orders;
     let (half, sixth) = (bend * T::exact(0.5), third / T::exact(6.0));
@@ -350,28 +323,17 @@ fn newton<T: Number>(orders: &[T; 4]) -> T {
     step
 }
 
-fn outward<T: Number>(orders: &[T; 4], track: &Track) -> [T; 4] {
+#[inline]
+pub(super) fn outward<T: Number>(orders: &[T; 4], track: &Track) -> [T; 4] {
     if track.outward < 0.0 { orders.map(|it| -it) } else { *orders }
 }
 
+#[inline]
+fn live(tracks: &[Track]) -> impl Iterator<Item = (usize, &Track)> {
+    tracks.iter().enumerate().filter(|(_, track)| track.live)
+}
+
+#[inline]
 fn clear_zeros(tracks: &mut [Track]) {
     tracks.iter_mut().for_each(|track| track.zeros = 0);
 }
-
-/// Value and three derivatives of a Taylor series, and the size of what the value is summed from.
-fn series<T: Number>(orders: &[T; ORDERS], time: T) -> ([T; 4], f64) {
-    let size_of_time = time.to_f64().abs();
-    let mut values = [T::zero(); 4];
-    let mut size = 0.0;
-    for (k, value) in values.iter_mut().enumerate() {
-        for j in (k..ORDERS - 1).rev() {
-            *value = orders[j] + *value * time / T::exact((j - k + 1) as f64);
-        }
-    }
-    for j in (0..ORDERS - 1).rev() {
-        size = orders[j].to_f64().abs() + size * size_of_time / (j + 1) as f64;
-    }
-    (values, size)
-}
-
-const _: () = assert!(LARGEST_DIMENSION < ORDERS);

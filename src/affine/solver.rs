@@ -1,8 +1,11 @@
 //! A system made ready to run in one arithmetic.
 
+use super::bound;
 use super::clock::{Clock, Time};
-use super::flow::{Flow, ModalRow, Vector, rounded};
+use super::flow::{Flow, ModalRow, Vector};
+use super::known::Known;
 use super::modal::{self, Real};
+use super::motion::rounded;
 use super::run::Event;
 use super::structure::Structure;
 use super::system::{LARGEST_DIMENSION, Mode, Row, System};
@@ -14,7 +17,7 @@ pub struct Solver<T> {
     pub(super) system: System,
     pub(super) modes: Vec<SolverMode<T>>,
     pub(super) clock: Option<Clock<T>>,
-    pub(super) structure: Structure,
+    pub(super) known: Known,
     pub(super) backward: bool,
 }
 
@@ -28,9 +31,14 @@ pub(super) struct SolverMode<T> {
     pub guards: Vec<ModalRow<T>>,
     /// The resets of `until`.
     pub resets: Vec<Vec<Vector<T>>>,
+    /// The entries that each reset changes, with their rows.
+    pub changes: Vec<Vec<Change<T>>>,
     /// The conditions of the successors of each `until`, in the co-ordinates of their modes.
     pub conditions: Vec<Vec<Option<ModalRow<T>>>>,
 }
+
+/// An entry of z that a reset changes, and the factors of the entries before it.
+pub(super) type Change<T> = (usize, Vec<(usize, T)>);
 
 /// Why a system cannot be made ready.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,7 +78,7 @@ impl<T: Number> Solver<T> {
         for mode in &system.modes {
             let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale);
             let unprepared = || Unprepared { mode: mode.name.clone() };
-            blocks.push(blocks_of_mode.ok_or_else(unprepared)?);
+            blocks.push(bound::ordered(blocks_of_mode.ok_or_else(unprepared)?));
         }
         let structure = Structure::of(&system);
         let structure = structure.ok_or_else(|| Unprepared { mode: system.name.clone() })?;
@@ -90,12 +98,13 @@ impl<T: Number> Solver<T> {
                 matrix: mode.matrix.iter().map(numbers).collect(),
                 guards: guards.map(|guard| row(guard, n)).collect(),
                 resets: resets.collect(),
+                changes: mode.until.iter().map(|it| changes(&it.reset)).collect(),
                 conditions: conditions.collect(),
             }
         };
         let modes = system.modes.iter().enumerate().map(mode).collect();
         let clock = system.forcing.as_ref().map(Clock::of);
-        Ok(Self { modes, clock, structure, backward, system })
+        Ok(Self { modes, clock, known: Known::of(structure), backward, system })
     }
 
     /// The state at a time in the segment that an event of a run of this solver begins.
@@ -124,4 +133,17 @@ pub(super) fn numbers<T: Number>(row: &Row) -> Vector<T> {
         *entry = rounded(&Real::of(number));
     }
     vector
+}
+
+/// The rows of a reset that are not those of the identity, without their zeros.
+fn changes<T: Number>(reset: &[Row]) -> Vec<Change<T>> {
+    let kept = |n: usize, row: &Row| {
+        row.iter().enumerate().all(|(k, it)| if k == n { it.is_one() } else { it.is_zero() })
+    };
+    let factors = |row: &Row| {
+        let there = row.iter().enumerate().filter(|(_, it)| !it.is_zero());
+        there.map(|(k, it)| (k, rounded(&Real::of(it)))).collect()
+    };
+    let changed = reset.iter().enumerate().filter(|(n, row)| !kept(*n, row));
+    changed.map(|(n, row)| (n, factors(row))).collect()
 }

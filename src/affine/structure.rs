@@ -62,7 +62,7 @@ pub(super) struct Arrival {
 }
 
 /// The graph.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(super) struct Structure {
     modes: Vec<ModeResidues>,
     nodes: Vec<Node>,
@@ -76,6 +76,7 @@ impl Structure {
         Some(Self { modes, nodes: Vec::new(), known: HashMap::new() })
     }
 
+    #[inline]
     pub fn node(&self, node: usize) -> &Node {
         &self.nodes[node]
     }
@@ -87,6 +88,7 @@ impl Structure {
     }
 
     /// The guards that are zero at an event because others are.
+    #[inline]
     pub fn tied(&mut self, node: usize, guards: u64, at_entry: bool) -> u64 {
         let node = &mut self.nodes[node];
         let known = node.ties.iter().find(|it| (it.0, it.1) == (guards, at_entry));
@@ -102,6 +104,7 @@ impl Structure {
     }
 
     /// What an event leads to.
+    #[inline]
     pub fn arrival(&mut self, node: usize, firing: Firing) -> &mut Arrival {
         let Self { modes, nodes, .. } = self;
         let node = &mut nodes[node];
@@ -114,6 +117,7 @@ impl Structure {
     }
 
     /// The node that follows an event by the successor of this index.
+    #[inline]
     pub fn enter(&mut self, node: usize, firing: Firing, successor: usize) -> usize {
         let mode = self.modes[self.nodes[node].mode].next[firing.until][successor].1;
         let arrival = self.arrival(node, firing);

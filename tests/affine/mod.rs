@@ -1,5 +1,6 @@
 //! Piecewise-affine systems: their files, known results, and runs against other methods.
 
+mod attack;
 mod brute;
 mod files;
 mod known;

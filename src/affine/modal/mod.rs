@@ -9,9 +9,8 @@ mod matrix;
 mod polynomial;
 mod real;
 
-use self::matrix::{
-    Matrix, identity, inverse, null_space, product, row_times, shifted, transposed,
-};
+pub(super) use self::matrix::row_times;
+use self::matrix::{Matrix, identity, inverse, largest, null_space, product, shifted, transposed};
 use self::polynomial::{Root, eigenvalues};
 pub(super) use self::real::Real;
 use super::system::Row;
@@ -23,6 +22,10 @@ const CLOSE: f64 = 0.125;
 /// Eigenvalues stay together if their distance times the system's unit of time is below this:
 /// over such a time their exponentials are nearly alike.
 const SLOW: f64 = 0.05;
+
+/// What rounding leaves of a zero of a block, beside the largest entry of its mode: 2^-500. It is
+/// far above the last of the bits, and far below any quotient of two entries in f64 that matters.
+const NOTHING: isize = -500;
 
 /// How a block moves.
 #[derive(Clone, Debug)]
@@ -102,7 +105,9 @@ fn block(matrix: &Matrix, cluster: &[Root]) -> Option<Block> {
     let columns = null_space(&annihilator, dimensions)?;
     let left = transposed(&null_space(&transposed(&annihilator), dimensions)?);
     let rows = product(&inverse(&product(&left, &columns))?, &left);
-    let inner = product(&product(&rows, matrix), &columns);
+    let mut inner = product(&product(&rows, matrix), &columns);
+    let nothing = largest(matrix).scaled(NOTHING);
+    inner.iter_mut().flatten().filter(|it| it.abs() <= nothing).for_each(|it| *it = Real::zero());
     let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner };
     Some(named(block, cluster))
 }

@@ -230,8 +230,12 @@ fn above_the_axis(roots: Vec<Complex>) -> Vec<Complex> {
     const NOTHING: isize = BITS as isize / 2;
     let mut kept = Vec::new();
     for root in roots {
-        if root.im.abs() <= root.norm().scaled(-NOTHING) {
+        let nothing = root.norm().scaled(-NOTHING);
+        if root.im.abs() <= nothing {
             kept.push(Complex::real(root.re));
+        } else if root.im > Real::zero() && root.re.abs() <= nothing {
+            // An oscillation that neither grows nor decays is known to do so for ever.
+            kept.push(Complex::new(Real::zero(), root.im));
         } else if root.im > Real::zero() {
             kept.push(root);
         }

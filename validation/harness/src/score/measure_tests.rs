@@ -233,6 +233,6 @@ fn what_no_event_and_no_horizon_measures_is_lacking() {
     found.matched = 0;
     assert!(found.lacks(Quantity::EventTimeError) && found.lacks(Quantity::EventConstant));
     assert!(!found.lacks(Quantity::StateConstant) && !found.lacks(Quantity::EventsMissed));
-    found.horizon_periods = 0.0;
+    found.sampled = 0;
     assert!(found.lacks(Quantity::StateError) && found.lacks(Quantity::StateConstant));
 }

@@ -1,0 +1,137 @@
+//! Bounds of what a block adds to a guard's derivatives, at all later times.
+//!
+//! With B the block and w the guard's part in it, the k-th derivative is w B^k exp(B s) y. Where B
+//! has one eigenvalue, or one pair that does not grow, |w B^k| |y| bounds it for ever. Where B =
+//! rate + N with N nilpotent, exp(N s) is a polynomial: with a negative rate each of its terms has
+//! a maximum, s^j exp(rate s)/j! <= (j/(e |rate|))^j/j!, and with a rate of zero its sum is finite.
+//! All other blocks grow at most by their logarithmic norm.
+
+use super::flow::ORDERS;
+use super::modal::{self, Kind, Real};
+use super::motion::nilpotent;
+
+/// Room for the rounding of a norm.
+const OUTWARD: f64 = 1.0 + 1e-12;
+
+/// What is known of a block's part in a derivative at later times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Later {
+    /// One negative eigenvalue: the part keeps its sign and decays.
+    Fading,
+    /// It never exceeds the norms.
+    Steady,
+    /// Its derivatives are polynomials.
+    Polynomial,
+    /// It grows at most at this rate.
+    Growing(f64),
+}
+
+impl Later {
+    pub fn of(block: &modal::Block) -> Self {
+        let never_grows = |rate: &Real| *rate <= Real::zero();
+        match &block.kind {
+            Kind::Real(rate) if rate.is_zero() => Self::Polynomial,
+            // Of a higher degree the eighth derivative has no bound for all times.
+            Kind::Nilpotent(rate) if rate.is_zero() && nilpotent(block, rate).1 <= 8 => {
+                Self::Polynomial
+            }
+            Kind::Real(rate) if never_grows(rate) => Self::Fading,
+            Kind::Pair(rate, _) if never_grows(rate) => Self::Steady,
+            Kind::Nilpotent(rate) if never_grows(rate) => Self::Steady,
+            _ => match growth(block) {
+                rate if rate > 0.0 => Self::Growing(rate),
+                _ => Self::Steady,
+            },
+        }
+    }
+
+    /// A bound of a derivative over `length`, for co-ordinates of norm 1.
+    #[inline]
+    pub fn bound(self, norms: &[f64; ORDERS], order: usize, length: f64) -> f64 {
+        match self {
+            Self::Fading | Self::Steady => norms[order],
+            Self::Growing(rate) => norms[order] * libm::exp(rate * length),
+            Self::Polynomial => polynomial(&norms[order..], length),
+        }
+    }
+}
+
+/// The sum of `norms[j] length^j/j!`, where norms that are zero end it.
+#[inline]
+fn polynomial(norms: &[f64], length: f64) -> f64 {
+    let (mut sum, mut factor) = (0.0, 1.0);
+    for (j, norm) in norms.iter().enumerate() {
+        if *norm == 0.0 {
+            break;
+        }
+        sum += norm * factor;
+        factor *= length / (j + 1) as f64;
+    }
+    sum
+}
+
+/// A bound of a block's logarithmic norm, not negative: by the rows of its symmetric part.
+pub(super) fn growth(block: &modal::Block) -> f64 {
+    if let Kind::Real(rate) | Kind::Pair(rate, _) = &block.kind {
+        return rate.to_f64().max(0.0);
+    }
+    let entry = |i: usize, j: usize| block.matrix[i][j].to_f64();
+    let size = block.matrix.len();
+    let row = |i: usize| {
+        let others = (0..size).filter(|j| *j != i);
+        entry(i, i) + others.map(|j| 0.5 * (entry(i, j) + entry(j, i)).abs()).sum::<f64>()
+    };
+    (0..size).map(row).fold(0.0, f64::max) * OUTWARD
+}
+
+/// A row's derivatives in a block, those that are zero exactly so.
+pub(super) fn derivatives(row: &[Real], block: &modal::Block) -> Vec<Vec<Real>> {
+    let mut parts = modal::derivatives(row, block, ORDERS);
+    if let Kind::Real(rate) | Kind::Nilpotent(rate) = &block.kind
+        && rate.is_zero()
+    {
+        let (_, index) = nilpotent(block, rate);
+        parts.iter_mut().skip(index).flatten().for_each(|it| *it = Real::zero());
+    }
+    parts
+}
+
+/// The norms of a row's derivatives in a block, raised to what they are at most later where a
+/// nilpotent block decays.
+pub(super) fn norms(block: &modal::Block, parts: &[Vec<Real>]) -> [f64; ORDERS] {
+    let plain = |part: &Vec<Real>| norm(part) * OUTWARD;
+    match &block.kind {
+        Kind::Nilpotent(rate) if *rate < Real::zero() => {
+            let (matrix, index) = nilpotent(block, rate);
+            let rate = -rate.to_f64();
+            let sum = |part: &Vec<Real>| {
+                let next = |last: &Vec<Real>| Some(modal::row_times(last, &matrix));
+                let powers = std::iter::successors(Some(part.clone()), next).take(index);
+                powers.enumerate().map(|(j, row)| norm(&row) * summit(j, rate)).sum::<f64>()
+                    * OUTWARD
+            };
+            std::array::from_fn(|k| sum(&parts[k]))
+        }
+        _ => std::array::from_fn(|k| plain(&parts[k])),
+    }
+}
+
+/// The maximum of s^j exp(-rate s)/j!.
+fn summit(j: usize, rate: f64) -> f64 {
+    (1..=j).map(|n| j as f64 / (std::f64::consts::E * rate * n as f64)).product::<f64>() * OUTWARD
+}
+
+fn norm(part: &[Real]) -> f64 {
+    let squares = part.iter().map(|it| it.to_f64() * it.to_f64());
+    squares.sum::<f64>().sqrt()
+}
+
+/// The fastest first; last those that nothing bounds for ever.
+pub(super) fn ordered(mut blocks: Vec<modal::Block>) -> Vec<modal::Block> {
+    let speed = |block: &modal::Block| match Later::of(block) {
+        Later::Fading | Later::Steady => modal::norm(&block.matrix),
+        Later::Polynomial | Later::Growing(_) => -1.0,
+    };
+    blocks.sort_by(|a, b| speed(b).total_cmp(&speed(a)));
+    blocks
+}

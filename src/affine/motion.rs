@@ -1,0 +1,258 @@
+//! How the modal co-ordinates of a block move: exp(B t) y.
+
+use super::flow::{Vector, dot, unit};
+use super::modal::{self, Kind, Real};
+use super::system::LARGEST_DIMENSION;
+use crate::number::Number;
+
+/// What is left of a zero after the products of a nilpotent matrix, beside its norm: 2^-300.
+const NOTHING: f64 = 4.909093465297727e-91;
+
+/// A number in two words of an arithmetic.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Words<T> {
+    high: T,
+    low: T,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum BlockMotion<T> {
+    /// exp(B t) = 1.
+    Still,
+    Real {
+        rate: Words<T>,
+    },
+    Pair {
+        rate: Option<Words<T>>,
+        frequency: Words<T>,
+    },
+    /// The matrix to the power of `index` is zero.
+    Nilpotent {
+        rate: Option<Words<T>>,
+        entries: Vec<Entry<T>>,
+        index: usize,
+    },
+    Cluster(Box<Powers<T>>),
+}
+
+/// An entry of a matrix that is not zero.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Entry<T> {
+    row: usize,
+    column: usize,
+    value: T,
+}
+
+/// exp(B t) by tables: t = step (d_0 + 16 d_1 + ...) + rest.
+#[derive(Clone, Debug)]
+pub(super) struct Powers<T> {
+    step: f64,
+    /// exp(B step 16^j d) for d from 1 to 15.
+    tables: Vec<Vec<Vec<Vector<T>>>>,
+    matrix: Vec<Vector<T>>,
+}
+
+/// A wide number, rounded to an arithmetic of one or two words.
+pub(super) fn rounded<T: Number>(value: &Real) -> T {
+    let (high, low) = value.words();
+    T::exact(high) + T::exact(low)
+}
+
+fn words<T: Number>(value: &Real) -> Words<T> {
+    let high: T = rounded(value);
+    // What is left beyond an arithmetic of two words is not resolved by it either.
+    let rest = if unit::<T>() > 1e-20 { value.words().1 } else { 0.0 };
+    Words { high, low: T::exact(rest) }
+}
+
+fn nonzero<T: Number>(value: &Real) -> Option<Words<T>> {
+    (!value.is_zero()).then(|| words(value))
+}
+
+pub(super) fn vector<T: Number>(row: &[Real]) -> Vector<T> {
+    let mut vector = [T::zero(); LARGEST_DIMENSION];
+    for (entry, value) in vector.iter_mut().zip(row) {
+        *entry = rounded(value);
+    }
+    vector
+}
+
+/// The matrix of a block less its rate, and the least power of it that is zero.
+pub(super) fn nilpotent(block: &modal::Block, rate: &Real) -> (Vec<Vec<Real>>, usize) {
+    let mut matrix = block.matrix.clone();
+    for (n, row) in matrix.iter_mut().enumerate() {
+        row[n] = &row[n] - rate;
+    }
+    let beside = modal::norm(&block.matrix).max(modal::norm(&matrix));
+    let nothing = |power: &Vec<Vec<Real>>, k: usize| {
+        modal::norm(power) <= NOTHING * libm::pow(beside, k as f64)
+    };
+    let powers = modal::multiples(&matrix, matrix.len());
+    let index = powers.iter().enumerate().position(|(k, power)| nothing(power, k + 1));
+    let index = index.map_or(matrix.len(), |it| it + 1);
+    (matrix, index)
+}
+
+impl<T: Number> BlockMotion<T> {
+    pub fn of(block: &modal::Block) -> Self {
+        match &block.kind {
+            Kind::Real(rate) if rate.is_zero() => Self::Still,
+            Kind::Real(rate) => Self::Real { rate: words(rate) },
+            Kind::Pair(rate, frequency) => {
+                Self::Pair { rate: nonzero(rate), frequency: words(frequency) }
+            }
+            Kind::Nilpotent(rate) => {
+                let (matrix, index) = nilpotent(block, rate);
+                if index <= 1 && rate.is_zero() {
+                    return Self::Still;
+                }
+                Self::Nilpotent { rate: nonzero(rate), entries: entries(&matrix), index }
+            }
+            Kind::Cluster => Self::Cluster(Box::new(Powers::of(&block.matrix))),
+        }
+    }
+
+    /// The co-ordinates a time later.
+    #[inline]
+    pub fn advance(&self, y: &mut [T], time: T) {
+        match self {
+            Self::Still => {}
+            Self::Real { rate } => y[0] = y[0] * exponential(*rate, time),
+            Self::Pair { rate, frequency } => {
+                let (sin, cos) = circular(*frequency, time);
+                let (first, second) = (y[0], y[1]);
+                y[0] = cos * first + sin * second;
+                y[1] = cos * second - sin * first;
+                decay(*rate, time, y);
+            }
+            Self::Nilpotent { rate, entries, index } => {
+                polynomial(entries, *index, y, time);
+                decay(*rate, time, y);
+            }
+            Self::Cluster(powers) => powers.advance(y, time),
+        }
+    }
+}
+
+fn entries<T: Number>(matrix: &[Vec<Real>]) -> Vec<Entry<T>> {
+    let mut entries = Vec::new();
+    for (row, values) in matrix.iter().enumerate() {
+        for (column, value) in values.iter().enumerate().filter(|(_, it)| !it.is_zero()) {
+            entries.push(Entry { row, column, value: rounded(value) });
+        }
+    }
+    entries
+}
+
+/// `y = exp(N time) y` by Horner's scheme.
+#[inline]
+fn polynomial<T: Number>(entries: &[Entry<T>], index: usize, y: &mut [T], time: T) {
+    let mut start = [T::zero(); LARGEST_DIMENSION];
+    start[..y.len()].copy_from_slice(y);
+    let mut last = start;
+    for k in (1..index).rev() {
+        let factor = if k == 1 { time } else { time / T::exact(k as f64) };
+        y.copy_from_slice(&start[..y.len()]);
+        for Entry { row, column, value } in entries {
+            y[*row] = y[*row] + factor * (*value * last[*column]);
+        }
+        if k > 1 {
+            last[..y.len()].copy_from_slice(y);
+        }
+    }
+}
+
+/// `y = start + factor * matrix * y`.
+#[inline]
+fn step<T: Number>(matrix: &[Vector<T>], factor: T, start: &Vector<T>, y: &mut [T]) {
+    let last: Vector<T> = copied(y);
+    let size = y.len();
+    for (n, entry) in y.iter_mut().enumerate() {
+        *entry = start[n] + factor * dot(&matrix[n], &last, size);
+    }
+}
+
+#[inline]
+fn copied<T: Number>(y: &[T]) -> Vector<T> {
+    let mut copy = [T::zero(); LARGEST_DIMENSION];
+    copy[..y.len()].copy_from_slice(y);
+    copy
+}
+
+#[inline]
+fn decay<T: Number>(rate: Option<Words<T>>, time: T, y: &mut [T]) {
+    let Some(rate) = rate else { return };
+    let factor = exponential(rate, time);
+    y.iter_mut().for_each(|entry| *entry = *entry * factor);
+}
+
+/// A product with a rate, and what rounding took from it.
+#[inline]
+fn product<T: Number>(rate: Words<T>, time: T) -> (T, T) {
+    let high = rate.high * time;
+    (high, rate.high.product_error(time) + rate.low * time)
+}
+
+#[inline]
+fn exponential<T: Number>(rate: Words<T>, time: T) -> T {
+    let (high, low) = product(rate, time);
+    let value = high.exp();
+    value + value * low
+}
+
+#[inline]
+fn circular<T: Number>(frequency: Words<T>, time: T) -> (T, T) {
+    let (high, low) = product(frequency, time);
+    let (sin, cos) = high.sin_cos();
+    (sin + low * cos, cos - low * sin)
+}
+
+impl<T: Number> Powers<T> {
+    /// Tables up to 16^12 steps, beyond any horizon.
+    const LEVELS: usize = 12;
+
+    fn of(matrix: &[Vec<Real>]) -> Self {
+        let size = modal::norm(matrix);
+        let exponent = if size > 0.0 { -libm::ceil(libm::log2(size)) - 1.0 } else { 0.0 };
+        let step = libm::exp2(exponent);
+        let mut tables = Vec::new();
+        let mut first = modal::exponential(matrix, exponent as isize);
+        for _ in 0..Self::LEVELS {
+            let multiples = modal::multiples(&first, 16);
+            let (last, table) = match multiples.split_last() {
+                Some(split) => split,
+                None => break,
+            };
+            let rounded = |it: &Vec<Vec<Real>>| it.iter().map(|row| vector(row)).collect();
+            tables.push(table.iter().map(rounded).collect());
+            first = last.clone();
+        }
+        Self { step, tables, matrix: matrix.iter().map(|row| vector(row)).collect() }
+    }
+
+    #[inline]
+    fn advance(&self, y: &mut [T], time: T) {
+        let size = y.len();
+        let steps = libm::floor(time.to_f64() / self.step).max(0.0);
+        let rest = time - T::exact(steps * self.step);
+        let mut digits = steps as u64;
+        for table in &self.tables {
+            let digit = (digits & 15) as usize;
+            digits >>= 4;
+            if digit > 0 {
+                let last: Vector<T> = copied(y);
+                for (entry, row) in y.iter_mut().zip(&table[digit - 1]) {
+                    *entry = dot(row, &last, size);
+                }
+            }
+            if digits == 0 {
+                break;
+            }
+        }
+        let start: Vector<T> = copied(y);
+        // With |B rest| below 1/2 the terms beyond fall under the last digit.
+        for k in (1..2 * T::TERMS).rev() {
+            step(&self.matrix, rest / T::exact(k as f64), &start, y);
+        }
+    }
+}

@@ -1,0 +1,185 @@
+//! Guards in which a switch is planted where a search that looks too far ahead would miss it: each
+//! is a sum of fast and slow decays, an oscillation, a defective triple eigenvalue and a drift.
+
+use super::{events, name, system};
+use percuss::affine::{Solver, System};
+use proptest::prelude::*;
+
+/// The guard without its level: u e^(-fast t) + w e^(-slow t) + e^(-rho t) (p cos + q sin)(omega t)
+/// + e^(-k t) (e0 + e1 t + e2 t^2/2) + drift t.
+#[derive(Clone, Debug)]
+struct Guard {
+    fast: f64,
+    u: f64,
+    slow: f64,
+    w: f64,
+    rho: f64,
+    omega: f64,
+    p: f64,
+    q: f64,
+    k: f64,
+    e: [f64; 3],
+    drift: f64,
+}
+
+const TEXT: &str = "
+[[mode]]
+name = \"free\"
+equations = [
+    \"u' = -fast*u\", \"w' = -slow*w\", \"p' = -rho*p + omg*q\", \"q' = -rho*q - omg*p\",
+    \"e0' = -k*e0 + e1\", \"e1' = -k*e1 + e2\", \"e2' = -k*e2\", \"d' = drift\"]
+[[mode.until]]
+name = \"reached\"
+guard = \"u + w + p + e0 + d > level\"
+";
+
+impl Guard {
+    fn value(&self, t: f64) -> f64 {
+        let [e0, e1, e2] = self.e;
+        let (sin, cos) = (self.omega * t).sin_cos();
+        self.u * (-self.fast * t).exp()
+            + self.w * (-self.slow * t).exp()
+            + (-self.rho * t).exp() * (self.p * cos + self.q * sin)
+            + (-self.k * t).exp() * (e0 + t * (e1 + 0.5 * t * e2))
+            + self.drift * t
+    }
+
+    fn size(&self) -> f64 {
+        let sizes = [self.u, self.w, self.p, self.q, self.e[0], self.e[1], self.e[2], self.drift];
+        sizes.iter().map(|it| it.abs()).sum()
+    }
+
+    fn system(&self, level: f64) -> System {
+        let Self { fast, u, slow, w, rho, omega, p, q, k, e: [e0, e1, e2], drift } = self;
+        system(&format!(
+            "schema = 1\nname = \"planted\"
+states = [\"u\", \"w\", \"p\", \"q\", \"e0\", \"e1\", \"e2\", \"d\"]
+[parameters]
+fast = {fast:?}\nslow = {slow:?}\nrho = {rho:?}\nomg = {omega:?}\nk = {k:?}
+drift = {drift:?}\nlevel = {level:?}{TEXT}
+[start]\nmode = \"free\"
+u = {u:?}\nw = {w:?}\np = {p:?}\nq = {q:?}\ne0 = {e0:?}\ne1 = {e1:?}\ne2 = {e2:?}\nd = 0\n"
+        ))
+    }
+
+    /// Instants close enough to each other to see each oscillation and each decay.
+    fn instants(&self, until: f64) -> Vec<f64> {
+        let count = 2000.0 + 16.0 * self.omega * until;
+        let even = (1..count as usize).map(|n| until * n as f64 / count);
+        let early = (-90..0).map(|n| until * 10.0_f64.powf(f64::from(n) / 10.0));
+        let mut all: Vec<f64> = even.chain(early).chain([until]).collect();
+        all.sort_by(f64::total_cmp);
+        all
+    }
+
+    /// The highest place before a time, each refined between its neighbours.
+    fn crest(&self, until: f64) -> (f64, f64) {
+        let all = self.instants(until);
+        let values: Vec<f64> = all.iter().map(|t| self.value(*t)).collect();
+        let tops = (1..all.len() - 1).filter(|n| values[*n] >= values[n - 1].max(values[n + 1]));
+        let refined = tops.map(|n| self.refined(all[n - 1], all[n + 1]));
+        let last = self.refined(all[all.len() - 2], all[all.len() - 1]);
+        refined.fold(last, |best, it| if it.1 > best.1 { it } else { best })
+    }
+
+    fn refined(&self, mut low: f64, mut high: f64) -> (f64, f64) {
+        for _ in 0..100 {
+            let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+            if self.value(a) < self.value(b) { low = a } else { high = b }
+        }
+        (low, self.value(low))
+    }
+}
+
+/// The name of the first event, and its time.
+fn first(system: &System, until: f64) -> (String, f64) {
+    let all = events::<f64>(system, until);
+    (name(system, &all[0]), all[0].time.value())
+}
+
+fn sized(size: f64) -> impl Strategy<Value = f64> {
+    // Absent, tiny, small and large.
+    let share = prop_oneof![Just(0.0), Just(1e-9), Just(1e-5), Just(1e-2), Just(1.0)];
+    (share, -1.0..1.0_f64).prop_map(move |(share, it)| size * share * it)
+}
+
+fn guard() -> impl Strategy<Value = Guard> {
+    let fast = prop_oneof![Just(1e6), Just(2e3), Just(50.0), 4.0..20.0_f64];
+    let rho = prop_oneof![Just(0.0), Just(1e-3), 0.05..1.0_f64];
+    let omega = prop_oneof![0.3..3.0_f64, 20.0..300.0_f64];
+    let decays = (fast, sized(2.0), 0.2..2.0_f64, sized(1.0));
+    let waves = (rho, omega, sized(1.0), sized(1.0));
+    let triple = (0.3..3.0_f64, [sized(1.0), sized(1.0), sized(3.0)]);
+    (decays, waves, triple, sized(0.5)).prop_map(|(decays, waves, (k, e), drift)| {
+        let ((fast, u, slow, w), (rho, omega, p, q)) = (decays, waves);
+        Guard { fast, u, slow, w, rho, omega, p, q, k, e, drift }
+    })
+}
+
+const UNTIL: f64 = 10.0;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// Up to the event the guard is below its level wherever it is looked at, and most closely just
+    /// before it; at the event it is at its level.
+    #[test]
+    fn no_crossing_comes_before_the_first_event(
+        guard in guard(), above in prop_oneof![Just(1e-9), Just(1e-6), Just(1e-3), 0.01..2.0_f64],
+    ) {
+        let room = 1e-13 * (1.0 + guard.size());
+        let level = guard.value(0.0) + above * (1e-3 + guard.size());
+        let (name, time) = first(&guard.system(level), UNTIL);
+        let near = (1..400).map(|n| time - f64::from(n) * 0.02 / guard.omega);
+        let near = near.filter(|it| *it > 0.0);
+        for t in guard.instants(UNTIL).into_iter().filter(|it| *it < time).chain(near) {
+            prop_assert!(guard.value(t) < level + room, "{t} before {time}");
+        }
+        let steepest = guard.fast * guard.u.abs() * (-guard.fast * time).exp()
+            + guard.size() * (guard.omega + 10.0);
+        let room = room + 1e-15 * time * steepest;
+        prop_assert!(name == "end" || (guard.value(time) - level).abs() < room, "{time}");
+    }
+
+    /// A crest is crossed where it is 1e-11 above the level, and not where it is that much below.
+    #[test]
+    fn a_crest_decides_by_its_last_digits(guard in guard()) {
+        let (at, value) = guard.crest(UNTIL);
+        let margin = 1e-11 * (1e-2 + guard.size());
+        prop_assume!(at > 1e-9 && at < 0.999 * UNTIL);
+        prop_assume!(guard.value(0.0) < value - 2.0 * margin);
+        let (missed, time) = first(&guard.system(value + margin), UNTIL);
+        prop_assert!(missed == "end", "{missed} at {time}, {at}");
+        let (hit, time) = first(&guard.system(value - margin), UNTIL);
+        prop_assert!(hit == "reached" && time <= at * (1.0 + 1e-9), "{hit} at {time}, {at}");
+    }
+}
+
+/// Motions that come to rest without an event, each in its own way, cost a bounded number of
+/// pieces however long they are looked at.
+#[test]
+fn what_never_ends_is_passed_in_few_pieces() {
+    let still = Guard {
+        fast: 1e6,
+        u: 0.5,
+        slow: 0.2,
+        w: 0.3,
+        rho: 0.0,
+        omega: 300.0,
+        p: 0.1,
+        q: 0.1,
+        k: 0.5,
+        e: [0.1, -0.2, 0.3],
+        drift: 0.0,
+    };
+    let slowly = Guard { rho: 1e-4, omega: 1.0, p: 0.0, q: -1.0, ..still.clone() };
+    let sinking = Guard { drift: -1e-3, ..slowly.clone() };
+    for (guard, level) in [(still, 1.5), (slowly, 1.5), (sinking, 1.4)] {
+        let system = guard.system(level);
+        let solver = Solver::<f64>::new(&system).unwrap();
+        let mut run = solver.run(system.start.as_ref().unwrap(), 1e9).unwrap();
+        let all: Vec<_> = run.by_ref().map(|event| name(&system, &event)).collect();
+        assert_eq!(all, ["end"]);
+        assert!(run.work().pieces < 100, "{guard:?}: {:?}", run.work());
+    }
+}
