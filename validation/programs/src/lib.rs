@@ -1,0 +1,20 @@
+//! Integrators that are programs of any language, run as engines like those of Rust.
+//!
+//! A program is started, is asked what it can do, and answers one request after another in lines of
+//! JSON; `docs/PROTOCOL.md` says how. Whatever a program does wrong costs the row that asked it,
+//! with a reason that names what happened: no other row, no memory beyond a bound, and no process.
+
+mod answer;
+mod engine;
+mod file;
+mod pool;
+mod process;
+mod start;
+mod text;
+mod wire;
+
+pub use engine::ProgramEngine;
+pub use file::{Program, read};
+pub use process::end_all;
+pub use start::NotStarted;
+pub use wire::{Capabilities, EventsBy, PROTOCOL, SetUp, SteppedBy};
