@@ -114,10 +114,11 @@ impl Engine for ProgramEngine {
             }
         };
         can_run(set_up, task, accuracy)?;
-        let ask = RunAsk::new(&set_up.name, task, accuracy, limits);
+        let limits = Limits { wall: limits.wall.min(pool.program().timeout), ..*limits };
+        let ask = RunAsk::new(&set_up.name, task, accuracy, &limits);
         let run = || {
             let (reply, took) = pool.run(&ask, limits.wall)?;
-            checked(&reply, task, (ask.samples(), took), limits)
+            checked(&reply, task, (ask.samples(), took), &limits)
         };
         run().map_err(Failure::new)
     }

@@ -35,7 +35,6 @@ impl Pool {
         run: &RunAsk<'_>,
         wait: Duration,
     ) -> Result<(RunReply, Duration), String> {
-        let wait = wait.min(self.program.timeout);
         let mut process = self.process()?;
         let began = Instant::now();
         let answered = process.run(run, wait)?;

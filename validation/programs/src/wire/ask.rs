@@ -5,6 +5,9 @@ use percuss_engines::engine::{Accuracy, Limits, SystemTask};
 use percuss_engines::system::{Direction, Mode, Row, System};
 use serde::Serialize;
 
+/// The part of its time after which a program is to give up by itself, before it is ended.
+const BY_ITSELF: f64 = 0.9;
+
 /// A request, one line of JSON.
 #[derive(Serialize)]
 pub(crate) struct Ask<'a> {
@@ -142,7 +145,7 @@ impl<'a> RunAsk<'a> {
             limits: LimitsAsk {
                 calls: limits.calls,
                 events: limits.events,
-                wall_s: limits.wall.as_secs_f64(),
+                wall_s: BY_ITSELF * limits.wall.as_secs_f64(),
             },
         }
     }
