@@ -3,8 +3,8 @@
  * `bdf-default` is the first example of the documentation, cvRoberts_dns: BDF, a dense Jacobian,
  * root functions, the tolerances, and nothing else. `bdf` and `adams` are what an expert adds:
  *
- * - Root functions have directions; without them the caller looks at the signs that CVodeGetRootInfo
- *   gives, and each crossing in the other direction ends a call.
+ * - Root functions have directions; without them the caller looks at the signs that
+ *   CVodeGetRootInfo gives, and each crossing in the other direction ends a call.
  * - Steps are at most an eighth of a forcing period and of a turn: roots are looked for by signs at
  *   the ends of steps.
  * - A guard that is zero where a mode begins has the sign that it has just after it, until it has

@@ -144,6 +144,16 @@ void percuss_count(percuss_course *course, double t, int event, const double *z)
     percuss_report(course, t, event, course->mode, z);
 }
 
+/* Whether a mode follows: by the sign of its condition, or after an event that was passed by the
+ * first derivative of it that is not zero. */
+static bool holds(const percuss_course *course, const percuss_successor *next, double t,
+                  const double *after, const percuss_event *passed) {
+    int order;
+    if (!next->has_when) return true;
+    if (!passed) return dot(course, next->when, after) > 0;
+    return leading(course, next->when, next->mode, t, after, passed, &order) > 0;
+}
+
 void percuss_pass(percuss_course *course, double t, int event, const double *z, bool plainly) {
     if (course->backward) {
         course->t = t;
@@ -156,14 +166,9 @@ void percuss_pass(percuss_course *course, double t, int event, const double *z, 
     wide(course, t, z, w);
     for (int i = 0; i < course->size + 3; i++) after[i] = dot(course, passed->reset[i], w);
     int follows = -1;
-    for (int n = 0; n < passed->successor_count && follows < 0; n++) {
-        const percuss_successor *next = &passed->successors[n];
-        int order;
-        bool holds = !next->has_when ||
-                     (plainly ? dot(course, next->when, after) > 0
-                              : leading(course, next->when, next->mode, t, after, passed, &order) > 0);
-        if (holds) follows = next->mode;
-    }
+    for (int n = 0; n < passed->successor_count && follows < 0; n++)
+        if (holds(course, &passed->successors[n], t, after, plainly ? NULL : passed))
+            follows = passed->successors[n].mode;
     percuss_report(course, t, event, follows, after);
     struct percuss_private *own = course->own;
     own->crowd = t - course->t <= ONE_INSTANT * t ? own->crowd + 1 : 1;
