@@ -5,6 +5,7 @@ described in docs/PROTOCOL.md.
 """
 
 import json
+import os
 import platform
 import sys
 import time
@@ -208,8 +209,9 @@ def serve(library, version, setups, make):
         "language": f"Python {platform.python_version()}",
         "setups": setups,
     }
-    # What a library prints is no answer.
-    answers, sys.stdout = sys.stdout, sys.stderr
+    # What a library prints is no answer, whatever language it is printed from.
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)
     for line in sys.stdin:
         request = json.loads(line)
         answer = {"percuss_protocol": 1, "id": request["id"]}
