@@ -89,27 +89,35 @@ impl Source<'_> {
         let name = wire.name.ok_or_else(|| missing("name", NAMES))?;
         let command =
             wire.command.ok_or_else(|| missing("command", "a list: a program, its arguments"))?;
-        let at = name.span().start;
-        if !is_name(name.as_ref()) {
-            return Err(self.error(
-                at,
-                &format!("name {name:?} is not accepted: {NAMES}", name = name.as_ref()),
-            ));
-        }
-        if others.iter().any(|other| other.name == *name.as_ref()) {
-            let what = format!("name {:?} is not accepted: another program has it", name.as_ref());
-            return Err(self.error(at, &what));
-        }
-        let is_odd = |word: &String| word.contains('\0');
-        if command.as_ref().first().is_none_or(String::is_empty)
-            || command.as_ref().iter().any(is_odd)
-        {
-            let what = "command is not accepted: a list that begins with a program, without zeros";
-            return Err(self.error(command.span().start, what));
-        }
+        let name = self.name(&name, others)?;
+        let command = self.command(command)?;
         let timeout = self.timeout(wire.timeout_s)?;
-        let (name, command) = (name.into_inner(), command.into_inner());
         Ok(Program { name, command, timeout, folder: folder.to_owned() })
+    }
+
+    fn name(&self, given: &Spanned<String>, others: &[Program]) -> Result<String, FileError> {
+        let name = given.as_ref();
+        let refused = |why: &str| {
+            self.error(given.span().start, &format!("name {name:?} is not accepted: {why}"))
+        };
+        if !is_name(name) {
+            return Err(refused(NAMES));
+        }
+        if others.iter().any(|other| other.name == *name) {
+            return Err(refused("another program has it"));
+        }
+        Ok(name.clone())
+    }
+
+    fn command(&self, given: Spanned<Vec<String>>) -> Result<Vec<String>, FileError> {
+        let begin = given.span().start;
+        let command = given.into_inner();
+        let has_zero = command.iter().any(|word| word.contains('\0'));
+        if command.first().is_none_or(String::is_empty) || has_zero {
+            let what = "command is not accepted: a list that begins with a program, without zeros";
+            return Err(self.error(begin, what));
+        }
+        Ok(command)
     }
 
     fn timeout(&self, given: Option<Spanned<f64>>) -> Result<Duration, FileError> {

@@ -15,6 +15,10 @@ use percuss_programs::ProgramEngine;
 use std::path::Path;
 use std::sync::Arc;
 
+/// What no set-up of theirs makes right: deSolve 1.34 gives the root's state with a time that is not
+/// the root's, the end of the step.
+const WRONG: [&str; 1] = ["desolve-radau"];
+
 const TOLERANCE: Accuracy = Accuracy::Tolerance(1e-8);
 const SPAN: f64 = 3.9;
 const SAMPLES: u32 = 50;
@@ -144,6 +148,7 @@ fn programs_that_experts_set_up_are_right() {
     let programs = percuss_programs::read(&path).expect("the file is right");
     let truth = answer(exact(), &oscillator(), Accuracy::Exact, &Limits::default());
     let truth = truth.expect("the exact solver runs it");
+    let is_excused = |name: &str| name.ends_with("-default") || WRONG.contains(&name);
     let (mut wrong, mut right) = (Vec::new(), 0);
     for program in programs {
         let engines = match program.start() {
@@ -158,8 +163,9 @@ fn programs_that_experts_set_up_are_right() {
             let checked = check(&engine, &truth);
             println!("{name}: {checked:?}");
             match checked {
+                Ok(()) if WRONG.contains(&name) => wrong.push(format!("{name} is right now")),
                 Ok(()) => right += 1,
-                Err(why) if !name.ends_with("-default") => wrong.push(format!("{name}: {why}")),
+                Err(why) if !is_excused(name) => wrong.push(format!("{name}: {why}")),
                 Err(_) => {}
             }
         }

@@ -26,6 +26,7 @@ pub fn test() {
     let mut trials: Vec<Trial> = KINDS.iter().map(kind).collect();
     trials.extend(super::host::trials());
     trials.push(Trial::test("every_kind_is_listed", every_kind_is_listed));
+    trials.push(Trial::test("runs_side_by_side", || Ok(runs_side_by_side()?)));
     libtest_mimic::run(&arguments, trials).exit();
 }
 
@@ -98,6 +99,29 @@ fn check(kind: &str, expected: Expected) -> Result<(), String> {
         left if left.is_empty() => Ok(()),
         left => Err(format!("processes are left: {left:?}")),
     }
+}
+
+/// Several threads run one engine, beside others whose program ends again and again.
+fn runs_side_by_side() -> Result<(), String> {
+    let token = format!("token-side-by-side-{}", std::process::id());
+    let engines = program("exits", &token, ENOUGH).start().map_err(|not| not.to_string())?;
+    let [good, odd] = engines.as_slice() else { return Err(format!("{}", engines.len())) };
+    let one = |thread: usize| -> Result<(), String> {
+        for _ in 0..5 {
+            match thread % 2 {
+                0 => is_right(run(good, ENOUGH), "beside others")?,
+                _ => drop(run(odd, ENOUGH).err().ok_or("the odd row is right")?),
+            }
+        }
+        Ok(())
+    };
+    std::thread::scope(|scope| {
+        let threads: Vec<_> = (0..4).map(|thread| scope.spawn(move || one(thread))).collect();
+        let joined = threads.into_iter().map(|it| it.join().map_err(|_| "it panics".to_owned())?);
+        joined.collect::<Result<Vec<()>, String>>().map(drop)
+    })?;
+    drop(engines);
+    if left(&token).is_empty() { Ok(()) } else { Err("a process is left".to_owned()) }
 }
 
 /// A row that is right, one that is odd, and one that is right.
