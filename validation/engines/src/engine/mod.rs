@@ -23,6 +23,7 @@ mod meter;
 mod odd_input;
 mod ode_solvers;
 mod original;
+mod percussive;
 mod pins;
 mod registry;
 mod sampler;
@@ -44,6 +45,7 @@ pub use equations::{Entered, Equations, Numbers};
 pub use field::{GUARDS, Oscillator, event_between};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
+pub use percussive::percussive;
 pub use registry::{add, all, exact, select};
 pub use system_task::{SystemEvent, SystemOutcome, SystemTask};
 pub use trace::{GuardSample, Trace, Watched};
@@ -53,6 +55,7 @@ use crate::case::{Case, Horizon, Problem};
 use percuss::TwoWord;
 use percuss::insides::angle;
 use percuss::{Instant, Parameters, Phase};
+use std::time::Duration;
 
 /// Instants at which the state is compared: `k / per_period` forcing periods after the start.
 #[derive(Clone, Copy, Debug)]
@@ -150,6 +153,9 @@ pub struct Outcome<M = Phase, S = [f64; 4]> {
     pub ended_at: f64,
     /// What it cost.
     pub work: Work,
+    /// What the integrator says it took, where it runs in a program of its own: the rest of the
+    /// run's time went into starting that program and speaking with it.
+    pub own_time: Option<Duration>,
     /// What was recorded of it, where the task asks for that and the engine can.
     pub trace: Option<Trace<M>>,
 }
@@ -163,6 +169,7 @@ impl<M, S: Default> Default for Outcome<M, S> {
             ended: Ended::default(),
             ended_at: 0.0,
             work: Work::default(),
+            own_time: None,
             trace: None,
         }
     }

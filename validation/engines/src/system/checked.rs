@@ -148,14 +148,16 @@ impl CheckedSystem {
         found
     }
 
-    /// The shortest turn of a free oscillation.
-    pub(crate) fn turn(&self) -> f64 {
+    /// The shortest turn of a free oscillation; infinite where nothing oscillates.
+    #[must_use]
+    pub fn turn(&self) -> f64 {
         TAU / self.turning
     }
 
     /// The shortest of the times in which the system changes: its time scale, and those of its
     /// matrices.
-    pub(crate) fn shortest_time(&self) -> f64 {
+    #[must_use]
+    pub fn shortest_time(&self) -> f64 {
         self.system.time_scale.min(1.0 / self.fastest)
     }
 }

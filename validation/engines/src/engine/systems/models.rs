@@ -1,7 +1,6 @@
 //! Systems written down by hand, as a file would be read.
 
 use crate::system::{Direction, Mode, Row, System, Until, Watch};
-use percuss::Parameters;
 
 /// A system whose states are of size one.
 fn system(name: &str, states: &[&str], [omega, phi]: [f64; 2], modes: Vec<Mode>) -> System {
@@ -202,42 +201,4 @@ pub(super) fn two_state_switching() -> System {
     let modes =
         vec![mode("up", &rates(0.4, 5.5), vec![high]), mode("down", &rates(-0.3, 2.73), vec![low])];
     system("two-state-switching", &["y1", "y2"], [0.0, 0.0], modes)
-}
-
-/// The oscillator in the bounded co-ordinates p, y, q, v.
-pub(super) fn percussive(parameters: &Parameters, angle: f64) -> System {
-    let Parameters { a, b, xi, omega, g, .. } = *parameters;
-    let rate = 1.0 / (2.0 * xi);
-    let still = || row(4, &[]);
-    let force = |extra: &[(usize, f64)]| row(4, &[&[(4, a), (6, b)], extra].concat());
-    let closing = |sign: f64| [(2, -sign * rate), (6, sign * rate)];
-    let flight = [state(4, 1), force(&[]), row(4, &[(2, -rate)]), still()];
-    let contact = [state(4, 1), force(&[(1, -2.0 * xi), (2, -1.0)]), state(4, 1), still()];
-    let slip = [
-        row(4, &closing(1.0)),
-        force(&[(6, -1.0)]),
-        row(4, &closing(1.0)),
-        row(4, &[&[(1, 1.0)], closing(-1.0).as_slice()].concat()),
-    ];
-    // sign (f - level), with the trial force f.
-    let trial =
-        |sign: f64, level: f64| row(4, &[(1, sign * 2.0 * xi), (2, sign), (6, -sign * level)]);
-    // p = q + g, and q such that f is what is imposed.
-    let surface = |imposed: f64| {
-        let q = [(1, -2.0 * xi), (6, imposed)];
-        let p = [(1, -2.0 * xi), (6, imposed + g)];
-        Some(vec![row(4, &p), state(4, 1), row(4, &q), state(4, 3)])
-    };
-    let meets = Some(vec![row(4, &[(2, 1.0), (6, g)]), state(4, 1), state(4, 2), state(4, 3)]);
-    let gap = row(4, &[(0, 1.0), (2, -1.0), (6, -g)]);
-    let impact = until("impact", gap, meets, vec![(Some(trial(1.0, 1.0)), 2), (None, 1)]);
-    let yields = until("progression", trial(1.0, 1.0), surface(1.0), vec![(None, 2)]);
-    let leaves = until("separation", trial(-1.0, 0.0), surface(0.0), vec![(None, 0)]);
-    let stops = until("stop", trial(-1.0, 1.0), surface(1.0), vec![(None, 1)]);
-    let modes = vec![
-        mode("no-contact", &flight, vec![impact]),
-        mode("contact", &contact, vec![yields, leaves]),
-        mode("progression", &slip, vec![stops]),
-    ];
-    system("percussive-oscillator", &["p", "y", "q", "v"], [omega, angle], modes)
 }

@@ -1,9 +1,12 @@
 //! The oscillator written down as any other system is run like the oscillator itself.
 
-use super::models::percussive;
-use super::{Asked, accuracy, every};
+use super::{Asked, SystemTask, accuracy, every_on};
 use crate::case::Given;
-use crate::engine::{Event, Limits, Outcome, SampleGrid, SystemOutcome, Task, Watched, all};
+use crate::engine::{
+    Ended, Event, Limits, Numbers, Outcome, SampleGrid, SystemEvent, SystemOutcome, Task, Watched,
+    all, percussive,
+};
+use crate::system::Values;
 use percuss::{Phase, Start};
 
 /// Four forcing periods of the default model from rest.
@@ -24,11 +27,9 @@ fn place(phase: Phase) -> usize {
 #[test]
 fn both_ways_of_writing_it_down_are_run_alike() {
     let task = task();
-    let system = percussive(&task.parameters, task.forcing_angle);
-    let mode = place(task.phase);
-    let asked = Asked { system: &system, mode, state: &task.state, span: task.span };
+    let Ok(system) = SystemTask::of_oscillator(&task) else { unreachable!("it is a system") };
     let mut compared = 0;
-    for (name, unit, outcome) in every(&asked) {
+    for (name, unit, outcome) in every_on(&system) {
         let outcome: SystemOutcome = outcome.unwrap_or_default();
         let Some(engine) = all().iter().find(|it| it.declaration().name == name) else { continue };
         let Some(accuracy) = accuracy(*engine) else { continue };
@@ -41,6 +42,11 @@ fn both_ways_of_writing_it_down_are_run_alike() {
             let apart = (one.elapsed - other.elapsed).abs() / (1.0 + one.elapsed);
             assert!(apart <= 20.0 * unit, "{name}: {apart:e} at {}", one.elapsed);
         }
+        let back = Outcome::of_system(&outcome).unwrap_or_default();
+        let phases =
+            |outcome: &Outcome| -> Vec<_> { outcome.events.iter().map(|it| it.mode).collect() };
+        assert_eq!((phases(&back), back.samples.len()), (phases(&own), 17), "{name}");
+        assert_eq!((back.end.as_slice(), back.work), (&*outcome.end, outcome.work), "{name}");
         compared += 1;
     }
     assert_eq!(compared, 15);
@@ -55,8 +61,7 @@ fn a_run_that_is_watched_is_the_same_run() {
     let plain = asked.task();
     let window = [0.3 * task.span, 0.6 * task.span];
     let instants = vec![0.4 * task.span, 0.5 * task.span];
-    let watched =
-        super::SystemTask { watched: Some(Watched { window, instants }), ..plain.clone() };
+    let watched = SystemTask { watched: Some(Watched { window, instants }), ..plain.clone() };
     for engine in all() {
         let Some(accuracy) = accuracy(*engine) else { continue };
         let name = engine.declaration().name;
@@ -72,5 +77,20 @@ fn a_run_that_is_watched_is_the_same_run() {
         };
         assert!(trace.steps.len() > 2 && trace.looks.len() > 2, "{name}");
         assert!(trace.looks.iter().all(has) && watched.samples.len() == 2, "{name}");
+    }
+}
+
+/// The oscillator has three phases, four states and no end but its horizon.
+#[test]
+fn what_is_no_run_of_the_oscillator_is_refused() {
+    let state = Values::of(&[0.5; 4]);
+    let event = SystemEvent { event: 0, mode: 1, elapsed: 0.5, state };
+    let run = SystemOutcome { events: vec![event], end: state, ..SystemOutcome::default() };
+    assert!(Outcome::of_system(&run).is_ok());
+    let early = SystemOutcome { ended: Ended::NoProgress, ..run.clone() };
+    let mode = SystemOutcome { events: vec![SystemEvent { mode: 3, ..event }], ..run.clone() };
+    let size = SystemOutcome { end: Values::of(&[0.5; 3]), ..run };
+    for odd in [early, mode, size] {
+        assert!(Outcome::of_system(&odd).is_err(), "{odd:?}");
     }
 }

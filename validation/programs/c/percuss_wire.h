@@ -1,0 +1,23 @@
+/* What the two halves of the helper for C have in common. */
+
+#ifndef PERCUSS_WIRE_H
+#define PERCUSS_WIRE_H
+
+#include "percuss_program.h"
+
+#include <cjson/cJSON.h>
+
+struct percuss_private {
+    cJSON *events, *samples;
+    int64_t most_calls;
+    int most_events, reported, crowd;
+    double deadline;
+};
+
+/* Seconds of a clock that never goes back. */
+double percuss_now(void);
+
+/* Reports an event. */
+void percuss_report(percuss_course *course, double t, int event, int mode, const double *z);
+
+#endif

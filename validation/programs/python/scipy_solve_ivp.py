@@ -1,0 +1,184 @@
+"""SciPy's solve_ivp with its own events, run by percuss.
+
+Each method is set up in two ways. `METHOD-default` is the first example of events in the
+documentation of solve_ivp: events that are terminal and have a direction, the tolerances set, and
+nothing else. `METHOD` is what an expert adds:
+
+- Steps are at most an eighth of a forcing period and of a turn, because events are looked for by
+  the zeros of guards at the ends of steps: two crossings in a step are none.
+- A guard that is zero where a mode begins has the sign that it has just after it, until it has moved
+  away by more than the tolerance hides. solve_ivp takes a guard that begins on zero and is not
+  negative at the end of the step for an event at the begin.
+- Whether an event follows at once, and which mode, is told by the first derivative that is not
+  zero, instead of by the rounding of a zero.
+- Implicit methods are given their Jacobian.
+"""
+
+from percuss_program import Failure, serve, unavailable
+
+try:
+    import scipy
+    from scipy.integrate import solve_ivp
+except ImportError as why:
+    unavailable(str(why))
+
+METHODS = {
+    "rk45": ("RK45", "Runge-Kutta 5(4) of Dormand and Prince", 5),
+    "dop853": ("DOP853", "Runge-Kutta 8(5,3) of Dormand and Prince", 8),
+    "lsoda": ("LSODA", "Adams and BDF, switching", None),
+    "radau": ("Radau", "Radau IIA", 5),
+    "bdf": ("BDF", "BDF of orders 1 to 5 in quasi-constant steps", None),
+}
+IMPLICIT = ("lsoda", "radau", "bdf")
+LONGEST_STEP = 0.125
+
+
+def watched(course, place, zeros):
+    """An event as solve_ivp takes it: a function with two attributes."""
+    system = course.system
+    event = system.modes[course.mode].events[place]
+
+    order, sign = zeros.get(place, (0, 0.0))
+    # When the guard was first seen away from its zero: in the step before, a root is looked for with
+    # the values that the search was begun with.
+    moved = float("inf") if order != 0 else course.t
+
+    def guard(t, z):
+        nonlocal moved
+        if order is None:
+            return -1.0  # it stays zero
+        value = event.row @ system.wide(t, z)
+        if t >= moved or abs(value) > course.hidden(event, order, z):
+            moved = min(t, moved)
+            return value
+        return sign * 1e-300
+
+    guard.terminal, guard.direction = event.ends, event.sign
+    return guard
+
+
+def stretch(course, method, zeros, **options):
+    """Runs to the next event that ends the mode, or to the horizon."""
+    system, meter, mode = course.system, course.meter, course.mode
+
+    def rates(t, z):
+        meter.call()
+        return system.rates(mode, t, z)
+
+    def each_step(t, z):
+        # Called once where the run begins and once a step; never an event.
+        meter.steps += 1
+        return -1.0
+
+    guards = [watched(course, place, zeros) for place in range(len(system.modes[mode].events))]
+    tolerance = course.run["tolerance"]
+    # The state at the horizon is wanted in any case: the next run begins there.
+    times = [t for t in course.pending() if t < course.span] + [course.span]
+    solved = solve_ivp(
+        rates,
+        (course.t, course.span),
+        course.z,
+        method=method,
+        t_eval=times,
+        events=[*guards, each_step],
+        rtol=tolerance["relative"],
+        atol=tolerance["absolute"],
+        **options,
+    )
+    meter.steps -= 1
+    meter.jacobians += solved.njev
+    if solved.status < 0:
+        raise Failure(solved.message)
+    return solved
+
+
+def take(course, solved, switch=None):
+    """Takes over what solve_ivp has found."""
+    events = course.system.modes[course.mode].events
+    found = sorted(
+        (t, place)
+        for place, times in enumerate(solved.t_events[:-1])
+        for t in times
+        if not events[place].ends
+    )
+    states = {
+        (t, place): z
+        for place in range(len(events))
+        for t, z in zip(solved.t_events[place], solved.y_events[place])
+    }
+    for t, place in found:
+        course.report(t, place, course.mode, states[t, place])
+    states_at = dict(zip(solved.t, solved.y.T)) if len(solved.t) else {}
+    course.sample([t for t in states_at if t < course.span], states_at.get)
+    if solved.status == 1:
+        t, place = next(it for it in sorted(states) if events[it[1]].ends)
+        course.pass_event(t, place, states[t, place], switch)
+    else:
+        course.t, course.z = course.span, states_at[course.span]
+
+
+def plainly(system):
+    """What follows an event by the signs of conditions, zero or not."""
+
+    def switch(mode, event, t, z):
+        event = system.modes[mode].events[event]
+        wide = event.reset @ system.wide(t, z)
+        for when, following in event.successors:
+            if when is None or when @ wide > 0:
+                return following, wide[: len(z)]
+        raise Failure("no mode follows")
+
+    return switch
+
+
+def by_default(course, method):
+    switch = plainly(course.system)
+    while course.goes_on():
+        take(course, stretch(course, method, {}), switch)
+
+
+def by_experts(course, method, implicit):
+    system, times = course.system, course.run["times"]
+    longest = LONGEST_STEP * min(times["period"], times["turn"] or times["period"])
+    passed = None
+    while course.goes_on():
+        fires, zeros = system.entry(course.mode, course.t, course.z, passed)
+        events = system.modes[course.mode].events
+        if fires is not None:
+            passed = events[fires]
+            course.pass_event(course.t, fires, course.z)
+            continue
+        options = {"max_step": longest}
+        if implicit:
+            matrix = system.modes[course.mode].a
+            options["jac"] = lambda t, z: matrix
+        before = len(course.events)
+        take(course, stretch(course, method, zeros, **options))
+        last = course.events[-1] if len(course.events) > before else None
+        passed = events[last["event"]] if last else None
+
+
+def make(setup, course):
+    name = setup.removesuffix("-default")
+    method = METHODS[name][0]
+    if setup == name:
+        by_experts(course, method, name in IMPLICIT)
+    else:
+        by_default(course, method)
+
+
+def setups():
+    for name, (_, method, order) in METHODS.items():
+        for suffix in ("", "-default"):
+            yield {
+                "name": name + suffix,
+                "method": method,
+                "order": order,
+                "events": "library",
+                "dense_output": True,
+                "stepping": "adaptive",
+            }
+
+
+if __name__ == "__main__":
+    serve("scipy", scipy.__version__, list(setups()), make)

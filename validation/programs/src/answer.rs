@@ -1,0 +1,167 @@
+//! A run as a program answers it, held against the task before anything is measured of it.
+
+use crate::wire::{EventReply, RunReply};
+use percuss_engines::engine::{Ended, Limits, SystemEvent, SystemOutcome, SystemTask, Work};
+use percuss_engines::system::Mode;
+use std::time::Duration;
+
+/// How far beyond the horizon, relative to the whole run, rounding may put an event.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+/// How much longer than the wait for its answer a run may say it took: two clocks differ by less.
+const CLOCKS: Duration = Duration::from_millis(10);
+
+/// The run, if it is one of the task; `asked` is how many samples were asked for, and how long the
+/// answer took.
+///
+/// # Errors
+/// What no run of this task is.
+pub(crate) fn checked(
+    reply: &RunReply,
+    task: &SystemTask,
+    (asked, took): (usize, Duration),
+    limits: &Limits,
+) -> Result<SystemOutcome, String> {
+    let size = task.state.len();
+    let ended = ended(reply, task)?;
+    let events = events(&reply.events.0, task, limits)?;
+    let ended_at = ended_at(reply, ended, &events, task)?;
+    has_states(reply.end.0.len(), size, || "its end".to_owned())?;
+    let mut samples = Vec::with_capacity(asked);
+    for (n, sample) in reply.samples.0.iter().enumerate() {
+        has_states(sample.0.len(), size, || format!("sample {n}"))?;
+        samples.push(sample.0);
+    }
+    let early = ended != Ended::Horizon && samples.len() < asked;
+    if early {
+        samples.resize(asked, reply.end.0);
+    }
+    if samples.len() != asked {
+        return Err(format!("gave {} samples where {asked} were asked for", samples.len()));
+    }
+    Ok(SystemOutcome {
+        events,
+        samples,
+        end: reply.end.0,
+        ended,
+        ended_at,
+        work: work(reply, limits)?,
+        own_time: own_time(reply, took)?,
+        trace: None,
+    })
+}
+
+fn ended(reply: &RunReply, task: &SystemTask) -> Result<Ended, String> {
+    let ended = Ended::from(reply.ended);
+    if ended == Ended::LeavesDomain && !task.system.is_backward() {
+        return Err("ended with leaves-domain, which only runs back in time do".to_owned());
+    }
+    Ok(ended)
+}
+
+/// When a run ended: where it does not say so, at the horizon, or with its last event.
+fn ended_at(
+    reply: &RunReply,
+    ended: Ended,
+    events: &[SystemEvent],
+    task: &SystemTask,
+) -> Result<f64, String> {
+    let last = events.last().map_or(0.0, |event| event.elapsed);
+    let usual = if ended == Ended::Horizon { task.span } else { last };
+    let time = reply.ended_at.unwrap_or(usual);
+    // Written so that a NaN is refused.
+    if (last..=task.span * (1.0 + ROUNDING)).contains(&time) {
+        return Ok(time.min(task.span));
+    }
+    Err(format!("ended at {time:?}; accepted is {last:?} to {:?}", task.span))
+}
+
+fn has_states(given: usize, size: usize, what: impl FnOnce() -> String) -> Result<(), String> {
+    if given == size {
+        return Ok(());
+    }
+    Err(format!("{} has {given} states; accepted are {size}", what()))
+}
+
+fn events(
+    replies: &[EventReply],
+    task: &SystemTask,
+    limits: &Limits,
+) -> Result<Vec<SystemEvent>, String> {
+    if replies.len() > limits.events {
+        return Err(format!("gave {} events; accepted are {}", replies.len(), limits.events));
+    }
+    let latest = task.span * (1.0 + ROUNDING);
+    let (mut mode, mut before) = (task.mode, 0.0);
+    let mut events = Vec::with_capacity(replies.len());
+    for (n, reply) in replies.iter().enumerate() {
+        let said = |what: String| format!("event {n} {what}");
+        let time = reply.time;
+        if !(before..=latest).contains(&time) {
+            return Err(said(format!("is at {time:?}; accepted is {before:?} to {:?}", task.span)));
+        }
+        let (event, next) = (place(reply.event.0), place(reply.mode.0));
+        follows(&task.system.system().modes, (mode, event, next), task).map_err(said)?;
+        has_states(reply.state.0.len(), task.state.len(), || format!("event {n}"))?;
+        let elapsed = time.min(task.span);
+        events.push(SystemEvent { event, mode: next, elapsed, state: reply.state.0 });
+        (mode, before) = (next, time);
+    }
+    Ok(events)
+}
+
+fn place(count: u64) -> usize {
+    usize::try_from(count).unwrap_or(usize::MAX)
+}
+
+/// Whether an event of one mode can lead into another.
+fn follows(
+    modes: &[Mode],
+    (mode, event, next): (usize, usize, usize),
+    task: &SystemTask,
+) -> Result<(), String> {
+    let from = &modes[mode];
+    let most = from.until.len() + from.watch.len();
+    if event >= most {
+        return Err(format!("is number {event} of mode {:?}, which has {most} events", from.name));
+    }
+    if next >= modes.len() {
+        return Err(format!("leads into mode {next}, where there are {} modes", modes.len()));
+    }
+    let accepted: Vec<usize> = match from.until.get(event) {
+        Some(_) if task.system.is_backward() => {
+            return Err("ends a mode, where a run back in time ends".to_owned());
+        }
+        Some(until) => until.next.iter().map(|(_, mode)| *mode).collect(),
+        None => vec![mode],
+    };
+    if accepted.contains(&next) {
+        return Ok(());
+    }
+    Err(format!("leads from mode {mode} into mode {next}; accepted are {accepted:?}"))
+}
+
+fn work(reply: &RunReply, limits: &Limits) -> Result<Work, String> {
+    let work = Work {
+        rhs_evaluations: reply.work.rhs.0,
+        jacobian_evaluations: reply.work.jacobians.0,
+        linear_solves: reply.work.linear_solves.0,
+        steps: reply.work.steps.0,
+    };
+    let calls = work.rhs_evaluations.saturating_add(work.jacobian_evaluations);
+    if calls > limits.calls {
+        return Err(format!("took {calls} calls; accepted are {}", limits.calls));
+    }
+    Ok(work)
+}
+
+fn own_time(reply: &RunReply, took: Duration) -> Result<Option<Duration>, String> {
+    let Some(own) = reply.own_ns else { return Ok(None) };
+    let most = took + took / 100 + CLOCKS;
+    if !(0.0..=most.as_nanos() as f64).contains(&own) {
+        return Err(format!(
+            "says that it took {own} ns of its own; accepted is 0 to the {} that its answer took",
+            took.as_nanos()
+        ));
+    }
+    Ok(Some(Duration::from_nanos(own as u64)))
+}

@@ -1,0 +1,146 @@
+//! A set-up of a program, as an engine among others.
+
+use crate::answer::checked;
+use crate::pool::Pool;
+use crate::start::NotStarted;
+use crate::wire::{Capabilities, EventsBy, RunAsk, SetUp, SteppedBy};
+use percuss_engines::engine::{
+    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role, Stepping,
+    SystemOutcome, SystemTask, Task,
+};
+use std::sync::Arc;
+
+/// A set-up of a program.
+pub struct ProgramEngine {
+    declaration: Declaration,
+    language: String,
+    runs: Runs,
+}
+
+/// What makes the runs of an engine.
+enum Runs {
+    Set { pool: Arc<Pool>, set_up: SetUp },
+    None(NotStarted),
+}
+
+/// Engines' names live as long as this process: there are few, and each is made once.
+fn for_ever(text: String) -> &'static str {
+    Box::leak(text.into_boxed_str())
+}
+
+impl ProgramEngine {
+    pub(crate) fn new(pool: &Arc<Pool>, said: &Capabilities, set_up: &SetUp) -> Self {
+        let declaration = Declaration {
+            name: for_ever(format!("{}-{}", pool.program().name, set_up.name)),
+            library: for_ever(said.library.clone()),
+            version: said.version.clone(),
+            method: for_ever(set_up.method.clone()),
+            order: set_up.order,
+            events: match set_up.events {
+                EventsBy::Library => Location::Library,
+                EventsBy::Program => Location::Harness,
+            },
+            dense_output: set_up.dense_output,
+            stepping: stepping(set_up),
+            role: Role::Rows,
+            colours: Colours::OTHERS,
+        };
+        let runs = Runs::Set { pool: Arc::clone(pool), set_up: set_up.clone() };
+        Self { declaration, language: said.language.clone(), runs }
+    }
+
+    pub(crate) fn stand_in(why: NotStarted) -> Self {
+        let (NotStarted::Unavailable { program, .. } | NotStarted::Failed { program, .. }) = &why;
+        let name = for_ever(program.clone());
+        let declaration = Declaration {
+            name,
+            library: name,
+            version: "unknown".to_owned(),
+            method: "unknown",
+            order: None,
+            events: Location::Library,
+            dense_output: false,
+            stepping: Stepping::Adaptive,
+            role: Role::Rows,
+            colours: Colours::OTHERS,
+        };
+        Self { declaration, language: "unknown".to_owned(), runs: Runs::None(why) }
+    }
+
+    /// The language that the program is written in, with its version.
+    #[must_use]
+    pub fn language(&self) -> &str {
+        &self.language
+    }
+}
+
+fn stepping(set_up: &SetUp) -> Stepping {
+    // Checked when the program was started: who needs an order has a small one.
+    let order = set_up.order.and_then(|order| i32::try_from(order).ok()).unwrap_or(1);
+    match set_up.stepping {
+        SteppedBy::Adaptive => Stepping::Adaptive,
+        SteppedBy::PerStep => Stepping::PerStep { order },
+        SteppedBy::Fixed => Stepping::Fixed { order },
+    }
+}
+
+impl Engine for ProgramEngine {
+    fn declaration(&self) -> Declaration {
+        self.declaration.clone()
+    }
+
+    fn available(&self) -> Result<(), String> {
+        match &self.runs {
+            Runs::None(NotStarted::Unavailable { why, .. }) => Err(why.clone()),
+            Runs::None(NotStarted::Failed { .. }) | Runs::Set { .. } => Ok(()),
+        }
+    }
+
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+        let task = SystemTask::of_oscillator(task)?;
+        Outcome::of_system(&self.run_system(&task, accuracy, limits)?)
+    }
+
+    fn run_system(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        let (pool, set_up) = match &self.runs {
+            Runs::Set { pool, set_up } => (pool, set_up),
+            Runs::None(NotStarted::Failed { why, .. } | NotStarted::Unavailable { why, .. }) => {
+                return Err(Failure::new(why));
+            }
+        };
+        can_run(set_up, task, accuracy)?;
+        let limits = Limits { wall: limits.wall.min(pool.program().timeout), ..*limits };
+        let ask = RunAsk::new(&set_up.name, task, accuracy, &limits);
+        let run = || {
+            let (reply, took) = pool.run(&ask, limits.wall)?;
+            checked(&reply, task, (ask.samples(), took), &limits)
+        };
+        run().map_err(Failure::new)
+    }
+}
+
+/// Refuses what a set-up cannot run, before it is asked.
+fn can_run(set_up: &SetUp, task: &SystemTask, accuracy: Accuracy) -> Result<(), Failure> {
+    let wanted = match (set_up.stepping, accuracy) {
+        (SteppedBy::Fixed, Accuracy::Step(step)) => (step, "step"),
+        (SteppedBy::Fixed, _) => (f64::NAN, "step"),
+        (_, Accuracy::Tolerance(tolerance)) => (tolerance, "tolerance"),
+        _ => (f64::NAN, "tolerance"),
+    };
+    if !(wanted.0.is_finite() && wanted.0 > 0.0) {
+        return Err(Failure::new(format!("needs a positive {}", wanted.1)));
+    }
+    if task.system.is_backward() && !set_up.backward {
+        return Err(Failure::new("does not run back in time"));
+    }
+    let watches = task.system.system().modes.iter().any(|mode| !mode.watch.is_empty());
+    if watches && !set_up.watch {
+        return Err(Failure::new("does not report events that end no mode"));
+    }
+    Ok(())
+}

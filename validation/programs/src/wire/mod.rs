@@ -1,0 +1,15 @@
+//! The messages, as `docs/PROTOCOL.md` describes them: what is written to a program, and what is
+//! read from it.
+
+mod ask;
+mod numbers;
+mod reply;
+#[cfg(test)]
+mod schema_tests;
+
+pub(crate) use ask::{Ask, Asked, RunAsk};
+pub(crate) use reply::{Answered, EventReply, RunReply, decode};
+pub use reply::{Capabilities, EventsBy, SetUp, SteppedBy};
+
+/// The version of the protocol, which every message names.
+pub const PROTOCOL: u64 = 1;

@@ -1,0 +1,68 @@
+//! Numbers and lists as programs may write them, with bounds on how many there are, so that an
+//! answer takes no more memory than its line.
+
+use percuss_engines::engine::Numbers;
+use percuss_engines::system::{MOST_STATES, Values};
+use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
+use std::fmt;
+use std::marker::PhantomData;
+
+/// The largest whole number of which an f64 holds every smaller one.
+const MOST_COUNTED: f64 = 9_007_199_254_740_992.0;
+
+/// A number that counts, 0 to 2^53. Some languages write 3 as 3.0 or 3e0.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Count(pub(crate) u64);
+
+impl<'de> Deserialize<'de> for Count {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let value = f64::deserialize(deserializer)?;
+        if value.fract() == 0.0 && (0.0..=MOST_COUNTED).contains(&value) {
+            Ok(Self(value as u64))
+        } else {
+            Err(D::Error::custom(format!("{value:?} is no count: accepted is 0, 1, 2, ...")))
+        }
+    }
+}
+
+/// A list of at most `MOST` items.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct List<T, const MOST: usize>(pub(crate) Vec<T>);
+
+struct Items<T, const MOST: usize>(PhantomData<T>);
+
+impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for Items<T, MOST> {
+    type Value = List<T, MOST>;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "a list of at most {MOST}")
+    }
+
+    fn visit_seq<A: SeqAccess<'de>>(self, mut items: A) -> Result<Self::Value, A::Error> {
+        let mut list = Vec::new();
+        while let Some(item) = items.next_element()? {
+            if list.len() == MOST {
+                return Err(A::Error::custom(format!("a list of more than {MOST}")));
+            }
+            list.push(item);
+        }
+        Ok(List(list))
+    }
+}
+
+impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for List<T, MOST> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_seq(Items(PhantomData))
+    }
+}
+
+/// A state.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct State(pub(crate) Values);
+
+impl<'de> Deserialize<'de> for State {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let list = List::<f64, MOST_STATES>::deserialize(deserializer)?;
+        Ok(Self(Values::of(&list.0)))
+    }
+}

@@ -1,0 +1,258 @@
+//! What is read from a program: an answer, checked as far as no task is needed for that.
+
+use super::PROTOCOL;
+use super::numbers::{Count, List, State};
+use crate::text::plain;
+use percuss_engines::engine::Ended;
+use serde::Deserialize;
+
+/// The most events and samples of an answer.
+const MOST_ROWS: usize = 100_000;
+/// The most set-ups of a program.
+const MOST_SET_UPS: usize = 64;
+
+/// What an answer says.
+#[derive(Clone, Debug)]
+pub(crate) enum Answered {
+    /// What the program can do.
+    Capabilities(Capabilities),
+    /// Why it can do nothing here.
+    Unavailable(String),
+    /// A run that was made.
+    Run(Box<RunReply>),
+    /// Why a run was not made.
+    Failure(String),
+    /// The program waits for the next request.
+    Ready,
+}
+
+/// What a program says of itself.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Capabilities {
+    /// The library that it runs.
+    pub library: String,
+    /// The library's version.
+    pub version: String,
+    /// The language it is written in, with its version.
+    pub language: String,
+    #[serde(rename = "setups", deserialize_with = "set_ups")]
+    /// The ways in which it can be set up, each of which is an engine.
+    pub set_ups: Vec<SetUp>,
+}
+
+/// A way in which a program can be set up.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SetUp {
+    /// Its name, which follows that of the program in the name of the engine.
+    pub name: String,
+    /// The method.
+    pub method: String,
+    /// The order of convergence that the method's authors state, if it has one.
+    #[serde(default)]
+    pub order: Option<u32>,
+    /// Who finds the events.
+    pub events: EventsBy,
+    /// Whether the library has dense output of its own.
+    pub dense_output: bool,
+    /// How its accuracy is chosen.
+    pub stepping: SteppedBy,
+    /// Whether it runs back in time, where the end of a mode ends the run.
+    #[serde(default = "yes")]
+    pub backward: bool,
+    /// Whether it reports events that end no mode.
+    #[serde(default = "yes")]
+    pub watch: bool,
+}
+
+/// Who finds the events of a set-up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EventsBy {
+    /// The library locates them.
+    Library,
+    /// The program locates them on what the library gives it.
+    Program,
+}
+
+/// How the accuracy of a set-up is chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum SteppedBy {
+    /// A tolerance sets it.
+    Adaptive,
+    /// A tolerance sets it, and a method of the order that the set-up names holds the error step
+    /// by step.
+    PerStep,
+    /// A step sets it, of a method of the order that the set-up names.
+    Fixed,
+}
+
+/// A run as a program answers it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct RunReply {
+    pub(crate) events: List<EventReply, MOST_ROWS>,
+    pub(crate) samples: List<State, MOST_ROWS>,
+    pub(crate) end: State,
+    #[serde(default)]
+    pub(crate) ended: EndedBy,
+    #[serde(default)]
+    pub(crate) ended_at: Option<f64>,
+    #[serde(default)]
+    pub(crate) work: WorkReply,
+    #[serde(default)]
+    pub(crate) own_ns: Option<f64>,
+}
+
+/// An event as a program answers it.
+#[derive(Clone, Debug, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct EventReply {
+    pub(crate) time: f64,
+    pub(crate) event: Count,
+    pub(crate) mode: Count,
+    pub(crate) state: State,
+}
+
+/// What a run cost, as a program counts it.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub(crate) struct WorkReply {
+    pub(crate) rhs: Count,
+    pub(crate) jacobians: Count,
+    pub(crate) linear_solves: Count,
+    pub(crate) steps: Count,
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, Default, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub(crate) enum EndedBy {
+    #[default]
+    Horizon,
+    NoProgress,
+    Accumulation,
+    LeavesDomain,
+    BeyondGuard,
+    Undecided,
+}
+
+impl From<EndedBy> for Ended {
+    fn from(ended: EndedBy) -> Self {
+        match ended {
+            EndedBy::Horizon => Self::Horizon,
+            EndedBy::NoProgress => Self::NoProgress,
+            EndedBy::Accumulation => Self::Accumulation,
+            EndedBy::LeavesDomain => Self::LeavesDomain,
+            EndedBy::BeyondGuard => Self::BeyondGuard,
+            EndedBy::Undecided => Self::Undecided,
+        }
+    }
+}
+
+fn yes() -> bool {
+    true
+}
+
+fn set_ups<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<SetUp>, D::Error> {
+    Ok(List::<SetUp, MOST_SET_UPS>::deserialize(deserializer)?.0)
+}
+
+/// What every answer begins with; the rest of it may be of another version.
+#[derive(Deserialize)]
+struct Header {
+    percuss_protocol: Option<Count>,
+    id: Option<Count>,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Reply {
+    #[serde(rename = "percuss_protocol")]
+    _protocol: Count,
+    #[serde(rename = "id")]
+    _id: Count,
+    capabilities: Option<Capabilities>,
+    unavailable: Option<String>,
+    run: Option<Box<RunReply>>,
+    failure: Option<String>,
+    ready: Option<bool>,
+}
+
+/// The answer in a line to the request of this number.
+///
+/// # Errors
+/// What the line is instead.
+pub(crate) fn decode(line: &[u8], id: u64) -> Result<Answered, String> {
+    let text = std::str::from_utf8(line)
+        .map_err(|error| format!("wrote what is not UTF-8, from byte {}", error.valid_up_to()))?;
+    let text = text.trim_start_matches('\u{feff}').trim();
+    if !text.starts_with('{') {
+        return Err(format!(
+            "wrote {:?} where an answer in JSON was expected: standard output is for answers alone",
+            plain(text)
+        ));
+    }
+    // Where even its head cannot be read, the whole of it says better what is wrong.
+    let head = parse(text).map_err(|why| parse::<Reply>(text).err().unwrap_or(why));
+    let Header { percuss_protocol: version, id: answered } = head?;
+    match version {
+        Some(Count(PROTOCOL)) => {}
+        Some(Count(other)) => {
+            return Err(format!("speaks version {other} of the protocol; accepted is {PROTOCOL}"));
+        }
+        None => return Err(format!("answers without percuss_protocol; accepted is {PROTOCOL}")),
+    }
+    match answered {
+        Some(Count(answered)) if answered == id => parse::<Reply>(text)?.answered(),
+        Some(Count(answered)) if (1..id).contains(&answered) => {
+            Err(format!("answered request {answered} again, where {id} was asked"))
+        }
+        Some(Count(answered)) => {
+            Err(format!("answered request {answered}, which was not asked; {id} was"))
+        }
+        None => Err("answers without an id; accepted is that of the request".to_owned()),
+    }
+}
+
+impl Reply {
+    fn answered(self) -> Result<Answered, String> {
+        let answers = [
+            self.capabilities.map(Answered::Capabilities),
+            self.unavailable.map(|why| Answered::Unavailable(plain(&why))),
+            self.run.map(Answered::Run),
+            self.failure.map(|why| Answered::Failure(plain(&why))),
+            self.ready.filter(|ready| *ready).map(|_| Answered::Ready),
+        ];
+        let mut given = answers.into_iter().flatten();
+        match (given.next(), given.next()) {
+            (Some(answered), None) => Ok(answered),
+            (None, _) => Err(format!("answered nothing; accepted is one of {KINDS}")),
+            (Some(_), Some(_)) => Err(format!("answered two things; accepted is one of {KINDS}")),
+        }
+    }
+}
+
+const KINDS: &str = "capabilities, unavailable, run, failure, ready";
+
+fn parse<'de, T: Deserialize<'de>>(text: &'de str) -> Result<T, String> {
+    let mut reader = serde_json::Deserializer::from_str(text);
+    let parsed = serde_path_to_error::deserialize(&mut reader).map_err(|error| {
+        let path = error.path().to_string();
+        let column = error.inner().column();
+        format!("answered wrongly at {path}: {}{}", error.into_inner(), near(text, column))
+    })?;
+    reader.end().map_err(|error| format!("answered more than one object: {error}"))?;
+    Ok(parsed)
+}
+
+/// What stands around a column of a line.
+fn near(text: &str, column: usize) -> String {
+    const AROUND: usize = 20;
+    let bytes = text.as_bytes();
+    let from = column.saturating_sub(AROUND).min(bytes.len());
+    let to = (column + AROUND).min(bytes.len());
+    format!(", near {:?}", plain(&String::from_utf8_lossy(&bytes[from..to])))
+}

@@ -1,0 +1,129 @@
+//! Both sides of the protocol are held to its schemas, and to the examples on its page.
+
+use super::{Ask, Asked, RunAsk, decode};
+use jsonschema::Validator;
+use percuss::Parameters;
+use percuss_engines::engine::{Accuracy, Limits, SystemTask, percussive};
+use percuss_engines::system::{CheckedSystem, Direction, System, Watch};
+use serde_json::{Value, json};
+use std::path::Path;
+use std::sync::Arc;
+
+fn schema(of: &str) -> Validator {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let path = root.join(format!("../schemas/program-{of}.schema.json"));
+    let text = std::fs::read_to_string(path).unwrap_or_default();
+    let schema: Value = serde_json::from_str(&text).unwrap_or_default();
+    assert!(schema.is_object(), "{of}");
+    match jsonschema::validator_for(&schema) {
+        Ok(schema) => schema,
+        Err(error) => unreachable!("{of}: {error}"),
+    }
+}
+
+fn value(ask: &Ask<'_>) -> Value {
+    serde_json::to_value(ask).unwrap_or_default()
+}
+
+/// The oscillator, with an event that is only counted.
+fn system() -> System {
+    let mut system = percussive(&Parameters::default(), 0.5);
+    let guard = system.modes[0].until[0].guard.clone();
+    let watch = Watch { name: "seen".to_owned(), guard, direction: Direction::Both };
+    system.modes[0].watch.push(watch);
+    system
+}
+
+fn task(system: System) -> SystemTask {
+    let Ok(system) = CheckedSystem::new(system) else { unreachable!("it is whole") };
+    let state = vec![0.25; system.system().states.len()];
+    match SystemTask::new(Arc::new(system), 0, &state, 3.0, vec![0.0, 1.5, 4.0]) {
+        Ok(task) => task,
+        Err(failure) => unreachable!("{failure}"),
+    }
+}
+
+#[test]
+fn requests_are_as_their_schema_says() {
+    let schema = schema("request");
+    let limits = Limits::default();
+    let oscillator = task(system());
+    let mut still = system();
+    still.omega = 0.0;
+    still.modes.iter_mut().for_each(|mode| mode.a.iter_mut().flatten().for_each(|it| *it = 0.0));
+    for (task, accuracy) in
+        [(oscillator, Accuracy::Tolerance(1e-6)), (task(still), Accuracy::Step(0.25))]
+    {
+        let run = RunAsk::new("radau", &task, accuracy, &limits);
+        let ask = value(&Ask::run(3, &run));
+        assert!(schema.is_valid(&ask), "{ask}: {:?}", schema.validate(&ask).err());
+        assert_eq!(ask["run"]["tolerance"].is_null(), accuracy.tolerance().is_none());
+        assert_eq!(ask["run"]["samples"], json!([0.0, 1.5, 3.0]));
+        let mut spoiled = ask.clone();
+        spoiled["run"]["span"] = json!(-1.0);
+        assert!(!schema.is_valid(&spoiled));
+    }
+    for asked in [Asked::Capabilities, Asked::Ready] {
+        assert!(schema.is_valid(&value(&Ask::plain(1, asked))), "{asked:?}");
+    }
+    assert!(!schema.is_valid(&value(&Ask::plain(1, Asked::Run))));
+}
+
+/// The first block of JSON after a heading of the protocol's page, a message a line.
+fn examples(heading: &str) -> Vec<Value> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/PROTOCOL.md");
+    let page = std::fs::read_to_string(path).unwrap_or_default();
+    let (_, after) = page.split_once(&format!("\n## {heading}\n")).unwrap_or_default();
+    let (_, block) = after.split_once("```json\n").unwrap_or_default();
+    let (block, _) = block.split_once("```").unwrap_or_default();
+    block.split("\n\n").filter_map(|text| serde_json::from_str(text).ok()).collect()
+}
+
+#[test]
+fn the_examples_of_the_page_are_messages() {
+    let (requests, answers) = (examples("Requests"), examples("Answers"));
+    assert_eq!((requests.len(), answers.len()), (3, 5), "{requests:?} {answers:?}");
+    let [request, answer] = ["request", "answer"].map(schema);
+    for message in requests {
+        assert!(request.is_valid(&message), "{message}: {:?}", request.validate(&message).err());
+    }
+    for message in answers {
+        assert!(answer.is_valid(&message), "{message}: {:?}", answer.validate(&message).err());
+        let id = message["id"].as_u64().unwrap_or_default();
+        let decoded = decode(message.to_string().as_bytes(), id);
+        assert!(decoded.is_ok(), "{message}: {decoded:?}");
+    }
+}
+
+/// A change of an answer.
+type Change = fn(&mut Value);
+
+/// What the schema refuses in an answer is refused by its reader.
+#[test]
+fn reader_and_schema_agree() {
+    let schema = schema("answer");
+    let changes: [Change; 12] = [
+        |it| it["percuss_protocol"] = json!(2),
+        |it| it["id"] = json!(-1),
+        |it| it["mood"] = json!(1),
+        |it| it["ready"] = json!(true),
+        |it| it["run"] = Value::Null,
+        |it| it["run"]["end"] = json!(["1"]),
+        |it| it["run"]["end"] = json!(vec![0.0; 12]),
+        |it| it["run"]["ended"] = json!("Horizon"),
+        |it| it["run"]["work"]["rhs"] = json!(0.5),
+        |it| it["run"]["work"]["calls"] = json!(1),
+        |it| it["run"]["events"][0]["time"] = Value::Null,
+        |it| it["run"]["events"][0]["mode"] = json!(-1),
+    ];
+    let runs: Vec<Value> =
+        examples("Answers").into_iter().filter(|it| it["run"].is_object()).collect();
+    let [run] = runs.as_slice() else { unreachable!("{runs:?}") };
+    let id = run["id"].as_u64().unwrap_or_default();
+    for (n, change) in changes.iter().enumerate() {
+        let mut changed = run.clone();
+        change(&mut changed);
+        assert!(!schema.is_valid(&changed), "{n}: {changed}");
+        assert!(decode(changed.to_string().as_bytes(), id).is_err(), "{n}: {changed}");
+    }
+}

@@ -1,0 +1,174 @@
+//! The programs of `programs.toml`, as far as they are installed, on runs that are known.
+//!
+//! Those that are set up by default are run too: what they miss is what a comparison is for.
+
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "a panic is a failure")]
+
+use percuss::{Parameters, Start};
+use percuss_engines::case::Given;
+use percuss_engines::engine::{
+    Accuracy, Engine, Limits, Outcome, SampleGrid, Stepping, SystemOutcome, SystemTask, Task,
+    answer, answer_system, exact,
+};
+use percuss_engines::system::{CheckedSystem, Direction, Mode, System, Until, Watch};
+use percuss_programs::ProgramEngine;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What no set-up of theirs makes right: deSolve 1.34 gives the root's state with a time that is not
+/// the root's, the end of the step.
+const WRONG: [&str; 1] = ["desolve-radau"];
+
+const TOLERANCE: Accuracy = Accuracy::Tolerance(1e-8);
+const SPAN: f64 = 3.9;
+const SAMPLES: u32 = 50;
+
+/// A ball with e = 1/2 that is thrown up from the floor; where it is highest is counted.
+fn ball() -> SystemTask {
+    let impact = Until {
+        name: "impact".to_owned(),
+        guard: vec![-1.0, 0.0, 0.0, 0.0, 0.0],
+        reset: Some(vec![vec![0.0; 5], vec![0.0, -0.5, 0.0, 0.0, 0.0]]),
+        next: vec![(None, 0)],
+    };
+    let top = Watch {
+        name: "top".to_owned(),
+        guard: vec![0.0, 1.0, 0.0, 0.0, 0.0],
+        direction: Direction::Falling,
+    };
+    let flight = Mode {
+        name: "flight".to_owned(),
+        a: vec![vec![0.0, 1.0], vec![0.0, 0.0]],
+        b: vec![[0.0; 2]; 2],
+        c: vec![0.0, -1.0],
+        until: vec![impact],
+        watch: vec![top],
+    };
+    let system = System {
+        name: "ball".to_owned(),
+        states: vec!["x".to_owned(), "v".to_owned()],
+        scales: vec![1.0; 2],
+        time_scale: 1.0,
+        modes: vec![flight],
+        ..System::default()
+    };
+    let system = Arc::new(CheckedSystem::new(system).expect("it is whole"));
+    let samples = (0..=SAMPLES).map(|k| SPAN * f64::from(k) / f64::from(SAMPLES)).collect();
+    SystemTask::new(system, 0, &[0.0, 1.0], SPAN, samples).expect("it is whole")
+}
+
+/// When the ball's flight at a time began, and its speed then.
+fn flight(t: f64) -> (f64, f64) {
+    let (mut begin, mut speed) = (0.0, 1.0);
+    while t > begin + 2.0 * speed {
+        begin += 2.0 * speed;
+        speed *= 0.5;
+    }
+    (begin, speed)
+}
+
+fn check_ball(outcome: &SystemOutcome, unit: f64) -> Result<(), String> {
+    let mut expected = Vec::new();
+    let (mut t, mut speed) = (0.0, 1.0);
+    while t + 2.0 * speed < SPAN {
+        expected.extend([(1, t + speed), (0, t + 2.0 * speed)]);
+        t += 2.0 * speed;
+        speed *= 0.5;
+    }
+    for (n, (event, t)) in expected.iter().enumerate() {
+        let found = outcome.events.get(n).ok_or(format!("event {n} is missed"))?;
+        let error = (found.elapsed - t).abs() / (unit * (1.0 + t) * (n + 1) as f64);
+        if found.event != *event || error.is_nan() || error > 20.0 {
+            return Err(format!("event {n} is {found:?}, not {event} at {t}"));
+        }
+    }
+    for (k, sample) in outcome.samples.iter().enumerate() {
+        let t = SPAN * k as f64 / f64::from(SAMPLES);
+        let (begin, speed) = flight(t);
+        let height = speed * (t - begin) - 0.5 * (t - begin).powi(2);
+        let error = (sample[0] - height).abs();
+        if error.is_nan() || error > 40.0 * unit {
+            return Err(format!("sample {k} is {sample:?}, {error:e} off"));
+        }
+    }
+    Ok(())
+}
+
+/// Four forcing periods of the oscillator from rest.
+fn oscillator() -> Task {
+    let given =
+        Given { parameters: Parameters::default(), start: Start::default(), ..Given::default() };
+    let problem = given.check().expect("the default model is accepted");
+    let horizon = problem.entry.instant.after_periods(4, 1);
+    Task::until(given.parameters, problem, horizon, SampleGrid { per_period: 4, count: 17 })
+}
+
+fn check_oscillator(outcome: &Outcome, truth: &Outcome, unit: f64) -> Result<(), String> {
+    let word = |outcome: &Outcome| -> Vec<_> {
+        outcome.events.iter().map(|it| (it.event, it.mode)).collect()
+    };
+    if word(outcome) != word(truth) || truth.events.len() < 5 {
+        return Err(format!("the events are {:?}, not {:?}", word(outcome), word(truth)));
+    }
+    for (found, event) in outcome.events.iter().zip(&truth.events) {
+        let error = (found.elapsed - event.elapsed).abs() / (1.0 + event.elapsed);
+        if error.is_nan() || error > 200.0 * unit {
+            return Err(format!("an event at {} is {error:e} off", event.elapsed));
+        }
+    }
+    for (found, sample) in outcome.samples.iter().zip(&truth.samples) {
+        let error = found.iter().zip(sample).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        if error.is_nan() || error > 1e4 * unit {
+            return Err(format!("a sample {found:?} is {error:e} off"));
+        }
+    }
+    Ok(())
+}
+
+fn check(engine: &ProgramEngine, truth: &Outcome) -> Result<(), String> {
+    let unit = match engine.declaration().stepping {
+        Stepping::Fixed { .. } => return Ok(()),
+        stepping => stepping.unit(TOLERANCE),
+    };
+    let limits = Limits::default();
+    let failed = |failure: percuss_engines::engine::Failure| failure.reason;
+    let outcome = answer_system(engine, &ball(), TOLERANCE, &limits).map_err(failed)?;
+    check_ball(&outcome, unit).map_err(|why| format!("ball: {why}"))?;
+    if outcome.own_time.is_none() || outcome.work.rhs_evaluations == 0 {
+        return Err("it counts nothing".to_owned());
+    }
+    let outcome = answer(engine, &oscillator(), TOLERANCE, &limits).map_err(failed)?;
+    check_oscillator(&outcome, truth, unit).map_err(|why| format!("oscillator: {why}"))
+}
+
+#[test]
+#[ignore = "needs what validation/programs/setup installs"]
+fn programs_that_experts_set_up_are_right() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("programs.toml");
+    let programs = percuss_programs::read(&path).expect("the file is right");
+    let truth = answer(exact(), &oscillator(), Accuracy::Exact, &Limits::default());
+    let truth = truth.expect("the exact solver runs it");
+    let is_excused = |name: &str| name.ends_with("-default") || WRONG.contains(&name);
+    let (mut wrong, mut right) = (Vec::new(), 0);
+    for program in programs {
+        let engines = match program.start() {
+            Ok(engines) => engines,
+            Err(why) => {
+                println!("{why}");
+                continue;
+            }
+        };
+        for engine in engines {
+            let name = engine.declaration().name;
+            let checked = check(&engine, &truth);
+            println!("{name}: {checked:?}");
+            match checked {
+                Ok(()) if WRONG.contains(&name) => wrong.push(format!("{name} is right now")),
+                Ok(()) => right += 1,
+                Err(why) if !is_excused(name) => wrong.push(format!("{name}: {why}")),
+                Err(_) => {}
+            }
+        }
+    }
+    assert!(wrong.is_empty() && right > 0, "{right} are right: {wrong:#?}");
+}
