@@ -15,6 +15,12 @@ fn names() -> MutexGuard<'static, BTreeSet<PathBuf>> {
     NAMES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
+/// Watches for interruptions: they remove what is unfinished and end the programs that were
+/// started.
+pub(crate) fn watch() {
+    signals::watch();
+}
+
 /// A file that has not its own name yet.
 pub(crate) struct Unfinished {
     // Removed from the disk before its name is forgotten: fields are dropped in this order.
@@ -108,6 +114,7 @@ mod signals {
         for name in names.iter() {
             let _ = std::fs::remove_file(name);
         }
+        percuss_programs::end_all();
         std::process::exit(128 + signal);
     }
 }

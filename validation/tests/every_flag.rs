@@ -115,6 +115,12 @@ const ROWS: &[Row] = &[
     (&["bench compare"], "--bench", &["("], "regular expression"),
     (&["bench record", "bench history", "bench compare"], "--history", &["/"], "--history"),
     (&["validate", "cases"], "--cases", &["/no/such"], "accepted is a folder of cases"),
+    (
+        &["validate", "bench", "engines"],
+        "--programs",
+        &["/no/such.toml", "/"],
+        "accepted is a readable file",
+    ),
     (&["validate"], "--reference", &["/no/such"], "accepted is"),
     (&["validate"], "--baseline", &["/no/such.json"], "accepted is"),
     (&["validate", "bench", "reproduce", "man"], "--out", &["/proc/nowhere"], "accepted is"),

@@ -2,6 +2,7 @@
 
 use super::format::OutputFlags;
 use super::list::{self, Format};
+use super::programs::ProgramFlags;
 use crate::engine::{self, Declaration, Location};
 use anyhow::Result;
 use clap::Args;
@@ -10,6 +11,8 @@ use serde::Serialize;
 /// List the engines
 #[derive(Args)]
 pub(super) struct Arguments {
+    #[command(flatten)]
+    programs: ProgramFlags,
     #[command(flatten)]
     output: OutputFlags<Format>,
 }
@@ -33,6 +36,7 @@ struct List<'a> {
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
     let format = arguments.output.format(Format::Csv)?;
+    let _programs = arguments.programs.start()?;
     let line = |engine: &&'static dyn engine::Engine| {
         let Declaration { name, library, version, method, events, .. } = engine.declaration();
         Line { name, library, version, method, events, available: engine.available().is_ok() }

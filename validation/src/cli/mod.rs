@@ -19,6 +19,7 @@ mod orbits;
 mod output;
 mod parse;
 mod poincare;
+mod programs;
 mod progress;
 mod reports;
 mod reproduce;

@@ -2,6 +2,7 @@
 
 use super::names::{CASES, ENGINES};
 use super::output::{Destination, reader_left};
+use super::programs::ProgramFlags;
 use super::{DONE, OUT_OF_BOUNDS, note, parse, reports, say, work};
 use crate::case::{self, Cases};
 use crate::engine::{self, Engine, Wrong, hush_contained_panics};
@@ -47,6 +48,8 @@ pub(super) struct Arguments {
     /// Format of the summary on stdout
     #[arg(long, value_enum, default_value_t = Format::Table)]
     format: Format,
+    #[command(flatten)]
+    programs: ProgramFlags,
     /// Reads the cases from this folder instead of those inside the binary
     #[arg(long, value_name = "DIR")]
     cases: Option<PathBuf>,
@@ -76,6 +79,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         bail!("--rows has no effect with this --format; accepted with --rows is table");
     }
     let baseline = arguments.baseline.as_deref().map(read_baseline).transpose()?;
+    let _programs = arguments.programs.start()?;
     let engines = chosen_engines(&arguments.engine)?;
     let cases = prepared_cases(arguments)?;
     let all = cases.all();

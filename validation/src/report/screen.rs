@@ -10,6 +10,7 @@ use super::{Order, Report, ReportEvidence, ReportRow, orders};
 use crate::engine::REFERENCE;
 use crate::number::brief;
 use crate::score::Verdict;
+use crate::suite::ELSEWHERE;
 use comfy_table::{CellAlignment, Table, presets};
 use std::collections::BTreeMap;
 
@@ -27,6 +28,7 @@ pub fn screen(report: &Report, evidence: &ReportEvidence, with_rows: bool) -> St
         failing_cases(report),
         reasons(&report.results),
         not_run(&report.results),
+        unavailable(&report.results),
         short_orders(report),
         valid_horizons(&report.results),
         power(evidence),
@@ -152,14 +154,28 @@ fn number_of_cases(report: &Report) -> usize {
 }
 
 fn not_run(rows: &[ReportRow]) -> String {
-    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut counts: BTreeMap<(&str, &str), usize> = BTreeMap::new();
     for row in rows.iter().filter(|row| row.verdict == Verdict::NotRun) {
-        *counts.entry(row.engine).or_default() += 1;
+        let of_the_oscillator = row.why == ELSEWHERE;
+        let why =
+            if of_the_oscillator { ELSEWHERE } else { "beyond the budget of right-hand sides" };
+        *counts.entry((row.engine, why)).or_default() += 1;
     }
-    let line = |(engine, count): (&str, usize)| {
-        format!("not run: {engine}, {count} rows, beyond the budget of right-hand sides\n")
+    let line = |((engine, why), count): ((&str, &str), usize)| {
+        format!("not run: {engine}, {count} rows, {why}\n")
     };
     counts.into_iter().map(line).collect()
+}
+
+/// The engines that are not installed, in one line.
+fn unavailable(rows: &[ReportRow]) -> String {
+    let missing = rows.iter().filter(|row| row.verdict == Verdict::Unavailable);
+    let missing: BTreeMap<&str, &str> = missing.map(|row| (row.engine, row.why.as_str())).collect();
+    if missing.is_empty() {
+        return String::new();
+    }
+    let named: Vec<_> = missing.iter().map(|(engine, why)| format!("{engine} ({why})")).collect();
+    wrapped(&format!("unavailable: {}", named.join(", ")))
 }
 
 fn short_orders(report: &Report) -> String {

@@ -5,7 +5,7 @@
 
 use super::system_grazes::guard_growth;
 use crate::system::SystemProblem;
-use crate::truth::SystemTruth;
+use crate::truth::{SystemTruth, SystemTruthRow};
 
 /// An event whose successor is decided by the sign of a value.
 #[derive(Clone, Debug, PartialEq)]
@@ -18,9 +18,21 @@ pub struct Decision {
     pub growth: f64,
 }
 
-/// The decisions of a true run, in the order of time.
+/// The decisions of a true run: where a value decides what follows, and where events of one instant
+/// have an order that matters, which no error leaves decided.
 #[must_use]
 pub fn decisions(problem: &SystemProblem, truth: &SystemTruth) -> Vec<Decision> {
+    let mut found = by_value(problem, truth);
+    let together = truth
+        .events
+        .windows(2)
+        .filter(|pair| truth.ordered && pair[1].elapsed.minus(pair[0].elapsed).value() == 0.0);
+    let tie = |pair: &[SystemTruthRow]| pair[0].elapsed.value();
+    found.extend(together.map(|it| Decision { elapsed: tie(it), margin: 0.0, growth: 1.0 }));
+    found
+}
+
+fn by_value(problem: &SystemProblem, truth: &SystemTruth) -> Vec<Decision> {
     let system = problem.checked.system();
     let mut mode = truth.start.mode;
     let mut found = Vec::new();

@@ -8,4 +8,4 @@ mod system;
 pub use matrix::{Answered, CaseRun, Measured, Prepared, Scored, Status, prepare, run, size};
 pub use probes::{Extent, is_shown};
 pub use scope::Suite;
-pub use system::{PreparedSystem, prepare_systems};
+pub use system::{ELSEWHERE, PreparedSystem, prepare_systems};

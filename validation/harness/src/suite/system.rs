@@ -13,6 +13,9 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
 
+/// Why an engine that runs the oscillator alone is not run elsewhere.
+pub const ELSEWHERE: &str = "its co-ordinates are the oscillator's";
+
 /// A case of a system made ready: checked, with its truth.
 pub struct PreparedSystem {
     /// The case.
@@ -72,7 +75,7 @@ impl CaseRun for PreparedSystem {
 
     fn takes(&self, engine: &dyn Engine) -> Result<(), &'static str> {
         let runs = engine.runs_systems();
-        if runs { Ok(()) } else { Err("its co-ordinates are the oscillator's") }
+        if runs { Ok(()) } else { Err(ELSEWHERE) }
     }
 
     fn limits(&self, suite: Suite) -> Limits {

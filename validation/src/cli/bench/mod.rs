@@ -6,6 +6,7 @@ mod record;
 
 use super::names::{CASES, Selection};
 use super::output::{Destination, make_folder, reader_left, write_whole};
+use super::programs::ProgramFlags;
 use super::{DONE, OUT_OF_BOUNDS, format, output, parse, work};
 use crate::bench::compare::worker::serve;
 use crate::bench::contest::{self, Finisher, contest};
@@ -36,6 +37,8 @@ pub(super) struct Arguments {
     /// Only cases whose name matches, of all that validate has; several are alternatives
     #[arg(short, long = "case", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
     case: Vec<Regex>,
+    #[command(flatten)]
+    programs: ProgramFlags,
     /// Writes bench.json and pictures into this folder
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -71,6 +74,7 @@ fn race(arguments: &Arguments) -> Result<u8> {
     if arguments.long && !arguments.case.is_empty() {
         bail!("--long has no effect with --case: long runs are of no case");
     }
+    let _programs = arguments.programs.start()?;
     let all = contestants();
     let contestants = chosen_engines(&all, &arguments.engine)?;
     let courses = courses(&chosen_cases(&arguments.case)?)?;
