@@ -6,9 +6,11 @@
 //! a maximum, s^j exp(rate s)/j! <= (j/(e |rate|))^j/j!, and with a rate of zero its sum is finite.
 //! All other blocks grow at most by their logarithmic norm.
 
-use super::flow::ORDERS;
 use super::modal::{self, Kind, Real};
 use super::motion::nilpotent;
+
+/// How many derivatives of a row are held, its value included.
+pub(super) const ORDERS: usize = 17;
 
 /// Room for the rounding of a norm.
 const OUTWARD: f64 = 1.0 + 1e-12;

@@ -1,6 +1,6 @@
 //! The closed form of a mode: z(t) = exp(M t) z, block by block.
 
-use super::bound::{self, Later};
+use super::bound::{self, Later, ORDERS};
 use super::modal::{self, Real};
 use super::motion::{BlockMotion, vector};
 use super::system::{LARGEST_DIMENSION, Row};
@@ -8,9 +8,6 @@ use crate::number::Number;
 
 /// The entries of z, or of the modal co-ordinates; those beyond the dimension are zero.
 pub(super) type Vector<T> = [T; LARGEST_DIMENSION];
-
-/// How many derivatives of a row are held, its value included.
-pub(super) const ORDERS: usize = 17;
 
 /// A mode's closed form.
 #[derive(Clone, Debug)]

@@ -1,6 +1,7 @@
 //! A segment's guards at an instant, evaluated from the entry's modal co-ordinates.
 
-use super::flow::{Flow, ModalRow, ORDERS, Vector, unit};
+use super::bound::ORDERS;
+use super::flow::{Flow, ModalRow, Vector, unit};
 use super::search::{Track, Work};
 use super::system::LARGEST_DIMENSION;
 use crate::number::Number;

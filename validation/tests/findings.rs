@@ -1,6 +1,6 @@
 //! docs/FINDINGS.md: its commands choose rows that exist, and its programs are as it describes.
 
-use percuss_validation::case::embedded;
+use percuss_validation::case::Cases;
 use percuss_validation::engine::all;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -35,8 +35,8 @@ fn commands(page: &str) -> Vec<(String, String)> {
 fn every_command_chooses_rows_that_exist() {
     let commands = commands(&read("docs/FINDINGS.md"));
     let engines: BTreeSet<_> = all().iter().map(|it| it.declaration().name.to_owned()).collect();
-    let cases: BTreeSet<_> =
-        embedded().unwrap().into_iter().map(|case| case.name.clone()).collect();
+    let cases = Cases::embedded().unwrap();
+    let cases: BTreeSet<String> = cases.names().map(str::to_owned).collect();
     for (engine, case) in &commands {
         assert!(engines.contains(engine), "no engine {engine}");
         assert!(cases.contains(case), "no case {case}");
