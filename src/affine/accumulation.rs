@@ -6,9 +6,10 @@
 //! for all states that the motion can reach in that time: along the flow, and by jumps that are
 //! proportional to the rates of the impacts.
 
-use super::flow::{Vector, dot};
+use super::flow::ModalRow;
 use super::run::{Restitution, Run};
 use super::structure::Firing;
+use super::vector::{Vector, dot, unit};
 use crate::number::Number;
 
 /// A run ends at an accumulation once at most this share of the system's unit of time is left.
@@ -41,7 +42,7 @@ impl<T: Number> Run<'_, T> {
             return None;
         }
         // How much the derivative of a row can change along the flow and by all jumps.
-        let change = |row: &super::flow::ModalRow<T>, order: usize| {
+        let change = |row: &ModalRow<T>, order: usize| {
             let jump = (at(&row.orders[order], after) - at(&row.orders[order], before)).to_f64();
             2.0 * (flow.bound(row, order + 1, after, guess) * guess + jump.abs() / (1.0 - e_f64))
         };
@@ -75,11 +76,11 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// The bounds with what errors, followed or not, may do to the rate of departure.
-    fn widened(&self, earliest: T, latest: T, gap: &super::flow::ModalRow<T>, rate: f64) -> (T, T) {
+    fn widened(&self, earliest: T, latest: T, gap: &ModalRow<T>, rate: f64) -> (T, T) {
         let flow = &self.solver.modes[self.structure.node(self.node).mode].flow;
         let inherited = self.enclosure.as_ref().map_or(0.0, |it| it.of_row(flow, gap, 1));
         let (_, size) = gap.order(1, &self.modal);
-        let share = 4.0 * (inherited + 32.0 * super::flow::unit::<T>() * size) / rate;
+        let share = 4.0 * (inherited + 32.0 * unit::<T>() * size) / rate;
         let room = latest * T::exact(if self.enclosure.is_some() { share } else { 0.0 });
         (earliest - room, latest + room)
     }

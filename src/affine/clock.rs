@@ -1,8 +1,8 @@
 //! Time, and the angle of the forcing, as a sum of two numbers that is never rounded to one.
 
-use super::flow::unit;
 use super::modal::Real;
 use super::system::{Forcing, StartPoint};
+use super::vector::unit;
 use crate::number::Number;
 use dashu_ratio::RBig;
 

@@ -5,8 +5,9 @@
 //! what an event adds in second order, and each new rounding, is a column of its own. When there
 //! are too many, the smallest are replaced by a box. So errors that cancel do so here.
 
-use super::flow::{Flow, ModalRow, Vector, dot};
+use super::flow::{Flow, ModalRow};
 use super::system::LARGEST_DIMENSION;
+use super::vector::{Vector, dot};
 use crate::number::Number;
 
 /// Columns beyond this are made a box.

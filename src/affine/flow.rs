@@ -2,12 +2,10 @@
 
 use super::bound::{self, Later, ORDERS};
 use super::modal::{self, Real};
-use super::motion::{BlockMotion, vector};
+use super::motion::BlockMotion;
 use super::system::{LARGEST_DIMENSION, Row};
+use super::vector::{Vector, vector};
 use crate::number::Number;
-
-/// The entries of z, or of the modal co-ordinates; those beyond the dimension are zero.
-pub(super) type Vector<T> = [T; LARGEST_DIMENSION];
 
 /// A mode's closed form.
 #[derive(Clone, Debug)]
@@ -69,24 +67,6 @@ pub(super) struct RowPart {
     /// The norms of the derivatives' parts, and of what they become where the block's co-ordinates
     /// only turn and decay.
     pub norms: [f64; ORDERS],
-}
-
-/// The distance from 1 to the next smaller number of an arithmetic.
-#[inline]
-pub(super) fn unit<T: Number>() -> f64 {
-    const HALF: f64 = 0.5 * f64::EPSILON;
-    // Double-double arithmetic is good to a few units of 2^-106.
-    if T::TERMS <= <f64 as Number>::TERMS { HALF } else { HALF * HALF * 4.0 }
-}
-
-/// The sum of products of the first entries.
-#[inline]
-pub(super) fn dot<T: Number>(a: &Vector<T>, b: &Vector<T>, dimension: usize) -> T {
-    let mut sum = a[0] * b[0];
-    for (a, b) in a[..dimension].iter().zip(&b[..dimension]).skip(1) {
-        sum = sum + *a * *b;
-    }
-    sum
 }
 
 impl<T: Number> Flow<T> {

@@ -1,7 +1,7 @@
 //! Whether a guard stays negative on a piece, by the Bernstein coefficients of a polynomial that
 //! lies above it: the same theorem as in `crossing/certificate.rs`, in any arithmetic.
 
-use super::flow::unit;
+use super::vector::unit;
 use crate::crossing::certificate::MIDDLE;
 use crate::number::Number;
 use smallvec::SmallVec;

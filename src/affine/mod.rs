@@ -6,6 +6,7 @@ mod build;
 mod clock;
 mod enclosure;
 mod error;
+mod event;
 mod expression;
 mod file;
 mod flow;
@@ -23,14 +24,17 @@ mod solver;
 mod structural;
 mod structure;
 mod system;
+mod track;
+mod vector;
 
 pub use clock::Time;
 pub use dashu_ratio::RBig as Rational;
 pub use error::SystemError;
+pub use event::{Ending, Errors, Event, What};
 pub use file::SystemFile;
-pub use run::{Ending, Errors, Event, Run, What};
-pub use search::Work;
+pub use run::Run;
 pub use solver::{Solver, Unprepared};
 pub use system::{
     Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, Until, Watch,
 };
+pub use track::Work;

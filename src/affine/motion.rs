@@ -1,8 +1,8 @@
 //! How the modal co-ordinates of a block move: exp(B t) y.
 
-use super::flow::{Vector, dot, unit};
 use super::modal::{self, Kind, Real};
 use super::system::LARGEST_DIMENSION;
+use super::vector::{Vector, dot, rounded, unit, vector};
 use crate::number::Number;
 
 /// What is left of a zero after the products of a nilpotent matrix, beside its norm: 2^-300.
@@ -52,12 +52,6 @@ pub(super) struct Powers<T> {
     matrix: Vec<Vector<T>>,
 }
 
-/// A wide number, rounded to an arithmetic of one or two words.
-pub(super) fn rounded<T: Number>(value: &Real) -> T {
-    let (high, low) = value.words();
-    T::exact(high) + T::exact(low)
-}
-
 fn words<T: Number>(value: &Real) -> Words<T> {
     let high: T = rounded(value);
     // What is left beyond an arithmetic of two words is not resolved by it either.
@@ -67,14 +61,6 @@ fn words<T: Number>(value: &Real) -> Words<T> {
 
 fn nonzero<T: Number>(value: &Real) -> Option<Words<T>> {
     (!value.is_zero()).then(|| words(value))
-}
-
-pub(super) fn vector<T: Number>(row: &[Real]) -> Vector<T> {
-    let mut vector = [T::zero(); LARGEST_DIMENSION];
-    for (entry, value) in vector.iter_mut().zip(row) {
-        *entry = rounded(value);
-    }
-    vector
 }
 
 /// The matrix of a block less its rate, and the least power of it that is zero.

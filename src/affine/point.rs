@@ -1,9 +1,10 @@
 //! A segment's guards at an instant, evaluated from the entry's modal co-ordinates.
 
 use super::bound::ORDERS;
-use super::flow::{Flow, ModalRow, Vector, unit};
-use super::search::{Track, Work};
+use super::flow::{Flow, ModalRow};
 use super::system::LARGEST_DIMENSION;
+use super::track::{Track, Work};
+use super::vector::{Vector, unit};
 use crate::number::Number;
 use smallvec::SmallVec;
 use std::cell::OnceCell;

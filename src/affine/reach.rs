@@ -7,11 +7,12 @@
 //! only a constant, the piece has no end.
 
 use super::bound::Later;
-use super::flow::{ModalRow, RowPart, Vector};
+use super::flow::{ModalRow, RowPart};
 use super::hull::{self, Judged, Lengths};
 use super::point::{Ends, Point, Segment, root};
-use super::search::{Track, outward};
 use super::system::LARGEST_DIMENSION;
+use super::track::{Track, outward};
+use super::vector::Vector;
 use crate::crossing::certificate::MIDDLE;
 use crate::number::Number;
 

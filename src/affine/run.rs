@@ -2,72 +2,21 @@
 
 use super::clock::{self, Time};
 use super::enclosure::{Crossing, Enclosure};
-use super::flow::{Flow, Vector, unit};
+use super::event::{Ending, Errors, Event, What};
+use super::flow::Flow;
 use super::known::Loan;
 use super::point::{Ends, Segment};
-use super::search::{Found, Track, Work};
+use super::search::Found;
 use super::solver::{self, Solver};
 use super::structure::Firing;
 use super::system::{Direction, LARGEST_DIMENSION, StartPoint};
+use super::track::{Track, Work};
+use super::vector::{Vector, rounded, unit};
 use crate::number::Number;
 use std::collections::VecDeque;
 
 /// How many events of `until` one instant may have.
 const MOST_AT_ONCE: u32 = 64;
-
-/// What happens at an event of a run.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum What<T> {
-    /// The run begins.
-    Start,
-    /// The mode of this index ends by its `until` of this index.
-    Until(usize, usize),
-    /// In the mode of this index the `watch` of this index is crossed.
-    Watch(usize, usize),
-    /// The run ends.
-    End(Ending<T>),
-}
-
-/// How a run ends.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Ending<T> {
-    /// The horizon is reached.
-    Horizon,
-    /// Infinitely many impacts follow, and come to an end between these times after the last.
-    Accumulation(T, T),
-    /// A backward run reaches the boundary of its mode.
-    LeavesDomain,
-    /// Too many events in one instant.
-    NoProgress,
-    /// A mode is entered where one of its guards is positive already.
-    BeyondGuard,
-    /// The arithmetic has no digits left to decide what comes next.
-    Undecided,
-}
-
-/// An event of a run.
-#[derive(Clone, Debug)]
-pub struct Event<T> {
-    /// What happens.
-    pub what: What<T>,
-    /// The time.
-    pub time: Time<T>,
-    /// The state just after it.
-    pub state: Vec<T>,
-    /// The mode just after it.
-    pub mode: usize,
-    /// Bounds of the errors, in a run that follows them.
-    pub errors: Option<Errors>,
-}
-
-/// Bounds of the errors of an event's time and state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Errors {
-    /// That of the time.
-    pub time: f64,
-    /// Those of the states.
-    pub state: Vec<f64>,
-}
 
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
 pub struct Run<'a, T> {
@@ -164,7 +113,7 @@ impl<T: Number> Solver<T> {
         };
         let (sin, cos) = self.sin_cos(&entered);
         for (entry, [c, s, one]) in run.state.iter_mut().zip(&start.state) {
-            let number = |it| super::motion::rounded::<T>(&super::modal::Real::of(it));
+            let number = |it| rounded::<T>(&super::modal::Real::of(it));
             *entry = number(c) * cos + number(s) * sin + number(one);
         }
         run.complete();

@@ -10,25 +10,15 @@
 //! optimising across them; so what runs at every event is marked to be inlined, here and in the
 //! modules that this one uses.
 
-use super::flow::unit;
 use super::hull::{Judged, Lengths};
 use super::point::{Ends, PerGuard, Point, Segment};
 use super::reach::Reach;
+use super::track::{Track, Work, outward};
+use super::vector::unit;
 use crate::number::Number;
 
 /// The largest number of pieces of a segment.
 const MOST_PIECES: u64 = 1 << 22;
-
-/// What is known of a guard at the left end of what is searched.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Track {
-    /// 1 where a crossing rises, -1 where it falls: the guard times this is negative inside.
-    pub outward: f64,
-    /// How many derivatives, the value included, are zero at the left end.
-    pub zeros: usize,
-    /// Whether it can cross at all.
-    pub live: bool,
-}
 
 /// How a search ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,17 +30,6 @@ pub(super) enum Found {
     Crossing(u64),
     /// Too much work.
     Lost,
-}
-
-/// What a search has cost.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
-    /// Evaluations of the closed form.
-    pub evaluations: u64,
-    /// Pieces that were certified.
-    pub pieces: u64,
-    /// Touches, entries, conditions and ties that rounding does not decide.
-    pub undecidable: u64,
 }
 
 /// A crossing that is proved to be the only one shortly after a point.
@@ -321,11 +300,6 @@ fn newton<T: Number>(orders: &[T; 4]) -> T {
         step = step - cubic / tangent;
     }
     step
-}
-
-#[inline]
-pub(super) fn outward<T: Number>(orders: &[T; 4], track: &Track) -> [T; 4] {
-    if track.outward < 0.0 { orders.map(|it| -it) } else { *orders }
 }
 
 #[inline]

@@ -2,13 +2,13 @@
 
 use super::bound;
 use super::clock::{Clock, Time};
-use super::flow::{Flow, ModalRow, Vector};
+use super::event::Event;
+use super::flow::{Flow, ModalRow};
 use super::known::Known;
 use super::modal::{self, Real};
-use super::motion::rounded;
-use super::run::Event;
 use super::structure::Structure;
 use super::system::{LARGEST_DIMENSION, Mode, Row, System};
+use super::vector::{Vector, rounded};
 use crate::number::Number;
 
 /// A piecewise-affine system in closed form, in an arithmetic of one or two words.

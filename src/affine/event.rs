@@ -1,0 +1,57 @@
+//! Events of a run, and how it can end.
+
+use super::clock::Time;
+
+/// What happens at an event of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum What<T> {
+    /// The run begins.
+    Start,
+    /// The mode of this index ends by its `until` of this index.
+    Until(usize, usize),
+    /// In the mode of this index the `watch` of this index is crossed.
+    Watch(usize, usize),
+    /// The run ends.
+    End(Ending<T>),
+}
+
+/// How a run ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ending<T> {
+    /// The horizon is reached.
+    Horizon,
+    /// Infinitely many impacts follow, and come to an end between these times after the last.
+    Accumulation(T, T),
+    /// A backward run reaches the boundary of its mode.
+    LeavesDomain,
+    /// Too many events in one instant.
+    NoProgress,
+    /// A mode is entered where one of its guards is positive already.
+    BeyondGuard,
+    /// The arithmetic has no digits left to decide what comes next.
+    Undecided,
+}
+
+/// An event of a run.
+#[derive(Clone, Debug)]
+pub struct Event<T> {
+    /// What happens.
+    pub what: What<T>,
+    /// The time.
+    pub time: Time<T>,
+    /// The state just after it.
+    pub state: Vec<T>,
+    /// The mode just after it.
+    pub mode: usize,
+    /// Bounds of the errors, in a run that follows them.
+    pub errors: Option<Errors>,
+}
+
+/// Bounds of the errors of an event's time and state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Errors {
+    /// That of the time.
+    pub time: f64,
+    /// Those of the states.
+    pub state: Vec<f64>,
+}

@@ -1,0 +1,41 @@
+//! Vectors of the state, and numbers rounded to an arithmetic.
+
+use super::modal::Real;
+use super::system::LARGEST_DIMENSION;
+use crate::number::Number;
+
+/// The entries of z, or of the modal co-ordinates; those beyond the dimension are zero.
+pub(super) type Vector<T> = [T; LARGEST_DIMENSION];
+
+/// The distance from 1 to the next smaller number of an arithmetic.
+#[inline]
+pub(super) fn unit<T: Number>() -> f64 {
+    const HALF: f64 = 0.5 * f64::EPSILON;
+    // Double-double arithmetic is good to a few units of 2^-106.
+    if T::TERMS <= <f64 as Number>::TERMS { HALF } else { HALF * HALF * 4.0 }
+}
+
+/// The sum of products of the first entries.
+#[inline]
+pub(super) fn dot<T: Number>(a: &Vector<T>, b: &Vector<T>, dimension: usize) -> T {
+    let mut sum = a[0] * b[0];
+    for (a, b) in a[..dimension].iter().zip(&b[..dimension]).skip(1) {
+        sum = sum + *a * *b;
+    }
+    sum
+}
+
+/// A wide number, rounded to an arithmetic of one or two words.
+pub(super) fn rounded<T: Number>(value: &Real) -> T {
+    let (high, low) = value.words();
+    T::exact(high) + T::exact(low)
+}
+
+/// A row in the arithmetic, with zeros beyond its end.
+pub(super) fn vector<T: Number>(row: &[Real]) -> Vector<T> {
+    let mut vector = [T::zero(); LARGEST_DIMENSION];
+    for (entry, value) in vector.iter_mut().zip(row) {
+        *entry = rounded(value);
+    }
+    vector
+}
