@@ -16,7 +16,7 @@ const NAMES: &str = "a name of 1 to 40 characters: lower-case letters, digits, '
 /// A program that can be run as an engine, as its file names it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
-    /// Its name, with which the names of its engines begin.
+    /// The program's name, with which the names of its engines begin.
     pub name: String,
     /// The command that starts it: a program and its arguments.
     pub command: Vec<String>,
@@ -56,7 +56,7 @@ pub fn read(path: &Path) -> Result<Vec<Program>, FileError> {
 }
 
 fn parse(file: &str, text: &str, folder: &Path) -> Result<Vec<Program>, FileError> {
-    let source = Source { file, text };
+    let source = ProgramsFile { file, text };
     let wire: Wire = toml::from_str(text).map_err(|error| FileError::toml(file, text, &error))?;
     if wire.program.is_empty() {
         return Err(FileError::of(file, "names no program; accepted is a [[program]] or more"));
@@ -70,12 +70,12 @@ fn parse(file: &str, text: &str, folder: &Path) -> Result<Vec<Program>, FileErro
     Ok(programs)
 }
 
-struct Source<'a> {
+struct ProgramsFile<'a> {
     file: &'a str,
     text: &'a str,
 }
 
-impl Source<'_> {
+impl ProgramsFile<'_> {
     fn program(
         &self,
         begin: usize,

@@ -31,8 +31,8 @@ mod start;
 mod text;
 mod wire;
 
-pub use engine::ProgramEngine;
+pub use engine::{NotStarted, ProgramEngine};
 pub use file::{Program, read};
 pub use process::end_all;
-pub use start::NotStarted;
+
 pub use wire::{Capabilities, EventsBy, PROTOCOL, SetUp, SteppedBy};

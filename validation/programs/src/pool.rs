@@ -3,7 +3,7 @@
 
 use crate::file::Program;
 use crate::process::Process;
-use crate::wire::{Answered, RunAsk, RunReply};
+use crate::wire::{ReplyContent, RunAsk, RunReply};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -41,9 +41,11 @@ impl Pool {
         let took = began.elapsed();
         process.still_ready(wait)?;
         let answered = match answered {
-            Answered::Run(reply) => Ok((*reply, took)),
-            Answered::Failure(why) if why.is_empty() => Err("failed without a reason".to_owned()),
-            Answered::Failure(why) => Err(why),
+            ReplyContent::Run(reply) => Ok((*reply, took)),
+            ReplyContent::Failure(why) if why.is_empty() => {
+                Err("failed without a reason".to_owned())
+            }
+            ReplyContent::Failure(why) => Err(why),
             _ => return Err("answered something else where a run was asked for".to_owned()),
         };
         self.idle().push(process);

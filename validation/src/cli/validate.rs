@@ -234,7 +234,7 @@ struct PreparedCases {
 }
 
 impl PreparedCases {
-    /// Those of the oscillator, then those of other systems.
+    /// The cases of the oscillator, then those of other systems.
     fn all(&self) -> Vec<&dyn CaseRun> {
         let oscillator = self.oscillator.iter().map(|it| it as &dyn CaseRun);
         oscillator.chain(self.systems.iter().map(|it| it as &dyn CaseRun)).collect()

@@ -16,9 +16,9 @@ const SHORTCOMINGS: &str = include_str!("../../shortcomings.toml");
 /// Cases of the oscillator and of other systems, each by name.
 #[derive(Clone, Debug, Default)]
 pub struct Cases {
-    /// Those of the oscillator.
+    /// The cases of the oscillator.
     pub oscillator: Vec<Case>,
-    /// Those of other systems.
+    /// The cases of other systems.
     pub systems: Vec<SystemCase>,
 }
 
