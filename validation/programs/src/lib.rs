@@ -32,7 +32,7 @@ mod text;
 mod wire;
 
 pub use engine::ProgramEngine;
-pub use file::{Program, read};
+pub use file::{Program, read, shortcomings};
 pub use process::end_all;
 pub use start::NotStarted;
 pub use wire::{Capabilities, EventsBy, PROTOCOL, SetUp, SteppedBy};
