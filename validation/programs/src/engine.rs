@@ -144,11 +144,8 @@ impl Engine for ProgramEngine {
         can_run(set_up, task, accuracy)?;
         let limits = Limits { wall: limits.wall.min(pool.program().timeout), ..*limits };
         let ask = RunAsk::new(&set_up.name, task, accuracy, &limits);
-        let run = || {
-            let (reply, took) = pool.run(&ask, limits.wall)?;
-            checked(&reply, task, (ask.samples(), took), &limits)
-        };
-        run().map_err(Failure::new)
+        let (reply, took) = pool.run(&ask, limits.wall)?;
+        checked(&reply, task, (ask.samples(), took), &limits).map_err(Failure::new)
     }
 }
 

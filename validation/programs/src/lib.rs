@@ -32,7 +32,6 @@ mod text;
 mod wire;
 
 pub use engine::{NotStarted, ProgramEngine};
-pub use file::{Program, read};
+pub use file::{Program, read, shortcomings};
 pub use process::end_all;
-
 pub use wire::{Capabilities, EventsBy, PROTOCOL, SetUp, SteppedBy};

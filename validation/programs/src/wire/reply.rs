@@ -22,6 +22,8 @@ pub(crate) enum ReplyContent {
     Run(Box<RunReply>),
     /// Why a run was not made.
     Failure(String),
+    /// How a run went beyond its limits.
+    GaveUp(String),
     /// The program waits for the next request.
     Ready,
 }
@@ -178,6 +180,7 @@ struct Reply {
     unavailable: Option<String>,
     run: Option<Box<RunReply>>,
     failure: Option<String>,
+    gave_up: Option<String>,
     ready: Option<bool>,
 }
 
@@ -224,6 +227,7 @@ impl Reply {
             self.unavailable.map(|why| ReplyContent::Unavailable(plain(&why))),
             self.run.map(ReplyContent::Run),
             self.failure.map(|why| ReplyContent::Failure(plain(&why))),
+            self.gave_up.map(|why| ReplyContent::GaveUp(plain(&why))),
             self.ready.filter(|ready| *ready).map(|_| ReplyContent::Ready),
         ];
         let mut given = answers.into_iter().flatten();
@@ -235,7 +239,7 @@ impl Reply {
     }
 }
 
-const KINDS: &str = "capabilities, unavailable, run, failure, ready";
+const KINDS: &str = "capabilities, unavailable, run, failure, gave_up, ready";
 
 fn parse<'de, T: Deserialize<'de>>(text: &'de str) -> Result<T, String> {
     let mut reader = serde_json::Deserializer::from_str(text);
