@@ -305,6 +305,7 @@ pub fn evidence() -> ReportEvidence {
         file: format!("validation/cases/{name}.toml"),
         name,
         toml: "[case]\nname = \"graze\" # </script>\n".to_owned(),
+        system: "oscillator".to_owned(),
         regime: "grazing".to_owned(),
         why: NASTY.to_owned(),
         trouble: Vec::new(),
