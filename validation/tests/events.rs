@@ -94,7 +94,7 @@ fn a_missed_event_of_another_system_is_shown_alike() {
     let engines = select(&[Regex::new("^diffsol-bdf$").expect("a pattern")]).expect("an engine");
     let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();
     let defaults = defaults().expect("bounds");
-    let rows = suite::run(&runs, &engines, Suite::Quick, &defaults, &|| ());
+    let rows = suite::run(&runs, &engines, &Suite::Quick.into(), &defaults, &|| ());
     let all = event_pictures((&[], &cases), &rows, Suite::Quick);
     let picture = all.first().expect("it misses an event");
     assert_eq!(

@@ -162,7 +162,7 @@ impl SystemReplay<'_> {
         let solver =
             if self.case.backward { Solver::backward(&turned) } else { Solver::new(&turned) };
         let (Ok(solver), Some(start)) = (solver, &self.case.system.start) else { return true };
-        let other = Replay { case: self.case, solver: &solver, begin: self.begin };
+        let other = SystemReplay { case: self.case, solver: &solver, begin: self.begin };
         let Ok(others) = other.events(start) else { return true };
         let Some((_, others)) = others.split_last() else { return true };
         let alike = |(own, other): (&Event<DoubleDouble>, &Event<DoubleDouble>)| {

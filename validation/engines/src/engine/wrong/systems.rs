@@ -4,9 +4,9 @@
 //! Without a fault it is the engine `ode_solvers-dopri5`, whose bounds it is held to. Some faults
 //! are a system that was misread, some an entry that was ([`Misled`]), some stand in the loop.
 
+use super::super::alone::GuardRise;
 use super::super::equations::Equations;
 use super::super::joining::{Course, Moment, StretchEnd, join};
-use super::super::location::GuardRise;
 use super::super::meter::{Failure, Limits, Meter};
 use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{self, Dopri5Run};
