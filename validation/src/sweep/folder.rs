@@ -46,7 +46,7 @@ struct Owner {
 #[derive(Debug)]
 pub(super) struct Lock {
     path: PathBuf,
-    /// None where another process holds it, or the file system has no locks.
+    /// The locked file; none where another process holds it, or the file system has no locks.
     file: Option<File>,
 }
 

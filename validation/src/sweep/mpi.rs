@@ -35,7 +35,7 @@ struct OpenShard {
     begun: Instant,
     /// The tiles that are back, by number.
     tiles: BTreeMap<u64, Vec<u8>>,
-    /// Marks it as being computed.
+    /// The lock that marks the shard as being computed.
     _lock: Lock,
 }
 
