@@ -1,7 +1,7 @@
 //! What `validate` prints above its ranking: rows that were not run, engines that are not
 //! installed, orders, valid horizons, and the power of the gates.
 
-use super::screen::wrapped;
+use super::table::wrapped;
 use super::{Order, Report, ReportEvidence, ReportRow, orders};
 use crate::engine::REFERENCE;
 use crate::score::Verdict;

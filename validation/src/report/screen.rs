@@ -1,20 +1,17 @@
 //! What `validate` prints: which integrator can be trusted with events, and where each fails.
 //!
 //! A terminal shows the last lines, so the ranking and the failures stand there and the details
-//! above them. Every line fits [`WIDTH`] columns.
+//! above them. Every line fits [`WIDTH`](super::WIDTH) columns.
 
 use super::failing::failing_cases;
 use super::notes::notes;
 use super::ranking::COMPARED_AT;
-use super::table::{reasons, row_table};
+use super::table::{reasons, row_table, text, wrapped};
 use super::trouble::{Trouble, TroubleCell};
 use super::{Report, ReportEvidence};
 use crate::number::brief;
 use crate::score::Verdict;
 use comfy_table::{CellAlignment, Table, presets};
-
-/// The widest line, in columns.
-pub const WIDTH: usize = 100;
 
 /// The screen; `with_rows`: every row stands above it.
 #[must_use]
@@ -33,14 +30,6 @@ pub fn screen(report: &Report, evidence: &ReportEvidence, with_rows: bool) -> St
     parts.concat()
 }
 
-/// Breaks a text into lines of at most [`WIDTH`] columns, the later ones indented.
-pub(super) fn wrapped(text: &str) -> String {
-    let options = textwrap::Options::new(WIDTH)
-        .subsequent_indent("    ")
-        .word_splitter(textwrap::WordSplitter::NoHyphenation);
-    textwrap::fill(text, options) + "\n"
-}
-
 /// A plain table without borders, its columns from the third on to the right.
 fn plain(header: &[&str], right_from: usize) -> Table {
     let mut table = Table::new();
@@ -52,12 +41,6 @@ fn plain(header: &[&str], right_from: usize) -> Table {
         column.set_padding((0, 1));
     }
     table
-}
-
-/// A table's lines without the blanks at their ends.
-pub(super) fn text(table: &Table) -> String {
-    let lines: Vec<_> = table.to_string().lines().map(|line| line.trim_end().to_owned()).collect();
-    lines.join("\n") + "\n"
 }
 
 fn ranking_table(report: &Report) -> String {
@@ -94,7 +77,7 @@ fn ranking_table(report: &Report) -> String {
          per event at an error of {COMPARED_AT:e}, which decides between equals. fails: cases, of {}, \
          known shortcomings included; an event of a graze that a method's own error hides is \
          undecidable, no failure. exact is the reference.",
-        number_of_cases(report)
+        report.number_of_cases()
     );
     text(&table) + &wrapped(&legend) + "\n"
 }
@@ -134,11 +117,6 @@ pub(super) fn figure(value: f64) -> String {
 fn worse(evidence: &ReportEvidence) -> String {
     let lines = evidence.worse.iter();
     lines.map(|it| wrapped(&format!("worse than the baseline: {it}"))).collect()
-}
-
-/// How many cases were run.
-pub(super) fn number_of_cases(report: &Report) -> usize {
-    report.results.chunk_by(|a, b| a.case == b.case).count()
 }
 
 fn counts(report: &Report) -> String {
