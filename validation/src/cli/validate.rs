@@ -308,13 +308,16 @@ fn prepared_cases(arguments: &Arguments) -> Result<PreparedCases> {
         None if arguments.cases.is_some() => Library::embedded()?.replaying(),
         None => Library::embedded()?,
     };
-    for name in cases.names().filter(|name| library.is_replayed(name)) {
+    let replayed: Vec<String> =
+        cases.names().filter(|name| library.is_replayed(name)).map(str::to_owned).collect();
+    let prepared = PreparedCases {
+        oscillator: suite::prepare(cases.oscillator, &library, arguments.suite)?,
+        systems: suite::prepare_systems(cases.systems, &library)?,
+    };
+    for name in replayed {
         note(&format!(
             "{name}: without tables: its truth is the exact solver's run made again in 106 bits"
         ));
     }
-    Ok(PreparedCases {
-        oscillator: suite::prepare(cases.oscillator, &library, arguments.suite)?,
-        systems: suite::prepare_systems(cases.systems, &library)?,
-    })
+    Ok(prepared)
 }

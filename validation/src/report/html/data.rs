@@ -55,6 +55,7 @@ fn cases(report: &Report, evidence: &ReportEvidence) -> Vec<Value> {
         json!({
             "name": row.case,
             "regime": note.map(|note| &note.regime),
+            "trouble": note.map(|note| &note.trouble),
             "why": note.map(|note| &note.why),
             "toml": note.map(|note| &note.toml),
             "pattern": command::pattern(&row.case),
