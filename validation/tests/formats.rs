@@ -409,7 +409,7 @@ fn mistakes_in_a_systems_file() {
         ("states = [\"x\", \"v\"]", "states = []"),
         ("states = [\"x\", \"v\"]", "states = [\"x\", \"sin\"]"),
         ("forcing = { omega = 1.0,", "forcing = { omega = -1.0,"),
-        ("phi = 0.0 }", "}"),
+        (", phi = 0.0 }", " }"),
         ("A = 1.5", "A = \"3/2\""),
         ("A = 1.5", "2A = 1.5"),
         ("A*omega^2*cos - g\"", "A*omega^2*cos - 9.81\""),

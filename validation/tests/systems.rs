@@ -112,6 +112,12 @@ fn endings_have_their_exit_codes() {
     // A touch that is exact is decided by no number of bits.
     let touched = ["events", "watched-ball", "--until", "1"];
     assert_eq!(ended(&touched).1, "undecided");
+    // Its row is that of the event before, which is a watched one.
+    let output = run(&touched);
+    let rows = rows(&text(&output.stdout));
+    assert_eq!(rows[rows.len() - 2][2], "up");
+    assert_eq!(rows[rows.len() - 1][1], rows[rows.len() - 2][1]);
+    assert!(text(&output.stderr).contains("ends at 0.25:"), "{}", text(&output.stderr));
 }
 
 #[test]

@@ -70,12 +70,19 @@ impl Rows<'_> {
         let mut listed = Listed { decided: true, ..Listed::default() };
         let first = run.start();
         self.push(&mut listed, &first, String::new());
-        self.collect(run, &mut listed)?;
+        self.collect(run, first, &mut listed)?;
         Ok(listed)
     }
 
-    fn collect(&self, run: Run<'_, DoubleDouble>, listed: &mut Listed) -> Result<()> {
+    fn collect(
+        &self,
+        run: Run<'_, DoubleDouble>,
+        mut before: Event<DoubleDouble>,
+        listed: &mut Listed,
+    ) -> Result<()> {
         for event in run {
+            let event = in_the_row(event, &before);
+            before = event.clone();
             if self.most.is_some_and(|most| listed.rows.len() > most) {
                 return Ok(());
             }
@@ -186,6 +193,16 @@ impl Rows<'_> {
                 Ok(out.write_all(&writer.into_inner()?)?)
             }),
         }
+    }
+}
+
+/// An event as its row has it: an ending that has no instant of its own is at the event before,
+/// a watched one too, where the run has it at the beginning of its segment.
+fn in_the_row(event: Event<DoubleDouble>, before: &Event<DoubleDouble>) -> Event<DoubleDouble> {
+    match event.what {
+        What::End(Ending::Horizon | Ending::LeavesDomain) => event,
+        What::End(_) => Event { what: event.what, ..before.clone() },
+        _ => event,
     }
 }
 
