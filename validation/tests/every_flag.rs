@@ -88,6 +88,7 @@ const ROWS: &[Row] = &[
     (&["simulate", "events"], "--until", NUMBERS, "at or after the start"),
     (&["events"], "--events", INTEGERS, "an integer, 1 to"),
     (&["events"], "--digits", WORDS, "17, 25"),
+    (&["events"], "--states", WORDS, "png and svg"),
     (&["events"], "--set", &["", "x", "g=", "g=nan"], "NAME=VALUE with a finite number"),
     (&["events"], "--start", &["/no/such.toml", "/"], "accepted is a readable file"),
     (&["simulate"], "--samples", INTEGERS, "1 to 4294967295"),
@@ -251,6 +252,14 @@ fn flags_without_effect() {
         (
             vec!["simulate", "--periods", "1", "--samples", "4", "--format", "svg"],
             &["--samples 4", "picture"],
+        ),
+        (
+            vec!["events", "bouncing-ball", "--until", "1", "--states", "x"],
+            &["--states x", "png and svg"],
+        ),
+        (
+            vec!["events", "bouncing-ball", "--until", "1", "--digits", "25", "--format", "svg"],
+            &["--digits 25", "picture"],
         ),
         ([&diagram[..], &["--carry", "--reset"]].concat(), &["--carry", "--reset"]),
         (

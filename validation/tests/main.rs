@@ -39,6 +39,7 @@ mod strobe_derivative;
 mod sweep;
 mod system_cases;
 mod systems;
+mod systems_page;
 mod terminal;
 mod validate;
 mod work;
