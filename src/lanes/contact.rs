@@ -22,7 +22,7 @@ use pulp::Simd;
 pub struct LaneContact<'a, S: Simd> {
     /// The model.
     pub shape: &'a Shape<Wide<S>>,
-    /// Which closed forms it has.
+    /// The closed forms that are needed.
     pub forms: Forms,
     /// Forcing angle at the start.
     pub angle: Angle<S>,

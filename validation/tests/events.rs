@@ -17,7 +17,7 @@ fn pictures(case: &str, engine: &str) -> Vec<EventPicture> {
     let engines = select(&[engine]).expect("an engine");
     let defaults = defaults().expect("bounds");
     let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();
-    let rows = suite::run(&runs, &engines, Suite::Quick, &defaults, &|| ());
+    let rows = suite::run(&runs, &engines, &Suite::Quick.into(), &defaults, &|| ());
     event_pictures(&cases, &rows, Suite::Quick)
 }
 

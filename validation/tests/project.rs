@@ -95,7 +95,7 @@ fn the_readmes_summary_is_of_todays_suite() {
         assert!(block.contains(&format!(" {name} ")), "{name}");
     }
     let cases = Cases::embedded().expect("the cases are read");
-    let rows = size(cases.names().count(), all(), Suite::Quick);
+    let rows = size(cases.names().count(), all(), &Suite::Quick.into());
     assert!(block.contains(&format!("\n{rows} rows: ")), "{rows}");
     assert!(block.contains(" 0 fail, 0 error, ") && block.contains("power: "), "{block}");
 }

@@ -1,9 +1,9 @@
 //! A guard against time around one event, as it truly is and as an engine had it, in a wide panel
 //! and a close one. Steps, evaluations of the guard and events are marks, phases bands above.
 
+use super::canvas::Stroke;
 use super::canvas::{At, Canvas, TextSide};
 use super::colour::{Colour, WHITE};
-use super::figure::Stroke;
 use super::frame::{AxisScale, Panel, Ruler, power_of_ten};
 use super::key::{KeyItem, KeyLayout, key};
 use super::{Drawing, Marker, palette};

@@ -19,7 +19,7 @@ mod motion;
 mod palette;
 mod piece;
 
-pub use basin_map::{BASIN_COLOURS, BasinMap, Shown, basin_colours};
+pub use basin_map::{BASIN_COLOURS, BasinMap, ShownAttractor, basin_colours};
 pub use canvas::Canvas;
 pub use caption::{caption, caption_without, symbol};
 pub use colour::Colour;

@@ -11,7 +11,7 @@ use crate::report::{
     Baseline, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary, event_pictures,
     ranking_text, screen,
 };
-use crate::suite::{self, CaseRun, Prepared, PreparedSystem, Suite};
+use crate::suite::{self, CaseRun, Prepared, PreparedSystem, Scope, Suite};
 use crate::truth::Library;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{Args, ValueEnum};
@@ -24,6 +24,9 @@ pub(super) struct Arguments {
     /// How much to run
     #[arg(long, value_enum, default_value_t = Suite::Quick)]
     suite: Suite,
+    /// Only rows at this tolerance, one of the suite's; several are alternatives
+    #[arg(long, value_name = "T", value_parser = parse::tolerance)]
+    tolerance: Vec<parse::Typed<f64>>,
     /// Only engines whose name matches; several are alternatives
     #[arg(short, long = "engine", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
     engine: Vec<Regex>,
@@ -78,6 +81,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     if arguments.rows && arguments.format != Format::Table {
         bail!("--rows has no effect with this --format; accepted with --rows is table");
     }
+    let scope = scope(arguments)?;
     let baseline = arguments.baseline.as_deref().map(read_baseline).transpose()?;
     let _programs = arguments.programs.start()?;
     let engines = chosen_engines(&arguments.engine)?;
@@ -91,18 +95,19 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
             )
         })?;
     }
-    let defaults = match arguments.cases {
+    let mut defaults = match arguments.cases {
         Some(_) => case::defaults_of_own_cases()?,
         None => case::defaults()?,
     };
+    if arguments.cases.is_none() {
+        defaults.shortcomings.extend(arguments.programs.shortcomings()?);
+    }
     hush_contained_panics();
     let pool = work::pool(threads)?;
     let wrong = wrong_engines(arguments);
-    let bar =
-        work::bar((suite::size(all.len(), &engines, arguments.suite) + wrong.len()) as u64, "rows");
-    let rows =
-        pool.install(|| suite::run(&all, &engines, arguments.suite, &defaults, &|| bar.inc(1)));
-    let asked = suite::size(all.len(), &engines, arguments.suite);
+    let bar = work::bar((suite::size(all.len(), &engines, &scope) + wrong.len()) as u64, "rows");
+    let rows = pool.install(|| suite::run(&all, &engines, &scope, &defaults, &|| bar.inc(1)));
+    let asked = suite::size(all.len(), &engines, &scope);
     if rows.len() != asked {
         bail!("{} rows were made where {asked} were asked for", rows.len());
     }
@@ -127,11 +132,26 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
     let report = Report::new(arguments.suite, &declarations, &rows);
     evidence.worse = match &baseline {
-        Some(baseline) => worse(arguments, baseline, &report)?,
+        Some(baseline) => worse(arguments, &scope, baseline, &report)?,
         None => Vec::new(),
     };
     write(arguments, &report, &evidence, all.len())?;
     Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code(arguments, &report, &evidence) })
+}
+
+/// The suite, as far as tolerances are chosen.
+fn scope(arguments: &Arguments) -> Result<Scope> {
+    let all = Scope::from(arguments.suite);
+    let accepted = || {
+        let shown: Vec<_> = all.tolerances().iter().map(|it| format!("{it:e}")).collect();
+        shown.join(", ")
+    };
+    match arguments.tolerance.iter().find(|it| !all.tolerances().contains(&it.value)) {
+        Some(other) => {
+            bail!("--tolerance {:?} is not accepted: {}", other.text, accepted())
+        }
+        None => Ok(all.at(arguments.tolerance.iter().map(|it| it.value).collect())),
+    }
 }
 
 /// The folders that data were read from, with their flags.
@@ -159,14 +179,19 @@ fn unnoticed(findings: &[Finding]) -> bool {
 }
 
 /// What is worse than in the baseline, or gone.
-fn worse(arguments: &Arguments, baseline: &Baseline, report: &Report) -> Result<Vec<String>> {
+fn worse(
+    arguments: &Arguments,
+    scope: &Scope,
+    baseline: &Baseline,
+    report: &Report,
+) -> Result<Vec<String>> {
     let accepts = |patterns: &[Regex], name: &str| {
         patterns.is_empty() || patterns.iter().any(|it| it.is_match(name))
     };
     let asked = |it: &RowPlace<'_>| {
         accepts(&arguments.engine, it.engine)
             && accepts(&arguments.case, it.case)
-            && arguments.suite.makes(it.tolerance, it.step)
+            && scope.makes(it.tolerance, it.step)
     };
     let Compared { mut worse, gone, common } = baseline.compare(report, asked);
     if common == 0 {
@@ -234,7 +259,7 @@ struct PreparedCases {
 }
 
 impl PreparedCases {
-    /// Those of the oscillator, then those of other systems.
+    /// The cases of the oscillator, then those of other systems.
     fn all(&self) -> Vec<&dyn CaseRun> {
         let oscillator = self.oscillator.iter().map(|it| it as &dyn CaseRun);
         oscillator.chain(self.systems.iter().map(|it| it as &dyn CaseRun)).collect()

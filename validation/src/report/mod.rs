@@ -35,7 +35,8 @@ pub use pictures::{PictureFile, pictures};
 pub use ranking::{COMPARED_AT, Ranked, Units};
 pub use ranking_formats::{RankingFormat, ranking_text};
 pub use row::{EngineEntry, Report, ReportRow, Summary, ValidHorizons};
-pub use screen::{WIDTH, screen};
+pub use screen::screen;
+pub use table::WIDTH;
 
 use std::io::{self, Write};
 

@@ -1,10 +1,10 @@
 //! The first screen of `validate`: which integrator can be trusted with events, and where each
 //! fails.
 //!
-//! Every line fits [`WIDTH`] columns.
+//! Every line fits [`WIDTH`](super::WIDTH) columns.
 
 use super::ranking::{COMPARED_AT, Ranked};
-use super::table::{reasons, row_table};
+use super::table::{reasons, row_table, text, wrapped};
 use super::trouble::{Trouble, TroubleCell};
 use super::{Order, Report, ReportEvidence, ReportRow, orders};
 use crate::engine::REFERENCE;
@@ -13,9 +13,6 @@ use crate::score::Verdict;
 use crate::suite::ELSEWHERE;
 use comfy_table::{CellAlignment, Table, presets};
 use std::collections::BTreeMap;
-
-/// The widest line, in columns.
-pub const WIDTH: usize = 100;
 
 /// The screen; `with_rows`: every row stands above it.
 #[must_use]
@@ -38,14 +35,6 @@ pub fn screen(report: &Report, evidence: &ReportEvidence, with_rows: bool) -> St
     parts.concat()
 }
 
-/// Breaks a text into lines of at most [`WIDTH`] columns, the later ones indented.
-pub(super) fn wrapped(text: &str) -> String {
-    let options = textwrap::Options::new(WIDTH)
-        .subsequent_indent("    ")
-        .word_splitter(textwrap::WordSplitter::NoHyphenation);
-    textwrap::fill(text, options) + "\n"
-}
-
 /// A plain table without borders, its columns from the third on to the right.
 fn plain(header: &[&str], right_from: usize) -> Table {
     let mut table = Table::new();
@@ -57,12 +46,6 @@ fn plain(header: &[&str], right_from: usize) -> Table {
         column.set_padding((0, 1));
     }
     table
-}
-
-/// A table's lines without the blanks at their ends.
-pub(super) fn text(table: &Table) -> String {
-    let lines: Vec<_> = table.to_string().lines().map(|line| line.trim_end().to_owned()).collect();
-    lines.join("\n") + "\n"
 }
 
 fn ranking_table(ranking: &[Ranked]) -> String {

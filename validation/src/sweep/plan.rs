@@ -1,6 +1,6 @@
 //! The plan of a sweep, read from a TOML file.
 
-use super::{Axis, Point};
+use super::{SweepAxis, SweepPoint};
 use anyhow::{Result, anyhow, bail};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -19,15 +19,15 @@ const NOT_FIXED: [&str; 7] = ["output", "format", "threads", "quiet", "color", "
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanFile {
-    sweep: Head,
+    sweep: PlanHead,
     #[serde(default)]
     fixed: toml::Table,
-    axis: Vec<Axis>,
+    axis: Vec<SweepAxis>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Head {
+struct PlanHead {
     verb: String,
     shards: u32,
     /// The index that the first task of an array has, where an engine counts from another number.
@@ -46,7 +46,7 @@ pub struct Plan {
     /// The verb's flags, as words of its command line.
     pub words: Vec<String>,
     /// What varies; the last axis fastest.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<SweepAxis>,
     /// The hash of all that decides the results and the shards, in hexadecimal digits.
     pub hash: String,
 }
@@ -57,7 +57,7 @@ struct Hashed<'a> {
     verb: &'a str,
     shards: u32,
     words: &'a [String],
-    axes: &'a [Axis],
+    axes: &'a [SweepAxis],
     problem: Option<&'a str>,
 }
 
@@ -87,10 +87,13 @@ impl Plan {
 
     /// A point by its number.
     #[must_use]
-    pub fn point(&self, number: u64) -> Point {
+    pub fn point(&self, number: u64) -> SweepPoint {
         let steps = self.steps_of(number);
         let values = self.axes.iter().zip(steps);
-        Point { number, values: values.map(|(it, step)| (it.parameter, it.value(step))).collect() }
+        SweepPoint {
+            number,
+            values: values.map(|(it, step)| (it.parameter, it.value(step))).collect(),
+        }
     }
 
     /// The step of each axis at a point.
@@ -115,7 +118,7 @@ impl Plan {
 impl PlanFile {
     /// Checks all that can be checked without the verb.
     fn check(self, folder: &Path) -> Result<Plan> {
-        let Self { sweep: Head { verb, shards, first }, fixed, axis: axes } = self;
+        let Self { sweep: PlanHead { verb, shards, first }, fixed, axis: axes } = self;
         if !(1..=MOST_SHARDS).contains(&shards) {
             bail!("shards = {shards} is not accepted: accepted are 1 to {MOST_SHARDS}");
         }
@@ -146,11 +149,11 @@ impl PlanFile {
     }
 }
 
-fn check_axes(axes: &[Axis], fixed: &toml::Table) -> Result<()> {
+fn check_axes(axes: &[SweepAxis], fixed: &toml::Table) -> Result<()> {
     if !(1..=2).contains(&axes.len()) {
         bail!("there are {} [[axis]]: accepted are one or two", axes.len());
     }
-    for Axis { parameter, from, to, steps } in axes {
+    for SweepAxis { parameter, from, to, steps } in axes {
         let name = parameter.as_str();
         if *steps == 0 {
             bail!("axis {name}: steps = 0 is not accepted: accepted are 1 or more");

@@ -1,11 +1,11 @@
 //! Computes the shards of a sweep.
 
-use super::folder::{Folder, Program};
+use super::folder::{ComputedBy, Folder};
 use super::pilot::{self, Dealt};
 use super::plan::Plan;
-use super::shard::{self, Damage, Head, Identity, Shard};
+use super::shard::{self, Damage, Identity, Shard, ShardHead};
 use super::tiling::{self, Tiling};
-use super::work::Work;
+use super::work::SweepVerb;
 use anyhow::{Result, bail};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
@@ -13,7 +13,7 @@ use std::time::{Duration, Instant};
 /// A sweep that is ready to be computed, looked at or merged.
 pub struct Sweep<'a> {
     pub(super) plan: &'a Plan,
-    pub(super) work: &'a dyn Work,
+    pub(super) work: &'a dyn SweepVerb,
     pub(super) folder: &'a Folder,
     pub(super) tiling: Tiling,
     pub(super) dealt: Dealt,
@@ -37,7 +37,7 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     /// Names what is refused, and says what is accepted.
-    pub fn check(plan: &Plan, work: &dyn Work) -> Result<()> {
+    pub fn check(plan: &Plan, work: &dyn SweepVerb) -> Result<()> {
         let tiles = Tiling::new(plan, work).count();
         if u64::from(plan.shards) > tiles {
             bail!(
@@ -55,14 +55,14 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     /// What the verb objects to, and a folder that cannot be written.
-    pub fn new(plan: &'a Plan, work: &'a dyn Work, folder: &'a Folder) -> Result<Self> {
+    pub fn new(plan: &'a Plan, work: &'a dyn SweepVerb, folder: &'a Folder) -> Result<Self> {
         let tiling = Tiling::new(plan, work);
         let dealt = pilot::dealt(plan, work, tiling, folder)?;
         let identity = Identity {
             schema: 1,
             plan: plan.hash.clone(),
             deal: dealt.digest.clone(),
-            program: Program::this(),
+            program: ComputedBy::this(),
         };
         Ok(Self { plan, work, folder, tiling, dealt, identity })
     }
@@ -173,7 +173,7 @@ impl<'a> Sweep<'a> {
         }
         let numbers = self.dealt.deal.tiles_of(shard);
         let lengths = tiles.iter().map(|it| it.len() as u64);
-        let head = Head {
+        let head = ShardHead {
             identity: self.identity.clone(),
             shard,
             seconds: took.as_secs_f64(),

@@ -1,7 +1,7 @@
 //! A case of a piecewise-affine system.
 
 use super::expectations::{BoundTable, ShortcomingTable};
-use super::located::{FileError, Source};
+use super::located::{FileError, FileText};
 use super::systems::named;
 use super::{Bound, Shortcoming};
 use crate::system::SystemProblem;
@@ -34,7 +34,7 @@ pub struct SystemCase {
     pub until: f64,
     /// Whether the run goes back in time.
     pub backward: bool,
-    /// At how many instants after the start the state is tabulated.
+    /// The number of instants after the start at which the state is tabulated.
     pub samples: u32,
     /// Bounds of this case; they come before the default ones.
     pub bounds: Vec<Bound>,
@@ -91,7 +91,7 @@ pub fn parse_system_case(
     text: &str,
     folder: Option<&Path>,
 ) -> Result<SystemCase, FileError> {
-    let source = Source { file, text };
+    let source = FileText { file, text };
     let wire: SystemCaseFile = source.parse()?;
     let SystemCaseTable { name, system, why, trouble } = wire.case;
     source.plain_name(&name)?;
@@ -156,7 +156,7 @@ impl SystemCase {
     }
 }
 
-impl Source<'_> {
+impl FileText<'_> {
     /// The system's file of this name: that in the folder, or that inside the binary.
     fn system(
         &self,

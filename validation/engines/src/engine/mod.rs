@@ -96,7 +96,7 @@ pub struct Task {
 /// system.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Event<M = Phase, S = [f64; 4]> {
-    /// Which of the events of the mode in which it lies: those that end the mode come first, then
+    /// The place of the event among those of its mode: those that end the mode come first, then
     /// those that are only counted, in the order in which the system names them.
     pub event: usize,
     /// The mode that begins; the one that goes on where the event is only counted.

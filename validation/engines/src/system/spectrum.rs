@@ -16,7 +16,7 @@ pub(super) struct Spectrum {
 const ROUNDS: usize = 400;
 /// Imaginary parts below this share of the modulus may be what rounding makes of a multiple root.
 const REAL: f64 = 1e-3;
-/// So may roots below this share of the matrix.
+/// Roots below this share of the matrix may be zero.
 const ZERO: f64 = 1e-9;
 
 /// The spectrum of a square matrix.

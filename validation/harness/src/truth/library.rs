@@ -16,11 +16,11 @@ static MANIFEST: &str = include_str!("../../reference_data/manifest.json");
 
 #[derive(Deserialize)]
 struct Manifest {
-    files: BTreeMap<String, Listed>,
+    files: BTreeMap<String, ListedFile>,
 }
 
 #[derive(Deserialize)]
-struct Listed {
+struct ListedFile {
     sha256: String,
 }
 

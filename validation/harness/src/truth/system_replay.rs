@@ -14,7 +14,7 @@ use percuss::number::Number;
 const MOST_EVENTS: usize = 3000;
 
 /// A run in 106 bits with what it is asked for.
-struct Replay<'a> {
+struct SystemReplay<'a> {
     case: &'a SystemCase,
     solver: &'a Solver<DoubleDouble>,
     begin: Time<DoubleDouble>,
@@ -30,7 +30,7 @@ impl SystemTruth {
         let start = case.system.start.as_ref().ok_or_else(|| refused("the system has no start"))?;
         let run = solver.run_enclosed(start, DoubleDouble::exact(case.until));
         let run = run.ok_or_else(|| refused("its start is not decided in 106 bits"))?;
-        let replay = Replay { case, solver: &solver, begin: Time::of(&start.time) };
+        let replay = SystemReplay { case, solver: &solver, begin: Time::of(&start.time) };
         let mut events = vec![run.start()];
         for event in run {
             events.push(event);
@@ -44,7 +44,7 @@ impl SystemTruth {
     }
 }
 
-impl Replay<'_> {
+impl SystemReplay<'_> {
     /// The truth without its growth, from the start, the events and the ending of a run.
     fn truth(&self, events: &[Event<DoubleDouble>]) -> Result<SystemTruth, String> {
         let Some((last, events)) = events.split_last() else { return Err("has no run".into()) };

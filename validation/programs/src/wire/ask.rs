@@ -54,7 +54,7 @@ pub(crate) struct RunAsk<'a> {
     samples: Vec<f64>,
     tolerance: Option<Tolerance>,
     step: Option<f64>,
-    times: Times,
+    times: TimesAsk,
     limits: LimitsAsk,
 }
 
@@ -103,7 +103,7 @@ struct Tolerance {
 }
 
 #[derive(Serialize)]
-struct Times {
+struct TimesAsk {
     period: f64,
     turn: Option<f64>,
     shortest: f64,
@@ -137,7 +137,7 @@ impl<'a> RunAsk<'a> {
             samples: samples(task),
             tolerance: accuracy.tolerance().map(tolerance),
             step: accuracy.step().map(|step| step * checked.shortest_time()),
-            times: Times {
+            times: TimesAsk {
                 period: checked.period(),
                 turn: finite(checked.turn()),
                 shortest: checked.shortest_time(),

@@ -8,8 +8,8 @@ mod reply;
 mod schema_tests;
 
 pub(crate) use ask::{Ask, Asked, RunAsk};
-pub(crate) use reply::{Answered, EventReply, RunReply, decode};
 pub use reply::{Capabilities, EventsBy, SetUp, SteppedBy};
+pub(crate) use reply::{EventReply, ReplyContent, RunReply, decode};
 
 /// The version of the protocol, which every message names.
 pub const PROTOCOL: u64 = 1;

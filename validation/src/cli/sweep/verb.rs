@@ -5,12 +5,12 @@ use super::branches::BranchWork;
 use super::diagrams::DiagramWork;
 use super::exponents::ExponentWork;
 use crate::cli::{self, Verb};
-use crate::sweep::{Plan, Work};
+use crate::sweep::{Plan, SweepVerb};
 use anyhow::{Result, anyhow, bail};
 use clap::Parser;
 
 /// What a plan's verb does at each of its points.
-pub(super) fn work(plan: &Plan) -> Result<Box<dyn Work>> {
+pub(super) fn work(plan: &Plan) -> Result<Box<dyn SweepVerb>> {
     let verb = plan.verb.as_str();
     let mut words = vec!["percuss".to_owned(), verb.to_owned()];
     words.extend(plan.words.iter().cloned());

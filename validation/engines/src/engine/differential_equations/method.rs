@@ -1,19 +1,21 @@
 //! The library's methods, each with its tolerances and limits.
 
-use super::watch::again;
-use super::{LONGEST_STEP, ModeField};
+use super::{LONGEST_STEP, ModeField, reason};
 use crate::engine::Stepping;
 use crate::engine::cubic::CubicEnd;
 use crate::engine::equations::Equations;
 use crate::engine::joining::Times;
 use crate::engine::meter::Failure;
 use crate::engine::walk::longest_step;
+use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{
     BackwardDifferentiationFormula, DiagonallyImplicitRungeKutta, ExplicitRungeKutta,
     ImplicitRungeKutta, Ordinary,
 };
-use differential_equations::ode::OrdinaryNumericalMethod;
+use differential_equations::ode::{OrdinaryNumericalMethod, solve_ode};
+use differential_equations::solout::Solout;
+use differential_equations::solution::Solution;
 use differential_equations::stats::Evals;
 use differential_equations::traits::State;
 
@@ -163,6 +165,43 @@ methods! {
     Bdf: "BDF, orders 1 to 5", None, Cubic,
         |first| BackwardDifferentiationFormula::<Ordinary, _, _>::adaptive(),
         h_max(f64::INFINITY);
+}
+
+/// The state at `t` by the method again from a point before it, in one step if that will do.
+fn again<M: LibraryMethod, E: Equations<State: State<f64>>>(
+    field: &ModeField<'_, E>,
+    tolerance: f64,
+    from: CubicEnd<E::State>,
+    t: f64,
+) -> Result<E::State, Failure> {
+    let length = t - from.0;
+    let mut last = Last(from.1);
+    let mut method = M::method(field.equations.dimension(), tolerance, length, length);
+    let solved = solve_ode(&mut method, field, from.0, t, &from.1, &mut last)
+        .map_err(|error| reason(&error))?;
+    field.meter.solves(M::solves(&solved.evals));
+    Ok(last.0)
+}
+
+/// Remembers the last state.
+struct Last<S>(S);
+
+impl<S: State<f64> + Copy> Solout<f64, S> for Last<S> {
+    fn solout<I>(
+        &mut self,
+        _: f64,
+        _: f64,
+        state: &S,
+        _: &S,
+        _: &mut I,
+        _: &mut Solution<f64, S>,
+    ) -> ControlFlag<f64, S>
+    where
+        I: Interpolation<f64, S> + ?Sized,
+    {
+        self.0 = *state;
+        ControlFlag::Continue
+    }
 }
 
 #[cfg(test)]

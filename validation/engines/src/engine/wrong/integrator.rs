@@ -3,11 +3,11 @@
 //!
 //! Without a fault it is the engine `ode_solvers-dopri5`, whose bounds it is held to.
 
+use super::super::alone::GuardRise;
 use super::super::cubic::{Cubic, CubicEnd};
 use super::super::equations::Equations;
 use super::super::field::{GUARDS, Oscillator};
 use super::super::joining::{Course, Moment, StretchEnd, join};
-use super::super::location::GuardRise;
 use super::super::meter::{Failure, Limits, Meter};
 use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{self, Dopri5Run};
