@@ -1,7 +1,7 @@
 //! Colours that eyes of every kind tell apart (Okabe and Ito 2008), the same for a phase
 //! everywhere.
 
-use super::colour::{Colour, WHITE};
+use super::colour::Colour;
 use percuss::Phase;
 
 /// The colour of a phase.
