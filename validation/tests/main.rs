@@ -33,6 +33,8 @@ mod report;
 mod reproduce;
 mod restart;
 mod rig;
+mod score;
+mod scoreboard;
 mod simulate;
 mod spoiled;
 mod strobe_derivative;

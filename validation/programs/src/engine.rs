@@ -66,12 +66,6 @@ impl ProgramEngine {
         };
         Self { declaration, language: "unknown".to_owned(), runs: Runs::None(why) }
     }
-
-    /// The language that the program is written in, with its version.
-    #[must_use]
-    pub fn language(&self) -> &str {
-        &self.language
-    }
 }
 
 fn stepping(set_up: &SetUp) -> Stepping {
@@ -87,6 +81,10 @@ fn stepping(set_up: &SetUp) -> Stepping {
 impl Engine for ProgramEngine {
     fn declaration(&self) -> Declaration {
         self.declaration.clone()
+    }
+
+    fn language(&self) -> &str {
+        &self.language
     }
 
     fn available(&self) -> Result<(), String> {
@@ -116,11 +114,8 @@ impl Engine for ProgramEngine {
         can_run(set_up, task, accuracy)?;
         let limits = Limits { wall: limits.wall.min(pool.program().timeout), ..*limits };
         let ask = RunAsk::new(&set_up.name, task, accuracy, &limits);
-        let run = || {
-            let (reply, took) = pool.run(&ask, limits.wall)?;
-            checked(&reply, task, (ask.samples(), took), &limits)
-        };
-        run().map_err(Failure::new)
+        let (reply, took) = pool.run(&ask, limits.wall).map_err(Failure::new)?;
+        checked(&reply, task, (ask.samples(), took), &limits).map_err(Failure::new)
     }
 }
 

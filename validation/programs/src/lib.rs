@@ -25,6 +25,7 @@
 mod answer;
 mod engine;
 mod file;
+pub mod files;
 mod pool;
 mod process;
 mod start;
@@ -32,7 +33,7 @@ mod text;
 mod wire;
 
 pub use engine::ProgramEngine;
-pub use file::{Program, read};
+pub use file::{NAMES, Program, is_name, read};
 pub use process::end_all;
 pub use start::NotStarted;
 pub use wire::{Capabilities, EventsBy, PROTOCOL, SetUp, SteppedBy};

@@ -7,8 +7,9 @@ mod reply;
 #[cfg(test)]
 mod schema_tests;
 
-pub(crate) use ask::{Ask, Asked, RunAsk};
-pub(crate) use reply::{Answered, EventReply, RunReply, decode};
+pub(crate) use ask::{Ask, Asked, ModeAsk, RunAsk, Times, samples};
+pub(crate) use numbers::{Count, List, State};
+pub(crate) use reply::{Answered, EndedBy, EventReply, RunReply, decode};
 pub use reply::{Capabilities, EventsBy, SetUp, SteppedBy};
 
 /// The version of the protocol, which every message names.
