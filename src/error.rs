@@ -27,7 +27,7 @@ pub enum InputError {
     FarFromPhase {
         /// The phase that was stated.
         phase: Phase,
-        /// Which variable would have to move.
+        /// The variable that would have to move.
         name: &'static str,
         /// The value that was given.
         from: f64,

@@ -1,7 +1,7 @@
-//! The sources of the library use one another in one direction: no folder uses one above it, and no
-//! two files use each other.
+//! The sources use one another in one direction: no folder of the library uses one above it, and in
+//! no package do files use one another in a circle.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The folders and files of `src/`, each allowed to use those before it.
@@ -20,16 +20,30 @@ const LAYERS: [&str; 12] = [
     "affine",
 ];
 
-type Uses = BTreeMap<String, Vec<String>>;
+/// The packages of the workspace, and how many uses of one file by another each has at least.
+const PACKAGES: [(&str, usize); 6] = [
+    ("src", 500),
+    ("validation/engines/src", 100),
+    ("validation/pictures/src", 40),
+    ("validation/programs/src", 15),
+    ("validation/harness/src", 150),
+    ("validation/src", 150),
+];
 
-/// Every file of the library by its module path, with the module paths that it uses.
-fn uses() -> Uses {
-    let files = texts(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+type Uses = BTreeMap<String, BTreeSet<String>>;
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+/// Every file of a folder by its module path, with the module paths that it uses.
+fn uses(folder: &Path) -> Uses {
+    let files = texts(folder);
     let names: Vec<String> = files.keys().cloned().collect();
     files.iter().map(|(module, text)| (module.clone(), used(module, text, &names))).collect()
 }
 
-/// Every file of the library by its module path.
+/// Every file of a folder by its module path.
 fn texts(root: &Path) -> BTreeMap<String, String> {
     let mut files = BTreeMap::new();
     let mut folders = vec![root.to_owned()];
@@ -56,27 +70,42 @@ fn module(root: &Path, path: &Path) -> Option<String> {
 }
 
 /// The modules that a file names in code before its tests.
-fn used(module: &str, text: &str, names: &[String]) -> Vec<String> {
+fn used(module: &str, text: &str, names: &[String]) -> BTreeSet<String> {
     let text = text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or(text);
-    let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
-    let parent = module.rsplit_once("::").map_or("", |(parent, _)| parent);
-    let mut found: Vec<String> = code
-        .flat_map(|line| {
-            let absolute = line.split("crate::").skip(1).map(str::to_owned);
-            let beside = line.split("use super::").skip(1).map(|it| format!("{parent}::{it}"));
-            absolute.chain(beside).collect::<Vec<_>>()
-        })
-        .filter_map(|path| {
-            let named = |name: &&String| {
-                let rest = path.strip_prefix(name.as_str());
-                rest.is_some_and(|it| !it.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
-            };
-            names.iter().filter(named).max_by_key(|name| name.len()).cloned()
-        })
+    let code: Vec<_> = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+    let named = |path: String| {
+        let within = |name: &&String| {
+            let rest = path.strip_prefix(name.as_str());
+            rest.is_some_and(|it| !it.starts_with(|c: char| c.is_alphanumeric() || c == '_'))
+        };
+        names.iter().filter(within).max_by_key(|name| name.len()).cloned()
+    };
+    paths(module, &code.join("\n"))
+        .into_iter()
+        .filter_map(named)
         .filter(|it| it != module)
-        .collect();
-    found.sort();
-    found.dedup();
+        .collect()
+}
+
+/// The paths that begin with `crate` or `super`, from the root of the package.
+fn paths(module: &str, code: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut rest = code;
+    while let Some(at) = rest.find("crate::").into_iter().chain(rest.find("super::")).min() {
+        let mut base = if rest[at..].starts_with("crate") { "" } else { module };
+        rest = &rest[at..];
+        while let Some(after) = rest.strip_prefix("super::") {
+            base = base.rsplit_once("::").map_or("", |(parent, _)| parent);
+            rest = after;
+        }
+        rest = rest.strip_prefix("crate::").unwrap_or(rest);
+        let end = rest.find(|c: char| !(c.is_alphanumeric() || "_:".contains(c)));
+        let (path, after) = rest.split_at(end.unwrap_or(rest.len()));
+        let group = after.strip_prefix('{').and_then(|it| it.split_once('}'));
+        let items = group.map_or(vec![""], |(items, _)| items.split(',').map(str::trim).collect());
+        let inside = if base.is_empty() { String::new() } else { format!("{base}::") };
+        found.extend(items.iter().map(|item| format!("{inside}{path}{item}")));
+    }
     found
 }
 
@@ -87,7 +116,7 @@ fn no_layer_uses_one_above_it() {
         let place = LAYERS.iter().position(|it| *it == room);
         place.unwrap_or_else(|| panic!("{module} has no place among the layers"))
     };
-    let uses = uses();
+    let uses = uses(&root().join("src"));
     assert!(uses.len() > 80, "{} files only", uses.len());
     for (module, used) in &uses {
         for it in used {
@@ -98,16 +127,24 @@ fn no_layer_uses_one_above_it() {
 
 /// A folder's `mod.rs` exports what is in the folder, which uses its types: these are one.
 #[test]
-fn no_two_files_use_each_other() {
-    let uses = uses();
-    let pairs: usize = uses.values().map(Vec::len).sum();
-    assert!(pairs > 300, "{pairs} uses only");
-    for (module, used) in &uses {
-        for it in used {
-            let family = it.starts_with(&format!("{module}::"));
-            let back = !family && !module.starts_with(&format!("{it}::"));
-            assert!(!(back && uses[it].contains(module)), "{module} and {it} use each other");
+fn no_files_use_one_another_in_a_circle() {
+    for (folder, least) in PACKAGES {
+        let mut left = uses(&root().join(folder));
+        for (module, used) in &mut left {
+            let inside = |one: &str, other: &str| one.starts_with(&format!("{other}::"));
+            used.retain(|it| !inside(it, module) && !inside(module, it));
         }
+        let pairs: usize = left.values().map(BTreeSet::len).sum();
+        assert!(pairs > least, "{folder}: {pairs} uses only");
+        // What uses nothing that is left is in no circle.
+        loop {
+            let names: BTreeSet<String> = left.keys().cloned().collect();
+            left.retain(|_, used| !used.is_disjoint(&names));
+            if left.len() == names.len() {
+                break;
+            }
+        }
+        assert!(left.is_empty(), "{folder}: files in circles, or that use one: {left:?}");
     }
 }
 

@@ -22,7 +22,7 @@ pub(super) enum Later {
     Fading,
     /// It never exceeds the norms.
     Steady,
-    /// Its derivatives are polynomials.
+    /// The part and its derivatives are polynomials of the time.
     Polynomial,
     /// It grows at most at this rate.
     Growing(f64),

@@ -50,8 +50,8 @@ pub struct Event<T> {
 /// Bounds of the errors of an event's time and state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Errors {
-    /// That of the time.
+    /// The error of the time.
     pub time: f64,
-    /// Those of the states.
+    /// The error of each state.
     pub state: Vec<f64>,
 }

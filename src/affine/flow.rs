@@ -41,7 +41,7 @@ pub(super) struct ModalRow<T> {
     pub columns: Vec<Column<T>>,
     /// The blocks that it is made of, in their order.
     pub parts: Vec<RowPart>,
-    /// The same blocks, as bits.
+    /// The blocks of `parts`, a bit each.
     pub blocks: u16,
 }
 
@@ -49,9 +49,9 @@ pub(super) struct ModalRow<T> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Column<T> {
     pub at: usize,
-    /// In the value and three derivatives.
+    /// The part of each order: of the value and of three derivatives.
     pub orders: [T; 4],
-    /// The size of the first.
+    /// The size of the part of the value.
     size: f64,
 }
 
@@ -60,7 +60,7 @@ pub(super) struct Column<T> {
 pub(super) struct RowPart {
     /// The block's index.
     pub block: usize,
-    /// Its first column and the one after its last, among those of the row.
+    /// The first column of the block and the one after its last, among those of the row.
     pub columns: (usize, usize),
     /// What is known of the block at all later times.
     pub later: Later,
@@ -198,7 +198,7 @@ impl<T: Number> Flow<T> {
         self.bound_by(row, order, &self.norms(y), length)
     }
 
-    /// The same, from the norms of the blocks' co-ordinates.
+    /// The bound as [`Self::bound`] has it, from the norms of the blocks' co-ordinates.
     #[inline]
     pub fn bound_by(
         &self,
@@ -311,7 +311,7 @@ fn times<T: Number>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
     }
 }
 
-/// The same, of the first `ROWS` entries.
+/// The first `ROWS` entries of the product of a matrix, by columns, and a vector.
 #[inline]
 fn times_in<T: Number, const ROWS: usize>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
     let mut sums = [T::zero(); ROWS];

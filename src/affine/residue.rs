@@ -60,7 +60,7 @@ impl Residue {
         self.with(other, |a, b, prime| (a + prime - b) % prime)
     }
 
-    /// Its inverse, where it is not zero modulo either prime.
+    /// The inverse, where the number is not zero modulo either prime.
     pub fn inverse(self) -> Self {
         self.with(self, |a, _, prime| inverse(a, prime))
     }

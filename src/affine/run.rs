@@ -28,7 +28,7 @@ pub struct Run<'a, T> {
     /// The time at which the segment was entered, and the state there.
     entered: Time<T>,
     state: Vector<T>,
-    /// Where the search goes on.
+    /// Each guard, with the place from which its search goes on.
     tracks: Vec<Track>,
     ends: Ends<T>,
     segment: Option<Segment<'a, T>>,

@@ -27,7 +27,7 @@ pub(super) struct SolverMode<T> {
     pub flow: Flow<T>,
     /// M.
     pub matrix: Vec<Vector<T>>,
-    /// Those of `until`, then those of `watch`.
+    /// The guards of `until`, then those of `watch`.
     pub guards: Vec<ModalRow<T>>,
     /// The resets of `until`.
     pub resets: Vec<Vec<Vector<T>>>,

@@ -18,7 +18,7 @@ const MOST_NODES: usize = 4096;
 #[derive(Clone, Debug)]
 struct ModeResidues {
     matrix: Vec<Residues>,
-    /// Those of `until`, then those of `watch`.
+    /// The guards of `until`, then those of `watch`.
     guards: Vec<Residues>,
     resets: Vec<Vec<Residues>>,
     /// The conditions of each event's successors, with their modes.
@@ -41,10 +41,10 @@ pub(super) struct Node {
     zeros: Zeros,
     /// What stays zero along the segment.
     lasting: Zeros,
-    /// Of each guard the order of its first derivative that is not a structural zero at entry;
+    /// For each guard: the order of its first derivative that is not a structural zero at entry;
     /// none if it stays zero.
     pub multiplicities: Arc<[Option<usize>]>,
-    /// Those that were asked for: few, and looked up at each event.
+    /// The arrivals that were asked for: few, and looked up at each event.
     arrivals: Vec<(Firing, Arrival)>,
     ties: Vec<(u64, bool, u64)>,
 }
@@ -52,7 +52,7 @@ pub(super) struct Node {
 /// What an event leads to.
 #[derive(Clone, Debug)]
 pub(super) struct Arrival {
-    /// Of each successor's condition the order of its first derivative that is not a structural
+    /// For each successor: the order of its condition's first derivative that is not a structural
     /// zero; none if there is none, or no condition.
     pub orders: Arc<[Option<usize>]>,
     /// Whether the event reverses the rate of its guard by a factor and leaves it at zero.

@@ -15,27 +15,27 @@ pub const LARGEST_DIMENSION: usize = 12;
 /// A piecewise-affine hybrid system.
 #[derive(Clone, Debug)]
 pub struct System {
-    /// Its name.
+    /// The system's name.
     pub name: String,
     /// What it is for, in one sentence, or nothing.
     pub why: String,
     /// The kinds of trouble that it makes.
     pub trouble: Vec<String>,
-    /// Where it is from, or nothing.
+    /// The publication or program that the system is from, or nothing.
     pub source: String,
     /// The values of its parameters.
     pub parameters: BTreeMap<String, f64>,
     /// The names of the states.
     pub states: Vec<String>,
-    /// By what each state is divided before any norm.
+    /// The size of each state, by which it is divided before any norm.
     pub scales: Vec<f64>,
-    /// By what times are divided before any comparison.
+    /// The unit by which times are divided before any comparison.
     pub time_scale: f64,
     /// The forcing, of a forced system.
     pub forcing: Option<Forcing>,
-    /// Its modes.
+    /// The modes.
     pub modes: Vec<Mode>,
-    /// Where a run begins, if the file says so.
+    /// The point at which a run begins, if the file says so.
     pub start: Option<StartPoint>,
 }
 
@@ -51,7 +51,7 @@ pub struct Forcing {
 /// One of the system's modes.
 #[derive(Clone, Debug)]
 pub struct Mode {
-    /// Its name.
+    /// The mode's name.
     pub name: String,
     /// The rows of M.
     pub matrix: Vec<Row>,
@@ -70,7 +70,7 @@ pub struct Until {
     pub guard: Row,
     /// The rows of R.
     pub reset: Vec<Row>,
-    /// Which mode follows: the first whose condition holds.
+    /// The modes that may follow: the first whose condition holds does.
     pub next: Vec<Successor>,
 }
 
@@ -90,22 +90,22 @@ pub struct Watch {
     pub name: String,
     /// The guard.
     pub guard: Row,
-    /// Which crossings are counted.
+    /// The crossings that are events.
     pub direction: Direction,
 }
 
-/// Which crossings of a watched guard are events.
+/// The direction in which a watched guard has to cross zero for an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// From negative to positive.
+    /// The guard crosses from negative to positive.
     Rising,
-    /// From positive to negative.
+    /// The guard crosses from positive to negative.
     Falling,
-    /// Either way.
+    /// Both directions count.
     Both,
 }
 
-/// Where a run begins.
+/// The point at which a run begins.
 #[derive(Clone, Debug)]
 pub struct StartPoint {
     /// The index of the mode.

@@ -64,7 +64,7 @@ pub enum Proof {
     Open,
 }
 
-/// Which ends of a piece are known to lie on a threshold.
+/// The ends of a piece that are known to lie on a threshold.
 #[derive(Clone, Copy, Debug)]
 pub struct Ends {
     /// The left value is a threshold, exactly, by the switch that began the phase.

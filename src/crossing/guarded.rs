@@ -27,7 +27,7 @@ pub trait Guarded: Flow<f64> {
     /// The evaluation at the start, with what is known there imposed.
     fn entry(&self) -> Point<f64>;
 
-    /// Which zeros of the guard are imposed at the start.
+    /// The zeros of the guard that are imposed at the start.
     fn imposed(&self) -> Ends;
 
     /// A guess, or a proof, about what comes after `left`; nothing after `limit` matters.

@@ -22,7 +22,7 @@ impl<S: Simd> Series<Wide<S>, TERMS> {
     /// where both are settled.
     #[inline(always)]
     pub fn polished(&self, step: Wide<S>) -> (Wide<S>, Wide<S>, Mask<S>) {
-        /// Of what Newton's step changes the slope by the square is left out of the time: 1e-10 of
+        /// The square of what Newton's step changes the slope by is left out of the time: 1e-10 of
         /// a step that is mostly below 1e-7 itself, and next to a flat inflection below 1e-4.
         const SETTLED: f64 = 1e-5;
         let (value, slope) = self.value_and_slope(step);

@@ -118,7 +118,7 @@ mod tests {
     use crate::numeric::two_word::TwoWord;
     use crate::parameters::Parameters;
 
-    /// Its speed f/(2 xi) is zero in f64: a separation under a force that pushes back would never
+    /// The speed f/(2 xi) is zero in f64: a separation under a force that pushes back would never
     /// have ended.
     #[test]
     fn a_force_without_a_speed_is_on_the_threshold() {

@@ -89,7 +89,7 @@ impl Segment {
         &self.exit
     }
 
-    /// Which phase it is.
+    /// The segment's phase.
     #[must_use]
     pub fn phase(&self) -> Phase {
         self.entry.phase()

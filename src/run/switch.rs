@@ -264,7 +264,7 @@ impl Begun {
 
     /// The phase that begins at this root of this one.
     ///
-    /// Its guess does not wait for the new forcing angle, which takes two words and a table: the
+    /// The guess does not wait for the new forcing angle, which takes two words and a table: the
     /// force at the root is known, and is as good. So the processor works on both, and then on the
     /// certificate of the phase that has ended.
     #[inline(always)]

@@ -20,16 +20,21 @@ if [ -z "${PERCUSS:-}" ]; then
     PERCUSS=${CARGO_TARGET_DIR:-$root/target}/release/percuss
 fi
 work=$(mktemp -d)
+# Ends the process that a file names.
+stop() {
+    pid=$(cat "$1")
+    rm "$1"
+    kill "$pid" 2>/dev/null || return 0
+    # It writes its state before it ends.
+    for _ in $(seq 50); do
+        kill -0 "$pid" 2>/dev/null || return 0
+        sleep 0.2
+    done
+    kill -9 "$pid" 2>/dev/null || true
+}
 end() {
     for file in "$work"/*.pid; do
-        [ -e "$file" ] || continue
-        pid=$(cat "$file")
-        kill "$pid" 2>/dev/null || true
-        # It writes its state before it ends.
-        for _ in $(seq 50); do
-            kill -0 "$pid" 2>/dev/null || break
-            sleep 0.2
-        done
+        [ -e "$file" ] && stop "$file"
     done
     rm -rf "$work" || true
 }
@@ -43,6 +48,8 @@ export PATH="$work/bin:$PATH"
 plan=$(realpath "${PLAN:-$here/plan.toml}")
 cd "$work"
 cp "$plan" plan.toml
+# What the engines leave goes with the folder.
+export TMPDIR=$work RAY_TMPDIR=$work
 
 install() {
     dpkg -s "$@" >/dev/null 2>&1 && return
@@ -121,6 +128,42 @@ dask() {
     "$work/venv/bin/python" "$here/sweep_by_dask.py" plan.toml dask dask.npz
     echo "dask: $((SECONDS - begun)) s from the start of its workers to the end"
     compare dask
+    lose_worker
+}
+
+# Kills one of two Dask workers with the shard that it computes: the scheduler gives it to the other.
+lose_worker() {
+    sed 's/^periods = .*/periods = 10000/' "$here/plan.toml" >long.toml
+    percuss sweep run --plan long.toml --out undisturbed
+    percuss sweep merge --plan long.toml --out undisturbed --output undisturbed.npz
+    scheduler=tcp://127.0.0.1:18786
+    "$work/venv/bin/dask" scheduler --host 127.0.0.1 --port 18786 --no-dashboard \
+        >scheduler.txt 2>&1 &
+    echo $! >scheduler.pid
+    for worker in 1 2; do
+        # In a process group of its own, which its tasks are in too.
+        setsid "$work/venv/bin/dask" worker "$scheduler" --nthreads 1 --no-nanny --no-dashboard \
+            >"worker$worker.txt" 2>&1 &
+        echo $! >"worker$worker.pid"
+    done
+    "$work/venv/bin/python" "$here/sweep_by_dask.py" long.toml lost lost.npz \
+        --scheduler "$scheduler" &
+    client=$!
+    echo "$client" >client.pid
+    # Two locks are two shards that are being computed.
+    until [ "$(find lost -name '*.lock' 2>/dev/null | wc -l)" -eq 2 ]; do
+        kill -0 "$client" || { echo "dask: the sweep ended before a worker was lost" >&2; exit 1; }
+        sleep 0.05
+    done
+    kill -9 -- "-$(cat worker1.pid)"
+    rm worker1.pid
+    wait "$client"
+    rm client.pid
+    # The worker first: without a scheduler it does not end.
+    stop worker2.pid
+    stop scheduler.pid
+    cmp undisturbed.npz lost.npz
+    echo "dask: one of two workers was killed, and the other has computed its shard"
 }
 
 ray() {
@@ -133,8 +176,14 @@ ray() {
 
 hyperqueue() {
     python_packages hyperqueue
-    "$work/venv/bin/python" "$here/sweep_by_hyperqueue.py" plan.toml hyperqueue
-    percuss sweep merge --plan plan.toml --out hyperqueue --output hyperqueue.npz
+    # In the place of the program, which the package lacks.
+    printf '#!/bin/sh\nexec "%s" "%s" "$@"\n' "$work/venv/bin/python" "$here/hq.py" >bin/hq
+    chmod +x bin/hq
+    # A shard that is there already leaves an array with a gap.
+    HQ_TASK_ID=1 percuss sweep run --plan plan.toml --out hyperqueue
+    begun=$SECONDS
+    "$here/hyperqueue.sh" plan.toml hyperqueue hyperqueue.npz --cpus=1
+    echo "hyperqueue: $((SECONDS - begun)) s from the start of its worker to the end"
     compare hyperqueue
 }
 

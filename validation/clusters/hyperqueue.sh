@@ -8,12 +8,13 @@
 set -eu
 plan=$1 out=$2 output=$3
 shift 3
+mkdir -p "$out/log"
 states=$(percuss sweep status --plan "$plan" --out "$out" --format table) || [ $? -eq 1 ]
 left=$(echo "$states" | awk '($1 == "missing" || $1 == "damaged") && $3 { print $3 }' | paste -sd, -)
 if [ -n "$left" ]; then
     # HyperQueue says in HQ_CPUS which processors a task has.
     # shellcheck disable=SC2016
-    hq submit --wait --array "$left" "$@" -- sh -c \
+    hq submit --wait --array "$left" --stdout none --stderr "$out/log/%{TASK_ID}.txt" "$@" -- sh -c \
         'exec percuss sweep run --plan "$1" --out "$2" --threads "$(echo "$HQ_CPUS" | tr , "\n" | wc -l)"' \
         sweep "$plan" "$out"
 fi

@@ -123,7 +123,12 @@ const ROWS: &[Row] = &[
     (&["validate", "bench", "export", "score"], "--case", &["(", "qqqqq"], "--case"),
     (&["bench compare"], "--bench", &["("], "regular expression"),
     (&["bench record", "bench history", "bench compare"], "--history", &["/"], "--history"),
-    (&["validate", "cases", "export", "score"], "--cases", &["/no/such"], "accepted is a folder of cases"),
+    (
+        &["validate", "cases", "export", "score"],
+        "--cases",
+        &["/no/such"],
+        "accepted is a folder of cases",
+    ),
     (
         &["validate", "bench", "engines"],
         "--programs",
@@ -132,7 +137,12 @@ const ROWS: &[Row] = &[
     ),
     (&["validate", "score"], "--reference", &["/no/such"], "accepted is"),
     (&["validate", "score"], "--baseline", &["/no/such.json"], "accepted is"),
-    (&["validate", "bench", "reproduce", "man", "export", "score"], "--out", &["/proc/nowhere"], "accepted is"),
+    (
+        &["validate", "bench", "reproduce", "man", "export", "score"],
+        "--out",
+        &["/proc/nowhere"],
+        "accepted is",
+    ),
     (&["basins"], "--output", &["/no/such/folder/file.npz"], "a folder that exists"),
     (
         &["bench history", "poincare"],

@@ -167,15 +167,21 @@ fn exact_answers_have_every_event() {
     let answered = answers("exact", Accuracy::Exact, CASES, folder.path());
     let answers = folder.path().display().to_string();
     let eps = f64::EPSILON.to_string();
-    let score = ["score", "--name", "mine", "--tolerance", &eps, "--answers", &answers, "-c", CASES];
+    let score =
+        ["score", "--name", "mine", "--tolerance", &eps, "--answers", &answers, "-c", CASES];
     let (scored, code) = report(&score);
     assert_eq!(code, Some(0));
     let (validated, _) = report(&["validate", "-e", "^exact$", "-c", CASES]);
     assert_eq!((scored.len(), validated.len()), (answered.len(), answered.len()));
-    let keys = ["case", "status", "events_total", "events_matched", "event_time_error", "state_error"];
+    let keys =
+        ["case", "status", "events_total", "events_matched", "event_time_error", "state_error"];
     let mut same = 0;
     for (own, exact) in scored.iter().zip(&validated) {
-        assert_eq!((&own["events_missed"], &own["events_spurious"]), (&0.into(), &0.into()), "{own}");
+        assert_eq!(
+            (&own["events_missed"], &own["events_spurious"]),
+            (&0.into(), &0.into()),
+            "{own}"
+        );
         // Where a decision hangs by nothing, only the exact solver knows that it is none.
         if own["horizon_periods"] == exact["horizon_periods"] {
             keys.iter().for_each(|key| assert_eq!(own[key], exact[key], "{key}: {own}"));
@@ -211,7 +217,10 @@ fn spoiled(file: &str, change: impl Fn(&str) -> Vec<u8>, wanted: &[&str]) {
     for row in &rows {
         let is_spoiled = file.starts_with(row["case"].as_str().expect("a name"));
         let class = if is_spoiled { ("failed", "error") } else { ("ok", "pass") };
-        assert_eq!((row["status"].as_str(), row["verdict"].as_str()), (Some(class.0), Some(class.1)));
+        assert_eq!(
+            (row["status"].as_str(), row["verdict"].as_str()),
+            (Some(class.0), Some(class.1))
+        );
         if is_spoiled {
             let why = row["why"].as_str().expect("a reason");
             wanted.iter().for_each(|it| assert!(why.contains(it), "{it:?} is not in {why}"));
@@ -266,7 +275,8 @@ fn malformed_events_cost_their_row() {
     spoiled(EVENTS, |text| [text.as_bytes(), b"\xff\n"].concat(), &["not UTF-8"]);
     let after = |text: &str| {
         let more = "2.9,accumulation,flight,0,0\n2.95,impact,flight,0,0\n";
-        (text.lines().take(3).map(|line| format!("{line}\n")).collect::<String>() + more).into_bytes()
+        (text.lines().take(3).map(|line| format!("{line}\n")).collect::<String>() + more)
+            .into_bytes()
     };
     spoiled(EVENTS, after, &[&line(5), "a line after the run's ending"]);
     let back = |text: &str| {
@@ -283,7 +293,8 @@ fn malformed_samples_cost_their_row() {
     spoiled(TIMES, in_line(1, "time", "t"), &[&line(1), "\"t,x,v\"", "\"time,x,v\""]);
     spoiled(TIMES, in_line(4, ",", "1,"), &[&line(4), "time is ", "accepted is "]);
     let short = "ball-cut-short.samples.csv";
-    let first = |text: &str| text.lines().take(5).map(|line| format!("{line}\n")).collect::<String>();
+    let first =
+        |text: &str| text.lines().take(5).map(|line| format!("{line}\n")).collect::<String>();
     spoiled(short, |text| first(text).into_bytes(), &[short, "4 samples; accepted are "]);
     let twice = |text: &str| {
         let last = text.lines().last().expect("a sample");
@@ -346,7 +357,8 @@ fn what_languages_write_differently_is_the_same() {
 fn what_is_not_answered_counts_as_not_found() {
     let (folder, out) = ball();
     for ending in ["events", "samples"] {
-        fs::remove_file(folder.path().join(format!("ball-cut-short.{ending}.csv"))).expect("removed");
+        fs::remove_file(folder.path().join(format!("ball-cut-short.{ending}.csv")))
+            .expect("removed");
     }
     fs::write(folder.path().join("no-case.events.csv"), "").expect("written");
     let pattern = "^(ball-(geometric|cut-short)|no-case)$";
@@ -354,8 +366,14 @@ fn what_is_not_answered_counts_as_not_found() {
     let (rows, code) = report(&words);
     assert_eq!(code, Some(0));
     let missing = rows.iter().find(|row| row["case"] == "ball-cut-short").expect("a row");
-    assert_eq!((&missing["status"], &missing["verdict"]), (&"unavailable".into(), &"unavailable".into()));
-    assert!(missing["why"].as_str().is_some_and(|why| why.starts_with("not answered: ")), "{missing}");
+    assert_eq!(
+        (&missing["status"], &missing["verdict"]),
+        (&"unavailable".into(), &"unavailable".into())
+    );
+    assert!(
+        missing["why"].as_str().is_some_and(|why| why.starts_with("not answered: ")),
+        "{missing}"
+    );
     assert!(missing["events_total"].as_u64() > Some(0));
     let said = text(&run(&words).stderr);
     assert!(said.contains("no-case is no case"), "{said}");
@@ -365,8 +383,14 @@ fn what_is_not_answered_counts_as_not_found() {
     let total = ranking["ranking"][0]["events_total"].as_u64().expect("a count");
     assert!(ranking["ranking"][0]["events_found"].as_u64() < Some(total));
     // A folder without an answer to any of the cases asked for, and none at all.
-    refused(&[&SCORE[..], &["--answers", &out, "-c", "^small-b$"]].concat(), &["--answers", "no answer"]);
-    refused(&[&SCORE[..], &["--answers", "/no/such"]].concat(), &["--answers /no/such", "accepted is"]);
+    refused(
+        &[&SCORE[..], &["--answers", &out, "-c", "^small-b$"]].concat(),
+        &["--answers", "no answer"],
+    );
+    refused(
+        &[&SCORE[..], &["--answers", "/no/such"]].concat(),
+        &["--answers /no/such", "accepted is"],
+    );
 }
 
 #[test]
@@ -384,7 +408,10 @@ fn a_baseline_tells_what_is_worse() {
     let output = run(&compared);
     assert_eq!(output.status.code(), Some(1), "{}", text(&output.stdout));
     let other = ["score", "--name", "other", "--tolerance", "1e-9", "--answers", &out];
-    refused(&[&other[..], &["--baseline", &baseline]].concat(), &["--baseline", "no row in common"]);
+    refused(
+        &[&other[..], &["--baseline", &baseline]].concat(),
+        &["--baseline", "no row in common"],
+    );
 }
 
 #[test]
@@ -405,15 +432,21 @@ fn what_is_exported_is_as_its_schema_says() {
         assert!(schema.is_valid(&case), "{name}: {:?}", schema.validate(&case).err());
         assert_eq!(case["case"], **name);
         agree(&case, &read(name, "rows.csv"), &read(name, "start.csv"));
-        let times: Vec<f64> =
-            read(name, "sample-times.csv").lines().skip(1).map(|it| it.parse().expect("a time")).collect();
+        let times: Vec<f64> = read(name, "sample-times.csv")
+            .lines()
+            .skip(1)
+            .map(|it| it.parse().expect("a time"))
+            .collect();
         assert_eq!(serde_json::json!(times), case["sample_times"], "{name}");
         assert_eq!(times.last(), case["horizon"].as_f64().as_ref(), "{name}");
     }
     let files = fs::read_dir(folder.path()).expect("read").count();
     assert_eq!(files, 5 * names.len());
     let equations = read("ball-geometric", "txt");
-    assert!(equations.contains("  x' = v\n") && equations.contains("x rises through 0"), "{equations}");
+    assert!(
+        equations.contains("  x' = v\n") && equations.contains("x rises through 0"),
+        "{equations}"
+    );
 }
 
 /// The schema of a case, whose modes are those of the protocol's requests.
@@ -439,13 +472,20 @@ fn agree(case: &Value, rows: &str, start: &str) {
     for mode in list(&case["modes"]) {
         for (i, state) in list(&case["states"]).iter().enumerate() {
             let line = lines.next().expect("a rate");
-            assert_eq!((mode["name"].as_str(), "rate", state.as_str()), (Some(line[0]), line[2], Some(line[3])));
-            let row = [list(&mode["A"][i]), list(&mode["B"][i]), vec![mode["c"][i].clone()]].concat();
+            assert_eq!(
+                (mode["name"].as_str(), "rate", state.as_str()),
+                (Some(line[0]), line[2], Some(line[3]))
+            );
+            let row =
+                [list(&mode["A"][i]), list(&mode["B"][i]), vec![mode["c"][i].clone()]].concat();
             assert_eq!(numbers(&line[4..]), row);
         }
         for event in list(&mode["events"]) {
             let line = lines.next().expect("a guard");
-            assert_eq!((event["name"].as_str(), event["direction"].as_str()), (Some(line[1]), Some(line[3])));
+            assert_eq!(
+                (event["name"].as_str(), event["direction"].as_str()),
+                (Some(line[1]), Some(line[3]))
+            );
             assert_eq!(numbers(&line[4..]), list(&event["guard"]));
             for row in event["reset"].as_array().unwrap_or(&Vec::new()) {
                 let line = lines.next().expect("a reset");
@@ -454,7 +494,10 @@ fn agree(case: &Value, rows: &str, start: &str) {
             for successor in list(&event["successors"]) {
                 let line = lines.next().expect("a successor");
                 let next = successor["mode"].as_u64().expect("a place") as usize;
-                assert_eq!((line[2], Some(line[3])), ("successor", case["modes"][next]["name"].as_str()));
+                assert_eq!(
+                    (line[2], Some(line[3])),
+                    ("successor", case["modes"][next]["name"].as_str())
+                );
                 let row = numbers(&line[4..]);
                 match successor["when"].as_array() {
                     Some(when) => assert_eq!(row, *when),

@@ -2,10 +2,10 @@
 
 #[allow(dead_code, reason = "its main is another program's")]
 #[path = "../examples/scoreboard/main.rs"]
-mod scoreboard;
+mod example;
 
-use scoreboard::board::Board;
-use scoreboard::{page, spliced};
+use example::board::Board;
+use example::{page, spliced};
 use serde_json::{Value, json};
 
 fn row(engine: &str, case: &str, trouble: &[&str], found: Option<[u64; 2]>) -> Value {
@@ -18,9 +18,7 @@ fn row(engine: &str, case: &str, trouble: &[&str], found: Option<[u64; 2]>) -> V
 }
 
 fn report(version: &str) -> Value {
-    let engine = |name: &str| {
-        json!({"name": name, "library": "Lib", "version": version, "method": "m", "language": "C 17"})
-    };
+    let engine = |name: &str| json!({"name": name, "library": "Lib", "version": version, "method": "m", "language": "C 17"});
     json!({
         "percuss": "0.1.0", "commit": null, "cpu": "a processor",
         "engines": [engine("lib-bdf-default"), engine("lib-bdf")],
@@ -61,7 +59,9 @@ fn versions_stand_side_by_side_and_none_is_there_twice() {
     let lines: Vec<_> = both.lines.iter().map(|it| it.version.as_str()).collect();
     assert_eq!(lines, ["1.0", "2.0"]);
     let twice = board(&[report("1.0"), report("1.0")]);
-    assert!(twice.is_err_and(|it| it.to_string() == "lib-bdf-default 1.0 is in more than one report"));
+    assert!(
+        twice.is_err_and(|it| it.to_string() == "lib-bdf-default 1.0 is in more than one report")
+    );
 }
 
 #[test]

@@ -58,7 +58,7 @@ impl Cells {
         self.visited.contains(&self.cell(point))
     }
 
-    /// Which share of some points lies in them.
+    /// The share of some points that lies in the cells.
     pub fn share(&self, points: &[StrobePoint]) -> f64 {
         points.iter().filter(|point| self.hold(point)).count() as f64 / points.len() as f64
     }

@@ -29,7 +29,7 @@ pub struct Grid {
     pub q: f64,
 }
 
-/// Which attractor each start of a grid reaches.
+/// The attractor that each start of a grid reaches.
 #[derive(Clone, Debug)]
 pub struct Basins {
     /// The grid.

@@ -28,7 +28,7 @@ impl FamilyCurve {
     /// The corner between a point and a distance along its tangent at which the piece is another
     /// one or no orbit is found.
     ///
-    /// Its error is what the halving leaves, rounding, and how far off the same corner is found
+    /// The corner's error is what the halving leaves, rounding, and how far off the corner is found
     /// from the other side: a contact that is too short to be told from a touch counts as none.
     pub(super) fn corner(&self, base: &ContinuationPoint, distance: f64) -> Option<Corner> {
         let (before, rest) = self.approached(base, distance);

@@ -27,7 +27,7 @@ impl Family {
         Self { parameters, parameter, instant }
     }
 
-    /// Which parameter varies.
+    /// The parameter that varies.
     #[must_use]
     pub const fn parameter(&self) -> Parameter {
         self.parameter

@@ -17,7 +17,7 @@ const SAME: f64 = 1e-9;
 
 /// The orbits of `period` forcing periods, or of a divisor of it, that Newton's method reaches from
 /// a grid of starts, from where the motions from there settle, and from their closest returns.
-/// Those of the whole period come first; among these, stable ones; then the least leading
+/// Orbits of the whole period come first; among these, stable ones; then the least leading
 /// multiplier, then the least p. `told` hears how much is done, 0 to 1.
 ///
 /// What it finds is there; what it does not find may be there too.

@@ -5,55 +5,55 @@ use anyhow::{Result, bail};
 use std::collections::BTreeSet;
 
 /// What the name of a set-up ends with that is the documentation's first example.
-pub const DEFAULT: &str = "-default";
+pub(crate) const DEFAULT: &str = "-default";
 /// The kind of the cases of the oscillator, which name no trouble.
-pub const OSCILLATOR: &str = "oscillator";
+pub(crate) const OSCILLATOR: &str = "oscillator";
 
 /// The scoreboard.
-pub struct Board {
+pub(crate) struct Board {
     /// What the reports were made with and on.
-    pub made: Vec<String>,
+    pub(crate) made: Vec<String>,
     /// The tolerances of the rows, and on how many cases they are.
-    pub tolerances: Vec<f64>,
-    pub cases: usize,
+    pub(crate) tolerances: Vec<f64>,
+    pub(crate) cases: usize,
     /// The kinds of trouble.
-    pub kinds: Vec<String>,
+    pub(crate) kinds: Vec<String>,
     /// The engines, the best first.
-    pub lines: Vec<Line>,
+    pub(crate) lines: Vec<Line>,
 }
 
 /// An engine with both of its set-ups, as far as they were run.
-pub struct Line {
+pub(crate) struct Line {
     /// The name without the ending of the default.
-    pub name: String,
-    pub library: String,
-    pub version: String,
-    pub language: String,
-    pub expert: Option<Score>,
-    pub default: Option<Score>,
+    pub(crate) name: String,
+    pub(crate) library: String,
+    pub(crate) version: String,
+    pub(crate) language: String,
+    pub(crate) expert: Option<Score>,
+    pub(crate) default: Option<Score>,
 }
 
 /// What a set-up found, and at what cost.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Score {
+pub(crate) struct Score {
     /// Over all rows.
-    pub all: Tally,
+    pub(crate) all: Tally,
     /// For each kind of trouble.
-    pub kinds: Vec<Tally>,
+    pub(crate) kinds: Vec<Tally>,
     /// Right-hand sides per event: the median over the rows that found every event.
-    pub rhs: Option<f64>,
+    pub(crate) rhs: Option<f64>,
     /// Microseconds per event in the integrator itself, over the same rows.
-    pub own: Option<f64>,
+    pub(crate) own: Option<f64>,
     /// Microseconds per event beside it, in a program of its own.
-    pub overhead: Option<f64>,
+    pub(crate) overhead: Option<f64>,
 }
 
 /// Events counted as the ranking counts them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Tally {
-    pub found: u64,
-    pub spurious: u64,
-    pub total: u64,
+pub(crate) struct Tally {
+    pub(crate) found: u64,
+    pub(crate) spurious: u64,
+    pub(crate) total: u64,
 }
 
 impl Tally {
@@ -66,7 +66,7 @@ impl Tally {
 
     /// Events found less spurious ones in per cent of all, rounded down, 0 at the least; nothing
     /// where there are none.
-    pub fn percent(&self) -> Option<u64> {
+    pub(crate) fn percent(&self) -> Option<u64> {
         (self.total > 0).then(|| 100 * self.found.saturating_sub(self.spurious) / self.total)
     }
 
@@ -77,7 +77,7 @@ impl Tally {
 
 impl Board {
     /// The scoreboard of these reports.
-    pub fn of(reports: &[Report]) -> Result<Self> {
+    pub(crate) fn of(reports: &[Report]) -> Result<Self> {
         let rows = || reports.iter().flat_map(|report| &report.results);
         let mut kinds: BTreeSet<String> = rows().flat_map(|row| row.trouble.clone()).collect();
         if rows().any(|row| row.trouble.is_empty()) {
@@ -94,7 +94,7 @@ impl Board {
             }
         }
         lines.sort_by(|a, b| b.rank().0.cmp(&a.rank().0).then(b.rank().1.total_cmp(&a.rank().1)));
-    
+
         let made = |it: &Report| {
             let commit = it.commit.as_deref().unwrap_or("no commit");
             format!("percuss {} at {commit}, on {}", it.percuss, it.cpu)
@@ -133,7 +133,8 @@ fn put(lines: &mut Vec<Line>, engine: &Engine, score: Score) -> Result<()> {
 impl Line {
     /// Whether it is the reference, and its better share of events.
     fn rank(&self) -> (bool, f64) {
-        let share = |score: &Option<Score>| score.as_ref().map_or(f64::NEG_INFINITY, |it| it.all.share());
+        let share =
+            |score: &Option<Score>| score.as_ref().map_or(f64::NEG_INFINITY, |it| it.all.share());
         let best = self.expert.as_ref().map_or(share(&self.default), |it| it.all.share());
         (self.name.starts_with("exact"), best)
     }
@@ -151,7 +152,8 @@ impl Score {
             row.trouble.contains(kind) || (row.trouble.is_empty() && kind == OSCILLATOR)
         };
         let of_kind = |kind: &String| tally(&mut rows.iter().filter(|row| is_of(row, kind)));
-        let whole = |row: &&&Row| row.events_total > 0 && row.events_matched == Some(row.events_total);
+        let whole =
+            |row: &&&Row| row.events_total > 0 && row.events_matched == Some(row.events_total);
         let each = |figure: fn(&Row) -> Option<f64>| {
             let of = |row: &&Row| Some(figure(row)? / row.events_total as f64);
             median(rows.iter().filter(whole).filter_map(of).collect())

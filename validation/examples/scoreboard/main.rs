@@ -5,9 +5,9 @@
 //!   docs/SCOREBOARD.md docs/scoreboard.html target/full/report.json...
 //! ```
 
-pub mod board;
-pub mod page;
-pub mod read;
+pub(crate) mod board;
+pub(crate) mod page;
+pub(crate) mod read;
 
 use anyhow::{Context, Result, bail};
 use board::Board;
@@ -31,8 +31,9 @@ fn main() -> Result<()> {
 }
 
 /// A page with another block between the marks.
-pub fn spliced(old: &str, block: &str) -> Result<String> {
-    let (before, rest) = old.split_once(BEGIN).context("the page has no block of the scoreboard")?;
+pub(crate) fn spliced(old: &str, block: &str) -> Result<String> {
+    let (before, rest) =
+        old.split_once(BEGIN).context("the page has no block of the scoreboard")?;
     let (_, after) = rest.split_once(END).context("the block does not end")?;
     Ok(format!("{before}{BEGIN}{block}{END}{after}"))
 }

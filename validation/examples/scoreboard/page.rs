@@ -8,11 +8,20 @@ use askama::Template;
 const NOTHING: &str = "\u{2013}";
 
 /// The block of the Markdown page.
-pub fn markdown(board: &Board) -> String {
+pub(crate) fn markdown(board: &Board) -> String {
     let mut text = format!("{}\n\n", head(board));
     let columns = [
-        "engine", "library", "language", "found %", "by default %", "spurious", "by default",
-        "rhs per event", "by default", "µs per event", "µs of the process",
+        "engine",
+        "library",
+        "language",
+        "found %",
+        "by default %",
+        "spurious",
+        "by default",
+        "rhs per event",
+        "by default",
+        "µs per event",
+        "µs of the process",
     ];
     text += &table(&columns.map(str::to_owned), 3, board.lines.iter().map(|it| cells(it).to_vec()));
     text += "\nEvents found less spurious ones, in per cent of all, by kind of trouble; the default set-up's \
@@ -38,11 +47,7 @@ fn head(board: &Board) -> String {
 }
 
 /// A table whose columns from `right` on are numbers.
-fn table(
-    columns: &[String],
-    right: usize,
-    lines: impl Iterator<Item = Vec<String>>,
-) -> String {
+fn table(columns: &[String], right: usize, lines: impl Iterator<Item = Vec<String>>) -> String {
     let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
     let rules: Vec<String> =
         (0..columns.len()).map(|k| if k < right { "---" } else { "--:" }.to_owned()).collect();
@@ -127,7 +132,7 @@ struct KindCell {
 ///
 /// # Errors
 /// What the template says.
-pub fn html(board: &Board) -> Result<String> {
+pub(crate) fn html(board: &Board) -> Result<String> {
     let cell = |score: &Option<Score>, k: usize| KindCell {
         shown: score.as_ref().map_or(NOTHING.to_owned(), |it| percent(&it.kinds[k])),
         share: score.as_ref().and_then(|it| it.kinds[k].percent()).unwrap_or_default(),

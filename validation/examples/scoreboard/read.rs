@@ -5,41 +5,41 @@ use serde::Deserialize;
 
 /// A report.
 #[derive(Deserialize)]
-pub struct Report {
-    pub percuss: String,
-    pub commit: Option<String>,
-    pub cpu: String,
-    pub engines: Vec<Engine>,
-    pub results: Vec<Row>,
+pub(crate) struct Report {
+    pub(crate) percuss: String,
+    pub(crate) commit: Option<String>,
+    pub(crate) cpu: String,
+    pub(crate) engines: Vec<Engine>,
+    pub(crate) results: Vec<Row>,
 }
 
 /// An engine of a report.
 #[derive(Clone, Deserialize)]
-pub struct Engine {
-    pub name: String,
-    pub library: String,
-    pub version: String,
-    pub language: String,
+pub(crate) struct Engine {
+    pub(crate) name: String,
+    pub(crate) library: String,
+    pub(crate) version: String,
+    pub(crate) language: String,
 }
 
 /// A row of a report.
 #[derive(Clone, Deserialize)]
-pub struct Row {
-    pub case: String,
-    pub trouble: Vec<String>,
-    pub engine: String,
-    pub tolerance: Option<f64>,
-    pub events_total: u64,
-    pub events_matched: Option<u64>,
-    pub events_spurious: Option<u64>,
-    pub rhs_evaluations: Option<u64>,
-    pub wall_ns: Option<u64>,
-    pub own_ns: Option<u64>,
-    pub verdict: String,
+pub(crate) struct Row {
+    pub(crate) case: String,
+    pub(crate) trouble: Vec<String>,
+    pub(crate) engine: String,
+    pub(crate) tolerance: Option<f64>,
+    pub(crate) events_total: u64,
+    pub(crate) events_matched: Option<u64>,
+    pub(crate) events_spurious: Option<u64>,
+    pub(crate) rhs_evaluations: Option<u64>,
+    pub(crate) wall_ns: Option<u64>,
+    pub(crate) own_ns: Option<u64>,
+    pub(crate) verdict: String,
 }
 
 /// Reads a report.
-pub fn report(path: &str) -> Result<Report> {
+pub(crate) fn report(path: &str) -> Result<Report> {
     let text = std::fs::read_to_string(path).with_context(|| path.to_owned())?;
     serde_json::from_str(&text).with_context(|| format!("{path} is no report.json of this version"))
 }

@@ -11,7 +11,7 @@ use percuss::dynamics::attractor::Label;
 /// A basin picture.
 #[derive(Clone, Debug)]
 pub struct BasinMap {
-    /// Which parameters it belongs to.
+    /// The parameters for which the basins were found.
     pub title: String,
     /// How it was made, and what is assumed.
     pub note: String,
@@ -23,12 +23,12 @@ pub struct BasinMap {
     /// place in `attractors`.
     pub cells: Vec<Label>,
     /// The attractors.
-    pub attractors: Vec<Shown>,
+    pub attractors: Vec<ShownAttractor>,
 }
 
 /// An attractor in a basin picture.
 #[derive(Clone, Debug)]
-pub struct Shown {
+pub struct ShownAttractor {
     /// What it is, for the key.
     pub name: String,
     /// The attractor's colours, by their place in a palette of [`BASIN_COLOURS`].
@@ -115,7 +115,7 @@ fn swatch(canvas: &mut Canvas, at: At, colour: Colour) {
     canvas.fill((at.0, at.1 - 13.0), (at.0 + 26.0, at.1 + 13.0), colour);
 }
 
-impl Shown {
+impl ShownAttractor {
     fn colours(&self) -> (Colour, Colour) {
         basin_colours(self.colour)
     }

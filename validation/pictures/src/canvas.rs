@@ -5,7 +5,6 @@
 //! holes, and clouds of dots, which would be an element each.
 
 use super::colour::{Colour, WHITE};
-use super::figure::Stroke;
 use super::font::{self, FAMILY};
 use super::look::Marker;
 use super::palette;
@@ -15,6 +14,31 @@ use std::fmt::{self, Write};
 
 /// A place in pixels, from the left and from the top.
 pub(super) type At = (f64, f64);
+
+/// How a line is broken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stroke {
+    /// The line is whole.
+    Solid,
+    /// The line is drawn as dashes.
+    Dashed,
+    /// The line is drawn as dashes and dots in turn.
+    DashDotted,
+    /// The line is drawn as dots.
+    Dotted,
+}
+
+impl Stroke {
+    /// Lengths of dashes and gaps in turn, in hundredths of a pixel; `None` for a whole line.
+    pub(super) const fn dashes(self) -> Option<&'static str> {
+        match self {
+            Self::Solid => None,
+            Self::Dashed => Some("900 600"),
+            Self::DashDotted => Some("1100 400 200 400"),
+            Self::Dotted => Some("200 400"),
+        }
+    }
+}
 
 /// A white sheet on which a [`super::Drawing`] draws.
 #[derive(Debug)]

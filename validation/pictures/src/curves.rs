@@ -1,7 +1,7 @@
 //! Curves with markers in one panel, their key beside it.
 
+use super::canvas::Stroke;
 use super::canvas::{At, Canvas, TextSide};
-use super::figure::Stroke;
 use super::frame::{Axis, Panel, Ruler};
 use super::key::{KeyItem, KeyLayout, key};
 use super::{Colour, Drawing, Marker, font, palette};

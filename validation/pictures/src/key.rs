@@ -4,12 +4,12 @@ use super::canvas::{At, Canvas, TextSide};
 use super::{font, palette};
 
 /// Draws a sample within 40 pixels from the given place on to the right.
-type Sample<'a> = Box<dyn Fn(&mut Canvas, At) + 'a>;
+type Swatch<'a> = Box<dyn Fn(&mut Canvas, At) + 'a>;
 
 /// A name and its sample.
 pub(super) struct KeyItem<'a> {
     name: &'a str,
-    sample: Sample<'a>,
+    sample: Swatch<'a>,
 }
 
 impl<'a> KeyItem<'a> {

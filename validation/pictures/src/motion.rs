@@ -3,7 +3,7 @@
 
 use super::axes::around;
 use super::canvas::Canvas;
-use super::figure::Stroke;
+use super::canvas::Stroke;
 use super::frame::{Panel, Ruler};
 use super::key::{KeyItem, KeyLayout, key};
 use super::piece::MotionPiece;
@@ -31,7 +31,7 @@ struct MotionPanel {
     beside: &'static str,
     x: Measure,
     y: Measure,
-    /// Its left, top, right and bottom edge.
+    /// The panel's left, top, right and bottom edge.
     edges: [f64; 4],
     /// The vertical axis has at most about so many ticks.
     ticks: f64,

@@ -42,9 +42,9 @@ bool percuss_rates(percuss_course *course, double t, const double *z, double *ra
     course->rhs++;
     struct percuss_private *own = course->own;
     if (course->rhs + course->jacobians > own->most_calls)
-        percuss_fail(course, "gave up after %lld calls", (long long)own->most_calls);
+        percuss_give_up(course, "too many calls");
     else if (course->rhs % 4096 == 0 && percuss_now() > own->deadline)
-        percuss_fail(course, "gave up: the time is over");
+        percuss_give_up(course, "the time is over");
     return !course->failure[0];
 }
 
@@ -188,6 +188,12 @@ void percuss_fail(percuss_course *course, const char *why, ...) {
     va_start(rest, why);
     if (!course->failure[0]) vsnprintf(course->failure, sizeof course->failure, why, rest);
     va_end(rest);
+}
+
+void percuss_give_up(percuss_course *course, const char *why) {
+    if (course->failure[0]) return;
+    percuss_fail(course, "%s", why);
+    course->own->gave_up = true;
 }
 
 double percuss_now(void) {

@@ -117,7 +117,7 @@ void percuss_sample(percuss_course *course, const double *z) {
 
 void percuss_report(percuss_course *course, double t, int event, int mode, const double *z) {
     if (course->own->reported++ >= course->own->most_events)
-        percuss_fail(course, "gave up after %d events", course->own->most_events);
+        percuss_give_up(course, "too many events");
     if (course->failure[0]) return;
     cJSON *object = cJSON_CreateObject();
     cJSON_AddNumberToObject(object, "time", t);
@@ -133,7 +133,8 @@ static void answer_run(cJSON *answer, percuss_course *course, double seconds) {
         percuss_sample(course, course->z);
     cJSON *end = state(course, course->z);
     if (course->failure[0]) {
-        cJSON_AddStringToObject(answer, "failure", course->failure);
+        const char *kind = course->own->gave_up ? "gave_up" : "failure";
+        cJSON_AddStringToObject(answer, kind, course->failure);
         cJSON_Delete(end);
         return;
     }

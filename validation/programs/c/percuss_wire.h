@@ -12,10 +12,14 @@ struct percuss_private {
     int64_t most_calls;
     int most_events, reported, crowd;
     double deadline;
+    bool gave_up;
 };
 
 /* Seconds of a clock that never goes back. */
 double percuss_now(void);
+
+/* Ends a run that goes beyond its limits. */
+void percuss_give_up(percuss_course *course, const char *why);
 
 /* Reports an event. */
 void percuss_report(percuss_course *course, double t, int event, int mode, const double *z);

@@ -110,7 +110,7 @@ class Mode:
             meter.steps += steps
             meter.rhs += steps * integrator.order
             if meter.rhs > meter.most or time.monotonic() > meter.deadline:
-                raise Failure("gave up: too many steps")
+                meter.give_up("too many steps")
             self.take(due, output)
             if outcome == hy.taylor_outcome.time_limit:
                 return None
@@ -129,21 +129,9 @@ class Mode:
             self.course.sample(inside, lambda t: output(t).copy())
 
 
-def plainly(course):
-    """What follows an event by the signs of conditions, zero or not."""
-
-    def switch(mode, event, t, z):
-        event = course.system.modes[mode].events[event]
-        wide = event.reset @ course.system.wide(t, z)
-        holds = (it[1] for it in event.successors if it[0] is None or it[0] @ wide > 0)
-        return next(holds), wide[: len(z)]
-
-    return switch
-
-
 def make(setup, course):
     is_default = setup.endswith("-default")
-    switch = plainly(course) if is_default else None
+    switch = course.system.switch_plainly if is_default else None
     modes, passed = {}, None
     while course.goes_on():
         events = course.system.modes[course.mode].events

@@ -26,6 +26,10 @@ class Failure(Exception):
     """Why there is no run."""
 
 
+class GaveUp(Exception):
+    """How a run went beyond its limits."""
+
+
 class Meter:
     """What a run costs, and the end of one that costs too much."""
 
@@ -33,14 +37,20 @@ class Meter:
         self.most, self.events = limits["calls"], limits["events"]
         self.deadline = time.monotonic() + limits["wall_s"]
         self.rhs = self.jacobians = self.linear_solves = self.steps = 0
+        # Kept here, because a library may raise an exception of its own instead.
+        self.gave_up = None
+
+    def give_up(self, why):
+        self.gave_up = why
+        raise GaveUp(why)
 
     def call(self):
         """Counts a right-hand side."""
         self.rhs += 1
         if self.rhs + self.jacobians > self.most:
-            raise Failure(f"gave up after {self.most} calls")
+            self.give_up(f"{self.most} calls were too few")
         if self.rhs % 1024 == 0 and time.monotonic() > self.deadline:
-            raise Failure("gave up: the time is over")
+            self.give_up("the time is over")
 
     def work(self):
         names = ("rhs", "jacobians", "linear_solves", "steps")
@@ -117,6 +127,15 @@ class System:
                 return following, z
         raise Failure("no mode follows")
 
+    def switch_plainly(self, mode, event, t, z):
+        """As `switch`, by the signs of conditions alone, zero or not."""
+        event = self.modes[mode].events[event]
+        wide = event.reset @ self.wide(t, z)
+        for when, following in event.successors:
+            if when is None or when @ wide > 0:
+                return following, wide[: len(z)]
+        raise Failure("no mode follows")
+
     def entry(self, mode, t, z, passed=None):
         """The first event that ends a mode where it begins, if there is one; and, of each guard
         that is zero there, the order of its first derivative that is not zero, and its sign."""
@@ -161,12 +180,60 @@ class Course:
         errors = abs(event.row[: len(z)]) @ errors
         return (SIMPLE if order == 1 else MULTIPLE) * errors
 
+    def guard(self, place, zeros):
+        """The guard of an event as a function. One that is zero where the mode begins has the sign
+        that it has just after it, until it has moved away by more than the tolerance hides."""
+        event = self.system.modes[self.mode].events[place]
+        order, sign = zeros.get(place, (0, 0.0))
+        # When the guard was first seen away from its zero: in the step before, a root is looked for
+        # with the values that the search was begun with.
+        moved = float("inf") if order != 0 else self.t
+
+        def guard(t, z):
+            nonlocal moved
+            if order is None:
+                return -1.0  # it stays zero
+            value = event.row @ self.system.wide(t, z)
+            if t >= moved or abs(value) > self.hidden(event, order, z):
+                moved = min(t, moved)
+                return value
+            return sign * 1e-300
+
+        return guard
+
+    def longest_step(self):
+        """The longest step that an expert allows where events are looked for at the ends of steps:
+        an eighth of a forcing period and of a turn."""
+        times = self.run["times"]
+        return 0.125 * min(times["period"], times["turn"] or times["period"])
+
+    def by_experts(self, stretch):
+        """Runs from mode to mode. `stretch` is given what is known of guards that are zero where it
+        begins. It returns the event that has ended the mode, if one has, and what is known of the
+        guards where it has stopped otherwise."""
+        passed, stopped = None, {}
+        while self.goes_on():
+            events = self.system.modes[self.mode].events
+            fires, zeros = self.system.entry(self.mode, self.t, self.z, passed)
+            if fires is not None and not stopped:
+                passed = events[fires]
+                self.pass_event(self.t, fires, self.z)
+                continue
+            place, stopped = stretch(zeros | stopped)
+            passed = None if place is None else events[place]
+
+    def crossed(self, place):
+        """What is known of a guard that was crossed where a run stops and goes on."""
+        mode = self.system.modes[self.mode]
+        rate = mode.events[place].row @ mode.wide @ self.system.wide(self.t, self.z)
+        return {place: (1, float(np.sign(rate)))}
+
     def sample(self, times, state):
         self.sampled.extend(np.array(state(t)).tolist() for t in times)
 
     def report(self, t, event, mode, z):
         if len(self.events) >= self.meter.events:
-            raise Failure(f"gave up after {len(self.events)} events")
+            self.meter.give_up(f"{len(self.events)} events were too few")
         z = np.array(z).tolist()
         self.events.append({"time": float(t), "event": event, "mode": mode, "state": z})
 
@@ -228,8 +295,8 @@ def serve(library, version, setups, make):
 
 def made(make, run):
     """A run, or why there is none."""
+    course = Course(run)
     try:
-        course = Course(run)
         began = time.perf_counter_ns()
         make(run["setup"], course)
         took = time.perf_counter_ns() - began
@@ -237,6 +304,8 @@ def made(make, run):
         json.dumps(answer, allow_nan=False)
         return {"run": answer}
     except Exception as why:  # whatever a library raises is its reason
+        if course.meter.gave_up:
+            return {"gave_up": course.meter.gave_up}
         return {"failure": f"{type(why).__name__}: {why}"}
 
 

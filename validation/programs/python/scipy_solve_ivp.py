@@ -30,29 +30,12 @@ METHODS = {
     "bdf": ("BDF", "BDF of orders 1 to 5 in quasi-constant steps", None),
 }
 IMPLICIT = ("lsoda", "radau", "bdf")
-LONGEST_STEP = 0.125
 
 
 def watched(course, place, zeros):
     """An event as solve_ivp takes it: a function with two attributes."""
-    system = course.system
-    event = system.modes[course.mode].events[place]
-
-    order, sign = zeros.get(place, (0, 0.0))
-    # When the guard was first seen away from its zero: in the step before, a root is looked for with
-    # the values that the search was begun with.
-    moved = float("inf") if order != 0 else course.t
-
-    def guard(t, z):
-        nonlocal moved
-        if order is None:
-            return -1.0  # it stays zero
-        value = event.row @ system.wide(t, z)
-        if t >= moved or abs(value) > course.hidden(event, order, z):
-            moved = min(t, moved)
-            return value
-        return sign * 1e-300
-
+    event = course.system.modes[course.mode].events[place]
+    guard = course.guard(place, zeros)
     guard.terminal, guard.direction = event.ends, event.sign
     return guard
 
@@ -93,7 +76,7 @@ def stretch(course, method, zeros, **options):
 
 
 def take(course, solved, switch=None):
-    """Takes over what solve_ivp has found."""
+    """Takes over what solve_ivp has found, and returns the event that has ended the mode, if one has."""
     events = course.system.modes[course.mode].events
     found = sorted(
         (t, place)
@@ -113,49 +96,26 @@ def take(course, solved, switch=None):
     if solved.status == 1:
         t, place = next(it for it in sorted(states) if events[it[1]].ends)
         course.pass_event(t, place, states[t, place], switch)
-    else:
-        course.t, course.z = course.span, states_at[course.span]
-
-
-def plainly(system):
-    """What follows an event by the signs of conditions, zero or not."""
-
-    def switch(mode, event, t, z):
-        event = system.modes[mode].events[event]
-        wide = event.reset @ system.wide(t, z)
-        for when, following in event.successors:
-            if when is None or when @ wide > 0:
-                return following, wide[: len(z)]
-        raise Failure("no mode follows")
-
-    return switch
+        return place
+    course.t, course.z = course.span, states_at[course.span]
+    return None
 
 
 def by_default(course, method):
-    switch = plainly(course.system)
     while course.goes_on():
-        take(course, stretch(course, method, {}), switch)
+        take(course, stretch(course, method, {}), course.system.switch_plainly)
 
 
 def by_experts(course, method, implicit):
-    system, times = course.system, course.run["times"]
-    longest = LONGEST_STEP * min(times["period"], times["turn"] or times["period"])
-    passed = None
-    while course.goes_on():
-        fires, zeros = system.entry(course.mode, course.t, course.z, passed)
-        events = system.modes[course.mode].events
-        if fires is not None:
-            passed = events[fires]
-            course.pass_event(course.t, fires, course.z)
-            continue
-        options = {"max_step": longest}
+    options = {"max_step": course.longest_step()}
+
+    def next_stretch(zeros):
         if implicit:
-            matrix = system.modes[course.mode].a
+            matrix = course.system.modes[course.mode].a
             options["jac"] = lambda t, z: matrix
-        before = len(course.events)
-        take(course, stretch(course, method, zeros, **options))
-        last = course.events[-1] if len(course.events) > before else None
-        passed = events[last["event"]] if last else None
+        return take(course, stretch(course, method, zeros, **options)), {}
+
+    course.by_experts(next_stretch)
 
 
 def make(setup, course):

@@ -63,12 +63,18 @@ wide_of <- function(course, t, z) {
   c(z, cos(theta), sin(theta), 1)
 }
 
+# Ends a run that goes beyond its limits.
+give_up <- function(course, why) {
+  course$gave_up <- why
+  stop(why)
+}
+
 # The right-hand side in the mode of now.
 rates <- function(course, t, z) {
   course$rhs <- course$rhs + 1
-  if (course$rhs + course$jacobians > course$run$limits$calls) stop("gave up: too many calls")
+  if (course$rhs + course$jacobians > course$run$limits$calls) give_up(course, "too many calls")
   if (course$rhs %% 1024 == 0 && proc.time()[["elapsed"]] > course$deadline) {
-    stop("gave up: the time is over")
+    give_up(course, "the time is over")
   }
   mode <- course$modes[[course$mode]]
   as.vector(mode$wide[seq_len(mode$size), , drop = FALSE] %*% wide_of(course, t, z))
@@ -127,7 +133,7 @@ due <- function(course, until = Inf) {
 sample_state <- function(course, z) course$sampled[[length(course$sampled) + 1]] <- z
 
 report <- function(course, t, place, mode, z) {
-  if (length(course$events) >= course$run$limits$events) stop("gave up: too many events")
+  if (length(course$events) >= course$run$limits$events) give_up(course, "too many events")
   event <- list(time = t, event = place - 1, mode = mode - 1, state = I(z))
   course$events[[length(course$events) + 1]] <- event
 }
@@ -190,14 +196,17 @@ serve <- function(library, version, setups, make) {
     } else if (request$ask == "ready") {
       answer$ready <- TRUE
     } else {
+      course <- new_course(request$run)
       answer <- c(answer, tryCatch(
         {
-          course <- new_course(request$run)
           for (t in due(course, 0)) sample_state(course, course$z)
           seconds <- system.time(make(request$run$setup, course), gcFirst = FALSE)[["elapsed"]]
           list(run = answer_run(course, seconds))
         },
-        error = function(why) list(failure = conditionMessage(why))
+        error = function(why) {
+          if (is.null(course$gave_up)) list(failure = conditionMessage(why)) else
+            list(gave_up = course$gave_up)
+        }
       ))
     }
     sink()

@@ -2,13 +2,41 @@
 
 use crate::answer::checked;
 use crate::pool::Pool;
-use crate::start::NotStarted;
 use crate::wire::{Capabilities, EventsBy, RunAsk, SetUp, SteppedBy};
 use percuss_engines::engine::{
     Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role, Stepping,
     SystemOutcome, SystemTask, Task,
 };
 use std::sync::Arc;
+
+/// Why a program has no engines.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum NotStarted {
+    /// It is not installed here, which is no mistake of its own.
+    #[error("{program}: unavailable: {why}")]
+    Unavailable {
+        /// The program's name.
+        program: String,
+        /// What is missing.
+        why: String,
+    },
+    /// It did something wrong.
+    #[error("{program}: {why}")]
+    Failed {
+        /// The program's name.
+        program: String,
+        /// What it did.
+        why: String,
+    },
+}
+
+impl NotStarted {
+    /// An engine by the program's name, so that its rows say why there are none.
+    #[must_use]
+    pub fn stand_in(self) -> ProgramEngine {
+        ProgramEngine::stand_in(self)
+    }
+}
 
 /// A set-up of a program.
 pub struct ProgramEngine {
@@ -114,7 +142,7 @@ impl Engine for ProgramEngine {
         can_run(set_up, task, accuracy)?;
         let limits = Limits { wall: limits.wall.min(pool.program().timeout), ..*limits };
         let ask = RunAsk::new(&set_up.name, task, accuracy, &limits);
-        let (reply, took) = pool.run(&ask, limits.wall).map_err(Failure::new)?;
+        let (reply, took) = pool.run(&ask, limits.wall)?;
         checked(&reply, task, (ask.samples(), took), &limits).map_err(Failure::new)
     }
 }

@@ -1,6 +1,6 @@
 //! The file that names the programs: nothing foreign is started without one.
 
-use percuss_engines::case::FileError;
+use percuss_engines::case::{FileError, Shortcoming, shortcomings_of};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -12,12 +12,13 @@ const USUAL_TIMEOUT: f64 = 60.0;
 const LONGEST_TIMEOUT: f64 = 86_400.0;
 /// What a program may be called.
 /// What a program, a set-up or an engine in files may be called.
-pub const NAMES: &str = "a name of 1 to 40 characters: lower-case letters, digits, '-', '_', '.', '+'";
+pub const NAMES: &str =
+    "a name of 1 to 40 characters: lower-case letters, digits, '-', '_', '.', '+'";
 
 /// A program that can be run as an engine, as its file names it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Program {
-    /// Its name, with which the names of its engines begin.
+    /// The program's name, with which the names of its engines begin.
     pub name: String,
     /// The command that starts it: a program and its arguments.
     pub command: Vec<String>,
@@ -30,6 +31,7 @@ pub struct Program {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Wire {
+    shortcomings: Option<PathBuf>,
     #[serde(default)]
     program: Vec<Spanned<OneWire>>,
 }
@@ -56,8 +58,22 @@ pub fn read(path: &Path) -> Result<Vec<Program>, FileError> {
     parse(&path.display().to_string(), &text, folder)
 }
 
+/// The known shortcomings of the programs that a file names: those of the file that it names for
+/// them, if it does.
+///
+/// # Errors
+/// The first mistake in either file, with its line and what is accepted.
+pub fn shortcomings(path: &Path) -> Result<Vec<Shortcoming>, FileError> {
+    let text =
+        std::fs::read_to_string(path).map_err(|error| FileError::unreadable(path, &error))?;
+    let wire: Wire = toml::from_str(&text)
+        .map_err(|error| FileError::toml(&path.display().to_string(), &text, &error))?;
+    let beside = |file: PathBuf| path.parent().unwrap_or(Path::new("")).join(file);
+    wire.shortcomings.map_or_else(|| Ok(Vec::new()), |file| shortcomings_of(&beside(file)))
+}
+
 fn parse(file: &str, text: &str, folder: &Path) -> Result<Vec<Program>, FileError> {
-    let source = Source { file, text };
+    let source = ProgramsFile { file, text };
     let wire: Wire = toml::from_str(text).map_err(|error| FileError::toml(file, text, &error))?;
     if wire.program.is_empty() {
         return Err(FileError::of(file, "names no program; accepted is a [[program]] or more"));
@@ -71,12 +87,12 @@ fn parse(file: &str, text: &str, folder: &Path) -> Result<Vec<Program>, FileErro
     Ok(programs)
 }
 
-struct Source<'a> {
+struct ProgramsFile<'a> {
     file: &'a str,
     text: &'a str,
 }
 
-impl Source<'_> {
+impl ProgramsFile<'_> {
     fn program(
         &self,
         begin: usize,

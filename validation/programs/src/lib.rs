@@ -32,8 +32,7 @@ mod start;
 mod text;
 mod wire;
 
-pub use engine::ProgramEngine;
-pub use file::{NAMES, Program, is_name, read};
+pub use engine::{NotStarted, ProgramEngine};
+pub use file::{NAMES, Program, is_name, read, shortcomings};
 pub use process::end_all;
-pub use start::NotStarted;
 pub use wire::{Capabilities, EventsBy, PROTOCOL, SetUp, SteppedBy};

@@ -3,7 +3,8 @@
 
 use crate::file::Program;
 use crate::process::Process;
-use crate::wire::{Answered, RunAsk, RunReply};
+use crate::wire::{ReplyContent, RunAsk, RunReply};
+use percuss_engines::engine::Failure;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
@@ -29,22 +30,31 @@ impl Pool {
     /// A process that did something wrong is ended, and another one started for the next run.
     ///
     /// # Errors
-    /// What the program did wrong, or its own reason for making no run.
+    /// What the program did wrong, or its own reason for making no run. A run that was late, or given
+    /// up by the program, is one beyond its limits.
     pub(crate) fn run(
         &self,
         run: &RunAsk<'_>,
         wait: Duration,
-    ) -> Result<(RunReply, Duration), String> {
-        let mut process = self.process()?;
+    ) -> Result<(RunReply, Duration), Failure> {
+        let mut process = self.process().map_err(Failure::new)?;
         let began = Instant::now();
-        let answered = process.run(run, wait)?;
+        let answered = process.run(run, wait).map_err(|why| {
+            let is_late = began.elapsed() >= wait;
+            if is_late { Failure::beyond_limits(why) } else { Failure::new(why) }
+        })?;
         let took = began.elapsed();
-        process.still_ready(wait)?;
+        process.still_ready(wait).map_err(Failure::new)?;
         let answered = match answered {
-            Answered::Run(reply) => Ok((*reply, took)),
-            Answered::Failure(why) if why.is_empty() => Err("failed without a reason".to_owned()),
-            Answered::Failure(why) => Err(why),
-            _ => return Err("answered something else where a run was asked for".to_owned()),
+            ReplyContent::Run(reply) => Ok((*reply, took)),
+            ReplyContent::Failure(why) if why.is_empty() => {
+                Err(Failure::new("failed without a reason"))
+            }
+            ReplyContent::Failure(why) => Err(Failure::new(why)),
+            ReplyContent::GaveUp(why) => Err(Failure::beyond_limits(format!("gave up: {why}"))),
+            _ => {
+                return Err(Failure::new("answered something else where a run was asked for"));
+            }
         };
         self.idle().push(process);
         answered

@@ -1,42 +1,13 @@
 //! A program started for the first time: what it says of itself becomes engines.
 
-use crate::engine::ProgramEngine;
+use crate::engine::{NotStarted, ProgramEngine};
 use crate::file::{Program, is_name};
 use crate::pool::Pool;
 use crate::process::Process;
 use crate::text::plain;
-use crate::wire::{Answered, Capabilities, SetUp, SteppedBy};
+use crate::wire::{Capabilities, ReplyContent, SetUp, SteppedBy};
 use std::io::ErrorKind;
 use std::sync::Arc;
-
-/// Why a program has no engines.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum NotStarted {
-    /// It is not installed here, which is no mistake of its own.
-    #[error("{program}: unavailable: {why}")]
-    Unavailable {
-        /// The program's name.
-        program: String,
-        /// What is missing.
-        why: String,
-    },
-    /// It did something wrong.
-    #[error("{program}: {why}")]
-    Failed {
-        /// The program's name.
-        program: String,
-        /// What it did.
-        why: String,
-    },
-}
-
-impl NotStarted {
-    /// An engine by the program's name, so that its rows say why there are none.
-    #[must_use]
-    pub fn stand_in(self) -> ProgramEngine {
-        ProgramEngine::stand_in(self)
-    }
-}
 
 impl Program {
     /// Starts the program and asks it what it can do: each of its set-ups is an engine.
@@ -57,9 +28,9 @@ impl Program {
             Err(error) => return Err(failed(format!("cannot be started: {error}"))),
         };
         let said = match process.capabilities(self.timeout).map_err(failed)? {
-            Answered::Capabilities(said) => said,
-            Answered::Unavailable(why) => return Err(unavailable(why)),
-            Answered::Failure(why) => return Err(failed(why)),
+            ReplyContent::Capabilities(said) => said,
+            ReplyContent::Unavailable(why) => return Err(unavailable(why)),
+            ReplyContent::Failure(why) => return Err(failed(why)),
             _ => return Err(failed("did not say what it can do".to_owned())),
         };
         check(&said).map_err(failed)?;

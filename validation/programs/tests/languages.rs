@@ -15,7 +15,7 @@ use percuss_programs::ProgramEngine;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What no set-up of theirs makes right: deSolve 1.34 gives the root's state with a time that is not
+/// Engines that no set-up makes right: deSolve 1.34 gives the root's state with a time that is not
 /// the root's, the end of the step.
 const WRONG: [&str; 1] = ["desolve-radau"];
 

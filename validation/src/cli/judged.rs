@@ -135,11 +135,16 @@ impl PreparedCases {
 }
 
 impl JudgedFlags {
-    /// Refuses flags without effect, and reads the baseline.
-    pub(super) fn check(&self) -> Result<Option<Baseline>> {
+    /// Refuses flags without effect.
+    pub(super) fn check(&self) -> Result<()> {
         if self.rows && self.format != Format::Table {
             bail!("--rows has no effect with this --format; accepted with --rows is table");
         }
+        Ok(())
+    }
+
+    /// The report that this run is held against.
+    pub(super) fn baseline(&self) -> Result<Option<Baseline>> {
         self.baseline.as_deref().map(read_baseline).transpose()
     }
 

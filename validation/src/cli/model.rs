@@ -4,7 +4,7 @@ use super::note;
 use super::parse::{self, Typed};
 use crate::case::{Given, Problem, read_problem};
 use crate::number::shortest;
-use crate::sweep::Point;
+use crate::sweep::SweepPoint;
 use anyhow::{Result, anyhow};
 use clap::Args;
 use percuss::{Parameter, Parameters, Phase};
@@ -66,7 +66,7 @@ impl ModelFlags {
     }
 
     /// The model's flags at a point of a sweep.
-    pub(super) fn at(&self, point: &Point) -> Self {
+    pub(super) fn at(&self, point: &SweepPoint) -> Self {
         let mut at = self.clone();
         for (parameter, value) in &point.values {
             let flag = match parameter {

@@ -48,6 +48,13 @@ pub(super) fn end(text: &str) -> Result<Typed<f64>, String> {
     Ok(Typed { value, text: text.to_owned() })
 }
 
+/// A tolerance; which are accepted is known where the suite is.
+pub(super) fn tolerance(text: &str) -> Result<Typed<f64>, String> {
+    let value = text.parse();
+    let value = value.map_err(|_| "accepted is a tolerance of the suite, as 1e-6".to_owned())?;
+    Ok(Typed { value, text: text.to_owned() })
+}
+
 /// A time.
 pub(super) fn time(text: &str) -> Result<Typed<f64>, String> {
     let value = text.parse();

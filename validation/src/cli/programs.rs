@@ -1,6 +1,7 @@
 //! `--programs FILE.toml`: engines that are programs of any language.
 
 use super::note;
+use crate::case::Shortcoming;
 use crate::engine::{self, Engine};
 use anyhow::{Context, Result};
 use clap::Args;
@@ -25,6 +26,14 @@ impl Drop for StartedPrograms {
 }
 
 impl ProgramFlags {
+    /// What is known of the programs that falls short.
+    pub(super) fn shortcomings(&self) -> Result<Vec<Shortcoming>> {
+        match &self.programs {
+            Some(file) => percuss_programs::shortcomings(file).context("--programs"),
+            None => Ok(Vec::new()),
+        }
+    }
+
     /// Starts the programs and adds their engines to all others; no engine may have been asked for
     /// before. One that cannot be started has an engine by its name, whose rows say why.
     pub(super) fn start(&self) -> Result<StartedPrograms> {

@@ -51,7 +51,11 @@ fn words(text: &str) -> Result<String, String> {
     let is_accepted = |text: &str| {
         !text.trim().is_empty() && text.chars().count() <= 80 && !text.contains(char::is_control)
     };
-    if is_accepted(text) { Ok(text.to_owned()) } else { Err("accepted are 1 to 80 characters".to_owned()) }
+    if is_accepted(text) {
+        Ok(text.to_owned())
+    } else {
+        Err("accepted are 1 to 80 characters".to_owned())
+    }
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {
@@ -65,7 +69,8 @@ const SUITE: Suite = Suite::Quick;
 
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let judged = &arguments.judged;
-    let baseline = judged.check()?;
+    judged.check()?;
+    let baseline = judged.baseline()?;
     let cases = judged.prepare(SUITE)?;
     let all = cases.all();
     check_names(arguments, &all, &answered(&arguments.answers)?)?;
@@ -91,7 +96,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     );
     evidence.folders = judged.folders();
     if judged.out.is_some() {
-        evidence.events = pool.install(|| event_pictures(&cases.oscillator, &rows, SUITE));
+        evidence.events =
+            pool.install(|| event_pictures((&cases.oscillator, &cases.systems), &rows, SUITE));
     }
     let report = Report::new(SUITE, &[&arguments.engine("")], &rows);
     let asked = |it: &RowPlace<'_>| {
@@ -123,7 +129,9 @@ impl Arguments {
 fn answered(folder: &Path) -> Result<BTreeSet<String>> {
     let unreadable = |error: std::io::Error| {
         let folder = folder.display();
-        anyhow!("--answers {folder}: {error}; accepted is a folder of CASE{EVENTS} and CASE{SAMPLES}")
+        anyhow!(
+            "--answers {folder}: {error}; accepted is a folder of CASE{EVENTS} and CASE{SAMPLES}"
+        )
     };
     let mut cases = BTreeSet::new();
     for entry in std::fs::read_dir(folder).map_err(unreadable)? {
@@ -149,7 +157,8 @@ fn check_names(
              CASE{EVENTS} and CASE{SAMPLES}"
         );
     }
-    for name in answered.iter().filter(|name| !asked(name) && arguments.judged.chosen.accepts(name)) {
+    for name in answered.iter().filter(|name| !asked(name) && arguments.judged.chosen.accepts(name))
+    {
         note(&format!(
             "--answers {}: {name} is no case, its answer is left alone: percuss cases lists all",
             arguments.answers.display()

@@ -1,13 +1,14 @@
 //! `validate`: every engine on every case against the truth.
 
-use super::judged::{JudgedFlags, accepts};
+use super::judged::{JudgedFlags, PreparedCases, accepts};
 use super::names::ENGINES;
 use super::programs::ProgramFlags;
 use super::{OUT_OF_BOUNDS, parse, say, work};
-use crate::engine::{self, Engine, Wrong, hush_contained_panics};
+use crate::case::Defaults;
+use crate::engine::{self, Engine, Wrong, WrongWay, hush_contained_panics};
 use crate::power::{self, Finding, Standard};
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
-use crate::suite::{self, Suite};
+use crate::suite::{self, Scope, Suite};
 use anyhow::{Result, bail};
 use clap::Args;
 use regex::Regex;
@@ -18,6 +19,9 @@ pub(super) struct Arguments {
     /// How much to run
     #[arg(long, value_enum, default_value_t = Suite::Quick)]
     suite: Suite,
+    /// Only rows at this tolerance, one of the suite's; several are alternatives
+    #[arg(long, value_name = "T", value_parser = parse::tolerance)]
+    tolerance: Vec<parse::Typed<f64>>,
     /// Only engines whose name matches; several are alternatives
     #[arg(short, long = "engine", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
     engine: Vec<Regex>,
@@ -29,46 +33,46 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let judged = &arguments.judged;
-    let baseline = judged.check()?;
+    judged.check()?;
+    let scope = scope(arguments)?;
+    let baseline = judged.baseline()?;
     let _programs = arguments.programs.start()?;
     let engines = chosen_engines(&arguments.engine)?;
     let cases = judged.prepare(arguments.suite)?;
     let all = cases.all();
-    let defaults = judged.defaults()?;
+    let mut defaults = judged.defaults()?;
+    if judged.chosen.cases.is_none() {
+        defaults.shortcomings.extend(arguments.programs.shortcomings()?);
+    }
     hush_contained_panics();
     let pool = work::pool(threads)?;
-    let wrong = wrong_engines(arguments);
-    let bar =
-        work::bar((suite::size(all.len(), &engines, arguments.suite) + wrong.len()) as u64, "rows");
-    let rows =
-        pool.install(|| suite::run(&all, &engines, arguments.suite, &defaults, &|| bar.inc(1)));
-    let asked = suite::size(all.len(), &engines, arguments.suite);
+    let wrong = WrongEngines::of(arguments);
+    let steps = suite::size(all.len(), &engines, &scope) + wrong.count();
+    let bar = work::bar(steps as u64, "rows");
+    let rows = pool.install(|| suite::run(&all, &engines, &scope, &defaults, &|| bar.inc(1)));
+    let asked = suite::size(all.len(), &engines, &scope);
     if rows.len() != asked {
         bail!("{} rows were made where {asked} were asked for", rows.len());
     }
-    let examine = |(it, held): &(Wrong, Standard)| {
-        let finding = power::examine(it, &cases.oscillator, *held, &defaults.bounds);
-        bar.inc(1);
-        finding
-    };
-    let findings: Vec<_> = pool.install(|| wrong.iter().map(examine).collect());
+    let findings = pool.install(|| wrong.examine(&cases, &defaults, &|| bar.inc(1)));
     bar.finish_and_clear();
-    let mut evidence = ReportEvidence::gather(
+    let evidence = ReportEvidence::gather(
         (&cases.oscillator, &cases.systems),
         &rows,
         &findings,
         judged.chosen.cases.is_none(),
     );
-    evidence.folders = judged.folders();
+    let mut evidence = ReportEvidence { folders: judged.folders(), ..evidence };
     if judged.out.is_some() {
-        evidence.events =
-            pool.install(|| event_pictures(&cases.oscillator, &rows, arguments.suite));
+        evidence.events = pool.install(|| {
+            event_pictures((&cases.oscillator, &cases.systems), &rows, arguments.suite)
+        });
     }
     let report = Report::new(arguments.suite, &engines, &rows);
     let asked = |it: &RowPlace<'_>| {
         accepts(&arguments.engine, it.engine)
             && judged.chosen.accepts(it.case)
-            && arguments.suite.makes(it.tolerance, it.step)
+            && scope.makes(it.tolerance, it.step)
     };
     if let Some(baseline) = &baseline {
         evidence.worse = judged.worse(baseline, &report, asked)?;
@@ -77,13 +81,58 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code })
 }
 
+/// The suite, as far as tolerances are chosen.
+fn scope(arguments: &Arguments) -> Result<Scope> {
+    let all = Scope::from(arguments.suite);
+    let accepted = || {
+        let shown: Vec<_> = all.tolerances().iter().map(|it| format!("{it:e}")).collect();
+        shown.join(", ")
+    };
+    match arguments.tolerance.iter().find(|it| !all.tolerances().contains(&it.value)) {
+        Some(other) => {
+            bail!("--tolerance {:?} is not accepted: {}", other.text, accepted())
+        }
+        None => Ok(all.at(arguments.tolerance.iter().map(|it| it.value).collect())),
+    }
+}
+
 /// Engines that are wrong on purpose, for the power of the gates; none where something else is
 /// asked.
-fn wrong_engines(arguments: &Arguments) -> Vec<(Wrong, Standard)> {
-    let chosen = &arguments.judged.chosen;
-    let everything =
-        arguments.engine.is_empty() && chosen.case.is_empty() && chosen.cases.is_none();
-    if everything { power::all() } else { Vec::new() }
+#[derive(Default)]
+struct WrongEngines {
+    anywhere: Vec<(Wrong, Standard)>,
+    on_systems: Vec<(WrongWay, Standard)>,
+}
+
+impl WrongEngines {
+    fn of(arguments: &Arguments) -> Self {
+        let chosen = &arguments.judged.chosen;
+        let everything =
+            arguments.engine.is_empty() && chosen.case.is_empty() && chosen.cases.is_none();
+        if everything {
+            Self { anywhere: power::all(), on_systems: power::all_on_systems() }
+        } else {
+            Self::default()
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.anywhere.len() + self.on_systems.len()
+    }
+
+    /// What the gates make of them.
+    fn examine(&self, cases: &PreparedCases, defaults: &Defaults, done: &dyn Fn()) -> Vec<Finding> {
+        let PreparedCases { oscillator, systems } = cases;
+        let anywhere = self
+            .anywhere
+            .iter()
+            .map(|(it, held)| power::examine(it, oscillator, *held, &defaults.bounds));
+        let on_systems = self
+            .on_systems
+            .iter()
+            .map(|(it, held)| power::examine_on_systems(it, systems, *held, &defaults.of_systems));
+        anywhere.chain(on_systems).inspect(|_| done()).collect()
+    }
 }
 
 /// Whether a wrong engine passes every bound of all cases together; said on stderr.

@@ -7,12 +7,14 @@ mod baseline;
 mod csv;
 mod event;
 mod evidence;
+mod failing;
 mod gather;
 mod grazing;
 mod growth;
 mod html;
 mod json;
 mod junit;
+mod notes;
 mod orders;
 mod pictures;
 mod ranking;
@@ -28,14 +30,16 @@ pub use annotations::{annotations, under_the_service};
 pub use baseline::{Baseline, Compared, RowPlace};
 pub use event::{EventMark, EventPicture, MismatchKind, View, ViewCourse, event_pictures};
 pub use evidence::{
-    CaseNote, ErrorGrowth, FaultRow, GrazeRow, ReportEvidence, RestartHistogram, SectionPair,
+    CaseNote, ErrorGrowth, FaultRow, GrazeRow, OSCILLATOR, ReportEvidence, RestartHistogram,
+    SectionPair,
 };
 pub use orders::{Order, orders};
 pub use pictures::{PictureFile, pictures};
 pub use ranking::{COMPARED_AT, Ranked, Units};
 pub use ranking_formats::{RankingFormat, ranking_text};
 pub use row::{EngineEntry, Report, ReportRow, Summary, ValidHorizons};
-pub use screen::{WIDTH, screen};
+pub use screen::screen;
+pub use table::WIDTH;
 
 use std::io::{self, Write};
 

@@ -1,10 +1,12 @@
 //! The rows of a report as a table, and the reasons of those that are out of bounds.
 
 use super::ReportRow;
-use super::screen::{text, wrapped};
 use crate::number::brief;
 use crate::score::Verdict;
 use comfy_table::{CellAlignment, Table, presets};
+
+/// The widest line, in columns.
+pub const WIDTH: usize = 100;
 
 /// Every row, one line each.
 pub(super) fn row_table(rows: &[ReportRow]) -> String {
@@ -78,4 +80,18 @@ fn cells(case: &str, row: &ReportRow) -> [String; 12] {
 fn setting(row: &ReportRow) -> String {
     let setting = row.setting();
     if setting.is_empty() { "-".to_owned() } else { setting }
+}
+
+/// Breaks a text into lines of at most [`WIDTH`] columns, the later ones indented.
+pub(super) fn wrapped(text: &str) -> String {
+    let options = textwrap::Options::new(WIDTH)
+        .subsequent_indent("    ")
+        .word_splitter(textwrap::WordSplitter::NoHyphenation);
+    textwrap::fill(text, options) + "\n"
+}
+
+/// A table's lines without the blanks at their ends.
+pub(super) fn text(table: &Table) -> String {
+    let lines: Vec<_> = table.to_string().lines().map(|line| line.trim_end().to_owned()).collect();
+    lines.join("\n") + "\n"
 }

@@ -8,9 +8,9 @@ use crate::score::Verdict;
 pub(super) struct TroubleCell {
     /// The truth's events that were scored.
     pub checked: usize,
-    /// Those of them that it has.
+    /// The events that were checked and that the engine has.
     pub found: usize,
-    /// Its events that the truth does not have.
+    /// The engine's events that the truth does not have.
     pub spurious: usize,
     /// Rows without a result, and rows that fail, expected failures included.
     pub failing: usize,

@@ -10,12 +10,12 @@ pub struct Array {
     /// The length along each dimension; empty for a single number.
     pub shape: Vec<usize>,
     /// The numbers.
-    pub values: Values,
+    pub values: ArrayValues,
 }
 
 /// The numbers of an array.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub enum Values {
+pub enum ArrayValues {
     /// Numbers; a NaN where there is none.
     F8(Vec<f64>),
     /// Integers; -1 where there is none.
@@ -28,19 +28,19 @@ impl Array {
     /// An array of numbers.
     #[must_use]
     pub fn f8(name: &str, shape: &[usize], values: Vec<f64>) -> Self {
-        Self { name: name.to_owned(), shape: shape.to_vec(), values: Values::F8(values) }
+        Self { name: name.to_owned(), shape: shape.to_vec(), values: ArrayValues::F8(values) }
     }
 
     /// An array of integers.
     #[must_use]
     pub fn i4(name: &str, shape: &[usize], values: Vec<i32>) -> Self {
-        Self { name: name.to_owned(), shape: shape.to_vec(), values: Values::I4(values) }
+        Self { name: name.to_owned(), shape: shape.to_vec(), values: ArrayValues::I4(values) }
     }
 
     /// A text.
     #[must_use]
     pub fn text(name: &str, bytes: Vec<u8>) -> Self {
-        Self { name: name.to_owned(), shape: vec![bytes.len()], values: Values::U1(bytes) }
+        Self { name: name.to_owned(), shape: vec![bytes.len()], values: ArrayValues::U1(bytes) }
     }
 }
 

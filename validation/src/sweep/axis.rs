@@ -7,7 +7,7 @@ use std::fmt;
 /// One parameter that takes equally spaced values.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Axis {
+pub struct SweepAxis {
     /// What varies.
     pub parameter: Parameter,
     /// The first value.
@@ -18,7 +18,7 @@ pub struct Axis {
     pub steps: u32,
 }
 
-impl Axis {
+impl SweepAxis {
     /// The value at a step; the last one is `to` exactly.
     #[must_use]
     pub fn value(&self, step: u32) -> f64 {
@@ -32,14 +32,14 @@ impl Axis {
 
 /// One combination of the values of a sweep's axes.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Point {
+pub struct SweepPoint {
     /// The number of the point; the last axis varies fastest.
     pub number: u64,
     /// The parameters that vary, and their values.
     pub values: Vec<(Parameter, f64)>,
 }
 
-impl Point {
+impl SweepPoint {
     /// Parameters with the values of this point.
     #[must_use]
     pub fn set(&self, parameters: Parameters) -> Parameters {
@@ -47,7 +47,7 @@ impl Point {
     }
 }
 
-impl fmt::Display for Point {
+impl fmt::Display for SweepPoint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let values = self.values.iter().map(|(name, value)| format!("{} = {value}", name.as_str()));
         f.write_str(&values.collect::<Vec<_>>().join(", "))

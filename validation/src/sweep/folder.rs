@@ -19,7 +19,7 @@ const OTHERS: &str = ".percuss-";
 /// The program that computes. Programs that differ may differ in the last bits, which chaos
 /// amplifies, so one sweep is computed by one program.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Program {
+pub struct ComputedBy {
     /// The program's version.
     pub percuss: String,
     /// The commit that it was built from, where that is known.
@@ -39,7 +39,7 @@ pub struct Folder {
 struct Owner {
     schema: u32,
     plan: String,
-    program: Program,
+    program: ComputedBy,
 }
 
 /// A shard that is being computed, until this is dropped.
@@ -50,7 +50,7 @@ pub(super) struct Lock {
     file: Option<File>,
 }
 
-impl Program {
+impl ComputedBy {
     /// This program, here.
     #[must_use]
     pub fn this() -> Self {
@@ -101,7 +101,7 @@ impl Folder {
                  or another folder"
             );
         }
-        let this = Program::this();
+        let this = ComputedBy::this();
         if owner.program != this {
             bail!(
                 "--out {shown} has shards of {}, and this is {}: accepted are the same program \
@@ -123,7 +123,7 @@ impl Folder {
         if self.check(plan)? {
             return Ok(());
         }
-        let owner = Owner { schema: 1, plan: plan.hash.clone(), program: Program::this() };
+        let owner = Owner { schema: 1, plan: plan.hash.clone(), program: ComputedBy::this() };
         let text = serde_json::to_vec_pretty(&owner)?;
         match self.put(SWEEP, OTHERS, &[&text], Unfinished::finish_new) {
             // Another worker was first.
@@ -168,11 +168,14 @@ impl Folder {
     /// Marks a shard as being computed, and removes what a worker of it that was killed has left.
     pub(super) fn lock(&self, shard: u32) -> Result<Lock> {
         let path = self.lock_path(shard);
+        let was_there = path.exists();
         let file = File::create(&path);
         let file = file.map_err(|error| self.unwritable(&format!("{shard:05}.lock"), &error))?;
         // A file system without locks says no more than one whose lock is held.
         let file = Some(file).filter(|file| file.try_lock().is_ok());
-        if file.is_some() {
+        // Only a worker that was killed leaves its lock, and beside it perhaps half a shard. The
+        // folder is not searched for each of many shards.
+        if file.is_some() && was_there {
             self.remove_left(shard);
         }
         Ok(Lock { path, file })

@@ -3,11 +3,11 @@
 //! Points are joined one after the other, and what each gives is appended to a spool for every
 //! array; so the memory that this takes is that of one point, whatever the number of points.
 
-use super::array::{Array, Values};
+use super::array::{Array, ArrayValues};
 use super::plan::Plan;
 use super::run::Sweep;
 use super::shard::{Damage, Place};
-use super::spool::{Kind, Number, Spool};
+use super::spool::{ArrayNumber, NumberType, Spool};
 use super::tiling;
 use crate::arrays::Npz;
 use anyhow::{Context, Result};
@@ -81,17 +81,17 @@ fn archive(sweep: &Sweep<'_>, spools: Vec<Spool>, out: &mut dyn Write) -> Result
     }
     for Array { name, shape, values } in sweep.work.coordinates() {
         match values {
-            Values::F8(values) => archive.add(&name, &shape, values)?,
-            Values::I4(values) => archive.add(&name, &shape, values)?,
-            Values::U1(values) => archive.add(&name, &shape, values)?,
+            ArrayValues::F8(values) => archive.add(&name, &shape, values)?,
+            ArrayValues::I4(values) => archive.add(&name, &shape, values)?,
+            ArrayValues::U1(values) => archive.add(&name, &shape, values)?,
         }
     }
     let front: Vec<usize> = axes.iter().map(|it| it.steps as usize).collect();
     for spool in spools {
         match spool.kind {
-            Kind::F8 => add::<f64>(&mut archive, &front, spool)?,
-            Kind::I4 => add::<i32>(&mut archive, &front, spool)?,
-            Kind::U1 => add::<u8>(&mut archive, &front, spool)?,
+            NumberType::F8 => add::<f64>(&mut archive, &front, spool)?,
+            NumberType::I4 => add::<i32>(&mut archive, &front, spool)?,
+            NumberType::U1 => add::<u8>(&mut archive, &front, spool)?,
         }
     }
     archive.finish()?;
@@ -152,7 +152,7 @@ fn add_point(spools: &mut Vec<Spool>, arrays: &[Array], folder: &Path) -> Result
 }
 
 /// Writes what a spool holds as one array, with the axes' dimensions in front.
-fn add<T: Number + AutoSerialize + Serialize>(
+fn add<T: ArrayNumber + AutoSerialize + Serialize>(
     archive: &mut Npz<&mut dyn Write>,
     front: &[usize],
     spool: Spool,

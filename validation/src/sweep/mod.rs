@@ -2,9 +2,9 @@
 //! compute.
 //!
 //! A [`Plan`] spans *points*, one for each combination of its axes' values. They are cut into
-//! *tiles*, some points each or blocks of a large one (`tiling.rs`), and what the verb's [`Work`]
-//! gives depends on the point and block alone. A pilot counts events on a coarse grid (`pilot.rs`),
-//! by which the tiles are dealt to shards (`deal.rs`). A shard is computed by [`Sweep`] and is one
+//! *tiles*, some points each or blocks of a large one (`tiling.rs`), and what a [`SweepVerb`] gives
+//! depends on the point and block alone. A pilot counts events on a coarse grid (`pilot.rs`), by
+//! which the tiles are dealt to shards (`deal.rs`). A shard is computed by [`Sweep`] and is one
 //! file (`shard.rs`) in the sweep's folder ([`Folder`]). When all are there, [`Merge`] joins them
 //! into one archive of arrays, which tells nothing of shards, threads or machines.
 
@@ -24,14 +24,14 @@ mod status;
 mod tiling;
 mod work;
 
-pub use array::{Array, Values};
-pub use axis::{Axis, Point};
-pub use folder::{Folder, Program};
+pub use array::{Array, ArrayValues};
+pub use axis::{SweepAxis, SweepPoint};
+pub use folder::{ComputedBy, Folder};
 pub use merge::{Merge, NotMerged};
 #[cfg(feature = "mpi")]
 pub use mpi::Ranks;
 pub use plan::{Plan, PlanFile};
 pub use run::{Sweep, Told};
 pub use shard::Damage;
-pub use status::{ShardState, Status};
-pub use work::{Tiles, Work};
+pub use status::{ShardState, SweepStatus};
+pub use work::{SweepVerb, Tiles};

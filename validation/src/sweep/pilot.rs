@@ -7,7 +7,7 @@ use super::deal::Deal;
 use super::folder::Folder;
 use super::plan::{Plan, digest};
 use super::tiling::Tiling;
-use super::work::Work;
+use super::work::SweepVerb;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,7 @@ const APART: u32 = 4;
 
 /// What the pilot has counted.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-struct Counted {
+struct PilotCosts {
     plan: String,
     /// The costs of the tiles of each point of the pilot, by the point's number.
     costs: BTreeMap<u64, Vec<u64>>,
@@ -41,7 +41,7 @@ pub struct Dealt {
 ///
 /// # Errors
 /// What the verb objects to, and a folder that cannot be written.
-pub fn dealt(plan: &Plan, work: &dyn Work, tiling: Tiling, folder: &Folder) -> Result<Dealt> {
+pub fn dealt(plan: &Plan, work: &dyn SweepVerb, tiling: Tiling, folder: &Folder) -> Result<Dealt> {
     let tiles = tiling.count();
     if plan.shards == 1 || u64::from(plan.shards) == tiles {
         let even = vec![1; usize::try_from(tiles)?];
@@ -66,13 +66,13 @@ pub fn dealt(plan: &Plan, work: &dyn Work, tiling: Tiling, folder: &Folder) -> R
 }
 
 /// The pilot that is kept in the folder; none where it is damaged or of another plan.
-fn recalled(plan: &Plan, folder: &Folder) -> Option<Counted> {
-    let counted: Counted = serde_json::from_slice(&folder.read_pilot()?).ok()?;
+fn recalled(plan: &Plan, folder: &Folder) -> Option<PilotCosts> {
+    let counted: PilotCosts = serde_json::from_slice(&folder.read_pilot()?).ok()?;
     let is_whole = counted.digest == digest_of(&counted.costs).ok()?;
     (counted.plan == plan.hash && is_whole).then_some(counted)
 }
 
-fn count(plan: &Plan, work: &dyn Work) -> Result<Counted> {
+fn count(plan: &Plan, work: &dyn SweepVerb) -> Result<PilotCosts> {
     let stride = strides(plan, work);
     let is_pilot = |point: &u64| nearest(plan, &stride, *point) == *point;
     let points: Vec<u64> = (0..plan.points()).filter(is_pilot).collect();
@@ -80,7 +80,7 @@ fn count(plan: &Plan, work: &dyn Work) -> Result<Counted> {
         points.into_par_iter().map(|point| Ok((point, work.costs(&plan.point(point))?))).collect();
     let costs = costs?;
     let digest = digest_of(&costs)?;
-    Ok(Counted { plan: plan.hash.clone(), costs, digest })
+    Ok(PilotCosts { plan: plan.hash.clone(), costs, digest })
 }
 
 fn digest_of(costs: &BTreeMap<u64, Vec<u64>>) -> Result<String> {
@@ -88,7 +88,7 @@ fn digest_of(costs: &BTreeMap<u64, Vec<u64>>) -> Result<String> {
 }
 
 /// Steps between the pilot's points, along each axis.
-fn strides(plan: &Plan, work: &dyn Work) -> Vec<u32> {
+fn strides(plan: &Plan, work: &dyn SweepVerb) -> Vec<u32> {
     let least = if work.tiles() == 1 { APART } else { 1 };
     plan.axes.iter().map(|axis| axis.steps.div_ceil(ALONG).max(least)).collect()
 }

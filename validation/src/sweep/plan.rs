@@ -1,6 +1,6 @@
 //! The plan of a sweep, read from a TOML file.
 
-use super::{Axis, Point};
+use super::{SweepAxis, SweepPoint};
 use anyhow::{Result, anyhow, bail};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
@@ -19,15 +19,16 @@ const NOT_FIXED: [&str; 7] = ["output", "format", "threads", "quiet", "color", "
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PlanFile {
-    sweep: Head,
+    sweep: PlanHead,
     #[serde(default)]
     fixed: toml::Table,
-    axis: Vec<Axis>,
+    #[serde(default)]
+    axis: Vec<SweepAxis>,
 }
 
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Head {
+struct PlanHead {
     verb: String,
     shards: u32,
     /// The index that the first task of an array has, where an engine counts from another number.
@@ -45,8 +46,10 @@ pub struct Plan {
     pub first: Option<u32>,
     /// The verb's flags, as words of its command line.
     pub words: Vec<String>,
+    /// The verb's switches that are stated to be off.
+    pub off: Vec<String>,
     /// What varies; the last axis fastest.
-    pub axes: Vec<Axis>,
+    pub axes: Vec<SweepAxis>,
     /// The hash of all that decides the results and the shards, in hexadecimal digits.
     pub hash: String,
 }
@@ -57,7 +60,7 @@ struct Hashed<'a> {
     verb: &'a str,
     shards: u32,
     words: &'a [String],
-    axes: &'a [Axis],
+    axes: &'a [SweepAxis],
     problem: Option<&'a str>,
 }
 
@@ -71,10 +74,8 @@ impl Plan {
         let text = fs::read_to_string(path).map_err(|error| {
             anyhow!("--plan {shown} cannot be read ({error}); accepted is a TOML file")
         })?;
-        let file: PlanFile = toml::from_str(&text).map_err(|error| {
-            let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-            anyhow!("--plan {shown}, line {line}: {}", error.message())
-        })?;
+        let file: PlanFile = toml::from_str(&text)
+            .map_err(|error| anyhow!("--plan {shown}, {}", objection(&text, &error)))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         file.check(folder).map_err(|error| anyhow!("--plan {shown}: {error}"))
     }
@@ -87,10 +88,13 @@ impl Plan {
 
     /// A point by its number.
     #[must_use]
-    pub fn point(&self, number: u64) -> Point {
+    pub fn point(&self, number: u64) -> SweepPoint {
         let steps = self.steps_of(number);
         let values = self.axes.iter().zip(steps);
-        Point { number, values: values.map(|(it, step)| (it.parameter, it.value(step))).collect() }
+        SweepPoint {
+            number,
+            values: values.map(|(it, step)| (it.parameter, it.value(step))).collect(),
+        }
     }
 
     /// The step of each axis at a point.
@@ -115,13 +119,13 @@ impl Plan {
 impl PlanFile {
     /// Checks all that can be checked without the verb.
     fn check(self, folder: &Path) -> Result<Plan> {
-        let Self { sweep: Head { verb, shards, first }, fixed, axis: axes } = self;
+        let Self { sweep: PlanHead { verb, shards, first }, fixed, axis: axes } = self;
         if !(1..=MOST_SHARDS).contains(&shards) {
             bail!("shards = {shards} is not accepted: accepted are 1 to {MOST_SHARDS}");
         }
         check_axes(&axes, &fixed)?;
         let mut problem = None;
-        let mut words = Vec::new();
+        let (mut words, mut off) = (Vec::new(), Vec::new());
         for (name, value) in &fixed {
             if NOT_FIXED.contains(&name.as_str()) {
                 bail!("[fixed] {name} is not accepted: the sweep decides where and how it writes");
@@ -134,6 +138,8 @@ impl PlanFile {
                 words.push(format!("--problem={}", path.display()));
             } else if let Some(word) = word(name, value)? {
                 words.push(word);
+            } else {
+                off.push(name.clone());
             }
         }
         // A problem file counts by what is in it, wherever it lies.
@@ -142,16 +148,32 @@ impl PlanFile {
         let problem = problem.as_deref();
         let hash = Hashed { verb: &verb, shards, words: &hashed, axes: &axes, problem };
         let hash = digest(&serde_json::to_vec(&hash)?);
-        Ok(Plan { verb, shards, first, words, axes, hash })
+        Ok(Plan { verb, shards, first, words, off, axes, hash })
     }
 }
 
-fn check_axes(axes: &[Axis], fixed: &toml::Table) -> Result<()> {
+/// What the reader objects to in a plan, with the line that it means.
+fn objection(text: &str, error: &toml::de::Error) -> String {
+    let before = error.span().map_or("", |span| &text[..span.start]);
+    let number = before.matches('\n').count();
+    let line = text.lines().nth(number).unwrap_or_default().trim();
+    let line = if line.is_empty() { String::new() } else { format!(", {line}") };
+    let message = error.message().replace("expected f64", "expected a number");
+    let message = message.replace("expected u32", "expected an integer, 0 to 4294967295");
+    format!("line {}{line}: {}", number + 1, message.replace('\n', " "))
+}
+
+fn check_axes(axes: &[SweepAxis], fixed: &toml::Table) -> Result<()> {
     if !(1..=2).contains(&axes.len()) {
         bail!("there are {} [[axis]]: accepted are one or two", axes.len());
     }
-    for Axis { parameter, from, to, steps } in axes {
+    for SweepAxis { parameter, from, to, steps } in axes {
         let name = parameter.as_str();
+        for (end, value) in [("from", from), ("to", to)] {
+            if !value.is_finite() {
+                bail!("axis {name}: {end} = {value} is not accepted: accepted are finite numbers");
+            }
+        }
         if *steps == 0 {
             bail!("axis {name}: steps = 0 is not accepted: accepted are 1 or more");
         }

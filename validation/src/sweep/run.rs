@@ -1,19 +1,22 @@
 //! Computes the shards of a sweep.
 
-use super::folder::{Folder, Program};
+use super::folder::{ComputedBy, Folder};
 use super::pilot::{self, Dealt};
 use super::plan::Plan;
-use super::shard::{self, Damage, Head, Identity, Shard};
+use super::shard::{self, Damage, Identity, Shard, ShardHead};
 use super::tiling::{self, Tiling};
-use super::work::Work;
+use super::work::SweepVerb;
 use anyhow::{Result, bail};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
+/// Most tiles of a plan: every task and every merge holds what is known of each in memory.
+const MOST_TILES: u64 = 1 << 24;
+
 /// A sweep that is ready to be computed, looked at or merged.
 pub struct Sweep<'a> {
     pub(super) plan: &'a Plan,
-    pub(super) work: &'a dyn Work,
+    pub(super) work: &'a dyn SweepVerb,
     pub(super) folder: &'a Folder,
     pub(super) tiling: Tiling,
     pub(super) dealt: Dealt,
@@ -33,16 +36,23 @@ pub trait Told: Sync {
 }
 
 impl<'a> Sweep<'a> {
-    /// Refuses a plan that has more shards than tiles, or a point that the verb refuses.
+    /// Refuses a plan that has more shards than tiles or too many tiles, or a point that the verb
+    /// refuses.
     ///
     /// # Errors
     /// Names what is refused, and says what is accepted.
-    pub fn check(plan: &Plan, work: &dyn Work) -> Result<()> {
+    pub fn check(plan: &Plan, work: &dyn SweepVerb) -> Result<()> {
         let tiles = Tiling::new(plan, work).count();
         if u64::from(plan.shards) > tiles {
             bail!(
                 "shards = {} is not accepted: there are {tiles} tiles, accepted are 1 to {tiles}",
                 plan.shards
+            );
+        }
+        if tiles > MOST_TILES {
+            bail!(
+                "the plan has {tiles} blocks of starts: accepted are at most {MOST_TILES}, by \
+                 fewer points or smaller grids"
             );
         }
         (0..plan.points()).try_for_each(|number| {
@@ -55,14 +65,14 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     /// What the verb objects to, and a folder that cannot be written.
-    pub fn new(plan: &'a Plan, work: &'a dyn Work, folder: &'a Folder) -> Result<Self> {
+    pub fn new(plan: &'a Plan, work: &'a dyn SweepVerb, folder: &'a Folder) -> Result<Self> {
         let tiling = Tiling::new(plan, work);
         let dealt = pilot::dealt(plan, work, tiling, folder)?;
         let identity = Identity {
             schema: 1,
             plan: plan.hash.clone(),
             deal: dealt.digest.clone(),
-            program: Program::this(),
+            program: ComputedBy::this(),
         };
         Ok(Self { plan, work, folder, tiling, dealt, identity })
     }
@@ -72,7 +82,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// Says why there is none.
     pub fn shard(&self, shard: u32) -> Result<Shard, Damage> {
-        Shard::open(self.folder, &self.identity, shard, &self.dealt.deal.tiles_of(shard))
+        Shard::open(self.folder, &self.identity, shard, self.dealt.deal.tiles_of(shard))
     }
 
     /// Computes one shard, unless it is finished.
@@ -173,7 +183,7 @@ impl<'a> Sweep<'a> {
         }
         let numbers = self.dealt.deal.tiles_of(shard);
         let lengths = tiles.iter().map(|it| it.len() as u64);
-        let head = Head {
+        let head = ShardHead {
             identity: self.identity.clone(),
             shard,
             seconds: took.as_secs_f64(),

@@ -1,6 +1,6 @@
 //! A shard's file: one line of JSON, the tiles' bytes, and the SHA-256 of all that.
 
-use super::folder::{Folder, Program};
+use super::folder::{ComputedBy, Folder};
 use super::plan::hexadecimal;
 use anyhow::{Context, Result};
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 
 /// The first line of a shard's file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Head {
+pub struct ShardHead {
     /// What the shard is one of.
     pub identity: Identity,
     /// The shard's number, from 0.
@@ -32,14 +32,14 @@ pub struct Identity {
     /// The hash of what the tiles were dealt by.
     pub deal: String,
     /// What computed it.
-    pub program: Program,
+    pub program: ComputedBy,
 }
 
 /// A shard's file that is whole and belongs to the sweep.
 #[derive(Debug)]
 pub struct Shard {
     /// The file's first line.
-    pub head: Head,
+    pub head: ShardHead,
     /// The place at which the tiles begin.
     from: u64,
 }
@@ -81,7 +81,7 @@ impl From<io::Error> for Damage {
 ///
 /// # Errors
 /// A folder that cannot be written.
-pub fn write(folder: &Folder, head: &Head, tiles: &[Vec<u8>]) -> Result<()> {
+pub fn write(folder: &Folder, head: &ShardHead, tiles: &[Vec<u8>]) -> Result<()> {
     let mut line = serde_json::to_vec(head)?;
     line.push(b'\n');
     let mut parts: Vec<&[u8]> = vec![&line];
@@ -119,7 +119,7 @@ impl Shard {
         file.rewind()?;
         let mut line = Vec::new();
         (&mut file).take(LONGEST_HEAD.min(body)).read_until(b'\n', &mut line)?;
-        let head: Head = serde_json::from_slice(&line)
+        let head: ShardHead = serde_json::from_slice(&line)
             .map_err(|error| Damage::Damaged(format!("its first line is none ({error})")))?;
         if head.identity != *identity {
             return Err(damaged(head.identity.difference(identity)));

@@ -1,6 +1,6 @@
 //! The arrays of one name at all points, on the disk until their common shape is known.
 
-use super::array::{Array, Values, places};
+use super::array::{Array, ArrayValues, places};
 use anyhow::{Result, bail};
 use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, Write};
@@ -8,7 +8,7 @@ use std::path::Path;
 
 /// What the numbers of an array are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
+pub enum NumberType {
     /// f8.
     F8,
     /// i4.
@@ -22,7 +22,7 @@ pub struct Spool {
     /// The arrays' name.
     pub name: String,
     /// What their numbers are.
-    pub kind: Kind,
+    pub kind: NumberType,
     /// The largest length along each dimension.
     pub shape: Vec<usize>,
     file: BufWriter<File>,
@@ -33,14 +33,14 @@ impl Spool {
     pub fn new(first: &Array, folder: &Path) -> Result<Self> {
         let file = BufWriter::new(tempfile::tempfile_in(folder)?);
         let shape = vec![0; first.shape.len()];
-        Ok(Self { name: first.name.clone(), kind: Kind::of(&first.values), shape, file })
+        Ok(Self { name: first.name.clone(), kind: NumberType::of(&first.values), shape, file })
     }
 
     /// Adds the array of the next point.
     pub fn add(&mut self, array: &Array) -> Result<()> {
         let alike = array.name == self.name
             && array.shape.len() == self.shape.len()
-            && Kind::of(&array.values) == self.kind;
+            && NumberType::of(&array.values) == self.kind;
         if !alike {
             bail!("the points differ in the array {}", self.name);
         }
@@ -49,9 +49,9 @@ impl Spool {
             self.file.write_all(&(*length as u64).to_le_bytes())?;
         }
         match &array.values {
-            Values::F8(values) => self.write(values.iter().map(|it| it.to_le_bytes())),
-            Values::I4(values) => self.write(values.iter().map(|it| it.to_le_bytes())),
-            Values::U1(values) => Ok(self.file.write_all(values)?),
+            ArrayValues::F8(values) => self.write(values.iter().map(|it| it.to_le_bytes())),
+            ArrayValues::I4(values) => self.write(values.iter().map(|it| it.to_le_bytes())),
+            ArrayValues::U1(values) => Ok(self.file.write_all(values)?),
         }
     }
 
@@ -70,12 +70,12 @@ impl Spool {
     }
 }
 
-impl Kind {
-    const fn of(values: &Values) -> Self {
+impl NumberType {
+    const fn of(values: &ArrayValues) -> Self {
         match values {
-            Values::F8(_) => Self::F8,
-            Values::I4(_) => Self::I4,
-            Values::U1(_) => Self::U1,
+            ArrayValues::F8(_) => Self::F8,
+            ArrayValues::I4(_) => Self::I4,
+            ArrayValues::U1(_) => Self::U1,
         }
     }
 }
@@ -87,14 +87,14 @@ pub struct SpoolReader {
 }
 
 /// A number of an array.
-pub trait Number: Copy {
+pub trait ArrayNumber: Copy {
     /// What stands where there is no number.
     const NONE: Self;
     /// Reads one.
     fn read(file: &mut impl Read) -> std::io::Result<Self>;
 }
 
-impl Number for f64 {
+impl ArrayNumber for f64 {
     const NONE: Self = Self::NAN;
     fn read(file: &mut impl Read) -> std::io::Result<Self> {
         let mut bytes = [0; 8];
@@ -103,7 +103,7 @@ impl Number for f64 {
     }
 }
 
-impl Number for i32 {
+impl ArrayNumber for i32 {
     const NONE: Self = -1;
     fn read(file: &mut impl Read) -> std::io::Result<Self> {
         let mut bytes = [0; 4];
@@ -112,7 +112,7 @@ impl Number for i32 {
     }
 }
 
-impl Number for u8 {
+impl ArrayNumber for u8 {
     const NONE: Self = b' ';
     fn read(file: &mut impl Read) -> std::io::Result<Self> {
         let mut byte = [0];
@@ -123,7 +123,7 @@ impl Number for u8 {
 
 impl SpoolReader {
     /// The array of the next point, padded to the shape of the largest.
-    pub fn next<T: Number>(&mut self) -> Result<Vec<T>> {
+    pub fn next<T: ArrayNumber>(&mut self) -> Result<Vec<T>> {
         let mut shape = Vec::with_capacity(self.shape.len());
         for _ in &self.shape {
             let mut length = [0; 8];

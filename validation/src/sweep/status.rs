@@ -19,7 +19,7 @@ pub enum ShardState {
 
 /// The states of all shards of a sweep.
 #[derive(Clone, Debug)]
-pub struct Status {
+pub struct SweepStatus {
     /// A state a shard, in order.
     pub shards: Vec<ShardState>,
     /// Expected seconds to the end, as long as so many run as do now, or one where none does; none
@@ -27,7 +27,7 @@ pub struct Status {
     pub seconds_to_end: Option<f64>,
 }
 
-impl Status {
+impl SweepStatus {
     /// The status of a sweep of which nothing was begun.
     #[must_use]
     pub fn not_begun(plan: &Plan) -> Self {

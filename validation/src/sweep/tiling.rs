@@ -5,7 +5,7 @@
 //! depend on it.
 
 use super::plan::Plan;
-use super::work::Work;
+use super::work::SweepVerb;
 use anyhow::{Context, Result, bail};
 use std::ops::Range;
 
@@ -24,7 +24,7 @@ pub struct Tiling {
 
 impl Tiling {
     /// The tiles of a plan with this work.
-    pub fn new(plan: &Plan, work: &dyn Work) -> Self {
+    pub fn new(plan: &Plan, work: &dyn SweepVerb) -> Self {
         Self::of(plan.points(), work.tiles(), plan.shards)
     }
 

@@ -1,6 +1,6 @@
 //! What a verb does at the points of a sweep.
 
-use super::{Array, Point};
+use super::{Array, SweepPoint};
 use anyhow::Result;
 
 /// The tiles, one after the other, of a point; each may fail to be read.
@@ -10,12 +10,12 @@ pub type Tiles<'a> = &'a mut dyn Iterator<Item = Result<Vec<u8>>>;
 ///
 /// Results depend on the point and the tile alone: not on the other tiles, on threads or on the
 /// machine.
-pub trait Work: Sync {
+pub trait SweepVerb: Sync {
     /// Refuses a point at which the verb has nothing to work on, and says what is accepted.
     ///
     /// # Errors
     /// What the verb says of the point's model and start.
-    fn check(&self, point: &Point) -> Result<()>;
+    fn check(&self, point: &SweepPoint) -> Result<()>;
 
     /// The number of tiles of each point.
     fn tiles(&self) -> u32 {
@@ -26,21 +26,21 @@ pub trait Work: Sync {
     ///
     /// # Errors
     /// What the verb objects to.
-    fn tile(&self, point: &Point, tile: u32) -> Result<Vec<u8>>;
+    fn tile(&self, point: &SweepPoint, tile: u32) -> Result<Vec<u8>>;
 
     /// Joins the tiles of a point, given in order, into the arrays of that point. Points give the
     /// same names, types and numbers of dimensions.
     ///
     /// # Errors
     /// A tile that cannot be read.
-    fn join(&self, point: &Point, tiles: Tiles<'_>) -> Result<Vec<Array>>;
+    fn join(&self, point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>>;
 
     /// About how many events each tile of a point costs, or a quantity in proportion to it: counted
     /// where the point is one of the pilot's.
     ///
     /// # Errors
     /// What the verb objects to.
-    fn costs(&self, point: &Point) -> Result<Vec<u64>>;
+    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>>;
 
     /// Arrays that are the same at every point: the axes that the verb has itself.
     fn coordinates(&self) -> Vec<Array> {

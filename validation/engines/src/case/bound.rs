@@ -71,7 +71,7 @@ impl Quantity {
     }
 }
 
-/// Which figure of a distribution.
+/// A statistic of a distribution.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Statistic {
@@ -94,7 +94,7 @@ pub struct Bound {
     pub at: Vec<Accuracy>,
     /// What is bounded.
     pub quantity: Quantity,
-    /// Which figure of it.
+    /// The statistic of the quantity.
     pub statistic: Statistic,
     /// The limit, in the quantity's unit.
     pub limit: f64,
@@ -115,7 +115,7 @@ pub struct Shortcoming {
     pub at: Vec<Accuracy>,
     /// The quantity that is out of bounds.
     pub quantity: Quantity,
-    /// Which figure of it.
+    /// The statistic of the quantity.
     pub statistic: Statistic,
     /// The figure is at least this, or the shortcoming no longer shows.
     pub at_least: f64,

@@ -1,7 +1,7 @@
 //! What a case file says of engines: bounds and known shortcomings.
 
 use super::bound::{Bound, Quantity, Shortcoming, Statistic};
-use super::located::{FileError, Source};
+use super::located::{FileError, FileText};
 use crate::engine::Accuracy;
 use regex::Regex;
 use serde::Deserialize;
@@ -65,7 +65,7 @@ pub(super) struct ShortcomingTable {
 
 /// Reads the bounds of every case: those that are for other systems alone come first there.
 pub(super) fn read_bounds(file: &str, text: &str) -> Result<Defaults, FileError> {
-    let source = Source { file, text };
+    let source = FileText { file, text };
     let wire: BoundsFile = source.parse()?;
     let (systems, all): (Vec<_>, Vec<_>) = wire.bounds.into_iter().partition(|it| it.systems);
     let read = |tables: Vec<BoundTable>| {
@@ -87,7 +87,7 @@ fn accuracies(tolerance: Option<Several>, step: Option<Several>) -> Vec<Accuracy
     tolerances.chain(numbers(step).into_iter().map(Accuracy::Step)).collect()
 }
 
-impl Source<'_> {
+impl FileText<'_> {
     pub(super) fn bound(&self, table: BoundTable) -> Result<Bound, FileError> {
         let engine = self.regex("engine", &table.engine)?;
         if table.limit.get_ref().is_nan() {

@@ -2,7 +2,7 @@
 
 use super::bound::{Quantity, Shortcoming, Statistic};
 use super::expectations::whole;
-use super::located::{FileError, Source};
+use super::located::{FileError, FileText};
 use crate::engine::Accuracy;
 use regex::Regex;
 use serde::Deserialize;
@@ -29,7 +29,7 @@ type KnownRow = (String, f64, Quantity, Statistic, f64, f64);
 
 /// Reads the known shortcomings.
 pub(super) fn read_shortcomings(file: &str, text: &str) -> Result<Vec<Shortcoming>, FileError> {
-    let source = Source { file, text };
+    let source = FileText { file, text };
     let wire: KnownFile = source.parse()?;
     let mut known = Vec::new();
     for DefectTable { engine, why, rows } in wire.defects {
@@ -43,7 +43,7 @@ pub(super) fn read_shortcomings(file: &str, text: &str) -> Result<Vec<Shortcomin
     Ok(known)
 }
 
-impl Source<'_> {
+impl FileText<'_> {
     fn known(
         &self,
         engine: &str,

@@ -1,6 +1,7 @@
 //! Where cases come from: inside the binary, or a folder.
 
 use super::Case;
+use super::bound::Shortcoming;
 use super::expectations::{Defaults, read_bounds};
 use super::known::read_shortcomings;
 use super::located::FileError;
@@ -16,9 +17,9 @@ const SHORTCOMINGS: &str = include_str!("../../shortcomings.toml");
 /// Cases of the oscillator and of other systems, each by name.
 #[derive(Clone, Debug, Default)]
 pub struct Cases {
-    /// Those of the oscillator.
+    /// The cases of the oscillator.
     pub oscillator: Vec<Case>,
-    /// Those of other systems.
+    /// The cases of other systems.
     pub systems: Vec<SystemCase>,
 }
 
@@ -148,6 +149,16 @@ fn is_case(path: &Path) -> bool {
 pub fn defaults() -> Result<Defaults, FileError> {
     let shortcomings = read_shortcomings("shortcomings.toml", SHORTCOMINGS)?;
     Ok(Defaults { shortcomings, ..read_bounds("bounds.toml", BOUNDS)? })
+}
+
+/// The known shortcomings in a file of their own, as of engines that are not of this program.
+///
+/// # Errors
+/// [`FileError`] for a file that cannot be read or understood.
+pub fn shortcomings_of(path: &Path) -> Result<Vec<Shortcoming>, FileError> {
+    let text =
+        std::fs::read_to_string(path).map_err(|error| FileError::unreadable(path, &error))?;
+    read_shortcomings(&path.display().to_string(), &text)
 }
 
 /// What is expected on a case of a user's own: the bounds alone, because the shortcomings that are

@@ -46,12 +46,12 @@ impl FileError {
 }
 
 /// A text with its file's name, for errors.
-pub(super) struct Source<'a> {
+pub(super) struct FileText<'a> {
     pub(super) file: &'a str,
     pub(super) text: &'a str,
 }
 
-impl Source<'_> {
+impl FileText<'_> {
     pub(super) fn parse<T: serde::de::DeserializeOwned>(&self) -> Result<T, FileError> {
         toml::from_str(self.text).map_err(|error| FileError::toml(self.file, self.text, &error))
     }

@@ -16,12 +16,14 @@ mod wire;
 pub use accepted::accepted;
 pub use bound::{Bound, Quantity, Shortcoming, Statistic};
 pub use expectations::Defaults;
-pub use library::{Cases, defaults, defaults_of_own_cases, embedded, from_directory};
+pub use library::{
+    Cases, defaults, defaults_of_own_cases, embedded, from_directory, shortcomings_of,
+};
 pub use located::{FileError, Origins};
 pub use probed::ProbedCase;
 pub use problem::{Given, Problem};
 pub use regime::Regime;
-pub use system::{SystemCase, parse_system_case};
+pub use system::{SystemCase, TROUBLE, parse_system_case};
 pub use wire::{parse_case, parse_problem, read_problem};
 
 use percuss::{Parameters, Start};

@@ -1,6 +1,6 @@
 //! What a case asks of engines beyond its own run.
 
-use super::located::{FileError, Source};
+use super::located::{FileError, FileText};
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -26,7 +26,7 @@ pub(super) struct ProbesTable {
     valid_within: Option<Spanned<i64>>,
 }
 
-impl Source<'_> {
+impl FileText<'_> {
     pub(super) fn probed(&self, table: &ProbesTable) -> Result<ProbedCase, FileError> {
         let accepted = |it: &Spanned<i64>| {
             let periods = u32::try_from(*it.get_ref()).ok();

@@ -1,7 +1,7 @@
 //! The files' own shape, turned into checked values.
 
 use super::expectations::{BoundTable, ShortcomingTable};
-use super::located::{FileError, Source};
+use super::located::{FileError, FileText};
 use super::probed::ProbesTable;
 use super::problem::Given;
 use super::{Case, Horizon, Regime};
@@ -105,7 +105,7 @@ pub fn read_problem(path: &Path) -> Result<Given, FileError> {
 /// # Errors
 /// As [`read_problem`].
 pub fn parse_problem(file: &str, text: &str) -> Result<Given, FileError> {
-    let source = Source { file, text };
+    let source = FileText { file, text };
     let file: ProblemFile = source.parse()?;
     source.given(file.parameters, file.start)
 }
@@ -114,7 +114,7 @@ fn each<T, U, E>(list: Vec<T>, check: impl Fn(T) -> Result<U, E>) -> Result<Vec<
     list.into_iter().map(check).collect()
 }
 
-impl Source<'_> {
+impl FileText<'_> {
     fn given(&self, parameters: ParameterTable, start: StartTable) -> Result<Given, FileError> {
         let mut given = Given::default();
         let model = &mut given.parameters;
@@ -163,7 +163,7 @@ impl Source<'_> {
 /// # Errors
 /// [`FileError`] names the file's line, the field, its value and what is accepted.
 pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
-    let source = Source { file, text };
+    let source = FileText { file, text };
     let wire: CaseFile = source.parse()?;
     let given = source.given(wire.parameters, wire.start)?;
     let problem = given.check().map_err(FileError)?;
@@ -194,7 +194,7 @@ pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
     })
 }
 
-impl Source<'_> {
+impl FileText<'_> {
     /// Refuses a name that is none of a file.
     pub(super) fn plain_name(&self, name: &Spanned<String>) -> Result<(), FileError> {
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);

@@ -8,12 +8,18 @@
 //! [`GuardSearch`]: super::location::GuardSearch
 
 use super::Event;
-use super::location::GuardRise;
 use std::cell::{Cell, RefCell};
 use std::rc::Rc;
 
 thread_local! {
     static SCRIPT: RefCell<Option<Script>> = const { RefCell::new(None) };
+}
+
+/// A guard that has risen to zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct GuardRise {
+    pub(super) t: f64,
+    pub(super) guard: usize,
 }
 
 /// The crossings of a run that was made before.

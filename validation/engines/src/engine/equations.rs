@@ -53,7 +53,7 @@ impl Entered {
 ///
 /// Guards are negative inside a mode and rise to zero at an event.
 pub trait Equations: Copy {
-    /// Which mode it is.
+    /// The name of a mode.
     type Mode: Copy + PartialEq + Debug;
     /// The states, as many as the system has.
     type State: Numbers;

@@ -6,6 +6,7 @@
 //! interval is seen wherever the dense output shows it. Rates come from the equations of motion.
 //! The crossing itself is then narrowed down to the last bit.
 
+use super::alone::GuardRise;
 use super::equations::{Entered, Equations, NO_GUARD, Numbers};
 use super::joining::Moment;
 use super::meter::{Failure, Meter};
@@ -21,13 +22,6 @@ const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
 
 /// A dense output: the state at an instant.
 pub(super) type StateAt<'a, S> = dyn FnMut(f64) -> Result<S, Failure> + 'a;
-
-/// A guard that has risen to zero.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct GuardRise {
-    pub(super) t: f64,
-    pub(super) guard: usize,
-}
 
 /// The guards at an instant.
 #[derive(Clone, Copy, Debug)]

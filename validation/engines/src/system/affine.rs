@@ -8,7 +8,7 @@ use crate::engine::{Entered, Equations, NO_GUARD, Numbers};
 
 /// The equations of a system.
 ///
-/// Its methods are not compiled into every stage of every integrator: that would take half as long
+/// The methods are not compiled into every stage of every integrator: that would take half as long
 /// again, and a call costs little beside the loops that it runs.
 #[derive(Clone, Copy, Debug)]
 pub struct Affine<'a> {

@@ -16,13 +16,13 @@ const TIME_ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
 /// The matrix M of z' = M z, with z = (x, cos theta, sin theta, 1).
 #[derive(Clone, Debug)]
-pub(super) struct Motion {
+pub(super) struct ModeMatrix {
     /// How many states there are.
     pub(super) size: usize,
     pub(super) rows: Vec<Wide>,
 }
 
-impl Motion {
+impl ModeMatrix {
     /// The row of a row's derivative.
     pub(super) fn derivative(&self, row: &Wide) -> Wide {
         multiplied(row, &self.rows, self.size + 3)
@@ -57,19 +57,19 @@ pub(super) struct Chain {
 /// The first derivative that is not zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Leading {
-    /// Its order.
+    /// The derivative's order.
     pub(super) order: usize,
     pub(super) positive: bool,
 }
 
 impl Chain {
     /// As many derivatives as z has entries: if these are zero, all are.
-    pub(super) fn new(row: Wide, motion: &Motion) -> Self {
+    pub(super) fn new(row: Wide, motion: &ModeMatrix) -> Self {
         let next = |row: &Wide| Some(motion.derivative(row));
         Self { rows: std::iter::successors(Some(row), next).take(motion.size + 3).collect() }
     }
 
-    /// Which derivatives are zero after an event because of its guard: a bit each.
+    /// The derivatives that are zero after an event because of its guard, a bit each.
     pub(super) fn zeros_after(&self, guard: &Wide, reset: &[Wide], size: usize) -> u16 {
         let zero = |(k, row): (usize, &Wide)| u16::from(is_multiple(row, guard, reset, size)) << k;
         self.rows.iter().enumerate().map(zero).sum()

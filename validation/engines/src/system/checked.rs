@@ -1,7 +1,7 @@
 //! A system that is whole: every row of the right length, every successor there, and what an
 //! integrator wants to know beforehand computed once.
 
-use super::chain::{Chain, Motion, Wide, value};
+use super::chain::{Chain, ModeMatrix, Wide, value};
 use super::spectrum::spectrum;
 use super::{Direction, MOST_GUARDS, MOST_STATES, Mode, Row, System, Until};
 use crate::engine::Failure;
@@ -16,6 +16,7 @@ pub struct CheckedSystem {
     pub(super) most_guards: usize,
     fastest: f64,
     turning: f64,
+    decay: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -29,7 +30,7 @@ pub(super) struct CheckedMode {
     /// Whether the guards do, and their rates.
     pub(super) guards_forced: [bool; 2],
     pub(super) guards: Vec<Guard>,
-    pub(super) until: Vec<Passage>,
+    pub(super) until: Vec<ModeEnd>,
 }
 
 /// A guard of an event; an event that counts crossings in both directions has two.
@@ -42,7 +43,7 @@ pub(super) struct Guard {
 
 /// What follows where a mode ends.
 #[derive(Clone, Debug)]
-pub(super) struct Passage {
+pub(super) struct ModeEnd {
     /// The matrix R of z+ = R z.
     pub(super) reset: Vec<Wide>,
     pub(super) next: Vec<Successor>,
@@ -64,10 +65,11 @@ impl CheckedSystem {
     /// What is wrong with it, or more than this program runs.
     pub fn new(system: System) -> Result<Self, Failure> {
         check(&system)?;
-        let motions: Vec<Motion> = system.modes.iter().map(|mode| motion(&system, mode)).collect();
+        let motions: Vec<ModeMatrix> =
+            system.modes.iter().map(|mode| motion(&system, mode)).collect();
         let guards: Vec<Vec<Guard>> =
             system.modes.iter().zip(&motions).map(|(mode, motion)| guards(mode, motion)).collect();
-        let passages = |mode: &Mode| -> Vec<Passage> {
+        let passages = |mode: &Mode| -> Vec<ModeEnd> {
             mode.until.iter().map(|until| passage(until, &motions, &guards)).collect()
         };
         let checked = |(mode, guards): (&Mode, &Vec<Guard>)| CheckedMode {
@@ -91,10 +93,11 @@ impl CheckedSystem {
             spectra.iter().fold(0.0, |most: f64, it| most.max(it.fastest)),
             spectra.iter().fold(0.0, |most: f64, it| most.max(it.turning)),
         ];
-        Ok(Self { system, backward: false, modes, most_guards, fastest, turning })
+        let decay = spectra.iter().fold(f64::INFINITY, |least, it| least.min(it.decay));
+        Ok(Self { system, backward: false, modes, most_guards, fastest, turning, decay })
     }
 
-    /// The same system run back in time.
+    /// The system with its time reversed.
     ///
     /// # Errors
     /// As [`CheckedSystem::new`].
@@ -154,6 +157,12 @@ impl CheckedSystem {
         TAU / self.turning
     }
 
+    /// The fastest rate at which every mode decays.
+    #[must_use]
+    pub fn decay(&self) -> f64 {
+        self.decay
+    }
+
     /// The shortest of the times in which the system changes: its time scale, and those of its
     /// matrices.
     #[must_use]
@@ -166,17 +175,17 @@ fn wide(row: &Row) -> Wide {
     std::array::from_fn(|i| row.get(i).copied().unwrap_or_default())
 }
 
-fn motion(system: &System, mode: &Mode) -> Motion {
+fn motion(system: &System, mode: &Mode) -> ModeMatrix {
     let size = system.states.len();
     let mut rows: Vec<Wide> = (0..size).map(|i| wide(&mode.rate(i))).collect();
     let [mut cos, mut sin] = [Wide::default(); 2];
     cos[size + 1] = -system.omega;
     sin[size] = system.omega;
     rows.extend([cos, sin, Wide::default()]);
-    Motion { size, rows }
+    ModeMatrix { size, rows }
 }
 
-fn guards(mode: &Mode, motion: &Motion) -> Vec<Guard> {
+fn guards(mode: &Mode, motion: &ModeMatrix) -> Vec<Guard> {
     let chain = |row: &Wide| Chain::new(*row, motion);
     let until = mode.until.iter().enumerate();
     let until =
@@ -205,7 +214,7 @@ fn are_forced(guards: &[Guard], order: usize, system: &System) -> bool {
     rows.any(|row| row[size] != 0.0 || row[size + 1] != 0.0)
 }
 
-fn passage(until: &Until, motions: &[Motion], guards: &[Vec<Guard>]) -> Passage {
+fn passage(until: &Until, motions: &[ModeMatrix], guards: &[Vec<Guard>]) -> ModeEnd {
     let size = motions.first().map_or(0, |motion| motion.size);
     let unit = |i: usize| -> Wide { std::array::from_fn(|j| f64::from(u8::from(i == j))) };
     let mut reset: Vec<Wide> = (0..size + 3).map(unit).collect();
@@ -224,7 +233,7 @@ fn passage(until: &Until, motions: &[Motion], guards: &[Vec<Guard>]) -> Passage 
         }
     };
     let next = until.next.iter().map(successor).collect();
-    Passage { reset, next }
+    ModeEnd { reset, next }
 }
 
 fn check(system: &System) -> Result<(), Failure> {

@@ -24,7 +24,7 @@ pub type Row = Vec<f64>;
 /// A system in f64, as it was written down.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct System {
-    /// Its name.
+    /// The system's name.
     pub name: String,
     /// The names of its states.
     pub states: Vec<String>,
@@ -44,7 +44,7 @@ pub struct System {
 /// A mode.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mode {
-    /// Its name.
+    /// The mode's name.
     pub name: String,
     /// The matrix A, a row a state.
     pub a: Vec<Vec<f64>>,
@@ -61,29 +61,29 @@ pub struct Mode {
 /// An event that ends its mode.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Until {
-    /// Its name.
+    /// The event's name.
     pub name: String,
     /// The guard, which is negative inside the mode.
     pub guard: Row,
     /// A row for each state after the event; without it the state stays.
     pub reset: Option<Vec<Row>>,
-    /// Which mode follows, each with the row that has to be positive for it: the first that is
-    /// counts, and the last has none.
+    /// The modes that may follow, each with the row that has to be positive for it: the first that
+    /// is counts, and the last has none.
     pub next: Vec<(Option<Row>, usize)>,
 }
 
 /// An event that is only counted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Watch {
-    /// Its name.
+    /// The event's name.
     pub name: String,
     /// The guard.
     pub guard: Row,
-    /// Which crossings count.
+    /// The crossings that count.
     pub direction: Direction,
 }
 
-/// Which crossings of a watched guard count.
+/// The direction in which a watched guard has to cross zero for an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Direction {
     /// The guard becomes positive after it was negative.

@@ -10,11 +10,11 @@ pub const MOST_STATES: usize = 11;
 /// more: here they are copied with every look at them.
 pub const MOST_GUARDS: usize = 24;
 
-/// At most `MOST` numbers.
+/// A list of at most `MOST` numbers, without an allocation.
 #[derive(Clone, Copy, PartialEq)]
 pub struct Inline<const MOST: usize> {
     count: usize,
-    /// Those past `count` are zero.
+    /// The numbers; those past `count` are zero.
     values: [f64; MOST],
 }
 

@@ -11,11 +11,11 @@ use std::sync::Arc;
 pub struct SystemProblem {
     /// The system with its exact coefficients, forward in time.
     pub exact: affine::System,
-    /// Its closed forms in f64, in the direction of the run.
+    /// The system's closed forms in f64, in the direction of the run.
     pub solver: Solver<f64>,
     /// The system in plain numbers, in the direction of the run.
     pub checked: Arc<CheckedSystem>,
-    /// Where the run begins.
+    /// The point at which the run begins.
     pub start: StartPoint,
     /// Whether the run goes back in time.
     pub backward: bool,

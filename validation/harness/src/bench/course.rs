@@ -44,7 +44,7 @@ impl Score {
     }
 }
 
-/// Only the events and the end are asked for.
+/// A grid without samples: only the events and the end are asked for.
 const NO_SAMPLES: SampleGrid = SampleGrid { per_period: 1, count: 0 };
 
 impl Course {

@@ -11,7 +11,7 @@ pub const FILE: &str = "benches/history.jsonl";
 /// One workload of one recorded version.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct Record {
+pub struct HistoryRecord {
     /// The format's number.
     pub schema: u32,
     /// The version.
@@ -58,7 +58,7 @@ pub struct Figures {
     pub state_error_max: f64,
 }
 
-impl Record {
+impl HistoryRecord {
     /// The line of a program.
     #[must_use]
     pub fn of(build: Build, bench: &str, figures: Figures) -> Self {
@@ -103,7 +103,7 @@ impl Record {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct History {
     /// The lines of the history.
-    pub records: Vec<Record>,
+    pub records: Vec<HistoryRecord>,
 }
 
 impl History {
@@ -127,7 +127,7 @@ impl History {
             let refused = |what: String| {
                 format!("{}: {what}: accepted is a line that bench record wrote", i + 1)
             };
-            let record: Record =
+            let record: HistoryRecord =
                 serde_json::from_str(line).map_err(|error| refused(error.to_string()))?;
             let times = [record.best_ns, record.median_ns, record.floor_ns];
             let floors = [record.floors, record.floors_again];
@@ -148,14 +148,14 @@ impl History {
     /// # Errors
     /// What the serializer says; never of numbers that were measured.
     pub fn text(&self) -> Result<String, String> {
-        let line = |it: &Record| serde_json::to_string(it).map(|line| line + "\n");
+        let line = |it: &HistoryRecord| serde_json::to_string(it).map(|line| line + "\n");
         self.records.iter().map(line).collect::<Result<_, _>>().map_err(|error| error.to_string())
     }
 
     /// The last record of each workload of a version, in the order of its workloads.
     #[must_use]
-    pub fn version(&self, version: &str) -> Vec<&Record> {
-        let mut found: Vec<&Record> = Vec::new();
+    pub fn version(&self, version: &str) -> Vec<&HistoryRecord> {
+        let mut found: Vec<&HistoryRecord> = Vec::new();
         for record in self.records.iter().filter(|it| it.is_of(version)) {
             match found.iter_mut().find(|it| it.bench == record.bench) {
                 Some(earlier) => *earlier = record,
@@ -186,7 +186,7 @@ impl History {
 mod tests {
     use super::*;
 
-    fn record(commit: &str, bench: &str, best_ns: f64) -> Record {
+    fn record(commit: &str, bench: &str, best_ns: f64) -> HistoryRecord {
         let figures = Figures {
             instructions: None,
             best_ns,
@@ -197,13 +197,13 @@ mod tests {
             evaluations_per_switch: 1.05,
             state_error_max: 1e-13,
         };
-        Record::of(Build::of(commit, "rustc", "any"), bench, figures)
+        HistoryRecord::of(Build::of(commit, "rustc", "any"), bench, figures)
     }
 
     #[test]
     fn what_is_written_is_what_is_read() {
         let counted =
-            Record { instructions: Some(1234.5), ..record("bbbbbbbbb", "two", 0.1 + 0.2) };
+            HistoryRecord { instructions: Some(1234.5), ..record("bbbbbbbbb", "two", 0.1 + 0.2) };
         let history = History { records: vec![record("aaaaaaaaa", "one", 1e-3 / 3.0), counted] };
         let text = history.text().unwrap_or_default();
         assert_eq!(text.lines().count(), 2);

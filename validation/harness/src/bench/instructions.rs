@@ -14,7 +14,7 @@ const MUCH: u64 = 22_000;
 /// Instructions a unit of a workload.
 ///
 /// # Errors
-/// Where valgrind is not installed or gives no count.
+/// Valgrind is not installed, or gives no count.
 pub fn per_unit(bench: &str) -> Result<f64, Failure> {
     let (little, much) = (count(bench, LITTLE)?, count(bench, MUCH)?);
     if much <= little {

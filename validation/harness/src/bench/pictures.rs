@@ -2,7 +2,8 @@
 
 use super::contestants;
 use super::report::{Bench, BenchRow, Damped};
-use crate::bench::history::{History, Record};
+use crate::bench::history::{History, HistoryRecord};
+use crate::engine::REFERENCE;
 use crate::picture::{
     Axis, AxisScale, Curve, Curves, DrawError, INK, Marker, Picture, Stroke, basin_colours, looks,
     png, svg,
@@ -77,11 +78,11 @@ fn length(bench: &Bench) -> Curves {
         y: logarithmic("ns a forcing period; microseconds the whole run"),
         curves: vec![
             line,
-            Curve { name: "the whole run, µs".to_owned(), ..curve("exact", whole.collect()) },
+            Curve { name: "the whole run, µs".to_owned(), ..curve(REFERENCE, whole.collect()) },
             Curve {
                 name: "a period, ns".to_owned(),
                 marker: Some(Marker::Square),
-                ..curve("exact", time.collect())
+                ..curve(REFERENCE, time.collect())
             },
         ],
     }
@@ -119,7 +120,7 @@ const MARKERS: [Marker; 5] =
 /// What a unit of each workload has cost, version by version.
 #[must_use]
 pub fn history(history: &History) -> Curves {
-    let mut versions: Vec<&Record> = Vec::new();
+    let mut versions: Vec<&HistoryRecord> = Vec::new();
     let mut benches: Vec<&str> = Vec::new();
     for record in &history.records {
         if !versions.iter().any(|it| it.is_with(record)) {
@@ -130,7 +131,7 @@ pub fn history(history: &History) -> Curves {
         }
     }
     // Recorded twice, the last counts.
-    let cost = |bench: &str, version: &Record| {
+    let cost = |bench: &str, version: &HistoryRecord| {
         let mut own = history.records.iter().rev().filter(|it| it.bench == bench);
         own.find(|it| it.is_with(version)).map(|it| it.floors)
     };

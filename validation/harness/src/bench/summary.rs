@@ -1,8 +1,8 @@
 //! What a bench says in brief: the cost of an event, and the closest competitor on each case.
 
+use super::competitor::{closest_competitor, errs_least, times};
 use super::equal_accuracy::BASES;
 use super::grid::{plain, shown};
-use super::lead::{errs_least, lead, times};
 use super::report::{Bench, BenchRow};
 use crate::engine::REFERENCE;
 use crate::number::brief;
@@ -62,13 +62,13 @@ fn competitors(bench: &Bench) -> String {
     let mut table = plain(["case", "state err", "closest competitor", "times exact", "harness"]);
     for case in bench.cases.iter().map(|it| it.case.as_str()) {
         for (k, basis) in BASES.into_iter().enumerate() {
-            let Some(it) = lead(bench, case, basis) else { continue };
+            let Some(it) = closest_competitor(bench, case, basis) else { continue };
             table.add_row([
                 if k == 0 { case.to_owned() } else { String::new() },
                 it.accuracy(),
-                it.next.engine.clone(),
+                it.row.engine.clone(),
                 times(it.ratio),
-                figure(it.next.harness_share, share),
+                figure(it.row.harness_share, share),
             ]);
         }
     }

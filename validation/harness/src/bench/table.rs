@@ -1,7 +1,7 @@
 //! The tables for people.
 
+use super::competitor::times;
 use super::grid::{plain, shown};
-use super::lead::times;
 use super::report::{Bench, BenchRow};
 use super::summary::{figure, share, summary};
 use crate::number::brief;

@@ -4,7 +4,7 @@ use super::attractors::{described, found, map, of_period};
 use super::brute::{bracket, settled};
 use super::claim::{Claim, ClaimVerdict};
 use super::continued::{family, first};
-use super::integrated::{NAME, strobes};
+use super::integrated::strobes;
 use super::paper::Printed;
 use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
@@ -97,28 +97,31 @@ fn flips(work: &ItemWork<'_>, id: &str, flip: &Bifurcation) -> Result<Claim, Fai
     if let Some(omega) = between(printed, flip.value) {
         let (seen, _) = settled(omega, start, REST, REPEATS)?;
         let seen = seen.map_or("none up to 64".to_owned(), |period| period.to_string());
+        let (integrator, repeats) = integrated(omega, start, &[period, 2 * period])?;
         claim = claim
             .evidence(format!("exact solver at omega = {omega:.5}, between the two values"), format!("period {seen}"))
-            .evidence(
-                format!("{NAME}, tolerance {TOLERANCE:e}, at omega = {omega:.5}"),
-                integrated(omega, start, &[period, 2 * period])?,
-            )
+            .evidence(format!("{integrator}, at omega = {omega:.5}"), repeats)
             .note("the paper's value is approximate (it writes \u{2248}); every method here gives ours");
     }
     Ok(claim)
 }
 
-/// Which of some periods an integrator's strobes repeat with, at rest.
-fn integrated(omega: f64, point: StrobePoint, periods: &[usize]) -> Result<String, Failure> {
+/// An integrator, and which of some periods its strobes repeat with at rest.
+fn integrated(
+    omega: f64,
+    point: StrobePoint,
+    periods: &[usize],
+) -> Result<(String, String), Failure> {
     const RUN: u32 = 4000;
-    let strobes = strobes(omega, point, RUN, TOLERANCE)?;
+    let (integrator, strobes) = strobes(omega, point, RUN, TOLERANCE)?;
     let last = strobes.len() - 1;
     let apart = |period: &usize| {
         let (now, then) = (strobes[last], strobes[last - period]);
         format!("to {:.0e} after {period}", (now[0] - then[0]).abs().max((now[1] - then[1]).abs()))
     };
     let apart: Vec<_> = periods.iter().map(apart).collect();
-    Ok(format!("after {RUN} periods its strobes repeat {}", apart.join(", ")))
+    let repeats = format!("after {RUN} periods its strobes repeat {}", apart.join(", "));
+    Ok((integrator, repeats))
 }
 
 /// Whether a flip downwards in omega is super- or subcritical: what is there beyond it, and how
@@ -198,11 +201,9 @@ fn disappears(work: &ItemWork<'_>, four: &Attractor) -> Result<Claim, Failure> {
         format!("period 4 at omega = {holds:.6}, no longer at {fails:.6}"),
     );
     if let Some(omega) = between(printed, fold.value) {
+        let (integrator, repeats) = integrated(omega, start, &[4])?;
         claim = claim
-            .evidence(
-                format!("{NAME}, tolerance {TOLERANCE:e}, at omega = {omega:.6}, between the two values"),
-                integrated(omega, start, &[4])?,
-            )
+            .evidence(format!("{integrator}, at omega = {omega:.6}, between the two values"), repeats)
             .note(format!(
                 "{:.1e} beyond the paper's approximate value, one unit of its last digit rounded as well as cut: \
                  between the two the orbit is still stable, with a small basin",

@@ -1,10 +1,11 @@
 //! Fig. 6: the strange attractor's section, exact beside integrated, and how far they lie apart.
 
 use super::claim::{Claim, ClaimVerdict};
+use super::integrated::{integrator, representatives};
 use super::paper::chaotic_model;
 use super::work::{Findings, ItemWork};
 use crate::case;
-use crate::engine::{self, Accuracy, Engine, Failure, Limits, Location};
+use crate::engine::{self, Accuracy, Engine, Failure, Limits};
 use crate::number::brief;
 use crate::picture::{Figure, INK, Layer, Plot, caption, phase_colour};
 use crate::score::attractor::{AttractorTest, Comparison, RunSection, calibrated, run_of};
@@ -12,22 +13,17 @@ use percuss::{Phase, Start};
 
 /// The harness's case that starts from rest at these parameters; its limits are calibrated.
 const CASE: &str = "chaos-from-rest";
-/// Integrators of three libraries, and their tolerance.
-const ENGINES: &str = "^(ode_solvers-dopri5|differential-equations-rkv655e|diffsol-bdf)$";
+/// The tolerance of integrators.
 const TOLERANCE: f64 = 1e-9;
 const TRANSIENT: u32 = 200;
 /// Points of the pictures.
 const POINTS: u32 = 20_000;
 
 pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
-    let engines = engine::select(&[regex::Regex::new(ENGINES).map_err(Failure::new)?])
-        .map_err(Failure::new)?;
-    let integrated = engines
-        .iter()
-        .find(|engine| engine.declaration().events == Location::Harness)
-        .ok_or_else(|| Failure::new("no integrator has its events located on dense output"))?;
+    let engines = representatives();
+    let integrated = integrator()?;
     let exact = section(engine::exact(), Accuracy::Exact)?;
-    let other = section(*integrated, Accuracy::Tolerance(TOLERANCE))?;
+    let other = section(integrated, Accuracy::Tolerance(TOLERANCE))?;
     let comparisons = compared(&engines)?;
     let mut findings = Findings::default();
     findings.claims.extend(settle(work, &exact, &other, &comparisons)?);

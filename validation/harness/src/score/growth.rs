@@ -32,7 +32,7 @@ const DIRECTIONS: usize = 5;
 type Linear = SMatrix<f64, SIZE, SIZE>;
 type GrowthPoint = SVector<f64, SIZE>;
 type Bundle = SMatrix<f64, SIZE, DIRECTIONS>;
-type Times = SMatrix<f64, 1, DIRECTIONS>;
+type EventTimes = SMatrix<f64, 1, DIRECTIONS>;
 
 /// The growth at every event and sample, at least 1.
 #[derive(Clone, Debug)]
@@ -49,7 +49,7 @@ pub struct RunGrowth {
 #[derive(Clone, Copy)]
 struct Descent {
     state: Bundle,
-    times: Times,
+    times: EventTimes,
 }
 
 struct GrowthMotion {
@@ -65,7 +65,7 @@ impl RunGrowth {
         let motion = GrowthMotion { omega: parameters.omega, angle, parameters: *parameters };
         let mut growth = Self { events: Vec::new(), samples: Vec::new(), end: [1.0; 4] };
         let mut descents =
-            vec![Descent { state: motion.directions(&truth.start), times: Times::zeros() }];
+            vec![Descent { state: motion.directions(&truth.start), times: EventTimes::zeros() }];
         let mut begin = truth.start;
         for next in truth.events.iter().chain([&truth.end]) {
             let Some(phase) = begin.phase else { break };
@@ -171,7 +171,7 @@ impl GrowthMotion {
         for descent in &mut *descents {
             descent.state = flow * descent.state;
         }
-        descents.push(Descent { state: self.directions(next), times: Times::zeros() });
+        descents.push(Descent { state: self.directions(next), times: EventTimes::zeros() });
         for descent in descents {
             let delay = -(guard * descent.state) / rate;
             descent.state += field * delay;
@@ -252,8 +252,10 @@ mod tests {
             let parameters = case.parameters;
             let angle = parameters.omega * case.start.tau + parameters.phi;
             let motion = GrowthMotion { omega: parameters.omega, angle, parameters };
-            let mut descents =
-                vec![Descent { state: motion.directions(&truth.start), times: Times::zeros() }];
+            let mut descents = vec![Descent {
+                state: motion.directions(&truth.start),
+                times: EventTimes::zeros(),
+            }];
             let mut begin = truth.start;
             let p = |step: f64| events(case, Start { p: case.start.p + step, ..case.start });
             let y = |step: f64| events(case, Start { y: case.start.y + step, ..case.start });

@@ -32,7 +32,7 @@ pub struct Measures {
     pub matched: usize,
     /// The engine's events, as matching sees them.
     pub found: Vec<Occurrence>,
-    /// Which events the engine and the truth do not share.
+    /// The events that the engine and the truth do not share.
     pub mismatch: Mismatch,
     /// Whether the phases follow each other as in the truth.
     pub phase_sequence_ok: bool,

@@ -77,7 +77,7 @@ impl Verdict {
 pub struct Checked {
     /// What is bounded.
     pub quantity: Quantity,
-    /// Which statistic of the quantity is bounded.
+    /// The statistic of the quantity that is bounded.
     pub statistic: Statistic,
     /// The limit.
     pub limit: f64,

@@ -29,7 +29,7 @@ pub fn system_grazes(
     truth: &SystemTruth,
     names: &EventNames,
 ) -> Vec<Graze> {
-    let scan = Scan { problem, system: problem.checked.system(), truth, names };
+    let scan = SystemScan { problem, system: problem.checked.system(), truth, names };
     let ends = truth.events.iter().chain([&truth.end]);
     let begins = std::iter::once(&truth.start).chain(&truth.events);
     let mut found: Vec<Graze> = begins
@@ -41,7 +41,7 @@ pub fn system_grazes(
     found
 }
 
-struct Scan<'a> {
+struct SystemScan<'a> {
     problem: &'a SystemProblem,
     system: &'a System,
     truth: &'a SystemTruth,
@@ -49,22 +49,22 @@ struct Scan<'a> {
 }
 
 /// A segment of the true run in closed form.
-struct Segment<'a> {
-    scan: &'a Scan<'a>,
+struct SystemSegment<'a> {
+    scan: &'a SystemScan<'a>,
     begin: Event<f64>,
     began: f64,
     mode: usize,
 }
 
 /// A guard of a mode, and which of its crossings are events.
-struct Guarded<'a> {
+struct ScannedGuard<'a> {
     event: usize,
     row: &'a [f64],
     /// `None`: it ends its mode.
     direction: Option<Direction>,
 }
 
-impl Scan<'_> {
+impl SystemScan<'_> {
     /// The grazes of the segment after `n` events.
     fn segment(&self, n: usize, begin: &SystemTruthRow, end: &SystemTruthRow) -> Vec<Graze> {
         let began = begin.elapsed.value();
@@ -73,21 +73,21 @@ impl Scan<'_> {
         let time = clock.after(if self.problem.backward { -began } else { began });
         let state = begin.state.iter().map(|it| it.value()).collect();
         let begin = Event { what: What::Start, time, state, mode: begin.mode, errors: None };
-        let segment = Segment { scan: self, mode: begin.mode, begin, began };
+        let segment = SystemSegment { scan: self, mode: begin.mode, begin, began };
         let guards = self.guards(segment.mode);
         guards.iter().flat_map(|guard| segment.grazes(n, guard, length)).collect()
     }
 
-    fn guards(&self, mode: usize) -> Vec<Guarded<'_>> {
+    fn guards(&self, mode: usize) -> Vec<ScannedGuard<'_>> {
         let mode = &self.system.modes[mode];
         let until = mode.until.iter().map(|it| (&it.guard, None));
         let watch = mode.watch.iter().map(|it| (&it.guard, Some(it.direction)));
         let all = until.chain(watch).enumerate();
-        all.map(|(event, (row, direction))| Guarded { event, row, direction }).collect()
+        all.map(|(event, (row, direction))| ScannedGuard { event, row, direction }).collect()
     }
 
     /// How many events a crossing makes that turns back at once.
-    fn makes(&self, mode: usize, guard: &Guarded<'_>) -> usize {
+    fn makes(&self, mode: usize, guard: &ScannedGuard<'_>) -> usize {
         match guard.direction {
             Some(Direction::Both) => 2,
             Some(_) => 1,
@@ -113,7 +113,7 @@ pub(super) fn guard_growth(row: &[f64], state: &[f64], growth: &[f64], scales: &
     (0..state.len()).map(part).fold(0.0, f64::max)
 }
 
-impl Segment<'_> {
+impl SystemSegment<'_> {
     /// The states, cos theta, sin theta and 1 at a time since the segment's begin.
     fn point(&self, d: f64) -> Vec<f64> {
         let ahead = if self.scan.problem.backward { -d } else { d };
@@ -142,7 +142,7 @@ impl Segment<'_> {
     }
 
     /// The extrema of a guard that are grazes, those just beyond the segment's end included.
-    fn grazes(&self, n: usize, guard: &Guarded<'_>, length: f64) -> Vec<Graze> {
+    fn grazes(&self, n: usize, guard: &ScannedGuard<'_>, length: f64) -> Vec<Graze> {
         let size = self.size(guard.row);
         let turn = self.scan.problem.turn();
         let looks = (length / turn * LOOKS).clamp(FEWEST_LOOKS, MOST_LOOKS);
@@ -191,7 +191,7 @@ impl Segment<'_> {
     fn graze(
         &self,
         n: usize,
-        guard: &Guarded<'_>,
+        guard: &ScannedGuard<'_>,
         at: f64,
         (length, size, maximum): (f64, f64, bool),
     ) -> Option<Graze> {
@@ -221,7 +221,7 @@ impl Segment<'_> {
     fn crossed(
         &self,
         n: usize,
-        guard: &Guarded<'_>,
+        guard: &ScannedGuard<'_>,
         makes: usize,
         maximum: bool,
     ) -> Option<Range<usize>> {

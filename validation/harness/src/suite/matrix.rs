@@ -1,7 +1,7 @@
 //! The whole matrix: every engine on every case at every tolerance, in parallel and in order.
 
 use super::probes::{Extent, Probes};
-use super::scope::Suite;
+use super::scope::{Scope, Suite};
 use crate::case::{Bound, Case, Defaults, FileError, Shortcoming};
 use crate::engine::{
     Accuracy, Engine, Failure, Limits, Outcome, Role, SampleGrid, SystemOutcome, SystemTask, Task,
@@ -293,19 +293,19 @@ impl CaseRun for Prepared {
 pub fn run<'a>(
     cases: &[&'a dyn CaseRun],
     engines: &[&'static dyn Engine],
-    suite: Suite,
+    scope: &Scope,
     defaults: &Defaults,
     done: &(impl Fn() + Sync),
 ) -> Vec<Scored> {
     let settings = |case: &'a dyn CaseRun, engine: &'static dyn Engine| {
-        accuracies(engine, suite).into_iter().map(move |it| (case, engine, it))
+        accuracies(engine, scope).into_iter().map(move |it| (case, engine, it))
     };
     let of_case = |case: &&'a dyn CaseRun| -> Vec<_> {
         engines.iter().flat_map(|it| settings(*case, *it)).collect()
     };
     let jobs: Vec<_> = cases.iter().flat_map(of_case).collect();
     let row = |(case, engine, accuracy): (&dyn CaseRun, &'static dyn Engine, Accuracy)| {
-        let row = one(case, engine, accuracy, suite, defaults);
+        let row = one(case, engine, accuracy, scope.suite(), defaults);
         done();
         row
     };
@@ -315,12 +315,12 @@ pub fn run<'a>(
 
 /// How many rows [`run`] makes.
 #[must_use]
-pub fn size(cases: usize, engines: &[&'static dyn Engine], suite: Suite) -> usize {
-    cases * engines.iter().map(|engine| accuracies(*engine, suite).len()).sum::<usize>()
+pub fn size(cases: usize, engines: &[&'static dyn Engine], scope: &Scope) -> usize {
+    cases * engines.iter().map(|engine| accuracies(*engine, scope).len()).sum::<usize>()
 }
 
-fn accuracies(engine: &dyn Engine, suite: Suite) -> Vec<Accuracy> {
-    suite.accuracies(engine.declaration().stepping)
+fn accuracies(engine: &dyn Engine, scope: &Scope) -> Vec<Accuracy> {
+    scope.accuracies(engine.declaration().stepping)
 }
 
 /// Runs one engine on one case, and judges what it answers.

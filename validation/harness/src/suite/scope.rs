@@ -12,6 +12,55 @@ pub enum Suite {
     Full,
 }
 
+/// A suite, as far as its tolerances are chosen.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scope {
+    suite: Suite,
+    tolerances: Vec<f64>,
+}
+
+impl From<Suite> for Scope {
+    fn from(suite: Suite) -> Self {
+        let adaptive = suite.accuracies(Stepping::Adaptive);
+        Self { suite, tolerances: adaptive.into_iter().filter_map(Accuracy::tolerance).collect() }
+    }
+}
+
+impl Scope {
+    /// The same at these tolerances alone; at all of the suite's where there are none. Engines
+    /// without a tolerance are not concerned.
+    #[must_use]
+    pub fn at(self, tolerances: Vec<f64>) -> Self {
+        if tolerances.is_empty() { self } else { Self { tolerances, ..self } }
+    }
+
+    /// The suite.
+    #[must_use]
+    pub const fn suite(&self) -> Suite {
+        self.suite
+    }
+
+    /// The tolerances at which rows are made.
+    #[must_use]
+    pub fn tolerances(&self) -> &[f64] {
+        &self.tolerances
+    }
+
+    /// What engines are asked for that choose their accuracy in this way.
+    #[must_use]
+    pub fn accuracies(&self, stepping: Stepping) -> Vec<Accuracy> {
+        let chosen = |it: &Accuracy| it.tolerance().is_none_or(|it| self.tolerances.contains(&it));
+        self.suite.accuracies(stepping).into_iter().filter(chosen).collect()
+    }
+
+    /// Whether a row with this tolerance or step is one that is made.
+    #[must_use]
+    pub fn makes(&self, tolerance: Option<f64>, step: Option<f64>) -> bool {
+        let chosen = tolerance.is_none_or(|it| self.tolerances.contains(&it));
+        chosen && self.suite.makes(tolerance, step)
+    }
+}
+
 impl Suite {
     /// What engines are asked for that choose their accuracy in this way.
     #[must_use]

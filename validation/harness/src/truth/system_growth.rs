@@ -18,7 +18,7 @@ const NO_RATE: f64 = 1e-12;
 
 /// Perturbations that began just before one of the events: what they have become.
 #[derive(Clone)]
-struct Source {
+struct Perturbation {
     /// Derivatives of theta and the states at a fixed time.
     state: DMatrix<f64>,
     /// Derivatives of the time of the last event.
@@ -26,7 +26,7 @@ struct Source {
 }
 
 /// The matrices of a system in the direction of a run.
-struct Motion {
+struct SystemMatrices {
     system: System,
     forced: usize,
     states: usize,
@@ -38,7 +38,7 @@ struct Motion {
 
 /// Fills in the growth of a truth's events and samples.
 pub(super) fn fill(truth: &mut SystemTruth, case: &SystemCase) {
-    let motion = Motion::of(case);
+    let motion = SystemMatrices::of(case);
     let mut sources = vec![motion.source()];
     let mut begin = truth.start.clone();
     let mut sampled = 0;
@@ -57,7 +57,7 @@ pub(super) fn fill(truth: &mut SystemTruth, case: &SystemCase) {
     }
 }
 
-impl Motion {
+impl SystemMatrices {
     fn of(case: &SystemCase) -> Self {
         let system = if case.backward { case.system.reversed() } else { case.system.clone() };
         let forced = usize::from(system.forcing.is_some());
@@ -73,9 +73,9 @@ impl Motion {
         }
     }
 
-    fn source(&self) -> Source {
+    fn source(&self) -> Perturbation {
         let width = self.forced + self.states;
-        Source { state: DMatrix::identity(width, width), time: RowDVector::zeros(width) }
+        Perturbation { state: DMatrix::identity(width, width), time: RowDVector::zeros(width) }
     }
 
     fn matrix(&self, rows: &[Row]) -> DMatrix<f64> {
@@ -132,7 +132,12 @@ impl Motion {
     }
 
     /// Takes the sources through an event, and writes down how much errors have grown there.
-    fn pass(&self, sources: &mut Vec<Source>, begin: &SystemTruthRow, row: &mut SystemTruthRow) {
+    fn pass(
+        &self,
+        sources: &mut Vec<Perturbation>,
+        begin: &SystemTruthRow,
+        row: &mut SystemTruthRow,
+    ) {
         let mode = &self.system.modes[begin.mode];
         let matrix = self.matrix(&mode.matrix);
         let size = self.system.dimension();

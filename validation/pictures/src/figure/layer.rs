@@ -1,34 +1,9 @@
 //! What a panel of a figure is made of.
 
-use super::super::canvas::{At, Canvas, TextSide};
+use super::super::canvas::{At, Canvas, Stroke, TextSide};
 use super::super::frame::Panel;
 use super::super::key::{KeyItem, KeyLayout, key};
 use super::super::{Colour, palette};
-
-/// How a line is broken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Stroke {
-    /// The line is whole.
-    Solid,
-    /// The line is drawn as dashes.
-    Dashed,
-    /// The line is drawn as dashes and dots in turn.
-    DashDotted,
-    /// The line is drawn as dots.
-    Dotted,
-}
-
-impl Stroke {
-    /// Lengths of dashes and gaps in turn, in hundredths of a pixel; `None` for a whole line.
-    pub(in super::super) const fn dashes(self) -> Option<&'static str> {
-        match self {
-            Self::Solid => None,
-            Self::Dashed => Some("900 600"),
-            Self::DashDotted => Some("1100 400 200 400"),
-            Self::Dotted => Some("200 400"),
-        }
-    }
-}
 
 /// Cells of equal size over a window, coloured by label.
 #[derive(Clone, Debug)]

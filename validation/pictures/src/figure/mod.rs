@@ -3,7 +3,8 @@
 mod layer;
 mod plot;
 
-pub use layer::{KeyEntry, Layer, Raster, Stroke};
+pub use super::canvas::Stroke;
+pub use layer::{KeyEntry, Layer, Raster};
 pub use plot::{Plot, PlotWindow};
 
 use super::axes::around;

@@ -1,10 +1,10 @@
 //! An answer in files, as the reply of a program would say it.
 
-use super::sample_times;
 use super::table::{Cells, EVENTS, SAMPLES, Table};
+use super::times::sample_times;
 use crate::answer::{Place, Wrong, checked};
 use crate::text::plain;
-use crate::wire::{Count, EndedBy, EventReply, List, RunReply, State};
+use crate::wire::{BoundedList, Count, EndedBy, EventReply, RunReply, StateReply};
 use percuss_engines::engine::{Limits, Numbers, SystemOutcome, SystemTask};
 use percuss_engines::number::shortest;
 use percuss_engines::system::{System, Values};
@@ -34,8 +34,8 @@ pub(super) fn answer(
         None => (EndedBy::Horizon, states.last().copied().unwrap_or_default(), None),
     };
     let reply = RunReply {
-        events: List(told.events),
-        samples: List(states.into_iter().take(asked).collect()),
+        events: BoundedList(told.events),
+        samples: BoundedList(states.into_iter().take(asked).collect()),
         end,
         ended,
         ended_at,
@@ -58,7 +58,7 @@ struct Told {
     /// The line of each event.
     lines: Vec<usize>,
     /// How and when the run ended before its horizon, and in which state.
-    ended: Option<(EndedBy, f64, State)>,
+    ended: Option<(EndedBy, f64, StateReply)>,
 }
 
 impl Told {
@@ -92,10 +92,10 @@ impl Told {
     }
 }
 
-fn state(cells: &Cells<'_>, from: usize, system: &System) -> Result<State, String> {
+fn state(cells: &Cells<'_>, from: usize, system: &System) -> Result<StateReply, String> {
     let number = |(i, name): (usize, &String)| cells.number(from + i, name);
     let values: Result<Vec<f64>, String> = system.states.iter().enumerate().map(number).collect();
-    Ok(State(Values::of(&values?)))
+    Ok(StateReply(Values::of(&values?)))
 }
 
 fn mode_of(system: &System, name: &str) -> Result<usize, String> {
@@ -123,7 +123,7 @@ fn read_samples(
     table: &Table,
     task: &SystemTask,
     whole: bool,
-) -> Result<(Vec<State>, Vec<usize>), String> {
+) -> Result<(Vec<StateReply>, Vec<usize>), String> {
     let system = task.system.system();
     let states = system.states.iter().map(String::as_str);
     let columns: Vec<&str> = ["time"].into_iter().chain(states).collect();

@@ -2,8 +2,8 @@
 
 use super::equations::equations;
 use super::rows::{rows, start};
-use super::sample_times;
-use crate::wire::{ModeAsk, Times};
+use super::times::sample_times;
+use crate::wire::{ModeAsk, TimesAsk};
 use percuss_engines::engine::SystemTask;
 use percuss_engines::number::shortest;
 use percuss_engines::system::System;
@@ -27,7 +27,7 @@ pub struct CaseFile<'a> {
     states: &'a [String],
     scales: &'a [f64],
     time_scale: f64,
-    times: Times,
+    times: TimesAsk,
     modes: Vec<ModeAsk<'a>>,
     #[serde(skip)]
     task: &'a SystemTask,
@@ -63,7 +63,7 @@ impl<'a> CaseFile<'a> {
             states: &system.states,
             scales: &system.scales,
             time_scale: system.time_scale,
-            times: Times::of(&task.system),
+            times: TimesAsk::of(&task.system),
             modes: system.modes.iter().map(ModeAsk::of).collect(),
             task,
         }

@@ -9,7 +9,8 @@ pub(super) fn equations(case: &str, task: &SystemTask) -> String {
     let system = task.system.system();
     let start = &system.modes[task.mode].name;
     let states = system.states.iter().zip(task.state.iter());
-    let states: Vec<_> = states.map(|(name, value)| format!("{name} = {}", shortest(*value))).collect();
+    let states: Vec<_> =
+        states.map(|(name, value)| format!("{name} = {}", shortest(*value))).collect();
     let mut lines = vec![
         format!("case {case} of the system {}", system.name),
         format!("time t from 0 to {}{}", shortest(task.span), backward(task)),

@@ -21,7 +21,7 @@ pub(super) struct Pipes {
 
 /// How a program ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Exit {
+pub(super) enum ProgramExit {
     Code(i32),
     Signal(i32),
     Unknown,
@@ -53,7 +53,7 @@ impl Group {
     }
 
     /// How the program ended, if it does so in time.
-    pub(super) fn exit(&mut self, wait: Duration) -> Option<Exit> {
+    pub(super) fn exit(&mut self, wait: Duration) -> Option<ProgramExit> {
         let until = Instant::now() + wait;
         loop {
             match ended(&mut self.leader) {
@@ -99,22 +99,25 @@ fn apart(_: &mut Command) {}
 
 /// How a process ended, which keeps its number: the group that bears it can still be ended.
 #[cfg(unix)]
-fn ended(leader: &mut Child) -> Option<Exit> {
+fn ended(leader: &mut Child) -> Option<ProgramExit> {
     use rustix::process::{Pid, WaitId, WaitIdOptions, waitid};
     let pid = Pid::from_raw(i32::try_from(leader.id()).ok()?)?;
     let options = WaitIdOptions::EXITED | WaitIdOptions::NOHANG | WaitIdOptions::NOWAIT;
-    let Ok(status) = waitid(WaitId::Pid(pid), options) else { return Some(Exit::Unknown) };
+    let Ok(status) = waitid(WaitId::Pid(pid), options) else { return Some(ProgramExit::Unknown) };
     let status = status?;
-    let code = status.exit_status().map(Exit::Code);
-    Some(code.or(status.terminating_signal().map(Exit::Signal)).unwrap_or(Exit::Unknown))
+    let code = status.exit_status().map(ProgramExit::Code);
+    Some(
+        code.or(status.terminating_signal().map(ProgramExit::Signal))
+            .unwrap_or(ProgramExit::Unknown),
+    )
 }
 
 #[cfg(not(unix))]
-fn ended(leader: &mut Child) -> Option<Exit> {
+fn ended(leader: &mut Child) -> Option<ProgramExit> {
     match leader.try_wait() {
         Ok(None) => None,
-        Ok(Some(status)) => Some(status.code().map_or(Exit::Unknown, Exit::Code)),
-        Err(_) => Some(Exit::Unknown),
+        Ok(Some(status)) => Some(status.code().map_or(ProgramExit::Unknown, ProgramExit::Code)),
+        Err(_) => Some(ProgramExit::Unknown),
     }
 }
 

@@ -1,14 +1,12 @@
 //! The programs that run now: what has to be ended before this process ends.
 
+use super::sweep::MARK;
 use std::collections::BTreeMap;
 use std::io;
 use std::process::{Child, Command};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
-
-/// The variable that marks the processes of a program.
-pub(super) const MARK: &str = "PERCUSS_PROGRAM";
 
 /// The programs that run, by the numbers of their processes, each with its mark.
 static LIVE: Mutex<Live> = Mutex::new(Live { programs: BTreeMap::new(), is_over: false });

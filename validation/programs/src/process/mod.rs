@@ -10,11 +10,11 @@ pub use live::end_all;
 
 use crate::file::Program;
 use crate::text::last_line;
-use crate::wire::{Answered, Ask, Asked, RunAsk, decode};
-use group::{Exit, Group};
+use crate::wire::{Ask, Asked, ReplyContent, RunAsk, decode};
+use group::{Group, ProgramExit};
 use std::io;
 use std::time::{Duration, Instant};
-use streams::{Line, Streams};
+use streams::{OutputLine, Streams};
 
 /// The longest line that is read: an answer of so many events and samples as are accepted is
 /// shorter.
@@ -36,7 +36,7 @@ impl Process {
     /// Starts a program.
     ///
     /// # Errors
-    /// Those of the system.
+    /// An error of the operating system.
     pub(crate) fn start(program: &Program) -> io::Result<Self> {
         let (group, pipes) = Group::start(program)?;
         Ok(Self { group, streams: Streams::of(pipes)?, asked: 0 })
@@ -46,7 +46,7 @@ impl Process {
     ///
     /// # Errors
     /// What it did instead of answering.
-    pub(crate) fn capabilities(&mut self, wait: Duration) -> Result<Answered, String> {
+    pub(crate) fn capabilities(&mut self, wait: Duration) -> Result<ReplyContent, String> {
         self.ask(Asked::Capabilities, None, wait)
     }
 
@@ -54,7 +54,7 @@ impl Process {
     ///
     /// # Errors
     /// What the program did instead of answering.
-    pub(crate) fn run(&mut self, run: &RunAsk<'_>, wait: Duration) -> Result<Answered, String> {
+    pub(crate) fn run(&mut self, run: &RunAsk<'_>, wait: Duration) -> Result<ReplyContent, String> {
         self.ask(Asked::Run, Some(run), wait)
     }
 
@@ -65,7 +65,7 @@ impl Process {
     /// What it did instead of answering.
     pub(crate) fn ready(&mut self, wait: Duration) -> Result<(), String> {
         match self.ask(Asked::Ready, None, wait)? {
-            Answered::Ready => Ok(()),
+            ReplyContent::Ready => Ok(()),
             _ => Err("answered something else where it was asked for ready".to_owned()),
         }
     }
@@ -85,7 +85,7 @@ impl Process {
         asked: Asked,
         run: Option<&RunAsk<'_>>,
         wait: Duration,
-    ) -> Result<Answered, String> {
+    ) -> Result<ReplyContent, String> {
         let until = Instant::now() + wait;
         self.asked += 1;
         let ask =
@@ -95,12 +95,14 @@ impl Process {
         self.streams.write(line);
         let line = self.streams.read(until.saturating_duration_since(Instant::now()));
         match line {
-            Some(Line::Text(line)) => decode(&line, self.asked),
-            Some(Line::TooLong) => Err(format!("wrote a line of more than {MOST_LINE} bytes")),
-            Some(Line::Unfinished(count)) => {
+            Some(OutputLine::Text(line)) => decode(&line, self.asked),
+            Some(OutputLine::TooLong) => {
+                Err(format!("wrote a line of more than {MOST_LINE} bytes"))
+            }
+            Some(OutputLine::Unfinished(count)) => {
                 Err(self.ended(&format!("in a line of {count} bytes that is not whole")))
             }
-            Some(Line::Closed) => Err(self.ended("without an answer")),
+            Some(OutputLine::Closed) => Err(self.ended("without an answer")),
             None => Err(self.late(wait)),
         }
     }
@@ -108,9 +110,9 @@ impl Process {
     /// Why there is no answer from a program whose output has ended.
     fn ended(&mut self, how: &str) -> String {
         let what = match self.group.exit(PARTING) {
-            Some(Exit::Code(code)) => format!("ended {how}, with exit code {code}"),
-            Some(Exit::Signal(signal)) => format!("ended {how}, killed by signal {signal}"),
-            Some(Exit::Unknown) => format!("ended {how}"),
+            Some(ProgramExit::Code(code)) => format!("ended {how}, with exit code {code}"),
+            Some(ProgramExit::Signal(signal)) => format!("ended {how}, killed by signal {signal}"),
+            Some(ProgramExit::Unknown) => format!("ended {how}"),
             None => format!("closed its output {how} and went on"),
         };
         self.group.end();

@@ -17,7 +17,7 @@ const MOST_COMPLAINT: usize = 4096;
 
 /// What a program wrote.
 #[derive(Debug)]
-pub(super) enum Line {
+pub(super) enum OutputLine {
     /// A whole line.
     Text(Vec<u8>),
     /// A line that is too long; the rest is not read.
@@ -31,7 +31,7 @@ pub(super) enum Line {
 /// The streams of a program.
 pub(super) struct Streams {
     input: SyncSender<Vec<u8>>,
-    output: Receiver<Line>,
+    output: Receiver<OutputLine>,
     partial: Arc<AtomicUsize>,
     complaint: Arc<Mutex<VecDeque<u8>>>,
     complained: Receiver<()>,
@@ -41,7 +41,7 @@ impl Streams {
     /// Takes over the streams of a program.
     ///
     /// # Errors
-    /// Where there are no more threads.
+    /// The operating system starts no more threads.
     pub(super) fn of(pipes: Pipes) -> io::Result<Self> {
         let (input, requests) = sync_channel(1);
         // One line waits to be asked for, and one to be taken over: no more are in the memory.
@@ -63,11 +63,11 @@ impl Streams {
     }
 
     /// The next line, if there is one in time.
-    pub(super) fn read(&self, wait: Duration) -> Option<Line> {
+    pub(super) fn read(&self, wait: Duration) -> Option<OutputLine> {
         use std::sync::mpsc::RecvTimeoutError::{Disconnected, Timeout};
         match self.output.recv_timeout(wait) {
             Ok(line) => Some(line),
-            Err(Disconnected) => Some(Line::Closed),
+            Err(Disconnected) => Some(OutputLine::Closed),
             Err(Timeout) => None,
         }
     }
@@ -99,11 +99,11 @@ fn write_requests(mut stdin: ChildStdin, requests: &Receiver<Vec<u8>>) {
     }
 }
 
-fn read_lines(stdout: ChildStdout, lines: &SyncSender<Line>, partial: &AtomicUsize) {
+fn read_lines(stdout: ChildStdout, lines: &SyncSender<OutputLine>, partial: &AtomicUsize) {
     let mut reader = BufReader::new(stdout);
     loop {
         let line = read_line(&mut reader, partial);
-        let is_last = !matches!(line, Line::Text(_));
+        let is_last = !matches!(line, OutputLine::Text(_));
         // Nobody waits for it any more where the program was given up.
         if lines.send(line).is_err() || is_last {
             return;
@@ -111,7 +111,7 @@ fn read_lines(stdout: ChildStdout, lines: &SyncSender<Line>, partial: &AtomicUsi
     }
 }
 
-fn read_line(reader: &mut impl BufRead, partial: &AtomicUsize) -> Line {
+fn read_line(reader: &mut impl BufRead, partial: &AtomicUsize) -> OutputLine {
     let mut line = Vec::new();
     loop {
         partial.store(line.len(), Ordering::Relaxed);
@@ -121,18 +121,22 @@ fn read_line(reader: &mut impl BufRead, partial: &AtomicUsize) -> Line {
             Err(_) => &[],
         };
         if bytes.is_empty() {
-            return if line.is_empty() { Line::Closed } else { Line::Unfinished(line.len()) };
+            return if line.is_empty() {
+                OutputLine::Closed
+            } else {
+                OutputLine::Unfinished(line.len())
+            };
         }
         let end = bytes.iter().position(|byte| *byte == b'\n');
         let count = end.unwrap_or(bytes.len());
         if line.len() + count > MOST_LINE {
-            return Line::TooLong;
+            return OutputLine::TooLong;
         }
         line.extend_from_slice(&bytes[..count]);
         reader.consume(end.map_or(count, |end| end + 1));
         if end.is_some() {
             partial.store(0, Ordering::Relaxed);
-            return Line::Text(line);
+            return OutputLine::Text(line);
         }
     }
 }
@@ -161,9 +165,13 @@ mod tests {
     fn lines_are_cut_at_their_ends() {
         let partial = AtomicUsize::new(0);
         let mut reader = io::Cursor::new(b"one\r\n\ntwo".as_slice());
-        let lines: Vec<Line> = (0..4).map(|_| read_line(&mut reader, &partial)).collect();
-        let [Line::Text(one), Line::Text(empty), Line::Unfinished(3), Line::Closed] =
-            lines.as_slice()
+        let lines: Vec<OutputLine> = (0..4).map(|_| read_line(&mut reader, &partial)).collect();
+        let [
+            OutputLine::Text(one),
+            OutputLine::Text(empty),
+            OutputLine::Unfinished(3),
+            OutputLine::Closed,
+        ] = lines.as_slice()
         else {
             unreachable!("{lines:?}")
         };
@@ -174,9 +182,11 @@ mod tests {
     fn a_line_without_end_is_not_kept() {
         let partial = AtomicUsize::new(0);
         let mut reader = BufReader::new(io::repeat(b'x'));
-        assert!(matches!(read_line(&mut reader, &partial), Line::TooLong));
+        assert!(matches!(read_line(&mut reader, &partial), OutputLine::TooLong));
         let whole = [b"x".repeat(MOST_LINE), b"\n".to_vec()].concat();
-        let Line::Text(line) = read_line(&mut whole.as_slice(), &partial) else { unreachable!() };
+        let OutputLine::Text(line) = read_line(&mut whole.as_slice(), &partial) else {
+            unreachable!()
+        };
         assert_eq!(line.len(), MOST_LINE);
     }
 }

@@ -5,10 +5,12 @@
 //! and lose their parents. What does all of it, and starts itself anew without that environment, is
 //! not found.
 
-use super::live::MARK;
 use rustix::process::{Pid, PidfdFlags, Signal, kill_process_group, pidfd_open, pidfd_send_signal};
 use std::collections::BTreeSet;
 use std::time::{Duration, Instant};
+
+/// The variable that marks the processes of a program.
+pub(super) const MARK: &str = "PERCUSS_PROGRAM";
 
 /// How long is looked for processes that are left.
 const LONGEST: Duration = Duration::from_secs(5);
@@ -16,7 +18,7 @@ const LONGEST: Duration = Duration::from_secs(5);
 const PAUSE: Duration = Duration::from_millis(1);
 
 /// A process as the system shows it.
-struct Shown {
+struct ProcessStatus {
     state: char,
     parent: u32,
     /// Tells processes of one number from each other.
@@ -86,7 +88,7 @@ fn bears(id: u32, mark: &str) -> bool {
 /// The processes that a process has started, and those that they have, with the times of their
 /// beginnings.
 fn descendants(id: u32) -> BTreeSet<(u32, u64)> {
-    let all: Vec<(u32, Shown)> =
+    let all: Vec<(u32, ProcessStatus)> =
         processes().into_iter().filter_map(|it| Some((it, shown(it)?))).collect();
     let mut parents = BTreeSet::from([id]);
     let mut found = BTreeSet::new();
@@ -105,7 +107,7 @@ fn descendants(id: u32) -> BTreeSet<(u32, u64)> {
 
 /// What the system shows of a process: `id (name) state parent ...`, where a name may hold
 /// anything.
-fn shown(id: u32) -> Option<Shown> {
+fn shown(id: u32) -> Option<ProcessStatus> {
     let text = std::fs::read(format!("/proc/{id}/stat")).ok()?;
     let text = String::from_utf8_lossy(&text).into_owned();
     let (_, rest) = text.rsplit_once(") ")?;
@@ -114,5 +116,5 @@ fn shown(id: u32) -> Option<Shown> {
     let parent = fields.next()?.parse().ok()?;
     // The 22nd field of all.
     let began = fields.nth(17)?.parse().ok()?;
-    Some(Shown { state, parent, began })
+    Some(ProcessStatus { state, parent, began })
 }

@@ -54,7 +54,7 @@ pub(crate) struct RunAsk<'a> {
     samples: Vec<f64>,
     tolerance: Option<Tolerance>,
     step: Option<f64>,
-    times: Times,
+    times: TimesAsk,
     limits: LimitsAsk,
 }
 
@@ -105,7 +105,7 @@ struct Tolerance {
 
 /// What an expert knows of a system.
 #[derive(Serialize)]
-pub(crate) struct Times {
+pub(crate) struct TimesAsk {
     period: f64,
     turn: Option<f64>,
     shortest: f64,
@@ -138,7 +138,7 @@ impl<'a> RunAsk<'a> {
             samples: samples(task),
             tolerance: accuracy.tolerance().map(tolerance),
             step: accuracy.step().map(|step| step * checked.shortest_time()),
-            times: Times::of(checked),
+            times: TimesAsk::of(checked),
             limits: LimitsAsk {
                 calls: limits.calls,
                 events: limits.events,
@@ -153,7 +153,7 @@ impl<'a> RunAsk<'a> {
     }
 }
 
-impl Times {
+impl TimesAsk {
     /// What is known of a system.
     pub(crate) fn of(system: &CheckedSystem) -> Self {
         Self {

@@ -27,12 +27,12 @@ impl<'de> Deserialize<'de> for Count {
 
 /// A list of at most `MOST` items.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct List<T, const MOST: usize>(pub(crate) Vec<T>);
+pub(crate) struct BoundedList<T, const MOST: usize>(pub(crate) Vec<T>);
 
 struct Items<T, const MOST: usize>(PhantomData<T>);
 
 impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for Items<T, MOST> {
-    type Value = List<T, MOST>;
+    type Value = BoundedList<T, MOST>;
 
     fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "a list of at most {MOST}")
@@ -46,11 +46,11 @@ impl<'de, T: Deserialize<'de>, const MOST: usize> Visitor<'de> for Items<T, MOST
             }
             list.push(item);
         }
-        Ok(List(list))
+        Ok(BoundedList(list))
     }
 }
 
-impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for List<T, MOST> {
+impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for BoundedList<T, MOST> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         deserializer.deserialize_seq(Items(PhantomData))
     }
@@ -58,11 +58,11 @@ impl<'de, T: Deserialize<'de>, const MOST: usize> Deserialize<'de> for List<T, M
 
 /// A state.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct State(pub(crate) Values);
+pub(crate) struct StateReply(pub(crate) Values);
 
-impl<'de> Deserialize<'de> for State {
+impl<'de> Deserialize<'de> for StateReply {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        let list = List::<f64, MOST_STATES>::deserialize(deserializer)?;
+        let list = BoundedList::<f64, MOST_STATES>::deserialize(deserializer)?;
         Ok(Self(Values::of(&list.0)))
     }
 }

@@ -1,7 +1,7 @@
 //! What is read from a program: an answer, checked as far as no task is needed for that.
 
 use super::PROTOCOL;
-use super::numbers::{Count, List, State};
+use super::numbers::{BoundedList, Count, StateReply};
 use crate::text::plain;
 use percuss_engines::engine::Ended;
 use serde::Deserialize;
@@ -13,7 +13,7 @@ const MOST_SET_UPS: usize = 64;
 
 /// What an answer says.
 #[derive(Clone, Debug)]
-pub(crate) enum Answered {
+pub(crate) enum ReplyContent {
     /// What the program can do.
     Capabilities(Capabilities),
     /// Why it can do nothing here.
@@ -22,6 +22,8 @@ pub(crate) enum Answered {
     Run(Box<RunReply>),
     /// Why a run was not made.
     Failure(String),
+    /// How a run went beyond its limits.
+    GaveUp(String),
     /// The program waits for the next request.
     Ready,
 }
@@ -45,7 +47,7 @@ pub struct Capabilities {
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SetUp {
-    /// Its name, which follows that of the program in the name of the engine.
+    /// The set-up's name, which follows that of the program in the name of the engine.
     pub name: String,
     /// The method.
     pub method: String,
@@ -93,9 +95,9 @@ pub enum SteppedBy {
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RunReply {
-    pub(crate) events: List<EventReply, MOST_ROWS>,
-    pub(crate) samples: List<State, MOST_ROWS>,
-    pub(crate) end: State,
+    pub(crate) events: BoundedList<EventReply, MOST_ROWS>,
+    pub(crate) samples: BoundedList<StateReply, MOST_ROWS>,
+    pub(crate) end: StateReply,
     #[serde(default)]
     pub(crate) ended: EndedBy,
     #[serde(default)]
@@ -113,7 +115,7 @@ pub(crate) struct EventReply {
     pub(crate) time: f64,
     pub(crate) event: Count,
     pub(crate) mode: Count,
-    pub(crate) state: State,
+    pub(crate) state: StateReply,
 }
 
 /// What a run cost, as a program counts it.
@@ -173,7 +175,7 @@ fn yes() -> bool {
 }
 
 fn set_ups<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Vec<SetUp>, D::Error> {
-    Ok(List::<SetUp, MOST_SET_UPS>::deserialize(deserializer)?.0)
+    Ok(BoundedList::<SetUp, MOST_SET_UPS>::deserialize(deserializer)?.0)
 }
 
 /// What every answer begins with; the rest of it may be of another version.
@@ -194,6 +196,7 @@ struct Reply {
     unavailable: Option<String>,
     run: Option<Box<RunReply>>,
     failure: Option<String>,
+    gave_up: Option<String>,
     ready: Option<bool>,
 }
 
@@ -201,7 +204,7 @@ struct Reply {
 ///
 /// # Errors
 /// What the line is instead.
-pub(crate) fn decode(line: &[u8], id: u64) -> Result<Answered, String> {
+pub(crate) fn decode(line: &[u8], id: u64) -> Result<ReplyContent, String> {
     let text = std::str::from_utf8(line)
         .map_err(|error| format!("wrote what is not UTF-8, from byte {}", error.valid_up_to()))?;
     let text = text.trim_start_matches('\u{feff}').trim();
@@ -234,13 +237,14 @@ pub(crate) fn decode(line: &[u8], id: u64) -> Result<Answered, String> {
 }
 
 impl Reply {
-    fn answered(self) -> Result<Answered, String> {
+    fn answered(self) -> Result<ReplyContent, String> {
         let answers = [
-            self.capabilities.map(Answered::Capabilities),
-            self.unavailable.map(|why| Answered::Unavailable(plain(&why))),
-            self.run.map(Answered::Run),
-            self.failure.map(|why| Answered::Failure(plain(&why))),
-            self.ready.filter(|ready| *ready).map(|_| Answered::Ready),
+            self.capabilities.map(ReplyContent::Capabilities),
+            self.unavailable.map(|why| ReplyContent::Unavailable(plain(&why))),
+            self.run.map(ReplyContent::Run),
+            self.failure.map(|why| ReplyContent::Failure(plain(&why))),
+            self.gave_up.map(|why| ReplyContent::GaveUp(plain(&why))),
+            self.ready.filter(|ready| *ready).map(|_| ReplyContent::Ready),
         ];
         let mut given = answers.into_iter().flatten();
         match (given.next(), given.next()) {
@@ -251,7 +255,7 @@ impl Reply {
     }
 }
 
-const KINDS: &str = "capabilities, unavailable, run, failure, ready";
+const KINDS: &str = "capabilities, unavailable, run, failure, gave_up, ready";
 
 fn parse<'de, T: Deserialize<'de>>(text: &'de str) -> Result<T, String> {
     let mut reader = serde_json::Deserializer::from_str(text);

@@ -82,7 +82,7 @@ fn examples(heading: &str) -> Vec<Value> {
 #[test]
 fn the_examples_of_the_page_are_messages() {
     let (requests, answers) = (examples("Requests"), examples("Answers"));
-    assert_eq!((requests.len(), answers.len()), (3, 5), "{requests:?} {answers:?}");
+    assert_eq!((requests.len(), answers.len()), (3, 6), "{requests:?} {answers:?}");
     let [request, answer] = ["request", "answer"].map(schema);
     for message in requests {
         assert!(request.is_valid(&message), "{message}: {:?}", request.validate(&message).err());

@@ -1,7 +1,7 @@
 //! The basins as a picture.
 
 use super::Survey;
-use crate::picture::{self, BASIN_COLOURS, BasinMap, Shown};
+use crate::picture::{self, BASIN_COLOURS, BasinMap, ShownAttractor};
 use anyhow::Result;
 use percuss::dynamics::attractor::{Attractor, AttractorKind, Basins, Label};
 
@@ -40,13 +40,13 @@ fn colours(attractors: &[Attractor]) -> Vec<usize> {
     (0..attractors.len()).map(colour).collect()
 }
 
-fn shown_as(basins: &Basins, id: usize, attractor: &Attractor, colour: usize) -> Shown {
+fn shown_as(basins: &Basins, id: usize, attractor: &Attractor, colour: usize) -> ShownAttractor {
     let what = match attractor.period() {
         Some(period) => format!("{id}: period {period}"),
         None => format!("{id}: {}", attractor.kind.as_str()),
     };
     let share = 100.0 * basins.fraction(Label::Attractor(id));
-    Shown {
+    ShownAttractor {
         name: format!("{what}\n{share:.2} % of starts"),
         colour,
         points: attractor.points.iter().map(|[p, y, _]| [*p, *y]).collect(),

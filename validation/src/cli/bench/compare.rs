@@ -5,7 +5,7 @@ use super::{DONE, OUT_OF_BOUNDS, work};
 use crate::bench::compare::binaries::{Common, LIVES, Pair, Quotient, common, quotients};
 use crate::bench::compare::recorded::changes;
 use crate::bench::compare::verdict::{WorkloadVerdict, is_doubtful};
-use crate::bench::history::{self, History, Record};
+use crate::bench::history::{self, History, HistoryRecord};
 use crate::cli::names::{Selection, nearest};
 use crate::cli::note;
 use crate::cli::parse;
@@ -111,7 +111,7 @@ fn recorded(arguments: &Arguments) -> Result<Said> {
     let benches = chosen(arguments, both.map(|it| it.bench.clone()))?;
     let mut lines = vec!["bench,figure,old,new,quotient,verdict".to_owned()];
     let mut verdicts = Vec::new();
-    let side = |all: &[&Record], bench: &str| {
+    let side = |all: &[&HistoryRecord], bench: &str| {
         all.iter().find(|it| it.bench == bench).map(|it| (*it).clone())
     };
     for bench in &benches {
@@ -129,7 +129,7 @@ fn recorded(arguments: &Arguments) -> Result<Said> {
     Ok((lines, verdicts))
 }
 
-fn version<'a>(file: &Path, history: &'a History, side: &str) -> Result<Vec<&'a Record>> {
+fn version<'a>(file: &Path, history: &'a History, side: &str) -> Result<Vec<&'a HistoryRecord>> {
     let found = history.version(side);
     if found.is_empty() {
         let names = history.versions();

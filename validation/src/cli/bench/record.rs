@@ -5,7 +5,7 @@ use super::{cases_by_default, courses, parse, work};
 use crate::bench::contestant::enter;
 use crate::bench::course::Course;
 use crate::bench::floor::{self, Floors};
-use crate::bench::history::{self, Figures, History, Record};
+use crate::bench::history::{self, Figures, History, HistoryRecord};
 use crate::bench::rounds::RoundTimes;
 use crate::bench::{instructions, workload};
 use crate::build;
@@ -44,7 +44,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         writeln!(out, "bench,best_ns,median_ns,floors,floors_again,evaluations_per_switch,instructions")?;
         for it in &records {
             let instructions = it.instructions.map(|it| it.to_string()).unwrap_or_default();
-            let Record { bench, best_ns, median_ns, floors, floors_again, .. } = it;
+            let HistoryRecord { bench, best_ns, median_ns, floors, floors_again, .. } = it;
             let evaluations = it.evaluations_per_switch;
             writeln!(out, "{bench},{best_ns:.1},{median_ns:.1},{floors:.3},{floors_again:.3},{evaluations:.4},{instructions}")?;
         }
@@ -65,7 +65,7 @@ fn raw(path: &Path) -> Result<String> {
     }
 }
 
-fn records(arguments: &Arguments, courses: &[Course]) -> Result<Vec<Record>> {
+fn records(arguments: &Arguments, courses: &[Course]) -> Result<Vec<HistoryRecord>> {
     let rounds = usize::from(arguments.rounds);
     let workloads = workload::all(courses);
     let counted = if arguments.instructions { courses.len() as u64 } else { 0 };
@@ -82,7 +82,7 @@ fn records(arguments: &Arguments, courses: &[Course]) -> Result<Vec<Record>> {
             None
         };
         let figures = Figures { instructions, ..figures(course, &halves, i)? };
-        Ok(Record::of(build::this(), &name, figures))
+        Ok(HistoryRecord::of(build::this(), &name, figures))
     };
     let records = courses.iter().enumerate().map(record).collect();
     bar.finish_and_clear();

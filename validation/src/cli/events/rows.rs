@@ -20,8 +20,8 @@ pub(super) struct Rows<'a> {
 
 /// What is printed.
 #[derive(Default)]
-pub(super) struct Listed {
-    rows: Vec<Row>,
+pub(super) struct EventListing {
+    rows: Vec<EventRow>,
     accumulation: Option<Accumulation>,
     pub(super) notes: Vec<String>,
     pub(super) decided: bool,
@@ -29,7 +29,7 @@ pub(super) struct Listed {
 
 /// Numbers are texts, because a reader's f64 would not hold their digits.
 #[derive(Serialize)]
-struct Row {
+struct EventRow {
     n: usize,
     time: String,
     event: String,
@@ -51,22 +51,22 @@ struct List<'a> {
     system: &'a str,
     parameters: BTreeMap<String, f64>,
     accumulation: Option<&'a Accumulation>,
-    rows: &'a [Row],
+    rows: &'a [EventRow],
 }
 
 impl Rows<'_> {
     /// Runs the system; none if its start cannot be decided.
-    pub(super) fn listed(&self, until: f64) -> Option<Listed> {
+    pub(super) fn listed(&self, until: f64) -> Option<EventListing> {
         let start = self.system.start.as_ref()?;
         let run = self.solver.run_enclosed(start, DoubleDouble::exact(until))?;
-        let mut listed = Listed { decided: true, ..Listed::default() };
+        let mut listed = EventListing { decided: true, ..EventListing::default() };
         let first = run.start();
         self.push(&mut listed, &first, String::new());
         self.collect(run, &mut listed);
         Some(listed)
     }
 
-    fn collect(&self, run: Run<'_, DoubleDouble>, listed: &mut Listed) {
+    fn collect(&self, run: Run<'_, DoubleDouble>, listed: &mut EventListing) {
         for event in run {
             if self.most.is_some_and(|most| listed.rows.len() > most) {
                 return;
@@ -84,11 +84,11 @@ impl Rows<'_> {
         }
     }
 
-    fn push(&self, listed: &mut Listed, event: &Event<DoubleDouble>, name: String) {
+    fn push(&self, listed: &mut EventListing, event: &Event<DoubleDouble>, name: String) {
         let Some(errors) = &event.errors else { return };
         let cells = event.state.iter().zip(&errors.state);
         let cells = cells.map(|(value, error)| proved(*value, *error, self.digits));
-        listed.rows.push(Row {
+        listed.rows.push(EventRow {
             n: listed.rows.len(),
             time: proved(event.time.value(), errors.time, self.digits),
             event: name,
@@ -98,7 +98,7 @@ impl Rows<'_> {
     }
 
     /// The event's name, or that of the ending, which leaves a note.
-    fn name(&self, event: &Event<DoubleDouble>, listed: &mut Listed) -> String {
+    fn name(&self, event: &Event<DoubleDouble>, listed: &mut EventListing) -> String {
         let ending = match &event.what {
             What::Until(mode, index) => return self.system.modes[*mode].until[*index].name.clone(),
             What::Watch(mode, index) => return self.system.modes[*mode].watch[*index].name.clone(),
@@ -142,7 +142,7 @@ impl Rows<'_> {
     /// Writes the rows.
     pub(super) fn write(
         &self,
-        listed: &Listed,
+        listed: &EventListing,
         output: &OutputFlags<Format>,
         format: Format,
     ) -> Result<()> {

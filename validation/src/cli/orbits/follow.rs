@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     arguments.output.format(Format::Json)?;
     let bar = work::share_bar();
     let (followed, why) =
-        followed(arguments, &arguments.model, Seen::Told(&|share| bar.show_share(share)))?;
+        followed(arguments, &arguments.model, Reporting::Told(&|share| bar.show_share(share)))?;
     bar.finish_and_clear();
     arguments.output.destination().json(&followed)?;
     if let Some(why) = &why {
@@ -56,7 +56,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
 
 /// Whether a person is told of what goes on.
 #[derive(Clone, Copy)]
-pub(crate) enum Seen<'a> {
+pub(crate) enum Reporting<'a> {
     /// Shares that are done are told, and what a scan has found.
     Told(&'a dyn Fn(f64)),
     /// Nothing is told.
@@ -67,7 +67,7 @@ pub(crate) enum Seen<'a> {
 pub(crate) fn followed(
     arguments: &Arguments,
     model: &ModelFlags,
-    seen: Seen<'_>,
+    seen: Reporting<'_>,
 ) -> Result<(Followed, Option<String>)> {
     let Arguments {
         parameter, from: Typed { value: from, .. }, to: Typed { value: to, .. }, ..
@@ -108,7 +108,7 @@ pub(crate) fn family(arguments: &Arguments, model: &ModelFlags) -> Result<(Probl
     Ok((problem, guessed, family))
 }
 
-impl Seen<'_> {
+impl Reporting<'_> {
     fn share(self, share: f64) {
         if let Self::Told(told) = self {
             told(share);
@@ -129,7 +129,7 @@ fn branch(
     problem: &Problem,
     guessed: bool,
     family: &Family,
-    seen: Seen<'_>,
+    seen: Reporting<'_>,
 ) -> Result<Branch, String> {
     let Arguments { period, from, to, .. } = arguments;
     let guess = if guessed {
@@ -137,8 +137,8 @@ fn branch(
     } else {
         let map = StrobeMap::new(problem.model, problem.entry.instant);
         let orbit = match seen {
-            Seen::Told(_) => scanned(&map, *period),
-            Seen::Alone => preferred(scan(&map, *period, &mut |_| ()), *period),
+            Reporting::Told(_) => scanned(&map, *period),
+            Reporting::Alone => preferred(scan(&map, *period, &mut |_| ()), *period),
         };
         orbit.map_err(|(_, why)| why)?.points[0]
     };
@@ -153,7 +153,7 @@ fn doubled(
     family: &Family,
     from: f64,
     to: f64,
-    seen: Seen<'_>,
+    seen: Reporting<'_>,
 ) -> Option<Doubled> {
     let period = branch.points.first()?.orbit.period();
     let own = |it: &&_| is_flip_of(it, period);

@@ -56,7 +56,7 @@ pub(crate) struct Followed {
     pub(crate) period: Option<u32>,
     #[serde(flatten)]
     pub(crate) course: BranchJson,
-    /// Only with `--doubled`.
+    /// The doubled orbit, where `--doubled` asks for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) doubled: Option<Option<Doubled>>,
 }

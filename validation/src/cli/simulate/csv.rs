@@ -1,6 +1,6 @@
 //! A run as CSV.
 
-use super::plan::{Plan, RunEnding};
+use super::plan::{PlannedRun, RunEnding};
 use super::rows::{RunRow, Sink};
 use crate::number::shortest;
 use anyhow::Result;
@@ -12,11 +12,11 @@ const SWITCHES: &str = "index,phase,tau,p,y,q,v";
 const SAMPLES: &str = "tau,phase,p,y,q,v,x,z";
 
 impl Sink for Csv<'_> {
-    fn begin(&mut self, _: &Plan, samples: bool) -> Result<()> {
+    fn begin(&mut self, _: &PlannedRun, samples: bool) -> Result<()> {
         Ok(writeln!(self.0, "{}", if samples { SAMPLES } else { SWITCHES })?)
     }
 
-    fn row(&mut self, plan: &Plan, row: &RunRow) -> Result<()> {
+    fn row(&mut self, plan: &PlannedRun, row: &RunRow) -> Result<()> {
         let tau = shortest(row.instant.tau(plan.omega()));
         let [p, y, q, v] = row.state.map(shortest);
         match row.co_ordinates {

@@ -1,6 +1,6 @@
 //! A run as JSON, written row by row: a long run costs no memory.
 
-use super::plan::{Plan, RunEnding};
+use super::plan::{PlannedRun, RunEnding};
 use super::rows::{RunRow, Sink};
 use crate::cli::model::ParametersJson;
 use anyhow::Result;
@@ -63,7 +63,7 @@ impl<'a> Json<'a> {
 }
 
 impl Sink for Json<'_> {
-    fn begin(&mut self, plan: &Plan, _: bool) -> Result<()> {
+    fn begin(&mut self, plan: &PlannedRun, _: bool) -> Result<()> {
         write!(
             self.out,
             "{{\"schema\":1,\"percuss\":\"{}\",\"parameters\":",
@@ -85,7 +85,7 @@ impl Sink for Json<'_> {
         Ok(write!(self.out, ",\"rows\":[")?)
     }
 
-    fn row(&mut self, plan: &Plan, row: &RunRow) -> Result<()> {
+    fn row(&mut self, plan: &PlannedRun, row: &RunRow) -> Result<()> {
         writeln!(self.out, "{}", if self.rows == 0 { "" } else { "," })?;
         self.rows += 1;
         let RunRow { index, phase, instant, state: [p, y, q, v], co_ordinates } = *row;

@@ -12,7 +12,7 @@ use super::{note, work};
 use crate::picture;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use plan::{Plan, RunEnding};
+use plan::{PlannedRun, RunEnding};
 use std::io::Write;
 
 /// Run the exact solver from one start
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     check_effect(arguments, format)?;
     let destination = arguments.output.destination();
     let bar = work::run_bar(destination.is_terminal());
-    let plan = Plan::new(arguments.model.problem()?, arguments, bar)?;
+    let plan = PlannedRun::new(arguments.model.problem()?, arguments, bar)?;
     let mut ending = RunEnding::default();
     destination.write(|out| {
         ending = match format {
@@ -82,7 +82,11 @@ fn check_effect(arguments: &Arguments, format: Format) -> Result<()> {
 }
 
 /// Writes the run's rows; what has to be said about its end.
-fn write_rows(plan: &Plan, samples: Option<u32>, sink: &mut dyn rows::Sink) -> Result<RunEnding> {
+fn write_rows(
+    plan: &PlannedRun,
+    samples: Option<u32>,
+    sink: &mut dyn rows::Sink,
+) -> Result<RunEnding> {
     sink.begin(plan, samples.is_some())?;
     let ending = match samples {
         Some(per_period) => rows::samples(plan, per_period, sink)?,
@@ -92,7 +96,7 @@ fn write_rows(plan: &Plan, samples: Option<u32>, sink: &mut dyn rows::Sink) -> R
     Ok(ending)
 }
 
-fn draw(plan: &Plan, format: Format, out: &mut dyn Write) -> Result<RunEnding> {
+fn draw(plan: &PlannedRun, format: Format, out: &mut dyn Write) -> Result<RunEnding> {
     let (segments, ending) = plan.segments_for_picture()?;
     let motion = picture::DrawnMotion::of(&plan.problem, &segments, &plan.last_instant(&segments));
     let bytes = match format {

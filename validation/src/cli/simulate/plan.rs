@@ -17,7 +17,7 @@ const USUAL_MAX_PERIODS: u64 = 1_000_000;
 const MAX_PICTURE_PERIODS: f64 = 5000.0;
 
 /// A run to be made.
-pub(super) struct Plan {
+pub(super) struct PlannedRun {
     pub(super) problem: Problem,
     /// The instant at which the run ends at the latest.
     pub(super) horizon: Instant,
@@ -27,7 +27,7 @@ pub(super) struct Plan {
     pub(super) progress: Progress,
 }
 
-impl Plan {
+impl PlannedRun {
     pub(super) fn new(problem: Problem, arguments: &Arguments, bar: Option<Bar>) -> Result<Self> {
         let start = problem.entry.instant;
         let periods = |count| start.after_periods(count, 1);

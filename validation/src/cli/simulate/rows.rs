@@ -1,6 +1,6 @@
 //! The rows of a run: the state at which each phase begins, or samples.
 
-use super::plan::{Plan, RunEnding};
+use super::plan::{PlannedRun, RunEnding};
 use anyhow::Result;
 use percuss::{Exit, Instant, Sample, Segment};
 
@@ -19,8 +19,8 @@ pub(super) struct RunRow {
 
 /// Something that rows can be written to.
 pub(super) trait Sink {
-    fn begin(&mut self, plan: &Plan, samples: bool) -> Result<()>;
-    fn row(&mut self, plan: &Plan, row: &RunRow) -> Result<()>;
+    fn begin(&mut self, plan: &PlannedRun, samples: bool) -> Result<()>;
+    fn row(&mut self, plan: &PlannedRun, row: &RunRow) -> Result<()>;
     fn finish(&mut self, ending: &RunEnding) -> Result<()>;
 }
 
@@ -30,7 +30,7 @@ fn state(sample: &Sample) -> [f64; 4] {
 
 /// Row 0 is the start, then each switch, and the horizon if that is what ends the run, or where it
 /// is no longer decided.
-pub(super) fn events(plan: &Plan, sink: &mut dyn Sink) -> Result<RunEnding> {
+pub(super) fn events(plan: &PlannedRun, sink: &mut dyn Sink) -> Result<RunEnding> {
     let mut index = 0;
     let mut last = None;
     let mut entry = plan.problem.entry;
@@ -78,7 +78,11 @@ pub(super) fn events(plan: &Plan, sink: &mut dyn Sink) -> Result<RunEnding> {
 
 /// Rows at start + k 2 pi/(K omega), the horizon included; a last one where the run is no longer
 /// decided.
-pub(super) fn samples(plan: &Plan, per_period: u32, sink: &mut dyn Sink) -> Result<RunEnding> {
+pub(super) fn samples(
+    plan: &PlannedRun,
+    per_period: u32,
+    sink: &mut dyn Sink,
+) -> Result<RunEnding> {
     let start = plan.problem.entry.instant;
     let mut k = 0;
     let mut last = None;

@@ -5,7 +5,7 @@ use crate::case::Problem;
 use crate::cli::basins::json::{AttractorJson, Json};
 use crate::cli::basins::{AttractorArguments, BasinArguments, GridFlags, Survey};
 use crate::cli::model::ModelFlags;
-use crate::sweep::{Array, Point, Tiles, Work};
+use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
 use anyhow::Result;
 use percuss::dynamics::attractor::{Basins, BlockLabeller, Grid, Label, LabelledBlock};
 use percuss::dynamics::strobe::StrobeMap;
@@ -51,7 +51,7 @@ impl BasinWork {
         Self { grid, model, wanted, last: Mutex::default() }
     }
 
-    fn ground(&self, point: &Point) -> Result<Ground> {
+    fn ground(&self, point: &SweepPoint) -> Result<Ground> {
         let problem = self.model.at(point).problem_of_grid()?;
         let map = StrobeMap::new(problem.model, problem.entry.instant);
         let grid = self.grid.grid_of(problem.start.q);
@@ -59,7 +59,7 @@ impl BasinWork {
     }
 
     /// What the blocks of a point share; made once for blocks in a row.
-    fn labeller(&self, point: &Point) -> Result<Arc<BlockLabeller>> {
+    fn labeller(&self, point: &SweepPoint) -> Result<Arc<BlockLabeller>> {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((number, labeller)) = &*last
             && *number == point.number
@@ -122,8 +122,8 @@ fn kind(name: &str) -> i32 {
     names.iter().position(|it| *it == name).map_or(-1, |place| place as i32)
 }
 
-impl Work for BasinWork {
-    fn check(&self, point: &Point) -> Result<()> {
+impl SweepVerb for BasinWork {
+    fn check(&self, point: &SweepPoint) -> Result<()> {
         self.model.at(point).problem_of_grid().map(drop)
     }
 
@@ -131,7 +131,7 @@ impl Work for BasinWork {
         self.grid.grid_of(None).blocks()
     }
 
-    fn tile(&self, point: &Point, tile: u32) -> Result<Vec<u8>> {
+    fn tile(&self, point: &SweepPoint, tile: u32) -> Result<Vec<u8>> {
         if self.tiles() > 1 {
             return records::bytes(&self.labeller(point)?.label(tile, &|_| {}));
         }
@@ -140,7 +140,7 @@ impl Work for BasinWork {
         records::bytes(&self.arrays(problem, basins)?)
     }
 
-    fn join(&self, point: &Point, tiles: Tiles<'_>) -> Result<Vec<Array>> {
+    fn join(&self, point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
         if self.tiles() == 1 {
             return records::of_single(tiles);
         }
@@ -151,7 +151,7 @@ impl Work for BasinWork {
     }
 
     /// A lattice of starts stands for the blocks in whose rows they lie.
-    fn costs(&self, point: &Point) -> Result<Vec<u64>> {
+    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
         let Ground { map, grid, .. } = self.ground(point)?;
         let labeller = BlockLabeller::new(&map, &grid, self.grid.transient);
         let lattice = Grid { columns: PILOT, rows: PILOT, ..grid };

@@ -1,9 +1,9 @@
 //! `continue` at the points of a sweep.
 
 use super::records;
-use crate::cli::orbits::follow::{Arguments, Seen, family, followed};
+use crate::cli::orbits::follow::{Arguments, Reporting, family, followed};
 use crate::cli::orbits::json::{BranchJson, Followed, JsonPlace, Special};
-use crate::sweep::{Array, Point, Tiles, Work};
+use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
 use anyhow::Result;
 
 /// A branch at each point; a point is one tile.
@@ -17,24 +17,24 @@ impl BranchWork {
     }
 }
 
-impl Work for BranchWork {
-    fn check(&self, point: &Point) -> Result<()> {
+impl SweepVerb for BranchWork {
+    fn check(&self, point: &SweepPoint) -> Result<()> {
         family(&self.arguments, &self.arguments.model.at(point)).map(drop)
     }
 
-    fn tile(&self, point: &Point, _tile: u32) -> Result<Vec<u8>> {
+    fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
         let model = self.arguments.model.at(point);
-        let (followed, _) = followed(&self.arguments, &model, Seen::Alone)?;
+        let (followed, _) = followed(&self.arguments, &model, Reporting::Alone)?;
         records::bytes(&arrays(&followed)?)
     }
 
-    fn join(&self, _point: &Point, tiles: Tiles<'_>) -> Result<Vec<Array>> {
+    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
         records::of_single(tiles)
     }
 
     /// The iterations of a branch are as many as its events, which are not known before it is
     /// followed: those of a run at its first value stand for them.
-    fn costs(&self, point: &Point) -> Result<Vec<u64>> {
+    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
         let (problem, ..) = family(&self.arguments, &self.arguments.model.at(point))?;
         Ok(vec![records::events(&problem.model, problem.entry, u64::MAX)])
     }

@@ -6,7 +6,7 @@
 use super::exponents::number_of;
 use super::records;
 use crate::cli::bifurcation::{self, Arguments, MAX_ROWS};
-use crate::sweep::{Array, Plan, Point, Tiles, Work};
+use crate::sweep::{Array, Plan, SweepPoint, SweepVerb, Tiles};
 use anyhow::{Result, anyhow, bail};
 use percuss::dynamics::diagram::{Diagram, DiagramStep};
 
@@ -30,6 +30,15 @@ impl DiagramWork {
                  steps in [fixed], for a whole diagram at each point"
             );
         }
+        let own = ["from", "to", "steps"];
+        let is_given =
+            |name: &&str| plan.words.iter().any(|it| it.starts_with(&format!("--{name}=")));
+        if let Some(name) = own.iter().find(|name| is_given(name)) {
+            bail!(
+                "[fixed] {name} is not accepted without parameter: the last axis is the diagram's, \
+                 with its own from, to and steps"
+            );
+        }
         let (name, from) = (axis.parameter.as_str(), axis.from);
         Ok(vec![
             format!("--parameter={name}"),
@@ -44,7 +53,7 @@ impl DiagramWork {
         Ok(Self { arguments, by_axis: !names_parameter(plan) })
     }
 
-    fn diagram(&self, point: &Point) -> Result<Diagram> {
+    fn diagram(&self, point: &SweepPoint) -> Result<Diagram> {
         let diagram = bifurcation::diagram(&self.arguments, &self.arguments.model.at(point))?;
         let value = point.values.last().map(|it| it.1).filter(|_| self.by_axis);
         Ok(match value {
@@ -85,12 +94,12 @@ fn names_parameter(plan: &Plan) -> bool {
     plan.words.iter().any(|it| it.starts_with("--parameter="))
 }
 
-impl Work for DiagramWork {
-    fn check(&self, point: &Point) -> Result<()> {
+impl SweepVerb for DiagramWork {
+    fn check(&self, point: &SweepPoint) -> Result<()> {
         self.diagram(point).map(drop)
     }
 
-    fn tile(&self, point: &Point, _tile: u32) -> Result<Vec<u8>> {
+    fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
         let diagram = self.diagram(point)?;
         let steps = diagram.steps(|| {});
         let name = diagram.parameter.as_str();
@@ -98,11 +107,11 @@ impl Work for DiagramWork {
         records::bytes(&self.arrays(&diagram, &steps))
     }
 
-    fn join(&self, _point: &Point, tiles: Tiles<'_>) -> Result<Vec<Array>> {
+    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
         records::of_single(tiles)
     }
 
-    fn costs(&self, point: &Point) -> Result<Vec<u64>> {
+    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
         let problem = self.arguments.model.at(point).problem()?;
         let periods = self.arguments.transient + u64::from(self.arguments.periods);
         Ok(vec![records::events(&problem.model, problem.entry, periods)])

@@ -3,7 +3,7 @@
 use super::records;
 use crate::cli::lyapunov::Arguments;
 use crate::cli::work;
-use crate::sweep::{Array, Point, Tiles, Work};
+use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
 use anyhow::Result;
 use percuss::Endless;
 use percuss::dynamics::lyapunov::Spectrum;
@@ -20,22 +20,22 @@ impl ExponentWork {
     }
 }
 
-impl Work for ExponentWork {
-    fn check(&self, point: &Point) -> Result<()> {
+impl SweepVerb for ExponentWork {
+    fn check(&self, point: &SweepPoint) -> Result<()> {
         self.arguments.model.at(point).problem().map(drop)
     }
 
-    fn tile(&self, point: &Point, _tile: u32) -> Result<Vec<u8>> {
+    fn tile(&self, point: &SweepPoint, _tile: u32) -> Result<Vec<u8>> {
         let Arguments { transient, periods, model, .. } = &self.arguments;
         let problem = model.at(point).problem()?;
         records::bytes(&arrays(&Spectrum::of(&problem.model, problem.entry, *transient, *periods)))
     }
 
-    fn join(&self, _point: &Point, tiles: Tiles<'_>) -> Result<Vec<Array>> {
+    fn join(&self, _point: &SweepPoint, tiles: Tiles<'_>) -> Result<Vec<Array>> {
         records::of_single(tiles)
     }
 
-    fn costs(&self, point: &Point) -> Result<Vec<u64>> {
+    fn costs(&self, point: &SweepPoint) -> Result<Vec<u64>> {
         let Arguments { transient, periods, model, .. } = &self.arguments;
         let problem = model.at(point).problem()?;
         Ok(vec![records::events(&problem.model, problem.entry, transient + periods)])

@@ -18,7 +18,7 @@ use super::work::{self, Bar};
 use super::{DONE, OUT_OF_BOUNDS, note, say};
 #[cfg(feature = "mpi")]
 use crate::sweep::Ranks;
-use crate::sweep::{Damage, Folder, Merge, NotMerged, Plan, Status, Sweep, Told, Work};
+use crate::sweep::{Damage, Folder, Merge, NotMerged, Plan, Sweep, SweepStatus, SweepVerb, Told};
 use anyhow::{Result, anyhow, bail};
 use clap::{Args, Subcommand};
 use shown::{Format, StatusJson};
@@ -28,11 +28,11 @@ use std::path::PathBuf;
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(subcommand)]
-    step: Step,
+    step: SweepStep,
 }
 
 #[derive(Subcommand)]
-enum Step {
+enum SweepStep {
     Run(RunArguments),
     Status(StatusArguments),
     Merge(MergeArguments),
@@ -81,15 +81,15 @@ struct MergeArguments {
 
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     match &arguments.step {
-        Step::Run(arguments) => compute(arguments, threads),
-        Step::Status(arguments) => status(arguments, threads),
-        Step::Merge(arguments) => merged(arguments, threads),
+        SweepStep::Run(arguments) => compute(arguments, threads),
+        SweepStep::Status(arguments) => status(arguments, threads),
+        SweepStep::Merge(arguments) => merged(arguments, threads),
     }
 }
 
 impl SweepFlags {
     /// The plan and what it does, both checked.
-    fn plan(&self) -> Result<(Plan, Box<dyn Work>)> {
+    fn plan(&self) -> Result<(Plan, Box<dyn SweepVerb>)> {
         let plan = Plan::read(&self.plan)?;
         let work = verb::work(&plan).and_then(|work| {
             Sweep::check(&plan, work.as_ref())?;
@@ -124,7 +124,7 @@ fn compute(arguments: &RunArguments, threads: Option<u16>) -> Result<u8> {
     work::pool(threads)?.install(|| {
         folder.begin(&plan)?;
         let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
-        let progress = Progress { bar: work::bar(0, "tiles") };
+        let progress = SweepProgress { bar: work::bar(0, "tiles") };
         match shard {
             Some(shard) => sweep.run(shard, &progress),
             None => sweep.run_all(&progress),
@@ -138,7 +138,7 @@ fn compute(arguments: &RunArguments, threads: Option<u16>) -> Result<u8> {
 fn by_ranks(
     ranks: &Ranks,
     plan: &Plan,
-    work: &dyn Work,
+    work: &dyn SweepVerb,
     folder: &Folder,
     threads: Option<u16>,
 ) -> Result<u8> {
@@ -161,7 +161,7 @@ fn by_ranks(
         return Ok(REFUSED);
     }
     let sweep = sweep?;
-    ranks.run(&sweep, &pool, &Progress { bar: work::bar(0, "tiles") })?;
+    ranks.run(&sweep, &pool, &SweepProgress { bar: work::bar(0, "tiles") })?;
     Ok(DONE)
 }
 
@@ -173,10 +173,10 @@ fn status(arguments: &StatusArguments, threads: Option<u16>) -> Result<u8> {
     let status = if folder.check(&plan)? {
         work::pool(threads)?.install(|| {
             let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
-            anyhow::Ok(Status::of(&sweep))
+            anyhow::Ok(SweepStatus::of(&sweep))
         })?
     } else {
-        Status::not_begun(&plan)
+        SweepStatus::not_begun(&plan)
     };
     let destination = arguments.output.destination();
     match format {
@@ -221,11 +221,11 @@ fn merged(arguments: &MergeArguments, threads: Option<u16>) -> Result<u8> {
     }
 }
 
-struct Progress {
+struct SweepProgress {
     bar: Bar,
 }
 
-impl Told for Progress {
+impl Told for SweepProgress {
     fn redone(&self, shard: u32, why: &Damage) {
         note(&format!("shard {shard} ({}) is {why}; it is computed again", Folder::name(shard)));
     }

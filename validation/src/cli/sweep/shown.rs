@@ -1,7 +1,7 @@
 //! The state of a sweep, as JSON and for people.
 
 use crate::cli::output::Destination;
-use crate::sweep::{Plan, ShardState, Status};
+use crate::sweep::{Plan, ShardState, SweepStatus};
 use clap::ValueEnum;
 use serde::Serialize;
 use std::time::Duration;
@@ -42,7 +42,7 @@ struct DamagedJson {
 }
 
 impl StatusJson {
-    pub(super) fn of(plan: &Plan, status: &Status) -> Self {
+    pub(super) fn of(plan: &Plan, status: &SweepStatus) -> Self {
         let damaged = (0..).zip(&status.shards).filter_map(|(shard, state)| match state {
             ShardState::Damaged(why) => Some(DamagedJson { shard, reason: why.clone() }),
             _ => None,
@@ -64,7 +64,7 @@ impl StatusJson {
 }
 
 /// Lines for people: how many shards are in each state, and which.
-pub(super) fn table(plan: &Plan, status: &Status) -> String {
+pub(super) fn table(plan: &Plan, status: &SweepStatus) -> String {
     let rows = [
         ("done", status.numbers(|it| *it == ShardState::Done)),
         ("running", status.numbers(|it| *it == ShardState::Running)),

@@ -5,12 +5,12 @@ use super::branches::BranchWork;
 use super::diagrams::DiagramWork;
 use super::exponents::ExponentWork;
 use crate::cli::{self, Verb};
-use crate::sweep::{Plan, Work};
+use crate::sweep::{Plan, SweepVerb};
 use anyhow::{Result, anyhow, bail};
 use clap::Parser;
 
 /// What a plan's verb does at each of its points.
-pub(super) fn work(plan: &Plan) -> Result<Box<dyn Work>> {
+pub(super) fn work(plan: &Plan) -> Result<Box<dyn SweepVerb>> {
     let verb = plan.verb.as_str();
     let mut words = vec!["percuss".to_owned(), verb.to_owned()];
     words.extend(plan.words.iter().cloned());
@@ -23,7 +23,9 @@ pub(super) fn work(plan: &Plan) -> Result<Box<dyn Work>> {
              lyapunov, continue"
         ),
     }
-    let parsed = cli::Arguments::try_parse_from(words).map_err(|error| objection(&error))?;
+    check_off(plan)?;
+    let parsed = cli::Arguments::try_parse_from(words)
+        .map_err(|error| anyhow!("[fixed]: {}", cli::objection(&error)))?;
     Ok(match parsed.verb {
         Verb::Basins(arguments) => Box::new(BasinWork::labels(*arguments)),
         Verb::Attractors(arguments) => Box::new(BasinWork::attractors(*arguments)),
@@ -34,11 +36,17 @@ pub(super) fn work(plan: &Plan) -> Result<Box<dyn Work>> {
     })
 }
 
-/// What clap objects to in [fixed], in one line.
-fn objection(error: &clap::Error) -> anyhow::Error {
-    let text = error.to_string();
-    let text = text.strip_prefix("error: ").unwrap_or(&text);
-    let end = ["\n\nUsage:", "\n\nFor more"].iter().filter_map(|mark| text.find(mark)).min();
-    let line: Vec<_> = text[..end.unwrap_or(text.len())].split_whitespace().collect();
-    anyhow!("[fixed]: {}", line.join(" "))
+/// Refuses `false` for what is no switch of the verb.
+fn check_off(plan: &Plan) -> Result<()> {
+    let command = cli::command();
+    let verb = command.find_subcommand(&plan.verb);
+    let is_switch = |name: &str| {
+        verb.into_iter()
+            .flat_map(clap::Command::get_arguments)
+            .any(|it| it.get_long() == Some(name) && !it.get_action().takes_values())
+    };
+    if let Some(name) = plan.off.iter().find(|name| !is_switch(name)) {
+        bail!("[fixed] {name} = false is not accepted: {} has no such switch", plan.verb);
+    }
+    Ok(())
 }

@@ -1,19 +1,21 @@
 //! The library's methods, each with its tolerances and limits.
 
-use super::watch::again;
-use super::{LONGEST_STEP, ModeField};
+use super::{LONGEST_STEP, ModeField, reason};
 use crate::engine::Stepping;
 use crate::engine::cubic::CubicEnd;
 use crate::engine::equations::Equations;
 use crate::engine::joining::Times;
 use crate::engine::meter::Failure;
 use crate::engine::walk::longest_step;
+use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{
     BackwardDifferentiationFormula, DiagonallyImplicitRungeKutta, ExplicitRungeKutta,
     ImplicitRungeKutta, Ordinary,
 };
-use differential_equations::ode::OrdinaryNumericalMethod;
+use differential_equations::ode::{OrdinaryNumericalMethod, solve_ode};
+use differential_equations::solout::Solout;
+use differential_equations::solution::Solution;
 use differential_equations::stats::Evals;
 use differential_equations::traits::State;
 
@@ -55,6 +57,7 @@ pub(in super::super) trait LibraryMethod {
     /// The order that the method's authors state; none where it varies.
     const ORDER: Option<u32>;
     const INSIDE: Inside;
+    const EXPLICIT: bool;
     const MULTISTEP: bool = matches!(Self::INSIDE, Inside::Cubic);
     /// Backward differentiation continues with the solution whose error it estimates.
     const STEPPING: Stepping =
@@ -108,11 +111,21 @@ macro_rules! inside {
     ($other:ident) => {};
 }
 
+/// Whether a method is explicit, by a word.
+macro_rules! is_explicit {
+    (explicit) => {
+        true
+    };
+    (implicit) => {
+        false
+    };
+}
+
 /// Methods with all that their builders have in common, and then with settings of their own.
 macro_rules! methods {
     ($(
         $(#[$doc:meta])*
-        $name:ident: $text:literal, $order:expr, $inside:ident, |$first:ident| $new:expr $(, $setting:ident($value:expr))*;
+        $name:ident: $kind:ident $text:literal, $order:expr, $inside:ident, |$first:ident| $new:expr $(, $setting:ident($value:expr))*;
     )*) => {$(
         $(#[$doc])*
         pub(in super::super) struct $name;
@@ -121,6 +134,7 @@ macro_rules! methods {
             const DESCRIPTION: &'static str = $text;
             const ORDER: Option<u32> = $order;
             const INSIDE: Inside = Inside::$inside;
+            const EXPLICIT: bool = is_explicit!($kind);
 
             inside! { $inside }
 
@@ -139,30 +153,67 @@ macro_rules! methods {
 
 methods! {
     /// Verner's robust pair of order 6.
-    Rkv655e: "Verner 6(5)", Some(6), Interpolant,
+    Rkv655e: explicit "Verner 6(5)", Some(6), Interpolant,
         |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv655e(),
         max_rejects(ENOUGH);
     /// Verner's efficient pair of order 7.
-    Rkv767e: "Verner 7(6)", Some(7), Interpolant,
+    Rkv767e: explicit "Verner 7(6)", Some(7), Interpolant,
         |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::rkv767e(),
         max_rejects(ENOUGH);
     /// Dormand and Prince's method of order 8.
-    Dop853: "Dormand-Prince 8(5,3)", Some(8), Again,
+    Dop853: explicit "Dormand-Prince 8(5,3)", Some(8), Again,
         |first| ExplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::dop853(),
         max_rejects(ENOUGH);
     /// Collocation at Radau's points.
-    Radau5: "Radau IIA, order 5", Some(5), Again,
+    Radau5: implicit "Radau IIA, order 5", Some(5), Again,
         |first| ImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::radau5(),
         newton_tol(0.0), max_rejects(ENOUGH),
         filter(if first == 0.0 { rungs } else { std::convert::identity });
     /// Kvaerno's method of order 5.
-    Kvaerno745: "Kvaerno ESDIRK 5(4)", Some(5), Again,
+    Kvaerno745: implicit "Kvaerno ESDIRK 5(4)", Some(5), Again,
         |first| DiagonallyImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::kvaerno745(),
         newton_tol(NEWTON), max_rejects(ENOUGH);
     /// Backward differentiation.
-    Bdf: "BDF, orders 1 to 5", None, Cubic,
+    Bdf: implicit "BDF, orders 1 to 5", None, Cubic,
         |first| BackwardDifferentiationFormula::<Ordinary, _, _>::adaptive(),
         h_max(f64::INFINITY);
+}
+
+/// The state at `t` by the method again from a point before it, in one step if that will do.
+fn again<M: LibraryMethod, E: Equations<State: State<f64>>>(
+    field: &ModeField<'_, E>,
+    tolerance: f64,
+    from: CubicEnd<E::State>,
+    t: f64,
+) -> Result<E::State, Failure> {
+    let length = t - from.0;
+    let mut last = Last(from.1);
+    let mut method = M::method(field.equations.dimension(), tolerance, length, length);
+    let solved = solve_ode(&mut method, field, from.0, t, &from.1, &mut last)
+        .map_err(|error| reason(&error))?;
+    field.meter.solves(M::solves(&solved.evals));
+    Ok(last.0)
+}
+
+/// Remembers the last state.
+struct Last<S>(S);
+
+impl<S: State<f64> + Copy> Solout<f64, S> for Last<S> {
+    fn solout<I>(
+        &mut self,
+        _: f64,
+        _: f64,
+        state: &S,
+        _: &S,
+        _: &mut I,
+        _: &mut Solution<f64, S>,
+    ) -> ControlFlag<f64, S>
+    where
+        I: Interpolation<f64, S> + ?Sized,
+    {
+        self.0 = *state;
+        ControlFlag::Continue
+    }
 }
 
 #[cfg(test)]

@@ -2,16 +2,16 @@
 
 use super::method::{Inside, LibraryMethod};
 use super::{ModeField, reason};
+use crate::engine::alone::GuardRise;
 use crate::engine::cubic::{Cubic, CubicEnd};
 use crate::engine::equations::Equations;
 use crate::engine::joining::{Moment, StretchEnd};
-use crate::engine::location::{GuardRise, GuardSearch, StateAt};
+use crate::engine::location::{GuardSearch, StateAt};
 use crate::engine::meter::Failure;
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::Walk;
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
-use differential_equations::ode::solve_ode;
 use differential_equations::solout::Solout;
 use differential_equations::solution::Solution;
 use differential_equations::traits::State;
@@ -130,42 +130,5 @@ impl<M: LibraryMethod, E: Equations<State: State<f64>>> Solout<f64, E::State>
                 ControlFlag::Terminate
             }
         }
-    }
-}
-
-/// The state at `t` by the method again from a point before it, in one step if that will do.
-pub(super) fn again<M: LibraryMethod, E: Equations<State: State<f64>>>(
-    field: &ModeField<'_, E>,
-    tolerance: f64,
-    from: CubicEnd<E::State>,
-    t: f64,
-) -> Result<E::State, Failure> {
-    let length = t - from.0;
-    let mut last = Last(from.1);
-    let mut method = M::method(field.equations.dimension(), tolerance, length, length);
-    let solved = solve_ode(&mut method, field, from.0, t, &from.1, &mut last)
-        .map_err(|error| reason(&error))?;
-    field.meter.solves(M::solves(&solved.evals));
-    Ok(last.0)
-}
-
-/// Remembers the last state.
-struct Last<S>(S);
-
-impl<S: State<f64> + Copy> Solout<f64, S> for Last<S> {
-    fn solout<I>(
-        &mut self,
-        _: f64,
-        _: f64,
-        state: &S,
-        _: &S,
-        _: &mut I,
-        _: &mut Solution<f64, S>,
-    ) -> ControlFlag<f64, S>
-    where
-        I: Interpolation<f64, S> + ?Sized,
-    {
-        self.0 = *state;
-        ControlFlag::Continue
     }
 }

@@ -4,10 +4,11 @@
 //! right state; in dense mode it does not.
 
 use super::{COLOURS, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, TimedField, packed, plain};
+use crate::engine::alone::GuardRise;
 use crate::engine::equations::Equations;
 use crate::engine::field::Coordinates;
 use crate::engine::joining::{Course, Moment, StretchEnd, join};
-use crate::engine::location::{GuardRise, GuardSearch};
+use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::{
@@ -52,6 +53,10 @@ impl<E: Coordinates> Engine for Dopri5<E> {
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let course = Course::of(task, E::of(&task.parameters, task.forcing_angle));
         run::<E, U4>(&course, accuracy, limits)
+    }
+
+    fn is_explicit(&self) -> bool {
+        true
     }
 
     fn runs_systems(&self) -> bool {

@@ -101,10 +101,10 @@ fn departure(
     Some(format!("a spurious event {} at {}", more.event, more.elapsed))
 }
 
-/// Its library's search for roots returns after a few evaluations: times are off by up to a
-/// twentieth.
+/// This engine's library stops its search for roots after a few evaluations: times are off by up
+/// to a twentieth.
 const BUILT_IN: &str = "differential-equations-rkv655e-events";
-/// It is of first order where the system is forced, as it is shipped.
+/// This engine is of first order where the system is forced, as its library ships it.
 const FIRST_ORDER: &str = "ode_solvers-dop853";
 
 /// Checks every integrator against the truth, but for those that are `excused`: these depart, each

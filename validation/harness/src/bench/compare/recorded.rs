@@ -6,11 +6,11 @@
 //! Where instructions are counted they decide, and times only warn.
 
 use super::verdict::{FAIL, WARN, WorkloadVerdict};
-use crate::bench::history::Record;
+use crate::bench::history::HistoryRecord;
 
 /// A workload of both versions.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Change {
+pub struct RecordedChange {
     /// The workload.
     pub bench: String,
     /// What is compared.
@@ -21,7 +21,7 @@ pub struct Change {
     pub verdict: WorkloadVerdict,
 }
 
-impl Change {
+impl RecordedChange {
     /// New over old.
     #[must_use]
     pub fn quotient(&self) -> f64 {
@@ -31,8 +31,8 @@ impl Change {
 
 /// All changes of a workload; the deterministic figures come first.
 #[must_use]
-pub fn changes(old: &Record, new: &Record) -> Vec<Change> {
-    let change = |figure, figures: [f64; 2], verdict| Change {
+pub fn changes(old: &HistoryRecord, new: &HistoryRecord) -> Vec<RecordedChange> {
+    let change = |figure, figures: [f64; 2], verdict| RecordedChange {
         bench: old.bench.clone(),
         figure,
         figures,
@@ -42,7 +42,7 @@ pub fn changes(old: &Record, new: &Record) -> Vec<Change> {
         |figure, figures: [f64; 2]| change(figure, figures, repeatable(figures[1] / figures[0]));
     let alike = old.target_cpu == new.target_cpu;
     let counted = old.instructions.zip(new.instructions).filter(|_| alike);
-    let mut all: Vec<Change> =
+    let mut all: Vec<RecordedChange> =
         counted.map(|(old, new)| settled("instructions", [old, new])).into_iter().collect();
     let evaluations = [old.evaluations_per_switch, new.evaluations_per_switch];
     all.push(settled("evaluations", evaluations));
@@ -59,7 +59,7 @@ pub fn changes(old: &Record, new: &Record) -> Vec<Change> {
 /// Below this an error is rounding of the last digits: as `validate --baseline` has it.
 const NO_ERROR: f64 = 1e-14;
 
-fn errors(old: &Record, new: &Record) -> [f64; 2] {
+fn errors(old: &HistoryRecord, new: &HistoryRecord) -> [f64; 2] {
     let seen = |error: f64| if error < NO_ERROR { NO_ERROR } else { error };
     [seen(old.state_error_max), seen(new.state_error_max)]
 }
@@ -87,7 +87,11 @@ mod tests {
     use crate::bench::history::Figures;
     use crate::build::Build;
 
-    fn record(instructions: Option<f64>, floors: f64, evaluations_per_switch: f64) -> Record {
+    fn record(
+        instructions: Option<f64>,
+        floors: f64,
+        evaluations_per_switch: f64,
+    ) -> HistoryRecord {
         let figures = Figures {
             instructions,
             best_ns: 100.0,
@@ -98,10 +102,10 @@ mod tests {
             evaluations_per_switch,
             state_error_max: 0.0,
         };
-        Record::of(Build::of("", "rustc", "any"), "one", figures)
+        HistoryRecord::of(Build::of("", "rustc", "any"), "one", figures)
     }
 
-    fn words(old: &Record, new: &Record) -> Vec<(&'static str, &'static str)> {
+    fn words(old: &HistoryRecord, new: &HistoryRecord) -> Vec<(&'static str, &'static str)> {
         changes(old, new).iter().map(|it| (it.figure, it.verdict.word())).collect()
     }
 
@@ -119,7 +123,7 @@ mod tests {
     fn times_are_slower_where_both_halves_say_so() {
         let old = record(None, 5.0, 1.0);
         let said = |floors: f64, floors_again: f64| {
-            let new = Record { floors_again, ..record(None, floors, 1.0) };
+            let new = HistoryRecord { floors_again, ..record(None, floors, 1.0) };
             words(&old, &new).pop()
         };
         assert_eq!(said(5.0, 5.0), Some(("floors", "pass")));
@@ -137,7 +141,7 @@ mod tests {
 
     #[test]
     fn digits_are_no_price_for_speed() {
-        let with = |state_error_max| Record { state_error_max, ..record(None, 5.0, 1.0) };
+        let with = |state_error_max| HistoryRecord { state_error_max, ..record(None, 5.0, 1.0) };
         let said = |old, new| words(&with(old), &with(new))[1];
         assert_eq!(said(1e-12, 3e-12), ("state_error", "fail"));
         assert_eq!(said(1e-12, 1.9e-12), ("state_error", "pass"));
@@ -148,7 +152,8 @@ mod tests {
     #[test]
     fn instructions_of_different_targets_are_not_compared() {
         let old = record(Some(1000.0), 5.0, 1.0);
-        let new = Record { target_cpu: "other".to_owned(), ..record(Some(2000.0), 5.0, 1.0) };
+        let new =
+            HistoryRecord { target_cpu: "other".to_owned(), ..record(Some(2000.0), 5.0, 1.0) };
         assert_eq!(words(&old, &new)[0].0, "evaluations");
     }
 }

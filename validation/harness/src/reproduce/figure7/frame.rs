@@ -5,7 +5,7 @@ use crate::engine::Failure;
 use crate::picture::Colour;
 use crate::picture::{Layer, Plot, Raster, basin_colours};
 use crate::reproduce::attractors::{TRANSIENT, WINDOW, described, grid, map};
-use crate::reproduce::integrated::{NAME, strobes};
+use crate::reproduce::integrated::strobes;
 use crate::reproduce::work::ItemWork;
 use percuss::dynamics::attractor::{Attractor, Basins, Label};
 use percuss::dynamics::orbit::Orbit;
@@ -98,11 +98,11 @@ impl Frame {
         const TOLERANCE: f64 = 1e-11;
         let back = |orbit: &Orbit| {
             let (first, period) = (orbit.points[0], orbit.period());
-            let strobes = strobes(self.omega, first, period, TOLERANCE)?;
+            let (integrator, strobes) = strobes(self.omega, first, period, TOLERANCE)?;
             let last = strobes[strobes.len() - 1];
             let apart = (last[0] - first[0]).abs().max((last[1] - first[1]).abs());
             Ok((
-                format!("{NAME}, tolerance {TOLERANCE:e}, from the orbit of period {period}"),
+                format!("{integrator}, from the orbit of period {period}"),
                 format!("after one period it is back within {apart:.1e}"),
             ))
         };

@@ -1,4 +1,4 @@
-//! How far the exact solver is ahead of its closest competitor, at its most accurate and at equal
+//! The closest competitor of the exact solver on a case, at its most accurate and at equal
 //! accuracy.
 
 use super::equal_accuracy::{Basis, LOOSE, TIGHT};
@@ -14,23 +14,23 @@ pub fn times(ratio: f64) -> String {
 
 /// The closest competitor of the exact solver on a case.
 #[derive(Clone, Debug)]
-pub struct Lead<'a> {
+pub struct ClosestCompetitor<'a> {
     /// What the engines are compared at.
     pub basis: Basis,
     /// The adaptive engine that takes least: its most accurate setting, or its fastest setting
     /// whose error is at most that of the basis.
-    pub next: &'a BenchRow,
+    pub row: &'a BenchRow,
     /// How many times as long the competitor takes as the exact solver.
     pub ratio: f64,
 }
 
-impl Lead<'_> {
+impl ClosestCompetitor<'_> {
     /// The accuracy that the competitor is timed at, for a table.
     #[must_use]
     pub fn accuracy(&self) -> String {
         match self.basis {
             Basis::MostAccurate => {
-                format!("least: {}", self.next.state_error_max.map(brief).unwrap_or_default())
+                format!("least: {}", self.row.state_error_max.map(brief).unwrap_or_default())
             }
             Basis::Tight => format!("<= {}", shortest(TIGHT)),
             Basis::Loose => format!("<= {}", shortest(LOOSE)),
@@ -38,10 +38,14 @@ impl Lead<'_> {
     }
 }
 
-/// The exact solver's lead on a case; nothing where no adaptive engine is as accurate as the basis
+/// The closest competitor on a case; nothing where no adaptive engine is as accurate as the basis
 /// asks.
 #[must_use]
-pub fn lead<'a>(bench: &'a Bench, case: &str, basis: Basis) -> Option<Lead<'a>> {
+pub fn closest_competitor<'a>(
+    bench: &'a Bench,
+    case: &str,
+    basis: Basis,
+) -> Option<ClosestCompetitor<'a>> {
     let rows = bench.results.iter().filter(|row| row.case == case && row.adaptive);
     let ahead = |row: &'a BenchRow| Some((row, row.ratio(basis)?));
     // Of an engine's settings that share a ratio the fastest comes first.
@@ -51,7 +55,7 @@ pub fn lead<'a>(bench: &'a Bench, case: &str, basis: Basis) -> Option<Lead<'a>> 
         let ((a, time), (b, other)) = (order(a), order(b));
         a.total_cmp(&b).then(time.total_cmp(&other))
     });
-    least.map(|(next, ratio)| Lead { basis, next, ratio })
+    least.map(|(row, ratio)| ClosestCompetitor { basis, row, ratio })
 }
 
 /// Whether the exact solver errs less on a case than every adaptive engine at any tolerance.
@@ -123,12 +127,12 @@ mod tests {
     }
 
     #[test]
-    fn a_lead_is_rounded_down() {
+    fn a_ratio_is_rounded_down() {
         for (ratio, said) in [(99.9, "99"), (100.0, "100")] {
             let bench = bench(ratio, 20);
-            let lead = lead(&bench, CASE, Basis::MostAccurate);
-            let lead = lead.map(|it| (it.next.engine.clone(), times(it.ratio)));
-            assert_eq!(lead, Some(("an-engine".to_owned(), said.to_owned())));
+            let closest = closest_competitor(&bench, CASE, Basis::MostAccurate);
+            let closest = closest.map(|it| (it.row.engine.clone(), times(it.ratio)));
+            assert_eq!(closest, Some(("an-engine".to_owned(), said.to_owned())));
         }
     }
 
@@ -141,12 +145,14 @@ mod tests {
             BenchRow { ratio_at_1e_6: quick.ratio_at_1e_6, ..row("quick", 6400.0, 20.0, 1e-8) };
         bench.results.extend([quick, reaches]);
         let at = |basis| {
-            lead(&bench, CASE, basis).map(|it| (it.next.engine.as_str(), it.ratio, it.accuracy()))
+            closest_competitor(&bench, CASE, basis)
+                .map(|it| (it.row.engine.as_str(), it.ratio, it.accuracy()))
         };
         assert_eq!(at(Basis::MostAccurate), Some(("quick", 20.0, "least: 1.0e-8".to_owned())));
         assert_eq!(at(Basis::Loose), Some(("quick", 0.5, "<= 1e-6".to_owned())));
         assert_eq!(at(Basis::Tight), None);
-        let reached = lead(&bench, CASE, Basis::Loose).and_then(|it| it.next.ns_per_period);
+        let reached =
+            closest_competitor(&bench, CASE, Basis::Loose).and_then(|it| it.row.ns_per_period);
         assert_eq!(reached, Some(6400.0));
         assert!(errs_least(&bench, CASE));
         bench.results.push(row("lucky", 1e9, 1e6, 1e-16));
