@@ -6,7 +6,7 @@ use clap::Command;
 use percuss_validation::cli::command;
 
 /// Each verb with flags that make it complete; a flag under test takes the place of its own pair.
-const VERBS: [(&str, &[(&str, &str)]); 23] = [
+const VERBS: [(&str, &[(&str, &str)]); 25] = [
     ("simulate", &[("--periods", "1")]),
     ("poincare", &[("--transient", "1"), ("--periods", "1")]),
     ("lyapunov", &[("--transient", "1"), ("--periods", "1")]),
@@ -34,6 +34,8 @@ const VERBS: [(&str, &[(&str, &str)]); 23] = [
     ("orbit", &[("--period", "1")]),
     ("continue", &[("--parameter", "b"), ("--from", "0.1"), ("--to", "0.2"), ("--period", "1")]),
     ("validate", &[]),
+    ("export", &[("--out", "/proc/nowhere")]),
+    ("score", &[("--name", "mine"), ("--tolerance", "1e-6"), ("--answers", "/no/such")]),
     ("engines", &[]),
     ("cases", &[]),
     ("systems", &[]),
@@ -111,20 +113,37 @@ const ROWS: &[Row] = &[
     (&["reproduce"], "--only", WORDS, "accepted are"),
     (&["bench", "bench record"], "--rounds", INTEGERS, "1 to 1000"),
     (&["bench compare"], "--slowdown", NUMBERS, "0 to 1"),
+    (&["score"], "--name", &["", "Mine", "a b", "exact-mine"], "does not begin with exact"),
+    (&["score"], "--library", &["", "\n"], "1 to 80 characters"),
+    (&["score"], "--version", &["", "\n"], "1 to 80 characters"),
+    (&["score"], "--language", &["", "\n"], "1 to 80 characters"),
+    (&["score"], "--tolerance", NUMBERS, "1e-16 to 0.1"),
+    (&["score"], "--tolerance", &["0", "-1e-6", "0.2"], "1e-16 to 0.1"),
+    (&["score"], "--answers", &["/no/such", "/proc/version"], "accepted is a folder"),
     (&["validate", "bench"], "--engine", &["(", "qqqqq"], "--engine"),
-    (&["validate", "bench"], "--case", &["(", "qqqqq"], "--case"),
+    (&["validate", "bench", "export", "score"], "--case", &["(", "qqqqq"], "--case"),
     (&["bench compare"], "--bench", &["("], "regular expression"),
     (&["bench record", "bench history", "bench compare"], "--history", &["/"], "--history"),
-    (&["validate", "cases"], "--cases", &["/no/such"], "accepted is a folder of cases"),
+    (
+        &["validate", "cases", "export", "score"],
+        "--cases",
+        &["/no/such"],
+        "accepted is a folder of cases",
+    ),
     (
         &["validate", "bench", "engines"],
         "--programs",
         &["/no/such.toml", "/"],
         "accepted is a readable file",
     ),
-    (&["validate"], "--reference", &["/no/such"], "accepted is"),
-    (&["validate"], "--baseline", &["/no/such.json"], "accepted is"),
-    (&["validate", "bench", "reproduce", "man"], "--out", &["/proc/nowhere"], "accepted is"),
+    (&["validate", "score"], "--reference", &["/no/such"], "accepted is"),
+    (&["validate", "score"], "--baseline", &["/no/such.json"], "accepted is"),
+    (
+        &["validate", "bench", "reproduce", "man", "export", "score"],
+        "--out",
+        &["/proc/nowhere"],
+        "accepted is",
+    ),
     (&["basins"], "--output", &["/no/such/folder/file.npz"], "a folder that exists"),
     (
         &["bench history", "poincare"],
