@@ -5,6 +5,8 @@
 //! around the figure that was measured; rows that no report has stay as they are. An engine has one
 //! defect on the oscillator and one on other systems. Reasons are people's: those of
 //! the present file are kept, a new defect gets an empty one, which the program refuses to read.
+//! Before the reports `--file FILE` names another file than that of the engines in Rust, as
+//! `validation/programs/shortcomings.toml`.
 
 use anyhow::{Context, Result, bail, ensure};
 use percuss_validation::case::Cases;
@@ -35,7 +37,11 @@ type Defects = BTreeMap<Group, BTreeMap<Key, (f64, f64)>>;
 fn main() -> Result<()> {
     let mut defects = Defects::new();
     let mut reported = BTreeSet::new();
-    let reports: Vec<String> = std::env::args().skip(1).collect();
+    let mut reports: Vec<String> = std::env::args().skip(1).collect();
+    let mut file = concat!(env!("CARGO_MANIFEST_DIR"), "/shortcomings.toml").to_owned();
+    if reports.first().is_some_and(|it| it == "--file") && reports.len() > 1 {
+        file = reports.drain(..2).next_back().unwrap_or_default();
+    }
     if reports.is_empty() {
         bail!("name one report.json or more");
     }
@@ -52,7 +58,7 @@ fn main() -> Result<()> {
             collect(row, &systems, &mut defects)?;
         }
     }
-    let whys = present(&systems, &reported, &mut defects)?;
+    let whys = present(&file, &systems, &reported, &mut defects)?;
     println!(
         "# Known shortcomings of engines on the cases inside the binary, row by row: case, tolerance (or"
     );
@@ -137,13 +143,13 @@ fn float(value: f64) -> String {
 
 /// The reasons of the present file; its rows that no report has are kept.
 fn present(
+    path: &str,
     systems: &BTreeSet<String>,
     reported: &BTreeSet<Place>,
     defects: &mut Defects,
 ) -> Result<BTreeMap<Group, String>> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/shortcomings.toml");
-    let text = std::fs::read_to_string(path).context(path)?;
-    let file: PresentFile = toml::from_str(&text).context(path)?;
+    let text = std::fs::read_to_string(path).with_context(|| path.to_owned())?;
+    let file: PresentFile = toml::from_str(&text).with_context(|| path.to_owned())?;
     let mut reasons = BTreeMap::new();
     for PresentDefect { engine, why, rows } in file.defects {
         for (case, setting, quantity, statistic, floor, ceiling) in rows {
@@ -162,6 +168,7 @@ fn present(
 /// The file as it is.
 #[derive(Deserialize)]
 struct PresentFile {
+    #[serde(default)]
     defects: Vec<PresentDefect>,
 }
 

@@ -109,6 +109,7 @@ const ROWS: &[Row] = &[
     (&["orbit", "continue"], "--period", INTEGERS, "1 to 10000"),
     (&[], "--format", WORDS, "possible values"),
     (&["validate"], "--suite", WORDS, "quick, full"),
+    (&["validate"], "--tolerance", NUMBERS, "accepted is a tolerance"),
     (&["reproduce"], "--size", WORDS, "default, full"),
     (&["reproduce"], "--only", WORDS, "accepted are"),
     (&["bench", "bench record"], "--rounds", INTEGERS, "1 to 1000"),

@@ -20,7 +20,7 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, default_value_t = Suite::Quick)]
     suite: Suite,
     /// Only rows at this tolerance, one of the suite's; several are alternatives
-    #[arg(long, value_name = "T", value_parser = parse::tolerance)]
+    #[arg(long, value_name = "T", value_parser = parse::tolerance, allow_hyphen_values = true)]
     tolerance: Vec<parse::Typed<f64>>,
     /// Only engines whose name matches; several are alternatives
     #[arg(short, long = "engine", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
@@ -84,16 +84,12 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
 /// The suite, as far as tolerances are chosen.
 fn scope(arguments: &Arguments) -> Result<Scope> {
     let all = Scope::from(arguments.suite);
-    let accepted = || {
+    let is_other = |it: &&parse::Typed<f64>| !all.tolerances().contains(&it.value);
+    if let Some(other) = arguments.tolerance.iter().find(is_other) {
         let shown: Vec<_> = all.tolerances().iter().map(|it| format!("{it:e}")).collect();
-        shown.join(", ")
-    };
-    match arguments.tolerance.iter().find(|it| !all.tolerances().contains(&it.value)) {
-        Some(other) => {
-            bail!("--tolerance {:?} is not accepted: {}", other.text, accepted())
-        }
-        None => Ok(all.at(arguments.tolerance.iter().map(|it| it.value).collect())),
+        bail!("--tolerance {other}: accepted is a tolerance of the suite: {}", shown.join(", "));
     }
+    Ok(all.at(arguments.tolerance.iter().map(|it| it.value).collect()))
 }
 
 /// Engines that are wrong on purpose, for the power of the gates; none where something else is
