@@ -3,6 +3,7 @@
 
 use crate::exact;
 use crate::support::{refused, run, stdout, text};
+use percuss::Phase;
 use percuss_validation::bench::alone::alone;
 use percuss_validation::bench::cases::{SYSTEMS, USUAL};
 use percuss_validation::bench::contest::{contest_at, most_accurate, system_contest};
@@ -131,7 +132,7 @@ fn an_engine_that_is_told_its_events_makes_the_same_run() {
 #[test]
 fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
     let course = course("impact-into-progression");
-    let none = Script::of(&[]);
+    let none = Script::of::<Phase, [f64; 4]>(&[]);
     let limits = Limits::default();
     let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
     for engine in integrators {

@@ -72,7 +72,7 @@ function details(i) {
   if (columns.why[i]) above.push(element("p", {}, columns.why[i]));
   const picture = eventPicture(i);
   if (picture) above.push(picture);
-  else if (columns.events_missed?.[i] > 0 || columns.events_spurious?.[i] > 0) above.push(element("p", { class: "muted" }, note?.system === "oscillator" ? "This page has no picture of this row: the command below with --out DIR draws it." : "Pictures of events are drawn for the oscillator's cases alone."));
+  else if (columns.events_missed?.[i] > 0 || columns.events_spurious?.[i] > 0) above.push(element("p", { class: "muted" }, "This page has no picture of this row: the command below with --out DIR draws it."));
   if (note?.why) parts.push(element("p", { class: "muted" }, `About the case (${note.regime}): ${note.why}`));
   if (bounds.length) parts.push(element("div", { class: "wide" }, element("table", { class: "inner" }, element("thead", {}, element("tr", {}, ...["bound on", "measured", "limit", "", "why that limit"].map((it) => element("th", {}, it)))), element("tbody", {}, ...bounds))));
   const figure = (key) => [element("dt", {}, inWords(key)), element("dd", {}, brief(columns[key][i]))];
