@@ -243,6 +243,6 @@ fn values(system: &System) -> String {
     });
     let is_parameter = |value: f64| system.parameters.values().any(|it| *it == value);
     let forcing = forcing.into_iter().flatten().filter(|(_, it)| *it != 0.0 && !is_parameter(*it));
-    let shown = named.chain(forcing).map(|(name, value)| format!("{name}\u{a0}= {value}"));
+    let shown = named.chain(forcing).map(|(name, value)| format!("{name} = {value}"));
     shown.collect::<Vec<_>>().join(", ")
 }
