@@ -181,10 +181,15 @@ fn a_run_is_drawn_with_its_modes_and_its_events() {
         &["watched-impact-oscillator", "--backward", "--until", "-3"][..],
         &["bouncing-ball", "--until", "0"],
         &["bouncing-ball", "--until", "9"],
-        &["rigid-impact-oscillator", "--until", "5", "--set", "d=0"],
     ] {
         assert!(svg(arguments).starts_with("<svg"), "{arguments:?}");
     }
+    // So is one without progress, which is exit code 1.
+    let resting = ["events", "rigid-impact-oscillator", "--until", "5", "--set", "d=0"];
+    let output = run(&[&resting[..], &["--format", "svg"]].concat());
+    let (drawn, said) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(drawn.starts_with("<svg") && said.contains("64 events"), "{said}");
 }
 
 /// Between events a picture shows the closed form: the table's height is A cos t where the ball is
