@@ -157,8 +157,8 @@ fn spliced(transcript: &str, folder: &Path, code: i32) -> String {
     whole
 }
 
-/// Every example is run, in the page's order and in one folder; a block of TOML whose first line is
-/// the comment `# NAME` is written there. The last digits are those of one platform's sine.
+/// Every example is run, in the page's order and in one folder; a block of TOML or CSV whose first
+/// line is the comment `# NAME` is written there. The last digits are those of one platform's sine.
 #[test]
 fn examples_print_what_they_show() {
     let folder = tempfile::tempdir().expect("a folder");
@@ -170,8 +170,8 @@ fn examples_print_what_they_show() {
                 let code = i32::from(language.ends_with('1'));
                 format!("{language}\n{}", spliced(block, folder.path(), code))
             }
-            (true, "toml") => {
-                write_file(folder.path(), block);
+            (true, "toml" | "csv") => {
+                write_file(folder.path(), block, language == "toml");
                 part.to_owned()
             }
             _ => part.to_owned(),
@@ -188,9 +188,11 @@ fn examples_print_what_they_show() {
     }
 }
 
-/// A block whose first line is the comment `# NAME`, as a file.
-fn write_file(folder: &Path, block: &str) {
-    let name = block.lines().next().and_then(|line| line.strip_prefix("# ")).expect("a name");
+/// A block whose first line is the comment `# NAME`, as a file; CSV has no comments.
+fn write_file(folder: &Path, block: &str, with_name: bool) {
+    let (line, rest) = block.split_once('\n').expect("a line");
+    let name = line.strip_prefix("# ").expect("a name");
+    let block = if with_name { block } else { rest };
     let path = folder.join(name);
     std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
     std::fs::write(path, block).expect("written");
