@@ -157,6 +157,12 @@ impl Report {
             results,
         }
     }
+
+    /// How many cases were run.
+    #[must_use]
+    pub fn number_of_cases(&self) -> usize {
+        self.results.chunk_by(|a, b| a.case == b.case).count()
+    }
 }
 
 /// The rows of one engine on one case are settings of one method, as far as they are scored to the

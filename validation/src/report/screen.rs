@@ -77,7 +77,7 @@ fn ranking_table(report: &Report) -> String {
          per event at an error of {COMPARED_AT:e}, which decides between equals. fails: cases, of {}, \
          known shortcomings included; an event of a graze that a method's own error hides is \
          undecidable, no failure. exact is the reference.",
-        number_of_cases(report)
+        report.number_of_cases()
     );
     text(&table) + &wrapped(&legend) + "\n"
 }
@@ -117,11 +117,6 @@ pub(super) fn figure(value: f64) -> String {
 fn worse(evidence: &ReportEvidence) -> String {
     let lines = evidence.worse.iter();
     lines.map(|it| wrapped(&format!("worse than the baseline: {it}"))).collect()
-}
-
-/// How many cases were run.
-pub(super) fn number_of_cases(report: &Report) -> usize {
-    report.results.chunk_by(|a, b| a.case == b.case).count()
 }
 
 fn counts(report: &Report) -> String {
