@@ -95,9 +95,12 @@ fn the_readmes_summary_is_of_todays_suite() {
         assert!(block.contains(&format!(" {name} ")), "{name}");
     }
     let cases = Cases::embedded().expect("the cases are read");
-    let rows = size(cases.names().count(), all(), Suite::Quick);
+    let rows = size(cases.names().count(), all(), &Suite::Quick.into());
     assert!(block.contains(&format!("\n{rows} rows: ")), "{rows}");
-    assert!(block.contains(" 0 fail, 0 error, ") && block.contains("power: "), "{block}");
+    assert!(block.contains(" 0 fail, 0 error, ") && block.contains("\nrank: "), "{block}");
+    let (_, details) = readme.split_once("<!-- begin: details -->\n```text\n").expect("a block");
+    let (details, _) = details.split_once("```\n<!-- end: details -->").expect("it ends");
+    assert!(details.contains("\nnot run: ") && details.contains("\npower: "), "{details}");
 }
 
 /// The sources of all packages, those outside the workspace too.

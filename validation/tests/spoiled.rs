@@ -76,7 +76,7 @@ fn no_spoiled_answer_passes() {
     let defaults = defaults().expect("the bounds are read");
     let verdict = |engine: &'static Spoiled| {
         let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();
-        let rows = run(&runs, &[engine], Suite::Quick, &defaults, &|| ());
+        let rows = run(&runs, &[engine], &Suite::Quick.into(), &defaults, &|| ());
         assert_eq!(rows.len(), 1);
         rows[0].judgement.verdict
     };

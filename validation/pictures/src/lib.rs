@@ -24,7 +24,7 @@ pub use canvas::Canvas;
 pub use caption::{caption, caption_without, symbol};
 pub use colour::Colour;
 pub use curves::{Curve, Curves};
-pub use encounter::{Encounter, TimeStretch, Trail};
+pub use encounter::{Encounter, Stage, TimeStretch, Trail};
 pub use figure::{Figure, KeyEntry, Layer, Plot, PlotWindow, Raster, Stroke};
 pub use frame::{Axis, AxisScale};
 pub use heat_map::{HeatCell, HeatMap, Tint};

@@ -1,7 +1,7 @@
 //! Colours that eyes of every kind tell apart (Okabe and Ito 2008), the same for a phase
 //! everywhere.
 
-use super::colour::Colour;
+use super::colour::{Colour, WHITE};
 use percuss::Phase;
 
 /// The colour of a phase.
@@ -12,6 +12,22 @@ pub(super) const fn phase(phase: Phase) -> Colour {
         Phase::Progression => Colour(160, 20, 80),
     }
 }
+
+/// The colour of a mode by its place in its system, and that of its name on it.
+pub(super) const fn mode(place: usize) -> (Colour, Colour) {
+    MODES[place % MODES.len()]
+}
+
+const MODES: [(Colour, Colour); 8] = [
+    (Colour(0, 114, 178), WHITE),
+    (Colour(230, 159, 0), INK),
+    (Colour(160, 20, 80), WHITE),
+    (Colour(0, 120, 90), WHITE),
+    (Colour(86, 180, 233), INK),
+    (Colour(213, 94, 0), WHITE),
+    (Colour(204, 121, 167), INK),
+    (Colour(100, 100, 100), WHITE),
+];
 
 /// Text and frames.
 pub(super) const INK: Colour = Colour(40, 40, 40);

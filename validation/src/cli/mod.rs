@@ -181,12 +181,16 @@ fn usage(error: &clap::Error) -> u8 {
             REFUSED
         }
         _ => {
-            let text = error.to_string();
-            let text = text.strip_prefix("error: ").unwrap_or(&text);
-            let end =
-                ["\n\nUsage:", "\n\nFor more"].iter().filter_map(|mark| text.find(mark)).min();
-            say(&text[..end.unwrap_or(text.len())]);
+            say(&objection(error));
             REFUSED
         }
     }
+}
+
+/// What clap objects to, and its tip, without what it says of usage.
+fn objection(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let text = text.strip_prefix("error: ").unwrap_or(&text);
+    let end = ["\n\nUsage:", "\n\nFor more"].iter().filter_map(|mark| text.find(mark)).min();
+    text[..end.unwrap_or(text.len())].replace("\n\n", "; ")
 }

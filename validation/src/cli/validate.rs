@@ -4,8 +4,8 @@ use super::names::{CASES, ENGINES};
 use super::output::{Destination, reader_left};
 use super::programs::ProgramFlags;
 use super::{DONE, OUT_OF_BOUNDS, note, parse, reports, say, work};
-use crate::case::{self, Cases};
-use crate::engine::{self, Engine, Wrong, hush_contained_panics};
+use crate::case::{self, Cases, Defaults};
+use crate::engine::{self, Engine, Wrong, WrongWay, hush_contained_panics};
 use crate::power::{self, Finding, Standard};
 use crate::report::{
     Baseline, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary, event_pictures,
@@ -104,19 +104,15 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     }
     hush_contained_panics();
     let pool = work::pool(threads)?;
-    let wrong = wrong_engines(arguments);
-    let bar = work::bar((suite::size(all.len(), &engines, &scope) + wrong.len()) as u64, "rows");
+    let wrong = WrongEngines::of(arguments);
+    let steps = suite::size(all.len(), &engines, &scope) + wrong.count();
+    let bar = work::bar(steps as u64, "rows");
     let rows = pool.install(|| suite::run(&all, &engines, &scope, &defaults, &|| bar.inc(1)));
     let asked = suite::size(all.len(), &engines, &scope);
     if rows.len() != asked {
         bail!("{} rows were made where {asked} were asked for", rows.len());
     }
-    let examine = |(it, held): &(Wrong, Standard)| {
-        let finding = power::examine(it, &cases.oscillator, *held, &defaults.bounds);
-        bar.inc(1);
-        finding
-    };
-    let findings: Vec<_> = pool.install(|| wrong.iter().map(examine).collect());
+    let findings = pool.install(|| wrong.examine(&cases, &defaults, &|| bar.inc(1)));
     bar.finish_and_clear();
     let mut evidence = ReportEvidence::gather(
         (&cases.oscillator, &cases.systems),
@@ -126,8 +122,9 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     );
     evidence.folders = folders(arguments);
     if arguments.out.is_some() {
-        evidence.events =
-            pool.install(|| event_pictures(&cases.oscillator, &rows, arguments.suite));
+        evidence.events = pool.install(|| {
+            event_pictures((&cases.oscillator, &cases.systems), &rows, arguments.suite)
+        });
     }
     let declarations: Vec<_> = engines.iter().map(|engine| engine.declaration()).collect();
     let report = Report::new(arguments.suite, &declarations, &rows);
@@ -165,10 +162,40 @@ fn folders(arguments: &Arguments) -> Vec<(&'static str, String)> {
 
 /// Engines that are wrong on purpose, for the power of the gates; none where something else is
 /// asked.
-fn wrong_engines(arguments: &Arguments) -> Vec<(Wrong, Standard)> {
-    let everything =
-        arguments.engine.is_empty() && arguments.case.is_empty() && arguments.cases.is_none();
-    if everything { power::all() } else { Vec::new() }
+#[derive(Default)]
+struct WrongEngines {
+    anywhere: Vec<(Wrong, Standard)>,
+    on_systems: Vec<(WrongWay, Standard)>,
+}
+
+impl WrongEngines {
+    fn of(arguments: &Arguments) -> Self {
+        let everything =
+            arguments.engine.is_empty() && arguments.case.is_empty() && arguments.cases.is_none();
+        if everything {
+            Self { anywhere: power::all(), on_systems: power::all_on_systems() }
+        } else {
+            Self::default()
+        }
+    }
+
+    fn count(&self) -> usize {
+        self.anywhere.len() + self.on_systems.len()
+    }
+
+    /// What the gates make of them.
+    fn examine(&self, cases: &PreparedCases, defaults: &Defaults, done: &dyn Fn()) -> Vec<Finding> {
+        let PreparedCases { oscillator, systems } = cases;
+        let anywhere = self
+            .anywhere
+            .iter()
+            .map(|(it, held)| power::examine(it, oscillator, *held, &defaults.bounds));
+        let on_systems = self
+            .on_systems
+            .iter()
+            .map(|(it, held)| power::examine_on_systems(it, systems, *held, &defaults.of_systems));
+        anywhere.chain(on_systems).inspect(|_| done()).collect()
+    }
 }
 
 /// Whether a wrong engine passes every bound of all cases together; said on stderr.

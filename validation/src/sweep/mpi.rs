@@ -124,9 +124,9 @@ struct Queue {
 impl Queue {
     fn new(sweep: &Sweep<'_>, told: &dyn Told) -> Self {
         let shards = sweep.open_shards(told).into_iter().rev();
-        let of = |shard: u32| sweep.dealt.deal.tiles_of(shard).into_iter().rev();
+        let of = |shard: u32| sweep.dealt.deal.tiles_of(shard).iter().rev();
         let tiles: Vec<_> =
-            shards.flat_map(|shard| of(shard).map(move |tile| (shard, tile))).collect();
+            shards.flat_map(|shard| of(shard).map(move |tile| (shard, *tile))).collect();
         told.begun(tiles.len() as u64);
         Self { tiles, under_way: BTreeMap::new(), open: BTreeMap::new() }
     }

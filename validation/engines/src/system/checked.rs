@@ -16,6 +16,7 @@ pub struct CheckedSystem {
     pub(super) most_guards: usize,
     fastest: f64,
     turning: f64,
+    decay: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -92,7 +93,8 @@ impl CheckedSystem {
             spectra.iter().fold(0.0, |most: f64, it| most.max(it.fastest)),
             spectra.iter().fold(0.0, |most: f64, it| most.max(it.turning)),
         ];
-        Ok(Self { system, backward: false, modes, most_guards, fastest, turning })
+        let decay = spectra.iter().fold(f64::INFINITY, |least, it| least.min(it.decay));
+        Ok(Self { system, backward: false, modes, most_guards, fastest, turning, decay })
     }
 
     /// The system with its time reversed.
@@ -153,6 +155,12 @@ impl CheckedSystem {
     #[must_use]
     pub fn turn(&self) -> f64 {
         TAU / self.turning
+    }
+
+    /// The fastest rate at which every mode decays.
+    #[must_use]
+    pub fn decay(&self) -> f64 {
+        self.decay
     }
 
     /// The shortest of the times in which the system changes: its time scale, and those of its
