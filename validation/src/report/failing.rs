@@ -1,6 +1,5 @@
 //! The block of `validate`'s summary that says on which cases each engine fails.
 
-use super::screen::number_of_cases;
 use super::table::wrapped;
 use super::{Ranked, Report, ReportEvidence, ReportRow};
 use crate::score::Verdict;
@@ -66,4 +65,9 @@ fn by_system(report: &Report, evidence: &ReportEvidence, it: &Ranked) -> Vec<Str
     systems.sort_by_key(|it| Reverse(it.1.0));
     let shown = |(system, (failing, all))| format!("{system} {failing} of {all}");
     systems.into_iter().map(shown).collect()
+}
+
+/// How many cases were run.
+pub(super) fn number_of_cases(report: &Report) -> usize {
+    report.results.chunk_by(|a, b| a.case == b.case).count()
 }

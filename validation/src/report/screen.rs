@@ -3,7 +3,7 @@
 //! A terminal shows the last lines, so the ranking and the failures stand there and the details
 //! above them. Every line fits [`WIDTH`](super::WIDTH) columns.
 
-use super::failing::failing_cases;
+use super::failing::{failing_cases, number_of_cases};
 use super::notes::notes;
 use super::ranking::COMPARED_AT;
 use super::table::{reasons, row_table, text, wrapped};
@@ -117,11 +117,6 @@ pub(super) fn figure(value: f64) -> String {
 fn worse(evidence: &ReportEvidence) -> String {
     let lines = evidence.worse.iter();
     lines.map(|it| wrapped(&format!("worse than the baseline: {it}"))).collect()
-}
-
-/// How many cases were run.
-pub(super) fn number_of_cases(report: &Report) -> usize {
-    report.results.chunk_by(|a, b| a.case == b.case).count()
 }
 
 fn counts(report: &Report) -> String {
