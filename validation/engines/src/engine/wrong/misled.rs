@@ -4,9 +4,34 @@
 use super::super::SystemOutcome;
 use super::super::equations::{Entered, Equations};
 use super::super::joining::Course;
-use super::systems::SystemFault;
 use crate::system::{Affine, Values};
 use std::cell::{Cell, RefCell};
+
+/// What is wrong.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum SystemFault {
+    None,
+    /// Back in time a watched guard counts where it would forward in time.
+    ForwardDirections,
+    /// Back in time the forcing's clock goes on ahead.
+    ForwardForcing,
+    /// Back in time the boundary of a mode does not end the run.
+    PastBoundary,
+    /// A watched guard counts in both directions.
+    BothDirections,
+    /// A guard that is zero at the start is an event there.
+    FiresAtStart,
+    /// An event at the start is not noticed.
+    MissesAtStart,
+    /// States in a step that an event cuts short are those of the whole step.
+    UncutOutput,
+    /// An event has the state before its reset.
+    StateBefore,
+    /// Of events in one instant the first alone is noticed.
+    OneAtOnce,
+    /// For a while after an event none is noticed.
+    Cooldown,
+}
 
 /// What a faulty run keeps in mind.
 #[derive(Default)]

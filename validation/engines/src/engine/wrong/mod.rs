@@ -21,8 +21,9 @@ use super::Engine;
 use altered::{Alteration, Altered};
 pub use closed::Closed;
 use integrator::{Faulty, IntegratorFault};
+use misled::SystemFault;
 pub use systems::COOLDOWN;
-use systems::{FaultyOnSystems, SystemFault};
+use systems::FaultyOnSystems;
 use ties::LastFirst;
 use walk::{WalkFault, WrongWalk};
 

@@ -13,36 +13,10 @@ use super::super::ode_solvers::dopri5::{self, Dopri5Run};
 use super::super::sampler::{Crossing, Sampler};
 use super::super::{Accuracy, Declaration, Engine, Outcome, Role, SystemOutcome, SystemTask, Task};
 use super::integrator::end_of_step;
-use super::misled::{Memory, Misled};
+use super::misled::{Memory, Misled, SystemFault};
 use crate::system::{Affine, CheckedSystem, Direction, System, Values};
 use nalgebra::Dyn;
 use std::sync::Arc;
-
-/// What is wrong.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum SystemFault {
-    None,
-    /// Back in time a watched guard counts where it would forward in time.
-    ForwardDirections,
-    /// Back in time the forcing's clock goes on ahead.
-    ForwardForcing,
-    /// Back in time the boundary of a mode does not end the run.
-    PastBoundary,
-    /// A watched guard counts in both directions.
-    BothDirections,
-    /// A guard that is zero at the start is an event there.
-    FiresAtStart,
-    /// An event at the start is not noticed.
-    MissesAtStart,
-    /// States in a step that an event cuts short are those of the whole step.
-    UncutOutput,
-    /// An event has the state before its reset.
-    StateBefore,
-    /// Of events in one instant the first alone is noticed.
-    OneAtOnce,
-    /// For a while after an event none is noticed.
-    Cooldown,
-}
 
 /// How long no event is noticed after another, in units of the system's time.
 pub const COOLDOWN: f64 = 1e-2;
