@@ -63,7 +63,7 @@ pub fn contest_at(
     raced(entered.collect(), course.periods(), rounds, done)
 }
 
-/// Races those contestants that run systems at all their settings.
+/// Races the contestants that run systems, at all their settings.
 pub fn system_contest(
     course: &SystemCourse,
     contestants: &[&dyn Contestant],
@@ -71,7 +71,7 @@ pub fn system_contest(
     done: &dyn Fn(),
 ) -> Vec<Finisher> {
     let (able, others): (Vec<&dyn Contestant>, Vec<&dyn Contestant>) =
-        contestants.iter().partition(|it| it.runs_systems());
+        contestants.iter().copied().partition(|it| it.runs_systems());
     (0..size(&others, rounds)).for_each(|_| done());
     let settings = |it: &&dyn Contestant| settings_of(it.declaration().stepping);
     let asked = able.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
@@ -83,8 +83,9 @@ pub fn system_contest(
     raced(entered.collect(), course.periods(), rounds, done)
 }
 
-/// Races those whose answer is right.
+/// Races the contestants whose first answer was right.
 fn raced(mut all: Vec<Entered<'_>>, periods: f64, rounds: usize, done: &dyn Fn()) -> Vec<Finisher> {
+    let places = 2 * all.len();
     let mut benchmarks: Vec<&mut dyn Benchmark> = Vec::new();
     for ContestEntry { timed, alone } in all.iter_mut().filter_map(|it| it.entry.as_mut().ok()) {
         benchmarks.push(&mut **timed);
@@ -93,7 +94,6 @@ fn raced(mut all: Vec<Entered<'_>>, periods: f64, rounds: usize, done: &dyn Fn()
         }
     }
     // Those that are out take no time; their share of the work is done.
-    let places = 2 * all.len();
     (0..rounds * (places - benchmarks.len())).for_each(|_| done());
     let mut raced = race(&mut benchmarks, rounds, PACE, done).into_iter();
     let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced")));

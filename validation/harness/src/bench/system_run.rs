@@ -6,7 +6,9 @@ use super::contestant::TimedRun;
 use super::course::Score;
 use super::rounds::Benchmark;
 use super::system_course::SystemCourse;
-use crate::engine::{Accuracy, Engine, Failure, Limits, SystemOutcome, Work, contain, exact};
+use crate::engine::{
+    Accuracy, Engine, Failure, Limits, Numbers, SystemOutcome, Work, contain, exact,
+};
 use crate::system::Values;
 use std::hint::black_box;
 
