@@ -10,8 +10,8 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 packages=(python3-venv gcc g++ make libsundials-dev libcjson-dev libboost-dev r-cran-desolve
     r-cran-jsonlite octave)
-# Octave's set-ups of an expert take minutes.
-engines='^((scipy|cvode|arkode|odeint|desolve)(-|$)|octave$|octave-.*-default$)'
+# Octave's other set-ups take minutes.
+engines='^((scipy|cvode|arkode|odeint|desolve)(-|$)|octave$|octave-ode23-default$)'
 cases='^(ball-geometric|friction-unequal|latched-start-at-tick|rigid-start-inward|spheres-one-after-another|height-crossed-twice)$'
 
 if ! dpkg -s "${packages[@]}" >/dev/null 2>&1; then
