@@ -98,6 +98,8 @@ fn the_readmes_summary_is_of_todays_suite() {
     let rows = size(cases.names().count(), all(), &Suite::Quick.into());
     assert!(block.contains(&format!("\n{rows} rows: ")), "{rows}");
     assert!(block.contains(" 0 fail, 0 error, ") && block.contains("\nrank: "), "{block}");
+    let widest = block.lines().map(|line| line.chars().count()).max();
+    assert!(widest.is_some_and(|widest| widest <= 100), "{widest:?}: {block}");
     let (_, details) = readme.split_once("<!-- begin: details -->\n```text\n").expect("a block");
     let (details, _) = details.split_once("```\n<!-- end: details -->").expect("it ends");
     assert!(details.contains("\nnot run: ") && details.contains("\npower: "), "{details}");

@@ -53,7 +53,7 @@ fn ranking_table(report: &Report) -> String {
         "median",
         "worst",
         "rhs",
-        "fails",
+        "fail",
     ];
     let mut table = plain(&header, 2);
     for it in &report.ranking {
@@ -66,7 +66,7 @@ fn ranking_table(report: &Report) -> String {
             it.events_spurious.to_string(),
             figure(units.median),
             figure(units.max),
-            it.rhs_per_event.map_or("-".to_owned(), |cost| format!("{cost:.0}")),
+            it.rhs_per_event.map_or("-".to_owned(), right_hand_sides),
             it.fails_on.len().to_string(),
         ]);
     }
@@ -74,12 +74,17 @@ fn ranking_table(report: &Report) -> String {
         "rank: (found - spurious) of all events, over all cases and settings; what was not run or not \
          scored counts as not found. median, worst: event-time error in units of tolerance x growth x \
          events so far (eps for exact, the step's own error for fixed steps). rhs: right-hand sides \
-         per event at an error of {COMPARED_AT:e}, which decides between equals. fails: cases, of {}, \
+         per event at an error of {COMPARED_AT:e}, which decides between equals. fail: cases, of {}, \
          known shortcomings included; an event of a graze that a method's own error hides is \
          undecidable, no failure. exact is the reference.",
         report.number_of_cases()
     );
     text(&table) + &wrapped(&legend) + "\n"
+}
+
+/// Right-hand sides per event in at most four columns, which is what the widest line leaves.
+fn right_hand_sides(cost: f64) -> String {
+    if cost < 9999.5 { format!("{cost:.0}") } else { format!("{cost:.0e}") }
 }
 
 /// Kinds of trouble by engines, which stand under their ranks.
