@@ -221,12 +221,14 @@ impl<'a> Names<'a> {
     }
 
     fn affine(&mut self, scalar: &Scalar) -> Result<Form, String> {
-        match scalar {
-            Scalar::Text(text) => expression(text, self),
+        let form = match scalar {
+            Scalar::Text(text) => expression(text, self)?,
             other => number(other)
                 .map(|number| Form::number(self.states.len(), number))
-                .ok_or_else(|| "a finite number is accepted".to_owned()),
-        }
+                .ok_or_else(|| "a finite number is accepted".to_owned())?,
+        };
+        form.check_range()?;
+        Ok(form)
     }
 }
 
@@ -327,7 +329,10 @@ impl ModeReader<'_> {
         let mut rates = BTreeMap::new();
         for equation in table.equations.get_ref() {
             let (state, rate) = self.assignment(names, equation, true)?;
-            rates.insert(state, rate);
+            if rates.insert(state, rate).is_some() {
+                let what = format!("{}' is given twice", names.states[state]);
+                return Err(self.file.error(&equation.span(), &what));
+            }
         }
         match (0..names.states.len()).find(|state| !rates.contains_key(state)) {
             None => Ok(rates.into_values().collect()),
@@ -356,19 +361,21 @@ impl ModeReader<'_> {
         let state = name.and_then(|name| names.states.iter().position(|it| it == name));
         let state = state.ok_or_else(|| refuse(&format!("{left:?}: {shape}")))?;
         let form = expression(right, names).map_err(|what| refuse(&what))?;
-        Ok((state, self.row(form)))
+        Ok((state, self.row(form).map_err(|what| refuse(&what))?))
     }
 
-    fn row(&self, form: Form) -> Row {
+    fn row(&self, form: Form) -> Result<Row, String> {
+        form.check_range()?;
         let states = form.0.len() - 3;
         let forced = self.omega.is_some();
         let kept = |(index, it)| (forced || index < states || index == states + 2).then_some(it);
-        form.0.into_iter().enumerate().filter_map(kept).collect()
+        Ok(form.0.into_iter().enumerate().filter_map(kept).collect())
     }
 
     fn guard(&self, names: &mut Names, text: &Spanned<String>) -> Result<Row, SystemError> {
         let form = condition(text.get_ref(), names);
-        form.map(|form| self.row(form)).map_err(|what| self.file.error(&text.span(), &what))
+        let row = form.and_then(|form| self.row(form));
+        row.map_err(|what| self.file.error(&text.span(), &what))
     }
 
     fn until(

@@ -12,6 +12,8 @@ use crate::number::Number;
 pub(super) struct Flow<T> {
     pub dimension: usize,
     pub blocks: Vec<Block<T>>,
+    /// How long a bound may be asked for: a growing block grows by at most e.
+    pub longest: f64,
     /// The matrix W of all blocks, by columns.
     to_modal: Vec<Vector<T>>,
     /// The matrix W of all blocks, rounded to f64, by columns.
@@ -76,6 +78,7 @@ impl<T: Number> Flow<T> {
         let mut flow = Self {
             dimension,
             blocks: Vec::new(),
+            longest: f64::INFINITY,
             to_modal: Vec::new(),
             to_modal_rounded: Vec::new(),
             from_modal: Vec::new(),
@@ -87,6 +90,9 @@ impl<T: Number> Flow<T> {
             to_modal.extend(block.rows.iter().cloned());
             flow.blocks.push(Block::of(block, at));
         }
+        let rate =
+            |block: &Block<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
+        flow.longest = 1.0 / flow.blocks.iter().map(rate).fold(0.0, f64::max);
         flow.to_modal = transposed(&to_modal);
         let rounded = |row: &Vector<T>| row.map(Number::to_f64);
         flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
@@ -212,14 +218,6 @@ impl<T: Number> Flow<T> {
             sum += part.later.bound(&part.norms, order, length) * sizes[part.block];
         }
         sum * (1.0 + 1e-12)
-    }
-
-    /// How long a bound may be asked for: a growing block grows by at most e.
-    #[inline]
-    pub fn longest(&self) -> f64 {
-        let rate =
-            |block: &Block<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
-        1.0 / self.blocks.iter().map(rate).fold(0.0, f64::max)
     }
 
     /// The largest growth rate of a block.

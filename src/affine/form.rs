@@ -7,6 +7,9 @@ use dashu_ratio::RBig;
 /// The largest number of bits of a coefficient's numerator or denominator.
 const LARGEST_BITS: usize = 16_384;
 
+/// The largest power of two that a coefficient, or one over it, has about: beyond, f64 holds none.
+const LARGEST_POWER: usize = 1000;
+
 /// The coefficients of the states, then of cos theta, sin theta and 1.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Form(pub Vec<RBig>);
@@ -99,6 +102,19 @@ impl Form {
     /// Refuses coefficients that are too long to be meant.
     pub fn check_size(&self) -> Result<(), String> {
         self.0.iter().try_for_each(check_size)
+    }
+
+    /// Refuses coefficients that f64 does not hold.
+    pub fn check_range(&self) -> Result<(), String> {
+        let lengths = |it: &RBig| (it.numerator().bit_len(), it.denominator().bit_len());
+        let far =
+            |(above, below): &(usize, usize)| *above > 0 && above.abs_diff(*below) > LARGEST_POWER;
+        let Some((above, below)) = self.0.iter().map(lengths).find(far) else { return Ok(()) };
+        let (sign, power) = (if above < below { "-" } else { "" }, above.abs_diff(below));
+        Err(format!(
+            "a coefficient of about 2^{sign}{power} is not accepted: 0 is, and sizes from \
+             2^-{LARGEST_POWER} to 2^{LARGEST_POWER}"
+        ))
     }
 }
 

@@ -13,7 +13,7 @@ type Hull<T> = [T; 9];
 const NARROWEST: f64 = 1.0 / 65_536.0;
 
 /// How near to a root a place before it is, as a share of it: Newton's method does the rest.
-const NEAR: f64 = 1e-3;
+const NEAR: f64 = 1e-2;
 
 /// What is known of a guard on a piece.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -77,7 +77,7 @@ impl<'a, T: Number> Segment<'a, T> {
     #[inline]
     fn series_limit(&self) -> f64 {
         let norms = self.flow.norms(&self.entry);
-        let longest = self.flow.longest();
+        let longest = self.flow.longest;
         let mut limit = longest;
         for (row, zeros) in self.rows.iter().zip(&self.zeros).filter(|(_, it)| **it < ORDERS) {
             let last = self.flow.bound_by(row, ORDERS - 1, &norms, longest.min(1e300));
@@ -126,6 +126,27 @@ impl<'a, T: Number> Segment<'a, T> {
         work.evaluations += 1;
         (point.time, point.y) = (time, self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);
+        self.fill_all(point);
+    }
+
+    /// Evaluates the closed form and one guard; what others have in the point is not of its time.
+    #[inline]
+    pub fn evaluate_guard(&self, n: usize, point: &mut Point<T>, time: T, work: &mut Work) {
+        work.evaluations += 1;
+        (point.time, point.y) = (time, self.entry);
+        self.flow.advance(&mut point.y, time, self.blocks);
+        if self.is_early(point) {
+            self.fill_early(point);
+        } else {
+            let (orders, size) = self.rows[n].sized_orders(&point.y);
+            (point.orders[n], point.slack[n]) = (orders, self.margin() * size);
+        }
+        self.inherit(point);
+    }
+
+    /// All guards of a point whose co-ordinates are there.
+    #[inline]
+    pub fn fill_all(&self, point: &mut Point<T>) {
         if self.is_early(point) {
             self.fill_early(point);
         } else {
@@ -162,17 +183,18 @@ impl<'a, T: Number> Segment<'a, T> {
     #[inline]
     fn fill(&self, point: &mut Point<T>) {
         let margin = self.margin();
-        point.orders.clear();
-        point.slack.clear();
+        let count = self.rows.len();
+        point.orders.resize(count, [T::zero(); 4]);
+        point.slack.resize(count, 0.0);
+        let (orders, slack) = (&mut point.orders[..count], &mut point.slack[..count]);
+        let zeros = &self.zeros[..count];
         for (n, row) in self.rows.iter().enumerate() {
-            if self.zeros[n] == ORDERS {
-                point.orders.push([T::zero(); 4]);
-                point.slack.push(0.0);
+            if zeros[n] == ORDERS {
+                (orders[n], slack[n]) = ([T::zero(); 4], 0.0);
                 continue;
             }
-            let (orders, size) = row.sized_orders(&point.y);
-            point.orders.push(orders);
-            point.slack.push(margin * size);
+            let (own, size) = row.sized_orders(&point.y);
+            (orders[n], slack[n]) = (own, margin * size);
         }
     }
 

@@ -17,7 +17,7 @@ use crate::crossing::certificate::MIDDLE;
 use crate::number::Number;
 
 /// The share of a guard's size that the remainder of a piece may have.
-const REMAINDER: f64 = 1e-2;
+const REMAINDER: f64 = 3e-2;
 
 /// The share of a guard's size that has to be left when its fastest blocks are enclosed.
 const LEFT: f64 = 0.25;
@@ -49,7 +49,7 @@ impl<T: Number> Segment<'_, T> {
         let whole = length(&orders, rests[0], track.zeros, || row.size(&left.y)).min(longest);
         let mut reach = Reach { cut: 0, length: whole, whole };
         if track.zeros == 0 && whole < longest {
-            enclose(row, track, left, (&rests, longest), &mut reach);
+            enclose(row, track, left, (orders[0], &rests, longest), &mut reach);
         }
         if reach.length == f64::INFINITY {
             let orders = outward(&row.first_orders(&left.y, row.first_column(reach.cut)), track);
@@ -97,12 +97,11 @@ fn enclose<T: Number>(
     row: &ModalRow<T>,
     track: &Track,
     left: &Point<T>,
-    (rests, longest): (&Vector<f64>, f64),
+    (begin, rests, longest): (f64, &Vector<f64>, f64),
     reach: &mut Reach,
 ) {
     /// A rest that is smaller by less makes a piece longer by less than a third.
     const MUCH: f64 = 0.1;
-    let begin: f64 = row.parts.iter().map(|part| part_of(row, part, track, &left.y)).sum();
     let (mut value, mut best) = (begin, rests[0]);
     for (k, part) in row.parts.iter().enumerate() {
         let own = part_of(row, part, track, &left.y);

@@ -309,12 +309,15 @@ impl<T: Number> Run<'_, T> {
         let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
         self.work.undecidable += u64::from(guards & !tied != 0);
         let errors = self.errors_at(mode, guards, &state);
-        for n in bits(guards).filter(|n| *n >= until) {
+        for n in bits(guards & !low_bits(until)) {
             self.watched(mode, n, until, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;
         }
         let ending = guards & low_bits(until);
         if ending == 0 {
+            if let Some(segment) = &self.segment {
+                segment.fill_all(&mut self.ends.left);
+            }
             self.tracks.iter_mut().for_each(|track| track.zeros = 0);
             for n in bits(guards) {
                 self.tracks[n].zeros = 1;
@@ -493,7 +496,9 @@ fn complete<T: Number>(state: &mut Vector<T>, solver: &Solver<T>, sin: T, cos: T
 
 #[inline]
 fn bits(mask: u64) -> impl Iterator<Item = usize> {
-    (0..64).filter(move |n| mask >> n & 1 == 1)
+    let without_lowest = |mask: &u64| Some(mask & mask.wrapping_sub(1));
+    let masks = std::iter::successors(Some(mask), without_lowest).take_while(|it| *it != 0);
+    masks.map(|it| it.trailing_zeros() as usize)
 }
 
 #[inline]

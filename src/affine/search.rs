@@ -68,6 +68,10 @@ impl<T: Number> Segment<'_, T> {
                 clear_zeros(tracks);
                 continue;
             };
+            if !live(tracks).all(|(n, _)| ends.left.orders[n][0].to_f64().is_finite()) {
+                // Where numbers overflow, nothing is told.
+                return Found::Lost;
+            }
             let from = ends.left.time;
             let to = from + (ends.right.time - from) * T::exact(share);
             if to > from {
@@ -93,7 +97,7 @@ impl<T: Number> Segment<'_, T> {
     /// How far each guard is looked at from a point.
     #[inline]
     fn reaches(&self, tracks: &[Track], left: &Point<T>) -> PerGuard<Reach> {
-        let longest = self.flow.longest();
+        let longest = self.flow.longest;
         let mut reaches = PerGuard::new();
         for (n, track) in tracks.iter().enumerate() {
             reaches.push(match track.live {
@@ -256,7 +260,7 @@ impl<T: Number> Segment<'_, T> {
         }
     }
 
-    /// The crossing to the last digit.
+    /// The crossing to the last digit. Of the guards only the first that crosses is evaluated there.
     #[inline]
     fn settled(
         &self,
@@ -269,9 +273,14 @@ impl<T: Number> Segment<'_, T> {
         const ROUNDS: usize = 8;
         let n = guards.trailing_zeros() as usize;
         let point = &mut ends.left;
-        self.evaluate(point, time, work);
+        self.evaluate_guard(n, point, time, work);
         let mut last = f64::INFINITY;
         for _ in 0..ROUNDS {
+            // A value within a few roundings of its terms shows no better time.
+            let noise = 4.0 * unit::<T>() * self.rows[n].size(&point.y);
+            if point.orders[n][0].to_f64().abs() <= noise {
+                break;
+            }
             let step = newton(&outward(&point.orders[n], &tracks[n]));
             let (better, size) = (point.time + step, step.to_f64().abs());
             // Steps that do not shrink are rounding.
@@ -280,7 +289,7 @@ impl<T: Number> Segment<'_, T> {
                 break;
             }
             last = size;
-            self.evaluate(point, better, work);
+            self.evaluate_guard(n, point, better, work);
         }
         // A crossing exactly at the limit counts.
         let room = T::exact(4.0 * unit::<T>() * limit.to_f64());

@@ -33,6 +33,7 @@ const LONGEST: usize = 4;
 /// What a motion does in the long run.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Regime {
+    /// Neither progression nor chaos.
     Resting,
     /// Progression, with this period or, from [`LONGEST`] on, a longer one.
     Periodic(usize),
@@ -44,11 +45,11 @@ enum Regime {
 }
 
 const REGIMES: [(Regime, &str, Colour); 8] = [
-    (Regime::Resting, "no progression, no chaos", Colour(222, 222, 222)),
-    (Regime::Periodic(1), "progression, period 1", Colour(120, 185, 235)),
+    (Regime::Resting, "no progression", Colour(222, 222, 222)),
+    (Regime::Periodic(1), "period 1", Colour(120, 185, 235)),
     (Regime::Periodic(2), "period 2", Colour(20, 75, 150)),
     (Regime::Periodic(3), "period 3", Colour(0, 158, 115)),
-    (Regime::Periodic(LONGEST), "period 4 or more", Colour(160, 20, 80)),
+    (Regime::Periodic(LONGEST), "period 4+", Colour(160, 20, 80)),
     (Regime::Chaotic, "chaos", Colour(230, 120, 30)),
     (Regime::Endless, "endless phase", Colour(20, 10, 40)),
     (Regime::Undecided, "undecided", Colour(250, 236, 150)),
@@ -128,7 +129,8 @@ fn main() -> Result<()> {
     let figure = Figure {
         title: format!("Drift per forcing period, and regime, over {} and {}", axes[0], axes[1]),
         caption: format!(
-            "{} x {} motions from rest at the origin; {fixed}. Grey above: no progression.",
+            "{} x {} motions from rest at the origin; {fixed}. Grey: no progression; chaos is \
+             marked with it and without.",
             x.len(),
             y.len()
         ),

@@ -1,4 +1,4 @@
-//! Puts the figures of a `bench` into README.md.
+//! Puts the figures of a `bench` into README.md, or into another page that has a block for them.
 //!
 //! ```sh
 //! cargo run --release -- bench --out target/bench
@@ -14,14 +14,15 @@ const BEGIN: &str = "<!-- begin: bench -->\n";
 const END: &str = "<!-- end: bench -->";
 
 fn main() -> Result<()> {
-    let usage = "takes the bench.json of a bench and the README.md to write";
-    let [bench, readme]: [String; 2] =
+    let usage = "takes the bench.json of a bench and the page to write";
+    let [bench, page]: [String; 2] =
         std::env::args().skip(1).collect::<Vec<_>>().try_into().ok().context(usage)?;
     let block = block(&read(Path::new(&bench))?);
-    let old = std::fs::read_to_string(&readme).with_context(|| readme.clone())?;
-    let (before, rest) = old.split_once(BEGIN).context("README.md has no block of the bench")?;
+    let old = std::fs::read_to_string(&page).with_context(|| page.clone())?;
+    let without = || format!("{page} has no block of the bench");
+    let (before, rest) = old.split_once(BEGIN).with_context(without)?;
     let (_, after) = rest.split_once(END).context("the block does not end")?;
-    std::fs::write(&readme, format!("{before}{BEGIN}{block}{END}{after}"))?;
+    std::fs::write(&page, format!("{before}{BEGIN}{block}{END}{after}"))?;
     Ok(())
 }
 
@@ -31,7 +32,7 @@ pub fn read(file: &Path) -> Result<Bench> {
     serde_json::from_str(&text).with_context(|| file.display().to_string())
 }
 
-/// The block of README.md: which program ran where, and the summary that `bench` prints.
+/// The block of a page: which program ran where, and the summary that `bench` prints.
 pub fn block(bench: &Bench) -> String {
     let build = &bench.build;
     format!(

@@ -3,12 +3,17 @@
 
 use crate::exact;
 use crate::support::{refused, run, stdout, text};
+use percuss::Phase;
 use percuss_validation::bench::alone::alone;
-use percuss_validation::bench::cases::USUAL;
-use percuss_validation::bench::contest::{contest_at, most_accurate};
+use percuss_validation::bench::cases::{SYSTEMS, USUAL};
+use percuss_validation::bench::contest::{contest_at, most_accurate, system_contest};
 use percuss_validation::bench::contestant::{Contestant, EnteredEngine, settings};
 use percuss_validation::bench::course::Course;
-use percuss_validation::engine::{Accuracy, CONTROL, Engine, Limits, Location, Script, all, wrong};
+use percuss_validation::bench::system_course::SystemCourse;
+use percuss_validation::case::Cases;
+use percuss_validation::engine::{
+    Accuracy, CONTROL, Engine, Limits, Location, Script, SystemOutcome, all, wrong,
+};
 use percuss_validation::truth::Library;
 use std::path::{Path, PathBuf};
 
@@ -60,6 +65,51 @@ fn the_usual_cases_are_there_and_the_exact_solver_is_right_on_them() {
     }
 }
 
+fn system_courses() -> Vec<SystemCourse> {
+    let library = Library::embedded().expect("the tables are read");
+    let cases = Cases::embedded().expect("the cases are read").systems;
+    let named = |name: &&str| cases.iter().find(|it| it.name == **name).expect("a case");
+    SYSTEMS.iter().map(|it| SystemCourse::of(named(it), &library).expect("a course")).collect()
+}
+
+/// Every system is raced, and the exact solver's answers are right: its own part is the same run.
+#[test]
+fn the_exact_solver_is_right_on_every_system() {
+    let courses = system_courses();
+    let mut raced: Vec<_> = courses.iter().map(|it| it.problem.exact.name.as_str()).collect();
+    raced.sort_unstable();
+    raced.dedup();
+    let all: Vec<_> = percuss_validation::systems::SYSTEMS.iter().map(|it| it.0).collect();
+    assert_eq!(raced, all);
+    for course in &courses {
+        let found = system_contest(course, &[&EnteredEngine(exact_solver())], 1, &|| ());
+        let timed = found[0].result.as_ref().unwrap_or_else(|it| panic!("{}: {it}", course.name));
+        assert!(timed.score.state_error < 1e-9, "{}: {:?}", course.name, timed.score);
+        assert_eq!(timed.series.0.len(), 1);
+        assert!(timed.harness_share.is_some(), "{}", course.name);
+    }
+}
+
+#[test]
+fn a_wrong_answer_of_a_system_has_no_score() {
+    for course in system_courses() {
+        let run = || exact_solver().run_system(&course.task, Accuracy::Exact, &Limits::default());
+        let right = run().expect("a run");
+        assert!(course.score(&right).is_ok());
+        let refused = |change: &dyn Fn(&mut SystemOutcome)| {
+            let mut answer = right.clone();
+            change(&mut answer);
+            course.score(&answer).is_err_and(|it| it.reason.starts_with("wrong: "))
+        };
+        let scale = course.task.system.system().time_scale;
+        assert!(refused(&|it| it.events.truncate(it.events.len() - 1)), "{}", course.name);
+        assert!(refused(&|it| it.events.push(it.events[0])), "{}", course.name);
+        assert!(refused(&|it| it.events[0].elapsed += 2e-3 * scale), "{}", course.name);
+        assert!(refused(&|it| it.events[0].elapsed = f64::NAN), "{}", course.name);
+        assert!(refused(&|it| it.end[0] = f64::NAN), "{}", course.name);
+    }
+}
+
 /// The share of the harness is measured on this run: its answer has to be that of the whole run.
 #[test]
 fn an_engine_that_is_told_its_events_makes_the_same_run() {
@@ -82,7 +132,7 @@ fn an_engine_that_is_told_its_events_makes_the_same_run() {
 #[test]
 fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
     let course = course("impact-into-progression");
-    let none = Script::of(&[]);
+    let none = Script::of::<Phase, [f64; 4]>(&[]);
     let limits = Limits::default();
     let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
     for engine in integrators {

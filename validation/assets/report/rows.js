@@ -40,7 +40,9 @@ function fillChoices() {
 }
 
 function wanted(i) {
-  const text = () => [columns.case[i], columns.engine[i], columns.setting[i], verdictOf(i), columns.why[i], data.cases.find((it) => it.name === columns.case[i])?.regime].join(" ").toLowerCase();
+  const note = () => data.cases.find((it) => it.name === columns.case[i]);
+  const trouble = () => (note()?.trouble ?? []).map((kind) => `trouble:${kind} `).join("");
+  const text = () => [columns.case[i], columns.engine[i], columns.setting[i], verdictOf(i), columns.why[i], note()?.regime, trouble()].join(" ").toLowerCase();
   return (!state.engine || columns.engine[i] === state.engine) &&
     (!state.case || columns.case[i] === state.case) &&
     (!state.verdict || verdictOf(i) === state.verdict) &&

@@ -75,7 +75,7 @@ impl Stage {
     /// A mode, by its name and its place in its system.
     #[must_use]
     pub fn mode(name: &str, place: usize) -> Self {
-        Self { name: name.to_owned(), colours: palette::mode(place) }
+        Self { name: name.to_owned(), colours: (palette::mode(place).0, WHITE) }
     }
 }
 

@@ -18,6 +18,8 @@ mod look;
 mod motion;
 mod palette;
 mod piece;
+mod simplify;
+mod system_motion;
 
 pub use basin_map::{BASIN_COLOURS, BasinMap, ShownAttractor, basin_colours};
 pub use canvas::Canvas;
@@ -32,6 +34,7 @@ pub use histograms::{HistogramRow, Histograms};
 pub use look::{Look, Marker, looks};
 pub use motion::DrawnMotion;
 pub use piece::MotionPiece;
+pub use system_motion::{MOST_STATES, SystemMotion};
 
 use canvas::Letters;
 use resvg::tiny_skia::{Pixmap, Transform};

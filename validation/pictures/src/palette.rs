@@ -1,7 +1,7 @@
 //! Colours that eyes of every kind tell apart (Okabe and Ito 2008), the same for a phase
 //! everywhere.
 
-use super::colour::{Colour, WHITE};
+use super::colour::Colour;
 use percuss::Phase;
 
 /// The colour of a phase.
@@ -13,24 +13,35 @@ pub(super) const fn phase(phase: Phase) -> Colour {
     }
 }
 
-/// The colour of a mode by its place in its system, and that of its name on it.
-pub(super) const fn mode(place: usize) -> (Colour, Colour) {
-    MODES[place % MODES.len()]
+/// The colours of a mode of a system: that of its motion, and the light one behind it. The first
+/// five are as far from each other as their tints allow; after twelve modes they begin again.
+pub(super) fn mode(index: usize) -> (Colour, Colour) {
+    let dark = MODES[index % MODES.len()];
+    (dark, dark.mixed_with_white(MODE_TINT))
 }
 
-const MODES: [(Colour, Colour); 8] = [
-    (Colour(0, 114, 178), WHITE),
-    (Colour(230, 159, 0), INK),
-    (Colour(160, 20, 80), WHITE),
-    (Colour(0, 120, 90), WHITE),
-    (Colour(86, 180, 233), INK),
-    (Colour(213, 94, 0), WHITE),
-    (Colour(204, 121, 167), INK),
-    (Colour(100, 100, 100), WHITE),
+/// The share of white in the light colour of a mode.
+const MODE_TINT: f64 = 0.82;
+
+const MODES: [Colour; 12] = [
+    Colour(0, 114, 178),
+    Colour(205, 115, 0),
+    Colour(0, 135, 100),
+    Colour(160, 20, 80),
+    Colour(95, 95, 95),
+    Colour(105, 75, 170),
+    Colour(130, 110, 0),
+    Colour(215, 70, 60),
+    Colour(120, 70, 30),
+    Colour(60, 150, 205),
+    Colour(30, 60, 120),
+    Colour(190, 100, 160),
 ];
 
 /// Text and frames.
 pub(super) const INK: Colour = Colour(40, 40, 40);
+/// What a reset skips.
+pub(super) const SKIPPED: Colour = Colour(150, 150, 150);
 /// Lines behind the data.
 pub(super) const GRID: Colour = Colour(225, 225, 225);
 /// Cells of which it is not known where they lead.

@@ -19,7 +19,8 @@ pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_name
     let mut any_counted = false;
     let mut lines = String::new();
     for it in failing {
-        let head = format!("  {}: {} of {}", it.engine, it.fails_on.len(), number_of_cases(report));
+        let head =
+            format!("  {}: {} of {}", it.engine, it.fails_on.len(), report.number_of_cases());
         let names = wrapped(&format!("{head}: {}", marked(report, it).join(", ")));
         let is_short = all_names || names.lines().count() <= FEW_LINES;
         let groups = if is_short { Vec::new() } else { by_system(report, evidence, it) };

@@ -77,7 +77,7 @@ fn ranking_table(report: &Report) -> String {
          per event at an error of {COMPARED_AT:e}, which decides between equals. fails: cases, of {}, \
          known shortcomings included; an event of a graze that a method's own error hides is \
          undecidable, no failure. exact is the reference.",
-        number_of_cases(report)
+        report.number_of_cases()
     );
     text(&table) + &wrapped(&legend) + "\n"
 }

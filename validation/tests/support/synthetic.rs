@@ -49,6 +49,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
     let rhs = if tolerance.is_none() { 90.0 } else { 400.0 * unit.powf(-1.0 / (2.0 * order)) };
     ReportRow {
         case: case.to_owned(),
+        trouble: Vec::new(),
         engine,
         tolerance,
         step: None,
@@ -79,6 +80,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
         linear_solves: Some(0),
         steps: Some(rhs as u64 / 7),
         wall_ns: Some(rhs as u64 * 900),
+        own_ns: None,
         bounds: Vec::new(),
         verdict: Verdict::Pass,
         why: String::new(),
@@ -169,6 +171,7 @@ pub fn report() -> Report {
         library,
         version: "1.2.3".to_owned(),
         method: "a method of order 5(4) & its \"dense output\"",
+        language: "Rust".to_owned(),
         order: None,
     };
     Report {

@@ -183,6 +183,11 @@ pub trait Engine: Sync {
     /// What it is.
     fn declaration(&self) -> Declaration;
 
+    /// The language that its library is written in, with its version where it is not Rust.
+    fn language(&self) -> &str {
+        "Rust"
+    }
+
     /// Whether it can run here; the reason if not.
     ///
     /// # Errors

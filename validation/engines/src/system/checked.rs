@@ -177,11 +177,7 @@ fn wide(row: &Row) -> Wide {
 
 fn motion(system: &System, mode: &Mode) -> ModeMatrix {
     let size = system.states.len();
-    let rate = |i: usize| {
-        let row = [mode.a[i].as_slice(), &mode.b[i], &[mode.c[i]]].concat();
-        wide(&row)
-    };
-    let mut rows: Vec<Wide> = (0..size).map(rate).collect();
+    let mut rows: Vec<Wide> = (0..size).map(|i| wide(&mode.rate(i))).collect();
     let [mut cos, mut sin] = [Wide::default(); 2];
     cos[size + 1] = -system.omega;
     sin[size] = system.omega;

@@ -13,7 +13,7 @@ use percuss::Step;
 use std::hint::black_box;
 
 /// Rounds in which the run alone is timed: as many as a long call takes part in.
-const ROUNDS: usize = 3;
+pub(super) const ROUNDS: usize = 3;
 
 /// The library's part of an engine's run on a course; nothing for an engine of which nothing is
 /// left out.
@@ -30,30 +30,46 @@ pub fn alone<'a>(
     if engine.declaration().name == exact().declaration().name {
         return Ok(Some(Box::new(ExactSteps { course, end: answer.end, last: answer.end })));
     }
+    told(answer, move || engine.run(&course.task, setting, &limits))
+}
+
+/// A run that gave this answer, told its events; nothing where nothing is left out then.
+///
+/// # Errors
+/// Why it is not the same run.
+pub fn told<'a, M, S>(
+    answer: Outcome<M, S>,
+    run: impl Fn() -> Result<Outcome<M, S>, Failure> + 'a,
+) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure>
+where
+    M: Clone + PartialEq + 'a,
+    S: Clone + PartialEq + 'a,
+{
     let script = Script::of(&answer.events);
     let last = answer.clone();
-    let mut told = ToldRun { engine, course, setting, limits, script, answer, last };
+    let mut told = ToldRun { run, script, answer, last };
     told.call()?;
     told.check()?;
     Ok(if told.script.was_read() { Some(Box::new(told)) } else { None })
 }
 
 /// An integrator's run that is told its events.
-struct ToldRun<'a> {
-    engine: &'a dyn Engine,
-    course: &'a Course,
-    setting: Accuracy,
-    limits: Limits,
+struct ToldRun<M, S, F> {
+    run: F,
     script: Script,
-    answer: Outcome,
-    last: Outcome,
+    answer: Outcome<M, S>,
+    last: Outcome<M, S>,
 }
 
-impl Benchmark for ToldRun<'_> {
+impl<M, S, F> Benchmark for ToldRun<M, S, F>
+where
+    M: PartialEq,
+    S: PartialEq,
+    F: Fn() -> Result<Outcome<M, S>, Failure>,
+{
     fn call(&mut self) -> Result<(), Failure> {
-        let Self { engine, course, setting, limits, .. } = self;
-        let run = || contain(|| engine.run(&course.task, *setting, limits));
-        self.last = self.script.follow(run)?;
+        let run = &self.run;
+        self.last = self.script.follow(|| contain(run))?;
         Ok(())
     }
 

@@ -1,4 +1,4 @@
-//! Which cases are raced where none are named.
+//! Which cases are raced where none are named, and which of other systems docs/PERFORMANCE.md has.
 
 /// Every regime whose dearest engine takes a second at most: what is left out (`resonance`,
 /// `slow-forcing`) keeps explicit integrators busy for minutes, and `-c` asks for it.
@@ -20,4 +20,31 @@ pub const USUAL: [&str; 12] = [
     "stiff-xi-0-001",
     // a start after 1e8 periods
     "cycle-1e8",
+];
+
+/// Every system, and every kind of motion that integrators are slow or fast at: what
+/// docs/PERFORMANCE.md has.
+pub const SYSTEMS: [&str; 17] = [
+    // parabolas and straight lines
+    "ball-cut-short",
+    "heights-every-direction",
+    "cradle-inelastic",
+    "spheres-one-after-another",
+    "plastic-sticks-and-flies",
+    // oscillations with blows, friction and stops
+    "rigid-chaos-damped",
+    "watched-every-direction",
+    "friction-two-stops",
+    "belt-two-masses",
+    "percussive-chaos",
+    // a limit cycle of a defective matrix, and its chatter
+    "relay-1e-4",
+    "relay-chatter",
+    // circuits with a clock
+    "buck-chaos",
+    "latched-chaos",
+    // stiffness
+    "percussive-stiff",
+    "c5-published",
+    "c5-fast",
 ];

@@ -3,6 +3,7 @@
 use super::contestant::{Contestant, TimedRun, settings as settings_of};
 use super::course::{Course, Score};
 use super::rounds::{Benchmark, PACE, RoundTimes, race};
+use super::system_course::SystemCourse;
 use crate::engine::{Accuracy, Declaration, Failure, REFERENCE, Stepping, Work};
 
 /// A contestant at a setting, and what came of it.
@@ -54,20 +55,46 @@ pub fn contest_at(
     rounds: usize,
     done: &dyn Fn(),
 ) -> Vec<Finisher> {
-    let mut entries: Vec<Result<ContestEntry<'_>, Failure>> = Vec::new();
-    for (contestant, setting) in asked {
-        entries.push(qualified(*contestant, course, *setting));
+    let entered = asked.iter().map(|(contestant, setting)| {
+        let entry = qualified(*contestant, course, *setting);
         done();
-    }
+        Entered { declaration: contestant.declaration(), setting: *setting, entry }
+    });
+    raced(entered.collect(), course.periods(), rounds, done)
+}
+
+/// Races the contestants that run systems, at all their settings.
+pub fn system_contest(
+    course: &SystemCourse,
+    contestants: &[&dyn Contestant],
+    rounds: usize,
+    done: &dyn Fn(),
+) -> Vec<Finisher> {
+    let (able, others): (Vec<&dyn Contestant>, Vec<&dyn Contestant>) =
+        contestants.iter().copied().partition(|it| it.runs_systems());
+    (0..size(&others, rounds)).for_each(|_| done());
+    let settings = |it: &&dyn Contestant| settings_of(it.declaration().stepping);
+    let asked = able.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
+    let entered = asked.map(|(contestant, setting)| {
+        let entry = contestant.enter_system(course, setting).and_then(right);
+        done();
+        Entered { declaration: contestant.declaration(), setting, entry }
+    });
+    raced(entered.collect(), course.periods(), rounds, done)
+}
+
+/// Races the contestants whose first answer was right.
+fn raced(mut all: Vec<Entered<'_>>, periods: f64, rounds: usize, done: &dyn Fn()) -> Vec<Finisher> {
+    let places = 2 * all.len();
     let mut benchmarks: Vec<&mut dyn Benchmark> = Vec::new();
-    for ContestEntry { timed, alone } in entries.iter_mut().flatten() {
+    for ContestEntry { timed, alone } in all.iter_mut().filter_map(|it| it.entry.as_mut().ok()) {
         benchmarks.push(&mut **timed);
         if let Some(alone) = alone {
             benchmarks.push(&mut **alone);
         }
     }
     // Those that are out take no time; their share of the work is done.
-    (0..rounds * (2 * asked.len() - benchmarks.len())).for_each(|_| done());
+    (0..rounds * (places - benchmarks.len())).for_each(|_| done());
     let mut raced = race(&mut benchmarks, rounds, PACE, done).into_iter();
     let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced")));
     let mut result = |entry: Result<ContestEntry<'_>, Failure>| {
@@ -75,22 +102,31 @@ pub fn contest_at(
         let (whole, alone) = (next(), alone.map(|_| next()));
         let whole = whole?;
         let share = alone.and_then(Result::ok).map(|alone| 1.0 - alone.ratio_to(&whole));
-        let scale = 1.0 / (timed.runs() * course.periods());
+        let scale = 1.0 / (timed.runs() * periods);
         let series = RoundTimes(whole.0.into_iter().map(|time| time * scale).collect());
         let harness_share = share.filter(|it| it.is_finite());
         Ok(Timed { score: timed.score()?, work: timed.work(), series, harness_share })
     };
-    let finisher = |((contestant, setting), entry): (&(&dyn Contestant, Accuracy), _)| {
-        let Declaration { name, library, stepping, .. } = contestant.declaration();
-        Finisher { name, library, stepping, setting: *setting, result: result(entry) }
+    let finisher = |Entered { declaration, setting, entry }| {
+        let Declaration { name, library, stepping, .. } = declaration;
+        Finisher { name, library, stepping, setting, result: result(entry) }
     };
-    asked.iter().zip(entries).map(finisher).collect()
+    all.into_iter().map(finisher).collect()
+}
+
+/// A contestant at a setting, if its answer is right.
+struct Entered<'a> {
+    declaration: Declaration,
+    setting: Accuracy,
+    entry: Result<ContestEntry<'a>, Failure>,
 }
 
 /// A contestant at a setting, and right after it its part alone where that can be timed.
-struct ContestEntry<'a> {
-    timed: Box<dyn TimedRun + 'a>,
-    alone: Option<Box<dyn Benchmark + 'a>>,
+pub struct ContestEntry<'a> {
+    /// The whole run.
+    pub timed: Box<dyn TimedRun + 'a>,
+    /// The part of it that is not the harness's.
+    pub alone: Option<Box<dyn Benchmark + 'a>>,
 }
 
 /// The contestants that are timed: those whose answer is right.
@@ -99,10 +135,16 @@ fn qualified<'a>(
     course: &'a Course,
     setting: Accuracy,
 ) -> Result<ContestEntry<'a>, Failure> {
-    let mut timed = contestant.enter(course, setting)?;
-    timed.call()?;
-    timed.score()?;
-    Ok(ContestEntry { timed, alone: contestant.alone(course, setting)? })
+    let timed = contestant.enter(course, setting)?;
+    let entry = right(ContestEntry { timed, alone: None })?;
+    Ok(ContestEntry { alone: contestant.alone(course, setting)?, ..entry })
+}
+
+/// A contestant whose answer is right.
+fn right(mut entry: ContestEntry<'_>) -> Result<ContestEntry<'_>, Failure> {
+    entry.timed.call()?;
+    entry.timed.score()?;
+    Ok(entry)
 }
 
 /// How much work a contest is, for progress.

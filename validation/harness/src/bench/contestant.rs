@@ -5,8 +5,11 @@
 //! [`super::contestants`].
 
 use super::alone::alone;
+use super::contest::ContestEntry;
 use super::course::{Course, Score};
 use super::rounds::Benchmark;
+use super::system_course::SystemCourse;
+use super::system_run::system_entry;
 use crate::engine::{
     Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, Work, contain,
 };
@@ -41,6 +44,24 @@ pub trait Contestant: Sync {
         _setting: Accuracy,
     ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
         Ok(None)
+    }
+
+    /// Whether it runs other systems than the oscillator.
+    fn runs_systems(&self) -> bool {
+        false
+    }
+
+    /// Made ready for a run of any other system, with its own part alone where that can be told
+    /// apart; nothing of this is timed.
+    ///
+    /// # Errors
+    /// Why it does not run there.
+    fn enter_system<'a>(
+        &'a self,
+        _course: &'a SystemCourse,
+        _setting: Accuracy,
+    ) -> Result<ContestEntry<'a>, Failure> {
+        Err(Failure::new("it runs the oscillator alone"))
     }
 }
 
@@ -84,6 +105,20 @@ impl Contestant for EnteredEngine {
     ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
         alone(self.0, course, setting, limits())
     }
+
+    fn runs_systems(&self) -> bool {
+        self.0.runs_systems()
+    }
+
+    fn enter_system<'a>(
+        &'a self,
+        course: &'a SystemCourse,
+        setting: Accuracy,
+    ) -> Result<ContestEntry<'a>, Failure> {
+        self.0.available().map_err(Failure::new)?;
+        within_budget(self.0.least_work_on(&course.task, setting))?;
+        system_entry(self.0, course, setting, limits())
+    }
 }
 
 fn limits() -> Limits {
@@ -100,14 +135,19 @@ pub fn enter<'a>(
     setting: Accuracy,
 ) -> Result<Box<dyn TimedRun + 'a>, Failure> {
     engine.available().map_err(Failure::new)?;
-    let least = engine.least_work(&course.task, setting);
+    within_budget(engine.least_work(&course.task, setting))?;
+    Ok(Box::new(EngineHeat { engine, course, setting, answer: Outcome::default() }))
+}
+
+/// Refuses a run that takes more right-hand sides than it may.
+fn within_budget(least: f64) -> Result<(), Failure> {
     if least > BUDGET as f64 {
         let budget = brief(BUDGET as f64);
         let reason =
             format!("not run: {} right-hand sides at the least, of {budget}", brief(least));
         return Err(Failure::new(reason));
     }
-    Ok(Box::new(EngineHeat { engine, course, setting, answer: Outcome::default() }))
+    Ok(())
 }
 
 struct EngineHeat<'a> {

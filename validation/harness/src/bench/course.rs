@@ -1,6 +1,7 @@
 //! What contestants run: a case from its start to its horizon, with the truth that answers are held
 //! to.
 
+use super::report::CaseEntry;
 use crate::case::{Case, FileError, Given};
 use crate::engine::{Event, Failure, Outcome, SampleGrid, Task};
 use crate::number::brief;
@@ -78,6 +79,17 @@ impl Course {
             task: Task::until(parameters, problem, horizon, NO_SAMPLES),
             truth: truth.map_err(Failure::new)?,
         })
+    }
+
+    /// What a bench says of the course.
+    #[must_use]
+    pub fn entry(&self) -> CaseEntry {
+        CaseEntry {
+            case: self.name.clone(),
+            regime: self.regime.clone(),
+            periods: self.periods(),
+            events: self.truth.events.len(),
+        }
     }
 
     /// The length of the course in forcing periods.

@@ -25,6 +25,8 @@ mod pictures;
 pub mod report;
 pub mod rounds;
 mod summary;
+pub mod system_course;
+mod system_run;
 pub mod table;
 pub mod workload;
 

@@ -1,7 +1,6 @@
 //! What a `bench` holds: the keys of `bench.json`.
 
 use super::contest::{Finisher, exact, most_accurate};
-use super::course::Course;
 use super::damping::DampingPoint;
 use super::equal_accuracy::{AccuracyPoint, Basis, LOOSE, TIGHT, time_at};
 use super::floor::Floors;
@@ -170,7 +169,7 @@ pub struct Damped {
 /// What was measured.
 pub struct Measurement<'a> {
     /// The courses and who ran on each.
-    pub contests: &'a [(&'a Course, Vec<Finisher>)],
+    pub contests: &'a [(CaseEntry, Vec<Finisher>)],
     /// The floor.
     pub floors: &'a Floors,
     /// The lengths.
@@ -184,7 +183,7 @@ impl Bench {
     #[must_use]
     pub fn new(build: Build, rounds: usize, measured: Measurement<'_>) -> Self {
         let Measurement { contests, floors, length, damping } = measured;
-        let cases: Vec<_> = contests.iter().map(|(course, _)| entry(course)).collect();
+        let cases: Vec<_> = contests.iter().map(|(course, _)| course.clone()).collect();
         let results: Vec<_> = contests.iter().flat_map(|(course, all)| rows(course, all)).collect();
         let floor =
             Floor { chained_ns: floors.chained.best(), independent_ns: floors.independent.best() };
@@ -204,22 +203,13 @@ impl Bench {
     }
 }
 
-fn entry(course: &Course) -> CaseEntry {
-    CaseEntry {
-        case: course.name.clone(),
-        regime: course.regime.clone(),
-        periods: course.periods(),
-        events: course.truth.events.len(),
-    }
-}
-
-fn rows(course: &Course, finishers: &[Finisher]) -> Vec<BenchRow> {
+fn rows(course: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
     let unit = exact(finishers).map(|it| it.series.clone()).unwrap_or_default();
     let row = |it: &Finisher| {
         let timed = it.result.as_ref().ok();
         let best = most_accurate(finishers, it.name).is_some_and(|best| std::ptr::eq(best, it));
         BenchRow {
-            case: course.name.clone(),
+            case: course.case.clone(),
             engine: it.name.to_owned(),
             tolerance: it.setting.tolerance(),
             step: it.setting.step(),
@@ -233,7 +223,7 @@ fn rows(course: &Course, finishers: &[Finisher]) -> Vec<BenchRow> {
             rhs_per_period: timed
                 .map(|it| it.work.rhs_evaluations)
                 .filter(|it| *it > 0)
-                .map(|it| it as f64 / course.periods()),
+                .map(|it| it as f64 / course.periods),
             most_accurate: best,
             adaptive: !matches!(it.stepping, Stepping::Exact | Stepping::Fixed { .. }),
             why: it.result.as_ref().err().map(ToString::to_string),

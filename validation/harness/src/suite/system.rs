@@ -73,6 +73,19 @@ impl CaseRun for PreparedSystem {
         self.truth.events.len()
     }
 
+    fn system_task(&self) -> Result<SystemTask, Failure> {
+        Ok(self.task.clone())
+    }
+
+    fn parameters(&self) -> Vec<(&str, f64)> {
+        let parameters = self.case.system.parameters.iter();
+        parameters.map(|(name, value)| (name.as_str(), *value)).collect()
+    }
+
+    fn trouble(&self) -> &[String] {
+        &self.case.trouble
+    }
+
     fn takes(&self, engine: &dyn Engine) -> Result<(), &'static str> {
         let runs = engine.runs_systems();
         if runs { Ok(()) } else { Err(ELSEWHERE) }

@@ -9,14 +9,15 @@ use super::output::{Destination, make_folder, reader_left, write_whole};
 use super::programs::ProgramFlags;
 use super::{DONE, OUT_OF_BOUNDS, format, output, parse, work};
 use crate::bench::compare::worker::serve;
-use crate::bench::contest::{self, Finisher, contest};
+use crate::bench::contest::{self, Finisher, contest, system_contest};
 use crate::bench::contestant::Contestant;
 use crate::bench::course::Course;
-use crate::bench::report::Measurement;
+use crate::bench::report::{CaseEntry, Measurement};
+use crate::bench::system_course::SystemCourse;
 use crate::bench::{Bench, cases, contestants, damping, floor, length, pictures};
 use crate::bench::{table, workload};
 use crate::build;
-use crate::case::{self, Case};
+use crate::case::Cases;
 use crate::engine::{Declaration, REFERENCE, Stepping, hush_contained_panics};
 use crate::truth::Library;
 use anyhow::{Context, Result, bail};
@@ -77,7 +78,7 @@ fn race(arguments: &Arguments) -> Result<u8> {
     let _programs = arguments.programs.start()?;
     let all = contestants();
     let contestants = chosen_engines(&all, &arguments.engine)?;
-    let courses = courses(&chosen_cases(&arguments.case)?)?;
+    let courses = Courses::of(&arguments.case)?;
     if let Some(folder) = &arguments.out {
         make_folder(folder)?;
     }
@@ -95,7 +96,7 @@ fn race(arguments: &Arguments) -> Result<u8> {
 
 /// Serves one side of a comparison of two binaries.
 fn worker() -> Result<()> {
-    let courses = courses(&cases_by_default()?)?;
+    let courses = usual_courses()?;
     let workloads = workload::all(&courses);
     serve(&build::this(), &workloads, io::stdin().lock(), io::stdout().lock()).context("worker")
 }
@@ -103,18 +104,21 @@ fn worker() -> Result<()> {
 fn measured(
     arguments: &Arguments,
     contestants: &[&dyn Contestant],
-    courses: &[Course],
+    courses: &Courses,
 ) -> Result<Bench> {
     let rounds = usize::from(arguments.rounds);
     // Length and xi are of no case: they belong to the whole.
     let whole = arguments.case.is_empty();
-    let bar = bar(arguments, contestants, courses.len(), whole);
+    let Courses { oscillator, systems } = courses;
+    let bar = bar(arguments, contestants, oscillator.len() + systems.len(), whole);
     let done = || bar.inc(1);
     // First, while the process holds nothing: its peak is then the run's own.
     let length = if whole { length::lengths(arguments.long, &done)? } else { Vec::new() };
     let floors = floor::floors(&[], FLOOR_ROUNDS * rounds, &done)?;
-    let contests: Vec<(&Course, Vec<Finisher>)> =
-        courses.iter().map(|it| (it, contest(it, contestants, rounds, &done))).collect();
+    let own = oscillator.iter().map(|it| (it.entry(), contest(it, contestants, rounds, &done)));
+    let others =
+        systems.iter().map(|it| (it.entry(), system_contest(it, contestants, rounds, &done)));
+    let contests: Vec<(CaseEntry, Vec<Finisher>)> = own.chain(others).collect();
     let damping = if whole { damping::over_xi(contestants, rounds, &done)? } else { Vec::new() };
     bar.finish_and_clear();
     let measured = Measurement { contests: &contests, floors: &floors, length, damping: &damping };
@@ -158,30 +162,51 @@ fn chosen_engines<'a>(
     Ok(all.iter().map(AsRef::as_ref).filter(|it| is_unit(*it) || matches(*it)).collect())
 }
 
-fn chosen_cases(patterns: &[Regex]) -> Result<Vec<Case>> {
-    let all = case::embedded()?;
-    CASES.check(patterns, all.iter().map(|it| it.name.as_str()))?;
-    let wanted = |case: &Case| {
-        if patterns.is_empty() {
-            cases::USUAL.contains(&case.name.as_str())
-        } else {
-            patterns.iter().any(|it| it.is_match(&case.name))
-        }
-    };
-    let mut chosen: Vec<Case> = all.into_iter().filter(wanted).collect();
-    let place = |case: &Case| cases::USUAL.iter().position(|it| *it == case.name);
+/// What is raced on.
+struct Courses {
+    oscillator: Vec<Course>,
+    systems: Vec<SystemCourse>,
+}
+
+impl Courses {
+    /// Those of the cases that are named, or of the oscillator's usual ones.
+    fn of(patterns: &[Regex]) -> Result<Self> {
+        let all = Cases::embedded()?;
+        let own = all.oscillator.iter().map(|it| it.name.as_str());
+        CASES.check(patterns, own.chain(all.systems.iter().map(|it| it.name.as_str())))?;
+        let wanted = |name: &str| {
+            if patterns.is_empty() {
+                cases::USUAL.contains(&name)
+            } else {
+                patterns.iter().any(|it| it.is_match(name))
+            }
+        };
+        let library = Library::embedded()?;
+        let chosen = in_order(&cases::USUAL, all.oscillator, |it| &it.name, wanted);
+        let oscillator = chosen.iter().map(|it| Course::of(it, &library)).collect::<Result<_, _>>();
+        let chosen = in_order(&cases::SYSTEMS, all.systems, |it| &it.name, wanted);
+        let systems =
+            chosen.iter().map(|it| SystemCourse::of(it, &library)).collect::<Result<_, _>>();
+        Ok(Self { oscillator: oscillator?, systems: systems? })
+    }
+}
+
+/// The cases that are wanted, those of a list first.
+fn in_order<C>(
+    list: &[&str],
+    all: Vec<C>,
+    name: fn(&C) -> &String,
+    wanted: impl Fn(&str) -> bool,
+) -> Vec<C> {
+    let mut chosen: Vec<C> = all.into_iter().filter(|it| wanted(name(it))).collect();
+    let place = |case: &C| list.iter().position(|it| it == name(case));
     chosen.sort_by_key(|case| place(case).unwrap_or(usize::MAX));
-    Ok(chosen)
+    chosen
 }
 
-/// The cases that are raced where none are named, and that versions are compared by.
-fn cases_by_default() -> Result<Vec<Case>> {
-    chosen_cases(&[])
-}
-
-fn courses(cases: &[Case]) -> Result<Vec<Course>> {
-    let library = Library::embedded()?;
-    Ok(cases.iter().map(|case| Course::of(case, &library)).collect::<Result<_, _>>()?)
+/// The courses that are raced where none are named, and that versions are compared by.
+fn usual_courses() -> Result<Vec<Course>> {
+    Ok(Courses::of(&[])?.oscillator)
 }
 
 fn write(bench: &Bench, folder: &Path) -> Result<()> {

@@ -1,7 +1,7 @@
 //! `bench record`: lines of this version, appended to the history.
 
 use super::output::{Destination, check_file, reader_left, write_whole};
-use super::{cases_by_default, courses, parse, work};
+use super::{parse, usual_courses, work};
 use crate::bench::contestant::enter;
 use crate::bench::course::Course;
 use crate::bench::floor::{self, Floors};
@@ -33,7 +33,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     check_file("--history", &arguments.history)?;
     let before = raw(&arguments.history)?;
     History::read(&arguments.history).map_err(|what| anyhow!("--history {what}"))?;
-    let courses = courses(&cases_by_default()?)?;
+    let courses = usual_courses()?;
     let records = records(arguments, &courses)?;
     let text = History { records: records.clone() }.text().map_err(|what| anyhow!(what))?;
     let gap = if before.is_empty() || before.ends_with('\n') { "" } else { "\n" };

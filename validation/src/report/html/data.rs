@@ -54,7 +54,9 @@ fn cases(report: &Report, evidence: &ReportEvidence) -> Vec<Value> {
         let note = evidence.cases.iter().find(|note| note.name == row.case);
         json!({
             "name": row.case,
+            "system": note.map(|note| &note.system),
             "regime": note.map(|note| &note.regime),
+            "trouble": note.map(|note| &note.trouble),
             "why": note.map(|note| &note.why),
             "toml": note.map(|note| &note.toml),
             "pattern": command::pattern(&row.case),

@@ -1,0 +1,91 @@
+//! An engine on a run of any other system than the oscillator: the whole run, and its own part.
+
+use super::alone::told;
+use super::contest::ContestEntry;
+use super::contestant::TimedRun;
+use super::course::Score;
+use super::rounds::Benchmark;
+use super::system_course::SystemCourse;
+use crate::engine::{
+    Accuracy, Engine, Failure, Limits, Numbers, SystemOutcome, Work, contain, exact,
+};
+use crate::system::Values;
+use std::hint::black_box;
+
+/// An engine made ready for a run. What of it is the engine's alone is told apart as
+/// [`super::alone`] does it, where the answer is then the same to the last bit.
+///
+/// # Errors
+/// Why the engine does not run there.
+pub fn system_entry<'a>(
+    engine: &'a dyn Engine,
+    course: &'a SystemCourse,
+    setting: Accuracy,
+    limits: Limits,
+) -> Result<ContestEntry<'a>, Failure> {
+    let run = move || engine.run_system(&course.task, setting, &limits);
+    let answer = contain(run)?;
+    let alone: Option<Box<dyn Benchmark + 'a>> =
+        if engine.declaration().name == exact().declaration().name {
+            Some(Box::new(ExactEvents { course, end: answer.end, last: answer.end }))
+        } else {
+            // Events at the entry of a mode are not located, so that not every run can be told.
+            told(answer.clone(), run).ok().flatten()
+        };
+    Ok(ContestEntry { timed: Box::new(SystemHeat { run, course, answer }), alone })
+}
+
+struct SystemHeat<'a, F> {
+    run: F,
+    course: &'a SystemCourse,
+    answer: SystemOutcome,
+}
+
+impl<F: Fn() -> Result<SystemOutcome, Failure>> Benchmark for SystemHeat<'_, F> {
+    fn call(&mut self) -> Result<(), Failure> {
+        self.answer = contain(&self.run)?;
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), Failure> {
+        self.score().map(|_| ())
+    }
+}
+
+impl<F: Fn() -> Result<SystemOutcome, Failure>> TimedRun for SystemHeat<'_, F> {
+    fn score(&self) -> Result<Score, Failure> {
+        self.course.score(&self.answer)
+    }
+
+    fn work(&self) -> Work {
+        self.answer.work
+    }
+}
+
+/// The exact solver's events to the horizon, without a table.
+struct ExactEvents<'a> {
+    course: &'a SystemCourse,
+    end: Values,
+    last: Values,
+}
+
+impl Benchmark for ExactEvents<'_> {
+    fn call(&mut self) -> Result<(), Failure> {
+        let problem = &*self.course.problem;
+        let horizon = black_box(problem.clock(self.course.task.span));
+        let run = problem.solver.run(&problem.start, horizon);
+        let last = run.and_then(|run| run.map(black_box).last());
+        let last = last.ok_or_else(|| Failure::new("a run without end"))?;
+        self.last = Values::of(&last.state);
+        Ok(())
+    }
+
+    fn check(&mut self) -> Result<(), Failure> {
+        let same = self.last == self.end;
+        if same { Ok(()) } else { Err(Failure::new("not the same run without its table")) }
+    }
+
+    fn rounds(&self) -> usize {
+        super::alone::ROUNDS
+    }
+}
