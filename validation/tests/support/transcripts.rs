@@ -1,8 +1,8 @@
 //! The examples of a page: run, and held against what the page shows.
 //!
 //! Every example is run, in the page's order and in one folder; a block of TOML whose first line is
-//! the comment `# NAME` is written there. In a block ```` ```console ```` all commands end with exit
-//! code 0, in ```` ```console exit=1 ```` with 1. A line `...` stands for any number of lines;
+//! the comment `# NAME` is written there. In a block ```` ```console ```` all commands end with
+//! exit code 0, in ```` ```console exit=1 ```` with 1. A line `...` stands for any number of lines;
 //! splicing keeps as many lines before and after it as there are.
 
 use super::{percuss, text};
