@@ -1,7 +1,7 @@
 //! What a `bench` holds: the keys of `bench.json`.
 
-pub use super::course::CaseEntry;
 use super::contest::{Finisher, exact, most_accurate};
+pub use super::course::CaseEntry;
 use super::damping::DampingPoint;
 use super::equal_accuracy::{AccuracyPoint, Basis, LOOSE, TIGHT, time_at};
 use super::floor::Floors;
