@@ -275,7 +275,7 @@ impl<T: Number> Run<'_, T> {
         if let Some(errors) = &self.enclosure {
             let errors = errors.later(flow, limit);
             let mut errors = errors.at_given_time(flow, matrix, &self.state);
-            errors.add_box(&roundings(flow, &self.ends.left.y));
+            errors.add_box(&roundings(flow, &self.ends.left.y, &self.modal));
             self.enclosure = Some(errors);
         }
         self.end(Ending::Horizon);
@@ -350,10 +350,13 @@ impl<T: Number> Run<'_, T> {
             y: point.y,
             elapsed: point.time,
             state: *state,
-            slack: (point.slack[first] - inherited).max(0.0) + 1e-3 * unit::<T>(),
+            // The guard is off zero by what was computed, and by what rounding did to that.
+            slack: (point.slack[first] - inherited).max(0.0)
+                + point.orders[first][0].to_f64().abs()
+                + 1e-3 * unit::<T>(),
             unit: unit::<T>(),
         });
-        errors.add_box(&roundings(&solver_mode.flow, &point.y));
+        errors.add_box(&roundings(&solver_mode.flow, &point.y, &segment.entry));
         Some(errors)
     }
 
@@ -478,10 +481,22 @@ impl<T: Number> Iterator for Run<'_, T> {
 
 impl<T: Number> std::iter::FusedIterator for Run<'_, T> {}
 
-/// What rounding may have done to each entry of a state that is evaluated.
-fn roundings<T: Number>(flow: &Flow<T>, y: &Vector<T>) -> [f64; LARGEST_DIMENSION] {
+/// What rounding may have done to each entry of a state that is evaluated, from its modal
+/// co-ordinates now and at the entry of its segment.
+fn roundings<T: Number>(
+    flow: &Flow<T>,
+    y: &Vector<T>,
+    entry: &Vector<T>,
+) -> [f64; LARGEST_DIMENSION] {
+    /// What is lost where the last word of a number underflows.
+    const UNDERFLOW: f64 = 1e-280;
     let margin = (flow.dimension + 6) as f64 * unit::<T>();
-    flow.sizes(y).map(|size| margin * size)
+    let (now, before) = (flow.sizes(y), flow.sizes(entry));
+    std::array::from_fn(|n| {
+        // What is made of zeros stays zero.
+        let lost = if before[n] > 0.0 || now[n] > 0.0 { UNDERFLOW } else { 0.0 };
+        margin * now[n] + lost
+    })
 }
 
 #[inline]

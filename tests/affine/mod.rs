@@ -5,6 +5,8 @@ mod brute;
 mod files;
 mod known;
 mod oscillator;
+mod random;
+mod spectra;
 mod tables;
 
 use crate::double_double::DoubleDouble;

@@ -131,7 +131,8 @@ dask() {
     lose_worker
 }
 
-# Kills one of two Dask workers with the shard that it computes: the scheduler gives it to the other.
+# Kills one of two Dask workers with the shard that it computes: the scheduler gives that to the
+# other.
 lose_worker() {
     sed 's/^periods = .*/periods = 10000/' "$here/plan.toml" >long.toml
     percuss sweep run --plan long.toml --out undisturbed

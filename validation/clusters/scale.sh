@@ -123,8 +123,8 @@ to = 1.0
 steps = 2
 PLAN
 even plan.toml 8
-clean=none
-echo "merge: $(measured "$PERCUSS" sweep merge --plan plan.toml --out out --output m.npz)"
+/usr/bin/time -f "merge: %U s of processor time, %M KiB" \
+    "$PERCUSS" sweep merge --plan plan.toml --out out --output m.npz 2>&1
 
 echo "== the drift map over omega and b: processor seconds, longest of 16 shards over the mean, bytes"
 even "$root/docs/sweeps/omega-b.toml" 16

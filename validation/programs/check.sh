@@ -10,8 +10,9 @@ here=$(cd "$(dirname "$0")" && pwd)
 root=$(cd "$here/../.." && pwd)
 packages=(python3-venv gcc g++ make libsundials-dev libcjson-dev libboost-dev r-cran-desolve
     r-cran-jsonlite octave)
-engines='^(scipy|cvode|arkode|odeint|desolve|octave)(-|$)'
-cases='^(ball-geometric|friction-unequal|latched-start-at-tick|relay-1e-4|percussive-graze|height-crossed-twice)$'
+# Octave's other set-ups take minutes.
+engines='^((scipy|cvode|arkode|odeint|desolve)(-|$)|octave$|octave-ode23-default$)'
+cases='^(ball-geometric|friction-unequal|latched-start-at-tick|rigid-start-inward|spheres-one-after-another|height-crossed-twice)$'
 
 if ! dpkg -s "${packages[@]}" >/dev/null 2>&1; then
     [ "$(id -u)" -eq 0 ] || as_root=sudo

@@ -172,7 +172,7 @@ fn a_run_is_drawn_with_its_modes_and_its_events() {
     for word in ["plastic-ball-on-table", "stuck", "flight", "detach", "impact", "time", "x", "v"] {
         assert!(drawn.contains(&format!(">\n{word}\n</text>")), "{word} is not in the picture");
     }
-    assert!(drawn.contains("A\u{a0}= 1.5"), "the parameters");
+    assert!(drawn.contains("A = 1.5"), "the parameters");
     // Only what occurs has a name: this run ends before it lands.
     let short = svg(&["plastic-ball-on-table", "--until", "6"]);
     assert!(short.contains(">\ndetach\n</text>") && !short.contains(">\nimpact\n</text>"));
@@ -181,10 +181,15 @@ fn a_run_is_drawn_with_its_modes_and_its_events() {
         &["watched-impact-oscillator", "--backward", "--until", "-3"][..],
         &["bouncing-ball", "--until", "0"],
         &["bouncing-ball", "--until", "9"],
-        &["rigid-impact-oscillator", "--until", "5", "--set", "d=0"],
     ] {
         assert!(svg(arguments).starts_with("<svg"), "{arguments:?}");
     }
+    // So is one without progress, which is exit code 1.
+    let resting = ["events", "rigid-impact-oscillator", "--until", "5", "--set", "d=0"];
+    let output = run(&[&resting[..], &["--format", "svg"]].concat());
+    let (drawn, said) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(drawn.starts_with("<svg") && said.contains("64 events"), "{said}");
 }
 
 /// Between events a picture shows the closed form: the table's height is A cos t where the ball is

@@ -1,4 +1,4 @@
-"""diffrax: of two events in one step the one that is last in the list wins, not the first in time
+"""diffrax: of two events in one step the one that is first in the list wins, not the first in time
 (patrick-kidger/diffrax issue 639)."""
 
 import diffrax

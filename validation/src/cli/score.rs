@@ -3,6 +3,7 @@
 use super::judged::JudgedFlags;
 use super::{note, say, work};
 use crate::engine::{Accuracy, REFERENCE};
+use crate::number::shortest;
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::{self, CaseRun, Scored, Status, Suite};
 use anyhow::{Result, anyhow, bail};
@@ -94,7 +95,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         &[],
         judged.chosen.cases.is_none(),
     );
-    evidence.folders = judged.folders();
+    evidence.folders = [arguments.flags(), judged.folders()].concat();
     if judged.out.is_some() {
         evidence.events =
             pool.install(|| event_pictures((&cases.oscillator, &cases.systems), &rows, SUITE));
@@ -112,6 +113,13 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
 }
 
 impl Arguments {
+    /// The flags that make a row again.
+    fn flags(&self) -> Vec<(&'static str, String)> {
+        let answers = self.answers.display().to_string();
+        let tolerance = shortest(self.tolerance);
+        vec![("--answers", answers), ("--name", self.name.clone()), ("--tolerance", tolerance)]
+    }
+
     /// The answers to a case as an engine. The words live as long as this process.
     fn engine(&self, case: &str) -> FileEngine {
         let for_ever = |text: &str| -> &'static str { Box::leak(text.to_owned().into_boxed_str()) };

@@ -28,7 +28,8 @@ pub struct ReportEvidence {
     pub faults: Vec<FaultRow>,
     /// What got worse than in the baseline, a line each.
     pub worse: Vec<String>,
-    /// Flags with their folders that a command needs to repeat a row on the same data.
+    /// Flags with their folders, and other words, that a command needs to repeat a row on the same
+    /// data.
     pub folders: Vec<(&'static str, String)>,
     /// The first missed or spurious event of rows.
     pub events: Vec<EventPicture>,

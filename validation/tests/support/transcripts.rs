@@ -1,9 +1,9 @@
 //! The examples of a page: run, and held against what the page shows.
 //!
-//! Every example is run, in the page's order and in one folder; a block of TOML whose first line is
-//! the comment `# NAME` is written there. In a block ```` ```console ```` all commands end with
-//! exit code 0, in ```` ```console exit=1 ```` with 1. A line `...` stands for any number of lines;
-//! splicing keeps as many lines before and after it as there are.
+//! Every example is run, in the page's order and in one folder; a block of TOML or CSV whose first
+//! line is the comment `# NAME` is written there. In a block ```` ```console ```` all commands end
+//! with exit code 0, in ```` ```console exit=1 ```` with 1. A line `...` stands for any number of
+//! lines; splicing keeps as many lines before and after it as there are.
 
 use super::{percuss, text};
 use std::path::{Path, PathBuf};
@@ -41,8 +41,8 @@ pub fn hold(page: &Path, folder: &Path, test: &str) {
                 let code = exit.map_or(0, |it| it.parse().expect("an exit code"));
                 format!("{language}\n{}", spliced(block, folder, code))
             }
-            (true, None, "toml") => {
-                write_file(folder, block);
+            (true, None, "toml" | "csv") => {
+                write_file(folder, block, language == "toml");
                 part.to_owned()
             }
             _ => part.to_owned(),
@@ -122,9 +122,11 @@ fn spliced(transcript: &str, folder: &Path, code: i32) -> String {
     whole
 }
 
-/// A block whose first line is the comment `# NAME`, as a file.
-fn write_file(folder: &Path, block: &str) {
-    let name = block.lines().next().and_then(|line| line.strip_prefix("# ")).expect("a name");
+/// A block whose first line is the comment `# NAME`, as a file; CSV has no comments.
+fn write_file(folder: &Path, block: &str, with_name: bool) {
+    let (line, rest) = block.split_once('\n').expect("a line");
+    let name = line.strip_prefix("# ").expect("a name");
+    let block = if with_name { block } else { rest };
     let path = folder.join(name);
     std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
     std::fs::write(path, block).expect("written");

@@ -142,6 +142,45 @@ impl SystemMotion {
         }
     }
 
+    /// Draws each state against time.
+    fn histories(&self, canvas: &mut Canvas, layout: &Layout) {
+        for (n, name) in self.states.iter().enumerate() {
+            let (from, to) = layout.state(n);
+            let panel = Panel { from, to, x: self.times(), y: self.ruler(n + 1).with_ticks(4.0) };
+            if n == 0 {
+                self.shade(canvas, &panel, (from.1, layout.bottom()));
+            }
+            let lowest = self.events.is_empty() && n + 1 == self.states.len();
+            let panel = if lowest { panel } else { without_labels(panel) };
+            let name = font::shortened(name, TEXT, to.1 - from.1);
+            panel.draw(canvas, if lowest { "time" } else { "" }, &name);
+            self.trace(canvas, &panel, 0, n + 1);
+        }
+    }
+
+    /// Draws a row for the events of each name.
+    fn event_rows(&self, canvas: &mut Canvas, layout: &Layout) {
+        let Some((from, to)) = layout.events() else { return };
+        let count = self.events.len() as f64;
+        let mut y = Ruler::between(0.0, count);
+        let label = |name: &String| font::shortened(name, TEXT, from.0 - MARGIN);
+        let named = self.events.iter().enumerate();
+        y.ticks = named.map(|(n, name)| (count - 0.5 - n as f64, label(name))).collect();
+        let panel = Panel { from, to, x: self.times(), y };
+        panel.draw(canvas, "time", "");
+        self.ticks(canvas, &panel);
+    }
+
+    /// Draws the second state against the first.
+    fn plane(&self, canvas: &mut Canvas, layout: &Layout) {
+        let (Some((from, to)), [first, second, ..]) = (layout.plane(), &self.states[..]) else {
+            return;
+        };
+        let panel = Panel { from, to, x: self.ruler(1), y: self.ruler(2) };
+        panel.draw(canvas, first, second);
+        self.trace(canvas, &panel, 1, 2);
+    }
+
     /// Draws one column of all points against another: what resets skip, the motion, and the
     /// events.
     fn trace(&self, canvas: &mut Canvas, panel: &Panel, x: usize, y: usize) {
@@ -169,8 +208,8 @@ impl SystemMotion {
         canvas.strokes(discs.into_iter().map(|at| vec![at]), size, palette::INK);
     }
 
-    /// Draws a row of ticks for the events of each name.
-    fn events(&self, canvas: &mut Canvas, panel: &Panel) {
+    /// Draws a tick for each event in the row of its name.
+    fn ticks(&self, canvas: &mut Canvas, panel: &Panel) {
         let tick = |mark: &Mark| {
             let (x, y) =
                 panel.place((mark.after[0], self.events.len() as f64 - 0.5 - mark.row as f64));
@@ -197,35 +236,9 @@ impl Drawing for SystemMotion {
             canvas.text(line, at, SMALL, super::canvas::TextSide::Left, palette::INK);
         }
         self.key(canvas, TITLE + LINE * (1 + self.caption.len()) as f64);
-        for (n, name) in self.states.iter().enumerate() {
-            let (from, to) = layout.state(n);
-            let panel = Panel { from, to, x: self.times(), y: self.ruler(n + 1).with_ticks(4.0) };
-            if n == 0 {
-                self.shade(canvas, &panel, (from.1, layout.bottom()));
-            }
-            let lowest = self.events.is_empty() && n + 1 == self.states.len();
-            let panel = if lowest { panel } else { without_labels(panel) };
-            let name = font::shortened(name, TEXT, to.1 - from.1);
-            panel.draw(canvas, if lowest { "time" } else { "" }, &name);
-            self.trace(canvas, &panel, 0, n + 1);
-        }
-        if let Some((from, to)) = layout.events() {
-            let count = self.events.len();
-            let mut y = Ruler::between(0.0, count as f64);
-            let named = self.events.iter().enumerate();
-            let room = from.0 - MARGIN;
-            y.ticks = named
-                .map(|(n, name)| (count as f64 - 0.5 - n as f64, font::shortened(name, TEXT, room)))
-                .collect();
-            let panel = Panel { from, to, x: self.times(), y };
-            panel.draw(canvas, "time", "");
-            self.events(canvas, &panel);
-        }
-        if let (Some((from, to)), [first, second, ..]) = (layout.plane(), &self.states[..]) {
-            let panel = Panel { from, to, x: self.ruler(1), y: self.ruler(2) };
-            panel.draw(canvas, first, second);
-            self.trace(canvas, &panel, 1, 2);
-        }
+        self.histories(canvas, &layout);
+        self.event_rows(canvas, &layout);
+        self.plane(canvas, &layout);
     }
 }
 
@@ -244,6 +257,6 @@ fn values(system: &System) -> String {
     });
     let is_parameter = |value: f64| system.parameters.values().any(|it| *it == value);
     let forcing = forcing.into_iter().flatten().filter(|(_, it)| *it != 0.0 && !is_parameter(*it));
-    let shown = named.chain(forcing).map(|(name, value)| format!("{name}\u{a0}= {value}"));
+    let shown = named.chain(forcing).map(|(name, value)| format!("{name} = {value}"));
     shown.collect::<Vec<_>>().join(", ")
 }

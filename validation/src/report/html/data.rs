@@ -38,6 +38,7 @@ pub(super) fn json(
         "restarts": rounded(json!(evidence.restarts)),
         "sections": evidence.sections.iter().map(section).collect::<Vec<_>>(),
         "events": evidence.events.iter().filter_map(|it| event(report, it)).collect::<Vec<_>>(),
+        "verb": command::verb(&evidence.folders),
         "repeat": command::rest(report.suite, &evidence.folders),
     });
     inside_a_script(&data.to_string())

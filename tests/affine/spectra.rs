@@ -1,0 +1,25 @@
+//! Random systems of prescribed spectra: defective, stiff, nearly defective, oscillating, growing.
+
+use super::random::{Met, check};
+use proptest::prelude::*;
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(400))]
+
+    #[test]
+    fn runs_agree_with_106_bits_and_crests_decide(seed in any::<u64>()) {
+        let checked = check(seed, &mut Met::default());
+        prop_assert!(checked.is_ok(), "{seed}: {}", checked.unwrap_err());
+    }
+}
+
+/// The check compares what it is there for: most runs have events, and guards have crests.
+#[test]
+fn random_systems_have_events_and_crests() {
+    let mut met = Met::default();
+    for seed in 0..200 {
+        let checked = check(seed, &mut met);
+        assert!(checked.is_ok(), "{seed}: {}", checked.unwrap_err());
+    }
+    assert!(met.events > 400 && met.crests > 20, "{met:?}");
+}
