@@ -260,7 +260,8 @@ impl<T: Number> Segment<'_, T> {
         }
     }
 
-    /// The crossing to the last digit. Of the guards only the first that crosses is evaluated there.
+    /// The crossing to the last digit. Of the guards only the first that crosses is evaluated
+    /// there.
     #[inline]
     fn settled(
         &self,

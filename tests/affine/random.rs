@@ -267,7 +267,8 @@ fn agreement(system: &System, met: &mut Met) -> Result<(), String> {
         met.events += 1;
         let errors = bounded.errors.as_ref().ok_or("no errors")?;
         let off = |own: f64, truth: DoubleDouble| (truth - DoubleDouble::exact(own)).to_f64().abs();
-        // A run that does not follow its errors takes pieces of other lengths, and rounds otherwise.
+        // A run that does not follow its errors takes pieces of other lengths, and rounds
+        // otherwise.
         for (own, room) in [(&bounded, 1.0), (&event, 2.0)] {
             let time = off(own.time.high, truth.time.value() - DoubleDouble::exact(own.time.low));
             let most = room * errors.time;

@@ -105,8 +105,8 @@ fn the_readmes_summary_is_of_todays_suite() {
     assert!(details.contains("\nnot run: ") && details.contains("\npower: "), "{details}");
 }
 
-/// A file that was made from a report of the quick suite lacks what that suite does not ask for: the
-/// tolerances between its three, and most restarts.
+/// A file that was made from a report of the quick suite lacks what that suite does not ask for:
+/// the tolerances between its three, and most restarts.
 #[test]
 fn the_known_shortcomings_are_those_of_the_full_suite() {
     let file: toml::Table = toml::from_str(&read("validation/shortcomings.toml")).expect("TOML");

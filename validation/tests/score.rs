@@ -303,7 +303,8 @@ fn malformed_samples_cost_their_row() {
     spoiled(short, twice, &[short, "one sample more than the "]);
 }
 
-/// Too much of anything ends the reading: of events at the limit of all engines, of bytes at 64 MiB.
+/// Too much of anything ends the reading: of events at the limit of all engines, of bytes at 64
+/// MiB.
 #[test]
 fn endless_answers_cost_their_row() {
     let many = |text: &str| {

@@ -1,7 +1,7 @@
 //! The transcripts of docs/SCORE_YOUR_INTEGRATOR.md, done as they say.
 //!
-//! `PERCUSS_SPLICE=1 cargo test --release --test harness score_your_integrator:: -- --ignored` writes
-//! what `score` prints into the page.
+//! `PERCUSS_SPLICE=1 cargo test --release --test harness score_your_integrator:: -- --ignored`
+//! writes what `score` prints into the page.
 
 use crate::support::{percuss, text};
 use std::fs;

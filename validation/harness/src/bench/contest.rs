@@ -1,9 +1,10 @@
 //! One course, all contestants: who answers rightly at which setting, and how fast.
 
-use super::contestant::{Contestant, TimedRun, settings as settings_of};
+use super::contestant::{Contestant, settings as settings_of};
 use super::course::{Course, Score};
 use super::rounds::{Benchmark, PACE, RoundTimes, race};
 use super::system_course::SystemCourse;
+use super::timed::ContestEntry;
 use crate::engine::{Accuracy, Declaration, Failure, REFERENCE, Stepping, Work};
 
 /// A contestant at a setting, and what came of it.
@@ -119,14 +120,6 @@ struct Entered<'a> {
     declaration: Declaration,
     setting: Accuracy,
     entry: Result<ContestEntry<'a>, Failure>,
-}
-
-/// A contestant at a setting, and right after it its part alone where that can be timed.
-pub struct ContestEntry<'a> {
-    /// The whole run.
-    pub timed: Box<dyn TimedRun + 'a>,
-    /// The part of it that is not the harness's.
-    pub alone: Option<Box<dyn Benchmark + 'a>>,
 }
 
 /// The contestants that are timed: those whose answer is right.

@@ -5,11 +5,11 @@
 //! [`super::contestants`].
 
 use super::alone::alone;
-use super::contest::ContestEntry;
 use super::course::{Course, Score};
 use super::rounds::Benchmark;
 use super::system_course::SystemCourse;
 use super::system_run::system_entry;
+use super::timed::{ContestEntry, TimedRun};
 use crate::engine::{
     Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, Work, contain,
 };
@@ -63,23 +63,6 @@ pub trait Contestant: Sync {
     ) -> Result<ContestEntry<'a>, Failure> {
         Err(Failure::new("it runs the oscillator alone"))
     }
-}
-
-/// A contestant on a course. What is timed is its `call`.
-pub trait TimedRun: Benchmark {
-    /// Runs of the course's length that a call makes.
-    fn runs(&self) -> f64 {
-        1.0
-    }
-
-    /// How good the last call's answer is.
-    ///
-    /// # Errors
-    /// What is wrong with it.
-    fn score(&self) -> Result<Score, Failure>;
-
-    /// What the last call counted.
-    fn work(&self) -> Work;
 }
 
 /// An engine as a contestant.

@@ -1,13 +1,31 @@
 //! What contestants run: a case from its start to its horizon, with the truth that answers are held
 //! to.
 
-use super::report::CaseEntry;
 use crate::case::{Case, FileError, Given};
 use crate::engine::{Event, Failure, Outcome, SampleGrid, Task};
 use crate::number::brief;
 use crate::score::{Matching, SCORED_ERROR, WINDOW, occurrences, worst};
 use crate::truth::{Library, Truth, TruthRow};
 use percuss::{Parameters, Start};
+use serde::{Deserialize, Serialize};
+
+/// A case that is timed.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[allow(missing_docs, reason = "the keys are explained in the schema")]
+pub struct CaseEntry {
+    pub case: String,
+    pub regime: String,
+    pub periods: f64,
+    pub events: usize,
+}
+
+impl CaseEntry {
+    /// A figure of a forcing period as one of an event; nothing for a run without events.
+    #[must_use]
+    pub fn per_event(&self, per_period: f64) -> Option<f64> {
+        (self.events > 0).then(|| per_period * self.periods / self.events as f64)
+    }
+}
 
 /// A run to be made and what is true of it.
 #[derive(Clone, Debug)]

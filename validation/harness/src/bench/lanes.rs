@@ -4,9 +4,10 @@
 //! they take phases of one kind from whatever motions are under way, and different motions fill
 //! them as well.
 
-use super::contestant::{Contestant, TimedRun};
+use super::contestant::Contestant;
 use super::course::{Course, Score};
 use super::rounds::Benchmark;
+use super::timed::TimedRun;
 use crate::engine::{Accuracy, Declaration, Failure, Outcome, Work};
 use crate::engine::{contain, exact, run_in_lanes};
 use percuss::lanes::Instructions;

@@ -28,6 +28,7 @@ mod summary;
 pub mod system_course;
 mod system_run;
 pub mod table;
+pub mod timed;
 pub mod workload;
 
 pub use pictures::{history as history_picture, pictures};

@@ -1,6 +1,7 @@
 //! What a `bench` holds: the keys of `bench.json`.
 
 use super::contest::{Finisher, exact, most_accurate};
+pub use super::course::CaseEntry;
 use super::damping::DampingPoint;
 use super::equal_accuracy::{AccuracyPoint, Basis, LOOSE, TIGHT, time_at};
 use super::floor::Floors;
@@ -30,24 +31,6 @@ pub struct Bench {
     pub length: Vec<Length>,
     /// Cost against xi; empty where only some cases were asked for.
     pub damping: Vec<Damped>,
-}
-
-/// A case that is timed.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[allow(missing_docs, reason = "the keys are explained in the schema")]
-pub struct CaseEntry {
-    pub case: String,
-    pub regime: String,
-    pub periods: f64,
-    pub events: usize,
-}
-
-impl CaseEntry {
-    /// A figure of a forcing period as one of an event; nothing for a run without events.
-    #[must_use]
-    pub fn per_event(&self, per_period: f64) -> Option<f64> {
-        (self.events > 0).then(|| per_period * self.periods / self.events as f64)
-    }
 }
 
 /// One contestant at one setting on one case. A figure that there is not is null.

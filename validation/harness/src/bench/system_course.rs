@@ -1,8 +1,7 @@
 //! What contestants run of any other system than the oscillator, held to the truth as
 //! [`super::course`] holds the oscillator.
 
-use super::course::Score;
-use super::report::CaseEntry;
+use super::course::{CaseEntry, Score};
 use crate::case::{FileError, SystemCase};
 use crate::engine::{Ended, Failure, SystemOutcome, SystemTask};
 use crate::number::brief;

@@ -1,11 +1,10 @@
 //! An engine on a run of any other system than the oscillator: the whole run, and its own part.
 
 use super::alone::told;
-use super::contest::ContestEntry;
-use super::contestant::TimedRun;
 use super::course::Score;
 use super::rounds::Benchmark;
 use super::system_course::SystemCourse;
+use super::timed::{ContestEntry, TimedRun};
 use crate::engine::{
     Accuracy, Engine, Failure, Limits, Numbers, SystemOutcome, Work, contain, exact,
 };

@@ -1,0 +1,30 @@
+//! What is timed: a run, and beside it the engine's own part of it.
+
+use super::course::Score;
+use super::rounds::Benchmark;
+use crate::engine::{Failure, Work};
+
+/// A contestant on a course. What is timed is its `call`.
+pub trait TimedRun: Benchmark {
+    /// Runs of the course's length that a call makes.
+    fn runs(&self) -> f64 {
+        1.0
+    }
+
+    /// How good the last call's answer is.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    fn score(&self) -> Result<Score, Failure>;
+
+    /// What the last call counted.
+    fn work(&self) -> Work;
+}
+
+/// A contestant at a setting, and right after it its part alone where that can be timed.
+pub struct ContestEntry<'a> {
+    /// The whole run.
+    pub timed: Box<dyn TimedRun + 'a>,
+    /// The part of it that is not the harness's.
+    pub alone: Option<Box<dyn Benchmark + 'a>>,
+}
