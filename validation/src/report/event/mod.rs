@@ -2,8 +2,8 @@
 //! truly is and as the engine had it, with the engine's steps and what its root finder saw.
 //!
 //! The row's run is made again and watched around the event. The truth is the exact solver's run,
-//! made again in 106 bits. What a picture is made of is the same for all systems ([`course`]); how it
-//! is had of the oscillator is in [`mismatch`], of any other system in [`system`].
+//! made again in 106 bits. What a picture is made of is the same for all systems ([`course`]); how
+//! it is had of the oscillator is in [`mismatch`], of any other system in [`system`].
 
 mod choice;
 mod course;

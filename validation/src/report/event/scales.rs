@@ -25,8 +25,8 @@ pub(super) struct Scales {
 }
 
 impl Scales {
-    /// Around a wrong event, with how far it is to what it is confused with, for an engine with this
-    /// mean step, in a run as long as `span`.
+    /// Around a wrong event, with how far it is to what it is confused with, for an engine with
+    /// this mean step, in a run as long as `span`.
     pub(super) fn around(
         (centre, reach): (f64, f64),
         mean_step: f64,
