@@ -195,7 +195,10 @@ fn no_horizon_and_no_sample_is_beside_an_event() {
         &["dropped.toml: samples = 100 is not accepted", "accepted is samples = 101"],
     );
     write("", "");
-    assert!(stdout(&validate).contains("1 rows: 1 pass"));
+    let output = run(&validate);
+    let (table, said) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{table}{said}");
+    assert!(table.contains("1 rows: 1 pass"), "{table}");
 }
 
 /// Where the order of events in one instant matters, nothing is scored from there on.
