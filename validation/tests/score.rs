@@ -147,7 +147,8 @@ fn an_engines_own_run_has_the_verdicts_that_validate_gives_it() {
     let answers = folder.path().display().to_string();
     let score = ["score", "--name", "diffsol-bdf", "--library", "diffsol", "--tolerance", "1e-6"];
     let (scored, _) = report(&[&score[..], &["--answers", &answers, "-c", CASES]].concat());
-    let (validated, _) = report(&["validate", "-e", "^diffsol-bdf$", "-c", CASES]);
+    let (validated, _) =
+        report(&["validate", "-e", "^diffsol-bdf$", "--tolerance", "1e-6", "-c", CASES]);
     let of = |rows: &[Value], case: &str| -> Vec<Value> {
         let own = |row: &&Value| row["case"] == case && row["tolerance"] == 1e-6;
         rows.iter().filter(own).map(judged).collect()
