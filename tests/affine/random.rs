@@ -4,7 +4,9 @@
 //! The package in `fuzz/` compiles this file too.
 
 use crate::double_double::DoubleDouble;
-use percuss::affine::{Direction, Ending, Event, Rational, Solver, System, SystemFile, Watch, What};
+use percuss::affine::{
+    Direction, Ending, Event, Rational, Solver, System, SystemFile, Watch, What,
+};
 use percuss::number::Number;
 use std::fmt::Write;
 
@@ -119,7 +121,12 @@ fn mixed(draw: &mut Draw, mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
 }
 
 /// A sum of parameters times states; the parameters are written down.
-fn combination(draw: &mut Draw, parameters: &mut String, name: &str, start: &[f64]) -> (String, f64) {
+fn combination(
+    draw: &mut Draw,
+    parameters: &mut String,
+    name: &str,
+    start: &[f64],
+) -> (String, f64) {
     let (mut text, mut value) = ("0".to_owned(), 0.0);
     for (n, state) in start.iter().enumerate() {
         let factor = if draw.below(3) == 0 { 0.0 } else { draw.eighths(8) };
@@ -156,7 +163,8 @@ pub fn system(seed: u64) -> String {
             }
             equations.push(format!("{text:?}"));
         }
-        let _ = writeln!(modes, "[[mode]]\nname = \"m{mode}\"\nequations = [{}]", equations.join(", "));
+        let _ =
+            writeln!(modes, "[[mode]]\nname = \"m{mode}\"\nequations = [{}]", equations.join(", "));
         for event in 0..1 + draw.below(2) {
             let name = format!("u{mode}{event}w");
             let (guard, value) = combination(&mut draw, &mut parameters, &name, &start);
@@ -206,14 +214,18 @@ fn kind<T>(event: &Event<T>) -> (u8, usize, usize) {
         What::Start => (0, 0, 0),
         What::Until(mode, index) => (1, *mode, *index),
         What::Watch(mode, index) => (2, *mode, *index),
-        What::End(ending) => (3, 0, match ending {
-            Ending::Horizon => 0,
-            Ending::Accumulation(..) => 1,
-            Ending::LeavesDomain => 2,
-            Ending::NoProgress => 3,
-            Ending::BeyondGuard => 4,
-            Ending::Undecided => 5,
-        }),
+        What::End(ending) => (
+            3,
+            0,
+            match ending {
+                Ending::Horizon => 0,
+                Ending::Accumulation(..) => 1,
+                Ending::LeavesDomain => 2,
+                Ending::NoProgress => 3,
+                Ending::BeyondGuard => 4,
+                Ending::Undecided => 5,
+            },
+        ),
     }
 }
 
@@ -259,12 +271,16 @@ fn agreement(system: &System, met: &mut Met) -> Result<(), String> {
             let time = off(own.time.high, truth.time.value() - DoubleDouble::exact(own.time.low));
             let most = room * errors.time;
             if time.is_nan() || time > most {
-                return Err(format!("event {n}: the time is off by {time:e}, enclosed is {most:e}"));
+                return Err(format!(
+                    "event {n}: the time is off by {time:e}, enclosed is {most:e}"
+                ));
             }
             for (k, most) in errors.state.iter().enumerate() {
                 let (state, most) = (off(own.state[k], truth.state[k]), room * most);
                 if state.is_nan() || state > most {
-                    return Err(format!("event {n}: x{k} is off by {state:e}, enclosed is {most:e}"));
+                    return Err(format!(
+                        "event {n}: x{k} is off by {state:e}, enclosed is {most:e}"
+                    ));
                 }
             }
         }
@@ -283,7 +299,13 @@ fn crest(system: &System, met: &mut Met) -> Result<(), String> {
     let until = mode.until.swap_remove(0);
     (mode.until, mode.watch) = (Vec::new(), Vec::new());
     let slope: Vec<Rational> = (0..until.guard.len())
-        .map(|k| until.guard.iter().zip(&mode.matrix).fold(Rational::ZERO, |sum, (a, row)| sum + a * &row[k]))
+        .map(|k| {
+            until
+                .guard
+                .iter()
+                .zip(&mode.matrix)
+                .fold(Rational::ZERO, |sum, (a, row)| sum + a * &row[k])
+        })
         .collect();
     let name = "top".to_owned();
     mode.watch.push(Watch { name, guard: slope, direction: Direction::Falling });
