@@ -16,7 +16,7 @@ use crate::number::Number;
 const LEFT: f64 = 1.0 / (1u64 << 30) as f64;
 
 impl<T: Number> Run<'_, T> {
-    /// Between which times after the impact just passed infinitely many others come to an end, if
+    /// The times after the impact just passed between which infinitely many others end, if
     /// that is proved and near. `before` is the state just before it, in the mode's co-ordinates.
     pub(super) fn accumulation(
         &mut self,

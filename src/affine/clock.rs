@@ -15,7 +15,7 @@ pub struct Time<T> {
     pub low: T,
 }
 
-/// theta = omega t + phi.
+/// The phase of the forcing, theta = omega t + phi, at any time.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Clock<T> {
     omega: Time<T>,
@@ -42,7 +42,7 @@ impl<T: Number> Time<T> {
         sum(high, low + self.low)
     }
 
-    /// Rounded to one number.
+    /// The time, rounded to one number.
     #[must_use]
     #[inline]
     pub fn value(&self) -> T {

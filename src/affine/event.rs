@@ -9,7 +9,7 @@ pub enum What<T> {
     Start,
     /// The mode of this index ends by its `until` of this index.
     Until(usize, usize),
-    /// In the mode of this index the `watch` of this index is crossed.
+    /// The `watch` of the second index is crossed in the mode of the first.
     Watch(usize, usize),
     /// The run ends.
     End(Ending<T>),
@@ -24,7 +24,7 @@ pub enum Ending<T> {
     Accumulation(T, T),
     /// A backward run reaches the boundary of its mode.
     LeavesDomain,
-    /// Too many events in one instant.
+    /// The run makes no progress: too many events lie in one instant.
     NoProgress,
     /// A mode is entered where one of its guards is positive already.
     BeyondGuard,

@@ -14,11 +14,11 @@ pub(super) struct Flow<T> {
     pub blocks: Vec<Block<T>>,
     /// How long a bound may be asked for: a growing block grows by at most e.
     pub longest: f64,
-    /// W of all blocks, by columns.
+    /// The matrix W of all blocks, by columns.
     to_modal: Vec<Vector<T>>,
-    /// W of all blocks, rounded to f64, by columns.
+    /// The matrix W of all blocks, rounded to f64, by columns.
     to_modal_rounded: Vec<Vector<f64>>,
-    /// X of all blocks, by columns.
+    /// The matrix X of all blocks, by columns.
     from_modal: Vec<Vector<T>>,
 }
 
@@ -260,7 +260,7 @@ impl<T: Number> ModalRow<T> {
         self.parts.get(part).map_or(self.columns.len(), |it| it.columns.0)
     }
 
-    /// Value and three derivatives, from a column on.
+    /// The value and three derivatives, from a column on.
     #[inline]
     pub fn first_orders(&self, y: &Vector<T>, from: usize) -> [T; 4] {
         let mut sums = [T::zero(); 4];

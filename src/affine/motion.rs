@@ -17,7 +17,7 @@ pub(super) struct Words<T> {
 
 #[derive(Clone, Debug)]
 pub(super) enum BlockMotion<T> {
-    /// exp(B t) = 1.
+    /// The block stands still: exp(B t) = 1.
     Still,
     Real {
         rate: Words<T>,

@@ -22,8 +22,8 @@ pub(super) struct Segment<'a, T> {
     pub entry: Vector<T>,
     /// What errors made before the segment may do to each guard; empty where they are not followed.
     pub inherited: Vec<f64>,
-    /// Up to which time the guards' Taylor series at entry are good; negative where no guard begins
-    /// with a structural zero, which they keep.
+    /// The time up to which the guards' Taylor series at entry are good; negative where no guard
+    /// begins with a structural zero, which they keep.
     pub early: f64,
     /// The series, once they are asked for.
     series: OnceCell<Vec<[T; ORDERS]>>,
@@ -41,7 +41,7 @@ pub(super) struct Point<T> {
     pub y: Vector<T>,
     /// The norms of each block's co-ordinates, once [`Segment::measure`] was asked for them.
     pub norms: Vector<f64>,
-    /// Value and three derivatives of each guard.
+    /// The value and three derivatives of each guard.
     pub orders: PerGuard<[T; 4]>,
     /// What rounding may have done to each value.
     pub slack: PerGuard<f64>,

@@ -28,7 +28,7 @@ pub(super) enum Found {
     /// The first crossing is the left end: all guards that cross there within what rounding may do,
     /// as bits.
     Crossing(u64),
-    /// Too much work.
+    /// The search takes too much work.
     Lost,
 }
 

@@ -25,7 +25,7 @@ pub struct Solver<T> {
 #[derive(Clone, Debug)]
 pub(super) struct SolverMode<T> {
     pub flow: Flow<T>,
-    /// M.
+    /// The mode's matrix M.
     pub matrix: Vec<Vector<T>>,
     /// The guards of `until`, then those of `watch`.
     pub guards: Vec<ModalRow<T>>,

@@ -39,12 +39,12 @@ pub struct System {
     pub start: Option<StartPoint>,
 }
 
-/// theta = omega t + phi.
+/// A forcing of the phase theta = omega t + phi.
 #[derive(Clone, Debug)]
 pub struct Forcing {
-    /// Radians a unit of time, positive; negative where a system runs backward.
+    /// The frequency, radians a unit of time: positive, or negative where a system runs backward.
     pub omega: RBig,
-    /// Radians.
+    /// The phase at time zero, radians.
     pub phi: RBig,
 }
 

@@ -65,9 +65,9 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         if let Damping::Over { fast, slow, .. } = self.constants.borrow().damping {
             // Eight derivatives of a stiff oscillation are rounding once its fast part has died
             // out.
-            let quick = self.fast_amplitude(split) * quick_decay(fast * at.elapsed);
-            let lasting = split.free[0].abs() + quick;
-            return by_energy.min(quick * fast.powi(8) + lasting * slow.powi(8));
+            let fast_part = self.fast_amplitude(split) * quick_decay(fast * at.elapsed);
+            let lasting = split.free[0].abs() + fast_part;
+            return by_energy.min(fast_part * fast.powi(8) + lasting * slow.powi(8));
         }
         by_energy
     }

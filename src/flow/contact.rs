@@ -154,7 +154,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Contact<T, C> {
         if let Damping::Over { fast, slow, spread } = damping
             && fast * d > T::one()
         {
-            return self.slow_and_fast(force, [fast, slow, spread], free.quick, excess);
+            return self.slow_and_fast(force, [fast, slow, spread], free.fast_exponential, excess);
         }
         orders(two_xi, b - self.reference, force, (excess, y))
     }
@@ -167,7 +167,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Contact<T, C> {
         &self,
         force: &[T; 3],
         [fast, slow, spread]: [T; 3],
-        quick: T,
+        fast_exponential: T,
         excess: T,
     ) -> [T; 4] {
         let Constants { a, b, two_xi, omega, steady, .. } = *self.constants.borrow();
@@ -179,7 +179,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Contact<T, C> {
         let rate0 = two_xi * (a_cos - (self.offset + level)) + self.entry.y;
         let fast_part0 = -((rate0 - then_rate) + slow * (self.offset + level - then)) / spread;
         let forced = steady.orders(*force);
-        let quickly = fast_part0 * quick;
+        let quickly = fast_part0 * fast_exponential;
         let slowly = (excess + level - forced[0]) - quickly;
         let (quickly1, slowly1) = (fast * quickly, slow * slowly);
         let (quickly2, slowly2) = (fast * quickly1, slow * slowly1);

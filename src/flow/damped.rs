@@ -50,7 +50,7 @@ pub struct Free<T> {
     /// S' - 1
     pub s_rate_minus_1: T,
     /// exp(-fast d), the part that dies out first above critical damping; zero elsewhere.
-    pub quick: T,
+    pub fast_exponential: T,
     /// The damped rotation (all zero near and above critical damping, where nothing reads it).
     pub rotation: Rotation<T>,
 }
@@ -173,7 +173,7 @@ impl<T: Real> Free<T> {
             s_minus_d: lasting.minus_1.times_plus(bare, -(ratio.remainder / spread)),
             c_minus_1: slow.times_plus(s, lasting.minus_1),
             s_rate_minus_1: slow.times_from(s, quick_minus_1),
-            quick: lasting.exp * ratio.exp,
+            fast_exponential: lasting.exp * ratio.exp,
             ..Self::nothing(s)
         }
     }
@@ -185,8 +185,15 @@ impl<T: Real> Free<T> {
         let shrink = Decay { exp: zero, minus_1: zero, remainder: zero };
         let turn = Circular { sin: zero, cos_minus_1: zero, sin_minus_x: zero };
         let rotation = Rotation { shrink, turn };
-        let quick = zero;
-        Self { s: zero, s_minus_d: zero, c_minus_1: zero, s_rate_minus_1: zero, quick, rotation }
+        let fast_exponential = zero;
+        Self {
+            s: zero,
+            s_minus_d: zero,
+            c_minus_1: zero,
+            s_rate_minus_1: zero,
+            fast_exponential,
+            rotation,
+        }
     }
 }
 

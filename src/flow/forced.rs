@@ -37,11 +37,11 @@ pub enum Forced<T> {
         /// omega - nu without cancellation
         delta: T,
         /// 1/(i omega - lambda+)
-        slow: Complex<T>,
+        near_pole: Complex<T>,
         /// |1/(i omega - lambda+)|: how long forced and free oscillation stay in step.
         in_step: T,
         /// 1/(i omega - lambda-)
-        quick: Complex<T>,
+        far_pole: Complex<T>,
     },
 }
 
@@ -77,9 +77,9 @@ impl<T: Number> Forced<T> {
                 xi,
                 half_over_nu: T::exact(0.5) / nu,
                 delta,
-                slow: Complex::new(xi, delta).inverse(),
+                near_pole: Complex::new(xi, delta).inverse(),
                 in_step: one / (xi * xi + delta * delta).sqrt(),
-                quick: Complex::new(xi, omega + nu).inverse(),
+                far_pole: Complex::new(xi, omega + nu).inverse(),
             };
         }
         let inverse = Complex::new(stiffness / square, -(damping / square));
@@ -106,8 +106,9 @@ impl<T: Number> Forced<T> {
                 };
                 Response::plain(two_xi, omega, inverse, sines, turn, free)
             }
-            Self::Resonant { xi, half_over_nu, delta, slow, in_step, quick } => {
-                let together = Together { turn, rotation: &free.rotation, inverses: [slow, quick] };
+            Self::Resonant { xi, half_over_nu, delta, near_pole, in_step, far_pole } => {
+                let together =
+                    Together { turn, rotation: &free.rotation, inverses: [near_pole, far_pole] };
                 let parts = if d < T::one() {
                     together.short(d, &circular(delta * d))
                 } else if d < in_step {
@@ -181,27 +182,27 @@ impl<T: Real> Together<'_, T> {
     /// D+ and D- in long times, from exp(i omega d) - exp(lambda+ d).
     #[inline(always)]
     pub fn long(&self, lag: Complex<T>) -> Differences<T> {
-        let [inverse_slow, inverse_quick] = self.inverses;
-        let slow = lag * inverse_slow;
+        let [inverse_near, inverse_far] = self.inverses;
+        let near = lag * inverse_near;
         let conjugate = self.damped().conjugate().scale(self.rotation.shrink.exp);
-        let quick = (self.forcing() - conjugate) * inverse_quick;
-        Differences { sum: slow + quick, difference: slow - quick }
+        let far = (self.forcing() - conjugate) * inverse_far;
+        Differences { sum: near + far, difference: near - far }
     }
 
     /// D+ and D- in short times, by D+ - d and D- - d, which are both of the order of d^2.
     #[inline(always)]
     pub fn short(&self, d: T, beat: &Circular<T>) -> Differences<T> {
         let (turn, Rotation { shrink, turn: free }) = (self.turn, self.rotation);
-        let [inverse_slow, inverse_quick] = self.inverses;
+        let [inverse_near, inverse_far] = self.inverses;
         let beating = Complex::new(beat.cos_minus_1 - shrink.remainder, beat.sin_minus_x);
-        let lag = beating * inverse_slow;
+        let lag = beating * inverse_near;
         let turned = Complex::new(free.cos_minus_1, free.sin);
-        let slow = lag + turned * Complex::new(d + lag.re, lag.im);
+        let near = lag + turned * Complex::new(d + lag.re, lag.im);
         let cosines = turn.cos_minus_1 - shrink.exp.times_plus(free.cos_minus_1, shrink.remainder);
         let sines = turn.sin_minus_x + shrink.minus_1.times_plus(free.sin, free.sin_minus_x);
-        let quick = Complex::new(cosines, sines) * inverse_quick;
-        let sum = slow + quick;
-        Differences { sum: Complex::new(sum.re + (d + d), sum.im), difference: slow - quick }
+        let far = Complex::new(cosines, sines) * inverse_far;
+        let sum = near + far;
+        Differences { sum: Complex::new(sum.re + (d + d), sum.im), difference: near - far }
     }
 
     /// exp(i nu d)

@@ -91,7 +91,7 @@ pub struct Begin {
 pub struct PhaseEnds {
     /// One where the lane's result is proved; where it is not, the lane's other numbers mean
     /// nothing.
-    pub fine: Column,
+    pub proved: Column,
     /// omega tau mod 2 pi at the switch.
     pub angle: Column,
     /// The second word of the forcing angle at the switch.

@@ -46,7 +46,7 @@ pub struct Evaluated<S: Simd> {
     y: Wide<S>,
     q: Wide<S>,
     /// exp(-fast d) above critical damping.
-    quick: Wide<S>,
+    fast_exponential: Wide<S>,
     /// The largest terms of the guard.
     terms: Wide<S>,
 }
@@ -60,7 +60,7 @@ pub struct Release<S: Simd> {
     /// The lanes in which the root is on the upper threshold.
     pub rises: Mask<S>,
     /// The lanes in which the event and all these values are proved.
-    pub fine: Mask<S>,
+    pub proved: Mask<S>,
 }
 
 /// A contact with the threshold that it is guessed to leave through.
@@ -113,8 +113,8 @@ impl<S: Simd> LaneContact<'_, S> {
         };
         let Pressed { excess, y, q, largest_term: terms } =
             begin.after(d, &force, &free, &response);
-        let f = self.one_by_one(d, self.orders(force, excess, y), force, free.quick);
-        Evaluated { f, force, y, q, quick: free.quick, terms }
+        let f = self.one_by_one(d, self.orders(force, excess, y), force, free.fast_exponential);
+        Evaluated { f, force, y, q, fast_exponential: free.fast_exponential, terms }
     }
 
     /// The guard and its derivatives; `force` is F - b, F', F''.
@@ -130,7 +130,7 @@ impl<S: Simd> LaneContact<'_, S> {
         self.orders(self.angle.force(self.shape), self.offset, self.y)
     }
 
-    /// Clearly above critical damping, once the quick exponential has begun to die out, the
+    /// Clearly above critical damping, once the fast exponential has begun to die out, the
     /// equations of motion would multiply the rounding of f by 2 xi with each derivative, although
     /// what is left of f moves slowly. There its parts are differentiated one by one.
     #[inline(always)]
@@ -139,14 +139,14 @@ impl<S: Simd> LaneContact<'_, S> {
         elapsed: Wide<S>,
         orders: [Wide<S>; 4],
         [u, v, w]: [Wide<S>; 3],
-        quick: Wide<S>,
+        fast_exponential: Wide<S>,
     ) -> [Wide<S>; 4] {
         let Shape { b, omega, fast, steady, steady_rate, .. } = *self.shape;
         let dying = (fast * elapsed).above(1.0);
         if self.forms == Forms::Usual || !dying.any() {
             return orders;
         }
-        let quickly = self.parts(self.first()).parts.free_rate * quick;
+        let quickly = self.parts(self.first()).parts.free_rate * fast_exponential;
         let forced = steady_rate.times_plus(v, steady * u);
         let quarter = steady_rate.times_plus(w, steady * v) / omega;
         let slowly = ((orders[0] - (b - self.reference)) - forced) - quickly;
@@ -161,20 +161,22 @@ impl<S: Simd> LaneContact<'_, S> {
     pub fn release(&self, fineness: Fineness) -> Release<S> {
         let first = self.first();
         let (guess, threshold, guessed) = self.first_exit(first);
-        let LaneRoot { at, elapsed, series, step, fine, .. } =
+        let LaneRoot { at, elapsed, series, step, found, .. } =
             find(&Leaving { contact: self, threshold }, guess, guessed);
         // y' = F - f
         let [u, v, _] = at.force;
         let Push { force, impulse } = Push::new(self.shape.omega, [u, v], step);
         let rest = (self.shape.b - self.reference) - threshold;
         let y = at.y + (rest.times_plus(step, impulse) - series.integral(step));
-        let quick = at.quick + at.quick * short_decay(self.shape.fast * step);
-        let last = self.one_by_one(elapsed, self.orders(force, threshold, y), force, quick);
+        let fast_exponential =
+            at.fast_exponential + at.fast_exponential * short_decay(self.shape.fast * step);
+        let last =
+            self.one_by_one(elapsed, self.orders(force, threshold, y), force, fast_exponential);
         let rises = !(threshold + self.reference).below(0.5);
         let outward = rises.choose(last[1], -last[1]).above(0.0);
-        let fine =
-            fine & outward & self.stays_inside(first, last, elapsed + step, at.terms, fineness);
-        Release { elapsed: (elapsed, step), y, rises, fine }
+        let proved =
+            found & outward & self.stays_inside(first, last, elapsed + step, at.terms, fineness);
+        Release { elapsed: (elapsed, step), y, rises, proved }
     }
 
     /// Displacement of the slider's top, velocity and guard at some time, and their rates.

@@ -89,7 +89,7 @@ impl<S: Simd> LaneContact<'_, S> {
         let mut bare = first[0].is(0.0);
         let mut rest = length;
         let none = bare & !bare;
-        let (mut open, mut fine) = (!none, !none);
+        let (mut open, mut proved) = (!none, !none);
         for _ in 0..pieces {
             let step = steps.now.length;
             let is_last = rest.less(step * REST);
@@ -103,7 +103,7 @@ impl<S: Simd> LaneContact<'_, S> {
             let length = is_last.choose(rest, step);
             let piece =
                 LanePiece { left, right, length, eighth, bare, double: none, to_root: is_last };
-            fine = fine & (piece.stays_between(low, high, slack) | !open);
+            proved = proved & (piece.stays_between(low, high, slack) | !open);
             open = open & !is_last;
             if !open.any() {
                 break;
@@ -111,7 +111,7 @@ impl<S: Simd> LaneContact<'_, S> {
             (left, bare, rest) = (next, none, rest - step);
             steps.next();
         }
-        fine & !open
+        proved & !open
     }
 
     /// Rounding room: that of the guard's terms, and what the steps round.

@@ -147,15 +147,15 @@ impl Shape<f64> {
             Forced::Plain { inverse, .. } => {
                 Self { response: inverse.re, response_im: inverse.im, ..free }
             }
-            Forced::Resonant { half_over_nu, delta, slow, in_step, quick, .. } => Self {
+            Forced::Resonant { half_over_nu, delta, near_pole, in_step, far_pole, .. } => Self {
                 unusual: 1.0,
                 half_over_nu,
                 delta,
-                slow: slow.re,
-                slow_im: slow.im,
+                near_pole: near_pole.re,
+                near_pole_im: near_pole.im,
                 in_step,
-                quick: quick.re,
-                quick_im: quick.im,
+                far_pole: far_pole.re,
+                far_pole_im: far_pole.im,
                 ..free
             },
         }

@@ -1,8 +1,8 @@
 //! A contact followed in steps of fixed length ([`crate::crossing::contact_parts`]).
 //!
 //! Clearly above critical damping the free part is carried as two exponentials, so that what is
-//! left of it has the derivatives of the slow one when the quick one has died out. Steps then
-//! begin as short as the quick one's life and double up to the length of all others.
+//! left of it has the derivatives of the slow one when the fast one has died out. Steps then
+//! begin as short as the fast one's life and double up to the length of all others.
 
 use super::contact_shape::Forms;
 use super::shape::Shape;
@@ -13,7 +13,7 @@ use crate::numeric::real::Real;
 use pulp::Simd;
 
 /// The trial force in parts, in which exponentials may stand: clearly above critical damping the
-/// free part is the slow one, and its rate the quick one.
+/// free part is the slow one, and its rate the fast one.
 #[derive(Clone, Copy)]
 pub struct LaneParts<S: Simd> {
     /// The parts.
@@ -31,9 +31,9 @@ impl<S: Simd> LaneParts<S> {
             return Self { parts, forms };
         }
         let over = shape.fast.above(0.0);
-        // x' + slow x = -spread (quick part)
-        let quick = -shape.lasting.times_plus(x, rate) / shape.spread;
-        let (free, free_rate) = (over.choose(x - quick, x), over.choose(quick, rate));
+        // x' + slow x = -spread (fast part)
+        let fast_part = -shape.lasting.times_plus(x, rate) / shape.spread;
+        let (free, free_rate) = (over.choose(x - fast_part, x), over.choose(fast_part, rate));
         Self { parts: ContactParts { free, free_rate, ..parts }, forms }
     }
 

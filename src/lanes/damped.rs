@@ -57,7 +57,7 @@ impl<S: Simd> Free<Wide<S>> {
             s_minus_d: mask.choose(other.s_minus_d, self.s_minus_d),
             c_minus_1: mask.choose(other.c_minus_1, self.c_minus_1),
             s_rate_minus_1: mask.choose(other.s_rate_minus_1, self.s_rate_minus_1),
-            quick: mask.choose(other.quick, self.quick),
+            fast_exponential: mask.choose(other.fast_exponential, self.fast_exponential),
             ..self
         }
     }

@@ -63,7 +63,7 @@ pub struct Impact<S: Simd> {
     /// Trial force.
     pub f: Wide<S>,
     /// The lanes in which the event and all these values are proved.
-    pub fine: Mask<S>,
+    pub proved: Mask<S>,
 }
 
 /// Decay times after which an exponential is less than 1e-19 of what it was.
@@ -121,7 +121,7 @@ impl<S: Simd> Flight<'_, S> {
         // leads back.
         let hasty = guess.less(look) & look_decay.is(0.0);
         let guess = hasty.choose(look, guess);
-        let LaneRoot { at, elapsed, step, slope, fine, .. } = find(self, guess, guessed);
+        let LaneRoot { at, elapsed, step, slope, found, .. } = find(self, guess, guessed);
         let [total, v, _] = at.force;
         let push = Push::new(self.shape.omega, [total - b, v], step);
         let lost = at.q * short_decay(rate * step);
@@ -139,8 +139,8 @@ impl<S: Simd> Flight<'_, S> {
                     | self.hops(root, [slope, q * rate, force + b, force_rate])
             }
         };
-        let fine = fine & clear & self.q.above(0.0) & certified;
-        Impact { elapsed: (elapsed, step), y, q, f, fine }
+        let proved = found & clear & self.q.above(0.0) & certified;
+        Impact { elapsed: (elapsed, step), y, q, f, proved }
     }
 
     /// Displacement of the mass, its velocity and the slider's top at some time, and the rate of
@@ -276,20 +276,20 @@ impl<S: Simd> Flight<'_, S> {
         let start_sin = by_sinking.choose(settled_sin, -turning_sin);
         let start_cos = by_sinking.choose(settled_cos, turning_cos);
         let first = bound.at(start, [start_sin, start_cos]);
-        let mut fine = (sinks | concave_at_first) & start.less(root) & first.value.less(zero);
+        let mut proved = (sinks | concave_at_first) & start.less(root) & first.value.less(zero);
 
         // The stretch of negative force that the flight begins in, or the first one after that.
         let late = (-turning + TAU).less(angle);
         let mut begins = ((turning - angle) + late.choose(zero.same(TAU), zero)) / omega;
         let period = omega.same(TAU) / omega;
         let length = (-turning + std::f64::consts::PI) * 2.0 / omega;
-        let mut open = fine;
+        let mut open = proved;
         for _ in 0..STRETCHES {
             let ends = begins + length;
             // The last stretch rises to the root, and what begins after the root does not count.
             open = open & ends.less(root);
             if !open.any() {
-                return fine;
+                return proved;
             }
             let near = bound.at(begins, [turning_sin, turning_cos]);
             let near = near.or_where(begins.less(start), first);
@@ -298,11 +298,11 @@ impl<S: Simd> Flight<'_, S> {
                 Fineness::Usual => near.stays_below_to(&far),
                 Fineness::Finer => self.stays_below_between(&bound, &near, &far, length),
             };
-            fine = fine & (below | !open | !start.less(ends));
+            proved = proved & (below | !open | !start.less(ends));
             begins = begins + period;
-            open = open & fine;
+            open = open & proved;
         }
-        fine & !open
+        proved & !open
     }
 }
 

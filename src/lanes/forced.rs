@@ -60,8 +60,8 @@ impl<S: Simd> Response<Wide<S>> {
         turn: &Circular<Wide<S>>,
         free: &Free<Wide<S>>,
     ) -> Self {
-        let Shape { slow, slow_im, quick, quick_im, .. } = *shape;
-        let inverses = [Complex::new(slow, slow_im), Complex::new(quick, quick_im)];
+        let Shape { near_pole, near_pole_im, far_pole, far_pole_im, .. } = *shape;
+        let inverses = [Complex::new(near_pole, near_pole_im), Complex::new(far_pole, far_pole_im)];
         let together = Together { turn, rotation: &free.rotation, inverses };
         // Neither in short times nor in step is delta d more than one.
         let beat = short_turn(shape.delta * d);

@@ -49,7 +49,7 @@ pub struct LaneRoot<S: Simd, A> {
     /// The guard's slope at the root.
     pub slope: Wide<S>,
     /// The lanes in which there is a root.
-    pub fine: Mask<S>,
+    pub found: Mask<S>,
 }
 
 /// What may be left of an excess that is zero itself.
@@ -80,7 +80,7 @@ pub fn find<S: Simd, P: LanePhase<S>>(
         if attempt == ATTEMPTS || !(alive & !short).any() {
             let series = Series::of_orders(excess, phase.later(&at));
             let (step, slope, polished) = series.polished(step);
-            return LaneRoot { at, elapsed, series, step, slope, fine: alive & short & polished };
+            return LaneRoot { at, elapsed, series, step, slope, found: alive & short & polished };
         }
         elapsed = (alive & !short).choose(next, elapsed);
         attempt += 1;

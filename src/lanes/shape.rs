@@ -113,15 +113,15 @@ shape! {
     /// omega - nu
     delta,
     /// 1/(xi + i delta), real part.
-    slow,
+    near_pole,
     /// Imaginary part of 1/(xi + i delta).
-    slow_im,
+    near_pole_im,
     /// The time after which forced and free oscillation are out of step.
     in_step,
     /// 1/(xi + i (omega + nu)), real part.
-    quick,
+    far_pole,
     /// Imaginary part of 1/(xi + i (omega + nu)).
-    quick_im,
+    far_pole_im,
     /// What the steady trial force takes of F - b.
     steady,
     /// What the steady trial force takes of F'.
@@ -153,7 +153,7 @@ shape! {
     /// S' of the free oscillation after that piece.
     piece_s_rate,
     /// What the first step and the first piece in contact are of all others: one but clearly above
-    /// critical damping, where C, S and S' are the slow exponential, zero and the quick one.
+    /// critical damping, where C, S and S' are the slow exponential, zero and the fast one.
     early,
     /// Sine of omega times the first step.
     early_contact_look_sin,

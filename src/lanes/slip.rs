@@ -73,7 +73,7 @@ pub struct Stop<S: Simd> {
     /// Drift since the start.
     pub drift: Wide<S>,
     /// The lanes in which the event and all these values are proved.
-    pub fine: Mask<S>,
+    pub proved: Mask<S>,
 }
 
 impl<S: Simd> LanePhase<S> for Slip<'_, S> {
@@ -128,13 +128,13 @@ impl<S: Simd> Slip<'_, S> {
     pub fn stop(&self) -> Stop<S> {
         let Shape { a, b, omega, rate, .. } = *self.shape;
         let (guess, guessed) = self.slow_envelope().first_root();
-        let LaneRoot { at, elapsed, series, step, slope, fine } = find(self, guess, guessed);
+        let LaneRoot { at, elapsed, series, step, slope, found } = find(self, guess, guessed);
         let lag = at.lag + at.lag * short_decay(rate * step);
         let drift = at.drift + series.integral(step);
         let begin = [self.closing, self.drift_rate];
         let certified = stops_once([a, b, omega, rate], begin, lag);
-        let fine = fine & certified & slope.below(0.0);
-        Stop { elapsed: (elapsed, step), y: lag, drift, fine }
+        let proved = found & certified & slope.below(0.0);
+        Stop { elapsed: (elapsed, step), y: lag, drift, proved }
     }
 
     /// The progressions at some time.

@@ -98,8 +98,8 @@ impl<'a, S: Simd> LoadedLanes<'a, S> {
 
     #[inline(always)]
     fn flight(&self, fineness: Fineness, end: &mut PhaseEnds) {
-        let Impact { elapsed, y, q, f, fine } = self.flights().impact(fineness);
-        self.switch(elapsed, fine, end);
+        let Impact { elapsed, y, q, f, proved } = self.flights().impact(fineness);
+        self.switch(elapsed, proved, end);
         y.store(&mut end.y);
         q.store(&mut end.q);
         f.store(&mut end.guard);
@@ -111,28 +111,28 @@ impl<'a, S: Simd> LoadedLanes<'a, S> {
             Forms::Usual => self.contacts(Forms::Usual).release(fineness),
             Forms::Any => self.contacts(Forms::Any).release(fineness),
         };
-        let Release { elapsed, y, rises, fine } = release;
-        self.switch(elapsed, fine, end);
+        let Release { elapsed, y, rises, proved } = release;
+        self.switch(elapsed, proved, end);
         y.store(&mut end.y);
         rises.number().store(&mut end.guard);
     }
 
     #[inline(always)]
     fn slip(&self, end: &mut PhaseEnds) {
-        let Stop { elapsed, y, drift, fine } = self.slips().stop();
-        self.switch(elapsed, fine, end);
+        let Stop { elapsed, y, drift, proved } = self.slips().stop();
+        self.switch(elapsed, proved, end);
         y.store(&mut end.y);
         drift.store(&mut end.drift);
     }
 
     /// When the phases end.
     #[inline(always)]
-    fn switch(&self, (evaluated, step): (Wide<S>, Wide<S>), fine: Mask<S>, end: &mut PhaseEnds) {
+    fn switch(&self, (evaluated, step): (Wide<S>, Wide<S>), proved: Mask<S>, end: &mut PhaseEnds) {
         let omega = self.shape.omega;
         let elapsed = Words::sum(evaluated, step);
         let (cycles, angle) = self.angle().plus(elapsed.times(omega)).wrapped();
-        let fine = fine & (elapsed.high * self.shape.pace).below(LONGEST);
-        fine.number().store(&mut end.fine);
+        let proved = proved & (elapsed.high * self.shape.pace).below(LONGEST);
+        proved.number().store(&mut end.proved);
         angle.high.store(&mut end.angle);
         angle.low.store(&mut end.angle_low);
         cycles.store(&mut end.cycles);
@@ -147,7 +147,7 @@ impl<'a, S: Simd> LoadedLanes<'a, S> {
         let cycles = self.load(&self.begin.due_cycles);
         let elapsed = Words::turns(cycles).plus(change).over(self.shape.omega);
         let near = (elapsed.high * self.shape.pace).below(LONGEST);
-        near.number().store(&mut end.fine);
+        near.number().store(&mut end.proved);
         elapsed
     }
 

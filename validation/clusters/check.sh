@@ -20,16 +20,21 @@ if [ -z "${PERCUSS:-}" ]; then
     PERCUSS=${CARGO_TARGET_DIR:-$root/target}/release/percuss
 fi
 work=$(mktemp -d)
+# Ends the process that a file names.
+stop() {
+    pid=$(cat "$1")
+    rm "$1"
+    kill "$pid" 2>/dev/null || return 0
+    # It writes its state before it ends.
+    for _ in $(seq 50); do
+        kill -0 "$pid" 2>/dev/null || return 0
+        sleep 0.2
+    done
+    kill -9 "$pid" 2>/dev/null || true
+}
 end() {
     for file in "$work"/*.pid; do
-        [ -e "$file" ] || continue
-        pid=$(cat "$file")
-        kill "$pid" 2>/dev/null || true
-        # It writes its state before it ends.
-        for _ in $(seq 50); do
-            kill -0 "$pid" 2>/dev/null || break
-            sleep 0.2
-        done
+        [ -e "$file" ] && stop "$file"
     done
     rm -rf "$work" || true
 }
@@ -43,6 +48,8 @@ export PATH="$work/bin:$PATH"
 plan=$(realpath "${PLAN:-$here/plan.toml}")
 cd "$work"
 cp "$plan" plan.toml
+# What the engines leave goes with the folder.
+export TMPDIR=$work RAY_TMPDIR=$work
 
 install() {
     dpkg -s "$@" >/dev/null 2>&1 && return
@@ -124,7 +131,8 @@ dask() {
     lose_worker
 }
 
-# Kills one of two Dask workers with the shard that it computes: the scheduler gives it to the other.
+# Kills one of two Dask workers with the shard that it computes: the scheduler gives that to the
+# other.
 lose_worker() {
     sed 's/^periods = .*/periods = 10000/' "$here/plan.toml" >long.toml
     percuss sweep run --plan long.toml --out undisturbed
@@ -142,6 +150,7 @@ lose_worker() {
     "$work/venv/bin/python" "$here/sweep_by_dask.py" long.toml lost lost.npz \
         --scheduler "$scheduler" &
     client=$!
+    echo "$client" >client.pid
     # Two locks are two shards that are being computed.
     until [ "$(find lost -name '*.lock' 2>/dev/null | wc -l)" -eq 2 ]; do
         kill -0 "$client" || { echo "dask: the sweep ended before a worker was lost" >&2; exit 1; }
@@ -150,6 +159,10 @@ lose_worker() {
     kill -9 -- "-$(cat worker1.pid)"
     rm worker1.pid
     wait "$client"
+    rm client.pid
+    # The worker first: without a scheduler it does not end.
+    stop worker2.pid
+    stop scheduler.pid
     cmp undisturbed.npz lost.npz
     echo "dask: one of two workers was killed, and the other has computed its shard"
 }

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Measures what sweeps cost, for the section "Scale" of docs/SWEEPS.md: time and bytes a shard, the
-# cost of starting a task, the memory of a merge, and strong and weak scaling to the cores there
-# are.
+# cost of starting a task, the memory of a merge, strong and weak scaling to the cores there are,
+# and how even shards are.
 #
 #   scale.sh      (Debian: apt-get install time)
 #
@@ -94,3 +94,37 @@ for tasks in $(seq "$(nproc)"); do
     wait
     echo "$tasks $(echo "$(date +%s.%N) - $begun" | bc)"
 done
+
+# Processor seconds of all shards, the longest shard over the mean, bytes of all files.
+# even PLAN SHARDS
+even() {
+    rm -rf out
+    for shard in $(seq 0 $(($2 - 1))); do
+        /usr/bin/time -f %U "$PERCUSS" sweep run --plan "$1" --out out --shard "$shard/$2" \
+            --threads 1 --quiet 2>&1
+    done | awk '{ all += $1; if ($1 > most) most = $1 } END { print all, most * NR / all }'
+    cat out/*.shard | wc -c
+}
+
+echo "== basins of 2 x 1000 x 1000 starts: processor seconds, longest of 8 shards over the mean, bytes"
+cat >plan.toml <<PLAN
+[sweep]
+verb = "basins"
+shards = 8
+[fixed]
+xi = 0.1
+grid = "1000x1000"
+window = [-1.0, 1.0, -1.0, 1.0]
+transient = 60
+[[axis]]
+parameter = "omega"
+from = 0.8
+to = 1.0
+steps = 2
+PLAN
+even plan.toml 8
+/usr/bin/time -f "merge: %U s of processor time, %M KiB" \
+    "$PERCUSS" sweep merge --plan plan.toml --out out --output m.npz 2>&1
+
+echo "== the drift map over omega and b: processor seconds, longest of 16 shards over the mean, bytes"
+even "$root/docs/sweeps/omega-b.toml" 16

@@ -1,12 +1,14 @@
-//! Draws a drift map that `percuss sweep` has computed with the verb `lyapunov` over omega and
-//! another parameter: the drift, and the regime of each point.
+//! Draws a drift map that `percuss sweep` has computed over omega and another parameter: the drift,
+//! and the regime of each point. Drifts and chaos are what the verb `lyapunov` gives, periods are
+//! those of the last strobes, which the verb `bifurcation` gives.
 //!
 //! ```sh
-//! percuss sweep run --plan docs/sweeps/omega-b.toml --out target/omega-b
-//! percuss sweep merge --plan docs/sweeps/omega-b.toml --out target/omega-b \
-//!     --output target/omega-b.npz
+//! for map in omega-b omega-b-strobes; do
+//!     percuss sweep run --plan docs/sweeps/$map.toml --out target/$map
+//!     percuss sweep merge --plan docs/sweeps/$map.toml --out target/$map --output target/$map.npz
+//! done
 //! cargo run --release -p percuss-validation --example drift_map -- \
-//!     target/omega-b.npz b docs/drift-omega-b.png
+//!     target/omega-b.npz target/omega-b-strobes.npz b docs/drift-omega-b.png
 //! ```
 
 use anyhow::{Context, Result};
@@ -23,12 +25,18 @@ use zip::ZipArchive;
 const ERRORS: f64 = percuss::dynamics::attractor::ERRORS;
 /// A drift per period that is no larger is rounding: the slider does not move.
 const NO_DRIFT: f64 = 1e-12;
+/// Strobes that are no farther apart are one point of an orbit.
+const SAME_POINT: f64 = 1e-5;
+/// The longest period with a colour of its own, which longer ones share.
+const LONGEST: usize = 4;
 
 /// What a motion does in the long run.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Regime {
+    /// Neither progression nor chaos.
     Resting,
-    Periodic,
+    /// Progression, with this period or, from [`LONGEST`] on, a longer one.
+    Periodic(usize),
     Chaotic,
     /// A phase that never ends: the mass leaves or the slider never stops.
     Endless,
@@ -36,11 +44,14 @@ enum Regime {
     Undecided,
 }
 
-const REGIMES: [(Regime, &str, Colour); 5] = [
-    (Regime::Resting, "no progression, no chaos", Colour(222, 222, 222)),
-    (Regime::Periodic, "progression, periodic", Colour(95, 165, 225)),
+const REGIMES: [(Regime, &str, Colour); 8] = [
+    (Regime::Resting, "no progression", Colour(222, 222, 222)),
+    (Regime::Periodic(1), "period 1", Colour(120, 185, 235)),
+    (Regime::Periodic(2), "period 2", Colour(20, 75, 150)),
+    (Regime::Periodic(3), "period 3", Colour(0, 158, 115)),
+    (Regime::Periodic(LONGEST), "period 4+", Colour(160, 20, 80)),
     (Regime::Chaotic, "chaos", Colour(230, 120, 30)),
-    (Regime::Endless, "endless phase", Colour(120, 30, 90)),
+    (Regime::Endless, "endless phase", Colour(20, 10, 40)),
     (Regime::Undecided, "undecided", Colour(250, 236, 150)),
 ];
 
@@ -58,6 +69,10 @@ const SHADES: [Colour; 6] = [
 struct Sweep(ZipArchive<File>);
 
 impl Sweep {
+    fn open(file: &str) -> Result<Self> {
+        Ok(Self(ZipArchive::new(File::open(file).with_context(|| file.to_owned())?)?))
+    }
+
     fn f8(&mut self, name: &str) -> Result<Vec<f64>> {
         self.array(name)
     }
@@ -72,14 +87,18 @@ impl Sweep {
 
 fn main() -> Result<()> {
     let words: Vec<String> = std::env::args().skip(1).collect();
-    let [file, other, output] = &words[..] else {
-        anyhow::bail!("three arguments: the merged file, the second parameter, the picture");
+    let [file, strobes, other, output] = &words[..] else {
+        anyhow::bail!(
+            "four arguments: the merged files of lyapunov and of bifurcation, the second parameter, \
+             the picture"
+        );
     };
     let parameter: Parameter = other.parse()?;
-    let mut sweep = Sweep(ZipArchive::new(File::open(file)?)?);
+    let mut sweep = Sweep::open(file)?;
     let (x, y) = (sweep.f8("omega")?, sweep.f8(other)?);
     let drift = sweep.f8("drift_per_period")?;
-    let regimes = regimes(&mut sweep, &drift)?;
+    let periods = periods(&mut Sweep::open(strobes)?, drift.len())?;
+    let regimes = regimes(&mut sweep, &drift, &periods)?;
     // The quantiles of the drifts that are any, so that each shade fills as much of the picture.
     let mut some: Vec<f64> = drift.iter().copied().filter(|it| is_drift(*it)).collect();
     some.sort_by(f64::total_cmp);
@@ -110,7 +129,8 @@ fn main() -> Result<()> {
     let figure = Figure {
         title: format!("Drift per forcing period, and regime, over {} and {}", axes[0], axes[1]),
         caption: format!(
-            "{} x {} motions from rest at the origin; {fixed}. Grey above: no progression.",
+            "{} x {} motions from rest at the origin; {fixed}. Grey: no progression; chaos is \
+             marked with it and without.",
             x.len(),
             y.len()
         ),
@@ -138,7 +158,24 @@ fn entry(name: &str, colour: Colour) -> KeyEntry {
     KeyEntry { name: name.to_owned(), colour, stroke: None }
 }
 
-fn regimes(sweep: &mut Sweep, drift: &[f64]) -> Result<Vec<Regime>> {
+/// The least period of each motion's last strobes; more than half of them where they have none.
+fn periods(sweep: &mut Sweep, motions: usize) -> Result<Vec<usize>> {
+    let [p, y, q] = [sweep.f8("p")?, sweep.f8("y")?, sweep.f8("q")?];
+    let strobes = p.len() / motions;
+    let is_same = |i: usize, j: usize| {
+        [&p, &y, &q].iter().all(|values| (values[i] - values[j]).abs() <= SAME_POINT)
+    };
+    let repeats = |first: usize, period: usize| {
+        (first..first + strobes - period).all(|n| is_same(n, n + period))
+    };
+    let period = |motion: usize| {
+        let mut all = 1..=strobes / 2;
+        all.find(|period| repeats(motion * strobes, *period)).unwrap_or(strobes)
+    };
+    Ok((0..motions).map(period).collect())
+}
+
+fn regimes(sweep: &mut Sweep, drift: &[f64], periods: &[usize]) -> Result<Vec<Regime>> {
     let exponents = sweep.f8("exponents_per_period")?;
     let errors = sweep.f8("standard_error")?;
     let endless: Vec<i32> = sweep.array("endless")?;
@@ -152,7 +189,7 @@ fn regimes(sweep: &mut Sweep, drift: &[f64]) -> Result<Vec<Regime>> {
             _ if largest > ERRORS * error => Regime::Chaotic,
             _ if drift[at] <= NO_DRIFT => Regime::Resting,
             _ if largest > -ERRORS * error => Regime::Undecided,
-            _ => Regime::Periodic,
+            _ => Regime::Periodic(periods[at].min(LONGEST)),
         }
     };
     Ok((0..drift.len()).map(regime).collect())

@@ -2,11 +2,13 @@
 //!
 //! `cargo run --release --example shortcomings -- REPORT...` prints the file: every bound that
 //! fails in one of the reports becomes a row of its engine's defect, with a floor and a ceiling
-//! around the figure that was measured; rows of cases that no report has stay as they are. An
-//! engine has one defect on the oscillator and one on other systems. Reasons are people's: those of
+//! around the figure that was measured; rows that no report has stay as they are. An engine has one
+//! defect on the oscillator and one on other systems. Reasons are people's: those of
 //! the present file are kept, a new defect gets an empty one, which the program refuses to read.
+//! Before the reports `--file FILE` names another file than that of the engines in Rust, as
+//! `validation/programs/shortcomings.toml`.
 
-use anyhow::{Context, Result, bail};
+use anyhow::{Context, Result, bail, ensure};
 use percuss_validation::case::Cases;
 use serde::Deserialize;
 use serde_json::Value;
@@ -22,6 +24,9 @@ const COUNTS: [&str; 5] =
 /// Case, setting (a step is negative), quantity and statistic.
 type Key = (String, String, String, String);
 
+/// Engine, case and setting.
+type Place = (String, String, String);
+
 /// An engine and a group of its rows: those of the oscillator, or of other systems the events, the
 /// errors and the runs without a result. Each group has a reason of its own.
 type Group = (String, &'static str);
@@ -32,7 +37,11 @@ type Defects = BTreeMap<Group, BTreeMap<Key, (f64, f64)>>;
 fn main() -> Result<()> {
     let mut defects = Defects::new();
     let mut reported = BTreeSet::new();
-    let reports: Vec<String> = std::env::args().skip(1).collect();
+    let mut reports: Vec<String> = std::env::args().skip(1).collect();
+    let mut file = concat!(env!("CARGO_MANIFEST_DIR"), "/shortcomings.toml").to_owned();
+    if reports.first().is_some_and(|it| it == "--file") && reports.len() > 1 {
+        file = reports.drain(..2).next_back().unwrap_or_default();
+    }
     if reports.is_empty() {
         bail!("name one report.json or more");
     }
@@ -41,12 +50,15 @@ fn main() -> Result<()> {
     for path in reports {
         let text = std::fs::read_to_string(&path).with_context(|| path.clone())?;
         let report: Value = serde_json::from_str(&text).with_context(|| path.clone())?;
+        // `quick` has no rows at other tolerances, and measures fewer restarts: what it does not
+        // show would be dropped.
+        ensure!(report["suite"] == "full", "{path} is no report of the full suite");
         for row in report["results"].as_array().context("a report has results")? {
-            reported.insert(row["case"].as_str().unwrap_or_default().to_owned());
+            reported.insert(place(row)?);
             collect(row, &systems, &mut defects)?;
         }
     }
-    let whys = present(&systems, &reported, &mut defects)?;
+    let whys = present(&file, &systems, &reported, &mut defects)?;
     println!(
         "# Known shortcomings of engines on the cases inside the binary, row by row: case, tolerance (or"
     );
@@ -79,20 +91,29 @@ fn group(engine: &str, case: &str, quantity: &str, systems: &BTreeSet<String>) -
     (engine.to_owned(), group)
 }
 
+/// A row's engine, case and setting (a step is negative, the exact solver has none).
+fn place(row: &Value) -> Result<Place> {
+    let text = |key: &str| row[key].as_str().map(str::to_owned).context("a row has names");
+    let setting = match (row["tolerance"].as_f64(), row["step"].as_f64()) {
+        (Some(tolerance), _) => float(tolerance),
+        (None, Some(step)) => float(-step),
+        (None, None) => String::new(),
+    };
+    Ok((text("engine")?, text("case")?, setting))
+}
+
 fn collect(row: &Value, systems: &BTreeSet<String>, defects: &mut Defects) -> Result<()> {
     let text = |value: &Value| value.as_str().map(str::to_owned).context("a string");
     for bound in row["bounds"].as_array().context("a row has bounds")? {
         let failing = matches!(bound["verdict"].as_str(), Some("fail" | "known"));
         let Some(value) = bound["value"].as_f64().filter(|_| failing) else { continue };
         let limit = bound["limit"].as_f64().context("a bound has a limit")?;
-        let setting = match (row["tolerance"].as_f64(), row["step"].as_f64()) {
-            (Some(tolerance), _) => float(tolerance),
-            (None, Some(step)) => float(-step),
-            _ => continue,
-        };
+        let (engine, case, setting) = place(row)?;
+        if setting.is_empty() {
+            continue;
+        }
         let quantity = text(&bound["quantity"])?;
-        let case = text(&row["case"])?;
-        let group = group(&text(&row["engine"])?, &case, &quantity, systems);
+        let group = group(&engine, &case, &quantity, systems);
         let key = (case, setting, quantity.clone(), text(&bound["statistic"])?);
         let most = if quantity == "events_missed" { row["events_expected"].as_f64() } else { None };
         let own = defects.entry(group).or_default();
@@ -120,22 +141,23 @@ fn float(value: f64) -> String {
     format!("{value:e}")
 }
 
-/// The reasons of the present file; its rows of cases that no report has are kept.
+/// The reasons of the present file; its rows that no report has are kept.
 fn present(
+    path: &str,
     systems: &BTreeSet<String>,
-    reported: &BTreeSet<String>,
+    reported: &BTreeSet<Place>,
     defects: &mut Defects,
 ) -> Result<BTreeMap<Group, String>> {
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/shortcomings.toml");
-    let text = std::fs::read_to_string(path).context(path)?;
-    let file: PresentFile = toml::from_str(&text).context(path)?;
+    let text = std::fs::read_to_string(path).with_context(|| path.to_owned())?;
+    let file: PresentFile = toml::from_str(&text).with_context(|| path.to_owned())?;
     let mut reasons = BTreeMap::new();
     for PresentDefect { engine, why, rows } in file.defects {
         for (case, setting, quantity, statistic, floor, ceiling) in rows {
             let group = group(&engine, &case, &quantity, systems);
             reasons.entry(group.clone()).or_insert_with(|| why.clone());
-            if !reported.contains(&case) {
-                let key = (case, float(setting), quantity, statistic);
+            let place = (engine.clone(), case, float(setting));
+            if !reported.contains(&place) {
+                let key = (place.1, place.2, quantity, statistic);
                 defects.entry(group).or_default().insert(key, (floor, ceiling));
             }
         }
@@ -146,6 +168,7 @@ fn present(
 /// The file as it is.
 #[derive(Deserialize)]
 struct PresentFile {
+    #[serde(default)]
     defects: Vec<PresentDefect>,
 }
 

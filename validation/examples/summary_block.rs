@@ -1,4 +1,5 @@
-//! Puts the summary of a run of `validate` into README.md.
+//! Puts the summary of a run of `validate` into README.md: the ranking and what follows it in one
+//! block, the details that are printed above it in another.
 //!
 //! ```sh
 //! cargo run --release -- validate --out target/quick |
@@ -6,12 +7,12 @@
 //!   target/quick/report.json README.md
 //! ```
 
-use anyhow::{Context, Result, ensure};
+use anyhow::{Context, Result};
 use serde_json::Value;
 use std::io::Read;
 
-const BEGIN: &str = "<!-- begin: summary -->\n";
-const END: &str = "<!-- end: summary -->";
+const SUMMARY: &str = "summary";
+const DETAILS: &str = "details";
 
 fn main() -> Result<()> {
     let usage = "takes the report.json of a run and the README.md to write; its summary on stdin";
@@ -20,18 +21,27 @@ fn main() -> Result<()> {
     let mut summary = String::new();
     std::io::stdin().read_to_string(&mut summary)?;
     let text = std::fs::read_to_string(&report).with_context(|| report.clone())?;
-    let block = block(&serde_json::from_str(&text)?, &summary)?;
-    let old = std::fs::read_to_string(&readme).with_context(|| readme.clone())?;
-    let (before, rest) = old.split_once(BEGIN).context("README.md has no block of the summary")?;
-    let (_, after) = rest.split_once(END).context("the block does not end")?;
-    std::fs::write(&readme, format!("{before}{BEGIN}{block}{END}{after}"))?;
+    let (details, ranking) = summary.split_once("\n#  engine").context("no summary on stdin")?;
+    let ranking = format!("{}#  engine{ranking}", headline(&serde_json::from_str(&text)?));
+    let page = std::fs::read_to_string(&readme).with_context(|| readme.clone())?;
+    let page = spliced(&page, SUMMARY, &ranking)?;
+    std::fs::write(&readme, spliced(&page, DETAILS, details)?)?;
     Ok(())
 }
 
-fn block(report: &Value, summary: &str) -> Result<String> {
-    ensure!(summary.starts_with("#  engine"), "no summary on stdin");
+/// A page with the text of one of its blocks made anew.
+fn spliced(page: &str, block: &str, text: &str) -> Result<String> {
+    let (begin, end) = (format!("<!-- begin: {block} -->\n"), format!("<!-- end: {block} -->"));
+    let lacks = || format!("the page has no block `{block}`");
+    let (before, rest) = page.split_once(&begin).with_context(lacks)?;
+    let (_, after) = rest.split_once(&end).with_context(lacks)?;
+    Ok(format!("{before}{begin}```text\n{text}```\n{end}{after}"))
+}
+
+/// What was run where.
+fn headline(report: &Value) -> String {
     let text = |key: &str| report[key].as_str().unwrap_or("unknown").to_owned();
     let (version, commit, suite, cpu) =
         (text("percuss"), text("commit"), text("suite"), text("cpu"));
-    Ok(format!("```text\npercuss {version} at {commit}, suite {suite}, on {cpu}\n{summary}```\n"))
+    format!("percuss {version} at {commit}, suite {suite}, on {cpu}\n")
 }

@@ -229,7 +229,7 @@ impl Bench {
             lost += Self::lost(&out, &before);
             doubled += self.differs(&out)?;
         }
-        let outcome = "another worker computes its shard";
+        let outcome = "another worker computes its shard; with Dask, `check.sh` does this";
         Ok(Tried { fault: "a worker that is lost for good", times, lost, doubled, outcome })
     }
 

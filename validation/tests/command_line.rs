@@ -1,24 +1,20 @@
 //! docs/COMMAND_LINE.md has a section for every verb and no other, names every flag and no other,
 //! and its examples print what they show.
 //!
-//! `PERCUSS_SPLICE=1 cargo test --test harness command_line::` writes the examples' output anew. A
-//! line `...` stands for any number of lines; splicing keeps as many lines before and after it as
-//! there are.
+//! `PERCUSS_SPLICE=1 cargo test --test harness command_line::` writes the examples' output anew.
 
-use crate::support::{percuss, text};
+use crate::support::transcripts::{self, commands, words};
 use clap::Command;
 use percuss_validation::cli::command;
 use std::collections::BTreeSet;
-use std::path::{Path, PathBuf};
-
-const GAP: &str = "...";
+use std::path::PathBuf;
 
 fn page() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs/COMMAND_LINE.md")
+    transcripts::page("COMMAND_LINE.md")
 }
 
 fn read() -> String {
-    std::fs::read_to_string(page()).expect("the page is there")
+    transcripts::read(&page())
 }
 
 /// The section of a verb: from its heading to the next.
@@ -91,107 +87,9 @@ fn flags_are_those_of_the_program() {
     }
 }
 
-/// The commands of a text's transcripts.
-fn commands(text: &str) -> Vec<String> {
-    text.lines().filter_map(|line| line.strip_prefix("$ ")).map(str::to_owned).collect()
-}
-
-/// The words of a command as a shell has them; quotation marks are single ones.
-fn words(command: &str) -> Vec<String> {
-    let mut words = Vec::new();
-    for (i, part) in command.split('\'').enumerate() {
-        if i % 2 == 1 {
-            words.push(part.to_owned());
-        } else {
-            words.extend(part.split_whitespace().map(str::to_owned));
-        }
-    }
-    words
-}
-
-/// What a command prints in a folder: messages, then data. `> FILE` keeps the data.
-fn printed(command: &str, folder: &Path, code: i32) -> String {
-    let words = words(command);
-    let (words, file) = match words.iter().position(|it| it == ">") {
-        Some(end) => (&words[..end], words.get(end + 1)),
-        None => (&words[..], None),
-    };
-    assert_eq!(words[0], "percuss", "{command}");
-    let arguments: Vec<&str> = words[1..].iter().map(String::as_str).collect();
-    let output = percuss(&arguments).current_dir(folder).output().expect("it runs");
-    let (data, said) = (text(&output.stdout), text(&output.stderr));
-    assert_eq!(output.status.code(), Some(code), "{command}: {said}");
-    match file {
-        Some(file) => {
-            std::fs::write(folder.join(file), data).expect("written");
-            said
-        }
-        None => said + &data,
-    }
-}
-
-/// What is printed with the gap that the shown text has.
-fn with_gap(printed: &str, shown: &str) -> String {
-    let shown: Vec<&str> = shown.lines().collect();
-    let Some(gap) = shown.iter().position(|line| *line == GAP) else { return printed.to_owned() };
-    let lines: Vec<&str> = printed.lines().collect();
-    let after = shown.len() - gap - 1;
-    assert!(lines.len() >= gap + after, "{printed} is too short for its gap");
-    let tail = &lines[lines.len() - after..];
-    let kept = [&lines[..gap], &[GAP], tail].concat();
-    kept.join("\n") + "\n"
-}
-
-/// A transcript with today's output.
-fn spliced(transcript: &str, folder: &Path, code: i32) -> String {
-    let mut whole = String::new();
-    let mut lines = transcript.lines().peekable();
-    while let Some(line) = lines.next() {
-        let command = line.strip_prefix("$ ").unwrap_or_else(|| panic!("{line} has no command"));
-        let mut shown = String::new();
-        while let Some(line) = lines.next_if(|it| !it.starts_with("$ ")) {
-            shown += &format!("{line}\n");
-        }
-        whole += &format!("$ {command}\n{}", with_gap(&printed(command, folder, code), &shown));
-    }
-    whole
-}
-
-/// Every example is run, in the page's order and in one folder; a block of TOML whose first line is
-/// the comment `# NAME` is written there. The last digits are those of one platform's sine.
+/// The last digits are those of one platform's sine.
 #[test]
 fn examples_print_what_they_show() {
     let folder = tempfile::tempdir().expect("a folder");
-    let page_text = read();
-    let parts = page_text.split("```").enumerate().map(|(i, part)| {
-        let (language, block) = part.split_once('\n').unwrap_or((part, ""));
-        match (i % 2 == 1, language) {
-            (true, "console" | "console exit=1") => {
-                let code = i32::from(language.ends_with('1'));
-                format!("{language}\n{}", spliced(block, folder.path(), code))
-            }
-            (true, "toml") => {
-                write_file(folder.path(), block);
-                part.to_owned()
-            }
-            _ => part.to_owned(),
-        }
-    });
-    let whole = parts.collect::<Vec<_>>().join("```");
-    if std::env::var_os("PERCUSS_SPLICE").is_some() {
-        std::fs::write(page(), &whole).expect("written");
-    } else if cfg!(all(target_arch = "x86_64", target_os = "linux")) {
-        assert!(
-            page_text == whole,
-            "PERCUSS_SPLICE=1 cargo test --test harness command_line:::\n{whole}"
-        );
-    }
-}
-
-/// A block whose first line is the comment `# NAME`, as a file.
-fn write_file(folder: &Path, block: &str) {
-    let name = block.lines().next().and_then(|line| line.strip_prefix("# ")).expect("a name");
-    let path = folder.join(name);
-    std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
-    std::fs::write(path, block).expect("written");
+    transcripts::hold(&page(), folder.path(), "command_line::");
 }

@@ -1,8 +1,7 @@
 //! Pictures of missed and spurious events, made from runs as `validate` makes them.
 
 use crate::exact;
-use percuss::Phase;
-use percuss_validation::case::defaults;
+use percuss_validation::case::{Cases, defaults};
 use percuss_validation::engine::select;
 use percuss_validation::report::{EventPicture, MismatchKind, View, event_pictures};
 use percuss_validation::suite::{self, CaseRun, Suite};
@@ -18,7 +17,7 @@ fn pictures(case: &str, engine: &str) -> Vec<EventPicture> {
     let defaults = defaults().expect("bounds");
     let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();
     let rows = suite::run(&runs, &engines, &Suite::Quick.into(), &defaults, &|| ());
-    event_pictures(&cases, &rows, Suite::Quick)
+    event_pictures((&cases, &[]), &rows, Suite::Quick)
 }
 
 /// The value at the instant next to `t`.
@@ -38,7 +37,7 @@ fn a_missed_touch_shows_what_the_root_finder_did_not_see() {
     let all = pictures("graze-overlap-1e-9", "diffsol-bdf");
     let picture = all.iter().find(|it| it.tolerance == Some(1e-9)).expect("it misses the touch");
     assert_eq!(
-        (picture.kind, picture.guard),
+        (picture.kind, picture.guard.as_str()),
         (MismatchKind::Missed, "gap p \u{2212} q \u{2212} g")
     );
     assert!((picture.centre - 0.706_756).abs() < 1e-6, "{}", picture.centre);
@@ -48,9 +47,10 @@ fn a_missed_touch_shows_what_the_root_finder_did_not_see() {
         assert!(largest(view.truth.values.iter().copied()) < 1e-15);
     }
     let close = &picture.views[picture.telling];
-    assert_eq!((close.truth.phase, close.engine.events.len()), (Phase::NoContact, 0));
-    let ends: Vec<_> = close.truth.events.iter().map(|it| (it.phase, it.matched)).collect();
-    assert_eq!(ends, [(Phase::Contact, false), (Phase::NoContact, false)]);
+    assert_eq!((close.truth.phase.as_str(), close.engine.events.len()), ("no-contact", 0));
+    let ends: Vec<_> =
+        close.truth.events.iter().map(|it| (it.phase.as_str(), it.matched)).collect();
+    assert_eq!(ends, [("contact", false), ("no-contact", false)]);
     // In contact the gap is closed; the margin of 1e-9 is how far it would have opened beyond.
     let within = at(close, &close.truth.values, close.truth.events[1].t / 2.0);
     assert!(within.abs() < 1e-15, "{within}");
@@ -68,8 +68,9 @@ fn a_spurious_touch_is_the_engine_s_own() {
     assert_eq!(picture.kind, MismatchKind::Spurious);
     let close = &picture.views[picture.telling];
     assert!(close.truth.events.is_empty() && largest(close.truth.values.iter().copied()) < 0.0);
-    let events: Vec<_> = close.engine.events.iter().map(|it| (it.phase, it.matched)).collect();
-    assert_eq!(events, [(Phase::Contact, false), (Phase::NoContact, false)]);
+    let events: Vec<_> =
+        close.engine.events.iter().map(|it| (it.phase.as_str(), it.matched)).collect();
+    assert_eq!(events, [("contact", false), ("no-contact", false)]);
     let (touch, end) = (close.engine.events[0].t, close.engine.events[1].t);
     assert!(touch.abs() < 1e-12 && end > 0.0);
     let inside = at(close, &close.engine.values, 0.5 * (touch + end));
@@ -80,4 +81,36 @@ fn a_spurious_touch_is_the_engine_s_own() {
 #[test]
 fn a_row_without_a_wrong_event_has_no_picture() {
     assert!(pictures("graze-overlap-1e-9", "exact").is_empty());
+}
+
+/// A root finder that looks where steps end passes over a switching of the converter: the picture
+/// names the modes and shows its guard, as true and as the engine had it.
+#[test]
+fn a_wrong_event_of_another_system_is_shown_alike() {
+    let library = Library::embedded().expect("the tables are read");
+    let cases = Cases::embedded().expect("the cases are read").systems.into_iter();
+    let cases = cases.filter(|case| case.name == "buck-dense-output").collect();
+    let cases = suite::prepare_systems(cases, &library).expect("prepared");
+    let engines = select(&[Regex::new("^diffsol-tsit45$").expect("a pattern")]).expect("an engine");
+    let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();
+    let defaults = defaults().expect("bounds");
+    let rows = suite::run(&runs, &engines, &Suite::Quick.into(), &defaults, &|| ());
+    let all = event_pictures((&[], &cases), &rows, Suite::Quick);
+    let picture = all.first().expect("it misses an event");
+    assert_eq!(picture.modes, ["on", "off"]);
+    assert!(picture.guard.starts_with("guard of "), "{}", picture.guard);
+    assert!(picture.title.contains("in the mode o"), "{}", picture.title);
+    let close = &picture.views[picture.telling];
+    assert!(picture.modes.contains(&close.truth.phase));
+    let side = match picture.kind {
+        MismatchKind::Missed => &close.truth,
+        _ => &close.engine,
+    };
+    let wrong = side.events.iter().find(|it| it.t == 0.0).expect("it is shown");
+    assert!(!wrong.matched && picture.modes.contains(&wrong.phase));
+    // The guard is zero at the event on the side that has it.
+    let range = largest(side.values.iter().copied()) + largest(side.values.iter().map(|v| -v));
+    assert!(at(close, &side.values, 0.0).abs() <= 0.1 * range, "{range}");
+    assert_eq!(close.engine.values.len(), close.truth.values.len());
+    assert!(!picture.views[0].steps.is_empty() && !picture.views[0].looks.is_empty());
 }

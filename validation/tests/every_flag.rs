@@ -6,7 +6,7 @@ use clap::Command;
 use percuss_validation::cli::command;
 
 /// Each verb with flags that make it complete; a flag under test takes the place of its own pair.
-const VERBS: [(&str, &[(&str, &str)]); 23] = [
+const VERBS: [(&str, &[(&str, &str)]); 25] = [
     ("simulate", &[("--periods", "1")]),
     ("poincare", &[("--transient", "1"), ("--periods", "1")]),
     ("lyapunov", &[("--transient", "1"), ("--periods", "1")]),
@@ -34,6 +34,8 @@ const VERBS: [(&str, &[(&str, &str)]); 23] = [
     ("orbit", &[("--period", "1")]),
     ("continue", &[("--parameter", "b"), ("--from", "0.1"), ("--to", "0.2"), ("--period", "1")]),
     ("validate", &[]),
+    ("export", &[("--out", "/proc/nowhere")]),
+    ("score", &[("--name", "mine"), ("--tolerance", "1e-6"), ("--answers", "/no/such")]),
     ("engines", &[]),
     ("cases", &[]),
     ("systems", &[]),
@@ -88,6 +90,7 @@ const ROWS: &[Row] = &[
     (&["simulate", "events"], "--until", NUMBERS, "at or after the start"),
     (&["events"], "--events", INTEGERS, "an integer, 1 to"),
     (&["events"], "--digits", WORDS, "17, 25"),
+    (&["events"], "--states", WORDS, "png and svg"),
     (&["events"], "--set", &["", "x", "g=", "g=nan"], "NAME=VALUE with a finite number"),
     (&["events"], "--start", &["/no/such.toml", "/"], "accepted is a readable file"),
     (&["simulate"], "--samples", INTEGERS, "1 to 4294967295"),
@@ -106,24 +109,42 @@ const ROWS: &[Row] = &[
     (&["orbit", "continue"], "--period", INTEGERS, "1 to 10000"),
     (&[], "--format", WORDS, "possible values"),
     (&["validate"], "--suite", WORDS, "quick, full"),
+    (&["validate"], "--tolerance", NUMBERS, "accepted is a tolerance"),
     (&["reproduce"], "--size", WORDS, "default, full"),
     (&["reproduce"], "--only", WORDS, "accepted are"),
     (&["bench", "bench record"], "--rounds", INTEGERS, "1 to 1000"),
     (&["bench compare"], "--slowdown", NUMBERS, "0 to 1"),
+    (&["score"], "--name", &["", "Mine", "a b", "exact-mine"], "does not begin with exact"),
+    (&["score"], "--library", &["", "\n"], "1 to 80 characters"),
+    (&["score"], "--version", &["", "\n"], "1 to 80 characters"),
+    (&["score"], "--language", &["", "\n"], "1 to 80 characters"),
+    (&["score"], "--tolerance", NUMBERS, "1e-16 to 0.1"),
+    (&["score"], "--tolerance", &["0", "-1e-6", "0.2"], "1e-16 to 0.1"),
+    (&["score"], "--answers", &["/no/such", "/proc/version"], "accepted is a folder"),
     (&["validate", "bench"], "--engine", &["(", "qqqqq"], "--engine"),
-    (&["validate", "bench"], "--case", &["(", "qqqqq"], "--case"),
+    (&["validate", "bench", "export", "score"], "--case", &["(", "qqqqq"], "--case"),
     (&["bench compare"], "--bench", &["("], "regular expression"),
     (&["bench record", "bench history", "bench compare"], "--history", &["/"], "--history"),
-    (&["validate", "cases"], "--cases", &["/no/such"], "accepted is a folder of cases"),
+    (
+        &["validate", "cases", "export", "score"],
+        "--cases",
+        &["/no/such"],
+        "accepted is a folder of cases",
+    ),
     (
         &["validate", "bench", "engines"],
         "--programs",
         &["/no/such.toml", "/"],
         "accepted is a readable file",
     ),
-    (&["validate"], "--reference", &["/no/such"], "accepted is"),
-    (&["validate"], "--baseline", &["/no/such.json"], "accepted is"),
-    (&["validate", "bench", "reproduce", "man"], "--out", &["/proc/nowhere"], "accepted is"),
+    (&["validate", "score"], "--reference", &["/no/such"], "accepted is"),
+    (&["validate", "score"], "--baseline", &["/no/such.json"], "accepted is"),
+    (
+        &["validate", "bench", "reproduce", "man", "export", "score"],
+        "--out",
+        &["/proc/nowhere"],
+        "accepted is",
+    ),
     (&["basins"], "--output", &["/no/such/folder/file.npz"], "a folder that exists"),
     (
         &["bench history", "poincare"],
@@ -251,6 +272,14 @@ fn flags_without_effect() {
         (
             vec!["simulate", "--periods", "1", "--samples", "4", "--format", "svg"],
             &["--samples 4", "picture"],
+        ),
+        (
+            vec!["events", "bouncing-ball", "--until", "1", "--states", "x"],
+            &["--states x", "png and svg"],
+        ),
+        (
+            vec!["events", "bouncing-ball", "--until", "1", "--digits", "25", "--format", "svg"],
+            &["--digits 25", "picture"],
         ),
         ([&diagram[..], &["--carry", "--reset"]].concat(), &["--carry", "--reset"]),
         (

@@ -8,6 +8,7 @@
     reason = "a panic is a failed test"
 )]
 
+mod action;
 mod attractor;
 mod bad_input;
 mod bench;
@@ -33,12 +34,16 @@ mod report;
 mod reproduce;
 mod restart;
 mod rig;
+mod score;
+mod score_your_integrator;
+mod scoreboard;
 mod simulate;
 mod spoiled;
 mod strobe_derivative;
 mod sweep;
 mod system_cases;
 mod systems;
+mod systems_page;
 mod terminal;
 mod validate;
 mod work;

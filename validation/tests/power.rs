@@ -1,10 +1,15 @@
 //! Every engine that is wrong on purpose fails a bound, and every gate has a fault that trips it.
 
 use percuss::{Model, Parameters, Start};
-use percuss_validation::case::{Case, defaults, embedded};
-use percuss_validation::engine::{Accuracy, CONTROL, FAULTY_CONTROL, Wrong, faulty, wrong};
-use percuss_validation::power::{AS_EXACT, Finding, Gate, Standard, examine};
-use percuss_validation::suite::{Prepared, Suite, prepare};
+use percuss_validation::case::{Case, Cases, defaults, embedded};
+use percuss_validation::engine::{
+    Accuracy, CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, Wrong, WrongWay, faulty,
+    wrong, wrong_on_systems,
+};
+use percuss_validation::power::{
+    AS_EXACT, Finding, Gate, Standard, all_on_systems, examine, examine_on_systems, is_run,
+};
+use percuss_validation::suite::{Prepared, PreparedSystem, Suite, prepare, prepare_systems};
 use percuss_validation::truth::Library;
 
 /// A few cases serve: chaos with all probes, the grazes, late cycles and impacts into progression.
@@ -129,4 +134,56 @@ fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
             assert!(!finding.caught(), "{} {:?}", finding.engine, finding.gates);
         }
     }
+}
+
+fn all_systems() -> Vec<PreparedSystem> {
+    let library = Library::embedded().expect("the tables are read");
+    let cases = Cases::embedded().expect("the cases are read").systems;
+    prepare_systems(cases, &library).expect("the cases are made ready")
+}
+
+/// A fault in a way of running a case is caught by cases that are run in that way, and by no other.
+#[test]
+fn faults_in_ways_of_running_are_caught_there_and_nowhere_else() {
+    let cases = all_systems();
+    let bounds = defaults().expect("the bounds are read").of_systems;
+    for (it, standard) in all_on_systems() {
+        let finding = examine_on_systems(&it, &cases, standard, &bounds);
+        let Finding { engine, fault, gates, failed_on, elsewhere, .. } = &finding;
+        println!("{engine} ({fault}): {gates:?}, {failed_on:?}, elsewhere {elsewhere:?}");
+        assert!(finding.caught(), "{engine}: {fault}");
+        assert!(elsewhere.0 > 0 && elsewhere.1.is_empty(), "{engine} {elsewhere:?}");
+        // States between events are measured at no event.
+        let at_events = gates[&Gate::Events].failed + gates[&Gate::EventErrors].failed;
+        if it.way == Way::OutputBetweenEvents {
+            assert!(at_events == 0 && gates[&Gate::StateErrors].failed > 0, "{engine} {gates:?}");
+        }
+    }
+    for standard in Standard::of_faulty() {
+        let wrong = Wrong { engine: FAULTY_ON_SYSTEMS_CONTROL, fault: "none" };
+        let control = WrongWay { wrong, way: Way::Simultaneous };
+        let Finding { failed_on, elsewhere, without_result, .. } =
+            examine_on_systems(&control, &cases, standard, &bounds);
+        assert!(failed_on.is_empty() && elsewhere.1.is_empty(), "{failed_on:?} {elsewhere:?}");
+        assert_eq!(without_result, 0);
+    }
+}
+
+/// Events of one instant count as a set where their order is free: a run with all of them in the
+/// other order is as good. Where the order matters it is not.
+#[test]
+fn events_of_one_instant_are_a_set_where_their_order_is_free() {
+    let cases = all_systems();
+    let bounds = defaults().expect("the bounds are read").of_systems;
+    let [last_first] = wrong_on_systems() else { panic!("one of them turns the order") };
+    let finding = examine_on_systems(last_first, &cases, AS_EXACT, &bounds);
+    let tied: Vec<_> = cases.iter().filter(|it| is_run(it, Way::Simultaneous)).collect();
+    let [matters, free] = [true, false].map(|ordered| {
+        let alike = tied.iter().filter(|it| it.truth.ordered == ordered);
+        alike.map(|it| it.case.name.clone()).collect::<Vec<_>>()
+    });
+    assert!(free.len() > 5, "{free:?}");
+    assert!(free.contains(&"spheres-meet".to_owned()), "{free:?}");
+    assert_eq!(finding.failed_on, matters);
+    assert!(!matters.is_empty());
 }

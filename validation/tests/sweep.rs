@@ -431,18 +431,26 @@ fn plans_that_are_refused() {
         ("verb = \"lyapunov\"", "verb = \"simulate\"", &["verb = \"simulate\"", "accepted are"]),
         ("shards = 4", "shards = 0", &["shards = 0", "1 to 100000"]),
         ("shards = 4", "shards = 21", &["shards = 21", "1 to 20"]),
-        ("shards = 4", "shards = \"four\"", &["line 4"]),
+        ("shards = 4", "shards = \"four\"", &["line 4", "shards", "four", "an integer"]),
         ("shards = 4", "shards = 4\nshard = 5", &["shard", "line 5"]),
+        ("shards = 4\n", "", &["line 2", "[sweep]", "shards"]),
         ("transient = 20\n", "", &["--transient"]),
         ("transient = 20", "transient = -1", &["--transient", "-1", "accepted"]),
         ("transient = 20", "transient = 20\noutput = \"x\"", &["output is not accepted"]),
         ("transient = 20", "transient = 20\nsteps = 3", &["--steps"]),
+        ("transient = 20", "transiant = 20", &["--transiant", "tip", "--transient"]),
+        ("transient = 20", "transient = 20\nreset = false", &["reset = false", "lyapunov"]),
+        ("transient = 20", "transient = false", &["transient = false", "lyapunov"]),
         ("transient = 20", "transient = 20\nomega = 1.0", &["omega", "both an axis"]),
         ("transient = 20", "transient = 20\nproblem = \"no.toml\"", &["problem", "no.toml"]),
         ("transient = 20", "transient = 1979-05-27", &["transient is not accepted"]),
         ("parameter = \"b\"", "parameter = \"omega\"", &["both axes are omega"]),
         ("parameter = \"b\"", "parameter = \"p\"", &["line"]),
         ("steps = 5", "steps = 0", &["omega", "steps = 0"]),
+        ("steps = 5", "steps = 5.5", &["line 13", "steps = 5.5", "an integer"]),
+        ("from = 0.6", "from = \"0.6\"", &["line 11", "from = \"0.6\"", "a number"]),
+        ("from = 0.6", "from = nan", &["omega", "from = NaN", "finite"]),
+        ("to = 0.05", "to = -inf", &["b", "to = -inf", "finite"]),
         ("steps = 5", "steps = 1", &["omega", "no effect"]),
         ("steps = 5", "steps = 4294967295", &["points", "at most"]),
         ("to = 1.9", "to = -1.0", &["omega", "1e-6 <= omega <= 1e6"]),
@@ -455,9 +463,50 @@ fn plans_that_are_refused() {
         case.refused("run", &[], &wanted);
         assert!(!Path::new(&case.path("out")).exists(), "nothing was begun");
     }
+    let (axes, none) = (DRIFT.find("[[axis]]").expect("axes"), &["there are 0 [[axis]]"]);
+    Case::new(&DRIFT[..axes].replace("SHARDS", "4")).refused("run", &[], none);
     let case = Case::drift(4);
     case.refused("run", &["--shard", "0/5"], &["--shard 0/5", "0/4 to 3/4"]);
     case.refused("merge", &["--output", "a.csv"], &["--output a.csv", ".npz"]);
+}
+
+/// Neither the memory nor the patience for it are tried first.
+#[test]
+fn a_plan_of_too_many_blocks_is_refused() {
+    let case = Case::new(
+        r#"
+[sweep]
+verb = "basins"
+shards = 1000
+[fixed]
+grid = "4000x4000"
+window = [-0.5, 0.5, -0.5, 0.5]
+transient = 10
+[[axis]]
+parameter = "omega"
+from = 1.0
+to = 2.0
+steps = 4000
+[[axis]]
+parameter = "b"
+from = 0.1
+to = 0.2
+steps = 4000
+"#,
+    );
+    case.refused("run", &[], &["blocks of starts", "accepted are at most 16777216"]);
+}
+
+#[test]
+fn what_a_killed_worker_has_left_is_removed() {
+    let case = Case::drift(4);
+    case.done("run", &["--shard", "0/4"]);
+    let left = ["00002.lock", ".percuss-00002-abcdef.tmp", ".percuss-00003-abcdef.tmp"];
+    let left = left.map(|name| case.folder.path().join("out").join(name));
+    left.iter().for_each(|path| fs::write(path, "").expect("written"));
+    case.done("run", &["--shard", "2/4"]);
+    // Another shard's may be another worker's, which is at it.
+    assert_eq!(left.map(|path| path.exists()), [false, false, true]);
 }
 
 /// A problem file counts by its contents.

@@ -1,7 +1,7 @@
 //! `validate` on cases of piecewise-affine systems: those inside the program, and a user's own.
 
 use crate::support::{refused, run, stdout, text};
-use percuss_validation::case::Cases;
+use percuss_validation::case::{Cases, TROUBLE};
 use percuss_validation::engine::{Accuracy, Limits, SystemTask, answer_system, exact};
 use percuss_validation::truth::{Library, SystemTruth};
 use std::collections::BTreeMap;
@@ -75,7 +75,8 @@ fn every_kind_of_trouble_has_two_cases_and_every_system_three() {
         case.trouble.iter().for_each(|kind| *kinds.entry(kind).or_default() += 1);
         *systems.entry(&case.system.name).or_default() += 1;
     }
-    assert!(kinds.len() >= 19 && kinds.values().all(|count| *count >= 2), "{kinds:?}");
+    let every = TROUBLE.iter().all(|kind| kinds.get(kind).is_some_and(|count| *count >= 2));
+    assert!(every && kinds.len() == TROUBLE.len(), "{kinds:?}");
     assert!(systems.len() >= 10 && systems.values().all(|count| *count >= 3), "{systems:?}");
 }
 
@@ -120,10 +121,15 @@ fn a_run_in_106_bits_is_the_table() {
 
 #[test]
 fn what_is_not_accepted_in_a_case_is_named() {
-    let wrong: [(&str, &str, &[&str]); 7] = [
+    let wrong: [(&str, &str, &[&str]); 8] = [
         ("until = 5.0", "until = -1.0", &["warming-up.toml:7:", "until = -1.0", "after the start"]),
         ("until = 5.0", "until = 5.0\nsamples = 0", &["warming-up.toml:8:", "1 to 100000"]),
         ("\"heater\"", "\"cooler\"", &["warming-up.toml:3:", "cooler.system.toml beside the case"]),
+        (
+            "[\"hysteresis\"]",
+            "[\"hysterisis\"]",
+            &["warming-up.toml:5:", "hysterisis", "hysteresis"],
+        ),
         ("[horizon]", "[probes]\nintegrators = true\n[horizon]", &["probes"]),
         ("name = \"warming-up\"", "name = \"../up\"", &["warming-up.toml:2:", "name"]),
         ("[horizon]", "[parameters]\nbond = 1.0\n[horizon]", &["bond", "accepted is one of band"]),
@@ -140,6 +146,78 @@ fn what_is_not_accepted_in_a_case_is_named() {
     refused(&["validate", "--cases", &name(broken.path())], &wanted);
 }
 
+/// Two files would otherwise hold systems of one name.
+#[test]
+fn a_system_has_the_name_of_its_file() {
+    let folder = folder(str::to_owned);
+    let system = folder.path().join("heater.system.toml");
+    fs::write(system, HEATER.replace("\"heater\"", "\"bouncing-ball\"")).expect("written");
+    let wanted = ["heater.system.toml: name = \"bouncing-ball\" is not accepted", "\"heater\""];
+    refused(&["validate", "--cases", &name(folder.path())], &wanted);
+}
+
+/// A ball that hits the floor at 1, 1.5 and 1.75.
+const DROPPED: &str = "[case]
+name = \"dropped\"
+system = \"bouncing-ball\"
+why = \"Its impacts are round.\"
+[parameters]
+g = 2.0
+e = 0.5
+[start]
+mode = \"flight\"
+x = 0
+v = 1.0
+[horizon]
+until = 1.3
+samples = 100
+";
+
+/// Whether an event at the horizon, or at a sample, comes before it is a matter of rounding.
+#[test]
+fn no_horizon_and_no_sample_is_beside_an_event() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("dropped.toml");
+    let folder = name(folder.path());
+    let validate = ["validate", "--cases", &folder, "-e", "^exact$"];
+    let write = |from: &str, to: &str| {
+        fs::write(&path, DROPPED.replace(from, to)).expect("written");
+    };
+    write("until = 1.3", "until = 1.5");
+    refused(&validate, &["dropped.toml: until = 1.5 is not accepted", "between events"]);
+    write("until = 1.3", "until = 1.5000001");
+    refused(&validate, &["until = 1.5000001 is not accepted"]);
+    write("until = 1.3", "until = 1.4999999");
+    refused(&validate, &["until = 1.4999999 is not accepted"]);
+    write("until = 1.3", "until = 1.25");
+    refused(
+        &validate,
+        &["dropped.toml: samples = 100 is not accepted", "accepted is samples = 101"],
+    );
+    write("", "");
+    assert!(stdout(&validate).contains("1 rows: 1 pass"));
+}
+
+/// Where the order of events in one instant matters, nothing is scored from there on.
+#[test]
+fn a_run_in_106_bits_tells_whether_an_order_matters() {
+    let cases = Cases::embedded().expect("the cases are read").systems;
+    let library = Library::embedded().expect("the manifest is read");
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("manifest.json"), "{\"files\": {}}").expect("written");
+    let none = Library::from_directory(folder.path()).expect("it is read").replaying();
+    let chosen = ["spheres-meet", "spheres-meet-inelastic", "cradle-three-guards", "relay-1e-2"];
+    let mut matters = Vec::new();
+    for case in cases.iter().filter(|case| chosen.contains(&case.name.as_str())) {
+        let proved = library.system_truth(case).expect("its table");
+        let own = none.system_truth(case).expect("its run");
+        assert_eq!(own.ordered, proved.ordered, "{}", case.name);
+        matters.push(own.ordered);
+    }
+    matters.sort_unstable();
+    assert_eq!(matters, [false, false, false, true]);
+}
+
 /// Tables that were made for another case are refused, in either direction of time.
 #[test]
 fn a_table_of_another_case_is_refused() {
@@ -150,6 +228,7 @@ fn a_table_of_another_case_is_refused() {
     let said = text(&output.stderr);
     assert_eq!(output.status.code(), Some(2), "{said}");
     assert!(said.contains("ball-geometric.csv") && said.contains("was made for"), "{said}");
+    assert!(said.contains("ball-geometric is a case inside percuss"), "{said}");
 }
 
 /// A state between events is that of the table, backward too.

@@ -112,6 +112,12 @@ fn endings_have_their_exit_codes() {
     // A touch that is exact is decided by no number of bits.
     let touched = ["events", "watched-ball", "--until", "1"];
     assert_eq!(ended(&touched).1, "undecided");
+    // Its row is that of the event before, which is a watched one.
+    let output = run(&touched);
+    let rows = rows(&text(&output.stdout));
+    assert_eq!(rows[rows.len() - 2][2], "up");
+    assert_eq!(rows[rows.len() - 1][1], rows[rows.len() - 2][1]);
+    assert!(text(&output.stderr).contains("ends at 0.25:"), "{}", text(&output.stderr));
 }
 
 #[test]
@@ -147,4 +153,115 @@ fn a_file_is_written_whole() {
     percuss(&["events", "relay-feedback", "--until", "4", "--output", to]).assert().success();
     let csv = std::fs::read_to_string(&path).expect("written");
     assert!(csv.starts_with("n,time,event,mode,x1,x2,x3\n0,0,,up,"), "{csv}");
+}
+
+/// The picture of a run, as an SVG.
+fn svg(arguments: &[&str]) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("run.svg");
+    let to = path.to_str().expect("UTF-8");
+    percuss(&[&["events"], arguments, &["--output", to]].concat()).assert().success();
+    std::fs::read_to_string(&path).expect("written")
+}
+
+#[test]
+fn a_run_is_drawn_with_its_modes_and_its_events() {
+    let drawn = svg(&["plastic-ball-on-table", "--until", "20"]);
+    let mut reader = quick_xml::Reader::from_str(&drawn);
+    while !matches!(reader.read_event().expect("well formed"), quick_xml::events::Event::Eof) {}
+    for word in ["plastic-ball-on-table", "stuck", "flight", "detach", "impact", "time", "x", "v"] {
+        assert!(drawn.contains(&format!(">\n{word}\n</text>")), "{word} is not in the picture");
+    }
+    assert!(drawn.contains("A = 1.5"), "the parameters");
+    // Only what occurs has a name: this run ends before it lands.
+    let short = svg(&["plastic-ball-on-table", "--until", "6"]);
+    assert!(short.contains(">\ndetach\n</text>") && !short.contains(">\nimpact\n</text>"));
+    // The same run in the other direction of time, and one that has no length, are drawn too.
+    for arguments in [
+        &["watched-impact-oscillator", "--backward", "--until", "-3"][..],
+        &["bouncing-ball", "--until", "0"],
+        &["bouncing-ball", "--until", "9"],
+    ] {
+        assert!(svg(arguments).starts_with("<svg"), "{arguments:?}");
+    }
+    // So is one without progress, which is exit code 1.
+    let resting = ["events", "rigid-impact-oscillator", "--until", "5", "--set", "d=0"];
+    let output = run(&[&resting[..], &["--format", "svg"]].concat());
+    let (drawn, said) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(drawn.starts_with("<svg") && said.contains("64 events"), "{said}");
+}
+
+/// Between events a picture shows the closed form: the table's height is A cos t where the ball is
+/// stuck to it, and a tenth of a pixel is all that may be left out.
+#[test]
+fn a_picture_shows_the_motion_itself() {
+    let drawn = svg(&["plastic-ball-on-table", "--until", "5.4", "--set", "A=1", "--states", "x"]);
+    let line = drawn.split("<path d=\"M").filter(|it| it.contains("stroke-width=\"200\""));
+    let line = line.filter_map(|it| it.split('"').next()).next().expect("a curve");
+    let (start, steps) = line.split_once('l').expect("steps");
+    let numbers = |text: &str| -> Vec<i32> {
+        text.split_whitespace().map(|it| it.parse().expect("an integer")).collect()
+    };
+    let start = numbers(start);
+    let mut places = vec![(start[0], start[1])];
+    for step in numbers(steps).chunks(2) {
+        let last = places[places.len() - 1];
+        places.push((last.0 + step[0], last.1 + step[1]));
+    }
+    assert!(places.len() > 20 && places.len() < 300, "{}", places.len());
+    let (first, last) = (places[0], places[places.len() - 1]);
+    let time = |x: f64| 2.0 + 3.4 * (x - f64::from(first.0)) / f64::from(last.0 - first.0);
+    // Two heights that are known fix the scale of the axis: those of the two ends.
+    let (bottom, top) = (2.0_f64.cos(), 5.4_f64.cos());
+    let height =
+        |y: f64| bottom + (top - bottom) * (y - f64::from(first.1)) / f64::from(last.1 - first.1);
+    let pixel = (top - bottom).abs() * 100.0 / f64::from((last.1 - first.1).abs());
+    for ends in places.windows(2) {
+        // At the points, and half way between them.
+        let middle = |a: i32, b: i32| 0.5 * (f64::from(a) + f64::from(b));
+        let (x, y) = (middle(ends[0].0, ends[1].0), middle(ends[0].1, ends[1].1));
+        let off = (height(y) - time(x).cos()).abs();
+        assert!(off < 0.3 * pixel, "{off} at {}", time(x));
+    }
+}
+
+#[test]
+fn what_a_picture_shows_is_chosen() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = folder.path().join("run.png");
+    let to = path.to_str().expect("UTF-8");
+    let cradle = ["events", "newton-cradle", "--until", "2", "--output", to];
+    let output = run(&cradle);
+    assert!(output.status.success());
+    assert!(text(&output.stderr).contains("6 of 10 states"), "{}", text(&output.stderr));
+    let bytes = std::io::Cursor::new(std::fs::read(&path).expect("written"));
+    let decoder = png::Decoder::new(bytes);
+    let width = decoder.read_info().expect("a picture").info().width;
+    assert_eq!(width, 1500);
+    let chosen = [&cradle[..], &["--states", "x5,v5"]].concat();
+    assert!(run(&chosen).stderr.is_empty());
+    refused(&[&cradle[..], &["--states", "x1,x9"]].concat(), &["--states x1,x9", "x5"]);
+    refused(&[&cradle[..], &["--states", "x1,x1"]].concat(), &["--states x1,x1", "each once"]);
+    let many = "x1,x2,x3,x4,x5,v1,v2";
+    refused(&[&cradle[..], &["--states", many]].concat(), &[many, "at most 6"]);
+    let endless = ["events", "relay-feedback", "--until", "100000", "--format", "svg"];
+    refused(&endless, &["more than 20000 events", "csv or json"]);
+}
+
+#[test]
+fn a_case_serves_as_a_start() {
+    let case = "cases/systems/relay-1e-4.toml";
+    let case = Path::new(env!("CARGO_MANIFEST_DIR")).join(case);
+    let case = case.to_str().expect("UTF-8");
+    let relay = ["events", "relay-feedback", "--until", "4"];
+    let from_case = stdout(&[&relay[..], &["--start", case]].concat());
+    assert_eq!(from_case, stdout(&[&relay[..], &["--set", "delta=1e-4"]].concat()));
+    let other = ["events", "bouncing-ball", "--until", "1", "--start", case];
+    refused(&other, &["--start", "a case of relay-feedback", "one of bouncing-ball"]);
+    let folder = tempfile::tempdir().expect("a folder");
+    let odd = folder.path().join("odd.toml");
+    std::fs::write(&odd, "[begin]\nx = 1\n").expect("written");
+    let odd = odd.to_str().expect("UTF-8");
+    refused(&[&relay[..], &["--start", odd]].concat(), &["begin is not accepted here", "[start]"]);
 }

@@ -255,8 +255,49 @@ fn every_line_of_the_summary_fits_a_hundred_columns() {
     let widest = said.lines().map(|line| line.chars().count()).max();
     assert!(widest.is_some_and(|widest| widest <= 100), "{said}");
     assert!(said.contains("found/checked/all") && !said.contains("state err"), "{said}");
+    // A terminal shows the last lines: the ranking and the failures with nothing but counts below.
+    let order = ["not run: ", "found/checked/all", "rank: ", "fails on ", " rows: "];
+    let places = order.map(|word| said.find(word).unwrap_or_else(|| panic!("{word}: {said}")));
+    assert!(places.is_sorted(), "{places:?} {said}");
     let few = stdout(&["validate", "-c", "^small-b$", "-e", "exact"]);
     assert!(few.contains("state err"), "{few}");
+}
+
+/// Many failing cases are counted by system; rows and the other formats name them all.
+#[test]
+fn failing_cases_are_named_or_counted_by_system() {
+    let cases = "^(fig7|stiff-xi|table1|friction-equal|friction-just-slips-1e-6)";
+    let chosen = ["validate", "-e", "^(ode_solvers-dop853|diffsol-tsit45)$", "-c", cases];
+    let json = stdout(&[&chosen[..], &["--format", "json"]].concat());
+    let json: serde_json::Value = serde_json::from_str(&json).expect("JSON");
+    let failing = |engine: &str| -> Vec<String> {
+        let ranking = json["ranking"].as_array().expect("a ranking");
+        let own = ranking.iter().find(|it| it["engine"] == engine).expect("the engine");
+        let cases = own["fails_on"].as_array().expect("cases").iter();
+        cases.map(|it| it.as_str().expect("a name").to_owned()).collect()
+    };
+    let (few, many) = (failing("diffsol-tsit45"), failing("ode_solvers-dop853"));
+    assert!(!few.is_empty() && few.len() < 4 && many.len() > 15, "{few:?} {many:?}");
+    let of_friction = many.iter().filter(|it| it.starts_with("friction-")).count();
+    let block = |said: &str| {
+        let (_, block) = said.split_once("\nfails on ").expect("a block");
+        block.split("\n\n").next().map(|it| it.split_whitespace().collect::<Vec<_>>().join(" "))
+    };
+    let short = block(&stdout(&chosen)).expect("a block");
+    assert!(
+        short.contains(&format!("diffsol-tsit45: {} of 24: {}", few.len(), few.join(", "))),
+        "{short}"
+    );
+    let counted = format!(
+        "ode_solvers-dop853: {} of 24: oscillator {} of 22, dry-friction-oscillator {} of 2",
+        many.len(),
+        many.len() - of_friction,
+        of_friction
+    );
+    assert!(short.contains(&counted), "{counted}: {short}");
+    let whole = block(&stdout(&[&chosen[..], &["--rows"]].concat())).expect("a block");
+    let named = format!("ode_solvers-dop853: {} of 24: {}", many.len(), many.join(", "));
+    assert!(whole.contains(&named), "{named}: {whole}");
 }
 
 #[test]

@@ -45,11 +45,11 @@ pub(super) enum Kind {
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     pub kind: Kind,
-    /// X, as rows.
+    /// The matrix X, as rows.
     pub columns: Matrix,
-    /// W.
+    /// The matrix W.
     pub rows: Matrix,
-    /// B.
+    /// The matrix B.
     pub matrix: Matrix,
 }
 
@@ -112,7 +112,7 @@ fn block(matrix: &Matrix, cluster: &[Root]) -> Option<Block> {
     Some(named(block, cluster))
 }
 
-/// (M - root), or (M - root)(M - conjugate).
+/// The factor (M - root) of a real root, or (M - root)(M - conjugate) of a pair.
 fn factor(matrix: &Matrix, root: &Root) -> Matrix {
     if root.is_real() {
         return shifted(matrix, &-&root.value.re);

@@ -96,7 +96,7 @@ fn trimmed(mut polynomial: Polynomial) -> Polynomial {
     polynomial
 }
 
-/// Quotient and remainder.
+/// The quotient and the remainder.
 fn divided(polynomial: &Polynomial, divisor: &Polynomial) -> (Polynomial, Polynomial) {
     let mut rest = polynomial.clone();
     let Some(leading) = divisor.last() else { return (Vec::new(), rest) };
@@ -112,7 +112,7 @@ fn divided(polynomial: &Polynomial, divisor: &Polynomial) -> (Polynomial, Polyno
     (trimmed(quotient), trimmed(rest))
 }
 
-/// Monic.
+/// The greatest common divisor, with the leading coefficient 1.
 fn greatest_common_divisor(a: &Polynomial, b: &Polynomial) -> Polynomial {
     let (mut a, mut b) = (a.clone(), trimmed(b.clone()));
     while !b.is_empty() {

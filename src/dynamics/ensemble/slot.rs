@@ -102,7 +102,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
     /// Takes what a lane has found, or has the scalar solver find it; returns the next task.
     #[inline]
     pub fn advance(&mut self, task: LaneTask, lane: usize, end: &PhaseEnds) -> Option<LaneTask> {
-        if end.fine[lane] != 1.0 {
+        if end.proved[lane] != 1.0 {
             return task.again().or_else(|| self.pass_alone());
         }
         if task.is_strobe() {

@@ -6,6 +6,15 @@ const PHASES = {
   progression: ["progression", "#a01450", "#ffffff"],
 };
 
+// Modes of other systems, by their places, with the ink of their names.
+const MODES = [["#0072b2", "#ffffff"], ["#e69f00", "#1b1f24"], ["#a01450", "#ffffff"], ["#00785a", "#ffffff"], ["#56b4e9", "#1b1f24"], ["#d55e00", "#ffffff"], ["#cc79a7", "#1b1f24"], ["#646464", "#ffffff"]];
+
+// A phase or a mode as it is shown: its name, its colour, and that of its name.
+function stageOf(modes, name) {
+  const place = modes.indexOf(name);
+  return place >= 0 ? [name, ...MODES[place % MODES.length]] : (PHASES[name] ?? [name, "var(--muted)", "var(--paper)"]);
+}
+
 // Where the root finder looked: open, and large enough to show around the end of a step.
 const LOOK = "M0,-6L6,0L0,6L-6,0Z";
 
@@ -25,13 +34,13 @@ function along(view, values, t) {
   return values[k] + (place - k) * (values[k + 1] - values[k]);
 }
 
-// Phases as a band: the one that holds at the left edge, and those that begin in the view.
-function band(svg, course, [left, top, width, height], place) {
+// Phases or modes as a band: the one that holds at the left edge, and those that begin in the view.
+function band(svg, modes, course, [left, top, width, height], place) {
   const begins = [{ t: -Infinity, phase: course.phase }, ...course.events];
   begins.forEach((it, k) => {
     const from = Math.max(left, place(it.t));
     const to = k + 1 < begins.length ? place(begins[k + 1].t) : left + width;
-    const [name, fill, ink] = PHASES[it.phase] ?? [it.phase, "var(--muted)", "var(--paper)"];
+    const [name, fill, ink] = stageOf(modes, it.phase);
     const part = drawn("rect", { x: from, y: top, width: Math.max(to - from, 1), height, style: `fill:${fill}` });
     part.append(drawn("title", {}, name));
     svg.append(part);
@@ -75,7 +84,7 @@ function eventChart(host, picture, view, height = 330) {
     svg.append(drawn("line", { x1: x(0), x2: x(0), y1: top, y2: top + h, class: "wrong", "stroke-dasharray": "3 3" }));
     svg.append(drawn("rect", { class: "frame", x: left, y: top, width: w, height: h }));
     [["truth", view.truth, 4], ["engine", view.engine, 22]].forEach(([name, course, at]) => {
-      band(svg, course, [left, at, w, 15], x);
+      band(svg, picture.modes, course, [left, at, w, 15], x);
       svg.append(drawn("text", { x: left - 7, y: at + 12, "text-anchor": "end" }, name));
     });
     const curve = (course, style) => {

@@ -40,7 +40,9 @@ function fillChoices() {
 }
 
 function wanted(i) {
-  const text = () => [columns.case[i], columns.engine[i], columns.setting[i], verdictOf(i), columns.why[i], data.cases.find((it) => it.name === columns.case[i])?.regime].join(" ").toLowerCase();
+  const note = () => data.cases.find((it) => it.name === columns.case[i]);
+  const trouble = () => (note()?.trouble ?? []).map((kind) => `trouble:${kind} `).join("");
+  const text = () => [columns.case[i], columns.engine[i], columns.setting[i], verdictOf(i), columns.why[i], note()?.regime, trouble()].join(" ").toLowerCase();
   return (!state.engine || columns.engine[i] === state.engine) &&
     (!state.case || columns.case[i] === state.case) &&
     (!state.verdict || verdictOf(i) === state.verdict) &&
@@ -85,7 +87,8 @@ function details(i) {
 function repeat(i, note) {
   const engine = data.engines.find((it) => it.name === columns.engine[i]);
   // A line ends between the parts of a command, never inside one.
-  const words = ["percuss validate", `-c ${note?.pattern}`, `-e ${engine?.pattern}`, ...data.repeat.split(" --").map((it, k) => (k ? `--${it}` : it))];
+  const chosen = data.verb === "validate" ? [`-e ${engine?.pattern}`] : [];
+  const words = [`percuss ${data.verb}`, `-c ${note?.pattern}`, ...chosen, ...data.repeat.split(" --").map((it, k) => (k ? `--${it}` : it))];
   const parts = [element("h4", {}, "Repeat this row"), element("pre", { class: "command" }, ...words.flatMap((it) => [element("span", {}, it), " "]))];
   if (note?.toml) parts.push(element("h4", {}, "The case"), element("pre", {}, note.toml));
   return element("div", { class: "repeat" }, ...parts);

@@ -32,5 +32,5 @@ function sortable(table) {
 
 document.querySelectorAll("table.sortable").forEach(sortable);
 document.querySelectorAll("a[data-engine]").forEach((link) => link.addEventListener("click", () => {
-  if (count) filterBy({ engine: link.dataset.engine, case: link.dataset.case ?? "", verdict: link.dataset.verdict ?? "", text: "" });
+  if (count) filterBy({ engine: link.dataset.engine, case: link.dataset.case ?? "", verdict: link.dataset.verdict ?? "", text: link.dataset.text ?? "" });
 }));

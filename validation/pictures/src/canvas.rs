@@ -97,6 +97,8 @@ const FONT_SHARE: f64 = 1.24;
 const DOT_STEP: f64 = 25.0;
 /// Dots in one path: a renderer sorts the edges of a whole path.
 const DOTS_IN_A_PATH: usize = 500;
+/// Lines in one path.
+const LINES_IN_A_PATH: usize = 250;
 
 fn units(pixels: f64) -> i32 {
     (UNITS * pixels).round() as i32
@@ -171,6 +173,54 @@ impl Canvas {
             None => draw(self),
             Some(dashes) => self.with(format_args!("stroke-dasharray=\"{dashes}\""), draw),
         }
+    }
+
+    /// Draws lines with round ends as few paths, which stays small where they are many; a line
+    /// through one place is a disc.
+    pub(super) fn strokes(
+        &mut self,
+        lines: impl IntoIterator<Item = Vec<At>>,
+        width: f64,
+        colour: Colour,
+    ) {
+        let lines: Vec<Vec<At>> = lines.into_iter().filter(|line| !line.is_empty()).collect();
+        for lines in lines.chunks(LINES_IN_A_PATH) {
+            self.svg.push_str("<path d=\"");
+            for line in lines {
+                let mut last = place(line[0]);
+                let _ = write!(self.svg, "M{} {}l", last.0, last.1);
+                for at in if line.len() > 1 { &line[1..] } else { &line[..] } {
+                    let next = place(*at);
+                    // A renderer leaves out a line of no length.
+                    let across = next.0 - last.0 + i32::from(line.len() == 1);
+                    let _ = write!(self.svg, "{across} {} ", next.1 - last.1);
+                    last = next;
+                }
+                self.svg.truncate(self.svg.trim_end().len());
+            }
+            let width = units(width);
+            self.add(format_args!(
+                "\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" \
+                 stroke-linecap=\"round\"/>"
+            ));
+        }
+    }
+
+    /// Fills upright bands between two heights, given by their sides, up to whole pixels.
+    pub(super) fn bands(
+        &mut self,
+        sides: impl IntoIterator<Item = (f64, f64)>,
+        (top, bottom): (f64, f64),
+        colour: Colour,
+    ) {
+        let height = units(bottom - top);
+        self.svg.push_str("<path d=\"");
+        for (left, right) in sides {
+            let (x, y) = place((left, top));
+            let width = units(right) - x;
+            let _ = write!(self.svg, "M{x} {y}h{width}v{height}h-{width}z");
+        }
+        self.add(format_args!("\" fill=\"{colour}\" shape-rendering=\"crispEdges\"/>"));
     }
 
     /// Fills a rectangle up to whole pixels, so that nothing shows between neighbours.
@@ -322,6 +372,16 @@ mod tests {
         canvas.dots([(3.0, 4.0), (3.01, 4.0), (5.0, 4.0)].into_iter(), 0.5, WHITE);
         let svg = canvas.finish();
         assert!(svg.contains("d=\"M250 350h100v100h-100zM450 350h100v100h-100z\""), "{svg}");
+    }
+
+    #[test]
+    fn many_lines_are_one_path() {
+        let mut canvas = Canvas::new((10, 10), Letters::Text);
+        canvas.strokes([vec![(1.0, 2.0), (3.0, 1.0)], vec![], vec![(5.0, 5.0)]], 2.0, WHITE);
+        canvas.bands([(1.0, 2.0), (4.0, 6.0)], (0.0, 3.0), WHITE);
+        let svg = canvas.finish();
+        assert!(svg.contains("d=\"M100 200l200 -100M500 500l1 0\" fill=\"none\""), "{svg}");
+        assert!(svg.contains("M100 0h100v300h-100zM400 0h200v300h-200z"), "{svg}");
     }
 
     #[test]

@@ -10,6 +10,14 @@ pub struct Colour(pub u8, pub u8, pub u8);
 /// White.
 pub(super) const WHITE: Colour = Colour(255, 255, 255);
 
+impl Colour {
+    /// The colour with this share of white in it.
+    pub(super) fn mixed_with_white(self, white: f64) -> Self {
+        let mixed = |part: u8| (f64::from(part) * (1.0 - white) + 255.0 * white).round() as u8;
+        Self(mixed(self.0), mixed(self.1), mixed(self.2))
+    }
+}
+
 /// Writes the colour as style sheets and SVG do: `#0072b2`.
 impl fmt::Display for Colour {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {

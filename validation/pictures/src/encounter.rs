@@ -1,5 +1,6 @@
 //! A guard against time around one event, as it truly is and as an engine had it, in a wide panel
-//! and a close one. Steps, evaluations of the guard and events are marks, phases bands above.
+//! and a close one. Steps, evaluations of the guard and events are marks, phases or modes bands
+//! above.
 
 use super::canvas::Stroke;
 use super::canvas::{At, Canvas, TextSide};
@@ -50,10 +51,32 @@ pub struct TimeStretch {
 pub struct Trail {
     /// Values of the guard, evenly spread over the stretch.
     pub values: Vec<f64>,
-    /// The phase that holds where the stretch begins.
-    pub phase: Phase,
-    /// When each later phase begins, which it is, and whether both runs have that event.
-    pub events: Vec<(f64, Phase, bool)>,
+    /// What holds where the stretch begins.
+    pub stage: Stage,
+    /// When each later one begins, which it is, and whether both runs have that event.
+    pub events: Vec<(f64, Stage, bool)>,
+}
+
+/// A phase of the oscillator, or a mode of another system.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Stage {
+    name: String,
+    colours: (Colour, Colour),
+}
+
+impl Stage {
+    /// A phase.
+    #[must_use]
+    pub fn phase(phase: Phase) -> Self {
+        let ink = if phase == Phase::Contact { palette::INK } else { WHITE };
+        Self { name: phase.as_str().replace('-', " "), colours: (palette::phase(phase), ink) }
+    }
+
+    /// A mode, by its name and its place in its system.
+    #[must_use]
+    pub fn mode(name: &str, place: usize) -> Self {
+        Self { name: name.to_owned(), colours: (palette::mode(place).0, WHITE) }
+    }
 }
 
 const SIZE: (u32, u32) = (1500, 700);
@@ -184,24 +207,22 @@ impl Trail {
         Some(left + (place - k as f64) * (right - left))
     }
 
-    /// Phases one after the other, named where there is room.
+    /// Stages one after the other, named where there is room.
     fn band(
         &self,
         canvas: &mut Canvas,
         place: impl Fn(f64) -> f64,
         (left, right, top): (f64, f64, f64),
     ) {
-        let starts = self.events.iter().map(|(t, phase, _)| (place(*t), *phase));
-        let starts: Vec<_> = std::iter::once((left, self.phase)).chain(starts).collect();
-        for (i, (from, phase)) in starts.iter().enumerate() {
+        let starts = self.events.iter().map(|(t, stage, _)| (place(*t), stage));
+        let starts: Vec<_> = std::iter::once((left, &self.stage)).chain(starts).collect();
+        for (i, (from, Stage { name, colours: (fill, ink) })) in starts.iter().enumerate() {
             let to = starts.get(i + 1).map_or(right, |next| next.0);
             let to = to.max(from + 1.0).min(right);
-            canvas.fill((*from, top), (to, top + BAND), palette::phase(*phase));
-            let name = phase.as_str().replace('-', " ");
+            canvas.fill((*from, top), (to, top + BAND), *fill);
             if to - from > 11.0 * name.len() as f64 {
-                let colour = if *phase == Phase::Contact { palette::INK } else { WHITE };
                 let middle = ((from + to) / 2.0, top + BAND / 2.0);
-                canvas.text(&name, middle, TEXT - 2.0, TextSide::Middle, colour);
+                canvas.text(name, middle, TEXT - 2.0, TextSide::Middle, *ink);
             }
         }
     }
@@ -251,8 +272,8 @@ mod tests {
 
     #[test]
     fn a_step_stands_on_the_curve() {
-        let trail =
-            Trail { values: vec![0.0, 1.0, 4.0], phase: Phase::Contact, events: Vec::new() };
+        let stage = Stage::phase(Phase::Contact);
+        let trail = Trail { values: vec![0.0, 1.0, 4.0], stage, events: Vec::new() };
         assert_eq!(trail.along(2.0, 4.0, 3.5), Some(2.5));
         assert_eq!(trail.along(2.0, 4.0, 4.0), Some(4.0));
         let none = Trail { values: Vec::new(), ..trail };

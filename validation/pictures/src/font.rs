@@ -18,6 +18,29 @@ pub(super) fn width(text: &str, size: f64) -> f64 {
     outline(text, size).1
 }
 
+/// A text in lines that are no longer than `room` pixels, broken at spaces where that is possible.
+pub(super) fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split_whitespace() {
+        let longer = lines.last().map(|line| format!("{line} {word}"));
+        match (longer, lines.last_mut()) {
+            (Some(longer), Some(line)) if width(&longer, size) <= room => *line = longer,
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// A name, cut with an ellipsis where it is longer than `room` pixels.
+pub(super) fn shortened(name: &str, size: f64, room: f64) -> String {
+    if width(name, size) <= room {
+        return name.to_owned();
+    }
+    let cut = |letters: usize| name.chars().take(letters).chain(['\u{2026}']).collect::<String>();
+    let letters = (1..name.chars().count()).rev().find(|n| width(&cut(*n), size) <= room);
+    cut(letters.unwrap_or(0))
+}
+
 /// A text's letters as the data of an SVG's path that begins at the origin, and its width.
 pub(super) fn outline(text: &str, size: f64) -> (String, f64) {
     let mut path = Outline { data: String::new(), scale: 0.0, x: 0.0 };
@@ -77,8 +100,18 @@ mod tests {
     use super::*;
 
     #[test]
+    fn names_are_cut_to_the_room_that_they_have() {
+        assert_eq!(shortened("impact", 20.0, 200.0), "impact");
+        let cut = shortened("second-slips-behind", 20.0, 100.0);
+        assert!(cut.starts_with("second") && cut.ends_with('\u{2026}'), "{cut}");
+        assert!(width(&cut, 20.0) <= 100.0);
+        assert_eq!(shortened("ab", 20.0, 1.0), "\u{2026}");
+        assert_eq!(wrapped("one two three", 20.0, width("one two", 20.0)), ["one two", "three"]);
+    }
+
+    #[test]
     fn every_letter_that_pictures_use_has_an_outline() {
-        for letter in "aZ0\u{2212}\u{3be}\u{3c9}\u{3c6}\u{3c4}⁻⁹×".chars() {
+        for letter in "aZ0\u{2212}\u{2026}\u{3be}\u{3c9}\u{3c6}\u{3c4}⁻⁹×".chars() {
             assert!(!outline(&letter.to_string(), 20.0).0.is_empty(), "{letter}");
         }
         assert!((width("ii", 20.0) - 2.0 * width("i", 20.0)).abs() < 1e-9);

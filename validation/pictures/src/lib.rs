@@ -18,13 +18,15 @@ mod look;
 mod motion;
 mod palette;
 mod piece;
+mod simplify;
+mod system_motion;
 
 pub use basin_map::{BASIN_COLOURS, BasinMap, ShownAttractor, basin_colours};
 pub use canvas::Canvas;
 pub use caption::{caption, caption_without, symbol};
 pub use colour::Colour;
 pub use curves::{Curve, Curves};
-pub use encounter::{Encounter, TimeStretch, Trail};
+pub use encounter::{Encounter, Stage, TimeStretch, Trail};
 pub use figure::{Figure, KeyEntry, Layer, Plot, PlotWindow, Raster, Stroke};
 pub use frame::{Axis, AxisScale};
 pub use heat_map::{HeatCell, HeatMap, Tint};
@@ -32,6 +34,7 @@ pub use histograms::{HistogramRow, Histograms};
 pub use look::{Look, Marker, looks};
 pub use motion::DrawnMotion;
 pub use piece::MotionPiece;
+pub use system_motion::{MOST_STATES, SystemMotion};
 
 use canvas::Letters;
 use resvg::tiny_skia::{Pixmap, Transform};

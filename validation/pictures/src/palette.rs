@@ -13,8 +13,35 @@ pub(super) const fn phase(phase: Phase) -> Colour {
     }
 }
 
+/// The colours of a mode of a system: that of its motion, and the light one behind it. The first
+/// five are as far from each other as their tints allow; after twelve modes they begin again.
+pub(super) fn mode(index: usize) -> (Colour, Colour) {
+    let dark = MODES[index % MODES.len()];
+    (dark, dark.mixed_with_white(MODE_TINT))
+}
+
+/// The share of white in the light colour of a mode.
+const MODE_TINT: f64 = 0.82;
+
+const MODES: [Colour; 12] = [
+    Colour(0, 114, 178),
+    Colour(205, 115, 0),
+    Colour(0, 135, 100),
+    Colour(160, 20, 80),
+    Colour(95, 95, 95),
+    Colour(105, 75, 170),
+    Colour(130, 110, 0),
+    Colour(215, 70, 60),
+    Colour(120, 70, 30),
+    Colour(60, 150, 205),
+    Colour(30, 60, 120),
+    Colour(190, 100, 160),
+];
+
 /// Text and frames.
 pub(super) const INK: Colour = Colour(40, 40, 40);
+/// What a reset skips.
+pub(super) const SKIPPED: Colour = Colour(150, 150, 150);
 /// Lines behind the data.
 pub(super) const GRID: Colour = Colour(225, 225, 225);
 /// Cells of which it is not known where they lead.

@@ -48,6 +48,18 @@ bool percuss_rates(percuss_course *course, double t, const double *z, double *ra
     return !course->failure[0];
 }
 
+void percuss_jacobian(percuss_course *course, double t, double *jacobian, double *slope) {
+    const percuss_mode *mode = &course->modes[course->mode];
+    int size = course->size;
+    double theta = course->omega * t + course->phi;
+    course->jacobians++;
+    for (int i = 0; i < size; i++) {
+        for (int j = 0; j < size; j++) jacobian[i * size + j] = mode->matrix[i][j];
+        slope[i] = course->omega * (mode->matrix[i][size + 1] * cos(theta) -
+                                    mode->matrix[i][size] * sin(theta));
+    }
+}
+
 double percuss_guard(const percuss_course *course, int event, double t, const double *z) {
     percuss_row w;
     wide(course, t, z, w);

@@ -84,6 +84,9 @@ typedef struct {
 /* The right-hand side in the mode of now. False once the run has cost too much. */
 bool percuss_rates(percuss_course *course, double t, const double *z, double *rates);
 
+/* The Jacobian of the right-hand side, by rows, and its derivative by time. */
+void percuss_jacobian(percuss_course *course, double t, double *jacobian, double *slope);
+
 /* The value of a guard of the mode of now. */
 double percuss_guard(const percuss_course *course, int event, double t, const double *z);
 

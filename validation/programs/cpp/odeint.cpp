@@ -1,7 +1,7 @@
-// Boost.Odeint, run by percuss: dopri5 with dense output. It locates no events itself.
+// Boost.Odeint, run by percuss: its methods with dense output. It locates no events itself.
 //
-// `dopri5-default` is the documentation's find_crossing.cpp: steps until a condition holds at the end
-// of one, then bisection on the dense output to 1e-6, the tolerances set, and nothing else. `dopri5`
+// `METHOD-default` is the documentation's find_crossing.cpp: steps until a condition holds at the end
+// of one, then bisection on the dense output to 1e-6, the tolerances set, and nothing else. `METHOD`
 // is what an expert adds:
 //
 // - Bisection goes on until rounding ends it.
@@ -14,6 +14,8 @@
 #include "../c/percuss_program.h"
 
 #include <boost/numeric/odeint.hpp>
+#include <boost/numeric/ublas/matrix.hpp>
+#include <boost/numeric/ublas/vector.hpp>
 #include <boost/version.hpp>
 
 #include <algorithm>
@@ -24,11 +26,46 @@
 
 namespace odeint = boost::numeric::odeint;
 
-using State = std::vector<double>;
-using Dense = odeint::result_of::make_dense_output<odeint::runge_kutta_dopri5<State>>::type;
+namespace ublas = boost::numeric::ublas;
+
+// What rosenbrock4 takes.
+using State = ublas::vector<double>;
+using Matrix = ublas::matrix<double>;
 
 constexpr double LONGEST_STEP = 0.125;
 constexpr double DOCUMENTED_PRECISION = 1e-6;
+
+// The methods: the type that steps, how it is made, and what it takes for a step.
+struct Dopri5 {
+    using Method = odeint::runge_kutta_dopri5<State>;
+    using Dense = odeint::result_of::make_dense_output<Method>::type;
+    static Dense make(const percuss_course &course, double longest) {
+        return odeint::make_dense_output(course.absolute, course.relative, longest, Method());
+    }
+    template <class Rates, class Jacobian>
+    static void step(Dense &dense, Rates rates, Jacobian) { dense.do_step(rates); }
+};
+
+struct BulirschStoer {
+    using Dense = odeint::bulirsch_stoer_dense_out<State>;
+    static Dense make(const percuss_course &course, double longest) {
+        return Dense(course.absolute, course.relative, 1.0, 1.0, longest);
+    }
+    template <class Rates, class Jacobian>
+    static void step(Dense &dense, Rates rates, Jacobian) { dense.do_step(rates); }
+};
+
+struct Rosenbrock4 {
+    using Method = odeint::rosenbrock4<double>;
+    using Dense = odeint::result_of::make_dense_output<Method>::type;
+    static Dense make(const percuss_course &course, double longest) {
+        return odeint::make_dense_output(course.absolute, course.relative, longest, Method());
+    }
+    template <class Rates, class Jacobian>
+    static void step(Dense &dense, Rates rates, Jacobian jacobian) {
+        dense.do_step(std::make_pair(rates, jacobian));
+    }
+};
 
 // A crossing inside a step.
 struct Crossing {
@@ -36,10 +73,9 @@ struct Crossing {
     int event;
 };
 
-class Run {
+template <class Method> class Run {
   public:
-    explicit Run(percuss_course &course)
-        : course(course), is_default(course.setup == std::string("dopri5-default")) {}
+    Run(percuss_course &course, bool is_default) : course(course), is_default(is_default) {}
 
     void operator()() {
         const percuss_event *passed = nullptr;
@@ -57,13 +93,15 @@ class Run {
     }
 
   private:
+    using Dense = typename Method::Dense;
+
     percuss_course &course;
     bool is_default;
     percuss_entry entry{};
 
     double guard(int event, double t, const State &z) const {
-        return is_default ? percuss_guard(&course, event, t, z.data())
-                          : percuss_guard_after(&course, &entry, event, t, z.data());
+        return is_default ? percuss_guard(&course, event, t, &z[0])
+                          : percuss_guard_after(&course, &entry, event, t, &z[0]);
     }
 
     // Whether a guard has crossed zero between two states in the direction that counts.
@@ -108,7 +146,7 @@ class Run {
         State z(course.size);
         while (percuss_due(&course, until, &time)) {
             stepper.calc_state(time, z);
-            percuss_sample(&course, z.data());
+            percuss_sample(&course, &z[0]);
         }
     }
 
@@ -121,10 +159,10 @@ class Run {
             stepper.calc_state(crossing.t, z);
             if (mode.events[crossing.event].successor_count) {
                 sample(stepper, std::nextafter(crossing.t, 0.0));
-                percuss_pass(&course, crossing.t, crossing.event, z.data(), is_default);
+                percuss_pass(&course, crossing.t, crossing.event, &z[0], is_default);
                 return crossing.event;
             }
-            percuss_count(&course, crossing.t, crossing.event, z.data());
+            percuss_count(&course, crossing.t, crossing.event, &z[0]);
         }
         sample(stepper, std::min(end, stepper.current_time()));
         return -1;
@@ -132,27 +170,28 @@ class Run {
 
     // Runs one mode to its end, or to the horizon; returns the event that ended it, or -1.
     int stretch() {
-        double longest = LONGEST_STEP * std::min(course.period, course.turn);
-        odeint::runge_kutta_dopri5<State> method;
-        Dense stepper = is_default
-                            ? odeint::make_dense_output(course.absolute, course.relative, method)
-                            : odeint::make_dense_output(course.absolute, course.relative, longest,
-                                                        method);
+        // Without a longest step it is 0, which is none.
+        double longest = is_default ? 0.0 : LONGEST_STEP * std::min(course.period, course.turn);
+        Dense stepper = Method::make(course, longest);
         auto rates = [this](const State &z, State &out, double t) {
-            if (!percuss_rates(&course, t, z.data(), out.data()))
+            if (!percuss_rates(&course, t, &z[0], &out[0]))
                 throw std::runtime_error("no more right-hand sides");
         };
-        State z(course.z, course.z + course.size);
+        auto jacobian = [this](const State &, Matrix &out, double t, State &slope) {
+            percuss_jacobian(&course, t, &out(0, 0), &slope[0]);
+        };
+        State z(course.size);
+        std::copy(course.z, course.z + course.size, z.begin());
         double first = std::min(1e-3 * course.period, course.span - course.t);
         stepper.initialize(z, course.t, first);
         std::vector<double> before = values(course.t, z);
         while (stepper.current_time() < course.span) {
-            stepper.do_step(rates);
+            Method::step(stepper, rates, jacobian);
             course.steps++;
             int ends = take(stepper, before, course.span);
             if (ends >= 0 || course.failure[0]) return ends;
             const State &now = stepper.current_state();
-            if (!is_default) percuss_move_on(&course, &entry, stepper.current_time(), now.data());
+            if (!is_default) percuss_move_on(&course, &entry, stepper.current_time(), &now[0]);
             before = values(stepper.current_time(), now);
         }
         stepper.calc_state(course.span, z);
@@ -169,24 +208,39 @@ class Run {
     }
 };
 
-static void make(percuss_course *course) {
+template <class Method> static void run(percuss_course *course, bool is_default) {
     try {
-        Run{*course}();
+        Run<Method>{*course, is_default}();
     } catch (const std::exception &why) {
         percuss_fail(course, "%s", why.what());
     }
 }
 
-static std::string set_up(const std::string &name) {
-    return "{\"name\":\"" + name +
-           "\",\"method\":\"Runge-Kutta 5(4) of Dormand and Prince\",\"order\":5,"
-           "\"events\":\"program\",\"dense_output\":true,\"stepping\":\"adaptive\"}";
+static void make(percuss_course *course) {
+    std::string name = course->setup;
+    size_t suffix = name.find("-default");
+    bool is_default = suffix != std::string::npos;
+    name = name.substr(0, suffix);
+    if (name == "dopri5") run<Dopri5>(course, is_default);
+    if (name == "bulirsch-stoer") run<BulirschStoer>(course, is_default);
+    if (name == "rosenbrock4") run<Rosenbrock4>(course, is_default);
+}
+
+static std::string set_up(const std::string &name, const std::string &method,
+                          const std::string &order) {
+    return "{\"name\":\"" + name + "\",\"method\":\"" + method + "\",\"order\":" + order +
+           ",\"events\":\"program\",\"dense_output\":true,\"stepping\":\"adaptive\"}";
 }
 
 int main() {
-    std::string version = BOOST_LIB_VERSION;
+    std::string version = BOOST_LIB_VERSION, setups;
     std::replace(version.begin(), version.end(), '_', '.');
-    std::string setups = "[" + set_up("dopri5") + "," + set_up("dopri5-default") + "]";
+    for (const std::string suffix : {"", "-default"}) {
+        setups += setups.empty() ? "[" : ",";
+        setups += set_up("dopri5" + suffix, "Runge-Kutta 5(4) of Dormand and Prince", "5") + ",";
+        setups += set_up("bulirsch-stoer" + suffix, "Bulirsch-Stoer", "null") + ",";
+        setups += set_up("rosenbrock4" + suffix, "Rosenbrock 4(3)", "4");
+    }
     return percuss_serve("boost.odeint", version.c_str(), "C++17, gcc " __VERSION__,
-                         setups.c_str(), make);
+                         (setups + "]").c_str(), make);
 }

@@ -9,6 +9,7 @@
 %   the ends of steps.
 % - Octave finds an event by linear interpolation over the whole step. The root is sought again, by
 %   integrating from the beginning of that step.
+% - The first step is given: the one that Octave chooses may pass the end of the time span.
 % - Of all guards that change their signs in a step the first counts; Octave takes the first of the
 %   list.
 % - A guard that is zero where a mode begins has the sign that it has just after it until the first
@@ -135,7 +136,9 @@ function [t, z, crossed] = stretch(method, orders, ways)
   hidden = struct("t", course.t, "orders", orders, "ways", ways);
   times = course.run.times;
   turn = min([times.period, times.turn]);
-  options = odeset(usual_options(@(t, z) expert_events(t, z, hidden)), "MaxStep", 0.125 * turn);
+  left = course.run.span - course.t;
+  options = odeset(usual_options(@(t, z) expert_events(t, z, hidden)), "MaxStep", 0.125 * turn, ...
+                   "InitialStep", min(1e-3 * turn, left));
   solved = method(@rates, [course.t, course.run.span], course.z, options);
   course.steps += numel(solved.x) - 1;
   t = solved.x(end);

@@ -17,6 +17,8 @@ ROUNDING = 64 * np.finfo(float).eps
 # How much of a guard that was zero where its mode begins the first steps may hide, in tolerances: of
 # a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly.
 SIMPLE, MULTIPLE = 0.1, 10
+# So many stretches in so little of a run are one event that is found again and again.
+MOST_STRETCHES, NO_PROGRESS = 200, 1e-9
 # So many events in one instant end a run.
 MOST_AT_ONCE = 64
 ONE_INSTANT = 8 * np.finfo(float).eps
@@ -165,6 +167,7 @@ class Course:
         self.span, self.samples = run["span"], np.array(run["samples"], dtype=float)
         self.events, self.sampled, self.ended = [], [], None
         self.crowd = 0
+        self.stretches, self.progress = 0, 0.0
         self.sample(self.samples[self.samples <= 0.0], lambda t: self.z)
 
     def pending(self):
@@ -250,6 +253,12 @@ class Course:
             self.ended = "no-progress"
 
     def goes_on(self):
+        """Whether the run has not come to its end; asked once a stretch."""
+        self.stretches += 1
+        if self.t - self.progress > NO_PROGRESS * self.span:
+            self.stretches, self.progress = 0, self.t
+        if self.stretches > MOST_STRETCHES:
+            raise Failure(f"events at {self.t} are found again and again")
         return self.ended is None and self.span - self.t > 2 * ONE_INSTANT * self.span
 
     def answer(self, took):

@@ -6,6 +6,9 @@
 ROUNDING <- 64 * .Machine$double.eps
 ONE_INSTANT <- 8 * .Machine$double.eps
 MOST_AT_ONCE <- 64
+# So many stretches in so little of a run are one event that is found again and again.
+MOST_STRETCHES <- 200
+NO_PROGRESS <- 1e-9
 # How much of a guard that was zero where its mode begins the first steps may hide, in tolerances: of
 # a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly.
 SIMPLE <- 0.1
@@ -53,6 +56,8 @@ new_course <- function(run) {
   course$events <- list()
   course$ended <- NULL
   course$crowd <- 0
+  course$stretches <- 0
+  course$progress <- 0
   course$rhs <- course$jacobians <- course$steps <- 0
   course$deadline <- proc.time()[["elapsed"]] + run$limits$wall_s
   course
@@ -163,7 +168,16 @@ pass <- function(course, t, place, z, plainly = FALSE) {
   if (course$crowd >= MOST_AT_ONCE) course$ended <- "no-progress"
 }
 
+# Whether the run has not come to its end; asked once a stretch.
 goes_on <- function(course) {
+  course$stretches <- course$stretches + 1
+  if (course$t - course$progress > NO_PROGRESS * course$run$span) {
+    course$stretches <- 0
+    course$progress <- course$t
+  }
+  if (course$stretches > MOST_STRETCHES) {
+    stop(sprintf("events at %.17g are found again and again", course$t))
+  }
   is.null(course$ended) && course$run$span - course$t > 2 * ONE_INSTANT * course$run$span
 }
 

@@ -3,6 +3,7 @@
 use crate::wire::{EventReply, RunReply};
 use percuss_engines::engine::{Ended, Limits, SystemEvent, SystemOutcome, SystemTask, Work};
 use percuss_engines::system::Mode;
+use std::fmt;
 use std::time::Duration;
 
 /// How far beyond the horizon, relative to the whole run, rounding may put an event.
@@ -10,25 +11,59 @@ const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// How much longer than the wait for its answer a run may say it took: two clocks differ by less.
 const CLOCKS: Duration = Duration::from_millis(10);
 
+/// What is wrong with an answer, and where.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Wrong {
+    pub(crate) place: Place,
+    pub(crate) what: String,
+}
+
+/// A place in an answer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Place {
+    Run,
+    End,
+    Event(usize),
+    Sample(usize),
+}
+
+impl Place {
+    fn wrong(self, what: impl Into<String>) -> Wrong {
+        Wrong { place: self, what: what.into() }
+    }
+}
+
+impl fmt::Display for Wrong {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let what = &self.what;
+        match self.place {
+            Place::Run => f.write_str(what),
+            Place::End => write!(f, "its end {what}"),
+            Place::Event(n) => write!(f, "event {n} {what}"),
+            Place::Sample(n) => write!(f, "sample {n} {what}"),
+        }
+    }
+}
+
 /// The run, if it is one of the task; `asked` is how many samples were asked for, and how long the
 /// answer took.
 ///
 /// # Errors
-/// What no run of this task is.
+/// What no run of this task is, and where in the answer.
 pub(crate) fn checked(
     reply: &RunReply,
     task: &SystemTask,
     (asked, took): (usize, Duration),
     limits: &Limits,
-) -> Result<SystemOutcome, String> {
+) -> Result<SystemOutcome, Wrong> {
     let size = task.state.len();
     let ended = ended(reply, task)?;
     let events = events(&reply.events.0, task, limits)?;
     let ended_at = ended_at(reply, ended, &events, task)?;
-    has_states(reply.end.0.len(), size, || "its end".to_owned())?;
+    has_states(reply.end.0.len(), size, Place::End)?;
     let mut samples = Vec::with_capacity(asked);
     for (n, sample) in reply.samples.0.iter().enumerate() {
-        has_states(sample.0.len(), size, || format!("sample {n}"))?;
+        has_states(sample.0.len(), size, Place::Sample(n))?;
         samples.push(sample.0);
     }
     let early = ended != Ended::Horizon && samples.len() < asked;
@@ -36,7 +71,8 @@ pub(crate) fn checked(
         samples.resize(asked, reply.end.0);
     }
     if samples.len() != asked {
-        return Err(format!("gave {} samples where {asked} were asked for", samples.len()));
+        let what = format!("gave {} samples where {asked} were asked for", samples.len());
+        return Err(Place::Run.wrong(what));
     }
     Ok(SystemOutcome {
         events,
@@ -50,10 +86,10 @@ pub(crate) fn checked(
     })
 }
 
-fn ended(reply: &RunReply, task: &SystemTask) -> Result<Ended, String> {
+fn ended(reply: &RunReply, task: &SystemTask) -> Result<Ended, Wrong> {
     let ended = Ended::from(reply.ended);
     if ended == Ended::LeavesDomain && !task.system.is_backward() {
-        return Err("ended with leaves-domain, which only runs back in time do".to_owned());
+        return Err(Place::Run.wrong("ended with leaves-domain, which only runs back in time do"));
     }
     Ok(ended)
 }
@@ -64,7 +100,7 @@ fn ended_at(
     ended: Ended,
     events: &[SystemEvent],
     task: &SystemTask,
-) -> Result<f64, String> {
+) -> Result<f64, Wrong> {
     let last = events.last().map_or(0.0, |event| event.elapsed);
     let usual = if ended == Ended::Horizon { task.span } else { last };
     let time = reply.ended_at.unwrap_or(usual);
@@ -72,36 +108,38 @@ fn ended_at(
     if (last..=task.span * (1.0 + ROUNDING)).contains(&time) {
         return Ok(time.min(task.span));
     }
-    Err(format!("ended at {time:?}; accepted is {last:?} to {:?}", task.span))
+    let what = format!("ended at {time:?}; accepted is {last:?} to {:?}", task.span);
+    Err(Place::Run.wrong(what))
 }
 
-fn has_states(given: usize, size: usize, what: impl FnOnce() -> String) -> Result<(), String> {
+fn has_states(given: usize, size: usize, place: Place) -> Result<(), Wrong> {
     if given == size {
         return Ok(());
     }
-    Err(format!("{} has {given} states; accepted are {size}", what()))
+    Err(place.wrong(format!("has {given} states; accepted are {size}")))
 }
 
 fn events(
     replies: &[EventReply],
     task: &SystemTask,
     limits: &Limits,
-) -> Result<Vec<SystemEvent>, String> {
+) -> Result<Vec<SystemEvent>, Wrong> {
     if replies.len() > limits.events {
-        return Err(format!("gave {} events; accepted are {}", replies.len(), limits.events));
+        let what = format!("gave {} events; accepted are {}", replies.len(), limits.events);
+        return Err(Place::Run.wrong(what));
     }
     let latest = task.span * (1.0 + ROUNDING);
     let (mut mode, mut before) = (task.mode, 0.0);
     let mut events = Vec::with_capacity(replies.len());
     for (n, reply) in replies.iter().enumerate() {
-        let said = |what: String| format!("event {n} {what}");
+        let said = |what: String| Place::Event(n).wrong(what);
         let time = reply.time;
         if !(before..=latest).contains(&time) {
             return Err(said(format!("is at {time:?}; accepted is {before:?} to {:?}", task.span)));
         }
         let (event, next) = (place(reply.event.0), place(reply.mode.0));
         follows(&task.system.system().modes, (mode, event, next), task).map_err(said)?;
-        has_states(reply.state.0.len(), task.state.len(), || format!("event {n}"))?;
+        has_states(reply.state.0.len(), task.state.len(), Place::Event(n))?;
         let elapsed = time.min(task.span);
         events.push(SystemEvent { event, mode: next, elapsed, state: reply.state.0 });
         (mode, before) = (next, time);
@@ -137,10 +175,13 @@ fn follows(
     if accepted.contains(&next) {
         return Ok(());
     }
-    Err(format!("leads from mode {mode} into mode {next}; accepted are {accepted:?}"))
+    let named = |mode: usize| format!("{:?}", modes[mode].name);
+    let accepted: Vec<String> = accepted.into_iter().map(named).collect();
+    let (mode, next, accepted) = (named(mode), named(next), accepted.join(", "));
+    Err(format!("leads from mode {mode} into mode {next}; accepted are {accepted}"))
 }
 
-fn work(reply: &RunReply, limits: &Limits) -> Result<Work, String> {
+fn work(reply: &RunReply, limits: &Limits) -> Result<Work, Wrong> {
     let work = Work {
         rhs_evaluations: reply.work.rhs.0,
         jacobian_evaluations: reply.work.jacobians.0,
@@ -149,19 +190,19 @@ fn work(reply: &RunReply, limits: &Limits) -> Result<Work, String> {
     };
     let calls = work.rhs_evaluations.saturating_add(work.jacobian_evaluations);
     if calls > limits.calls {
-        return Err(format!("took {calls} calls; accepted are {}", limits.calls));
+        return Err(Place::Run.wrong(format!("took {calls} calls; accepted are {}", limits.calls)));
     }
     Ok(work)
 }
 
-fn own_time(reply: &RunReply, took: Duration) -> Result<Option<Duration>, String> {
+fn own_time(reply: &RunReply, took: Duration) -> Result<Option<Duration>, Wrong> {
     let Some(own) = reply.own_ns else { return Ok(None) };
     let most = took + took / 100 + CLOCKS;
     if !(0.0..=most.as_nanos() as f64).contains(&own) {
-        return Err(format!(
+        return Err(Place::Run.wrong(format!(
             "says that it took {own} ns of its own; accepted is 0 to the {} that its answer took",
             took.as_nanos()
-        ));
+        )));
     }
     Ok(Some(Duration::from_nanos(own as u64)))
 }

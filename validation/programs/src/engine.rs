@@ -94,12 +94,6 @@ impl ProgramEngine {
         };
         Self { declaration, language: "unknown".to_owned(), runs: Runs::None(why) }
     }
-
-    /// The language that the program is written in, with its version.
-    #[must_use]
-    pub fn language(&self) -> &str {
-        &self.language
-    }
 }
 
 fn stepping(set_up: &SetUp) -> Stepping {
@@ -115,6 +109,10 @@ fn stepping(set_up: &SetUp) -> Stepping {
 impl Engine for ProgramEngine {
     fn declaration(&self) -> Declaration {
         self.declaration.clone()
+    }
+
+    fn language(&self) -> &str {
+        &self.language
     }
 
     fn available(&self) -> Result<(), String> {

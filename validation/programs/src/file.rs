@@ -11,7 +11,9 @@ const USUAL_TIMEOUT: f64 = 60.0;
 /// The longest time that a file may give a program for an answer.
 const LONGEST_TIMEOUT: f64 = 86_400.0;
 /// What a program may be called.
-const NAMES: &str = "a name of 1 to 40 characters: lower-case letters, digits, '-', '_', '.', '+'";
+/// What a program, a set-up or an engine in files may be called.
+pub const NAMES: &str =
+    "a name of 1 to 40 characters: lower-case letters, digits, '-', '_', '.', '+'";
 
 /// A program that can be run as an engine, as its file names it.
 #[derive(Clone, Debug, PartialEq)]
@@ -155,7 +157,8 @@ impl ProgramsFile<'_> {
 }
 
 /// Whether a program or a set-up may be called so.
-pub(crate) fn is_name(name: &str) -> bool {
+#[must_use]
+pub fn is_name(name: &str) -> bool {
     let is_accepted = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || "-_.+".contains(c);
     (1..=40).contains(&name.len()) && name.chars().all(is_accepted)
 }

@@ -25,6 +25,7 @@
 mod answer;
 mod engine;
 mod file;
+pub mod files;
 mod pool;
 mod process;
 mod start;
@@ -32,6 +33,6 @@ mod text;
 mod wire;
 
 pub use engine::{NotStarted, ProgramEngine};
-pub use file::{Program, read, shortcomings};
+pub use file::{NAMES, Program, is_name, read, shortcomings};
 pub use process::end_all;
 pub use wire::{Capabilities, EventsBy, PROTOCOL, SetUp, SteppedBy};

@@ -30,8 +30,8 @@ impl Pool {
     /// A process that did something wrong is ended, and another one started for the next run.
     ///
     /// # Errors
-    /// What the program did wrong, or its own reason for making no run. A run that was late, or given
-    /// up by the program, is one beyond its limits.
+    /// What the program did wrong, or its own reason for making no run. A run that was late, or
+    /// given up by the program, is one beyond its limits.
     pub(crate) fn run(
         &self,
         run: &RunAsk<'_>,

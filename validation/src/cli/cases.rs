@@ -3,6 +3,7 @@
 use super::format::OutputFlags;
 use super::list::{self, Format};
 use crate::case::{Case, Cases, FileError, Horizon, SystemCase};
+use crate::report::OSCILLATOR;
 use crate::truth::Library;
 use anyhow::{Context, Result};
 use clap::Args;
@@ -19,9 +20,6 @@ pub(super) struct Arguments {
     #[command(flatten)]
     output: OutputFlags<Format>,
 }
-
-/// The model of the paper, which is no system of a file.
-const SYSTEM: &str = "oscillator";
 
 #[derive(Serialize)]
 struct Line {
@@ -62,7 +60,7 @@ fn line(case: &Case, library: &Library) -> Result<Line, FileError> {
     Ok(Line {
         name: case.name.clone(),
         regime: case.regime.to_string(),
-        system: SYSTEM.to_owned(),
+        system: OSCILLATOR.to_owned(),
         events: library.truth(case)?.events.len(),
         periods: periods(case),
         table: library.table(&case.name).unwrap_or_default(),

@@ -9,7 +9,9 @@ mod completions;
 mod endless;
 mod engines;
 mod events;
+mod export;
 mod format;
+mod judged;
 mod list;
 mod lyapunov;
 mod man;
@@ -23,6 +25,7 @@ mod programs;
 mod progress;
 mod reports;
 mod reproduce;
+mod score;
 mod simulate;
 mod sweep;
 mod systems;
@@ -71,7 +74,9 @@ enum Verb {
     Attractors(Box<basins::AttractorArguments>),
     Basins(Box<basins::BasinArguments>),
     Engines(engines::Arguments),
-    Validate(validate::Arguments),
+    Validate(Box<validate::Arguments>),
+    Export(export::Arguments),
+    Score(Box<score::Arguments>),
     Reproduce(reproduce::Arguments),
     Bench(bench::Arguments),
     Orbit(Box<orbits::find::Arguments>),
@@ -131,6 +136,8 @@ fn dispatch(arguments: &Arguments) -> u8 {
         Verb::Basins(it) => basins::basins(it, arguments.threads).map(|()| DONE),
         Verb::Engines(engines) => engines::run(engines).map(|()| DONE),
         Verb::Validate(validate) => validate::run(validate, arguments.threads),
+        Verb::Export(export) => export::run(export).map(|()| DONE),
+        Verb::Score(score) => score::run(score, arguments.threads),
         Verb::Reproduce(reproduce) => reproduce::run(reproduce, arguments.threads),
         Verb::Bench(bench) => bench::run(bench),
         Verb::Orbit(orbit) => orbits::find::run(orbit),
@@ -181,12 +188,16 @@ fn usage(error: &clap::Error) -> u8 {
             REFUSED
         }
         _ => {
-            let text = error.to_string();
-            let text = text.strip_prefix("error: ").unwrap_or(&text);
-            let end =
-                ["\n\nUsage:", "\n\nFor more"].iter().filter_map(|mark| text.find(mark)).min();
-            say(&text[..end.unwrap_or(text.len())]);
+            say(&objection(error));
             REFUSED
         }
     }
+}
+
+/// What clap objects to, and its tip, without what it says of usage.
+fn objection(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let text = text.strip_prefix("error: ").unwrap_or(&text);
+    let end = ["\n\nUsage:", "\n\nFor more"].iter().filter_map(|mark| text.find(mark)).min();
+    text[..end.unwrap_or(text.len())].replace("\n\n", "; ")
 }

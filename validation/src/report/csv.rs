@@ -9,14 +9,16 @@ use std::io::{self, Write};
 
 pub(super) struct Csv;
 
-const COLUMNS: [&str; 38] = [
+const COLUMNS: [&str; 41] = [
     "case",
+    "trouble",
     "engine",
     "tolerance",
     "step",
     "status",
     "horizon_periods",
     "events_expected",
+    "events_total",
     "events_matched",
     "events_missed",
     "events_spurious",
@@ -46,6 +48,7 @@ const COLUMNS: [&str; 38] = [
     "linear_solves",
     "steps",
     "wall_ns",
+    "own_ns",
     "verdict",
     "why",
 ];
@@ -79,7 +82,7 @@ fn spread(spread: &Spread) -> [String; 3] {
     [spread.median, spread.q99, spread.max].map(shortest)
 }
 
-fn fields(row: &ReportRow) -> [String; 38] {
+fn fields(row: &ReportRow) -> [String; 41] {
     let [time_median, time_q99, time_max] = spread(&row.event_time_error);
     let [state_median, state_q99, state_max] = spread(&row.state_error);
     let restart = row.restart.map(|it| spread(&it.error)).unwrap_or_default();
@@ -89,12 +92,14 @@ fn fields(row: &ReportRow) -> [String; 38] {
     };
     [
         row.case.clone(),
+        row.trouble.join(" "),
         row.engine.to_owned(),
         optional(row.tolerance.map(shortest)),
         optional(row.step.map(shortest)),
         row.status.to_owned(),
         shortest(row.horizon_periods),
         optional(row.events_expected),
+        row.events_total.to_string(),
         optional(row.events_matched),
         optional(row.events_missed),
         optional(row.events_spurious),
@@ -124,6 +129,7 @@ fn fields(row: &ReportRow) -> [String; 38] {
         optional(row.linear_solves),
         optional(row.steps),
         optional(row.wall_ns),
+        optional(row.own_ns),
         row.verdict.as_str().to_owned(),
         row.why.clone(),
     ]

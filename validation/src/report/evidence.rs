@@ -7,6 +7,9 @@ use super::EventPicture;
 use crate::case::{Case, SystemCase};
 use serde::Serialize;
 
+/// The model of the paper, which is no system of a file.
+pub const OSCILLATOR: &str = "oscillator";
+
 /// Everything that is shown beside the rows.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct ReportEvidence {
@@ -25,7 +28,8 @@ pub struct ReportEvidence {
     pub faults: Vec<FaultRow>,
     /// What got worse than in the baseline, a line each.
     pub worse: Vec<String>,
-    /// Flags with their folders that a command needs to repeat a row on the same data.
+    /// Flags with their folders, and other words, that a command needs to repeat a row on the same
+    /// data.
     pub folders: Vec<(&'static str, String)>,
     /// The first missed or spurious event of rows.
     pub events: Vec<EventPicture>,
@@ -40,6 +44,8 @@ pub struct CaseNote {
     pub file: String,
     /// The text of that file.
     pub toml: String,
+    /// The system whose case it is; `oscillator` for the paper's.
+    pub system: String,
     /// The regime it stands for, or the kinds of trouble that it makes.
     pub regime: String,
     /// The kinds of trouble that a system's case makes; none of the oscillator's.
@@ -140,6 +146,7 @@ impl CaseNote {
             name: case.name.clone(),
             file: format!("{folder}{}", case.file),
             toml: case.text.clone(),
+            system: OSCILLATOR.to_owned(),
             regime: case.regime.to_string(),
             why: case.why.clone(),
             margin: case.margin,
@@ -155,6 +162,7 @@ impl CaseNote {
             name: case.name.clone(),
             file: format!("{folder}{}", case.file),
             toml: case.text.clone(),
+            system: case.system.name.clone(),
             regime: case.trouble.join(", "),
             why: case.why.clone(),
             margin: None,

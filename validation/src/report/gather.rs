@@ -54,9 +54,20 @@ fn fault(finding: &Finding) -> FaultRow {
     };
     FaultRow {
         engine: finding.engine.clone(),
-        fault: finding.fault.to_owned(),
+        fault: finding.fault.to_owned() + &shows(finding),
         gates: Gate::ALL.into_iter().map(gate).collect(),
     }
+}
+
+/// In which cases a fault shows, where it does so in one way of running them.
+fn shows(finding: &Finding) -> String {
+    let Some(way) = finding.way else { return String::new() };
+    let (others, ref failed) = finding.elsewhere;
+    let on_others = match failed.as_slice() {
+        [] => format!("of the other {others} cases none fails"),
+        failed => format!("of the other {others} cases fail {}", failed.join(", ")),
+    };
+    format!(" (held against the cases with {}; {on_others})", way.words())
 }
 
 fn growth(prepared: &Prepared, row: &Scored) -> Option<ErrorGrowth> {

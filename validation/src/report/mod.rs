@@ -7,12 +7,14 @@ mod baseline;
 mod csv;
 mod event;
 mod evidence;
+mod failing;
 mod gather;
 mod grazing;
 mod growth;
 mod html;
 mod json;
 mod junit;
+mod notes;
 mod orders;
 mod pictures;
 mod ranking;
@@ -28,7 +30,8 @@ pub use annotations::{annotations, under_the_service};
 pub use baseline::{Baseline, Compared, RowPlace};
 pub use event::{EventMark, EventPicture, MismatchKind, View, ViewCourse, event_pictures};
 pub use evidence::{
-    CaseNote, ErrorGrowth, FaultRow, GrazeRow, ReportEvidence, RestartHistogram, SectionPair,
+    CaseNote, ErrorGrowth, FaultRow, GrazeRow, OSCILLATOR, ReportEvidence, RestartHistogram,
+    SectionPair,
 };
 pub use orders::{Order, orders};
 pub use pictures::{PictureFile, pictures};

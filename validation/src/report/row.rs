@@ -2,12 +2,13 @@
 
 use super::ranking::{Ranked, ranking};
 use crate::build::{self, Build};
-use crate::engine::Declaration;
+use crate::engine::{Declaration, Engine, Work};
 use crate::score::attractor::Comparison;
 use crate::score::{Checked, Horizons, Restart, Spread, Verdict, order};
 use crate::suite::{Scored, Status, Suite};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::time::Duration;
 
 /// A whole report.
 #[derive(Clone, Debug, Serialize)]
@@ -38,6 +39,8 @@ pub struct EngineEntry {
     pub version: String,
     /// The method.
     pub method: &'static str,
+    /// The language of the library, or of the program that runs it.
+    pub language: String,
     /// The order of convergence that it claims, where it has one.
     #[serde(skip)]
     pub order: Option<u32>,
@@ -73,13 +76,15 @@ pub struct Summary {
 )]
 pub struct ReportRow {
     pub case: String,
+    /// The kinds of trouble that the case makes; none on the oscillator's.
+    pub trouble: Vec<String>,
     pub engine: &'static str,
     pub tolerance: Option<f64>,
     pub step: Option<f64>,
     pub status: &'static str,
     pub horizon_periods: f64,
     pub events_expected: Option<usize>,
-    #[serde(skip)]
+    /// The truth's events on the case's horizon, scored or not.
     pub events_total: usize,
     pub events_matched: Option<usize>,
     pub events_missed: Option<usize>,
@@ -105,6 +110,8 @@ pub struct ReportRow {
     pub linear_solves: Option<u64>,
     pub steps: Option<u64>,
     pub wall_ns: Option<u64>,
+    /// The part of it that a program says its integrator took.
+    pub own_ns: Option<u64>,
     pub bounds: Vec<Checked>,
     pub verdict: Verdict,
     pub why: String,
@@ -145,17 +152,23 @@ pub struct Distance {
 impl Report {
     /// The report of these rows.
     #[must_use]
-    pub fn new(suite: Suite, engines: &[Declaration], rows: &[Scored]) -> Self {
+    pub fn new<E: Engine + ?Sized>(suite: Suite, engines: &[&E], rows: &[Scored]) -> Self {
         let mut results: Vec<ReportRow> = rows.iter().map(ReportRow::of).collect();
         fill_orders(&mut results);
         Self {
             build: build::this(),
             suite,
-            engines: engines.iter().map(EngineEntry::of).collect(),
+            engines: engines.iter().map(|engine| EngineEntry::of(*engine)).collect(),
             summary: Summary::of(&results),
             ranking: ranking(rows, &results),
             results,
         }
+    }
+
+    /// How many cases were run.
+    #[must_use]
+    pub fn number_of_cases(&self) -> usize {
+        self.results.chunk_by(|a, b| a.case == b.case).count()
     }
 }
 
@@ -175,9 +188,9 @@ fn fill_orders(rows: &mut [ReportRow]) {
 }
 
 impl EngineEntry {
-    fn of(declaration: &Declaration) -> Self {
-        let Declaration { name, library, version, method, order, .. } = declaration.clone();
-        Self { name, library, version, method, order }
+    fn of(engine: &(impl Engine + ?Sized)) -> Self {
+        let Declaration { name, library, version, method, order, .. } = engine.declaration();
+        Self { name, library, version, method, language: engine.language().to_owned(), order }
     }
 }
 
@@ -233,7 +246,9 @@ impl ReportRow {
     fn of(scored: &Scored) -> Self {
         let empty = Self::empty(scored);
         let Status::Ok(measures, answered) = &scored.status else { return empty };
-        let work = answered.work();
+        let whole_ns = |time: Duration| u64::try_from(time.as_nanos()).ok();
+        // Where nothing at all was counted the work is not known.
+        let work = Some(answered.work()).filter(|work| *work != Work::default());
         Self {
             horizon_periods: measures.horizon_periods,
             events_expected: Some(measures.expected),
@@ -246,11 +261,12 @@ impl ReportRow {
             drift_error: measures.drift,
             drift_error_by_event_times: measures.drift_by_times,
             valid_periods: measures.valid_periods,
-            rhs_evaluations: Some(work.rhs_evaluations),
-            jacobian_evaluations: Some(work.jacobian_evaluations),
-            linear_solves: Some(work.linear_solves),
-            steps: Some(work.steps),
-            wall_ns: u64::try_from(scored.wall.as_nanos()).ok(),
+            rhs_evaluations: work.map(|it| it.rhs_evaluations),
+            jacobian_evaluations: work.map(|it| it.jacobian_evaluations),
+            linear_solves: work.map(|it| it.linear_solves),
+            steps: work.map(|it| it.steps),
+            wall_ns: Some(scored.wall).filter(|wall| !wall.is_zero()).and_then(whole_ns),
+            own_ns: answered.own_time().and_then(whole_ns),
             valid_horizon: measures.probed.horizons.as_ref().map(ValidHorizons::of),
             restart: measures.probed.restart.as_ref().map(RestartFigures::of),
             distance: measures
@@ -266,6 +282,7 @@ impl ReportRow {
     fn empty(scored: &Scored) -> Self {
         Self {
             case: scored.case.clone(),
+            trouble: scored.trouble.clone(),
             engine: scored.engine,
             tolerance: scored.accuracy.tolerance(),
             step: scored.accuracy.step(),
@@ -296,6 +313,7 @@ impl ReportRow {
             linear_solves: None,
             steps: None,
             wall_ns: None,
+            own_ns: None,
             bounds: scored.judgement.bounds.clone(),
             verdict: scored.judgement.verdict,
             why: scored.judgement.why.clone(),

@@ -46,7 +46,7 @@ impl Array {
 
 /// The place of every value of a small array within a larger one: none of those that are padding.
 ///
-/// Both have as many dimensions, and the small one is nowhere longer.
+/// Both shapes have as many dimensions, and the small one is nowhere longer.
 pub(super) fn places(small: &[usize], large: &[usize]) -> impl Iterator<Item = Option<usize>> {
     let count = large.iter().product();
     let (small, large) = (small.to_vec(), large.to_vec());

@@ -10,7 +10,10 @@ use std::collections::BinaryHeap;
 /// The shard of each tile.
 #[derive(Clone, Debug)]
 pub struct Deal {
-    shard_of: Vec<u32>,
+    /// The tiles of all shards, one shard after the other, each in order.
+    tiles: Vec<u64>,
+    /// Where the tiles of each shard end.
+    ends: Vec<usize>,
     cost_of: Vec<u64>,
 }
 
@@ -30,13 +33,18 @@ impl Deal {
             cost_of[shard as usize] = load;
             loads.push(Reverse((load, shard)));
         }
-        Self { shard_of, cost_of }
+        let mut tiles: Vec<u64> = (0..costs.len() as u64).collect();
+        tiles.sort_by_key(|tile| shard_of[*tile as usize]);
+        let end = |shard| tiles.partition_point(|tile| shard_of[*tile as usize] <= shard);
+        let ends = (0..shards).map(end).collect();
+        Self { tiles, ends, cost_of }
     }
 
     /// The tiles of a shard, in order.
-    pub fn tiles_of(&self, shard: u32) -> Vec<u64> {
-        let tiles = (0_u64..).zip(&self.shard_of);
-        tiles.filter(|(_, it)| **it == shard).map(|(tile, _)| tile).collect()
+    pub fn tiles_of(&self, shard: u32) -> &[u64] {
+        let shard = shard as usize;
+        let from = shard.checked_sub(1).map_or(0, |before| self.ends[before]);
+        &self.tiles[from..self.ends[shard]]
     }
 
     /// What a shard costs.
@@ -53,7 +61,7 @@ mod tests {
     fn every_tile_belongs_to_one_shard_and_loads_are_even() {
         let costs: Vec<u64> = (0..1000).map(|k| 1 + (k * 7919) % 97).collect();
         let deal = Deal::new(&costs, 16);
-        let mut tiles: Vec<u64> = (0..16).flat_map(|shard| deal.tiles_of(shard)).collect();
+        let mut tiles: Vec<u64> = (0..16).flat_map(|shard| deal.tiles_of(shard).to_vec()).collect();
         tiles.sort_unstable();
         assert_eq!(tiles, (0..1000).collect::<Vec<_>>());
         let loads: Vec<u64> = (0..16).map(|shard| deal.cost_of(shard)).collect();

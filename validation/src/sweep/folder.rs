@@ -46,7 +46,7 @@ struct Owner {
 #[derive(Debug)]
 pub(super) struct Lock {
     path: PathBuf,
-    /// None where another process holds it, or the file system has no locks.
+    /// The locked file; none where another process holds it, or the file system has no locks.
     file: Option<File>,
 }
 
@@ -168,11 +168,14 @@ impl Folder {
     /// Marks a shard as being computed, and removes what a worker of it that was killed has left.
     pub(super) fn lock(&self, shard: u32) -> Result<Lock> {
         let path = self.lock_path(shard);
+        let was_there = path.exists();
         let file = File::create(&path);
         let file = file.map_err(|error| self.unwritable(&format!("{shard:05}.lock"), &error))?;
         // A file system without locks says no more than one whose lock is held.
         let file = Some(file).filter(|file| file.try_lock().is_ok());
-        if file.is_some() {
+        // Only a worker that was killed leaves its lock, and beside it perhaps half a shard. The
+        // folder is not searched for each of many shards.
+        if file.is_some() && was_there {
             self.remove_left(shard);
         }
         Ok(Lock { path, file })

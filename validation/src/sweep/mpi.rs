@@ -35,7 +35,7 @@ struct OpenShard {
     begun: Instant,
     /// The tiles that are back, by number.
     tiles: BTreeMap<u64, Vec<u8>>,
-    /// Marks it as being computed.
+    /// The lock that marks the shard as being computed.
     _lock: Lock,
 }
 
@@ -124,9 +124,9 @@ struct Queue {
 impl Queue {
     fn new(sweep: &Sweep<'_>, told: &dyn Told) -> Self {
         let shards = sweep.open_shards(told).into_iter().rev();
-        let of = |shard: u32| sweep.dealt.deal.tiles_of(shard).into_iter().rev();
+        let of = |shard: u32| sweep.dealt.deal.tiles_of(shard).iter().rev();
         let tiles: Vec<_> =
-            shards.flat_map(|shard| of(shard).map(move |tile| (shard, tile))).collect();
+            shards.flat_map(|shard| of(shard).map(move |tile| (shard, *tile))).collect();
         told.begun(tiles.len() as u64);
         Self { tiles, under_way: BTreeMap::new(), open: BTreeMap::new() }
     }

@@ -22,6 +22,7 @@ pub struct PlanFile {
     sweep: PlanHead,
     #[serde(default)]
     fixed: toml::Table,
+    #[serde(default)]
     axis: Vec<SweepAxis>,
 }
 
@@ -45,6 +46,8 @@ pub struct Plan {
     pub first: Option<u32>,
     /// The verb's flags, as words of its command line.
     pub words: Vec<String>,
+    /// The verb's switches that are stated to be off.
+    pub off: Vec<String>,
     /// What varies; the last axis fastest.
     pub axes: Vec<SweepAxis>,
     /// The hash of all that decides the results and the shards, in hexadecimal digits.
@@ -71,10 +74,8 @@ impl Plan {
         let text = fs::read_to_string(path).map_err(|error| {
             anyhow!("--plan {shown} cannot be read ({error}); accepted is a TOML file")
         })?;
-        let file: PlanFile = toml::from_str(&text).map_err(|error| {
-            let line = error.span().map_or(1, |span| 1 + text[..span.start].matches('\n').count());
-            anyhow!("--plan {shown}, line {line}: {}", error.message())
-        })?;
+        let file: PlanFile = toml::from_str(&text)
+            .map_err(|error| anyhow!("--plan {shown}, {}", objection(&text, &error)))?;
         let folder = path.parent().unwrap_or(Path::new(""));
         file.check(folder).map_err(|error| anyhow!("--plan {shown}: {error}"))
     }
@@ -124,7 +125,7 @@ impl PlanFile {
         }
         check_axes(&axes, &fixed)?;
         let mut problem = None;
-        let mut words = Vec::new();
+        let (mut words, mut off) = (Vec::new(), Vec::new());
         for (name, value) in &fixed {
             if NOT_FIXED.contains(&name.as_str()) {
                 bail!("[fixed] {name} is not accepted: the sweep decides where and how it writes");
@@ -137,6 +138,8 @@ impl PlanFile {
                 words.push(format!("--problem={}", path.display()));
             } else if let Some(word) = word(name, value)? {
                 words.push(word);
+            } else {
+                off.push(name.clone());
             }
         }
         // A problem file counts by what is in it, wherever it lies.
@@ -145,8 +148,19 @@ impl PlanFile {
         let problem = problem.as_deref();
         let hash = Hashed { verb: &verb, shards, words: &hashed, axes: &axes, problem };
         let hash = digest(&serde_json::to_vec(&hash)?);
-        Ok(Plan { verb, shards, first, words, axes, hash })
+        Ok(Plan { verb, shards, first, words, off, axes, hash })
     }
+}
+
+/// What the reader objects to in a plan, with the line that it means.
+fn objection(text: &str, error: &toml::de::Error) -> String {
+    let before = error.span().map_or("", |span| &text[..span.start]);
+    let number = before.matches('\n').count();
+    let line = text.lines().nth(number).unwrap_or_default().trim();
+    let line = if line.is_empty() { String::new() } else { format!(", {line}") };
+    let message = error.message().replace("expected f64", "expected a number");
+    let message = message.replace("expected u32", "expected an integer, 0 to 4294967295");
+    format!("line {}{line}: {}", number + 1, message.replace('\n', " "))
 }
 
 fn check_axes(axes: &[SweepAxis], fixed: &toml::Table) -> Result<()> {
@@ -155,6 +169,11 @@ fn check_axes(axes: &[SweepAxis], fixed: &toml::Table) -> Result<()> {
     }
     for SweepAxis { parameter, from, to, steps } in axes {
         let name = parameter.as_str();
+        for (end, value) in [("from", from), ("to", to)] {
+            if !value.is_finite() {
+                bail!("axis {name}: {end} = {value} is not accepted: accepted are finite numbers");
+            }
+        }
         if *steps == 0 {
             bail!("axis {name}: steps = 0 is not accepted: accepted are 1 or more");
         }

@@ -10,6 +10,9 @@ use anyhow::{Result, bail};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
+/// Most tiles of a plan: every task and every merge holds what is known of each in memory.
+const MOST_TILES: u64 = 1 << 24;
+
 /// A sweep that is ready to be computed, looked at or merged.
 pub struct Sweep<'a> {
     pub(super) plan: &'a Plan,
@@ -33,7 +36,8 @@ pub trait Told: Sync {
 }
 
 impl<'a> Sweep<'a> {
-    /// Refuses a plan that has more shards than tiles, or a point that the verb refuses.
+    /// Refuses a plan that has more shards than tiles or too many tiles, or a point that the verb
+    /// refuses.
     ///
     /// # Errors
     /// Names what is refused, and says what is accepted.
@@ -43,6 +47,12 @@ impl<'a> Sweep<'a> {
             bail!(
                 "shards = {} is not accepted: there are {tiles} tiles, accepted are 1 to {tiles}",
                 plan.shards
+            );
+        }
+        if tiles > MOST_TILES {
+            bail!(
+                "the plan has {tiles} blocks of starts: accepted are at most {MOST_TILES}, by \
+                 fewer points or smaller grids"
             );
         }
         (0..plan.points()).try_for_each(|number| {
@@ -72,7 +82,7 @@ impl<'a> Sweep<'a> {
     /// # Errors
     /// Says why there is none.
     pub fn shard(&self, shard: u32) -> Result<Shard, Damage> {
-        Shard::open(self.folder, &self.identity, shard, &self.dealt.deal.tiles_of(shard))
+        Shard::open(self.folder, &self.identity, shard, self.dealt.deal.tiles_of(shard))
     }
 
     /// Computes one shard, unless it is finished.

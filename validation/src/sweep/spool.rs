@@ -9,11 +9,11 @@ use std::path::Path;
 /// What the numbers of an array are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NumberType {
-    /// f8.
+    /// Numbers of 64 bits, f8.
     F8,
-    /// i4.
+    /// Integers of 32 bits, i4.
     I4,
-    /// u1.
+    /// Bytes, u1.
     U1,
 }
 
@@ -90,7 +90,7 @@ pub struct SpoolReader {
 pub trait ArrayNumber: Copy {
     /// What stands where there is no number.
     const NONE: Self;
-    /// Reads one.
+    /// Reads the next number.
     fn read(file: &mut impl Read) -> std::io::Result<Self>;
 }
 

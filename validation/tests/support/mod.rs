@@ -1,6 +1,7 @@
 //! What the tests of the command share.
 
 pub mod synthetic;
+pub mod transcripts;
 
 use assert_cmd::Command;
 use std::process::Output;

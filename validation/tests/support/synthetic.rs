@@ -1,7 +1,6 @@
 //! A report with everything in it, and with what is hard to show: numbers that are not finite,
 //! names that need escaping, engines without a result.
 
-use percuss::Phase;
 use percuss_validation::build::Build;
 use percuss_validation::report::{
     CaseNote, EngineEntry, ErrorGrowth, EventMark, EventPicture, FaultRow, GrazeRow, MismatchKind,
@@ -50,6 +49,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
     let rhs = if tolerance.is_none() { 90.0 } else { 400.0 * unit.powf(-1.0 / (2.0 * order)) };
     ReportRow {
         case: case.to_owned(),
+        trouble: Vec::new(),
         engine,
         tolerance,
         step: None,
@@ -80,6 +80,7 @@ pub fn row(case: &str, engine: &'static str, tolerance: Option<f64>, seed: usize
         linear_solves: Some(0),
         steps: Some(rhs as u64 / 7),
         wall_ns: Some(rhs as u64 * 900),
+        own_ns: None,
         bounds: Vec::new(),
         verdict: Verdict::Pass,
         why: String::new(),
@@ -170,6 +171,7 @@ pub fn report() -> Report {
         library,
         version: "1.2.3".to_owned(),
         method: "a method of order 5(4) & its \"dense output\"",
+        language: "Rust".to_owned(),
         order: None,
     };
     Report {
@@ -266,19 +268,19 @@ fn fault(engine: &str, fault: &str, caught: [bool; 4]) -> FaultRow {
 fn view(half: f64) -> View {
     let instants = || (0..=60).map(|k| half * (f64::from(k) / 30.0 - 1.0));
     let touch = |t: f64| -t * t;
-    let mark = |t, phase| EventMark { t, phase, matched: false };
+    let mark = |t, phase: &str| EventMark { t, phase: phase.to_owned(), matched: false };
     let mut values: Vec<f64> = instants().map(|t| touch(t) - 1e-7).collect();
     values[7] = f64::NAN;
-    let events = vec![mark(0.0, Phase::Contact), mark(1e-4, Phase::NoContact)];
+    let events = vec![mark(0.0, "contact"), mark(1e-4, "no-contact")];
     View {
         from: -half,
         to: half,
         truth: ViewCourse {
-            phase: Phase::NoContact,
+            phase: "no-contact".to_owned(),
             events,
             values: instants().map(touch).collect(),
         },
-        engine: ViewCourse { phase: Phase::NoContact, events: Vec::new(), values },
+        engine: ViewCourse { phase: "no-contact".to_owned(), events: Vec::new(), values },
         steps: vec![-0.6 * half, 0.2 * half, 0.8 * half],
         looks: vec![[-0.6 * half, touch(0.6 * half)], [0.8 * half, f64::NAN]],
     }
@@ -293,7 +295,8 @@ fn event() -> EventPicture {
         step: None,
         kind: MismatchKind::Missed,
         title: NASTY.to_owned(),
-        guard: "gap p \u{2212} q \u{2212} g",
+        guard: "gap p \u{2212} q \u{2212} g".to_owned(),
+        modes: Vec::new(),
         centre: 12.345_678_901,
         views: [0.3, 0.02, 0.001].map(view).to_vec(),
         telling: 1,
@@ -305,6 +308,7 @@ pub fn evidence() -> ReportEvidence {
         file: format!("validation/cases/{name}.toml"),
         name,
         toml: "[case]\nname = \"graze\" # </script>\n".to_owned(),
+        system: "oscillator".to_owned(),
         regime: "grazing".to_owned(),
         why: NASTY.to_owned(),
         trouble: Vec::new(),

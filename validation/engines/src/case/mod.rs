@@ -23,7 +23,7 @@ pub use located::{FileError, Origins};
 pub use probed::ProbedCase;
 pub use problem::{Given, Problem};
 pub use regime::Regime;
-pub use system::{SystemCase, parse_system_case};
+pub use system::{SystemCase, TROUBLE, parse_system_case};
 pub use wire::{parse_case, parse_problem, read_problem};
 
 use percuss::{Parameters, Start};

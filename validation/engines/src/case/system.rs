@@ -15,6 +15,29 @@ use toml::Spanned;
 const SAMPLES: i64 = 100;
 const MOST_SAMPLES: i64 = 100_000;
 
+/// The kinds of trouble that a case may be said to make.
+pub const TROUBLE: [&str; 19] = [
+    "jump",
+    "accumulation",
+    "simultaneous",
+    "sliding",
+    "chatter",
+    "clock",
+    "start-on-guard",
+    "many-guards",
+    "stiffness",
+    "graze",
+    "double-crossing",
+    "multiple-zero",
+    "restart-on-zero",
+    "side-of-root",
+    "output-at-events",
+    "backward",
+    "direction",
+    "hysteresis",
+    "chaos",
+];
+
 /// A case of a piecewise-affine system, as `docs/SYSTEM_FORMAT.md` has it.
 #[derive(Clone, Debug)]
 pub struct SystemCase {
@@ -64,7 +87,7 @@ struct SystemCaseTable {
     system: Spanned<String>,
     why: String,
     #[serde(default)]
-    trouble: Vec<String>,
+    trouble: Vec<Spanned<String>>,
 }
 
 #[derive(Deserialize)]
@@ -95,6 +118,8 @@ pub fn parse_system_case(
     let wire: SystemCaseFile = source.parse()?;
     let SystemCaseTable { name, system, why, trouble } = wire.case;
     source.plain_name(&name)?;
+    let each_kind = trouble.into_iter().map(|it| source.kind_of_trouble(it));
+    let trouble = each_kind.collect::<Result<_, _>>()?;
     let mut read = source.system(&system, folder)?;
     let of_file = |error: percuss::affine::SystemError| FileError(error.to_string());
     read.replace_from(file, text, true).map_err(of_file)?;
@@ -169,7 +194,8 @@ impl FileText<'_> {
         if let Some(path) = beside {
             let text = std::fs::read_to_string(&path)
                 .map_err(|error| FileError::unreadable(&path, &error))?;
-            return SystemFile::read(&path.display().to_string(), &text).map_err(of_file);
+            let read = SystemFile::read(&path.display().to_string(), &text).map_err(of_file)?;
+            return named_like_its_file(read, &path, name.get_ref());
         }
         let text = named(name.get_ref()).ok_or_else(|| {
             let what = format!(
@@ -182,10 +208,28 @@ impl FileText<'_> {
         SystemFile::read(&format!("systems/{file}"), text).map_err(of_file)
     }
 
+    fn kind_of_trouble(&self, kind: Spanned<String>) -> Result<String, FileError> {
+        if TROUBLE.contains(&kind.get_ref().as_str()) {
+            return Ok(kind.into_inner());
+        }
+        let (typed, kinds) = (self.typed(&kind), TROUBLE.join(", "));
+        Err(self.error(&kind, &format!("trouble {typed} is not accepted: any of {kinds}")))
+    }
+
     fn samples(&self, samples: Option<Spanned<i64>>) -> Result<u32, FileError> {
         let Some(samples) = samples else { return Ok(SAMPLES as u32) };
         let count = u32::try_from(*samples.get_ref()).ok();
         let count = count.filter(|_| (1..=MOST_SAMPLES).contains(samples.get_ref()));
         count.ok_or_else(|| self.refused("samples", &samples))
     }
+}
+
+/// Refuses a system that has another name than its file: two files could then hold one system.
+fn named_like_its_file(read: SystemFile, path: &Path, name: &str) -> Result<SystemFile, FileError> {
+    let own = read.system().map_err(|error| FileError(error.to_string()))?.name;
+    if own == name {
+        return Ok(read);
+    }
+    let what = format!("name = {own:?} is not accepted: in this file it is {name:?}");
+    Err(FileError::of(&path.display().to_string(), what))
 }

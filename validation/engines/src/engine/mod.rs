@@ -49,7 +49,10 @@ pub use percussive::percussive;
 pub use registry::{add, all, exact, select};
 pub use system_task::{SystemEvent, SystemOutcome, SystemTask};
 pub use trace::{GuardSample, Trace, Watched};
-pub use wrong::{CONTROL, Closed, FAULTY_CONTROL, SOUND, Wrong, faulty, wrong};
+pub use wrong::{
+    CONTROL, COOLDOWN, Closed, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, SOUND, Way, Wrong,
+    WrongWay, faulty, faulty_on_systems, wrong, wrong_on_systems,
+};
 
 use crate::case::{Case, Horizon, Problem};
 use percuss::TwoWord;
@@ -180,6 +183,11 @@ pub trait Engine: Sync {
     /// What it is.
     fn declaration(&self) -> Declaration;
 
+    /// The language that its library is written in, with its version where it is not Rust.
+    fn language(&self) -> &str {
+        "Rust"
+    }
+
     /// Whether it can run here; the reason if not.
     ///
     /// # Errors
@@ -196,6 +204,11 @@ pub trait Engine: Sync {
     /// Whether it runs other systems than the oscillator.
     fn runs_systems(&self) -> bool {
         true
+    }
+
+    /// Whether it is an explicit method, whose steps are no longer than stiffness lets them be.
+    fn is_explicit(&self) -> bool {
+        false
     }
 
     /// [`Engine::least_work`] of a run of any other system.

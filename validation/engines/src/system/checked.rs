@@ -16,6 +16,7 @@ pub struct CheckedSystem {
     pub(super) most_guards: usize,
     fastest: f64,
     turning: f64,
+    decay: f64,
 }
 
 #[derive(Clone, Debug)]
@@ -92,7 +93,8 @@ impl CheckedSystem {
             spectra.iter().fold(0.0, |most: f64, it| most.max(it.fastest)),
             spectra.iter().fold(0.0, |most: f64, it| most.max(it.turning)),
         ];
-        Ok(Self { system, backward: false, modes, most_guards, fastest, turning })
+        let decay = spectra.iter().fold(f64::INFINITY, |least, it| least.min(it.decay));
+        Ok(Self { system, backward: false, modes, most_guards, fastest, turning, decay })
     }
 
     /// The system with its time reversed.
@@ -155,6 +157,12 @@ impl CheckedSystem {
         TAU / self.turning
     }
 
+    /// The fastest rate at which every mode decays.
+    #[must_use]
+    pub fn decay(&self) -> f64 {
+        self.decay
+    }
+
     /// The shortest of the times in which the system changes: its time scale, and those of its
     /// matrices.
     #[must_use]
@@ -169,11 +177,7 @@ fn wide(row: &Row) -> Wide {
 
 fn motion(system: &System, mode: &Mode) -> ModeMatrix {
     let size = system.states.len();
-    let rate = |i: usize| {
-        let row = [mode.a[i].as_slice(), &mode.b[i], &[mode.c[i]]].concat();
-        wide(&row)
-    };
-    let mut rows: Vec<Wide> = (0..size).map(rate).collect();
+    let mut rows: Vec<Wide> = (0..size).map(|i| wide(&mode.rate(i))).collect();
     let [mut cos, mut sin] = [Wide::default(); 2];
     cos[size + 1] = -system.omega;
     sin[size] = system.omega;

@@ -95,6 +95,26 @@ pub enum Direction {
     Both,
 }
 
+impl Direction {
+    /// Its name in files and messages.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Rising => "rising",
+            Self::Falling => "falling",
+            Self::Both => "both",
+        }
+    }
+}
+
+impl Mode {
+    /// The rate of a state as a row.
+    #[must_use]
+    pub fn rate(&self, state: usize) -> Row {
+        [self.a[state].as_slice(), &self.b[state], &[self.c[state]]].concat()
+    }
+}
+
 impl System {
     /// The system run back in time: all rates change their sign, and so does the forcing's.
     #[must_use]

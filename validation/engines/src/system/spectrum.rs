@@ -1,5 +1,5 @@
-//! How fast a linear system changes: the largest eigenvalue of its matrix, and the largest
-//! frequency at which it turns.
+//! How fast a linear system changes: the largest eigenvalue of its matrix, the largest frequency at
+//! which it turns, and the fastest rate at which it decays.
 //!
 //! Only the size of steps depends on these: a few digits are enough.
 
@@ -10,6 +10,8 @@ pub(super) struct Spectrum {
     pub(super) fastest: f64,
     /// The largest imaginary part.
     pub(super) turning: f64,
+    /// The fastest decay: the smallest real part, its sign changed, or zero.
+    pub(super) decay: f64,
 }
 
 /// More rounds than the simultaneous search for roots takes to a few digits, multiple roots too.
@@ -32,6 +34,7 @@ pub(super) fn spectrum(matrix: &[Vec<f64>]) -> Spectrum {
     for (real, imaginary) in roots {
         let modulus = real.hypot(imaginary);
         found.fastest = found.fastest.max(size * modulus);
+        found.decay = found.decay.max(-size * real);
         if imaginary.abs() > REAL * modulus && modulus > ZERO {
             found.turning = found.turning.max(size * imaginary.abs());
         }
@@ -108,9 +111,10 @@ mod tests {
     fn an_oscillator_beside_a_fast_decay() {
         let matrix = vec![vec![0.0, 1.0, 0.0], vec![-4.0, -0.1, 0.0], vec![0.0, 0.0, -2.7e6]];
         let found = spectrum(&matrix);
-        assert!(near(found.fastest, 2.7e6), "{found:?}");
+        assert!(near(found.fastest, 2.7e6) && near(found.decay, 2.7e6), "{found:?}");
         let slow = spectrum(&[vec![0.0, 1.0], vec![-4.0, -0.1]]);
         assert!(near(slow.turning, 2.0) && near(slow.fastest, 2.0), "{slow:?}");
+        assert!(near(slow.decay, 0.05), "{slow:?}");
     }
 
     #[test]

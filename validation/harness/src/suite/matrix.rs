@@ -4,7 +4,8 @@ use super::probes::{Extent, Probes};
 use super::scope::{Scope, Suite};
 use crate::case::{Bound, Case, Defaults, FileError, Shortcoming};
 use crate::engine::{
-    Accuracy, Engine, Failure, Limits, Outcome, Role, SampleGrid, SystemOutcome, Task, Work, answer,
+    Accuracy, Engine, Failure, Limits, Outcome, Role, SampleGrid, SystemOutcome, SystemTask, Task,
+    Work, answer,
 };
 use crate::number::brief;
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
@@ -13,6 +14,7 @@ use crate::score::{
     WINDOW, grazes, judge, measure, occurrences,
 };
 use crate::truth::{Library, Truth};
+use percuss::Parameters;
 use rayon::prelude::*;
 use std::time::{Duration, Instant};
 
@@ -38,6 +40,20 @@ pub trait CaseRun: Sync {
 
     /// The truth's events on the case's horizon.
     fn events(&self) -> usize;
+
+    /// The run that is asked for, as that of a system.
+    ///
+    /// # Errors
+    /// A start or a horizon that no system has.
+    fn system_task(&self) -> Result<SystemTask, Failure>;
+
+    /// The parameters of its model.
+    fn parameters(&self) -> Vec<(&str, f64)>;
+
+    /// The kinds of trouble that it makes.
+    fn trouble(&self) -> &[String] {
+        &[]
+    }
 
     /// Whether an engine can be run on it at all.
     ///
@@ -108,6 +124,15 @@ impl Answered {
         }
     }
 
+    /// What the integrator says it took, where it runs in a program of its own.
+    #[must_use]
+    pub const fn own_time(&self) -> Option<Duration> {
+        match self {
+            Self::Oscillator(outcome) => outcome.own_time,
+            Self::System(outcome) => outcome.own_time,
+        }
+    }
+
     /// The run of the oscillator, if it is one.
     #[must_use]
     pub const fn oscillator(&self) -> Option<&Outcome> {
@@ -146,6 +171,8 @@ pub struct Scored {
     pub unit: f64,
     /// The truth's events on the case's horizon.
     pub events: usize,
+    /// The kinds of trouble that the case makes.
+    pub trouble: Vec<String>,
     /// How it ended.
     pub status: Status,
     /// Wall time.
@@ -226,6 +253,15 @@ impl CaseRun for Prepared {
         self.truth.events.len()
     }
 
+    fn system_task(&self) -> Result<SystemTask, Failure> {
+        SystemTask::of_oscillator(&self.task)
+    }
+
+    fn parameters(&self) -> Vec<(&str, f64)> {
+        let Parameters { a, b, xi, omega, g, phi } = self.case.parameters;
+        [("a", a), ("b", b), ("xi", xi), ("omega", omega), ("g", g), ("phi", phi)].to_vec()
+    }
+
     fn expectations(&self) -> (&[Bound], &[Shortcoming]) {
         (&self.case.bounds, &self.case.shortcomings)
     }
@@ -287,9 +323,11 @@ fn accuracies(engine: &dyn Engine, scope: &Scope) -> Vec<Accuracy> {
     scope.accuracies(engine.declaration().stepping)
 }
 
-fn one(
+/// Runs one engine on one case, and judges what it answers.
+#[must_use]
+pub fn one(
     case: &dyn CaseRun,
-    engine: &'static dyn Engine,
+    engine: &dyn Engine,
     accuracy: Accuracy,
     suite: Suite,
     defaults: &Defaults,
@@ -303,6 +341,7 @@ fn one(
         accuracy,
         unit,
         events: case.events(),
+        trouble: case.trouble().to_vec(),
         status,
         wall,
         judgement,

@@ -73,6 +73,19 @@ impl CaseRun for PreparedSystem {
         self.truth.events.len()
     }
 
+    fn system_task(&self) -> Result<SystemTask, Failure> {
+        Ok(self.task.clone())
+    }
+
+    fn parameters(&self) -> Vec<(&str, f64)> {
+        let parameters = self.case.system.parameters.iter();
+        parameters.map(|(name, value)| (name.as_str(), *value)).collect()
+    }
+
+    fn trouble(&self) -> &[String] {
+        &self.case.trouble
+    }
+
     fn takes(&self, engine: &dyn Engine) -> Result<(), &'static str> {
         let runs = engine.runs_systems();
         if runs { Ok(()) } else { Err(ELSEWHERE) }
@@ -91,7 +104,11 @@ impl CaseRun for PreparedSystem {
     }
 
     fn least_work(&self, engine: &dyn Engine, accuracy: Accuracy) -> f64 {
-        engine.least_work_on(&self.task, accuracy)
+        // No explicit method here is stable over a step of as many of the fastest decay's times as
+        // it has stages: a longer run takes more than a right-hand side for each of these times.
+        let stiff =
+            if engine.is_explicit() { self.task.span * self.task.system.decay() } else { 0.0 };
+        engine.least_work_on(&self.task, accuracy).max(stiff)
     }
 
     fn attempt(

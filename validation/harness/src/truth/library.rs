@@ -88,6 +88,7 @@ impl Library {
         }
         let [events, samples] = self.tables(&case.name)?;
         Truth::read(case, (&events.0, &events.1), (&samples.0, &samples.1))
+            .map_err(|error| self.of_another(&case.name, error))
     }
 
     /// What is true of a case of a system.
@@ -100,6 +101,17 @@ impl Library {
         }
         let [events, samples] = self.tables(&case.name)?;
         SystemTruth::read(case, (&events.0, &events.1), (&samples.0, &samples.1))
+            .map_err(|error| self.of_another(&case.name, error))
+    }
+
+    /// An error in tables inside the binary, where a case of a user's own may have their name.
+    fn of_another(&self, case: &str, error: FileError) -> FileError {
+        if !self.replays || self.folder.is_some() {
+            return error;
+        }
+        FileError(format!(
+            "{error}; {case} is a case inside percuss: accepted is that case as it is, or another name"
+        ))
     }
 
     /// The tables of a case's events and samples, each with its file's name.

@@ -6,12 +6,19 @@ use super::{DoubleDouble, SystemTruth, SystemTruthRow, system_growth};
 use crate::case::{FileError, SystemCase};
 use crate::engine::Ended;
 use percuss::TwoWord;
-use percuss::affine::{Ending, Event, Solver, Time, What};
+use percuss::affine::{Ending, Event, Solver, StartPoint, Time, What};
 use percuss::number::Number;
 
 /// The most events that a run without tables may have: how errors grow is followed from each of
 /// them to every later one.
 const MOST_EVENTS: usize = 3000;
+
+/// No event is nearer than so many units of the system's time to a horizon or to a sample.
+const NEAREST: f64 = 1e-6;
+/// Numbers of samples that are tried to name one that is accepted.
+const MOST_TRIED: u32 = 1000;
+/// States that differ by no more than this, over their scales, are those of one motion.
+const ALIKE: f64 = 1e-9;
 
 /// A run in 106 bits with what it is asked for.
 struct SystemReplay<'a> {
@@ -28,23 +35,87 @@ impl SystemTruth {
             if case.backward { Solver::backward(&case.system) } else { Solver::new(&case.system) };
         let solver: Solver<DoubleDouble> = solver.map_err(|it| refused(&it.to_string()))?;
         let start = case.system.start.as_ref().ok_or_else(|| refused("the system has no start"))?;
-        let run = solver.run_enclosed(start, DoubleDouble::exact(case.until));
-        let run = run.ok_or_else(|| refused("its start is not decided in 106 bits"))?;
         let replay = SystemReplay { case, solver: &solver, begin: Time::of(&start.time) };
-        let mut events = vec![run.start()];
-        for event in run {
-            events.push(event);
-            if events.len() > MOST_EVENTS {
-                return Err(refused("has more than 3000 events; it needs tables"));
-            }
-        }
+        let events = replay.events(start).map_err(|what| refused(&what))?;
+        replay.refuse_close_instants(&events).map_err(|what| refused(&what))?;
         let mut truth = replay.truth(&events).map_err(|what| refused(&what))?;
         system_growth::fill(&mut truth, case);
         Ok(truth)
     }
 }
 
+impl SystemTruth {
+    /// The states of a case's run in 106 bits at these times since its start; none where that does
+    /// not decide the run so far.
+    #[must_use]
+    pub fn states(case: &SystemCase, instants: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let solver =
+            if case.backward { Solver::backward(&case.system) } else { Solver::new(&case.system) };
+        let (solver, start) = (solver.ok()?, case.system.start.as_ref()?);
+        let replay = SystemReplay { case, solver: &solver, begin: Time::of(&start.time) };
+        let events = replay.events(start).ok()?;
+        let (last, events) = events.split_last()?;
+        let end = replay.elapsed(&last.time).value();
+        let decided = instants.last().is_none_or(|t| *t <= end);
+        let state = |t: &f64| replay.sample(events, *t).state.iter().map(|it| it.value()).collect();
+        decided.then(|| instants.iter().map(state).collect())
+    }
+}
+
 impl SystemReplay<'_> {
+    /// The start, the events and the ending of a run to just past the horizon.
+    fn events(&self, start: &StartPoint) -> Result<Vec<Event<DoubleDouble>>, String> {
+        let past = if self.case.backward { -self.nearest() } else { self.nearest() };
+        let run = self.solver.run_enclosed(start, DoubleDouble::exact(self.case.until + past));
+        let run = run.ok_or("its start is not decided in 106 bits")?;
+        let mut events = vec![run.start()];
+        for event in run {
+            events.push(event);
+            if events.len() > MOST_EVENTS {
+                return Err(format!("has more than {MOST_EVENTS} events; it needs tables"));
+            }
+        }
+        Ok(events)
+    }
+
+    /// How close an event may be to the horizon, or to an instant at which the state is tabulated.
+    fn nearest(&self) -> f64 {
+        NEAREST * self.case.system.time_scale
+    }
+
+    /// Refuses a horizon, and samples, beside an event: which of the two comes first is a matter of
+    /// rounding there. The start has the state after its own events.
+    fn refuse_close_instants(&self, events: &[Event<DoubleDouble>]) -> Result<(), String> {
+        let (span, nearest) = (self.case.span(), self.nearest());
+        let is_event = |it: &&Event<DoubleDouble>| !matches!(it.what, What::Start | What::End(_));
+        let times = events.iter().filter(is_event).map(|it| self.elapsed(&it.time).value());
+        let times: Vec<f64> = times.collect();
+        if times.iter().any(|time| (time - span).abs() <= nearest) {
+            return Err(format!(
+                "until = {:?} is not accepted: an event lies within 1e-6 of the system's time scale of it; \
+                 accepted is a horizon between events",
+                self.case.until
+            ));
+        }
+        let close = |count: u32| {
+            let step = span / f64::from(count);
+            let place = |time: f64| (time / step).round();
+            let is_close = |time: &f64| {
+                let k = place(*time);
+                (1.0..f64::from(count)).contains(&k) && (k * step - time).abs() <= nearest
+            };
+            times.iter().copied().find(is_close)
+        };
+        let count = self.case.samples;
+        let Some(time) = close(count) else { return Ok(()) };
+        let other = (count + 1..count + MOST_TRIED).find(|count| close(*count).is_none());
+        let other = other.map_or("another number".to_owned(), |count| format!("samples = {count}"));
+        Err(format!(
+            "samples = {count} is not accepted: one of them and the event {time:?} after the start are \
+             within 1e-6 of the system's time scale; accepted is {other}"
+        ))
+    }
+
     /// The truth without its growth, from the start, the events and the ending of a run.
     fn truth(&self, events: &[Event<DoubleDouble>]) -> Result<SystemTruth, String> {
         let Some((last, events)) = events.split_last() else { return Err("has no run".into()) };
@@ -69,11 +140,44 @@ impl SystemReplay<'_> {
             start: rows[0].clone(),
             samples: times.iter().map(|time| self.sample(events, *time)).collect(),
             events: rows[1..].to_vec(),
-            end: self.row(last, 0),
+            end: match ended {
+                Ended::Horizon => self.sample(events, span),
+                _ => self.row(last, 0),
+            },
             ended,
             span,
-            ordered: false,
+            ordered: self.order_matters(events),
         })
+    }
+
+    /// Whether what follows depends on the order in which events of one instant come: whether a run
+    /// in which each mode has its events in the other order differs.
+    fn order_matters(&self, events: &[Event<DoubleDouble>]) -> bool {
+        let at = |event: &Event<DoubleDouble>| self.elapsed(&event.time);
+        if !events.windows(2).any(|pair| at(&pair[1]).minus(at(&pair[0])).value() == 0.0) {
+            return false;
+        }
+        let mut turned = self.case.system.clone();
+        turned.modes.iter_mut().for_each(|mode| mode.until.reverse());
+        let solver =
+            if self.case.backward { Solver::backward(&turned) } else { Solver::new(&turned) };
+        let (Ok(solver), Some(start)) = (solver, &self.case.system.start) else { return true };
+        let other = SystemReplay { case: self.case, solver: &solver, begin: self.begin };
+        let Ok(others) = other.events(start) else { return true };
+        let Some((_, others)) = others.split_last() else { return true };
+        let alike = |(own, other): (&Event<DoubleDouble>, &Event<DoubleDouble>)| {
+            let pairs = own.state.iter().zip(&other.state).zip(&self.case.system.scales);
+            let near = |((a, b), scale): ((&DoubleDouble, &DoubleDouble), &f64)| {
+                (*a - *b).to_f64().abs() <= ALIKE * (scale + a.to_f64().abs())
+            };
+            own.mode == other.mode && pairs.into_iter().all(near)
+        };
+        // Between events of one instant the state is a matter of their order.
+        let last = |events: &[Event<DoubleDouble>], n: usize| {
+            events.get(n + 1).is_none_or(|next| at(next).minus(at(&events[n])).value() != 0.0)
+        };
+        let ends = (0..events.len()).filter(|n| last(events, *n));
+        events.len() != others.len() || !ends.into_iter().all(|n| alike((&events[n], &others[n])))
     }
 
     fn elapsed(&self, time: &Time<DoubleDouble>) -> TwoWord {

@@ -36,16 +36,7 @@ pub struct Figure {
 impl Figure {
     /// The caption in lines that are no longer than the figure is wide.
     fn lines(&self) -> Vec<String> {
-        let width = f64::from(self.size_of_panels().0) - 2.0 * MARGIN;
-        let mut lines: Vec<String> = Vec::new();
-        for word in self.caption.split_whitespace() {
-            let longer = lines.last().map(|line| format!("{line} {word}"));
-            match (longer, lines.last_mut()) {
-                (Some(longer), Some(line)) if font::width(&longer, TEXT) <= width => *line = longer,
-                _ => lines.push(word.to_owned()),
-            }
-        }
-        lines
+        font::wrapped(&self.caption, TEXT, f64::from(self.size_of_panels().0) - 2.0 * MARGIN)
     }
 
     fn size_of_panels(&self) -> (u32, u32) {

@@ -65,7 +65,7 @@ fn end_tree(id: u32, mark: &str) {
     super::sweep::end(id, mark);
 }
 
-/// Elsewhere a process that has left the group of its program is not found.
+/// Ends the group of a program; a process that has left the group is found on Linux alone.
 #[cfg(all(unix, not(target_os = "linux")))]
 fn end_tree(id: u32, _: &str) {
     use rustix::process::{Pid, Signal, kill_process_group};
@@ -74,6 +74,6 @@ fn end_tree(id: u32, _: &str) {
     }
 }
 
-/// Elsewhere the program alone is ended, by its owner.
+/// Does nothing: without groups of processes the program alone is ended, by its owner.
 #[cfg(not(unix))]
 fn end_tree(_: u32, _: &str) {}

@@ -70,7 +70,7 @@ impl Process {
         }
     }
 
-    /// As [`Self::ready`], after an answer.
+    /// Asks after an answer whether the program waits for the next request.
     pub(crate) fn still_ready(&mut self, wait: Duration) -> Result<(), String> {
         self.ready(wait.min(READY)).map_err(|why| format!("after its answer: {why}"))
     }

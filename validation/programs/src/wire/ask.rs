@@ -2,7 +2,7 @@
 
 use super::PROTOCOL;
 use percuss_engines::engine::{Accuracy, Limits, SystemTask};
-use percuss_engines::system::{Direction, Mode, Row, System};
+use percuss_engines::system::{CheckedSystem, Direction, Mode, Row, System};
 use serde::Serialize;
 
 /// The part of its time after which a program is to give up by itself, before it is ended.
@@ -69,8 +69,9 @@ struct SystemAsk<'a> {
     modes: Vec<ModeAsk<'a>>,
 }
 
+/// A mode, in requests and in the files of cases.
 #[derive(Serialize)]
-struct ModeAsk<'a> {
+pub(crate) struct ModeAsk<'a> {
     name: &'a str,
     #[serde(rename = "A")]
     a: &'a [Vec<f64>],
@@ -102,8 +103,9 @@ struct Tolerance {
     absolute: f64,
 }
 
+/// What an expert knows of a system.
 #[derive(Serialize)]
-struct TimesAsk {
+pub(crate) struct TimesAsk {
     period: f64,
     turn: Option<f64>,
     shortest: f64,
@@ -125,7 +127,6 @@ impl<'a> RunAsk<'a> {
         limits: &Limits,
     ) -> Self {
         let checked = &*task.system;
-        let finite = |value: f64| Some(value).filter(|value| value.is_finite());
         let tolerance = |size: f64| Tolerance { relative: size, absolute: size };
         Self {
             setup,
@@ -137,11 +138,7 @@ impl<'a> RunAsk<'a> {
             samples: samples(task),
             tolerance: accuracy.tolerance().map(tolerance),
             step: accuracy.step().map(|step| step * checked.shortest_time()),
-            times: TimesAsk {
-                period: checked.period(),
-                turn: finite(checked.turn()),
-                shortest: checked.shortest_time(),
-            },
+            times: TimesAsk::of(checked),
             limits: LimitsAsk {
                 calls: limits.calls,
                 events: limits.events,
@@ -156,8 +153,19 @@ impl<'a> RunAsk<'a> {
     }
 }
 
+impl TimesAsk {
+    /// What is known of a system.
+    pub(crate) fn of(system: &CheckedSystem) -> Self {
+        Self {
+            period: system.period(),
+            turn: Some(system.turn()).filter(|turn| turn.is_finite()),
+            shortest: system.shortest_time(),
+        }
+    }
+}
+
 /// When a task wants the state.
-fn samples(task: &SystemTask) -> Vec<f64> {
+pub(crate) fn samples(task: &SystemTask) -> Vec<f64> {
     let times = task.watched.as_ref().map_or(&task.samples, |watched| &watched.instants);
     times.iter().map(|time| time.min(task.span)).collect()
 }
@@ -177,22 +185,19 @@ impl<'a> SystemAsk<'a> {
 }
 
 impl<'a> ModeAsk<'a> {
-    fn of(mode: &'a Mode) -> Self {
+    /// A mode with its events.
+    pub(crate) fn of(mode: &'a Mode) -> Self {
         let until = mode.until.iter().map(|it| EventAsk {
             name: &it.name,
             guard: &it.guard,
-            direction: "rising",
+            direction: Direction::Rising.as_str(),
             reset: it.reset.as_deref(),
             successors: it.next.iter().map(successor).collect(),
         });
         let watch = mode.watch.iter().map(|it| EventAsk {
             name: &it.name,
             guard: &it.guard,
-            direction: match it.direction {
-                Direction::Rising => "rising",
-                Direction::Falling => "falling",
-                Direction::Both => "both",
-            },
+            direction: it.direction.as_str(),
             reset: None,
             successors: Vec::new(),
         });

@@ -141,6 +141,22 @@ pub(crate) enum EndedBy {
     Undecided,
 }
 
+impl EndedBy {
+    /// How runs end before their horizon, by their names.
+    pub(crate) const EARLY: [(&str, Self); 5] = [
+        ("no-progress", Self::NoProgress),
+        ("accumulation", Self::Accumulation),
+        ("leaves-domain", Self::LeavesDomain),
+        ("beyond-guard", Self::BeyondGuard),
+        ("undecided", Self::Undecided),
+    ];
+
+    /// The ending before the horizon that is called so.
+    pub(crate) fn named(name: &str) -> Option<Self> {
+        Self::EARLY.into_iter().find(|it| it.0 == name).map(|it| it.1)
+    }
+}
+
 impl From<EndedBy> for Ended {
     fn from(ended: EndedBy) -> Self {
         match ended {

@@ -99,7 +99,10 @@ pub const KINDS: &[(&str, Expected)] = &[
     ("negative-event", Row("answered wrongly at run.events[0].event: -1.0 is no count")),
     ("half-an-event", Row("answered wrongly at run.events[0].event: 0.5 is no count")),
     ("unknown-mode", Row("event 0 leads into mode 7, where there are 2 modes")),
-    ("impossible-mode", Row("event 0 leads from mode 0 into mode 0; accepted are [1]")),
+    (
+        "impossible-mode",
+        Row("event 0 leads from mode \"first\" into mode \"first\"; accepted are \"second\""),
+    ),
     ("states-missing", Row("event 0 has 1 states; accepted are 2")),
     ("end-of-another-size", Row("its end has 3 states; accepted are 2")),
     ("sample-of-another-size", Row("sample 1 has 0 states; accepted are 2")),

@@ -1,15 +1,17 @@
-//! `events`: the events of a piecewise-affine system, with digits that are proved.
+//! `events`: the events of a piecewise-affine system, with digits that are proved, or a picture of
+//! its run.
 
 mod digits;
+mod draw;
 mod rows;
 
 use super::format::OutputFlags;
-use super::list::Format;
 use super::parse::{self, Typed};
 use super::{DONE, OUT_OF_BOUNDS, names, note};
+use crate::case::parse_system_case;
 use crate::systems::{SYSTEMS, named};
 use anyhow::{Context, Result, anyhow, bail};
-use clap::{ArgGroup, Args};
+use clap::{ArgGroup, Args, ValueEnum};
 use percuss::affine::{Solver, SystemFile};
 use rows::Rows;
 use std::path::{Path, PathBuf};
@@ -33,7 +35,8 @@ pub(super) struct Arguments {
     /// The most significant digits of a number, 17 or 25 [default: 17]
     #[arg(long, value_name = "D", value_parser = ["17", "25"])]
     digits: Option<String>,
-    /// A file whose [start] replaces the system's, and whose [parameters] replace some
+    /// A file whose [start] replaces the system's, and whose [parameters] replace some; a case of
+    /// the system serves too
     #[arg(long, value_name = "FILE.toml")]
     start: Option<PathBuf>,
     /// Replaces the value of a parameter
@@ -42,16 +45,34 @@ pub(super) struct Arguments {
     /// Runs back in time
     #[arg(long)]
     backward: bool,
+    /// The states that a picture shows, 1 to 6, with commas; it has the plane of the first two
+    #[arg(long, value_name = "NAMES", allow_hyphen_values = true)]
+    states: Option<String>,
     #[command(flatten)]
     output: OutputFlags<Format>,
 }
 
+/// What a run is written as.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    Csv,
+    Json,
+    Png,
+    Svg,
+}
+
+impl Format {
+    const fn is_picture(self) -> bool {
+        matches!(self, Self::Png | Self::Svg)
+    }
+}
+
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let format = arguments.output.format(Format::Csv)?;
+    check_effect(arguments, format)?;
     let mut file = read(&arguments.system)?;
     if let Some(path) = &arguments.start {
-        let text = text(path).context("--start")?;
-        file.replace_from(&path.display().to_string(), &text, false).context("--start")?;
+        start(&mut file, path).context("--start")?;
     }
     for given in &arguments.set {
         let parsed = given.split_once('=').and_then(|(name, value)| {
@@ -79,13 +100,46 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     };
     let solver = if arguments.backward { Solver::backward(&system) } else { Solver::new(&system) }?;
     let digits = if arguments.digits.as_deref() == Some("25") { 25 } else { 17 };
-    let rows = Rows { system: &system, solver: &solver, digits, most: arguments.events };
-    let Some(listed) = rows.listed(until) else {
-        bail!("{}: its start is not decided", system.name)
-    };
-    rows.write(&listed, &arguments.output, format)?;
+    let shown = draw::shown(&system, arguments.states.as_deref())?;
+    let is_picture = format.is_picture();
+    let rows =
+        Rows { system: &system, solver: &solver, digits, most: arguments.events, is_picture };
+    let listed = rows.listed(until)?;
+    if is_picture {
+        draw::write(&solver, &listed.run, &shown, &arguments.output, format)?;
+    } else {
+        rows.write(&listed, &arguments.output, format)?;
+    }
     listed.notes.iter().for_each(|it| note(it));
     Ok(if listed.decided { DONE } else { OUT_OF_BOUNDS })
+}
+
+/// Refuses flags that the run takes no notice of.
+fn check_effect(arguments: &Arguments, format: Format) -> Result<()> {
+    match (&arguments.digits, &arguments.states) {
+        (Some(digits), _) if format.is_picture() => {
+            bail!("--digits {digits} has no effect on a picture: accepted is it with csv and json")
+        }
+        (_, Some(states)) if !format.is_picture() => {
+            bail!("--states {states} has no effect here: accepted is it with png and svg")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Takes start and parameters from a file, or from a case of the same system.
+fn start(file: &mut SystemFile, path: &Path) -> Result<()> {
+    let text = text(path)?;
+    let name = path.display().to_string();
+    let is_case = text.parse::<toml::Table>().is_ok_and(|it| it.contains_key("case"));
+    if is_case {
+        let case = parse_system_case(&name, &text, path.parent())?;
+        if case.system.name != file.name() {
+            let (other, own) = (case.system.name, file.name());
+            bail!("{name}: a case of {other} is not accepted here: one of {own} is");
+        }
+    }
+    Ok(file.replace_from(&name, &text, is_case)?)
 }
 
 /// The system of this path, or of this name.

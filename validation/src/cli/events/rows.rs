@@ -1,10 +1,10 @@
 //! The rows of `events`.
 
 use super::super::format::OutputFlags;
-use super::super::list::Format;
+use super::Format;
 use super::digits::{has_digits, proved};
 use crate::truth::DoubleDouble;
-use anyhow::Result;
+use anyhow::{Result, bail};
 use percuss::affine::{Ending, Event, Run, Solver, System, What};
 use percuss::number::Number;
 use serde::Serialize;
@@ -16,7 +16,12 @@ pub(super) struct Rows<'a> {
     pub(super) solver: &'a Solver<DoubleDouble>,
     pub(super) digits: usize,
     pub(super) most: Option<usize>,
+    /// Whether the run is kept, to be drawn.
+    pub(super) is_picture: bool,
 }
+
+/// A picture of more events than this shows nothing.
+const MOST_DRAWN: usize = 20_000;
 
 /// What is printed.
 #[derive(Default)]
@@ -25,6 +30,8 @@ pub(super) struct EventListing {
     accumulation: Option<Accumulation>,
     pub(super) notes: Vec<String>,
     pub(super) decided: bool,
+    /// The start and all events, where they are to be drawn.
+    pub(super) run: Vec<Event<DoubleDouble>>,
 }
 
 /// Numbers are texts, because a reader's f64 would not hold their digits.
@@ -55,39 +62,57 @@ struct List<'a> {
 }
 
 impl Rows<'_> {
-    /// Runs the system; none if its start cannot be decided.
-    pub(super) fn listed(&self, until: f64) -> Option<EventListing> {
-        let start = self.system.start.as_ref()?;
-        let run = self.solver.run_enclosed(start, DoubleDouble::exact(until))?;
+    /// Runs the system from its start.
+    pub(super) fn listed(&self, until: f64) -> Result<EventListing> {
+        let start = self.system.start.as_ref();
+        let run = start.and_then(|it| self.solver.run_enclosed(it, DoubleDouble::exact(until)));
+        let Some(run) = run else { bail!("{}: its start is not decided", self.system.name) };
         let mut listed = EventListing { decided: true, ..EventListing::default() };
         let first = run.start();
         self.push(&mut listed, &first, String::new());
-        self.collect(run, &mut listed);
-        Some(listed)
+        self.collect(run, first, &mut listed)?;
+        Ok(listed)
     }
 
-    fn collect(&self, run: Run<'_, DoubleDouble>, listed: &mut EventListing) {
+    fn collect(
+        &self,
+        run: Run<'_, DoubleDouble>,
+        mut before: Event<DoubleDouble>,
+        listed: &mut EventListing,
+    ) -> Result<()> {
         for event in run {
+            let event = in_the_row(event, &before);
+            before = event.clone();
             if self.most.is_some_and(|most| listed.rows.len() > most) {
-                return;
+                return Ok(());
+            }
+            if self.is_picture && listed.rows.len() > MOST_DRAWN {
+                bail!(
+                    "a picture of more than {MOST_DRAWN} events is not accepted: --output or --format of csv or json is, or a shorter run"
+                );
             }
             let name = self.name(&event, listed);
             self.push(listed, &event, name);
             if listed.rows.last().is_some_and(|row| !has_digits(&row.time)) {
                 listed.rows.pop();
+                listed.run.pop();
                 listed.notes.push(format!(
                     "after {} events no digit of the time is left: the run ends there",
                     listed.rows.len() - 1
                 ));
-                return;
+                return Ok(());
             }
         }
+        Ok(())
     }
 
     fn push(&self, listed: &mut EventListing, event: &Event<DoubleDouble>, name: String) {
         let Some(errors) = &event.errors else { return };
         let cells = event.state.iter().zip(&errors.state);
         let cells = cells.map(|(value, error)| proved(*value, *error, self.digits));
+        if self.is_picture {
+            listed.run.push(event.clone());
+        }
         listed.rows.push(EventRow {
             n: listed.rows.len(),
             time: proved(event.time.value(), errors.time, self.digits),
@@ -155,7 +180,7 @@ impl Rows<'_> {
                 accumulation: listed.accumulation.as_ref(),
                 rows: &listed.rows,
             }),
-            Format::Csv => output.destination().write(|out| {
+            _ => output.destination().write(|out| {
                 let mut writer = csv::Writer::from_writer(Vec::new());
                 let states = self.system.states.iter().map(String::as_str);
                 writer.write_record(["n", "time", "event", "mode"].into_iter().chain(states))?;
@@ -168,6 +193,16 @@ impl Rows<'_> {
                 Ok(out.write_all(&writer.into_inner()?)?)
             }),
         }
+    }
+}
+
+/// An event as its row has it: an ending that has no instant of its own is at the event before,
+/// a watched one too, where the run has it at the beginning of its segment.
+fn in_the_row(event: Event<DoubleDouble>, before: &Event<DoubleDouble>) -> Event<DoubleDouble> {
+    match event.what {
+        What::End(Ending::Horizon | Ending::LeavesDomain) => event,
+        What::End(_) => Event { what: event.what, ..before.clone() },
+        _ => event,
     }
 }
 

@@ -30,6 +30,15 @@ impl DiagramWork {
                  steps in [fixed], for a whole diagram at each point"
             );
         }
+        let own = ["from", "to", "steps"];
+        let is_given =
+            |name: &&str| plan.words.iter().any(|it| it.starts_with(&format!("--{name}=")));
+        if let Some(name) = own.iter().find(|name| is_given(name)) {
+            bail!(
+                "[fixed] {name} is not accepted without parameter: the last axis is the diagram's, \
+                 with its own from, to and steps"
+            );
+        }
         let (name, from) = (axis.parameter.as_str(), axis.from);
         Ok(vec![
             format!("--parameter={name}"),

@@ -48,6 +48,7 @@ mod tests {
             shards: 4,
             first,
             words: Vec::new(),
+            off: Vec::new(),
             axes: Vec::new(),
             hash: String::new(),
         }

@@ -23,7 +23,9 @@ pub(super) fn work(plan: &Plan) -> Result<Box<dyn SweepVerb>> {
              lyapunov, continue"
         ),
     }
-    let parsed = cli::Arguments::try_parse_from(words).map_err(|error| objection(&error))?;
+    check_off(plan)?;
+    let parsed = cli::Arguments::try_parse_from(words)
+        .map_err(|error| anyhow!("[fixed]: {}", cli::objection(&error)))?;
     Ok(match parsed.verb {
         Verb::Basins(arguments) => Box::new(BasinWork::labels(*arguments)),
         Verb::Attractors(arguments) => Box::new(BasinWork::attractors(*arguments)),
@@ -34,11 +36,17 @@ pub(super) fn work(plan: &Plan) -> Result<Box<dyn SweepVerb>> {
     })
 }
 
-/// What clap objects to in [fixed], in one line.
-fn objection(error: &clap::Error) -> anyhow::Error {
-    let text = error.to_string();
-    let text = text.strip_prefix("error: ").unwrap_or(&text);
-    let end = ["\n\nUsage:", "\n\nFor more"].iter().filter_map(|mark| text.find(mark)).min();
-    let line: Vec<_> = text[..end.unwrap_or(text.len())].split_whitespace().collect();
-    anyhow!("[fixed]: {}", line.join(" "))
+/// Refuses `false` for what is no switch of the verb.
+fn check_off(plan: &Plan) -> Result<()> {
+    let command = cli::command();
+    let verb = command.find_subcommand(&plan.verb);
+    let is_switch = |name: &str| {
+        verb.into_iter()
+            .flat_map(clap::Command::get_arguments)
+            .any(|it| it.get_long() == Some(name) && !it.get_action().takes_values())
+    };
+    if let Some(name) = plan.off.iter().find(|name| !is_switch(name)) {
+        bail!("[fixed] {name} = false is not accepted: {} has no such switch", plan.verb);
+    }
+    Ok(())
 }

@@ -3,10 +3,11 @@
 use super::EventPicture;
 use super::course::picture;
 use super::mismatch::EventMismatch;
+use super::system;
 use crate::case::{Case, Given};
 use crate::engine::{self, Engine, Limits, SampleGrid, Task};
 use crate::score::Verdict;
-use crate::suite::{Prepared, Scored, Status, Suite};
+use crate::suite::{Answered, Prepared, PreparedSystem, Scored, Status, Suite};
 use crate::truth::Truth;
 use rayon::prelude::*;
 
@@ -15,24 +16,27 @@ const MOST_PICTURES: usize = 200;
 /// A run that took more right-hand sides is not made again for a picture.
 const MOST_WORK: u64 = 10_000_000;
 
-/// A row that has something to show.
+/// Draws a row's picture, within limits of the run that is made again.
+type Draw<'a> = dyn Fn(&Limits) -> Option<EventPicture> + Send + Sync + 'a;
+
+/// A row that has something to show, and how it is drawn.
 struct RowChoice<'a> {
     row: &'a Scored,
-    prepared: &'a Prepared,
-    engine: &'static dyn Engine,
-    task: Task,
-    mismatch: EventMismatch,
-    mean_step: f64,
+    draw: Box<Draw<'a>>,
 }
 
 /// Pictures of rows with a missed or a spurious event, or with a displaced one and out of bounds;
 /// of more rows than can be shown those out of bounds come first, then a row a case in turn.
 #[must_use]
-pub fn event_pictures(cases: &[Prepared], rows: &[Scored], suite: Suite) -> Vec<EventPicture> {
+pub fn event_pictures(
+    cases: (&[Prepared], &[PreparedSystem]),
+    rows: &[Scored],
+    suite: Suite,
+) -> Vec<EventPicture> {
     let candidates: Vec<_> = rows.par_iter().filter_map(|row| candidate(cases, row)).collect();
     let limits = suite.limits();
     let chosen = chosen(candidates).into_par_iter().with_max_len(1);
-    chosen.filter_map(|it| it.picture(&limits)).collect()
+    chosen.filter_map(|it| (it.draw)(&limits)).collect()
 }
 
 /// Chooses as many as can be shown, in the order of the rows.
@@ -49,28 +53,48 @@ fn chosen(candidates: Vec<RowChoice<'_>>) -> Vec<RowChoice<'_>> {
     all.filter(|(i, _)| order.contains(i)).map(|(_, it)| it).collect()
 }
 
-impl RowChoice<'_> {
-    fn picture(&self, limits: &Limits) -> Option<EventPicture> {
-        let Self { row, prepared, engine, task, mismatch, mean_step } = self;
-        picture(prepared, task, row, mismatch, (*engine, *mean_step, limits))
-    }
-}
-
-fn candidate<'a>(cases: &'a [Prepared], row: &'a Scored) -> Option<RowChoice<'a>> {
+fn candidate<'a>(
+    (cases, systems): (&'a [Prepared], &'a [PreparedSystem]),
+    row: &'a Scored,
+) -> Option<RowChoice<'a>> {
     let Status::Ok(measures, answered) = &row.status else { return None };
-    let outcome = answered.oscillator()?;
     let mismatch = &measures.mismatch;
     let wrong = !(mismatch.missed.is_empty() && mismatch.spurious.is_empty());
-    let affordable = outcome.work.rhs_evaluations <= MOST_WORK;
+    let affordable = answered.work().rhs_evaluations <= MOST_WORK;
     if !affordable || !(wrong || row.judgement.verdict == Verdict::Fail) {
         return None;
     }
-    let prepared = cases.iter().find(|it| it.case.name == row.case)?;
     let engine = *engine::all().iter().find(|it| it.declaration().name == row.engine)?;
+    let steps = answered.work().steps.max(1) as f64;
+    match &**answered {
+        Answered::Oscillator(_) => {
+            let prepared = cases.iter().find(|it| it.case.name == row.case)?;
+            of_oscillator(prepared, row, (engine, steps))
+        }
+        Answered::System(outcome) => {
+            let prepared = systems.iter().find(|it| it.case.name == row.case)?;
+            let it = system::SystemMismatch::first(prepared, measures, outcome, row)?;
+            let mean_step = prepared.task.span / steps;
+            let draw = move |limits: &Limits| {
+                system::picture(prepared, row, &it, (engine, mean_step, limits))
+            };
+            Some(RowChoice { row, draw: Box::new(draw) })
+        }
+    }
+}
+
+fn of_oscillator<'a>(
+    prepared: &'a Prepared,
+    row: &'a Scored,
+    (engine, steps): (&'static dyn Engine, f64),
+) -> Option<RowChoice<'a>> {
     let task = task(&prepared.case)?;
     let mismatch = EventMismatch::first(prepared, &task, row)?;
-    let mean_step = task.span / outcome.work.steps.max(1) as f64;
-    Some(RowChoice { row, prepared, engine, task, mismatch, mean_step })
+    let mean_step = task.span / steps;
+    let draw = move |limits: &Limits| {
+        picture(prepared, &task, row, &mismatch, (engine, mean_step, limits))
+    };
+    Some(RowChoice { row, draw: Box::new(draw) })
 }
 
 /// The run of a case, without samples.

@@ -4,10 +4,9 @@ use super::guarded::GuardCurve;
 use super::mismatch::EventMismatch;
 use super::scales::Scales;
 use super::{EventMark, EventPicture, View, ViewCourse};
-use crate::engine::{Engine, Limits, Outcome, Task, Trace, Watched, contain};
+use crate::engine::{Engine, Limits, Outcome, Task, Watched, contain};
 use crate::suite::{Prepared, Scored};
-use crate::truth::{Replay, Truth};
-use percuss::Phase;
+use crate::truth::Replay;
 use percuss::TwoWord;
 
 /// Marks of steps and looks nearer to each other than this share of a view are shown as one.
@@ -25,16 +24,27 @@ pub(super) fn picture(
     (engine, mean_step, limits): (&dyn Engine, f64, &Limits),
 ) -> Option<EventPicture> {
     let period = task.problem.model.period();
-    let scales = Scales::around(it, mean_step, period, task.span);
-    let mut instants: Vec<f64> = scales.spans.iter().copied().flat_map(Scales::instants).collect();
-    instants.sort_by(f64::total_cmp);
-    instants.dedup();
+    let scales = Scales::around((it.at, it.reach), mean_step, period, task.span);
+    let instants = scales.all_instants();
     let truth = truth_at(task, it.guarded, &instants)?;
     let watched = Watched { window: scales.window(), instants: instants.clone() };
     let task = Task { watched: Some(watched), ..task.clone() };
     let outcome = contain(|| engine.run(&task, row.accuracy, limits)).ok()?;
-    let engine = engine_at(&task, it.guarded, &outcome);
-    let scene = Scene { prepared, task: &task, it, instants, truth, engine, outcome };
+    let trace = outcome.trace.as_ref();
+    let looks = trace.map_or(&[][..], |trace| &trace.looks);
+    let looks = looks.iter().filter_map(|look| Some([look.t, it.guarded.of_look(look)?]));
+    let scene = Scene {
+        at: it.at,
+        first: task.phase.as_str().to_owned(),
+        truth: Side { values: truth, events: truth_events(prepared, it) },
+        engine: Side {
+            values: engine_at(&task, it.guarded, &outcome),
+            events: engine_events(&outcome, it),
+        },
+        steps: trace.map(|trace| trace.steps.clone()).unwrap_or_default(),
+        looks: in_order(looks),
+        instants,
+    };
     let views: Vec<View> = scales.spans.iter().map(|span| scene.view(*span)).collect();
     Some(EventPicture {
         case: row.case.clone(),
@@ -43,11 +53,26 @@ pub(super) fn picture(
         step: row.accuracy.step(),
         kind: it.kind,
         title: it.title(period),
-        guard: it.guarded.label(),
+        guard: it.guarded.label().to_owned(),
+        modes: Vec::new(),
         centre: it.at,
         telling: telling(&views),
         views,
     })
+}
+
+fn truth_events(prepared: &Prepared, it: &EventMismatch) -> Vec<(f64, String, bool)> {
+    let is_known = |i: usize| it.pairs.iter().any(|pair| pair.0 == i);
+    let mark = |(i, row): (usize, &crate::truth::TruthRow)| {
+        Some((row.elapsed.value(), row.phase?.as_str().to_owned(), is_known(i)))
+    };
+    prepared.truth.events.iter().enumerate().filter_map(mark).collect()
+}
+
+fn engine_events(outcome: &Outcome, it: &EventMismatch) -> Vec<(f64, String, bool)> {
+    let is_known = |j: usize| it.pairs.iter().any(|pair| pair.1 == j);
+    let events = outcome.events.iter().enumerate();
+    events.map(|(j, event)| (event.elapsed, event.mode.as_str().to_owned(), is_known(j))).collect()
 }
 
 /// The true values, by the run made again in 106 bits.
@@ -78,63 +103,52 @@ fn engine_at(task: &Task, guarded: GuardCurve, outcome: &Outcome) -> Vec<f64> {
     states.map(|state| guarded.of_state(&task.parameters, state)).collect()
 }
 
-/// What the views are cut from.
-struct Scene<'a> {
-    prepared: &'a Prepared,
-    task: &'a Task,
-    it: &'a EventMismatch,
-    instants: Vec<f64>,
-    truth: Vec<f64>,
-    engine: Vec<f64>,
-    outcome: Outcome,
+/// What the views are cut from, whatever the system.
+pub(super) struct Scene {
+    /// The time about which all views are drawn.
+    pub(super) at: f64,
+    pub(super) instants: Vec<f64>,
+    /// What holds at the start.
+    pub(super) first: String,
+    pub(super) truth: Side,
+    pub(super) engine: Side,
+    pub(super) steps: Vec<f64>,
+    /// Times of looks at the guard, and what they saw, in the order of the times.
+    pub(super) looks: Vec<[f64; 2]>,
 }
 
-impl Scene<'_> {
-    fn view(&self, span: [f64; 2]) -> View {
+/// Truth or engine: its values at the instants, and its events with what begins there and whether
+/// both have them.
+pub(super) struct Side {
+    pub(super) values: Vec<f64>,
+    pub(super) events: Vec<(f64, String, bool)>,
+}
+
+impl Scene {
+    pub(super) fn view(&self, span: [f64; 2]) -> View {
         let [from, to] = span;
-        let since = |t: f64| t - self.it.at;
+        let since = |t: f64| t - self.at;
         let inside = |t: &f64| from <= *t && *t <= to;
-        let trace = self.outcome.trace.as_ref();
-        let steps = trace.map_or(&[][..], |trace| &trace.steps).iter().copied().filter(inside);
-        let mut steps: Vec<f64> = steps.map(since).collect();
+        let mut steps: Vec<f64> = self.steps.iter().copied().filter(inside).map(since).collect();
         steps.dedup_by(|next, kept| *next - *kept < APART * (to - from));
         View {
             from: since(from),
             to: since(to),
-            truth: self.course(span, self.truth_events(), &self.truth),
-            engine: self.course(span, self.engine_events(), &self.engine),
+            truth: self.course(span, &self.truth),
+            engine: self.course(span, &self.engine),
             steps,
-            looks: trace.map_or_else(Vec::new, |trace| self.looks(trace, span)),
+            looks: self.looks(span),
         }
     }
 
-    fn truth_events(&self) -> Vec<(f64, Phase, bool)> {
-        let Truth { events, .. } = &self.prepared.truth;
-        let is_known = |i: usize| self.it.pairs.iter().any(|pair| pair.0 == i);
-        let mark = |(i, row): (usize, &crate::truth::TruthRow)| {
-            Some((row.elapsed.value(), row.phase?, is_known(i)))
-        };
-        events.iter().enumerate().filter_map(mark).collect()
-    }
-
-    fn engine_events(&self) -> Vec<(f64, Phase, bool)> {
-        let is_known = |j: usize| self.it.pairs.iter().any(|pair| pair.1 == j);
-        let events = self.outcome.events.iter().enumerate();
-        events.map(|(j, event)| (event.elapsed, event.mode, is_known(j))).collect()
-    }
-
-    fn course(
-        &self,
-        [from, to]: [f64; 2],
-        events: Vec<(f64, Phase, bool)>,
-        values: &[f64],
-    ) -> ViewCourse {
+    fn course(&self, [from, to]: [f64; 2], side: &Side) -> ViewCourse {
+        let Side { values, events } = side;
         let before = events.iter().take_while(|event| event.0 < from).last();
-        let phase = before.map_or(self.task.phase, |event| event.1);
+        let phase = before.map_or(&self.first, |event| &event.1).clone();
         let inside = events.iter().filter(|event| from <= event.0 && event.0 <= to);
-        let mark = |(t, phase, matched): &(f64, Phase, bool)| EventMark {
-            t: t - self.it.at,
-            phase: *phase,
+        let mark = |(t, phase, matched): &(f64, String, bool)| EventMark {
+            t: t - self.at,
+            phase: phase.clone(),
             matched: *matched,
         };
         let place = |t: f64| self.instants.partition_point(|it| *it < t);
@@ -146,18 +160,23 @@ impl Scene<'_> {
         }
     }
 
-    fn looks(&self, trace: &Trace, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
-        let of = |look: &crate::engine::GuardSample| Some([look.t, self.it.guarded.of_look(look)?]);
-        let inside = |look: &[f64; 2]| from <= look[0] && look[0] <= to;
-        let mut looks: Vec<_> = trace.looks.iter().filter_map(of).filter(inside).collect();
-        looks.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    fn looks(&self, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
+        let inside = |look: &&[f64; 2]| from <= look[0] && look[0] <= to;
+        let mut looks: Vec<_> = self.looks.iter().filter(inside).copied().collect();
         looks.dedup_by(|next, kept| next[0] - kept[0] < APART * (to - from));
-        looks.iter().map(|[t, value]| [t - self.it.at, *value]).collect()
+        looks.iter().map(|[t, value]| [t - self.at, *value]).collect()
     }
 }
 
+/// Looks in the order of their times.
+pub(super) fn in_order(looks: impl Iterator<Item = [f64; 2]>) -> Vec<[f64; 2]> {
+    let mut looks: Vec<_> = looks.collect();
+    looks.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    looks
+}
+
 /// The closest view in which the truth's shape shows beside the engine's error.
-fn telling(views: &[View]) -> usize {
+pub(super) fn telling(views: &[View]) -> usize {
     let shows = |view: &View| {
         let range = |values: &[f64]| {
             let (low, high) = values

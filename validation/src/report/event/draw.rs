@@ -3,7 +3,8 @@
 use super::super::setting::{setting, who};
 use super::{EventPicture, View, ViewCourse};
 use crate::picture::Colour;
-use crate::picture::{Encounter, TimeStretch, Trail};
+use crate::picture::{Encounter, Stage, TimeStretch, Trail};
+use percuss::Phase;
 
 impl EventPicture {
     /// The file it is drawn to, without its ending: the folder, case, engine and setting.
@@ -28,29 +29,39 @@ impl EventPicture {
             subtitle: self.title.clone(),
             engine: self.engine.clone(),
             colour,
-            guard: self.guard.to_owned(),
+            guard: self.guard.clone(),
             centre: self.centre,
-            stretches: shown.map(stretch).collect(),
+            stretches: shown.map(|view| self.stretch(view)).collect(),
         }
     }
-}
 
-fn stretch(view: &View) -> TimeStretch {
-    TimeStretch {
-        from: view.from,
-        to: view.to,
-        truth: trail(&view.truth),
-        engine: trail(&view.engine),
-        steps: view.steps.clone(),
-        looks: view.looks.clone(),
+    fn stretch(&self, view: &View) -> TimeStretch {
+        TimeStretch {
+            from: view.from,
+            to: view.to,
+            truth: self.trail(&view.truth),
+            engine: self.trail(&view.engine),
+            steps: view.steps.clone(),
+            looks: view.looks.clone(),
+        }
     }
-}
 
-fn trail(course: &ViewCourse) -> Trail {
-    let mark = |mark: &super::EventMark| (mark.t, mark.phase, mark.matched);
-    Trail {
-        values: course.values.clone(),
-        phase: course.phase,
-        events: course.events.iter().map(mark).collect(),
+    fn trail(&self, course: &ViewCourse) -> Trail {
+        let mark = |mark: &super::EventMark| (mark.t, self.stage(&mark.phase), mark.matched);
+        Trail {
+            values: course.values.clone(),
+            stage: self.stage(&course.phase),
+            events: course.events.iter().map(mark).collect(),
+        }
+    }
+
+    /// A phase of the oscillator by its word, or a mode by its name.
+    fn stage(&self, name: &str) -> Stage {
+        let place = self.modes.iter().position(|mode| mode == name);
+        let phase = Phase::ALL.into_iter().find(|phase| phase.as_str() == name);
+        match (place, phase) {
+            (None, Some(phase)) => Stage::phase(phase),
+            (place, _) => Stage::mode(name, place.unwrap_or_default()),
+        }
     }
 }

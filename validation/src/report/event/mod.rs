@@ -2,7 +2,8 @@
 //! truly is and as the engine had it, with the engine's steps and what its root finder saw.
 //!
 //! The row's run is made again and watched around the event. The truth is the exact solver's run,
-//! made again in 106 bits.
+//! made again in 106 bits. What a picture is made of is the same for all systems ([`course`]); how
+//! it is had of the oscillator is in [`mismatch`], of any other system in [`system`].
 
 mod choice;
 mod course;
@@ -10,12 +11,12 @@ mod draw;
 mod guarded;
 mod mismatch;
 mod scales;
+mod system;
 
 pub use choice::event_pictures;
 pub use mismatch::MismatchKind;
 
-use percuss::Phase;
-use serde::{Serialize, Serializer};
+use serde::Serialize;
 
 /// The first wrong event of one row, at several scales of time.
 #[derive(Clone, Debug, Serialize)]
@@ -33,7 +34,9 @@ pub struct EventPicture {
     /// The event and what is wrong with it, in one sentence.
     pub title: String,
     /// The quantity that is drawn: an event is where it reaches zero.
-    pub guard: &'static str,
+    pub guard: String,
+    /// The names of the system's modes; none of the oscillator, whose phases everyone knows.
+    pub modes: Vec<String>,
     /// The time about which all views are drawn, since the start.
     pub centre: f64,
     /// The views, from the widest to the closest.
@@ -62,9 +65,8 @@ pub struct View {
 /// The course of a run through a view.
 #[derive(Clone, Debug, Serialize)]
 pub struct ViewCourse {
-    /// The phase that holds where the view begins.
-    #[serde(serialize_with = "token")]
-    pub phase: Phase,
+    /// The phase, or the mode, that holds where the view begins.
+    pub phase: String,
     /// The events in the view.
     pub events: Vec<EventMark>,
     /// The quantity at instants evenly spread over the view, both ends among them; none where the
@@ -77,13 +79,8 @@ pub struct ViewCourse {
 pub struct EventMark {
     /// When.
     pub t: f64,
-    /// The phase that begins.
-    #[serde(serialize_with = "token")]
-    pub phase: Phase,
+    /// The phase, or the mode, that begins.
+    pub phase: String,
     /// Whether truth and engine both have it.
     pub matched: bool,
-}
-
-fn token<S: Serializer>(phase: &Phase, serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.serialize_str(phase.as_str())
 }

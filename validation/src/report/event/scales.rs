@@ -1,7 +1,5 @@
 //! The stretches of time that are shown: from some steps of the engine down to the event itself.
 
-use super::mismatch::EventMismatch;
-
 /// Instants of a view at which both curves are known.
 pub(super) const INSTANTS: usize = 121;
 
@@ -27,14 +25,27 @@ pub(super) struct Scales {
 }
 
 impl Scales {
-    /// Around a wrong event, for an engine with this mean step, in a run as long as `span`.
-    pub(super) fn around(it: &EventMismatch, mean_step: f64, period: f64, span: f64) -> Self {
+    /// The scales around a wrong event, with how far it is to what it is confused with, for an
+    /// engine with this mean step, in a run as long as `span`.
+    pub(super) fn around(
+        (centre, reach): (f64, f64),
+        mean_step: f64,
+        period: f64,
+        span: f64,
+    ) -> Self {
         let widest = (STEPS * mean_step).clamp(LEAST * period, MOST * period);
-        let centre = it.at;
-        let closest = (AROUND * it.reach).max(ROUNDINGS * (1.0 + centre));
+        let closest = (AROUND * reach).max(ROUNDINGS * (1.0 + centre));
         let halves = halves(widest, closest);
         let view = |half: f64| [(centre - half).max(0.0), (centre + half).min(span)];
         Self { spans: halves.into_iter().map(view).collect(), centre }
+    }
+
+    /// The instants of all views.
+    pub(super) fn all_instants(&self) -> Vec<f64> {
+        let mut instants: Vec<f64> = self.spans.iter().copied().flat_map(Self::instants).collect();
+        instants.sort_by(f64::total_cmp);
+        instants.dedup();
+        instants
     }
 
     /// The range of all views together.

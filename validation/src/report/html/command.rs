@@ -2,6 +2,11 @@
 
 use crate::suite::Suite;
 
+/// The verb that makes a row again; only `score` has answers in a folder.
+pub(super) fn verb(folders: &[(&str, String)]) -> &'static str {
+    if folders.iter().any(|(flag, _)| *flag == "--answers") { "score" } else { "validate" }
+}
+
 /// What of the command all rows share, after `-c` and `-e` with their patterns; `folders` are flags
 /// with theirs.
 pub(super) fn rest(suite: Suite, folders: &[(&str, String)]) -> String {
@@ -10,7 +15,11 @@ pub(super) fn rest(suite: Suite, folders: &[(&str, String)]) -> String {
         Suite::Full => "full",
     };
     let flags = folders.iter().map(|(flag, folder)| format!(" {flag} {}", quoted(folder)));
-    format!("--suite {suite} --rows{}", flags.collect::<String>())
+    let flags = flags.collect::<String>();
+    if verb(folders) == "score" {
+        return format!("--rows{flags}");
+    }
+    format!("--suite {suite} --rows{flags}")
 }
 
 /// A word that a shell takes as it is.
@@ -41,5 +50,8 @@ mod tests {
         assert_eq!(rest(Suite::Quick, &[]), "--suite quick --rows");
         let folders = [("--cases", "my cases".to_owned())];
         assert_eq!(rest(Suite::Full, &folders), "--suite full --rows --cases 'my cases'");
+        let folders = [("--answers", "a".to_owned()), ("--name", "mine".to_owned())];
+        assert_eq!(verb(&folders), "score");
+        assert_eq!(rest(Suite::Quick, &folders), "--rows --answers 'a' --name 'mine'");
     }
 }

@@ -38,6 +38,7 @@ pub(super) fn json(
         "restarts": rounded(json!(evidence.restarts)),
         "sections": evidence.sections.iter().map(section).collect::<Vec<_>>(),
         "events": evidence.events.iter().filter_map(|it| event(report, it)).collect::<Vec<_>>(),
+        "verb": command::verb(&evidence.folders),
         "repeat": command::rest(report.suite, &evidence.folders),
     });
     inside_a_script(&data.to_string())
@@ -54,7 +55,9 @@ fn cases(report: &Report, evidence: &ReportEvidence) -> Vec<Value> {
         let note = evidence.cases.iter().find(|note| note.name == row.case);
         json!({
             "name": row.case,
+            "system": note.map(|note| &note.system),
             "regime": note.map(|note| &note.regime),
+            "trouble": note.map(|note| &note.trouble),
             "why": note.map(|note| &note.why),
             "toml": note.map(|note| &note.toml),
             "pattern": command::pattern(&row.case),

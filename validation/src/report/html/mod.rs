@@ -72,7 +72,7 @@ impl Exporter for Html {
             failures,
             more_failures,
             ranking: ranking::ranked(report, &looks),
-            cases: report.results.chunk_by(|a, b| a.case == b.case).count(),
+            cases: report.number_of_cases(),
             recall_columns: summaries.iter().map(|it| it.settings.len()).max().unwrap_or(0),
             grazing: view::grazing(report, evidence),
             trouble: view::trouble(report, evidence),

@@ -198,16 +198,19 @@ pub(super) struct TroubleLine {
 
 /// A cell as it is shown.
 pub(super) struct TroubleSign {
+    pub engine: &'static str,
     /// The level, as of [`RecallCell`]; 5 where nothing was scored.
     pub level: u8,
     pub shown: String,
+    /// The same, but nothing where all is found: there the colour says it.
+    pub short: String,
     pub title: String,
 }
 
 /// The matrix of kinds of trouble, as it is shown.
 pub(super) fn trouble(report: &Report, evidence: &ReportEvidence) -> TroubleTable {
     let trouble = Trouble::of(report, evidence);
-    let sign = |cell: &TroubleCell| {
+    let sign = |(cell, (engine, _)): (&TroubleCell, &(&'static str, usize))| {
         let level = match cell.percent() {
             None => 5,
             Some(100) if cell.failing == 0 => 4,
@@ -217,9 +220,12 @@ pub(super) fn trouble(report: &Report, evidence: &ReportEvidence) -> TroubleTabl
             Some(0) => 0,
         };
         let TroubleCell { checked, found, spurious, failing } = cell;
+        let shown = cell.percent().map_or("\u{2013}".to_owned(), |it| it.to_string());
         TroubleSign {
+            engine,
             level,
-            shown: cell.percent().map_or("\u{2013}".to_owned(), |it| it.to_string()),
+            short: if cell.percent() == Some(100) { String::new() } else { shown.clone() },
+            shown,
             title: format!(
                 "{found} of {checked} scored events found, {spurious} spurious, {failing} rows fail"
             ),
@@ -228,9 +234,10 @@ pub(super) fn trouble(report: &Report, evidence: &ReportEvidence) -> TroubleTabl
     let line = |(kind, cases, cells): (String, usize, Vec<TroubleCell>)| TroubleLine {
         kind,
         cases,
-        cells: cells.iter().map(sign).collect(),
+        cells: cells.iter().zip(&trouble.engines).map(sign).collect(),
     };
-    TroubleTable { engines: trouble.engines, lines: trouble.lines.into_iter().map(line).collect() }
+    let lines = trouble.lines.clone().into_iter().map(line).collect();
+    TroubleTable { engines: trouble.engines, lines }
 }
 
 pub(super) fn grazing(report: &Report, evidence: &ReportEvidence) -> GrazingTable {

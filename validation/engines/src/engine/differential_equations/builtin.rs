@@ -46,6 +46,10 @@ impl Engine for BuiltIn {
         }
     }
 
+    fn is_explicit(&self) -> bool {
+        true
+    }
+
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let course = Course::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
         run(&course, accuracy, limits)

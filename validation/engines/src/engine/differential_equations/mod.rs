@@ -107,6 +107,10 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
         run::<M, E>(&course, accuracy, limits)
     }
 
+    fn is_explicit(&self) -> bool {
+        M::EXPLICIT
+    }
+
     fn runs_systems(&self) -> bool {
         E::BOUNDED
     }

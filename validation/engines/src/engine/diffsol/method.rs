@@ -26,6 +26,8 @@ pub(in super::super) trait DiffsolMethod: Sync {
     const STEPPING: Stepping;
     /// The order that the method's authors state; none where it varies from 1 on.
     const ORDER: Option<u32>;
+    /// Whether it is explicit.
+    const EXPLICIT: bool = false;
     /// What its engine is run for beside its rows.
     const ROLE: Role = Role::Rows;
     /// Whether the step may be shortened without loss: a multistep method would begin anew.
@@ -115,6 +117,7 @@ impl DiffsolMethod for Tsit45 {
     const STEPPING: Stepping = Stepping::Adaptive;
     const ORDER: Option<u32> = Some(5);
     const ROLE: Role = Role::Damping;
+    const EXPLICIT: bool = true;
     const ONE_STEP: bool = true;
 
     fn solver<'a, E: DiffsolProblem + 'a>(

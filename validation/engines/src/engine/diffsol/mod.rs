@@ -70,6 +70,10 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
         }
     }
 
+    fn is_explicit(&self) -> bool {
+        M::EXPLICIT
+    }
+
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let course = Course::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
         run::<M, _>(&course, accuracy, limits)

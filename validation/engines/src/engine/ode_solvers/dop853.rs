@@ -66,6 +66,10 @@ impl Engine for Dop853 {
         }
     }
 
+    fn is_explicit(&self) -> bool {
+        true
+    }
+
     /// At first order the error of a step h is a multiple of a omega h^2, and is held to the
     /// tolerance. The multiple is the least that was measured over the cases.
     fn least_work(&self, task: &Task, accuracy: Accuracy) -> f64 {

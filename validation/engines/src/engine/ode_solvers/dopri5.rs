@@ -55,6 +55,10 @@ impl<E: Coordinates> Engine for Dopri5<E> {
         run::<E, U4>(&course, accuracy, limits)
     }
 
+    fn is_explicit(&self) -> bool {
+        true
+    }
+
     fn runs_systems(&self) -> bool {
         E::BOUNDED
     }

@@ -140,7 +140,7 @@ impl FaultyWatch {
             }
             IntegratorFault::Dropped(every) => sound.filter(|_| !self.drops(every)),
             IntegratorFault::AtStepEnd => {
-                sound.map(|it| GuardRise { t: end_of_step(stretch, it.t), ..it })
+                sound.map(|it| GuardRise { t: end_of_step(&stretch.ends, it.t), ..it })
             }
             IntegratorFault::Late => sound.map(|it| self.late(stretch, it)),
             _ => sound,
@@ -212,7 +212,7 @@ impl FaultyWatch {
         if self.slip != IntegratorFault::LowOrder {
             return stretch.at(t);
         }
-        let end = end_of_step(stretch, t);
+        let end = end_of_step(&stretch.ends, t);
         let begin =
             stretch.ends.iter().copied().filter(|it| *it < end).fold(stretch.begin, f64::max);
         if end <= begin {
@@ -226,7 +226,7 @@ impl FaultyWatch {
     }
 }
 
-/// The end of the step in which a time lies.
-fn end_of_step(stretch: &Stretch, t: f64) -> f64 {
-    stretch.ends.iter().copied().find(|end| *end >= t).unwrap_or(t)
+/// The end of the step in which a time lies, of all ends of steps.
+pub(super) fn end_of_step(ends: &[f64], t: f64) -> f64 {
+    ends.iter().copied().find(|end| *end >= t).unwrap_or(t)
 }

@@ -1,6 +1,8 @@
 //! Engines that are wrong on purpose, one fault each: what no fault trips is no gate.
 //!
-//! [`wrong`] are held to the exact solver's bounds, [`faulty`] to those of a good integrator.
+//! [`wrong`] are held to the exact solver's bounds, [`faulty`] to those of a good integrator. The
+//! faults of [`wrong_on_systems`] and [`faulty_on_systems`] each show in one [`Way`] of running a
+//! case of a system, and nowhere else.
 //!
 //! They never run beside the others; the power test runs them and asks which bounds notice. Three
 //! are the exact solver on something slightly different; the others are a plain solver that walks
@@ -9,13 +11,20 @@
 mod altered;
 mod closed;
 mod integrator;
+mod misled;
 mod printed;
+mod systems;
+mod ties;
 mod walk;
 
 use super::Engine;
 use altered::{Alteration, Altered};
 pub use closed::Closed;
 use integrator::{Faulty, IntegratorFault};
+use misled::SystemFault;
+pub use systems::COOLDOWN;
+use systems::FaultyOnSystems;
+use ties::LastFirst;
 use walk::{WalkFault, WrongWalk};
 
 /// A wrong engine and what is wrong with it.
@@ -139,3 +148,146 @@ pub fn faulty() -> &'static [Wrong] {
 
 /// The engine whose bounds [`faulty`] integrators are held to.
 pub const SOUND: &str = "ode_solvers-dopri5";
+
+/// A way of running a case of a system, as far as the case itself tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Way {
+    /// Back in time.
+    Backward,
+    /// With a guard that is watched in one direction.
+    Direction,
+    /// From a state on a guard.
+    StartOnGuard,
+    /// With states taken where events are: each event has the state after its reset.
+    OutputAtEvents,
+    /// With states taken between events, in steps that an event cuts short.
+    OutputBetweenEvents,
+    /// With several events in one instant.
+    Simultaneous,
+    /// With events that follow each other closely, as in chatter and before an accumulation.
+    CloseEvents,
+}
+
+impl Way {
+    /// What cases of this way have, for people.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Backward => "a run back in time",
+            Self::Direction => "a guard that is watched in one direction",
+            Self::StartOnGuard => "a start on a guard",
+            Self::OutputAtEvents => "resets, after which each event has its state",
+            Self::OutputBetweenEvents => "states asked for soon after an event",
+            Self::Simultaneous => "several events in one instant",
+            Self::CloseEvents => "events that follow each other closely",
+        }
+    }
+}
+
+/// An engine that is wrong in one way of running a case.
+#[derive(Clone, Copy)]
+pub struct WrongWay {
+    /// The engine and its fault.
+    pub wrong: Wrong,
+    /// Where the fault shows.
+    pub way: Way,
+}
+
+static WRONG_ON_SYSTEMS: [WrongWay; 1] = [WrongWay {
+    wrong: Wrong {
+        engine: &LastFirst { name: "wrong-last-first" },
+        fault: "of events in one instant the file's last comes first",
+    },
+    way: Way::Simultaneous,
+}];
+
+/// Engines that are held to the exact solver's bounds on systems.
+#[must_use]
+pub fn wrong_on_systems() -> &'static [WrongWay] {
+    &WRONG_ON_SYSTEMS
+}
+
+/// The integrator of [`faulty_on_systems`] without a fault.
+pub static FAULTY_ON_SYSTEMS_CONTROL: &dyn Engine =
+    &FaultyOnSystems { name: "dopri5-control", slip: SystemFault::None };
+
+macro_rules! faulty_on_systems {
+    ($way:ident, $name:literal, $slip:ident, $fault:literal) => {
+        WrongWay {
+            wrong: Wrong {
+                engine: &FaultyOnSystems { name: $name, slip: SystemFault::$slip },
+                fault: $fault,
+            },
+            way: Way::$way,
+        }
+    };
+}
+
+static FAULTY_ON_SYSTEMS: [WrongWay; 10] = [
+    faulty_on_systems!(
+        Backward,
+        "dopri5-forward-directions",
+        ForwardDirections,
+        "back in time a watched guard counts in its direction of forward time"
+    ),
+    faulty_on_systems!(
+        Backward,
+        "dopri5-forward-forcing",
+        ForwardForcing,
+        "back in time the forcing's clock goes on ahead"
+    ),
+    faulty_on_systems!(
+        Backward,
+        "dopri5-past-boundary",
+        PastBoundary,
+        "back in time a run goes on past the boundary of its mode"
+    ),
+    faulty_on_systems!(
+        Direction,
+        "dopri5-both-directions",
+        BothDirections,
+        "the direction of a watched guard is ignored"
+    ),
+    faulty_on_systems!(
+        StartOnGuard,
+        "dopri5-fires-at-start",
+        FiresAtStart,
+        "a guard that is zero at the start is an event there"
+    ),
+    faulty_on_systems!(
+        StartOnGuard,
+        "dopri5-misses-at-start",
+        MissesAtStart,
+        "an event at the start is not noticed"
+    ),
+    faulty_on_systems!(
+        OutputAtEvents,
+        "dopri5-state-before",
+        StateBefore,
+        "an event has the state before its reset"
+    ),
+    faulty_on_systems!(
+        OutputBetweenEvents,
+        "dopri5-uncut-output",
+        UncutOutput,
+        "states in a step that an event cuts short are those of the whole step"
+    ),
+    faulty_on_systems!(
+        Simultaneous,
+        "dopri5-one-at-once",
+        OneAtOnce,
+        "of events in one instant the first alone is noticed"
+    ),
+    faulty_on_systems!(
+        CloseEvents,
+        "dopri5-cooldown",
+        Cooldown,
+        "for a hundredth of the system's unit of time after an event none is noticed"
+    ),
+];
+
+/// Integrators with one fault each, held to the bounds of [`SOUND`] on systems.
+#[must_use]
+pub fn faulty_on_systems() -> &'static [WrongWay] {
+    &FAULTY_ON_SYSTEMS
+}

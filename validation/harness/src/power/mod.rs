@@ -1,12 +1,18 @@
 //! The power of the gates: which bounds notice which engine that is wrong on purpose.
 //!
 //! A bound that no fault trips guards nothing. Every wrong engine is run on every case that is at
-//! hand, held against the exact solver's bounds, and must fail at least one.
+//! hand, held against the bounds of the engine that it is without its fault, and must fail at least
+//! one. A fault that shows in one way of running a case must be caught by the cases that are run in
+//! that way, and by no other ([`examine_on_systems`]).
+
+mod systems;
+
+pub use systems::{all_on_systems, examine_on_systems, is_run};
 
 use crate::case::{Bound, Quantity};
-use crate::engine::{Accuracy, Limits, REFERENCE, SOUND, Wrong, faulty, wrong};
+use crate::engine::{Accuracy, Limits, REFERENCE, SOUND, Way, Wrong, faulty, wrong};
 use crate::number::brief;
-use crate::score::{Checked, Expected, Subject, Verdict, judge};
+use crate::score::{Checked, Expected, Measures, Subject, Verdict, judge};
 use crate::suite::{CaseRun, Extent, Prepared};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -93,13 +99,62 @@ pub struct Finding {
     pub gates: BTreeMap<Gate, Trip>,
     /// Cases on which it gave no result at all.
     pub without_result: usize,
+    /// Cases on which a bound failed.
+    pub failed_on: Vec<String>,
+    /// The way of running a case in which its fault shows, if it is one; the cases above are then
+    /// those that are run in that way.
+    pub way: Option<Way>,
+    /// How many cases are not run in that way, and on which of them a bound failed.
+    pub elsewhere: (usize, Vec<String>),
 }
 
 impl Finding {
     /// Whether any gate noticed.
     #[must_use]
     pub fn caught(&self) -> bool {
-        self.without_result > 0 || self.gates.values().any(|trip| trip.failed > 0)
+        // Stiff cases give no result to a right integrator either.
+        let none = self.way.is_none() && self.without_result > 0;
+        none || self.gates.values().any(|trip| trip.failed > 0)
+    }
+
+    /// Gathers what the gates said, case by case.
+    fn of(
+        wrong: &Wrong,
+        standard: Standard,
+        outcomes: impl IntoIterator<Item = (String, Option<Vec<Checked>>)>,
+    ) -> Self {
+        let mut finding = Self {
+            engine: standard.who(wrong.engine.declaration().name),
+            fault: wrong.fault,
+            gates: Gate::ALL.into_iter().map(|gate| (gate, Trip::default())).collect(),
+            without_result: 0,
+            failed_on: Vec::new(),
+            way: None,
+            elsewhere: (0, Vec::new()),
+        };
+        for (case, checked) in outcomes {
+            match checked {
+                Some(checked) => finding.add(&case, &checked),
+                None => finding.without_result += 1,
+            }
+        }
+        finding
+    }
+
+    fn add(&mut self, case: &str, checked: &[Checked]) {
+        if checked.iter().any(|it| it.verdict == Verdict::Fail) {
+            self.failed_on.push(case.to_owned());
+        }
+        for (gate, trip) in &mut self.gates {
+            let mut own = checked.iter().filter(|it| Gate::of(it.quantity) == *gate).peekable();
+            trip.held += usize::from(own.peek().is_some());
+            let Some(failed) = own.find(|it| it.verdict == Verdict::Fail) else { continue };
+            trip.failed += 1;
+            if trip.detail.is_empty() {
+                let (value, limit) = (brief(failed.value), brief(failed.limit));
+                trip.detail = format!("{case}: {value}, limit {limit}");
+            }
+        }
     }
 }
 
@@ -162,31 +217,9 @@ pub fn all() -> Vec<(Wrong, Standard)> {
 /// Runs a wrong engine on all cases.
 #[must_use]
 pub fn examine(wrong: &Wrong, cases: &[Prepared], standard: Standard, bounds: &[Bound]) -> Finding {
-    let outcomes: Vec<_> =
-        cases.par_iter().map(|case| held(wrong, case, standard, bounds)).collect();
-    let mut finding = Finding {
-        engine: standard.who(wrong.engine.declaration().name),
-        fault: wrong.fault,
-        gates: Gate::ALL.into_iter().map(|gate| (gate, Trip::default())).collect(),
-        without_result: 0,
-    };
-    for (case, outcome) in cases.iter().zip(outcomes) {
-        let Some(checked) = outcome else {
-            finding.without_result += 1;
-            continue;
-        };
-        for (gate, trip) in &mut finding.gates {
-            let mut own = checked.iter().filter(|it| Gate::of(it.quantity) == *gate).peekable();
-            trip.held += usize::from(own.peek().is_some());
-            let Some(failed) = own.find(|it| it.verdict == Verdict::Fail) else { continue };
-            trip.failed += 1;
-            if trip.detail.is_empty() {
-                let (value, limit) = (brief(failed.value), brief(failed.limit));
-                trip.detail = format!("{}: {value}, limit {limit}", case.case.name);
-            }
-        }
-    }
-    finding
+    let one = |case: &Prepared| (case.case.name.clone(), held(wrong, case, standard, bounds));
+    let outcomes: Vec<_> = cases.par_iter().map(one).collect();
+    Finding::of(wrong, standard, outcomes)
 }
 
 fn held(
@@ -195,13 +228,24 @@ fn held(
     standard: Standard,
     defaults: &[Bound],
 ) -> Option<Vec<Checked>> {
-    let Standard { engine, accuracy, unit } = standard;
-    let subject = Subject { case: &prepared.case.name, engine, accuracy, unit };
+    let Standard { accuracy, unit, .. } = standard;
     let limits = Limits::default();
     let extent = |_| standard.extent(&prepared.case);
     let measured = prepared.measured(wrong.engine, accuracy, unit, &limits, extent);
     let (measures, ..) = measured.ok()?;
-    let bounds: Vec<_> = prepared.case.bounds.iter().chain(defaults).collect();
+    Some(judged(prepared, &measures, standard, defaults))
+}
+
+/// The bounds that a run of a wrong engine was held against.
+fn judged(
+    case: &dyn CaseRun,
+    measures: &Measures,
+    standard: Standard,
+    defaults: &[Bound],
+) -> Vec<Checked> {
+    let Standard { engine, accuracy, unit } = standard;
+    let subject = Subject { case: case.name(), engine, accuracy, unit };
+    let bounds: Vec<_> = case.expectations().0.iter().chain(defaults).collect();
     let expected = Expected { bounds: &bounds, of_classes: defaults, shortcomings: &[] };
-    Some(judge(&subject, &prepared.as_run(&measures), &expected).bounds)
+    judge(&subject, &case.as_run(measures), &expected).bounds
 }

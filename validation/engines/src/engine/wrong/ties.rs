@@ -1,0 +1,47 @@
+//! The exact solver with the events of one instant in the wrong order: the file's last comes first.
+
+use super::super::exact::Exact;
+use super::super::{
+    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Role, SystemOutcome, SystemTask, Task,
+};
+use crate::system::SystemProblem;
+use std::sync::Arc;
+
+pub(super) struct LastFirst {
+    pub(super) name: &'static str,
+}
+
+impl Engine for LastFirst {
+    fn declaration(&self) -> Declaration {
+        let method = "wrong on purpose";
+        Declaration { name: self.name, method, role: Role::Rows, ..Exact.declaration() }
+    }
+
+    fn run(&self, _: &Task, _: Accuracy, _: &Limits) -> Result<Outcome, Failure> {
+        Err(Failure::new("runs other systems than the oscillator"))
+    }
+
+    fn run_system(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        let lacking = || Failure::new("the system's exact coefficients are not there");
+        let problem = task.exact.as_ref().ok_or_else(lacking)?;
+        let mut turned = problem.exact.clone();
+        turned.modes.iter_mut().for_each(|mode| mode.until.reverse());
+        let turned = Arc::new(SystemProblem::new(turned, problem.backward)?);
+        let task = SystemTask { exact: Some(turned), ..task.clone() };
+        let mut outcome = Exact.run_system(&task, accuracy, limits)?;
+        let mut mode = task.mode;
+        for event in &mut outcome.events {
+            let ends = problem.exact.modes[mode].until.len();
+            if event.event < ends {
+                event.event = ends - 1 - event.event;
+            }
+            mode = event.mode;
+        }
+        Ok(outcome)
+    }
+}

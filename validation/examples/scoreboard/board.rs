@@ -1,0 +1,183 @@
+//! The scoreboard: a line an engine, its default set-up beside the expert's.
+
+use super::read::{Engine, Report, Row};
+use anyhow::{Result, bail};
+use std::collections::BTreeSet;
+
+/// What the name of a set-up ends with that is the documentation's first example.
+pub(crate) const DEFAULT: &str = "-default";
+/// The kind of the cases of the oscillator, which name no trouble.
+pub(crate) const OSCILLATOR: &str = "oscillator";
+
+/// The scoreboard.
+pub(crate) struct Board {
+    /// What the reports were made with and on.
+    pub(crate) made: Vec<String>,
+    /// The tolerances of the rows, and on how many cases they are.
+    pub(crate) tolerances: Vec<f64>,
+    pub(crate) cases: usize,
+    /// The kinds of trouble.
+    pub(crate) kinds: Vec<String>,
+    /// The engines, the best first.
+    pub(crate) lines: Vec<Line>,
+}
+
+/// An engine with both of its set-ups, as far as they were run.
+pub(crate) struct Line {
+    /// The name without the ending of the default.
+    pub(crate) name: String,
+    pub(crate) library: String,
+    pub(crate) version: String,
+    pub(crate) language: String,
+    pub(crate) expert: Option<Score>,
+    pub(crate) default: Option<Score>,
+}
+
+/// What a set-up found, and at what cost.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Score {
+    /// Over all rows.
+    pub(crate) all: Tally,
+    /// For each kind of trouble.
+    pub(crate) kinds: Vec<Tally>,
+    /// Right-hand sides per event: the median over the rows that found every event.
+    pub(crate) rhs: Option<f64>,
+    /// Microseconds per event in the integrator itself, over the same rows.
+    pub(crate) own: Option<f64>,
+    /// Microseconds per event beside it, in a program of its own.
+    pub(crate) overhead: Option<f64>,
+}
+
+/// Events counted as the ranking counts them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Tally {
+    pub(crate) found: u64,
+    pub(crate) spurious: u64,
+    pub(crate) total: u64,
+}
+
+impl Tally {
+    fn add(&mut self, row: &Row) {
+        let judged = row.verdict != "not-scored";
+        self.found += row.events_matched.filter(|_| judged).unwrap_or_default();
+        self.spurious += row.events_spurious.unwrap_or_default();
+        self.total += row.events_total;
+    }
+
+    /// Events found less spurious ones in per cent of all, rounded down, 0 at the least; nothing
+    /// where there are none.
+    pub(crate) fn percent(&self) -> Option<u64> {
+        (self.total > 0).then(|| 100 * self.found.saturating_sub(self.spurious) / self.total)
+    }
+
+    fn share(&self) -> f64 {
+        (self.found as f64 - self.spurious as f64) / self.total.max(1) as f64
+    }
+}
+
+impl Board {
+    /// The scoreboard of these reports.
+    pub(crate) fn of(reports: &[Report]) -> Result<Self> {
+        let rows = || reports.iter().flat_map(|report| &report.results);
+        let mut kinds: BTreeSet<String> = rows().flat_map(|row| row.trouble.clone()).collect();
+        if rows().any(|row| row.trouble.is_empty()) {
+            kinds.insert(OSCILLATOR.to_owned());
+        }
+        let kinds: Vec<String> = kinds.into_iter().collect();
+        let mut tolerances: Vec<f64> = rows().filter_map(|row| row.tolerance).collect();
+        tolerances.sort_by(|a, b| b.total_cmp(a));
+        tolerances.dedup();
+        let mut lines: Vec<Line> = Vec::new();
+        for report in reports {
+            for engine in &report.engines {
+                put(&mut lines, engine, Score::of(engine, report, &kinds))?;
+            }
+        }
+        lines.sort_by(|a, b| b.rank().0.cmp(&a.rank().0).then(b.rank().1.total_cmp(&a.rank().1)));
+
+        let made = |it: &Report| {
+            let commit = it.commit.as_deref().unwrap_or("no commit");
+            format!("percuss {} at {commit}, on {}", it.percuss, it.cpu)
+        };
+        let mut made: Vec<String> = reports.iter().map(made).collect();
+        made.dedup();
+        let cases: BTreeSet<&str> = rows().map(|row| row.case.as_str()).collect();
+        Ok(Self { made, tolerances, cases: cases.len(), kinds, lines })
+    }
+}
+
+/// Puts a set-up into the line of its engine and version.
+fn put(lines: &mut Vec<Line>, engine: &Engine, score: Score) -> Result<()> {
+    let name = engine.name.strip_suffix(DEFAULT).unwrap_or(&engine.name);
+    let place = lines.iter().position(|it| it.name == name && it.version == engine.version);
+    let place = place.unwrap_or_else(|| {
+        lines.push(Line {
+            name: name.to_owned(),
+            library: engine.library.clone(),
+            version: engine.version.clone(),
+            language: engine.language.clone(),
+            expert: None,
+            default: None,
+        });
+        lines.len() - 1
+    });
+    let is_default = engine.name.ends_with(DEFAULT);
+    let slot = if is_default { &mut lines[place].default } else { &mut lines[place].expert };
+    if slot.is_some() {
+        bail!("{} {} is in more than one report", engine.name, engine.version);
+    }
+    *slot = Some(score);
+    Ok(())
+}
+
+impl Line {
+    /// Whether it is the reference, and its better share of events.
+    fn rank(&self) -> (bool, f64) {
+        let share =
+            |score: &Option<Score>| score.as_ref().map_or(f64::NEG_INFINITY, |it| it.all.share());
+        let best = self.expert.as_ref().map_or(share(&self.default), |it| it.all.share());
+        (self.name.starts_with("exact"), best)
+    }
+}
+
+impl Score {
+    fn of(engine: &Engine, report: &Report, kinds: &[String]) -> Self {
+        let rows: Vec<&Row> = report.results.iter().filter(|it| it.engine == engine.name).collect();
+        let tally = |rows: &mut dyn Iterator<Item = &&Row>| {
+            let mut tally = Tally::default();
+            rows.for_each(|row| tally.add(row));
+            tally
+        };
+        let is_of = |row: &Row, kind: &String| {
+            row.trouble.contains(kind) || (row.trouble.is_empty() && kind == OSCILLATOR)
+        };
+        let of_kind = |kind: &String| tally(&mut rows.iter().filter(|row| is_of(row, kind)));
+        let whole =
+            |row: &&&Row| row.events_total > 0 && row.events_matched == Some(row.events_total);
+        let each = |figure: fn(&Row) -> Option<f64>| {
+            let of = |row: &&Row| Some(figure(row)? / row.events_total as f64);
+            median(rows.iter().filter(whole).filter_map(of).collect())
+        };
+        Self {
+            all: tally(&mut rows.iter()),
+            kinds: kinds.iter().map(of_kind).collect(),
+            rhs: each(|row| row.rhs_evaluations.map(|count| count as f64)),
+            own: each(|row| row.own_ns.or(row.wall_ns).map(microseconds)),
+            overhead: each(|row| Some(microseconds(row.wall_ns?.saturating_sub(row.own_ns?)))),
+        }
+    }
+}
+
+fn microseconds(ns: u64) -> f64 {
+    ns as f64 / 1000.0
+}
+
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let (n, middle) = (values.len(), values.len() / 2);
+    match n {
+        0 => None,
+        _ if n % 2 == 1 => Some(values[middle]),
+        _ => Some((values[middle - 1] + values[middle]) / 2.0),
+    }
+}

@@ -1,0 +1,149 @@
+//! The scoreboard as Markdown and as HTML.
+
+use super::board::{Board, Line, Score, Tally};
+use anyhow::Result;
+use askama::Template;
+
+/// What stands where nothing was measured.
+const NOTHING: &str = "\u{2013}";
+
+/// The block of the Markdown page.
+pub(crate) fn markdown(board: &Board) -> String {
+    let mut text = format!("{}\n\n", head(board));
+    let columns = [
+        "engine",
+        "library",
+        "language",
+        "found %",
+        "by default %",
+        "spurious",
+        "by default",
+        "rhs per event",
+        "by default",
+        "µs per event",
+        "µs of the process",
+    ];
+    text += &table(&columns.map(str::to_owned), 3, board.lines.iter().map(|it| cells(it).to_vec()));
+    text += "\nEvents found less spurious ones, in per cent of all, by kind of trouble; the default set-up's \
+             after the stroke.\n\n";
+    let mut columns = vec!["engine".to_owned()];
+    columns.extend(board.kinds.iter().cloned());
+    let line = |it: &Line| {
+        let kinds = (0..board.kinds.len()).map(|k| both(it, |score| percent(&score.kinds[k])));
+        [named(it)].into_iter().chain(kinds).collect()
+    };
+    text + &table(&columns, 1, board.lines.iter().map(line))
+}
+
+/// What the figures are of, in a sentence.
+fn head(board: &Board) -> String {
+    let tolerances: Vec<_> = board.tolerances.iter().map(|it| format!("{it:e}")).collect();
+    format!(
+        "{} cases at {}; {}.",
+        board.cases,
+        if tolerances.is_empty() { "no tolerance".to_owned() } else { tolerances.join(" and ") },
+        board.made.join("; ")
+    )
+}
+
+/// A table whose columns from `right` on are numbers.
+fn table(columns: &[String], right: usize, lines: impl Iterator<Item = Vec<String>>) -> String {
+    let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+    let rules: Vec<String> =
+        (0..columns.len()).map(|k| if k < right { "---" } else { "--:" }.to_owned()).collect();
+    [line(columns), line(&rules)].into_iter().chain(lines.map(|it| line(&it))).collect()
+}
+
+fn named(line: &Line) -> String {
+    format!("{} {}", line.name, line.version)
+}
+
+/// The cells of an engine in the first table.
+fn cells(line: &Line) -> [String; 11] {
+    let of = |score: &Option<Score>, figure: fn(&Score) -> String| {
+        score.as_ref().map_or(NOTHING.to_owned(), figure)
+    };
+    let pair = |figure: fn(&Score) -> String| [of(&line.expert, figure), of(&line.default, figure)];
+    let best = line.expert.as_ref().or(line.default.as_ref());
+    let [found, found_default] = pair(|it| percent(&it.all));
+    let [spurious, spurious_default] = pair(|it| it.all.spurious.to_string());
+    let [rhs, rhs_default] = pair(|it| figure(it.rhs));
+    [
+        named(line),
+        line.library.clone(),
+        line.language.clone(),
+        found,
+        found_default,
+        spurious,
+        spurious_default,
+        rhs,
+        rhs_default,
+        figure(best.and_then(|it| it.own)),
+        figure(best.and_then(|it| it.overhead)),
+    ]
+}
+
+/// The expert's figure and the default's, where each was run.
+fn both(line: &Line, figure: impl Fn(&Score) -> String) -> String {
+    let [expert, default] = [&line.expert, &line.default].map(|it| it.as_ref().map(&figure));
+    match (expert, default) {
+        (Some(expert), Some(default)) => format!("{expert} / {default}"),
+        (Some(expert), None) => expert,
+        (None, Some(default)) => format!("{NOTHING} / {default}"),
+        (None, None) => NOTHING.to_owned(),
+    }
+}
+
+fn percent(tally: &Tally) -> String {
+    tally.percent().map_or(NOTHING.to_owned(), |it| it.to_string())
+}
+
+/// Two digits that tell.
+fn figure(value: Option<f64>) -> String {
+    match value {
+        None => NOTHING.to_owned(),
+        Some(value) if value >= 10.0 => format!("{value:.0}"),
+        Some(value) => format!("{value:.1}"),
+    }
+}
+
+#[derive(Template)]
+#[template(path = "scoreboard.html")]
+struct Page<'a> {
+    head: String,
+    kinds: &'a [String],
+    lines: Vec<HtmlLine>,
+}
+
+/// An engine in both tables.
+struct HtmlLine {
+    name: String,
+    cells: [String; 11],
+    kinds: Vec<[KindCell; 2]>,
+}
+
+/// A share of events, whose colour says how much it is.
+struct KindCell {
+    shown: String,
+    share: u64,
+}
+
+/// The HTML page, which loads nothing.
+///
+/// # Errors
+/// What the template says.
+pub(crate) fn html(board: &Board) -> Result<String> {
+    let cell = |score: &Option<Score>, k: usize| KindCell {
+        shown: score.as_ref().map_or(NOTHING.to_owned(), |it| percent(&it.kinds[k])),
+        share: score.as_ref().and_then(|it| it.kinds[k].percent()).unwrap_or_default(),
+    };
+    let line = |it: &Line| HtmlLine {
+        name: named(it),
+        cells: cells(it),
+        kinds: (0..board.kinds.len())
+            .map(|k| [cell(&it.expert, k), cell(&it.default, k)])
+            .collect(),
+    };
+    let lines = board.lines.iter().map(line).collect();
+    Ok(Page { head: head(board), kinds: &board.kinds, lines }.render()?)
+}

@@ -1,0 +1,92 @@
+//! differential-equations with its built-in events as its documentation's first example has them,
+//! run by percuss: `dop853`, an `Event` with a direction that ends the run, the tolerances, and
+//! nothing else. What an expert adds is percuss's own engine `differential-equations-rkv655e`.
+
+mod percuss_program;
+
+use differential_equations::prelude::*;
+use percuss_program::{Course, Mode, serve};
+use std::rc::Rc;
+
+/// A mode in the library's traits.
+struct Field(Rc<Mode>);
+
+impl ODE<f64, Vec<f64>> for Field {
+    fn diff(&self, t: f64, z: &Vec<f64>, out: &mut Vec<f64>) {
+        *out = self.0.rates(t, z);
+    }
+}
+
+/// A guard.
+struct Guard {
+    mode: Rc<Mode>,
+    place: usize,
+}
+
+impl Event<f64, Vec<f64>> for Guard {
+    fn config(&self) -> EventConfig {
+        let direction = match self.mode.events()[self.place].sign() {
+            sign if sign > 0.0 => CrossingDirection::Positive,
+            sign if sign < 0.0 => CrossingDirection::Negative,
+            _ => CrossingDirection::Both,
+        };
+        EventConfig::new(direction, Some(1))
+    }
+
+    fn event(&self, t: f64, z: &Vec<f64>) -> f64 {
+        self.mode.guard(self.place, t, z)
+    }
+}
+
+/// Runs to the first event that the library finds.
+fn stretch(course: &mut Course) -> Result<(), Box<dyn std::error::Error>> {
+    let (mode, span) = (course.mode(), course.run.span);
+    let field = Field(course.mode());
+    let guard = |place| Guard { mode: course.mode(), place };
+    let guards: Vec<_> = (0..mode.events().len()).map(guard).collect();
+    let due: Vec<f64> = course.pending().iter().copied().filter(|time| *time < span).collect();
+    let times: Vec<f64> = due.iter().copied().chain([span]).collect();
+    let method = ExplicitRungeKutta::dop853()
+        .rtol(course.run.tolerance.relative)
+        .atol(course.run.tolerance.absolute);
+    let run = IVP::ode(&field, course.t, span, course.z.clone()).t_eval(times);
+    let solution = match guards.as_slice() {
+        [] => run.method(method).solve(),
+        [one] => run.event(one).method(method).solve(),
+        [one, two] => run.event(one).event(two).method(method).solve(),
+        [one, two, three] => run.event(one).event(two).event(three).method(method).solve(),
+        _ => return Err("the builder takes its events one by one; this program adds three".into()),
+    };
+    let solution = solution.map_err(|why| format!("{why:?}"))?;
+    course.steps += solution.steps.total() as u64;
+    course.step()?;
+    let found = matches!(solution.status, Status::Interrupted);
+    let (Some(t), Some(z)) = (solution.t.last(), solution.y.last()) else {
+        return Err("the solution is empty".into());
+    };
+    for (time, state) in solution.t.iter().zip(&solution.y) {
+        if course.due(*time) == Some(*time) && (!found || time < t) {
+            course.sample(state.clone());
+        }
+    }
+    if !found {
+        (course.t, course.z) = (span, z.clone());
+        return Ok(());
+    }
+    // Which event it is the library does not say: the one whose guard is nearest to zero.
+    let size = |place: &usize| mode.guard(*place, *t, z).abs();
+    let nearest = (0..guards.len()).min_by(|a, b| size(a).total_cmp(&size(b)));
+    course.event(*t, nearest.ok_or("an event without guards")?, z.clone())
+}
+
+fn make(course: &mut Course) -> Result<(), Box<dyn std::error::Error>> {
+    while course.goes_on() {
+        stretch(course)?;
+    }
+    Ok(())
+}
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let setups = [("dop853-default", "Dormand-Prince 8(5,3), built-in events", Some(8))];
+    serve("differential-equations", "0.7.0", &setups, make)
+}

@@ -1,0 +1,327 @@
+//! Programs that percuss runs as engines, for Rust: the protocol, and a system's equations.
+//!
+//! A program calls [`serve`] with what it can do and with a function that makes a run. The protocol
+//! is described in docs/PROTOCOL.md. What follows an event is told by the signs of conditions
+//! alone: engines in Rust that experts set up are part of percuss.
+
+#![allow(dead_code, reason = "each program uses a part of it")]
+
+use serde::Deserialize;
+use serde_json::{Value, json};
+use std::cell::Cell;
+use std::error::Error;
+use std::io::{BufRead, Write};
+use std::rc::Rc;
+use std::time::{Duration, Instant};
+
+/// So many events in one instant end a run.
+const MOST_AT_ONCE: usize = 64;
+const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
+
+/// A row over (z, cos theta, sin theta, 1).
+type Row = Vec<f64>;
+
+#[derive(Deserialize)]
+struct Request {
+    id: u64,
+    ask: String,
+    run: Option<Run>,
+}
+
+/// What is asked for.
+#[derive(Deserialize)]
+pub struct Run {
+    pub setup: String,
+    system: SystemWire,
+    backward: bool,
+    mode: usize,
+    state: Vec<f64>,
+    pub span: f64,
+    samples: Vec<f64>,
+    pub tolerance: Tolerance,
+    limits: Limits,
+}
+
+/// The tolerances.
+#[derive(Deserialize)]
+pub struct Tolerance {
+    pub relative: f64,
+    pub absolute: f64,
+}
+
+#[derive(Deserialize)]
+struct Limits {
+    calls: u64,
+    events: usize,
+    wall_s: f64,
+}
+
+#[derive(Deserialize)]
+struct SystemWire {
+    omega: f64,
+    phi: f64,
+    modes: Vec<ModeWire>,
+}
+
+#[derive(Deserialize)]
+struct ModeWire {
+    #[serde(rename = "A")]
+    a: Vec<Row>,
+    #[serde(rename = "B")]
+    b: Vec<[f64; 2]>,
+    c: Vec<f64>,
+    events: Vec<Event>,
+}
+
+/// An event of a mode.
+#[derive(Deserialize)]
+pub struct Event {
+    guard: Row,
+    direction: String,
+    reset: Option<Vec<Row>>,
+    successors: Vec<Successor>,
+}
+
+#[derive(Deserialize)]
+struct Successor {
+    when: Option<Row>,
+    mode: usize,
+}
+
+impl Event {
+    /// 1 where the guard rises, -1 where it falls, 0 for both.
+    pub fn sign(&self) -> f64 {
+        match self.direction.as_str() {
+            "rising" => 1.0,
+            "falling" => -1.0,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether it ends its mode.
+    pub fn ends(&self) -> bool {
+        !self.successors.is_empty()
+    }
+}
+
+/// A mode: z' = A z + c + B (cos theta, sin theta).
+pub struct Mode {
+    wire: ModeWire,
+    omega: f64,
+    phi: f64,
+    calls: Rc<Cell<u64>>,
+}
+
+impl Mode {
+    fn wide(&self, t: f64, z: &[f64]) -> Row {
+        let theta = self.omega * t + self.phi;
+        z.iter().copied().chain([theta.cos(), theta.sin(), 1.0]).collect()
+    }
+
+    /// The right-hand side.
+    pub fn rates(&self, t: f64, z: &[f64]) -> Vec<f64> {
+        self.calls.set(self.calls.get() + 1);
+        let (sin, cos) = (self.omega * t + self.phi).sin_cos();
+        let ModeWire { a, b, c, .. } = &self.wire;
+        let rate =
+            |((row, b), c): ((&Row, &[f64; 2]), &f64)| dot(row, z) + b[0] * cos + b[1] * sin + c;
+        a.iter().zip(b).zip(c).map(rate).collect()
+    }
+
+    /// The Jacobian times a vector.
+    pub fn jacobian(&self, v: &[f64]) -> Vec<f64> {
+        self.wire.a.iter().map(|row| dot(row, v)).collect()
+    }
+
+    /// The value of a guard.
+    pub fn guard(&self, event: usize, t: f64, z: &[f64]) -> f64 {
+        dot(&self.wire.events[event].guard, &self.wide(t, z))
+    }
+
+    /// The events, those that end the mode first.
+    pub fn events(&self) -> &[Event] {
+        &self.wire.events
+    }
+}
+
+fn dot(row: &[f64], w: &[f64]) -> f64 {
+    row.iter().zip(w).map(|(a, b)| a * b).sum()
+}
+
+/// A run as it is made.
+pub struct Course {
+    pub run: Run,
+    modes: Vec<Rc<Mode>>,
+    calls: Rc<Cell<u64>>,
+    until: Instant,
+    pub t: f64,
+    mode: usize,
+    pub z: Vec<f64>,
+    events: Vec<Value>,
+    sampled: Vec<Vec<f64>>,
+    ended: Option<&'static str>,
+    crowd: usize,
+    pub steps: u64,
+}
+
+/// A run that went beyond its limits.
+#[derive(Debug, thiserror::Error)]
+#[error("{0}")]
+struct GaveUp(&'static str);
+
+impl Course {
+    fn new(mut run: Run) -> Self {
+        let calls = Rc::new(Cell::new(0));
+        let SystemWire { omega, phi, ref mut modes } = run.system;
+        let mode = |wire| Rc::new(Mode { wire, omega, phi, calls: Rc::clone(&calls) });
+        let modes = std::mem::take(modes).into_iter().map(mode).collect();
+        let until = Instant::now() + Duration::from_secs_f64(run.limits.wall_s);
+        let (mode, z) = (run.mode, run.state.clone());
+        let mut course = Self {
+            run,
+            modes,
+            calls,
+            until,
+            t: 0.0,
+            mode,
+            z: z.clone(),
+            events: Vec::new(),
+            sampled: Vec::new(),
+            ended: None,
+            crowd: 0,
+            steps: 0,
+        };
+        while course.due(0.0).is_some() {
+            course.sample(z.clone());
+        }
+        course
+    }
+
+    /// The mode of now.
+    pub fn mode(&self) -> Rc<Mode> {
+        Rc::clone(&self.modes[self.mode])
+    }
+
+    /// Whether the run has not come to its end.
+    pub fn goes_on(&self) -> bool {
+        self.ended.is_none() && self.run.span - self.t > 2.0 * ONE_INSTANT * self.run.span
+    }
+
+    /// Counts a step, and ends a run that goes beyond its limits.
+    pub fn step(&mut self) -> Result<(), Box<dyn Error>> {
+        self.steps += 1;
+        if self.calls.get() > self.run.limits.calls {
+            return Err(Box::new(GaveUp("too many calls")));
+        }
+        if Instant::now() > self.until {
+            return Err(Box::new(GaveUp("the time is over")));
+        }
+        Ok(())
+    }
+
+    /// The next sample's time, if it is not after this.
+    pub fn due(&self, until: f64) -> Option<f64> {
+        self.run.samples.get(self.sampled.len()).copied().filter(|time| *time <= until)
+    }
+
+    /// The times of all samples that are still wanted.
+    pub fn pending(&self) -> &[f64] {
+        &self.run.samples[self.sampled.len()..]
+    }
+
+    /// Takes a sample.
+    pub fn sample(&mut self, z: Vec<f64>) {
+        self.sampled.push(z);
+    }
+
+    /// Reports an event at a time with the state there, and goes through it if it ends the mode.
+    pub fn event(&mut self, t: f64, event: usize, z: Vec<f64>) -> Result<(), Box<dyn Error>> {
+        if self.events.len() >= self.run.limits.events {
+            return Err(Box::new(GaveUp("too many events")));
+        }
+        let mode = self.mode();
+        let Event { reset, successors, .. } = &mode.events()[event];
+        self.crowd = if t - self.t <= ONE_INSTANT * t { self.crowd + 1 } else { 1 };
+        self.t = t;
+        if self.crowd > 100 * MOST_AT_ONCE {
+            return Err(format!("events at {t} are found again and again").into());
+        }
+        if successors.is_empty() {
+            self.z.clone_from(&z);
+            self.events.push(json!({"time": t, "event": event, "mode": self.mode, "state": z}));
+            return Ok(());
+        }
+        if self.run.backward {
+            self.z = z;
+            self.ended = Some("leaves-domain");
+            return Ok(());
+        }
+        let before = mode.wide(t, &z);
+        let z = reset.as_ref().map_or(z, |rows| rows.iter().map(|row| dot(row, &before)).collect());
+        let after = mode.wide(t, &z);
+        let holds = |it: &&Successor| it.when.as_ref().is_none_or(|row| dot(row, &after) > 0.0);
+        self.mode = successors.iter().find(holds).ok_or("no mode follows")?.mode;
+        self.events.push(json!({"time": t, "event": event, "mode": self.mode, "state": z}));
+        self.z = z;
+        if self.crowd >= MOST_AT_ONCE {
+            self.ended = Some("no-progress");
+        }
+        Ok(())
+    }
+
+    fn answer(mut self, took: Duration) -> Value {
+        let ended = self.ended.unwrap_or("horizon");
+        if self.ended.is_none() {
+            self.t = self.run.span;
+            self.sampled.resize(self.run.samples.len(), self.z.clone());
+        }
+        json!({"run": {
+            "events": self.events, "samples": self.sampled, "end": self.z, "ended": ended,
+            "ended_at": self.t, "work": {"rhs": self.calls.get(), "steps": self.steps},
+            "own_ns": u64::try_from(took.as_nanos()).unwrap_or(u64::MAX),
+        }})
+    }
+}
+
+/// Makes a run of a set-up.
+pub type Make = fn(&mut Course) -> Result<(), Box<dyn Error>>;
+
+fn made(run: Run, make: Make) -> Value {
+    let mut course = Course::new(run);
+    let began = Instant::now();
+    match make(&mut course) {
+        Ok(()) => course.answer(began.elapsed()),
+        Err(why) if why.is::<GaveUp>() => json!({"gave_up": why.to_string()}),
+        Err(why) => json!({"failure": why.to_string()}),
+    }
+}
+
+/// Answers requests until there are no more. A set-up is a name, a method and its order.
+pub fn serve(
+    library: &str,
+    version: &str,
+    setups: &[(&str, &str, Option<u32>)],
+    make: Make,
+) -> Result<(), Box<dyn Error>> {
+    let setup = |(name, method, order): &(&str, &str, Option<u32>)| {
+        json!({"name": name, "method": method, "order": order, "events": "library",
+            "dense_output": true, "stepping": "adaptive"})
+    };
+    let setups: Vec<_> = setups.iter().map(setup).collect();
+    let mut output = std::io::stdout();
+    for line in std::io::stdin().lock().lines() {
+        let request: Request = serde_json::from_str(&line?)?;
+        let mut answer = match (request.ask.as_str(), request.run) {
+            ("capabilities", _) => json!({"capabilities": {
+                "library": library, "version": version, "language": "Rust", "setups": setups,
+            }}),
+            ("run", Some(run)) => made(run, make),
+            _ => json!({"ready": true}),
+        };
+        answer["percuss_protocol"] = json!(1);
+        answer["id"] = json!(request.id);
+        writeln!(output, "{answer}")?;
+        output.flush()?;
+    }
+    Ok(())
+}

@@ -1,0 +1,153 @@
+//! An answer in files, as the reply of a program would say it.
+
+use super::table::{Cells, EVENTS, SAMPLES, Table};
+use super::times::sample_times;
+use crate::answer::{Place, Wrong, checked};
+use crate::text::plain;
+use crate::wire::{BoundedList, Count, EndedBy, EventReply, RunReply, StateReply};
+use percuss_engines::engine::{Limits, Numbers, SystemOutcome, SystemTask};
+use percuss_engines::number::shortest;
+use percuss_engines::system::{System, Values};
+use std::path::Path;
+use std::time::Duration;
+
+/// How far from the instant asked for a sample's time may be written, relative to the horizon.
+const SAME_TIME: f64 = 1e-9;
+
+/// Reads what was answered to a case and holds it against its task.
+///
+/// # Errors
+/// What is wrong, with the file, its line, the value and what is accepted.
+pub(super) fn answer(
+    folder: &Path,
+    case: &str,
+    task: &SystemTask,
+    limits: &Limits,
+) -> Result<SystemOutcome, String> {
+    let file = |ending: &str| Table::read(&folder.join(format!("{case}{ending}")));
+    let (events, samples) = (file(EVENTS)?, file(SAMPLES)?);
+    let told = Told::read(&events, task, limits)?;
+    let asked = crate::wire::samples(task).len();
+    let (states, lines) = read_samples(&samples, task, told.ended.is_none())?;
+    let (ended, end, ended_at) = match told.ended {
+        Some((ended, time, state)) => (ended, state, Some(time)),
+        None => (EndedBy::Horizon, states.last().copied().unwrap_or_default(), None),
+    };
+    let reply = RunReply {
+        events: BoundedList(told.events),
+        samples: BoundedList(states.into_iter().take(asked).collect()),
+        end,
+        ended,
+        ended_at,
+        work: Default::default(),
+        own_ns: None,
+    };
+    checked(&reply, task, (asked, Duration::ZERO), limits).map_err(|Wrong { place, what }| {
+        match place {
+            Place::Event(n) => events.error_in(told.lines[n], &what),
+            Place::Sample(n) => samples.error_in(lines[n], &what),
+            Place::End | Place::Run => events.error(&what),
+        }
+    })
+}
+
+/// What a file of events tells.
+#[derive(Default)]
+struct Told {
+    events: Vec<EventReply>,
+    /// The line of each event.
+    lines: Vec<usize>,
+    /// How and when the run ended before its horizon, and in which state.
+    ended: Option<(EndedBy, f64, StateReply)>,
+}
+
+impl Told {
+    fn read(table: &Table, task: &SystemTask, limits: &Limits) -> Result<Self, String> {
+        let system = task.system.system();
+        let states = system.states.iter().map(String::as_str);
+        let columns: Vec<&str> = ["time", "event", "mode"].into_iter().chain(states).collect();
+        let (mut told, mut mode) = (Self::default(), task.mode);
+        table.lines(&columns, |cells| {
+            if told.ended.is_some() {
+                return Err("a line after the run's ending; accepted is none".to_owned());
+            }
+            if told.events.len() == limits.events {
+                return Err(format!("one event more than the {} accepted", limits.events));
+            }
+            let time = cells.number(0, "time")?;
+            let state = state(cells, 3, system)?;
+            let next = mode_of(system, cells.word(2))?;
+            if let Some(ended) = EndedBy::named(cells.word(1)) {
+                told.ended = Some((ended, time, state));
+                return Ok(());
+            }
+            let event = event_of(system, mode, cells.word(1))?;
+            let [event, next_count] = [event, next].map(|place| Count(place as u64));
+            told.events.push(EventReply { time, event, mode: next_count, state });
+            told.lines.push(cells.line);
+            mode = next;
+            Ok(())
+        })?;
+        Ok(told)
+    }
+}
+
+fn state(cells: &Cells<'_>, from: usize, system: &System) -> Result<StateReply, String> {
+    let number = |(i, name): (usize, &String)| cells.number(from + i, name);
+    let values: Result<Vec<f64>, String> = system.states.iter().enumerate().map(number).collect();
+    Ok(StateReply(Values::of(&values?)))
+}
+
+fn mode_of(system: &System, name: &str) -> Result<usize, String> {
+    let place = system.modes.iter().position(|mode| mode.name == name);
+    place.ok_or_else(|| {
+        let accepted: Vec<_> = system.modes.iter().map(|mode| mode.name.as_str()).collect();
+        format!("mode is {:?}; accepted are {}", plain(name), accepted.join(", "))
+    })
+}
+
+fn event_of(system: &System, mode: usize, name: &str) -> Result<usize, String> {
+    let own = |event| system.event_name(mode, event);
+    let mut names = (0..).map_while(own);
+    names.clone().position(|it| it == name).ok_or_else(|| {
+        let accepted: Vec<&str> = names.by_ref().chain(EndedBy::EARLY.map(|it| it.0)).collect();
+        let mode = &system.modes[mode].name;
+        let name = plain(name);
+        format!("event is {name:?} in mode {mode}; accepted are {}", accepted.join(", "))
+    })
+}
+
+/// The states at the times asked for, with their lines; of a run that ended early as many as there
+/// are.
+fn read_samples(
+    table: &Table,
+    task: &SystemTask,
+    whole: bool,
+) -> Result<(Vec<StateReply>, Vec<usize>), String> {
+    let system = task.system.system();
+    let states = system.states.iter().map(String::as_str);
+    let columns: Vec<&str> = ["time"].into_iter().chain(states).collect();
+    let asked = sample_times(task);
+    let (mut samples, mut lines) = (Vec::new(), Vec::new());
+    table.lines(&columns, |cells| {
+        let time = cells.number(0, "time")?;
+        let Some(wanted) = asked.get(samples.len()) else {
+            return Err(format!("one sample more than the {} accepted", asked.len()));
+        };
+        if (time - wanted).abs() > SAME_TIME * task.span {
+            let given = plain(cells.word(0));
+            return Err(format!("time is {given:?}; accepted is {}", shortest(*wanted)));
+        }
+        samples.push(state(cells, 1, system)?);
+        lines.push(cells.line);
+        Ok(())
+    })?;
+    if whole && samples.len() < asked.len() {
+        let (given, wanted) = (samples.len(), asked.len());
+        return Err(table.error(&format!(
+            "{given} samples; accepted are {wanted}, or fewer where the events' last line is how the \
+             run ended"
+        )));
+    }
+    Ok((samples, lines))
+}

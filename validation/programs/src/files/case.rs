@@ -1,0 +1,83 @@
+//! What a case asks, in JSON and in plain CSV.
+
+use super::equations::equations;
+use super::rows::{rows, start};
+use super::times::sample_times;
+use crate::wire::{ModeAsk, TimesAsk};
+use percuss_engines::engine::SystemTask;
+use percuss_engines::number::shortest;
+use percuss_engines::system::System;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// What a case asks: the system, the start, the horizon, and when the state is wanted.
+///
+/// Its serialization is `CASE.json`, whose modes are those of the protocol's requests.
+#[derive(Serialize)]
+pub struct CaseFile<'a> {
+    schema: u32,
+    percuss: &'static str,
+    case: &'a str,
+    system: &'a str,
+    parameters: BTreeMap<&'a str, f64>,
+    start: StartFile<'a>,
+    horizon: f64,
+    backward: bool,
+    sample_times: Vec<f64>,
+    states: &'a [String],
+    scales: &'a [f64],
+    time_scale: f64,
+    times: TimesAsk,
+    modes: Vec<ModeAsk<'a>>,
+    #[serde(skip)]
+    task: &'a SystemTask,
+}
+
+#[derive(Serialize)]
+struct StartFile<'a> {
+    mode: usize,
+    state: &'a [f64],
+}
+
+impl<'a> CaseFile<'a> {
+    /// What a case asks whose run is `task`. Its parameters are those of the model, which the
+    /// equations hold already; omega and phi are those of theta, with time counted from the start.
+    #[must_use]
+    pub fn new(
+        case: &'a str,
+        task: &'a SystemTask,
+        parameters: impl IntoIterator<Item = (&'a str, f64)>,
+    ) -> Self {
+        let system: &'a System = task.system.system();
+        let forcing = [("omega", system.omega), ("phi", system.phi)];
+        Self {
+            schema: 1,
+            percuss: env!("CARGO_PKG_VERSION"),
+            case,
+            system: &system.name,
+            parameters: parameters.into_iter().chain(forcing).collect(),
+            start: StartFile { mode: task.mode, state: &task.state },
+            horizon: task.span,
+            backward: task.system.is_backward(),
+            sample_times: sample_times(task),
+            states: &system.states,
+            scales: &system.scales,
+            time_scale: system.time_scale,
+            times: TimesAsk::of(&task.system),
+            modes: system.modes.iter().map(ModeAsk::of).collect(),
+            task,
+        }
+    }
+
+    /// The other files of the case: the endings of their names after the case's, and their texts.
+    #[must_use]
+    pub fn plain_files(&self) -> [(&'static str, String); 4] {
+        let times = self.sample_times.iter().map(|time| shortest(*time) + "\n");
+        [
+            ("rows.csv", rows(self.task.system.system())),
+            ("start.csv", start(self.task)),
+            ("sample-times.csv", "time\n".to_owned() + &times.collect::<String>()),
+            ("txt", equations(self.case, self.task)),
+        ]
+    }
+}

@@ -1,0 +1,82 @@
+//! Answers in files, as an engine that gives them again.
+
+use super::answer::answer;
+use super::table::{EVENTS, SAMPLES};
+use percuss_engines::engine::{
+    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role, Stepping,
+    SystemOutcome, SystemTask, Task,
+};
+use std::path::PathBuf;
+
+/// Who answered, for the report.
+#[derive(Clone, Copy, Debug)]
+pub struct Answerer {
+    /// The engine's name.
+    pub name: &'static str,
+    /// Its library.
+    pub library: &'static str,
+    /// The library's version.
+    pub version: &'static str,
+    /// The language.
+    pub language: &'static str,
+}
+
+/// The answers to one case, which were made before, as an engine that runs this case alone.
+pub struct FileEngine {
+    answerer: Answerer,
+    folder: PathBuf,
+    case: String,
+}
+
+impl FileEngine {
+    /// The answers to a case in a folder.
+    #[must_use]
+    pub fn new(answerer: Answerer, folder: PathBuf, case: String) -> Self {
+        Self { answerer, folder, case }
+    }
+}
+
+impl Engine for FileEngine {
+    fn declaration(&self) -> Declaration {
+        let Answerer { name, library, version, .. } = self.answerer;
+        Declaration {
+            name,
+            library,
+            version: version.to_owned(),
+            method: "answers in files",
+            order: None,
+            events: Location::Library,
+            dense_output: false,
+            stepping: Stepping::Adaptive,
+            role: Role::Rows,
+            colours: Colours::OTHERS,
+        }
+    }
+
+    fn language(&self) -> &str {
+        self.answerer.language
+    }
+
+    fn available(&self) -> Result<(), String> {
+        let file = |ending| format!("{}{ending}", self.case);
+        let [events, samples] = [EVENTS, SAMPLES].map(file);
+        if [&events, &samples].into_iter().any(|it| self.folder.join(it).exists()) {
+            return Ok(());
+        }
+        Err(format!("not answered: there is no {events}"))
+    }
+
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+        let task = SystemTask::of_oscillator(task)?;
+        Outcome::of_system(&self.run_system(&task, accuracy, limits)?)
+    }
+
+    fn run_system(
+        &self,
+        task: &SystemTask,
+        _: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        answer(&self.folder, &self.case, task, limits).map_err(Failure::new)
+    }
+}

@@ -1,0 +1,16 @@
+//! Cases and answers as files: what a case asks, for readers of any language, and what a program
+//! answered without percuss being there. Both are what the protocol says, in files.
+
+mod answer;
+mod case;
+mod engine;
+mod equations;
+mod rows;
+mod table;
+#[cfg(test)]
+mod tests;
+mod times;
+
+pub use case::CaseFile;
+pub use engine::{Answerer, FileEngine};
+pub use table::{EVENTS, SAMPLES};

@@ -1,0 +1,59 @@
+//! The picture of a run of a system.
+
+use super::super::format::OutputFlags;
+use super::super::{names, note};
+use super::Format;
+use crate::picture::{self, MOST_STATES, SystemMotion};
+use crate::truth::DoubleDouble;
+use anyhow::{Result, bail};
+use percuss::affine::{Event, Solver, System};
+
+/// The indices of the states that `--states` names, or of the first ones.
+pub(super) fn shown(system: &System, states: Option<&str>) -> Result<Vec<usize>> {
+    let Some(states) = states else {
+        return Ok((0..system.states.len().min(MOST_STATES)).collect());
+    };
+    let mut shown = Vec::new();
+    for name in states.split(',').map(str::trim) {
+        let index = system.states.iter().position(|it| it == name);
+        let Some(index) = index.filter(|it| !shown.contains(it)) else {
+            let near = names::nearest(name, system.states.iter().map(String::as_str));
+            let near = if near.is_empty() {
+                String::new()
+            } else {
+                format!(" ({name:?}: {})", near.join(", "))
+            };
+            bail!(
+                "--states {states} is not accepted: each once, some of {}{near}",
+                system.states.join(", ")
+            );
+        };
+        shown.push(index);
+    }
+    if shown.len() > MOST_STATES {
+        bail!("--states {states} is not accepted: at most {MOST_STATES} states are");
+    }
+    Ok(shown)
+}
+
+/// Draws a run, given by its start and its events.
+pub(super) fn write(
+    solver: &Solver<DoubleDouble>,
+    run: &[Event<DoubleDouble>],
+    shown: &[usize],
+    output: &OutputFlags<Format>,
+    format: Format,
+) -> Result<()> {
+    let motion = SystemMotion::of(solver, run, shown);
+    let all = solver.system().states.len();
+    if shown.len() == MOST_STATES && all > MOST_STATES {
+        note(&format!("{MOST_STATES} of {all} states are shown: --states chooses"));
+    }
+    output.destination().write(|out| {
+        let bytes = match format {
+            Format::Svg => picture::svg(&motion).into_bytes(),
+            _ => picture::png(&motion)?,
+        };
+        Ok(out.write_all(&bytes)?)
+    })
+}

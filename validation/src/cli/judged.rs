@@ -1,0 +1,240 @@
+//! What `validate` and `score` have in common: the cases, the report, and what the verdicts come
+//! to.
+
+use super::names::CASES;
+use super::output::{Destination, make_folder, reader_left};
+use super::{DONE, OUT_OF_BOUNDS, note, parse, reports, say};
+use crate::case::{self, Cases, Defaults};
+use crate::report::{
+    Baseline, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary, ranking_text,
+    screen,
+};
+use crate::suite::{self, CaseRun, Prepared, PreparedSystem, Suite};
+use crate::truth::Library;
+use anyhow::{Context, Result, anyhow, bail};
+use clap::{Args, ValueEnum};
+use regex::Regex;
+use std::path::{Path, PathBuf};
+
+/// The flags of verbs that judge runs.
+#[derive(Args)]
+pub(super) struct JudgedFlags {
+    #[command(flatten)]
+    pub(super) chosen: CaseFlags,
+    /// Writes report.html, report.json, errors.csv, junit.xml and pictures into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// A row without an answer is a failure: of an engine that is not installed, or of a case that
+    /// was not answered
+    #[arg(long)]
+    require: bool,
+    /// Fails where anything is worse than in this report, or gone
+    #[arg(long, value_name = "report.json")]
+    baseline: Option<PathBuf>,
+    /// A row of the baseline that was not made is no failure
+    #[arg(long, requires = "baseline")]
+    allow_missing: bool,
+    /// Prints every row above the summary, as is done for at most three cases
+    #[arg(long)]
+    rows: bool,
+    /// Format of the summary on stdout
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+    /// Reads the reference data from this folder instead of those inside the binary
+    #[arg(long, value_name = "DIR")]
+    reference: Option<PathBuf>,
+}
+
+/// Which cases.
+#[derive(Args)]
+pub(super) struct CaseFlags {
+    /// Only cases whose name matches; several are alternatives
+    #[arg(short, long = "case", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
+    pub(super) case: Vec<Regex>,
+    /// Reads the cases from this folder instead of those inside the binary
+    #[arg(long, value_name = "DIR")]
+    pub(super) cases: Option<PathBuf>,
+}
+
+/// The summary's formats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people: the ranking, where each engine fails, and the number of rows of each class
+    Table,
+    /// A Markdown table, for a wiki or a comment
+    Markdown,
+    /// Comma-separated values
+    Csv,
+    /// The ranking and the number of rows of each class
+    Json,
+}
+
+/// With at most this many cases the rows are printed too.
+const FEW_CASES: usize = 3;
+
+impl CaseFlags {
+    /// The cases that are chosen.
+    pub(super) fn read(&self) -> Result<Cases> {
+        let mut cases = match &self.cases {
+            Some(folder) => Cases::from_directory(folder).context("--cases")?,
+            None => Cases::embedded()?,
+        };
+        CASES.check(&self.case, cases.names())?;
+        cases.retain(|name| self.accepts(name));
+        Ok(cases)
+    }
+
+    /// Whether a case is chosen.
+    pub(super) fn accepts(&self, name: &str) -> bool {
+        accepts(&self.case, name)
+    }
+
+    /// The reference data of the cases: those inside the binary, or of a folder.
+    fn library(&self, reference: Option<&Path>) -> Result<Library> {
+        Ok(match reference {
+            Some(folder) => Library::from_directory(folder).context("--reference")?,
+            // Cases of a user's own may come before their tables.
+            None if self.cases.is_some() => Library::embedded()?.replaying(),
+            None => Library::embedded()?,
+        })
+    }
+
+    /// The chosen cases with their truth, made ready for a suite.
+    pub(super) fn prepare(&self, reference: Option<&Path>, suite: Suite) -> Result<PreparedCases> {
+        let cases = self.read()?;
+        let library = self.library(reference)?;
+        let replayed: Vec<String> =
+            cases.names().filter(|name| library.is_replayed(name)).map(str::to_owned).collect();
+        let prepared = PreparedCases {
+            oscillator: suite::prepare(cases.oscillator, &library, suite)?,
+            systems: suite::prepare_systems(cases.systems, &library)?,
+        };
+        for name in replayed {
+            note(&format!(
+                "{name}: without tables: its truth is the exact solver's run made again in 106 bits"
+            ));
+        }
+        Ok(prepared)
+    }
+}
+
+/// Whether one of the patterns matches, or there are none.
+pub(super) fn accepts(patterns: &[Regex], name: &str) -> bool {
+    patterns.is_empty() || patterns.iter().any(|it| it.is_match(name))
+}
+
+/// All cases that are asked for, made ready.
+pub(super) struct PreparedCases {
+    pub(super) oscillator: Vec<Prepared>,
+    pub(super) systems: Vec<PreparedSystem>,
+}
+
+impl PreparedCases {
+    /// Those of the oscillator, then those of other systems.
+    pub(super) fn all(&self) -> Vec<&dyn CaseRun> {
+        let oscillator = self.oscillator.iter().map(|it| it as &dyn CaseRun);
+        oscillator.chain(self.systems.iter().map(|it| it as &dyn CaseRun)).collect()
+    }
+}
+
+impl JudgedFlags {
+    /// Refuses flags without effect.
+    pub(super) fn check(&self) -> Result<()> {
+        if self.rows && self.format != Format::Table {
+            bail!("--rows has no effect with this --format; accepted with --rows is table");
+        }
+        Ok(())
+    }
+
+    /// The report that this run is held against.
+    pub(super) fn baseline(&self) -> Result<Option<Baseline>> {
+        self.baseline.as_deref().map(read_baseline).transpose()
+    }
+
+    /// The chosen cases with their truth, and the folder of the report.
+    pub(super) fn prepare(&self, suite: Suite) -> Result<PreparedCases> {
+        let cases = self.chosen.prepare(self.reference.as_deref(), suite)?;
+        self.out.as_deref().map(make_folder).transpose()?;
+        Ok(cases)
+    }
+
+    /// The bounds and known shortcomings that apply.
+    pub(super) fn defaults(&self) -> Result<Defaults> {
+        Ok(match self.chosen.cases {
+            Some(_) => case::defaults_of_own_cases()?,
+            None => case::defaults()?,
+        })
+    }
+
+    /// The folders that data were read from, with their flags.
+    pub(super) fn folders(&self) -> Vec<(&'static str, String)> {
+        let given = [("--cases", &self.chosen.cases), ("--reference", &self.reference)];
+        let shown = |(flag, folder): (&'static str, &Option<PathBuf>)| {
+            Some((flag, folder.as_ref()?.display().to_string()))
+        };
+        given.into_iter().filter_map(shown).collect()
+    }
+
+    /// What is worse than in the baseline, or gone of the rows that were `asked` for.
+    pub(super) fn worse(
+        &self,
+        baseline: &Baseline,
+        report: &Report,
+        asked: impl Fn(&RowPlace<'_>) -> bool,
+    ) -> Result<Vec<String>> {
+        let Compared { mut worse, gone, common } = baseline.compare(report, asked);
+        if common == 0 {
+            bail!(
+                "--baseline: no row in common with this run; accepted is a report of the same rows"
+            );
+        }
+        if self.allow_missing {
+            gone.iter().for_each(|it| note(&format!("{it}: gone, which --allow-missing accepts")));
+        } else {
+            worse.extend(gone.iter().map(|it| format!("{it}: gone, --allow-missing accepts that")));
+        }
+        Ok(worse)
+    }
+
+    /// Writes files, annotations and the summary, and says what the verdicts come to.
+    pub(super) fn write(
+        &self,
+        report: &Report,
+        evidence: &ReportEvidence,
+        cases: usize,
+    ) -> Result<u8> {
+        if let Some(folder) = &self.out {
+            reports::write(report, evidence, folder)?;
+        }
+        reports::annotate(report, evidence, self.require);
+        let with_rows = self.rows || cases <= FEW_CASES;
+        let text = match self.format {
+            Format::Table => screen(report, evidence, with_rows),
+            Format::Markdown => ranking_text(report, RankingFormat::Markdown)?,
+            Format::Csv => ranking_text(report, RankingFormat::Csv)?,
+            Format::Json => ranking_text(report, RankingFormat::Json)?,
+        };
+        if self.format != Format::Table {
+            evidence.worse.iter().for_each(|it| say(&format!("worse than --baseline: {it}")));
+        }
+        let shown = Destination::Stdout.write(|out| Ok(out.write_all(text.as_bytes())?));
+        // A reader that leaves early does not turn a failure into a success.
+        shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
+        Ok(self.code(report, evidence))
+    }
+
+    fn code(&self, report: &Report, evidence: &ReportEvidence) -> u8 {
+        let Summary { fail, error, unavailable, .. } = report.summary;
+        let lacking = self.require && unavailable > 0;
+        let out_of_bounds = fail + error > 0 || lacking || !evidence.worse.is_empty();
+        if out_of_bounds { OUT_OF_BOUNDS } else { DONE }
+    }
+}
+
+fn read_baseline(path: &Path) -> Result<Baseline> {
+    let accepted = "accepted is a report.json of this program";
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| anyhow!("--baseline {}: {error}; {accepted}", path.display()))?;
+    Baseline::read(&text)
+        .map_err(|error| anyhow!("--baseline {}: {error}; {accepted}", path.display()))
+}

@@ -1,0 +1,183 @@
+//! `score`: answers in files, judged as the runs of `validate` are.
+
+use super::judged::JudgedFlags;
+use super::{note, say, work};
+use crate::engine::{Accuracy, REFERENCE};
+use crate::number::shortest;
+use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
+use crate::suite::{self, CaseRun, Scored, Status, Suite};
+use anyhow::{Result, anyhow, bail};
+use clap::Args;
+use percuss_programs::files::{Answerer, EVENTS, FileEngine, SAMPLES};
+use percuss_programs::{NAMES, is_name};
+use rayon::prelude::*;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+/// Judge answers in files, made by any program from what export wrote
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// What answered: 1 to 40 lower-case letters, digits, -, _, . and +
+    #[arg(long, value_name = "X", value_parser = name)]
+    name: String,
+    /// Its library (default: its name)
+    #[arg(long, value_name = "L", value_parser = words)]
+    library: Option<String>,
+    /// The library's version
+    #[arg(long, value_name = "V", value_parser = words, default_value = "unknown")]
+    version: String,
+    /// The language it is written in
+    #[arg(long, value_name = "LANGUAGE", value_parser = words, default_value = "unknown")]
+    language: String,
+    /// The tolerance that the answers were made with, which errors are counted in
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_hyphen_values = true)]
+    tolerance: f64,
+    /// The folder of CASE.events.csv and CASE.samples.csv
+    #[arg(long, value_name = "DIR")]
+    answers: PathBuf,
+    #[command(flatten)]
+    judged: JudgedFlags,
+}
+
+fn name(text: &str) -> Result<String, String> {
+    if is_name(text) && !text.starts_with(REFERENCE) {
+        return Ok(text.to_owned());
+    }
+    Err(format!("accepted is {NAMES} that does not begin with {REFERENCE}"))
+}
+
+/// A text that fits where it is shown.
+fn words(text: &str) -> Result<String, String> {
+    let is_accepted = |text: &str| {
+        !text.trim().is_empty() && text.chars().count() <= 80 && !text.contains(char::is_control)
+    };
+    if is_accepted(text) {
+        Ok(text.to_owned())
+    } else {
+        Err("accepted are 1 to 80 characters".to_owned())
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    // Written so that a NaN is refused.
+    let value = text.parse().ok().filter(|value: &f64| (1e-16..=0.1).contains(value));
+    value.ok_or_else(|| "accepted is a number, 1e-16 to 0.1".to_owned())
+}
+
+/// How much of a case is looked at: its run, without the probes that need an engine to be there.
+const SUITE: Suite = Suite::Quick;
+
+pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
+    let judged = &arguments.judged;
+    judged.check()?;
+    let baseline = judged.baseline()?;
+    let cases = judged.prepare(SUITE)?;
+    let all = cases.all();
+    check_names(arguments, &all, &answered(&arguments.answers)?)?;
+    let defaults = judged.defaults()?;
+    let pool = work::pool(threads)?;
+    let bar = work::bar(all.len() as u64, "cases");
+    let row = |case: &&dyn CaseRun| {
+        let engine = arguments.engine(case.name());
+        let accuracy = Accuracy::Tolerance(arguments.tolerance);
+        let row = suite::one(*case, &engine, accuracy, SUITE, &defaults);
+        bar.inc(1);
+        // What it took to read the files says nothing of who answered.
+        Scored { wall: Duration::ZERO, ..row }
+    };
+    let rows: Vec<Scored> = pool.install(|| all.par_iter().with_max_len(1).map(row).collect());
+    bar.finish_and_clear();
+    rows.iter().for_each(say_what_is_wrong);
+    let mut evidence = ReportEvidence::gather(
+        (&cases.oscillator, &cases.systems),
+        &rows,
+        &[],
+        judged.chosen.cases.is_none(),
+    );
+    evidence.folders = [arguments.flags(), judged.folders()].concat();
+    if judged.out.is_some() {
+        evidence.events =
+            pool.install(|| event_pictures((&cases.oscillator, &cases.systems), &rows, SUITE));
+    }
+    let report = Report::new(SUITE, &[&arguments.engine("")], &rows);
+    let asked = |it: &RowPlace<'_>| {
+        it.engine == arguments.name
+            && judged.chosen.accepts(it.case)
+            && it.tolerance == Some(arguments.tolerance)
+    };
+    if let Some(baseline) = &baseline {
+        evidence.worse = judged.worse(baseline, &report, asked)?;
+    }
+    judged.write(&report, &evidence, all.len())
+}
+
+impl Arguments {
+    /// The flags that make a row again.
+    fn flags(&self) -> Vec<(&'static str, String)> {
+        let answers = self.answers.display().to_string();
+        let tolerance = shortest(self.tolerance);
+        vec![("--answers", answers), ("--name", self.name.clone()), ("--tolerance", tolerance)]
+    }
+
+    /// The answers to a case as an engine. The words live as long as this process.
+    fn engine(&self, case: &str) -> FileEngine {
+        let for_ever = |text: &str| -> &'static str { Box::leak(text.to_owned().into_boxed_str()) };
+        let answerer = Answerer {
+            name: for_ever(&self.name),
+            library: for_ever(self.library.as_deref().unwrap_or(&self.name)),
+            version: for_ever(&self.version),
+            language: for_ever(&self.language),
+        };
+        FileEngine::new(answerer, self.answers.clone(), case.to_owned())
+    }
+}
+
+/// The cases that a folder holds answers to.
+fn answered(folder: &Path) -> Result<BTreeSet<String>> {
+    let unreadable = |error: std::io::Error| {
+        let folder = folder.display();
+        anyhow!(
+            "--answers {folder}: {error}; accepted is a folder of CASE{EVENTS} and CASE{SAMPLES}"
+        )
+    };
+    let mut cases = BTreeSet::new();
+    for entry in std::fs::read_dir(folder).map_err(unreadable)? {
+        let name = entry.map_err(unreadable)?.file_name();
+        let name = name.to_string_lossy();
+        let case = [EVENTS, SAMPLES].into_iter().find_map(|ending| name.strip_suffix(ending));
+        cases.extend(case.map(str::to_owned));
+    }
+    Ok(cases)
+}
+
+/// Refuses answers to no case that is asked for, and names those to cases that there are not.
+fn check_names(
+    arguments: &Arguments,
+    all: &[&dyn CaseRun],
+    answered: &BTreeSet<String>,
+) -> Result<()> {
+    let asked = |name: &String| all.iter().any(|case| case.name() == name);
+    if !answered.iter().any(asked) {
+        let folder = arguments.answers.display();
+        bail!(
+            "--answers {folder}: there is no answer to a case that is asked for; accepted are \
+             CASE{EVENTS} and CASE{SAMPLES}"
+        );
+    }
+    for name in answered.iter().filter(|name| !asked(name) && arguments.judged.chosen.accepts(name))
+    {
+        note(&format!(
+            "--answers {}: {name} is no case, its answer is left alone: percuss cases lists all",
+            arguments.answers.display()
+        ));
+    }
+    Ok(())
+}
+
+/// An answer that cannot be read is said at once: its row is one of many.
+fn say_what_is_wrong(row: &Scored) {
+    if let Status::Failed(failure) = &row.status {
+        say(&failure.reason);
+    }
+}

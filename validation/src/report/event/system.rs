@@ -1,0 +1,239 @@
+//! The first wrong event of a row of a piecewise-affine system, and its picture.
+
+use super::course::{Scene, Side, in_order, telling};
+use super::scales::Scales;
+use super::{EventPicture, MismatchKind, View};
+use crate::engine::{
+    Engine, Equations, GuardSample, Limits, SystemOutcome, SystemTask, Watched, contain,
+};
+use crate::score::{EventNames, Matching, Measures, Verdict, WINDOW};
+use crate::suite::{PreparedSystem, Scored};
+use crate::system::{Affine, Direction, Row};
+use crate::truth::SystemTruth;
+
+/// An event that is wrong, and which events of truth and engine are the same.
+pub(super) struct SystemMismatch {
+    kind: MismatchKind,
+    /// When, since the start.
+    at: f64,
+    /// How far it is to what it is confused with: the next event on its own side, or its partner.
+    reach: f64,
+    /// The mode in which it lies, and its number there.
+    event: (usize, usize),
+    /// Indices of the truth's and the engine's events that are the same.
+    pairs: Vec<(usize, usize)>,
+}
+
+/// Room for the rounding of a horizon that is kept in forcing periods.
+const HORIZON_ROUNDING: f64 = 1e-12;
+
+/// The events of truth or engine: when, and the mode and number of each.
+type Events = Vec<(f64, (usize, usize))>;
+
+impl SystemMismatch {
+    /// The first missed or spurious event before the scored horizon; in a row that is out of bounds
+    /// without one, the event that is farthest from its place. An ending that is missed has no
+    /// picture.
+    pub(super) fn first(
+        prepared: &PreparedSystem,
+        measures: &Measures,
+        outcome: &SystemOutcome,
+        row: &Scored,
+    ) -> Option<Self> {
+        let truth = of_truth(&prepared.truth);
+        let engine = of_engine(&prepared.task, outcome);
+        let pairs = pairs(prepared, measures, outcome);
+        let missed = measures.mismatch.missed.first().and_then(|i| Some((truth.get(*i)?.0, *i)));
+        let missed = missed.map(|(at, i)| (at, MismatchKind::Missed, i));
+        let spurious = measures.mismatch.spurious.first();
+        let spurious = spurious.and_then(|j| Some((engine.get(*j)?.0, *j)));
+        let spurious = spurious.map(|(at, j)| (at, MismatchKind::Spurious, j));
+        let first = [missed, spurious].into_iter().flatten().min_by(|a, b| a.0.total_cmp(&b.0));
+        match first {
+            Some((_, MismatchKind::Spurious, j)) => {
+                Some(Self::of(MismatchKind::Spurious, &engine, j, pairs))
+            }
+            Some((_, kind, i)) => Some(Self::of(kind, &truth, i, pairs)),
+            None if row.judgement.verdict == Verdict::Fail => {
+                let (i, j) = farthest(prepared, (&truth, &engine), &pairs)?;
+                let reach = (truth[i].0 - engine[j].0).abs();
+                Some(Self { reach, ..Self::of(MismatchKind::Displaced, &truth, i, pairs) })
+            }
+            None => None,
+        }
+    }
+
+    fn of(kind: MismatchKind, events: &Events, i: usize, pairs: Vec<(usize, usize)>) -> Self {
+        let (at, event) = events[i];
+        let others = events.iter().map(|it| (it.0 - at).abs()).filter(|apart| *apart > 0.0);
+        Self { kind, at, reach: others.fold(f64::INFINITY, f64::min), event, pairs }
+    }
+
+    fn title(&self, prepared: &PreparedSystem, event: &str) -> String {
+        let system = prepared.task.system.system();
+        let mode = &system.modes[self.event.0].name;
+        let when = format!("{event}, {:.6e} after the start, in the mode {mode}", self.at);
+        match self.kind {
+            MismatchKind::Missed => format!("The first missed event is {when}."),
+            MismatchKind::Spurious => format!("The first spurious event is {when}."),
+            MismatchKind::Displaced => format!("The event farthest from its place is {when}."),
+        }
+    }
+}
+
+fn of_truth(truth: &SystemTruth) -> Events {
+    let mut mode = truth.start.mode;
+    let one = |row: &crate::truth::SystemTruthRow| {
+        let before = std::mem::replace(&mut mode, row.mode);
+        (row.elapsed.value(), (before, row.event))
+    };
+    truth.events.iter().map(one).collect()
+}
+
+fn of_engine(task: &SystemTask, outcome: &SystemOutcome) -> Events {
+    let mut mode = task.mode;
+    let one = |event: &crate::engine::SystemEvent| {
+        let before = std::mem::replace(&mut mode, event.mode);
+        (event.elapsed, (before, event.event))
+    };
+    outcome.events.iter().map(one).collect()
+}
+
+/// The events of truth and engine that are the same, paired as the scores pair them.
+fn pairs(
+    prepared: &PreparedSystem,
+    measures: &Measures,
+    outcome: &SystemOutcome,
+) -> Vec<(usize, usize)> {
+    let PreparedSystem { task, truth, .. } = prepared;
+    let names = EventNames::of(task.system.system());
+    let window = WINDOW * prepared.period();
+    let horizon = measures.horizon_periods * prepared.period() * (1.0 + HORIZON_ROUNDING);
+    let near = |events: Vec<crate::score::Occurrence>| {
+        let near = events.into_iter().take_while(|it| it.elapsed <= horizon + window);
+        near.collect::<Vec<_>>()
+    };
+    let (all, own) = (near(names.of_truth(truth)), near(names.of_outcome(task, truth, outcome)));
+    Matching::of(&all, &own, window).pairs
+}
+
+/// The pair whose times differ most for what errors have grown to there.
+fn farthest(
+    prepared: &PreparedSystem,
+    (truth, engine): (&Events, &Events),
+    pairs: &[(usize, usize)],
+) -> Option<(usize, usize)> {
+    let share = |(i, j): &(usize, usize)| {
+        let growth = prepared.truth.events[*i].growth_time;
+        (truth[*i].0 - engine[*j].0).abs() / (growth * (*i + 1) as f64)
+    };
+    let events = pairs.iter().filter(|(i, j)| *i < truth.len() && *j < engine.len());
+    events.max_by(|a, b| share(a).total_cmp(&share(b))).copied()
+}
+
+/// Runs a row again and watches it around its first wrong event.
+pub(super) fn picture(
+    prepared: &PreparedSystem,
+    row: &Scored,
+    it: &SystemMismatch,
+    (engine, mean_step, limits): (&dyn Engine, f64, &Limits),
+) -> Option<EventPicture> {
+    let PreparedSystem { task, truth, case, .. } = prepared;
+    let system = task.system.system();
+    let (mode, event) = it.event;
+    let guard = Guard::of(task, it.event)?;
+    let scales = Scales::around((it.at, it.reach), mean_step, prepared.period(), task.span);
+    let instants = scales.all_instants();
+    let states = SystemTruth::states(case, &instants)?;
+    let watched = Watched { window: scales.window(), instants: instants.clone() };
+    let again = SystemTask { watched: Some(watched), ..task.clone() };
+    let outcome = contain(|| engine.run_system(&again, row.accuracy, limits)).ok()?;
+    let of_states = |states: &mut dyn Iterator<Item = &[f64]>| -> Vec<f64> {
+        instants.iter().zip(states).map(|(t, state)| guard.value(task, *t, state)).collect()
+    };
+    let trace = outcome.trace.as_ref();
+    let looks = trace.map_or(&[][..], |trace| &trace.looks).iter();
+    let known = |place: fn(&(usize, usize)) -> usize, i: usize| {
+        it.pairs.iter().any(|pair| place(pair) == i)
+    };
+    let name = |mode: usize| system.modes.get(mode).map(|it| it.name.clone()).unwrap_or_default();
+    let rows = truth.events.iter().enumerate();
+    let own = outcome.events.iter().enumerate();
+    let scene = Scene {
+        at: it.at,
+        first: name(task.mode),
+        truth: Side {
+            values: of_states(&mut states.iter().map(Vec::as_slice)),
+            events: rows
+                .map(|(i, row)| (row.elapsed.value(), name(row.mode), known(|pair| pair.0, i)))
+                .collect(),
+        },
+        engine: Side {
+            values: match trace {
+                Some(_) => of_states(&mut outcome.samples.iter().map(|it| &it[..])),
+                None => Vec::new(),
+            },
+            events: own
+                .map(|(j, event)| (event.elapsed, name(event.mode), known(|pair| pair.1, j)))
+                .collect(),
+        },
+        steps: trace.map(|trace| trace.steps.clone()).unwrap_or_default(),
+        looks: in_order(looks.filter_map(|look| guard.of_look(look))),
+        instants: instants.clone(),
+    };
+    let views: Vec<View> = scales.spans.iter().map(|span| scene.view(*span)).collect();
+    let event = system.event_name(mode, event)?;
+    Some(EventPicture {
+        case: row.case.clone(),
+        engine: row.engine.to_owned(),
+        tolerance: row.accuracy.tolerance(),
+        step: row.accuracy.step(),
+        kind: it.kind,
+        title: it.title(prepared, event),
+        guard: format!("guard of {event}"),
+        modes: system.modes.iter().map(|mode| mode.name.clone()).collect(),
+        centre: it.at,
+        telling: telling(&views),
+        views,
+    })
+}
+
+/// The guard whose zero is an event.
+struct Guard {
+    row: Row,
+    mode: usize,
+    /// The guards of its mode that belong to the event, each with the sign with which it is looked
+    /// at.
+    looked: Vec<(usize, f64)>,
+}
+
+impl Guard {
+    fn of(task: &SystemTask, (mode, event): (usize, usize)) -> Option<Self> {
+        let own = task.system.system().modes.get(mode)?;
+        let equations = Affine::of(&task.system);
+        let guards = (0..equations.count(mode)).filter(|it| equations.event(mode, *it) == event);
+        let watch = event.checked_sub(own.until.len()).and_then(|k| own.watch.get(k));
+        let row = match own.until.get(event) {
+            Some(until) => until.guard.clone(),
+            None => watch?.guard.clone(),
+        };
+        let signs = match watch.map(|it| it.direction) {
+            Some(Direction::Falling) => [-1.0, 1.0],
+            _ => [1.0, -1.0],
+        };
+        Some(Self { row, mode, looked: guards.zip(signs).collect() })
+    }
+
+    fn value(&self, task: &SystemTask, t: f64, state: &[f64]) -> f64 {
+        let system = task.system.system();
+        let (sin, cos) = (system.omega * t + system.phi).sin_cos();
+        let z = state.iter().copied().chain([cos, sin, 1.0]);
+        self.row.iter().zip(z).map(|(factor, value)| factor * value).sum()
+    }
+
+    /// When a search looked at the guard, and what it saw; none where it looked at another.
+    fn of_look(&self, look: &GuardSample<usize>) -> Option<[f64; 2]> {
+        let (_, sign) = self.looked.iter().find(|(guard, _)| *guard == look.guard)?;
+        (look.mode == self.mode).then_some([look.t, sign * look.value])
+    }
+}

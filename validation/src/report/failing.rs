@@ -1,0 +1,74 @@
+//! The block of `validate`'s summary that says on which cases each engine fails.
+
+use super::table::wrapped;
+use super::{Ranked, Report, ReportEvidence, ReportRow};
+use crate::score::Verdict;
+use std::cmp::Reverse;
+use std::collections::BTreeMap;
+
+/// An engine's cases are named where that takes at most this many lines, else counted by system.
+const FEW_LINES: usize = 3;
+
+/// The cases on which each engine fails, with expected failures told apart; `all_names`: however
+/// many they are.
+pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_names: bool) -> String {
+    let failing: Vec<_> = report.ranking.iter().filter(|it| !it.fails_on.is_empty()).collect();
+    if failing.is_empty() {
+        return "no engine fails on any case\n\n".to_owned();
+    }
+    let mut any_counted = false;
+    let mut lines = String::new();
+    for it in failing {
+        let head =
+            format!("  {}: {} of {}", it.engine, it.fails_on.len(), report.number_of_cases());
+        let names = wrapped(&format!("{head}: {}", marked(report, it).join(", ")));
+        let is_short = all_names || names.lines().count() <= FEW_LINES;
+        let groups = if is_short { Vec::new() } else { by_system(report, evidence, it) };
+        any_counted |= !groups.is_empty();
+        let unexpected: Vec<_> =
+            marked(report, it).into_iter().filter(|it| it.ends_with('!')).collect();
+        lines += &match groups[..] {
+            [] => names,
+            _ => wrapped(&format!("{head}: {}", [unexpected, groups].concat().join(", "))),
+        };
+    }
+    let all = match any_counted {
+        true => "; many are counted by system here and named by --rows and in report.html",
+        false => "",
+    };
+    let title = format!("fails on (known shortcomings; ! is a failure that nothing excuses{all}):");
+    format!("{}{lines}\n", wrapped(&title))
+}
+
+/// The names of an engine's failing cases, with a mark where nothing excuses a row.
+fn marked(report: &Report, it: &Ranked) -> Vec<String> {
+    let name = |case: &String| {
+        let own = |row: &&ReportRow| row.engine == it.engine && row.case == *case;
+        let unexpected = |row: &ReportRow| matches!(row.verdict, Verdict::Fail | Verdict::Error);
+        let fails = report.results.iter().filter(own).any(unexpected);
+        if fails { format!("{case}!") } else { case.clone() }
+    };
+    it.fails_on.iter().map(name).collect()
+}
+
+/// How many of each system's cases an engine fails on, from the most down.
+fn by_system(report: &Report, evidence: &ReportEvidence, it: &Ranked) -> Vec<String> {
+    let mut systems: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    for note in &evidence.cases {
+        let own = |row: &&ReportRow| row.engine == it.engine && row.case == note.name;
+        if report.results.iter().any(|row| own(&row)) {
+            let (failing, all) = systems.entry(&note.system).or_default();
+            *failing += usize::from(it.fails_on.contains(&note.name));
+            *all += 1;
+        }
+    }
+    let mut systems: Vec<_> = systems.into_iter().filter(|it| it.1.0 > 0).collect();
+    systems.sort_by_key(|it| Reverse(it.1.0));
+    let shown = |(system, (failing, all))| format!("{system} {failing} of {all}");
+    systems.into_iter().map(shown).collect()
+}
+
+/// How many cases were run.
+pub(super) fn number_of_cases(report: &Report) -> usize {
+    report.results.chunk_by(|a, b| a.case == b.case).count()
+}

@@ -1,0 +1,73 @@
+//! The scoreboard of a small report.
+
+#[allow(dead_code, reason = "its main is another program's")]
+#[path = "../examples/scoreboard/main.rs"]
+mod example;
+
+use example::board::Board;
+use example::{page, spliced};
+use serde_json::{Value, json};
+
+fn row(engine: &str, case: &str, trouble: &[&str], found: Option<[u64; 2]>) -> Value {
+    json!({
+        "case": case, "trouble": trouble, "engine": engine, "tolerance": 1e-6, "events_total": 10,
+        "events_matched": found.map(|it| it[0]), "events_spurious": found.map(|it| it[1]),
+        "rhs_evaluations": 500, "wall_ns": 90_000, "own_ns": 40_000,
+        "verdict": if found.is_some() { "pass" } else { "error" },
+    })
+}
+
+fn report(version: &str) -> Value {
+    let engine = |name: &str| json!({"name": name, "library": "Lib", "version": version, "method": "m", "language": "C 17"});
+    json!({
+        "percuss": "0.1.0", "commit": null, "cpu": "a processor",
+        "engines": [engine("lib-bdf-default"), engine("lib-bdf")],
+        "results": [
+            row("lib-bdf-default", "a", &["jump", "chatter"], Some([7, 2])),
+            row("lib-bdf", "a", &["jump", "chatter"], Some([10, 0])),
+            row("lib-bdf-default", "b", &[], None),
+            row("lib-bdf", "b", &[], Some([9, 0])),
+        ],
+    })
+}
+
+fn board(reports: &[Value]) -> anyhow::Result<Board> {
+    let read = |it: &Value| serde_json::from_value(it.clone()).expect("a report");
+    Board::of(&reports.iter().map(read).collect::<Vec<_>>())
+}
+
+#[test]
+fn a_default_stands_beside_its_expert() {
+    let board = board(&[report("1.0")]).expect("a board");
+    assert_eq!(board.kinds, ["chatter", "jump", "oscillator"]);
+    let text = page::markdown(&board);
+    for line in [
+        "2 cases at 1e-6; percuss 0.1.0 at no commit, on a processor.\n",
+        "| lib-bdf 1.0 | Lib | C 17 | 95 | 25 | 0 | 2 | 50 | \u{2013} | 4.0 | 5.0 |\n",
+        "| lib-bdf 1.0 | 100 / 50 | 100 / 50 | 90 / 0 |\n",
+    ] {
+        assert!(text.contains(line), "{line} is not in {text}");
+    }
+    let html = page::html(&board).expect("a page");
+    assert!(html.contains("--share: 90%\">90<") && html.contains("--share: 0%\">0<"), "{html}");
+    assert!(!html.contains("http://") && !html.contains("https://"), "it loads nothing");
+}
+
+#[test]
+fn versions_stand_side_by_side_and_none_is_there_twice() {
+    let both = board(&[report("1.0"), report("2.0")]).expect("a board");
+    let lines: Vec<_> = both.lines.iter().map(|it| it.version.as_str()).collect();
+    assert_eq!(lines, ["1.0", "2.0"]);
+    let twice = board(&[report("1.0"), report("1.0")]);
+    assert!(
+        twice.is_err_and(|it| it.to_string() == "lib-bdf-default 1.0 is in more than one report")
+    );
+}
+
+#[test]
+fn the_block_takes_the_place_of_the_old_one() {
+    let page = "a\n<!-- begin: scoreboard -->\nold\n<!-- end: scoreboard -->\nb\n";
+    let new = spliced(page, "new\n").expect("spliced");
+    assert_eq!(new, page.replace("old", "new"));
+    assert!(spliced("no block", "new").is_err());
+}
