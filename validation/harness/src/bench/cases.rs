@@ -27,7 +27,7 @@ pub const USUAL: [&str; 12] = [
 pub const SYSTEMS: [&str; 17] = [
     // parabolas and straight lines
     "ball-cut-short",
-    "heights-every-direction",
+    "height-crossed-twice",
     "cradle-inelastic",
     "spheres-one-after-another",
     "plastic-sticks-and-flies",
