@@ -110,8 +110,9 @@ fn mixed(draw: &mut Draw, mut matrix: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         if i == j {
             continue;
         }
-        for k in 0..size {
-            matrix[i][k] += sign * matrix[j][k];
+        let added = matrix[j].clone();
+        for (entry, other) in matrix[i].iter_mut().zip(added) {
+            *entry += sign * other;
         }
         for row in &mut matrix {
             row[j] -= sign * row[i];

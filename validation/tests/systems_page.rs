@@ -79,8 +79,8 @@ fn times(rows: &[Vec<String>]) -> Vec<f64> {
 }
 
 /// On the limit cycle the output at a switching is what is left of a square wave of half-period T,
-/// which is the sum of its steps: 1 - 2 (s(T) - s(2 T) + s(3 T) - ...), where 1 - s is the answer of
-/// the three equal poles to a step. It is C (I + e^AT)^-1 A^-1 (e^AT - I) B, written out.
+/// which is the sum of its steps: 1 - 2 (s(T) - s(2 T) + s(3 T) - ...), where 1 - s is the answer
+/// of the three equal poles to a step. It is C (I + e^AT)^-1 A^-1 (e^AT - I) B, written out.
 #[test]
 fn the_relays_half_period_solves_its_equation() {
     let step = |t: f64| 1.0 - (-t).exp() * (1.0 + t + 0.5 * t * t);
@@ -116,8 +116,8 @@ fn what_else_is_known_is_met() {
     assert_eq!(belt[1][1..3], ["1.1250000000000000", "second-slips-behind"]);
 }
 
-/// Period doubling on the way to chaos: how many ticks of the clock it takes the converter to repeat
-/// itself.
+/// Period doubling on the way to chaos: how many ticks of the clock it takes the converter to
+/// repeat itself.
 #[test]
 fn the_converter_doubles_its_period() {
     for (supply, period) in [("24", 1), ("25", 2)] {

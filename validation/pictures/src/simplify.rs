@@ -47,8 +47,8 @@ mod tests {
         };
         let places: Vec<At> = (0..=628).map(circle).collect();
         let line = simplified(&places);
-        // A chord that passes within a tenth of a pixel spans 0.0894 radians, so that it takes 71 of
-        // them; halving what is too long takes at most twice as many.
+        // A chord that passes within a tenth of a pixel spans 0.0894 radians, so that it takes 71
+        // of them; halving what is too long takes at most twice as many.
         assert!(line.len() <= 2 * 71 + 1, "{}", line.len());
         for at in &places {
             let near = line.windows(2).map(|ends| distance(*at, ends[0], ends[1]));

@@ -67,8 +67,3 @@ fn by_system(report: &Report, evidence: &ReportEvidence, it: &Ranked) -> Vec<Str
     let shown = |(system, (failing, all))| format!("{system} {failing} of {all}");
     systems.into_iter().map(shown).collect()
 }
-
-/// How many cases were run.
-pub(super) fn number_of_cases(report: &Report) -> usize {
-    report.results.chunk_by(|a, b| a.case == b.case).count()
-}

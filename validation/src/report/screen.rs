@@ -3,7 +3,7 @@
 //! A terminal shows the last lines, so the ranking and the failures stand there and the details
 //! above them. Every line fits [`WIDTH`](super::WIDTH) columns.
 
-use super::failing::{failing_cases, number_of_cases};
+use super::failing::failing_cases;
 use super::notes::notes;
 use super::ranking::COMPARED_AT;
 use super::table::{reasons, row_table, text, wrapped};

@@ -31,8 +31,8 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The layout below `head`, for so many states and names of events, the widest of which takes so
-    /// many pixels.
+    /// The layout below `head`, for so many states and names of events, the widest of which takes
+    /// `widest` pixels.
     pub fn new(head: f64, states: usize, events: usize, widest: f64) -> Self {
         Self {
             left: AXIS.max(widest.min(WIDEST_NAMES) + MARGIN),

@@ -181,7 +181,7 @@ impl SystemMotion {
         self.trace(canvas, &panel, 1, 2);
     }
 
-    /// Draws one column of all points against another: what resets skip, the motion, and the events.
+    /// Draws one column of all points against another: what resets skip, the motion, the events.
     fn trace(&self, canvas: &mut Canvas, panel: &Panel, x: usize, y: usize) {
         let place = |at: &Vec<f64>| panel.place((at[x], at[y]));
         let far = |(a, b): &(At, At)| (a.0 - b.0).hypot(a.1 - b.1) > 1.0;
