@@ -93,19 +93,23 @@ impl Enclosure {
         Self { columns: self.columns.iter().map(later).collect() }
     }
 
-    /// The errors of a state at a time that is given, not found: those of the time before it are
-    /// made up for along the flow.
+    /// The errors of a state at a time that is given, not found: the errors of the time before it
+    /// are made up for along the flow. The time since the entry is rounded by up to `rounded`.
     pub fn at_given_time<T: Number>(
         mut self,
         flow: &Flow<T>,
         matrix: &[Vector<T>],
         state: &Vector<T>,
+        rounded: f64,
     ) -> Self {
         let rates = rates(flow, matrix, state);
-        let whole = self.time();
+        let whole = self.time() + rounded;
         for column in &mut self.columns {
             column.delayed(-column.time, &rates);
         }
+        let mut own = Column { state: [0.0; LARGEST_DIMENSION], time: 0.0 };
+        own.delayed(rounded, &rates);
+        self.columns.push(Column { time: 0.0, ..own });
         self.add_box(&bends(matrix, &rates, whole));
         self
     }
@@ -151,6 +155,13 @@ impl Enclosure {
         errors.add_box(roundings);
         errors.reduce();
         errors
+    }
+
+    /// Adds what rounding does where a segment is entered.
+    pub fn add_entry<T: Number>(&mut self, flow: &Flow<T>, state: &Vector<T>, unit: f64) {
+        let roundings = flow.entry_roundings(state, unit).into_iter();
+        let there = roundings.filter(|state| state.iter().any(|it| *it != 0.0));
+        self.columns.extend(there.map(|state| Column { state, time: 0.0 }));
     }
 
     /// Adds an error to each entry by itself.

@@ -140,6 +140,18 @@ impl<T: Number> Flow<T> {
         sizes
     }
 
+    /// What rounding may do to a state where it is taken to modal co-ordinates: the states that
+    /// belong to the error of each of them.
+    pub fn entry_roundings(&self, z: &Vector<T>, unit: f64) -> Vec<Vector<f64>> {
+        let margin = (self.dimension + 2) as f64 * unit;
+        let error = |(n, column): (usize, &Vector<T>)| {
+            let terms = self.to_modal.iter().zip(z).map(|(it, z)| (it[n].to_f64(), z.to_f64()));
+            let size: f64 = terms.map(|(factor, entry)| (factor * entry).abs()).sum();
+            column.map(|entry| margin * size * entry.to_f64())
+        };
+        self.from_modal.iter().enumerate().map(error).collect()
+    }
+
     /// The modal co-ordinates a time later.
     #[inline]
     pub fn at(&self, y: &Vector<T>, time: T) -> Vector<T> {

@@ -210,6 +210,9 @@ impl<T: Number> Run<'_, T> {
         if let Some(ending) = ending {
             self.end(ending);
         }
+        if let Some(errors) = &mut self.enclosure {
+            errors.add_entry(flow, &self.state, unit::<T>());
+        }
         let inherited = self.enclosure.as_ref().map_or_else(Vec::new, |errors| {
             solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect()
         });
@@ -274,7 +277,8 @@ impl<T: Number> Run<'_, T> {
         let solver::SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
         if let Some(errors) = &self.enclosure {
             let errors = errors.later(flow, limit);
-            let mut errors = errors.at_given_time(flow, matrix, &self.state);
+            let rounded = 4.0 * unit::<T>() * limit.to_f64().abs();
+            let mut errors = errors.at_given_time(flow, matrix, &self.state, rounded);
             errors.add_box(&roundings(flow, &self.ends.left.y, &self.modal));
             self.enclosure = Some(errors);
         }

@@ -27,12 +27,12 @@ pub const USUAL: [&str; 12] = [
 pub const SYSTEMS: [&str; 17] = [
     // parabolas and straight lines
     "ball-cut-short",
-    "heights-every-direction",
+    "height-crossed-twice",
     "cradle-inelastic",
     "spheres-one-after-another",
     "plastic-sticks-and-flies",
     // oscillations with blows, friction and stops
-    "rigid-chaos-damped",
+    "rigid-dense-output",
     "watched-every-direction",
     "friction-two-stops",
     "belt-two-masses",
@@ -41,7 +41,7 @@ pub const SYSTEMS: [&str; 17] = [
     "relay-1e-4",
     "relay-chatter",
     // circuits with a clock
-    "buck-chaos",
+    "buck-periodic",
     "latched-chaos",
     // stiffness
     "percussive-stiff",
