@@ -1,6 +1,7 @@
-//! diffsol with its own root finding as its book's bouncing ball has it, run by percuss: steps until
-//! a root is found, the interpolated state there, the event's own change of it, and a start from
-//! there; the tolerances, and nothing else. What an expert adds is percuss's own engine `diffsol-bdf`.
+//! diffsol with its own root finding as its book's bouncing ball has it, run by percuss: steps
+//! until a root is found, the interpolated state there, the event's own change of it, and a start
+//! from there; the tolerances, and nothing else. What an expert adds is percuss's own engine
+//! `diffsol-bdf`.
 //!
 //! Roots have no direction. One that the guard leaves on the wrong side is passed over.
 
