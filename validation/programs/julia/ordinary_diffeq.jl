@@ -17,6 +17,7 @@ import JSON
 using OrdinaryDiffEq
 import Pkg
 
+const SciMLBase = OrdinaryDiffEq.SciMLBase
 const LONGEST_STEP = 0.125
 const MOST_AT_ONCE = 64
 const ONE_INSTANT = 8 * eps()
@@ -147,9 +148,9 @@ function stretch(course, method, is_default)
             end
         end
     end
+    side = is_default ? SciMLBase.LeftRootFind : SciMLBase.RightRootFind
     callback = VectorContinuousCallback(condition, crossed(1), crossed(-1), length(mode.events);
-                                        rootfind = SciMLBase.RightRootFind,
-                                        save_positions = (false, false))
+                                        rootfind = side, save_positions = (false, false))
     times = filter(<(span), due(course, span))
     problem = ODEProblem(rates!, course.z, (course.t, span), course)
     options = Dict{Symbol, Any}(:reltol => tolerance, :abstol => tolerance, :saveat => times)

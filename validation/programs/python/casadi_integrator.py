@@ -1,17 +1,17 @@
 """CasADi's CVODES and IDAS integrators, run by percuss.
 
-`SOLVER-default` is CasADi's own event support, which it calls experimental: `zero` in the dictionary
-of the system, a `transition` that notes when and where an indicator fell through zero and stops the
-motion there, the tolerances, and nothing else. An indicator that rises never fires, so that each guard
-is given with its sign turned, and twice where both directions count.
+`SOLVER-default` is CasADi's own event support, which it calls experimental: `zero` in the
+dictionary of the system, a `transition` that notes when and where an indicator fell through zero
+and stops the motion there, the tolerances, and nothing else. An indicator that rises never fires,
+so that each guard is given with its sign turned, and twice where both directions count.
 
-`SOLVER` is what its experts do, PyBaMM's "safe" mode among them: steps of the program's own, each a
-call of the integrator, guards looked at by their signs at the ends of these steps, and the root found
-with further calls.
+`SOLVER` is what its experts do, PyBaMM's "safe" mode among them: steps of the program's own, each
+a call of the integrator, guards looked at by their signs at the ends of these steps, and the root
+found with further calls.
 
 - Steps are an eighth of a forcing period and of a turn.
-- A guard that is zero where a mode begins has the sign that it has just after it, until it has moved
-  away by more than the tolerance hides.
+- A guard that is zero where a mode begins has the sign that it has just after it, until it has
+  moved away by more than the tolerance hides.
 - What follows an event is told by the first derivative that is not zero.
 """
 

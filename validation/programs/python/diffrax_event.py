@@ -1,21 +1,22 @@
 """diffrax's Event with a root find by optimistix, run by percuss.
 
-`METHOD-default` is the first example in the documentation of `Event`: conditions that are real, found
-by `Newton(1e-5, 1e-5, rms_norm)`, a first step of 0.1, the tolerances, and nothing else but directions
-and double precision, without which no tolerance below 1e-6 means anything. `METHOD` is what an expert adds:
+`METHOD-default` is the first example in the documentation of `Event`: conditions that are real,
+found by `Newton(1e-5, 1e-5, rms_norm)`, a first step of 0.1, the tolerances, and nothing else but
+directions and double precision, without which no tolerance below 1e-6 means anything. `METHOD` is
+what an expert adds:
 
-- The root is found by bisection to rounding: Newton's method may leave the step, and its tolerances
-  are not those of the run. With several conditions diffrax 0.7.2 cannot bisect. There is one: the
-  largest of all guards, each with the sign that makes it negative where the run begins. What crosses
-  in a direction that does not count is passed over.
-- Steps are at most an eighth of a forcing period and of a turn, because signs are compared at the ends
-  of steps; and the first one is left to the controller.
-- A guard that is zero where a mode begins has the sign that it has just after it, until it has moved
-  away by more than the tolerance hides.
+- The root is found by bisection to rounding: Newton's method may leave the step, and its
+  tolerances are not those of the run. With several conditions diffrax 0.7.2 cannot bisect. There
+  is one: the largest of all guards, each with the sign that makes it negative where the run
+  begins. What crosses in a direction that does not count is passed over.
+- Steps are at most an eighth of a forcing period and of a turn, because signs are compared at the
+  ends of steps; and the first one is left to the controller.
+- A guard that is zero where a mode begins has the sign that it has just after it, until it has
+  moved away by more than the tolerance hides.
 - What follows an event is told by the first derivative that is not zero.
 
-Functions are compiled once for each number of states, of events, and of samples, and kept beside the
-Python environment for the next process.
+Functions are compiled once for each number of states, of events, and of samples, and kept beside
+the Python environment for the next process.
 """
 
 import sys

@@ -1,16 +1,18 @@
 """Drake's Simulator with witness functions, run by percuss.
 
-`METHOD-default` is a system with a witness function for each event, whose handler ends the run, the
-accuracy, and nothing else; `runge_kutta3` is Drake's own default. `METHOD` is what an expert adds:
+`METHOD-default` is a system with a witness function for each event, whose handler ends the run,
+the accuracy, and nothing else; `runge_kutta3` is Drake's own default. `METHOD` is what an expert
+adds:
 
-- Steps are at most an eighth of a forcing period and of a turn, because witnesses are looked at at the
-  ends of steps.
-- A guard that is zero where a mode begins has the sign that it has just after it, until it has moved
-  away by more than the tolerance hides.
-- Whether an event follows at once, and which mode, is told by the first derivative that is not zero.
+- Steps are at most an eighth of a forcing period and of a turn, because witnesses are looked at at
+  the ends of steps.
+- A guard that is zero where a mode begins has the sign that it has just after it, until it has
+  moved away by more than the tolerance hides.
+- Whether an event follows at once, and which mode, is told by the first derivative that is not
+  zero.
 
-Drake has one accuracy, relative and absolute together. An event's time is isolated to a window that
-follows from it, and is the window's end.
+Drake has one accuracy, relative and absolute together. An event's time is isolated to a window
+that follows from it, and is the window's end.
 """
 
 from importlib.metadata import version

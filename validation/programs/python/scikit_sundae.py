@@ -1,14 +1,15 @@
 """scikit-sundae's CVODE and IDA with their own events, run by percuss.
 
-`SOLVER-default` is the documentation's first example of events: a function that fills an array, with
-lists of what is terminal and of directions, the tolerances, and nothing else. `SOLVER` is what an
-expert adds:
+`SOLVER-default` is the documentation's first example of events: a function that fills an array,
+with lists of what is terminal and of directions, the tolerances, and nothing else. `SOLVER` is
+what an expert adds:
 
-- Steps are at most an eighth of a forcing period and of a turn, because roots are looked for by signs
-  at the ends of steps; and there is no limit on their number between outputs.
-- A guard that is zero where a mode begins has the sign that it has just after it, until it has moved
-  away by more than the tolerance hides.
-- Whether an event follows at once, and which mode, is told by the first derivative that is not zero.
+- Steps are at most an eighth of a forcing period and of a turn, because roots are looked for by
+  signs at the ends of steps; and there is no limit on their number between outputs.
+- A guard that is zero where a mode begins has the sign that it has just after it, until it has
+  moved away by more than the tolerance hides.
+- Whether an event follows at once, and which mode, is told by the first derivative that is not
+  zero.
 - Methods with Newton's iteration are given their Jacobian.
 """
 

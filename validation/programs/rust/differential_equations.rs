@@ -1,6 +1,7 @@
 //! differential-equations with its built-in events as its documentation's first example has them,
 //! run by percuss: `dop853`, an `Event` with a direction that ends the run, the tolerances, and
 //! nothing else. What an expert adds is percuss's own engine `differential-equations-rkv655e`.
+//! Modes with more than three events are refused: the builder takes them one by one.
 
 mod percuss_program;
 

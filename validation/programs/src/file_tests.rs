@@ -55,3 +55,16 @@ fn every_mistake_is_named_in_one_line() {
     let absent = absent.err().map(|error| error.0).unwrap_or_default();
     assert!(absent.starts_with("absent.toml: cannot be read"), "{absent}");
 }
+
+/// The programs of this folder are read, and what is known of them names set-ups of theirs.
+#[test]
+fn the_programs_here_and_their_shortcomings_are_accepted() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("programs.toml");
+    let programs = read(&path).unwrap_or_default();
+    let known = shortcomings(&path).unwrap_or_default();
+    assert!(programs.len() >= 12 && known.len() >= 100, "{} {}", programs.len(), known.len());
+    for it in known {
+        let of_a_program = |name: &str| it.engine.as_str().starts_with(&format!("^(?:{name}\\-"));
+        assert!(programs.iter().any(|it| of_a_program(&it.name)), "{}", it.engine);
+    }
+}
