@@ -119,6 +119,7 @@ const ROWS: &[Row] = &[
     (&["score"], "--version", &["", "\n"], "1 to 80 characters"),
     (&["score"], "--language", &["", "\n"], "1 to 80 characters"),
     (&["score"], "--tolerance", NUMBERS, "1e-16 to 0.1"),
+    (&["validate"], "--tolerance", NUMBERS, "accepted"),
     (&["score"], "--tolerance", &["0", "-1e-6", "0.2"], "1e-16 to 0.1"),
     (&["score"], "--answers", &["/no/such", "/proc/version"], "accepted is a folder"),
     (&["validate", "bench"], "--engine", &["(", "qqqqq"], "--engine"),

@@ -2,7 +2,7 @@
 
 use super::judged::JudgedFlags;
 use super::{note, say, work};
-use crate::engine::{Accuracy, REFERENCE};
+use crate::engine::{self, Accuracy, REFERENCE, Stepping};
 use crate::number::shortest;
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::{self, CaseRun, Scored, Status, Suite};
@@ -128,8 +128,19 @@ impl Arguments {
             library: for_ever(self.library.as_deref().unwrap_or(&self.name)),
             version: for_ever(&self.version),
             language: for_ever(&self.language),
+            stepping: stepping(&self.name),
         };
         FileEngine::new(answerer, self.answers.clone(), case.to_owned())
+    }
+}
+
+/// The unit of error is that of the engine inside percuss that is called so, where its accuracy is
+/// chosen by a tolerance too.
+fn stepping(name: &str) -> Stepping {
+    let known = engine::all().iter().map(|it| it.declaration()).find(|it| it.name == name);
+    match known.map(|it| it.stepping) {
+        Some(stepping @ Stepping::PerStep { .. }) => stepping,
+        _ => Stepping::Adaptive,
     }
 }
 

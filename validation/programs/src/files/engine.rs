@@ -19,6 +19,8 @@ pub struct Answerer {
     pub version: &'static str,
     /// The language.
     pub language: &'static str,
+    /// How its accuracy is chosen, which says what a unit of its error is.
+    pub stepping: Stepping,
 }
 
 /// The answers to one case, which were made before, as an engine that runs this case alone.
@@ -38,7 +40,7 @@ impl FileEngine {
 
 impl Engine for FileEngine {
     fn declaration(&self) -> Declaration {
-        let Answerer { name, library, version, .. } = self.answerer;
+        let Answerer { name, library, version, stepping, .. } = self.answerer;
         Declaration {
             name,
             library,
@@ -47,7 +49,7 @@ impl Engine for FileEngine {
             order: None,
             events: Location::Library,
             dense_output: false,
-            stepping: Stepping::Adaptive,
+            stepping,
             role: Role::Rows,
             colours: Colours::OTHERS,
         }
