@@ -42,6 +42,8 @@ pub struct Run<'a, T> {
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
     pub(super) enclosure: Option<Enclosure>,
+    /// The errors of the start itself, before the rounding of its modal co-ordinates.
+    start_errors: Option<Errors>,
 }
 
 /// The quotient of the rates after and before an impact, from its fastest occurrence.
@@ -82,7 +84,9 @@ impl<T: Number> Solver<T> {
             *size += error(T::exact(terms.sum()));
         }
         sizes[self.system.dimension() - 1] = 0.0;
-        run.enclosure = Some(Enclosure::of(&sizes));
+        let enclosure = Enclosure::of(&sizes);
+        run.start_errors = Some(run.errors(&enclosure));
+        run.enclosure = Some(enclosure);
         run.enter();
         Some(run)
     }
@@ -110,6 +114,7 @@ impl<T: Number> Solver<T> {
             queue: VecDeque::new(),
             ended: false,
             enclosure: None,
+            start_errors: None,
         };
         let (sin, cos) = self.sin_cos(&entered);
         for (entry, [c, s, one]) in run.state.iter_mut().zip(&start.state) {
@@ -147,7 +152,7 @@ impl<T: Number> Run<'_, T> {
     #[must_use]
     pub fn start(&self) -> Event<T> {
         let mut event = self.event(What::Start, self.entered, &self.state);
-        event.errors = self.enclosure.as_ref().map(|it| self.errors(it));
+        event.errors.clone_from(&self.start_errors);
         event
     }
 

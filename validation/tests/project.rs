@@ -178,7 +178,9 @@ fn every_file_of_tests_is_in_its_program() {
 
 /// The relative links of a page: a path from the page's folder, and the anchor in it.
 fn links(page: &str) -> Vec<(String, String)> {
-    let ends = page.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
+    // Of what stands between fences, every second piece is code.
+    let prose: String = page.split("```").step_by(2).collect();
+    let ends = prose.split("](").skip(1).filter_map(|rest| rest.split_once(')'));
     let own = ends.filter(|(link, _)| !link.contains("://"));
     own.map(|(link, _)| link.split_once('#').unwrap_or((link, "")))
         .map(|(path, anchor)| (path.to_owned(), anchor.to_owned()))
