@@ -38,7 +38,7 @@ pub trait CaseRun: Sync {
     /// The case's name.
     fn name(&self) -> &str;
 
-    /// The truth's events on the case's horizon.
+    /// The truth's events on the case's horizon, with an ending that an engine has to find.
     fn events(&self) -> usize;
 
     /// The run that is asked for, as that of a system.
@@ -169,7 +169,7 @@ pub struct Scored {
     pub accuracy: Accuracy,
     /// The row's unit of error.
     pub unit: f64,
-    /// The truth's events on the case's horizon.
+    /// The truth's events on the case's horizon, with an ending that an engine has to find.
     pub events: usize,
     /// The kinds of trouble that the case makes.
     pub trouble: Vec<String>,

@@ -70,7 +70,7 @@ impl CaseRun for PreparedSystem {
     }
 
     fn events(&self) -> usize {
-        self.truth.events.len()
+        self.occurrences.len()
     }
 
     fn system_task(&self) -> Result<SystemTask, Failure> {
