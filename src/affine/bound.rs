@@ -33,7 +33,7 @@ impl Later {
         let never_grows = |rate: &Real| *rate <= Real::zero();
         match &block.kind {
             Kind::Real(rate) if rate.is_zero() => Self::Polynomial,
-            // Of a higher degree the eighth derivative has no bound for all times.
+            // A polynomial of higher degree has no bound of its eighth derivative for all times.
             Kind::Nilpotent(rate) if rate.is_zero() && nilpotent(block, rate).1 <= 8 => {
                 Self::Polynomial
             }

@@ -106,7 +106,7 @@ pub fn embedded() -> Result<Vec<Case>, FileError> {
 /// The oscillator's cases of a folder and the folders in it, by name.
 ///
 /// # Errors
-/// As [`Cases::from_directory`], and a folder without cases of the oscillator.
+/// Fails as [`Cases::from_directory`] does, and where no case is of the oscillator.
 pub fn from_directory(folder: &Path) -> Result<Vec<Case>, FileError> {
     let cases = Cases::from_directory(folder)?.oscillator;
     if cases.is_empty() {

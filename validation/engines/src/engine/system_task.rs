@@ -61,7 +61,7 @@ impl SystemTask {
     /// The run of a problem over a time.
     ///
     /// # Errors
-    /// As [`SystemTask::new`].
+    /// Fails as [`SystemTask::new`] does.
     pub fn of(problem: &Arc<SystemProblem>, span: f64, samples: Vec<f64>) -> Result<Self, Failure> {
         let system = Arc::clone(&problem.checked);
         let task = Self::new(system, problem.start.mode, &problem.state(), span, samples)?;

@@ -27,7 +27,7 @@ pub(super) enum SystemFault {
     UncutOutput,
     /// An event has the state before its reset.
     StateBefore,
-    /// Of events in one instant the first alone is noticed.
+    /// Only the first of the events in one instant is noticed.
     OneAtOnce,
     /// For a while after an event none is noticed.
     Cooldown,

@@ -162,7 +162,7 @@ impl Watch<'_> {
         let equations = Affine::of(&self.task.system);
         let zero = (0..equations.count(from.mode))
             .filter(|guard| from.entered.is_zero(*guard) && !equations.ends(from.mode, *guard));
-        // Of the two guards of an event that counts in both directions one will do.
+        // An event that counts in both directions has two guards; one will do.
         let mut guards: Vec<usize> = zero.collect();
         guards.dedup_by_key(|guard| equations.event(from.mode, *guard));
         let at = |guard: usize| Crossing { t: from.t, guard, state: from.state };
