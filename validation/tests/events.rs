@@ -90,7 +90,7 @@ fn a_wrong_event_of_another_system_is_shown_alike() {
     let library = Library::embedded().expect("the tables are read");
     let cases = Cases::embedded().expect("the cases are read").systems.into_iter();
     let cases = cases.filter(|case| case.name == "buck-dense-output").collect();
-    let cases = suite::prepare_systems(cases, &library).expect("prepared");
+    let cases = suite::prepare_systems(cases, &library, Suite::Quick).expect("prepared");
     let engines = select(&[Regex::new("^diffsol-tsit45$").expect("a pattern")]).expect("an engine");
     let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();
     let defaults = defaults().expect("bounds");

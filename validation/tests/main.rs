@@ -33,6 +33,7 @@ mod replay;
 mod report;
 mod reproduce;
 mod restart;
+mod restart_systems;
 mod rig;
 mod score;
 mod score_your_integrator;

@@ -139,7 +139,7 @@ fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
 fn all_systems() -> Vec<PreparedSystem> {
     let library = Library::embedded().expect("the tables are read");
     let cases = Cases::embedded().expect("the cases are read").systems;
-    prepare_systems(cases, &library).expect("the cases are made ready")
+    prepare_systems(cases, &library, Suite::Quick).expect("the cases are made ready")
 }
 
 /// A fault in a way of running a case is caught by cases that are run in that way, and by no other.

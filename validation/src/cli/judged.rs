@@ -107,7 +107,7 @@ impl CaseFlags {
             cases.names().filter(|name| library.is_replayed(name)).map(str::to_owned).collect();
         let prepared = PreparedCases {
             oscillator: suite::prepare(cases.oscillator, &library, suite)?,
-            systems: suite::prepare_systems(cases.systems, &library)?,
+            systems: suite::prepare_systems(cases.systems, &library, suite)?,
         };
         for name in replayed {
             note(&format!(

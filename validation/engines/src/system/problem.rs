@@ -38,6 +38,20 @@ impl SystemProblem {
         Ok(Self { exact, solver, checked: Arc::new(checked), start, backward })
     }
 
+    /// The system from another start.
+    ///
+    /// # Errors
+    /// A start that the engines do not take.
+    pub fn from_start(&self, start: StartPoint) -> Result<Self, Failure> {
+        let exact = affine::System { start: Some(start.clone()), ..self.exact.clone() };
+        let mut checked = CheckedSystem::new(System::from(&exact))?;
+        if self.backward {
+            checked = checked.backward()?;
+        }
+        let solver = self.solver.clone();
+        Ok(Self { exact, solver, checked: Arc::new(checked), start, backward: self.backward })
+    }
+
     /// The clock's time at the start, rounded.
     #[must_use]
     pub fn begin(&self) -> f64 {

@@ -7,7 +7,7 @@ use crate::engine::{
     COOLDOWN, Equations, Limits, Way, Wrong, WrongWay, faulty_on_systems, wrong_on_systems,
 };
 use crate::score::Checked;
-use crate::suite::{CaseRun, PreparedSystem, Suite};
+use crate::suite::{CaseRun, PreparedSystem};
 use crate::system::{Affine, Direction, System, Until};
 use rayon::prelude::*;
 
@@ -120,6 +120,6 @@ fn held(
 ) -> Option<Vec<Checked>> {
     let Standard { accuracy, unit, .. } = standard;
     let limits = Limits { calls: MOST_CALLS, ..Limits::default() };
-    let measured = case.attempt(wrong.engine, (accuracy, unit), &limits, Suite::Quick).ok()?;
+    let measured = case.measured(wrong.engine, (accuracy, unit), &limits).ok()?;
     Some(judged(case, &measured.measures, standard, defaults))
 }

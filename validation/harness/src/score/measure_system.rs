@@ -18,11 +18,11 @@ use crate::truth::{SystemTruth, SystemTruthRow};
 use percuss::TwoWord;
 
 /// A run to be measured, with what it is measured against.
-struct SystemRun<'a> {
-    task: &'a SystemTask,
-    truth: &'a SystemTruth,
-    outcome: &'a SystemOutcome,
-    unit: f64,
+pub(super) struct SystemRun<'a> {
+    pub(super) task: &'a SystemTask,
+    pub(super) truth: &'a SystemTruth,
+    pub(super) outcome: &'a SystemOutcome,
+    pub(super) unit: f64,
 }
 
 /// How many units of error a method may be off anywhere: the widest bound on the constants of a
@@ -94,15 +94,19 @@ pub fn measure_system(
 /// The time up to which a run is scored, and whether that is all of it: until one unit of error,
 /// grown, passes the error that is scored or could let an event change places with its neighbour,
 /// or until the errors that are allowed could lead into another mode.
-fn scored_horizon(task: &SystemTask, truth: &SystemTruth, scale: SystemScale<'_>) -> (f64, bool) {
+pub(super) fn scored_horizon(
+    task: &SystemTask,
+    truth: &SystemTruth,
+    scale: SystemScale<'_>,
+) -> (f64, bool) {
     let unit = scale.unit;
     let largest = |row: &SystemTruthRow| row.growth.iter().fold(row.growth_time, |a, b| a.max(*b));
     let is_lost = |row: &SystemTruthRow| unit * largest(row) > SCORED_ERROR;
-    let times: Vec<f64> = truth.events.iter().map(|it| it.elapsed.value()).collect();
+    let times: Vec<TwoWord> = truth.events.iter().map(|it| it.elapsed).collect();
     let unit_of_time = unit * task.system.system().time_scale;
     let mixed_up = |n: usize, row: &SystemTruthRow| unit_of_time * row.growth_time > gap(&times, n);
     // Events of one instant are lost together, with the first of them.
-    let is_first = |n: usize| n == 0 || times[n] > times[n - 1];
+    let is_first = |n: usize| n == 0 || times[n].minus(times[n - 1]).value() > 0.0;
     let mut firsts = truth.events.iter().enumerate().filter(|(n, _)| is_first(*n));
     let event = firsts.find(|(n, row)| is_lost(row) || mixed_up(*n, row));
     let sample = truth.samples.iter().find(|row| is_lost(row));
@@ -113,30 +117,32 @@ fn scored_horizon(task: &SystemTask, truth: &SystemTruth, scale: SystemScale<'_>
         return (truth.end.elapsed.value(), true);
     }
     let samples = truth.samples.iter().map(|row| row.elapsed.value());
-    let before = times.iter().copied().chain(samples).filter(|time| *time < lost);
+    let before = times.iter().map(|it| it.value()).chain(samples).filter(|time| *time < lost);
     (before.fold(0.0, f64::max), false)
 }
 
 /// The instants from which on the mode is in doubt: an event whose successor hangs by less than the
 /// errors that are allowed, or a graze that ends its mode or does not by as little.
-fn in_doubt(times: &[f64], scale: SystemScale<'_>) -> impl Iterator<Item = f64> {
+fn in_doubt(times: &[TwoWord], scale: SystemScale<'_>) -> impl Iterator<Item = f64> {
     let allowed = MOST_UNITS * scale.unit;
     let grazes = scale.grazes.iter().filter(move |it| it.ends && it.is_undecidable(allowed));
-    let grazed = grazes.map(|it| it.events.clone().next().map_or(it.elapsed, |n| times[n]));
+    let grazed = grazes.map(|it| it.events.clone().next().map_or(it.elapsed, |n| times[n].value()));
     let decisions = scale.decisions.iter().filter(move |it| it.margin <= allowed * it.growth);
     grazed.chain(decisions.map(|it| it.elapsed))
 }
 
-/// How far an event is from the nearest one at another instant, or from the start.
-fn gap(times: &[f64], n: usize) -> f64 {
-    let before = times[..n].iter().rev().chain([&0.0]).map(|it| times[n] - it);
-    let after = times[n + 1..].iter().map(|it| it - times[n]);
+/// How far an event is from the nearest one at another instant, or from the start: instants that
+/// f64 does not tell apart may still be two.
+fn gap(times: &[TwoWord], n: usize) -> f64 {
+    let before = times[..n].iter().rev().chain([&TwoWord::ZERO]);
+    let before = before.map(|it| times[n].minus(*it).value());
+    let after = times[n + 1..].iter().map(|it| it.minus(times[n]).value());
     let before = before.into_iter().find(|gap| *gap > 0.0);
     before.into_iter().chain(after.into_iter().find(|gap| *gap > 0.0)).fold(f64::INFINITY, f64::min)
 }
 
 impl SystemRun<'_> {
-    fn scales(&self) -> &[f64] {
+    pub(super) fn scales(&self) -> &[f64] {
         &self.task.system.system().scales
     }
 
@@ -150,7 +156,7 @@ impl SystemRun<'_> {
         self.truth.samples.iter().enumerate().map(error).collect()
     }
 
-    fn time_units(&self, (truth, own, n): (f64, f64, usize)) -> f64 {
+    pub(super) fn time_units(&self, (truth, own, n): (f64, f64, usize)) -> f64 {
         let scale = self.task.system.system().time_scale;
         // An ending has no growth of its own.
         let growth = self.truth.events.get(n).or(self.truth.events.last());
@@ -179,7 +185,7 @@ impl SystemRun<'_> {
     }
 
     /// The largest error of a state, in units.
-    fn units(&self, row: &SystemTruthRow, state: &[f64], events: usize) -> f64 {
+    pub(super) fn units(&self, row: &SystemTruthRow, state: &[f64], events: usize) -> f64 {
         let states = row.state.iter().zip(state).zip(&row.growth).zip(self.scales());
         let relative = states.map(|(((truth, own), growth), scale)| {
             let size = 1.0 + truth.value().abs() / scale;
@@ -204,6 +210,6 @@ impl SystemRun<'_> {
     }
 }
 
-fn off(truth: TwoWord, value: f64) -> f64 {
+pub(super) fn off(truth: TwoWord, value: f64) -> f64 {
     truth.minus(TwoWord::new(value)).value().abs()
 }

@@ -2,7 +2,7 @@
 
 use super::attractor::Comparison;
 use super::horizon::Horizons;
-use super::restart::Restart;
+use super::restart_figures::Restart;
 
 /// What the probes gave for one engine.
 #[derive(Clone, Debug, Default)]

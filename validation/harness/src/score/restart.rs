@@ -7,16 +7,15 @@
 //! switch at all, so the figures are of the runs that had an impact.
 
 use super::growth::RunGrowth;
-use super::histogram::Histogram;
+use super::restart_figures::{Restart, RestartError, RestartResult};
 use super::starts::on_attractor;
-use super::statistics::{Spread, worst};
+use super::statistics::worst;
 use crate::case::Problem;
 use crate::engine::{Failure, Outcome, SampleGrid, Task};
 use crate::truth::{Truth, TruthRow};
 use percuss::TwoWord;
 use percuss::{Instant, Phase};
 use rayon::prelude::*;
-use std::collections::BTreeMap;
 
 /// A run ends at the latest at this strobe.
 pub const MOST_PERIODS: u64 = 8;
@@ -39,50 +38,6 @@ pub struct RestartTest {
     pub runs: Vec<RestartRun>,
     /// Runs that 106 bits do not decide, which are left out.
     pub undecided: usize,
-}
-
-/// How far one run is off at its strobe.
-#[derive(Clone, Copy, Debug)]
-pub struct RestartError {
-    /// The largest error of p, y, q and v in units of error x (1 + |value|) x growth.
-    pub units: f64,
-    /// The error of v, in the units of `units`.
-    pub drift_units: f64,
-    /// The largest error of an event's time, in the units of `units`; NaN where the sequence of
-    /// phases is not the truth's.
-    pub time_units: f64,
-    /// The largest error of p, y, q and v itself.
-    pub absolute: f64,
-    /// Whether the phases follow each other as in the truth.
-    pub same_phases: bool,
-}
-
-/// The score of an engine.
-#[derive(Clone, Debug)]
-pub struct Restart {
-    /// Runs made.
-    pub runs: usize,
-    /// Runs with an impact. The spreads and the histogram are of these; `failed` and
-    /// `wrong_sequences` count all runs.
-    pub with_impact: usize,
-    /// Runs that the truth leaves undecided, which are not made.
-    pub undecided: usize,
-    /// Runs that gave no result. They are bounded by themselves and are in none of the errors.
-    pub failed: usize,
-    /// Runs with a result whose phases follow each other otherwise than in the truth.
-    pub wrong_sequences: usize,
-    /// Errors at the strobe in units of error x (1 + |value|) x growth.
-    pub units: Spread,
-    /// The errors of the drift alone, in units.
-    pub drift_units: Spread,
-    /// The errors of event times, over the runs with the right phases, in units.
-    pub time_units: Spread,
-    /// Errors at the strobe themselves.
-    pub absolute: Spread,
-    /// `units` of the runs with this many events, and how many these are.
-    pub by_events: BTreeMap<usize, (usize, Spread)>,
-    /// How `units` are distributed.
-    pub histogram: Histogram,
 }
 
 impl RestartTest {
@@ -118,36 +73,13 @@ impl RestartTest {
         run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
     ) -> Restart {
         let runs = &self.runs[..most.min(self.runs.len())];
-        let measured = |it: &RestartRun| run(&it.task).map(|outcome| it.error(&outcome, unit));
-        let errors: Vec<_> = runs.par_iter().map(measured).collect();
-        let with_impact = || runs.iter().zip(&errors).filter(|(run, _)| run.impact);
-        let results = || with_impact().filter_map(|(run, error)| Some((run, error.as_ref().ok()?)));
-        let figures = |figure: fn(&RestartError) -> f64| -> Vec<f64> {
-            results().map(|(_, error)| figure(error)).collect()
+        let measured = |it: &RestartRun| RestartResult {
+            impact: it.impact,
+            events: it.truth.events.len(),
+            error: run(&it.task).map(|outcome| it.error(&outcome, unit)).ok(),
         };
-        let units = figures(|error| error.units);
-        let mut by_events: BTreeMap<usize, Vec<f64>> = BTreeMap::new();
-        for ((run, _), units) in results().zip(&units) {
-            by_events.entry(run.truth.events.len()).or_default().push(*units);
-        }
-        Restart {
-            runs: runs.len(),
-            with_impact: with_impact().count(),
-            undecided: self.undecided,
-            failed: errors.iter().filter(|error| error.is_err()).count(),
-            wrong_sequences: errors.iter().flatten().filter(|error| !error.same_phases).count(),
-            units: Spread::of(units.clone()),
-            drift_units: Spread::of(figures(|error| error.drift_units)),
-            time_units: Spread::of(
-                figures(|error| error.time_units).into_iter().filter(|it| !it.is_nan()).collect(),
-            ),
-            absolute: Spread::of(figures(|error| error.absolute)),
-            by_events: by_events
-                .into_iter()
-                .map(|(events, units)| (events, (units.len(), Spread::of(units))))
-                .collect(),
-            histogram: Histogram::of(&units),
-        }
+        let results: Vec<_> = runs.par_iter().map(measured).collect();
+        Restart::of(&results, self.undecided)
     }
 }
 
@@ -178,7 +110,7 @@ impl RestartRun {
         let truth = &self.truth.end.state;
         let off = |k: usize| off(truth[k], outcome.end[k]);
         let units = |k: usize| off(k) / scale(unit, truth[k], self.growth.end[k]);
-        let same_phases = self.same_phases(outcome);
+        let same_modes = self.same_phases(outcome);
         let pairs = self.truth.events.iter().zip(&outcome.events).zip(&self.growth.events);
         let late = pairs.map(|((truth, found), growth)| {
             self::off(truth.elapsed, found.elapsed) / scale(unit, truth.elapsed, growth[0])
@@ -186,9 +118,9 @@ impl RestartRun {
         RestartError {
             units: worst((0..4).map(units)),
             drift_units: units(3),
-            time_units: if same_phases { worst(late) } else { f64::NAN },
+            time_units: if same_modes { worst(late) } else { f64::NAN },
             absolute: worst((0..4).map(off)),
-            same_phases,
+            same_modes,
         }
     }
 

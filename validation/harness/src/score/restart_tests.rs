@@ -71,7 +71,7 @@ fn an_error_counts_over_its_size_and_growth() {
         near(found.units, off / (UNIT * size * run.growth.end[k]));
         near(found.absolute, off);
         near(found.drift_units, if k == 3 { found.units } else { 0.0 });
-        assert!(found.same_phases && found.time_units < 1e-3);
+        assert!(found.same_modes && found.time_units < 1e-3);
     }
 }
 
@@ -86,7 +86,7 @@ fn a_time_counts_where_the_phases_are_right() {
     near(found.time_units, off / (UNIT * (1.0 + row.elapsed.value()) * run.growth.events[1][0]));
     outcome.events.truncate(1);
     let found = run.error(&outcome, UNIT);
-    assert!(!found.same_phases && found.time_units.is_nan());
+    assert!(!found.same_modes && found.time_units.is_nan());
 }
 
 #[test]

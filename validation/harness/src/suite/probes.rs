@@ -19,6 +19,18 @@ pub fn is_shown(role: Role, accuracy: Accuracy) -> bool {
     role == Role::Representative && accuracy.tolerance().is_none_or(among)
 }
 
+/// Whether a suite asks an engine at this accuracy for restarts on other systems than the
+/// oscillator: one engine a library, and the exact solver.
+#[must_use]
+pub fn restarts_on_systems(suite: Suite, role: Role, accuracy: Accuracy) -> bool {
+    let tolerances = match suite {
+        Suite::Quick => &[TOLERANCE][..],
+        Suite::Full => &TOLERANCES,
+    };
+    let asked = accuracy.tolerance().is_some_and(|it| tolerances.contains(&it));
+    accuracy == Accuracy::Exact || (asked && role == Role::Representative)
+}
+
 /// The probes of one case, made ready once and shared by all engines.
 #[derive(Default)]
 pub struct Probes {

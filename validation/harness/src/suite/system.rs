@@ -1,12 +1,13 @@
 //! A piecewise-affine system's case made ready.
 
 use super::matrix::{Answered, CaseRun, Measured};
+use super::probes::restarts_on_systems;
 use super::scope::Suite;
 use crate::case::{Bound, Defaults, FileError, Shortcoming, SystemCase};
 use crate::engine::{Accuracy, Engine, Failure, Limits, SystemTask, answer_system};
 use crate::score::{
-    Decision, EventNames, Graze, Measures, Occurrence, ScoredRun, SystemScale, WINDOW, decisions,
-    measure_system, system_grazes,
+    Decision, EventNames, Graze, Measures, Occurrence, ScoredRun, SystemRestartTest, SystemScale,
+    WINDOW, decisions, measure_system, system_grazes,
 };
 use crate::truth::{Library, SystemTruth};
 use rayon::prelude::*;
@@ -28,6 +29,8 @@ pub struct PreparedSystem {
     pub grazes: Vec<Graze>,
     /// The events whose successors hang by little.
     pub decisions: Vec<Decision>,
+    /// Restarts from states along the true run.
+    pub restart: SystemRestartTest,
     names: EventNames,
     occurrences: Vec<Occurrence>,
 }
@@ -40,12 +43,13 @@ pub struct PreparedSystem {
 pub fn prepare_systems(
     cases: Vec<SystemCase>,
     library: &Library,
+    suite: Suite,
 ) -> Result<Vec<PreparedSystem>, FileError> {
-    cases.into_par_iter().map(|case| PreparedSystem::new(case, library)).collect()
+    cases.into_par_iter().map(|case| PreparedSystem::new(case, library, suite)).collect()
 }
 
 impl PreparedSystem {
-    fn new(case: SystemCase, library: &Library) -> Result<Self, FileError> {
+    fn new(case: SystemCase, library: &Library, suite: Suite) -> Result<Self, FileError> {
         let truth = library.system_truth(&case)?;
         let problem = Arc::new(case.problem()?);
         let refused = |failure: Failure| FileError::of(&case.file, failure);
@@ -54,7 +58,40 @@ impl PreparedSystem {
         let occurrences = names.of_truth(&truth);
         let grazes = system_grazes(&problem, &truth, &names);
         let decisions = decisions(&problem, &truth);
-        Ok(Self { case, truth, task, grazes, decisions, names, occurrences })
+        let restart = SystemRestartTest::new(&case, &problem, &truth, restarts(suite))
+            .map_err(|what| FileError::of(&case.file, what))?;
+        Ok(Self { case, truth, task, grazes, decisions, restart, names, occurrences })
+    }
+
+    /// What an engine's run measures, without restarts.
+    ///
+    /// # Errors
+    /// The engine's failure.
+    pub fn measured(
+        &self,
+        engine: &dyn Engine,
+        (accuracy, unit): (Accuracy, f64),
+        limits: &Limits,
+    ) -> Result<Measured, Failure> {
+        let began = Instant::now();
+        let outcome = answer_system(engine, &self.task, accuracy, limits)?;
+        let wall = began.elapsed();
+        // The exact solver knows which values are zero by the model.
+        let decisions = if accuracy == Accuracy::Exact { &[][..] } else { &self.decisions };
+        let scale = SystemScale { unit, grazes: &self.grazes, decisions };
+        let measures = measure_system(&self.task, &self.truth, &self.names, &outcome, scale);
+        Ok(Measured { measures, answered: Answered::System(outcome), wall })
+    }
+
+    /// How many restarts a suite asks of an engine whose run of the case took so many right-hand
+    /// sides.
+    fn restarts(&self, suite: Suite, engine: &dyn Engine, accuracy: Accuracy, work: u64) -> usize {
+        if !restarts_on_systems(suite, engine.declaration().role, accuracy) {
+            return 0;
+        }
+        let work = work as f64 / self.task.span * self.restart.span();
+        let share = suite.budget() / work.max(1.0);
+        (self.restart.runs.len() as f64 * share.min(1.0)) as usize
     }
 
     /// The time that stands for a forcing period.
@@ -116,20 +153,28 @@ impl CaseRun for PreparedSystem {
         engine: &dyn Engine,
         (accuracy, unit): (Accuracy, f64),
         limits: &Limits,
-        _: Suite,
+        suite: Suite,
     ) -> Result<Measured, Failure> {
-        let began = Instant::now();
-        let outcome = answer_system(engine, &self.task, accuracy, limits)?;
-        let wall = began.elapsed();
-        // The exact solver knows which values are zero by the model.
-        let decisions = if accuracy == Accuracy::Exact { &[][..] } else { &self.decisions };
-        let scale = SystemScale { unit, grazes: &self.grazes, decisions };
-        let measures = measure_system(&self.task, &self.truth, &self.names, &outcome, scale);
-        Ok(Measured { measures, answered: Answered::System(outcome), wall })
+        let mut measured = self.measured(engine, (accuracy, unit), limits)?;
+        let most = self.restarts(suite, engine, accuracy, measured.answered.work().rhs_evaluations);
+        if most > 0 {
+            let run = |task: &SystemTask| answer_system(engine, task, accuracy, limits);
+            let restart = self.restart.score_first(most, (accuracy, unit), run);
+            measured.measures.probed.restart = Some(restart);
+        }
+        Ok(measured)
     }
 
     fn as_run<'a>(&'a self, measures: &'a Measures) -> ScoredRun<'a> {
         let window = WINDOW * self.period();
         ScoredRun { measures, truth: &self.occurrences, grazes: &self.grazes, window }
+    }
+}
+
+/// Restarts of a case, spread over its run.
+const fn restarts(suite: Suite) -> usize {
+    match suite {
+        Suite::Quick => 20,
+        Suite::Full => 100,
     }
 }

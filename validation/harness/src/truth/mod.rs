@@ -18,4 +18,5 @@ pub use double_double::{DoubleDouble, LARGEST_ANGLE, UNIT};
 pub use library::Library;
 pub use replay::{Beginning, Replay, ReplayedPhase, Undecided};
 pub use system::{SystemTruth, SystemTruthRow};
+pub use system_replay::solver;
 pub use table::{Truth, TruthRow};

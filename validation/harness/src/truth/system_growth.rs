@@ -36,7 +36,7 @@ struct SystemMatrices {
     backward: bool,
 }
 
-/// Fills in the growth of a truth's events and samples.
+/// Fills in the growth of a truth's events, samples and end.
 pub(super) fn fill(truth: &mut SystemTruth, case: &SystemCase) {
     let motion = SystemMatrices::of(case);
     let mut sources = vec![motion.source()];
@@ -51,7 +51,11 @@ pub(super) fn fill(truth: &mut SystemTruth, case: &SystemCase) {
             row.growth = motion.largest(sources.iter().map(|it| &flow * &it.state));
             sampled += 1;
         }
-        let Some(row) = truth.events.get_mut(n) else { break };
+        let Some(row) = truth.events.get_mut(n) else {
+            let flow = motion.flow(&begin, truth.end.elapsed.minus(begin.elapsed).value());
+            truth.end.growth = motion.largest(sources.iter().map(|it| &flow * &it.state));
+            break;
+        };
         motion.pass(&mut sources, &begin, row);
         begin = row.clone();
     }

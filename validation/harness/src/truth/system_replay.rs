@@ -30,18 +30,34 @@ struct SystemReplay<'a> {
 impl SystemTruth {
     /// The truth of a case of which there are no tables.
     pub(super) fn without_tables(case: &SystemCase) -> Result<Self, FileError> {
-        let refused = |what: &str| FileError::of(&case.file, what);
-        let solver =
-            if case.backward { Solver::backward(&case.system) } else { Solver::new(&case.system) };
-        let solver: Solver<DoubleDouble> = solver.map_err(|it| refused(&it.to_string()))?;
-        let start = case.system.start.as_ref().ok_or_else(|| refused("the system has no start"))?;
-        let replay = SystemReplay { case, solver: &solver, begin: Time::of(&start.time) };
-        let events = replay.events(start).map_err(|what| refused(&what))?;
-        replay.refuse_close_instants(&events).map_err(|what| refused(&what))?;
-        let mut truth = replay.truth(&events).map_err(|what| refused(&what))?;
+        let refused = |what: String| FileError::of(&case.file, what);
+        let solver = solver(case).map_err(refused)?;
+        Self::replayed(case, &solver).map_err(refused)
+    }
+
+    /// The truth of a case's run, by the closed forms of its system in the direction of the run.
+    ///
+    /// # Errors
+    /// What 106 bits leave undecided, and horizons and samples beside an event.
+    pub fn replayed(case: &SystemCase, solver: &Solver<DoubleDouble>) -> Result<Self, String> {
+        let start = case.system.start.as_ref().ok_or("the system has no start")?;
+        let replay = SystemReplay { case, solver, begin: Time::of(&start.time) };
+        let events = replay.events(start)?;
+        replay.refuse_close_instants(&events)?;
+        let mut truth = replay.truth(&events)?;
         system_growth::fill(&mut truth, case);
         Ok(truth)
     }
+}
+
+/// The closed forms of a case's system in the direction of its run, in 106 bits.
+///
+/// # Errors
+/// A system that the solver does not take.
+pub fn solver(case: &SystemCase) -> Result<Solver<DoubleDouble>, String> {
+    let solver =
+        if case.backward { Solver::backward(&case.system) } else { Solver::new(&case.system) };
+    solver.map_err(|it| it.to_string())
 }
 
 impl SystemTruth {

@@ -1,0 +1,118 @@
+//! The restart test on other systems than the oscillator.
+//!
+//! `cargo test --release --test harness restart_systems:: -- --nocapture` prints the figures of
+//! every case.
+
+use percuss_validation::case::Cases;
+use percuss_validation::engine::{
+    Accuracy, Engine, Failure, Limits, REFERENCE, SystemOutcome, SystemTask, all, answer_system,
+};
+use percuss_validation::score::Restart;
+use percuss_validation::suite::{PreparedSystem, Suite, prepare_systems};
+use percuss_validation::truth::Library;
+
+/// Twice the largest median of the exact solver on any case (2.1), in eps (1 + |value|) x growth.
+const MEDIAN: f64 = 4.0;
+/// The promise of ten roundings; 6.1 is the largest of all.
+const LARGEST: f64 = 10.0;
+
+fn prepared(accepts: impl Fn(&str) -> bool) -> Vec<PreparedSystem> {
+    let library = Library::embedded().expect("the tables are read");
+    let cases = Cases::embedded().expect("the cases are read").systems.into_iter();
+    let chosen = cases.filter(|case| accepts(&case.name)).collect();
+    prepare_systems(chosen, &library, Suite::Quick).expect("the cases are made ready")
+}
+
+fn one(name: &str) -> PreparedSystem {
+    prepared(|it| it == name).pop().expect("the case")
+}
+
+fn scored(
+    case: &PreparedSystem,
+    (accuracy, unit): (Accuracy, f64),
+    run: impl Fn(&SystemTask) -> Result<SystemOutcome, Failure> + Sync,
+) -> Restart {
+    case.restart.score_first(usize::MAX, (accuracy, unit), run)
+}
+
+fn exactly(task: &SystemTask) -> Result<SystemOutcome, Failure> {
+    answer_system(named(REFERENCE), task, Accuracy::Exact, &Limits::default())
+}
+
+const AS_EXACT: (Accuracy, f64) = (Accuracy::Exact, f64::EPSILON);
+
+#[test]
+fn the_exact_solver_keeps_its_digits_on_every_case() {
+    let mut with_events = 0;
+    for case in prepared(|_| true) {
+        let name = &case.case.name;
+        let restart = scored(&case, AS_EXACT, exactly);
+        let Restart { units, time_units, runs, undecided, .. } = &restart;
+        println!(
+            "{name:28} {runs:3} {undecided} median {:.3} max {:.2} time {:.3} {:.2}",
+            units.median, units.max, time_units.median, time_units.max
+        );
+        assert_eq!((restart.failed, restart.wrong_sequences), (0, 0), "{name}");
+        if restart.with_impact == 0 {
+            continue;
+        }
+        with_events += 1;
+        assert!(units.median <= MEDIAN, "{name}: median {}", units.median);
+        assert!(units.max <= LARGEST, "{name}: {}", units.max);
+        assert!(time_units.max <= LARGEST, "{name}: time {}", time_units.max);
+    }
+    assert!(with_events > 60, "{with_events}");
+}
+
+/// An engine that begins a run with a state that is off shows it in each restart.
+#[test]
+fn a_start_that_is_off_is_seen() {
+    let case = one("relay-1e-4");
+    let off = |task: &SystemTask| {
+        let mut task = task.clone();
+        task.exact = None;
+        task.state[0] += 1e-7;
+        let engine = named("ode_solvers-dopri5");
+        answer_system(engine, &task, Accuracy::Tolerance(1e-9), &Limits::default())
+    };
+    let at = (Accuracy::Tolerance(1e-9), 1e-9);
+    let right = |task: &SystemTask| {
+        answer_system(named("ode_solvers-dopri5"), task, at.0, &Limits::default())
+    };
+    let (honest, faulty) = (scored(&case, at, right), scored(&case, at, off));
+    assert!(honest.units.max < 2.0, "{}", honest.units.max);
+    assert!(faulty.units.median > 5.0, "{}", faulty.units.median);
+}
+
+/// Runs that give no result count as failed, and wrong modes as a wrong sequence.
+#[test]
+fn failures_and_missed_events_are_counted() {
+    let case = one("buck-periodic");
+    let failing = scored(&case, AS_EXACT, |_| Err(Failure::new("tired")));
+    assert_eq!((failing.failed, failing.with_impact), (20, 20));
+    assert!(failing.units.max.is_nan());
+    let missing = scored(&case, AS_EXACT, |task| {
+        let mut outcome = exactly(task)?;
+        outcome.events.pop();
+        Ok(outcome)
+    });
+    assert_eq!((missing.failed, missing.wrong_sequences), (0, 20));
+}
+
+/// Restarts pass at least two instants with events, and their truth has all of these.
+#[test]
+fn a_restart_passes_two_instants_with_events() {
+    for case in prepared(|name| name.starts_with("ball-") || name.starts_with("cradle")) {
+        for run in &case.restart.runs {
+            assert!(run.truth.events.len() >= 2, "{}", case.case.name);
+            let last = run.truth.events.last().expect("an event").elapsed.value();
+            assert!(last < run.task.span, "{}", case.case.name);
+        }
+    }
+}
+
+fn named(name: &str) -> &'static dyn Engine {
+    let mut engines = all().iter().copied();
+    let found = engines.find(|it| it.declaration().name == name);
+    found.expect("the engine")
+}
