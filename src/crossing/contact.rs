@@ -1,7 +1,7 @@
 //! The guards of a contact: the trial force rises to 1 (progression) or falls to 0 (separation).
 
 use crate::crossing::allowances::STEP_ROUNDINGS;
-use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
+use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
 use crate::crossing::contact_parts::{ContactParts, ContactShape};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::higher_orders::ContactOrders;
@@ -204,8 +204,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         }
     }
 
-    fn imposed(&self) -> Ends {
-        Ends { left: self.offset == 0.0, left_double: false, right: false }
+    fn imposed(&self) -> ThresholdEnds {
+        ThresholdEnds { left: self.offset == 0.0, left_double: false, right: false }
     }
 
     #[inline(always)]
@@ -217,7 +217,13 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         self.rests_by_rounding()
     }
 
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof {
+    fn certify(
+        &self,
+        steps: &Steps,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: ThresholdEnds,
+    ) -> Proof {
         let corridor = self.corridor();
         let room = self.room_of_length(left, right);
         let slack = slack(self, left, right) + room;
@@ -329,7 +335,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         steps: &Steps,
         (left, split, free): (&Point<f64>, &Split, f64),
         right: &Point<f64>,
-        (ends, room): (Ends, f64),
+        (ends, room): (ThresholdEnds, f64),
     ) -> Proof {
         /// Under stronger damping the free part's derivatives would multiply its rounding.
         const MILD: f64 = 4.0;
@@ -360,7 +366,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
             eighth: (-free, free),
         };
         let corridor = self.corridor().narrowed(split.amplitude);
-        self.near(slow.verdict(&corridor, Ends::FREE, slack + room), room, [left, right])
+        self.near(slow.verdict(&corridor, ThresholdEnds::FREE, slack + room), room, [left, right])
     }
 }
 

@@ -25,14 +25,14 @@ const COUNTS: [&str; 5] =
 type Key = (String, String, String, String);
 
 /// Engine, case and setting.
-type Place = (String, String, String);
+type RowKey = (String, String, String);
 
 /// An engine and a group of its rows: those of the oscillator, or of other systems the events, the
 /// errors and the runs without a result. Each group has a reason of its own.
-type Group = (String, &'static str);
+type RowGroup = (String, &'static str);
 
 /// The rows of each group, with floor and ceiling.
-type Defects = BTreeMap<Group, BTreeMap<Key, (f64, f64)>>;
+type Defects = BTreeMap<RowGroup, BTreeMap<Key, (f64, f64)>>;
 
 fn main() -> Result<()> {
     let mut defects = Defects::new();
@@ -80,7 +80,7 @@ fn main() -> Result<()> {
 }
 
 /// The group of an engine's row.
-fn group(engine: &str, case: &str, quantity: &str, systems: &BTreeSet<String>) -> Group {
+fn group(engine: &str, case: &str, quantity: &str, systems: &BTreeSet<String>) -> RowGroup {
     let events = ["events_missed", "events_spurious", "phase_word"];
     let group = match quantity {
         _ if !systems.contains(case) => "",
@@ -92,7 +92,7 @@ fn group(engine: &str, case: &str, quantity: &str, systems: &BTreeSet<String>) -
 }
 
 /// A row's engine, case and setting (a step is negative, the exact solver has none).
-fn place(row: &Value) -> Result<Place> {
+fn place(row: &Value) -> Result<RowKey> {
     let text = |key: &str| row[key].as_str().map(str::to_owned).context("a row has names");
     let setting = match (row["tolerance"].as_f64(), row["step"].as_f64()) {
         (Some(tolerance), _) => float(tolerance),
@@ -145,9 +145,9 @@ fn float(value: f64) -> String {
 fn present(
     path: &str,
     systems: &BTreeSet<String>,
-    reported: &BTreeSet<Place>,
+    reported: &BTreeSet<RowKey>,
     defects: &mut Defects,
-) -> Result<BTreeMap<Group, String>> {
+) -> Result<BTreeMap<RowGroup, String>> {
     let text = std::fs::read_to_string(path).with_context(|| path.to_owned())?;
     let file: PresentFile = toml::from_str(&text).with_context(|| path.to_owned())?;
     let mut reasons = BTreeMap::new();

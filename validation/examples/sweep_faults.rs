@@ -44,7 +44,7 @@ struct Tried {
 }
 
 /// A sweep in a folder of its own.
-struct Bench {
+struct SweepTrial {
     program: PathBuf,
     folder: TempDir,
     /// The merged bytes of an undisturbed run.
@@ -56,7 +56,7 @@ struct Bench {
 fn main() -> Result<()> {
     let page = std::env::args().nth(1).context("the page that gets the table is missing")?;
     let program = std::env::current_exe()?.with_file_name("../percuss").canonicalize()?;
-    let mut bench = Bench::new(program)?;
+    let mut bench = SweepTrial::new(program)?;
     bench.measure()?;
     let tried = [
         bench.killed()?,
@@ -96,7 +96,7 @@ fn splice(page: &Path, table: &str) -> Result<()> {
     Ok(fs::write(page, format!("{before}{}\n{table}\n{}{after}", MARKS[0], MARKS[1]))?)
 }
 
-impl Bench {
+impl SweepTrial {
     fn new(program: PathBuf) -> Result<Self> {
         let folder = tempfile::tempdir()?;
         fs::write(folder.path().join("plan.toml"), PLAN)?;

@@ -50,7 +50,7 @@ pub use registry::{add, all, exact, select};
 pub use system_task::{SystemEvent, SystemOutcome, SystemTask};
 pub use trace::{GuardSample, Trace, Watched};
 pub use wrong::{
-    CONTROL, COOLDOWN, Closed, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, SOUND, Way, Wrong,
+    CONTROL, COOLDOWN, Closed, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, SOUND, Way, WrongEngine,
     WrongWay, faulty, faulty_on_systems, wrong, wrong_on_systems,
 };
 

@@ -1,12 +1,12 @@
 //! What is timed: a run, and beside it the engine's own part of it.
 
-use super::course::Score;
 use super::rounds::Benchmark;
+use super::timed_case::Score;
 use crate::engine::{Failure, Work};
 
-/// A contestant on a course. What is timed is its `call`.
+/// A contestant on a case. What is timed is its `call`.
 pub trait TimedRun: Benchmark {
-    /// Runs of the course's length that a call makes.
+    /// Runs of the case's length that a call makes.
     fn runs(&self) -> f64 {
         1.0
     }

@@ -14,19 +14,19 @@ pub enum Suite {
 
 /// A suite, as far as its tolerances are chosen.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scope {
+pub struct SuiteScope {
     suite: Suite,
     tolerances: Vec<f64>,
 }
 
-impl From<Suite> for Scope {
+impl From<Suite> for SuiteScope {
     fn from(suite: Suite) -> Self {
         let adaptive = suite.accuracies(Stepping::Adaptive);
         Self { suite, tolerances: adaptive.into_iter().filter_map(Accuracy::tolerance).collect() }
     }
 }
 
-impl Scope {
+impl SuiteScope {
     /// The same at these tolerances alone; at all of the suite's where there are none. Engines
     /// without a tolerance are not concerned.
     #[must_use]
