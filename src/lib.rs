@@ -63,7 +63,7 @@ pub mod insides {
     pub use crate::flow::constants::Constants;
     pub use crate::model::Motion;
     pub use crate::numeric::{angle, remainders, two_word};
-    pub use crate::run::judgement::{Effort, Judgement};
+    pub use crate::run::one_sided::{Effort, OneSidedEnd};
 
     pub mod crossing {
         pub use crate::crossing::*;

@@ -359,14 +359,18 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         }
         let level = b - self.reference;
         let [z, z1, z2, z3] = self.split(right).free;
-        let slow = Piece {
+        let unforced = Piece {
             left: [x + level, x1, x2, x3],
             right: [z + level, z1, z2, z3],
             length,
             eighth: (-free, free),
         };
         let corridor = self.corridor().narrowed(split.amplitude);
-        self.near(slow.verdict(&corridor, ThresholdEnds::FREE, slack + room), room, [left, right])
+        self.near(
+            unforced.verdict(&corridor, ThresholdEnds::FREE, slack + room),
+            room,
+            [left, right],
+        )
     }
 }
 

@@ -22,7 +22,7 @@ mod batch;
 mod certificate;
 mod contact;
 mod contact_ahead;
-mod contact_shape;
+mod contact_constants;
 mod contact_steps;
 mod damped;
 mod flight;

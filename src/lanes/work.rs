@@ -2,7 +2,7 @@
 
 use super::batch::{Batch, Begin, LaneTask, PhaseEnds};
 use super::contact::{LaneContact, Release};
-use super::contact_shape::Forms;
+use super::contact_constants::Forms;
 use super::flight::{Flight, Impact};
 use super::harmonic::Angle;
 use super::root::Fineness;

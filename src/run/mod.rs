@@ -2,7 +2,7 @@
 
 pub mod exit;
 pub mod growth;
-pub mod judgement;
+pub mod one_sided;
 pub mod segment;
 pub mod stages;
 pub mod switch;

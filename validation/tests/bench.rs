@@ -4,10 +4,10 @@
 use crate::exact;
 use crate::support::{refused, run, stdout, text};
 use percuss::Phase;
-use percuss_validation::bench::alone::alone;
 use percuss_validation::bench::cases::{SYSTEMS, USUAL};
 use percuss_validation::bench::contest::{contest_at, most_accurate, system_contest};
 use percuss_validation::bench::contestant::{Contestant, EnteredEngine, settings};
+use percuss_validation::bench::library_part::library_part;
 use percuss_validation::bench::timed_case::TimedCase;
 use percuss_validation::bench::timed_system_case::TimedSystemCase;
 use percuss_validation::case::Cases;
@@ -117,13 +117,13 @@ fn an_engine_that_is_told_its_events_makes_the_same_run() {
     for engine in all() {
         let settings = settings(engine.declaration().stepping);
         let setting = settings[2.min(settings.len() - 1)];
-        let told = alone(*engine, &case, setting, Limits::default()).expect("the same run");
+        let told = library_part(*engine, &case, setting, Limits::default()).expect("the same run");
         let mut told = told.expect("something is left out");
         let name = engine.declaration().name;
         assert_eq!(told.call().and_then(|()| told.check()), Ok(()), "{name}");
     }
     // An engine that the harness does not meter is not thought to be free of the harness.
-    let unmetered = alone(CONTROL, &case, Accuracy::Exact, Limits::default());
+    let unmetered = library_part(CONTROL, &case, Accuracy::Exact, Limits::default());
     assert!(unmetered.is_ok_and(|it| it.is_none()));
 }
 

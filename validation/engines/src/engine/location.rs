@@ -6,11 +6,11 @@
 //! interval is seen wherever the dense output shows it. Rates come from the equations of motion.
 //! The crossing itself is then narrowed down to the last bit.
 
-use super::alone::GuardRise;
 use super::equations::{Entered, Equations, NO_GUARD, Numbers};
 use super::joining::Moment;
 use super::meter::{Failure, Meter};
 use super::sampler::CountedCrossing;
+use super::script::GuardRise;
 /// Instants inside a step at which the guards are looked at.
 const INTERIOR: u32 = 8;
 /// Evaluations after which a bracket has shrunk as far as it will.

@@ -32,7 +32,7 @@ pub struct Timed {
     /// The best time of each round, ns a forcing period.
     pub series: RoundTimes,
     /// What share of the time is the harness's own: one less the median over the rounds of that
-    /// round's quotient, the engine's part alone ([`super::alone`]) over the whole run. A share
+    /// round's quotient, the engine's part alone ([`super::library_part`]) over the whole run. A share
     /// that is next to nothing may come out below zero.
     pub harness_share: Option<f64>,
 }
@@ -88,10 +88,12 @@ pub fn system_contest(
 fn raced(mut all: Vec<Entrant<'_>>, periods: f64, rounds: usize, done: &dyn Fn()) -> Vec<Finisher> {
     let places = 2 * all.len();
     let mut benchmarks: Vec<&mut dyn Benchmark> = Vec::new();
-    for ContestEntry { timed, alone } in all.iter_mut().filter_map(|it| it.entry.as_mut().ok()) {
+    for ContestEntry { timed, library_part } in
+        all.iter_mut().filter_map(|it| it.entry.as_mut().ok())
+    {
         benchmarks.push(&mut **timed);
-        if let Some(alone) = alone {
-            benchmarks.push(&mut **alone);
+        if let Some(part) = library_part {
+            benchmarks.push(&mut **part);
         }
     }
     // Those that are out take no time; their share of the work is done.
@@ -99,10 +101,10 @@ fn raced(mut all: Vec<Entrant<'_>>, periods: f64, rounds: usize, done: &dyn Fn()
     let mut raced = race(&mut benchmarks, rounds, PACE, done).into_iter();
     let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced")));
     let mut result = |entry: Result<ContestEntry<'_>, Failure>| {
-        let ContestEntry { timed, alone } = entry?;
-        let (whole, alone) = (next(), alone.map(|_| next()));
+        let ContestEntry { timed, library_part } = entry?;
+        let (whole, library_part) = (next(), library_part.map(|_| next()));
         let whole = whole?;
-        let share = alone.and_then(Result::ok).map(|alone| 1.0 - alone.ratio_to(&whole));
+        let share = library_part.and_then(Result::ok).map(|part| 1.0 - part.ratio_to(&whole));
         let scale = 1.0 / (timed.runs() * periods);
         let series = RoundTimes(whole.0.into_iter().map(|time| time * scale).collect());
         let harness_share = share.filter(|it| it.is_finite());
@@ -129,8 +131,8 @@ fn qualified<'a>(
     setting: Accuracy,
 ) -> Result<ContestEntry<'a>, Failure> {
     let timed = contestant.enter(case, setting)?;
-    let entry = right(ContestEntry { timed, alone: None })?;
-    Ok(ContestEntry { alone: contestant.alone(case, setting)?, ..entry })
+    let entry = right(ContestEntry { timed, library_part: None })?;
+    Ok(ContestEntry { library_part: contestant.library_part(case, setting)?, ..entry })
 }
 
 /// A contestant whose answer is right.

@@ -4,7 +4,7 @@
 //! ([`super::lanes`]), implements [`Contestant`] in a file of its own and is named in
 //! [`super::contestants`].
 
-use super::alone::alone;
+use super::library_part::library_part;
 use super::rounds::Benchmark;
 use super::system_run::system_entry;
 use super::timed::{ContestEntry, TimedRun};
@@ -38,7 +38,7 @@ pub trait Contestant: Sync {
     ///
     /// # Errors
     /// Why it does not run there, or is not the same run then.
-    fn alone<'a>(
+    fn library_part<'a>(
         &'a self,
         _course: &'a TimedCase,
         _setting: Accuracy,
@@ -81,12 +81,12 @@ impl Contestant for EnteredEngine {
         enter(self.0, case, setting)
     }
 
-    fn alone<'a>(
+    fn library_part<'a>(
         &'a self,
         case: &'a TimedCase,
         setting: Accuracy,
     ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
-        alone(self.0, case, setting, limits())
+        library_part(self.0, case, setting, limits())
     }
 
     fn runs_systems(&self) -> bool {

@@ -5,7 +5,6 @@
 //! answer that was right ([`timed_case`]). Who is timed is a [`contestant`]; what versions are compared
 //! by, a [`workload`].
 
-pub mod alone;
 pub mod cases;
 pub mod clock;
 pub mod compare;
@@ -20,6 +19,7 @@ pub mod history;
 pub mod instructions;
 pub mod lanes;
 pub mod length;
+pub mod library_part;
 mod pictures;
 pub mod report;
 pub mod rounds;

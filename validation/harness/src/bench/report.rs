@@ -52,7 +52,7 @@ pub struct BenchRow {
     /// Ratio of times at errors of at most 1e-9.
     #[serde(rename = "ratio_at_1e-9")]
     pub ratio_at_1e_9: Option<f64>,
-    /// Share of the time that is the harness's own ([`super::alone`]).
+    /// Share of the time that is the harness's own ([`super::library_part`]).
     pub harness_share: Option<f64>,
     pub rhs_per_period: Option<f64>,
     /// Whether this is the setting at which this engine errs least here.

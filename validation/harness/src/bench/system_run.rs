@@ -1,6 +1,6 @@
 //! An engine on a run of any other system than the oscillator: the whole run, and its own part.
 
-use super::alone::told;
+use super::library_part::told;
 use super::rounds::Benchmark;
 use super::timed::{ContestEntry, TimedRun};
 use super::timed_case::Score;
@@ -12,7 +12,7 @@ use crate::system::Values;
 use std::hint::black_box;
 
 /// An engine made ready for a run. What of it is the engine's alone is told apart as
-/// [`super::alone`] does it, where the answer is then the same to the last bit.
+/// [`super::library_part`] does it, where the answer is then the same to the last bit.
 ///
 /// # Errors
 /// Why the engine does not run there.
@@ -24,14 +24,14 @@ pub fn system_entry<'a>(
 ) -> Result<ContestEntry<'a>, Failure> {
     let run = move || engine.run_system(&case.task, setting, &limits);
     let answer = contain(run)?;
-    let alone: Option<Box<dyn Benchmark + 'a>> =
+    let library_part: Option<Box<dyn Benchmark + 'a>> =
         if engine.declaration().name == exact().declaration().name {
             Some(Box::new(ExactEvents { case, end: answer.end, last: answer.end }))
         } else {
             // Events at the entry of a mode are not located, so that not every run can be told.
             told(answer.clone(), run).ok().flatten()
         };
-    Ok(ContestEntry { timed: Box::new(SystemHeat { run, case, answer }), alone })
+    Ok(ContestEntry { timed: Box::new(SystemHeat { run, case, answer }), library_part })
 }
 
 struct SystemHeat<'a, F> {
@@ -85,6 +85,6 @@ impl Benchmark for ExactEvents<'_> {
     }
 
     fn rounds(&self) -> usize {
-        super::alone::ROUNDS
+        super::library_part::ROUNDS
     }
 }

@@ -26,5 +26,5 @@ pub struct ContestEntry<'a> {
     /// The whole run.
     pub timed: Box<dyn TimedRun + 'a>,
     /// The part of it that is not the harness's.
-    pub alone: Option<Box<dyn Benchmark + 'a>>,
+    pub library_part: Option<Box<dyn Benchmark + 'a>>,
 }

@@ -4,13 +4,13 @@
 //! right state; in dense mode it does not.
 
 use super::{COLOURS, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, TimedField, packed, plain};
-use crate::engine::alone::GuardRise;
 use crate::engine::equations::Equations;
 use crate::engine::field::Coordinates;
 use crate::engine::joining::{Integration, Moment, StretchEnd, join};
 use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
+use crate::engine::script::GuardRise;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
     Task, pins,

@@ -3,7 +3,6 @@
 //!
 //! Without a fault it is the engine `ode_solvers-dopri5`, whose bounds it is held to.
 
-use super::super::alone::GuardRise;
 use super::super::cubic::{Cubic, CubicEnd};
 use super::super::equations::Equations;
 use super::super::field::{GUARDS, Oscillator};
@@ -11,6 +10,7 @@ use super::super::joining::{Integration, Moment, StretchEnd, join};
 use super::super::meter::{Failure, Limits, Meter};
 use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{self, Dopri5Run};
+use super::super::script::GuardRise;
 use super::super::{Accuracy, Declaration, Engine, Outcome, Role, Task};
 use nalgebra::U4;
 use percuss::{Parameters, Phase};

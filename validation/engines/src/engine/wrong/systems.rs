@@ -4,13 +4,13 @@
 //! Without a fault it is the engine `ode_solvers-dopri5`, whose bounds it is held to. Some faults
 //! are a system that was misread, some an entry that was ([`Misled`]), some stand in the loop.
 
-use super::super::alone::GuardRise;
 use super::super::equations::Equations;
 use super::super::joining::{Integration, Moment, StretchEnd, join};
 use super::super::meter::{Failure, Limits, Meter};
 use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{self, Dopri5Run};
 use super::super::sampler::{CountedCrossing, Sampler};
+use super::super::script::GuardRise;
 use super::super::{Accuracy, Declaration, Engine, Outcome, Role, SystemOutcome, SystemTask, Task};
 use super::integrator::end_of_step;
 use super::misled::{Memory, Misled, SystemFault};

@@ -20,7 +20,7 @@ pub(super) const ROUNDS: usize = 3;
 ///
 /// # Errors
 /// Why the engine does not run there.
-pub fn alone<'a>(
+pub fn library_part<'a>(
     engine: &'a dyn Engine,
     case: &'a TimedCase,
     setting: Accuracy,
