@@ -1,0 +1,284 @@
+//! `score`: the same verdicts for the same answers.
+
+use crate::support::{refused, run, text};
+use percuss_validation::case::{Cases, defaults};
+use percuss_validation::engine::{Accuracy, Ended, SystemTask, all};
+use percuss_validation::number::shortest;
+use percuss_validation::suite::{Answered, CaseRun, Status, Suite, one, prepare, prepare_systems};
+use percuss_validation::truth::Library;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+mod malformed;
+
+/// Cases of every kind: the oscillator, jumps, both directions, watched events, several events at
+/// once, and every way in which a run ends.
+const CASES: &str = "^(small-b|cycle-1e8|graze-overlap-1e-6|never-stops|ball-.*|cradle-.*|spheres-.*|\
+                     watched-.*|heights-every-direction|buck-periodic|friction-equal|relay-1e-2|\
+                     plastic-.*|belt-symmetric)$";
+
+/// A row over (z, cos theta, sin theta, 1) for each of the states, the columns of the CSV.
+fn written(states: &[f64]) -> String {
+    states.iter().map(|value| format!(",{}", shortest(*value))).collect()
+}
+
+/// The word for how a run ended early.
+fn ending(ended: Ended) -> Option<&'static str> {
+    Some(match ended {
+        Ended::Horizon => return None,
+        Ended::NoProgress => "no-progress",
+        Ended::Accumulation => "accumulation",
+        Ended::LeavesDomain => "leaves-domain",
+        Ended::BeyondGuard => "beyond-guard",
+        Ended::Undecided => "undecided",
+    })
+}
+
+/// What a program of a user's own would have written of this run.
+struct Files {
+    events: String,
+    samples: String,
+}
+
+impl Files {
+    fn of(answered: &Answered, task: &SystemTask) -> Self {
+        let system = task.system.system();
+        let names = system.states.join(",");
+        let mut files = Self {
+            events: format!("time,event,mode,{names}\n"),
+            samples: format!("time,{names}\n"),
+        };
+        let mut before = task.mode;
+        let mut event = |event: usize, mode: usize, elapsed: f64, state: &[f64]| {
+            let (name, next) = (system.event_name(before, event), &system.modes[mode].name);
+            let name = name.expect("an event of its mode");
+            let row = format!("{},{name},{next}{}\n", shortest(elapsed), written(state));
+            before = mode;
+            row
+        };
+        let (samples, end, (ended, ended_at)) = match answered {
+            Answered::Oscillator(run) => {
+                for it in &run.events {
+                    let mode = system.modes.iter().position(|mode| mode.name == it.mode.as_str());
+                    let mode = mode.expect("a phase is a mode");
+                    files.events += &event(it.event, mode, it.elapsed, &it.state);
+                }
+                let samples: Vec<String> = run.samples.iter().map(|it| written(it)).collect();
+                (samples, written(&run.end), (run.ended, run.ended_at))
+            }
+            Answered::System(run) => {
+                for it in &run.events {
+                    files.events += &event(it.event, it.mode, it.elapsed, &it.state);
+                }
+                let samples: Vec<String> = run.samples.iter().map(|it| written(it)).collect();
+                (samples, written(&run.end), (run.ended, run.ended_at))
+            }
+        };
+        if let Some(word) = ending(ended) {
+            let mode = &system.modes[before].name;
+            files.events += &format!("{},{word},{mode}{end}\n", shortest(ended_at));
+        }
+        let mut times = task.samples.clone();
+        if times.last() != Some(&task.span) {
+            times.push(task.span);
+        }
+        for (time, state) in times.iter().zip(samples.iter().chain([&end])) {
+            files.samples += &format!("{}{state}\n", shortest(*time));
+        }
+        files
+    }
+
+    fn write(&self, folder: &Path, case: &str) {
+        fs::write(folder.join(format!("{case}.events.csv")), &self.events).expect("written");
+        fs::write(folder.join(format!("{case}.samples.csv")), &self.samples).expect("written");
+    }
+}
+
+/// Runs an engine here, writes its answers into a folder, and names the cases that it answered.
+fn answers(engine: &str, accuracy: Accuracy, pattern: &str, folder: &Path) -> Vec<String> {
+    let engine = all().iter().find(|it| it.declaration().name == engine).expect("an engine");
+    let pattern = regex::Regex::new(pattern).expect("a pattern");
+    let mut cases = Cases::embedded().expect("read");
+    cases.retain(|name| pattern.is_match(name));
+    let library = Library::embedded().expect("read");
+    let oscillator = prepare(cases.oscillator, &library, Suite::Quick).expect("made ready");
+    let systems = prepare_systems(cases.systems, &library).expect("made ready");
+    let oscillator = oscillator.iter().map(|it| it as &dyn CaseRun);
+    let defaults = defaults().expect("read");
+    let mut answered = Vec::new();
+    for case in oscillator.chain(systems.iter().map(|it| it as &dyn CaseRun)) {
+        let row = one(case, *engine, accuracy, Suite::Quick, &defaults);
+        let Status::Ok(_, run) = row.status else { continue };
+        let task = case.system_task().expect("a task");
+        Files::of(&run, &task).write(folder, case.name());
+        answered.push(case.name().to_owned());
+    }
+    answered
+}
+
+/// The rows of a verb's report, and its exit code.
+fn report(arguments: &[&str]) -> (Vec<Value>, Option<i32>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let output = run(&[arguments, &["--out", &out]].concat());
+    let json = fs::read_to_string(folder.path().join("report.json"));
+    let json = json.unwrap_or_else(|_| panic!("{}", text(&output.stderr)));
+    let report: Value = serde_json::from_str(&json).expect("JSON");
+    for file in ["errors.csv", "report.html", "junit.xml"] {
+        assert!(folder.path().join(file).exists(), "{file}");
+    }
+    (report["results"].as_array().cloned().expect("rows"), output.status.code())
+}
+
+/// What a row says that does not depend on who counted the work, nor on whether the last state is
+/// the run's end or the sample there, which differ by rounding.
+fn judged(row: &Value) -> Value {
+    let mut row = row.clone();
+    let keys = ["rhs_evaluations", "jacobian_evaluations", "linear_solves", "steps", "wall_ns"];
+    for key in keys.iter().chain(&["own_ns", "order", "drift_error"]) {
+        assert!(row.as_object_mut().expect("a row").remove(*key).is_some(), "{key}");
+    }
+    row
+}
+
+#[test]
+fn an_engines_own_run_has_the_verdicts_that_validate_gives_it() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let answered = answers("diffsol-bdf", Accuracy::Tolerance(1e-6), CASES, folder.path());
+    assert!(answered.len() > 25, "{answered:?}");
+    let answers = folder.path().display().to_string();
+    let score = ["score", "--name", "diffsol-bdf", "--library", "diffsol", "--tolerance", "1e-6"];
+    let (scored, _) = report(&[&score[..], &["--answers", &answers, "-c", CASES]].concat());
+    let (validated, _) =
+        report(&["validate", "-e", "^diffsol-bdf$", "--tolerance", "1e-6", "-c", CASES]);
+    let of = |rows: &[Value], case: &str| -> Vec<Value> {
+        let own = |row: &&Value| row["case"] == case && row["tolerance"] == 1e-6;
+        rows.iter().filter(own).map(judged).collect()
+    };
+    for case in &answered {
+        assert_eq!(of(&scored, case), of(&validated, case), "{case}");
+        assert_eq!(of(&scored, case).len(), 1, "{case}");
+    }
+    let verdicts: Vec<&str> = scored.iter().filter_map(|row| row["verdict"].as_str()).collect();
+    assert!(verdicts.contains(&"pass") && verdicts.iter().any(|it| *it != "pass"), "{verdicts:?}");
+}
+
+/// The truth's own solver, at the unit of error that it has.
+#[test]
+fn exact_answers_have_every_event() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let answered = answers("exact", Accuracy::Exact, CASES, folder.path());
+    let answers = folder.path().display().to_string();
+    let eps = f64::EPSILON.to_string();
+    let score =
+        ["score", "--name", "mine", "--tolerance", &eps, "--answers", &answers, "-c", CASES];
+    let (scored, code) = report(&score);
+    assert_eq!(code, Some(0));
+    let (validated, _) = report(&["validate", "-e", "^exact$", "-c", CASES]);
+    assert_eq!((scored.len(), validated.len()), (answered.len(), answered.len()));
+    let keys =
+        ["case", "status", "events_total", "events_matched", "event_time_error", "state_error"];
+    let mut same = 0;
+    for (own, exact) in scored.iter().zip(&validated) {
+        assert_eq!(
+            (&own["events_missed"], &own["events_spurious"]),
+            (&0.into(), &0.into()),
+            "{own}"
+        );
+        // Where a decision hangs by nothing, only the exact solver knows that it is none.
+        if own["horizon_periods"] == exact["horizon_periods"] {
+            keys.iter().for_each(|key| assert_eq!(own[key], exact[key], "{key}: {own}"));
+            same += 1;
+        }
+    }
+    assert!(same > 25, "{same}");
+}
+
+/// What `export` writes of the bouncing ball, and how it is answered.
+fn ball() -> (tempfile::TempDir, String) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let out = folder.path().display().to_string();
+    let output = run(&["export", "--out", &out, "-c", "^ball-(geometric|cut-short)$"]);
+    assert!(output.status.success(), "{}", text(&output.stderr));
+    let pattern = "^ball-(geometric|cut-short)$";
+    answers("exact", Accuracy::Exact, pattern, folder.path());
+    (folder, out)
+}
+
+const SCORE: [&str; 5] = ["score", "--name", "mine", "--tolerance", "1e-9"];
+
+const EVENTS: &str = "ball-geometric.events.csv";
+
+/// Replaces a text in the n-th line of a file, from 1.
+fn in_line(n: usize, from: &str, to: &str) -> impl Fn(&str) -> Vec<u8> {
+    move |text| {
+        let line = |(i, line): (usize, &str)| {
+            if i + 1 == n { line.replacen(from, to, 1) } else { line.to_owned() }
+        };
+        let lines: Vec<String> = text.lines().enumerate().map(line).collect();
+        assert_ne!(lines.join("\n") + "\n", text, "line {n} holds {from:?}");
+        (lines.join("\n") + "\n").into_bytes()
+    }
+}
+
+#[test]
+fn what_is_not_answered_counts_as_not_found() {
+    let (folder, out) = ball();
+    for ending in ["events", "samples"] {
+        fs::remove_file(folder.path().join(format!("ball-cut-short.{ending}.csv")))
+            .expect("removed");
+    }
+    fs::write(folder.path().join("no-case.events.csv"), "").expect("written");
+    let pattern = "^(ball-(geometric|cut-short)|no-case)$";
+    let words = [&SCORE[..], &["--answers", &out, "-c", pattern]].concat();
+    let (rows, code) = report(&words);
+    assert_eq!(code, Some(0));
+    let missing = rows.iter().find(|row| row["case"] == "ball-cut-short").expect("a row");
+    assert_eq!(
+        (&missing["status"], &missing["verdict"]),
+        (&"unavailable".into(), &"unavailable".into())
+    );
+    assert!(
+        missing["why"].as_str().is_some_and(|why| why.starts_with("not answered: ")),
+        "{missing}"
+    );
+    assert!(missing["events_total"].as_u64() > Some(0));
+    let said = text(&run(&words).stderr);
+    assert!(said.contains("no-case is no case"), "{said}");
+    assert_eq!(run(&[&words[..], &["--require"]].concat()).status.code(), Some(1));
+    let json = text(&run(&[&words[..], &["--format", "json"]].concat()).stdout);
+    let ranking: Value = serde_json::from_str(&json).expect("JSON");
+    let total = ranking["ranking"][0]["events_total"].as_u64().expect("a count");
+    assert!(ranking["ranking"][0]["events_found"].as_u64() < Some(total));
+    // A folder without an answer to any of the cases asked for, and none at all.
+    refused(
+        &[&SCORE[..], &["--answers", &out, "-c", "^small-b$"]].concat(),
+        &["--answers", "no answer"],
+    );
+    refused(
+        &[&SCORE[..], &["--answers", "/no/such"]].concat(),
+        &["--answers /no/such", "accepted is"],
+    );
+}
+
+#[test]
+fn a_baseline_tells_what_is_worse() {
+    let (folder, out) = ball();
+    let report = folder.path().join("report").display().to_string();
+    let words = [&SCORE[..], &["--answers", &out, "-c", "^ball-geometric$"]].concat();
+    assert!(run(&[&words[..], &["--out", &report]].concat()).status.success());
+    let baseline = format!("{report}/report.json");
+    let compared = [&words[..], &["--baseline", &baseline]].concat();
+    assert!(run(&compared).status.success());
+    let path = folder.path().join(EVENTS);
+    let events = fs::read_to_string(&path).expect("read");
+    fs::write(&path, in_line(2, "1.5,", "1.4999,")(&events)).expect("written");
+    let output = run(&compared);
+    assert_eq!(output.status.code(), Some(1), "{}", text(&output.stdout));
+    let other = ["score", "--name", "other", "--tolerance", "1e-9", "--answers", &out];
+    refused(
+        &[&other[..], &["--baseline", &baseline]].concat(),
+        &["--baseline", "no row in common"],
+    );
+}
