@@ -17,7 +17,8 @@ mod systems;
 mod ties;
 mod walk;
 
-use super::Engine;
+use super::meter::Failure;
+use super::{Engine, Outcome};
 use altered::{Alteration, Altered};
 pub use closed::Closed;
 use integrator::{Faulty, IntegratorFault};
@@ -290,4 +291,9 @@ static FAULTY_ON_SYSTEMS: [WrongWay; 10] = [
 #[must_use]
 pub fn faulty_on_systems() -> &'static [WrongWay] {
     &FAULTY_ON_SYSTEMS
+}
+
+/// The answer of an engine that runs other systems alone when it is asked to run the oscillator.
+fn other_systems_alone() -> Result<Outcome, Failure> {
+    Err(Failure::new("runs other systems than the oscillator"))
 }

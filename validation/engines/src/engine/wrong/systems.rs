@@ -1,5 +1,5 @@
-//! The same good integrator with one fault each on other systems than the oscillator: mistakes that
-//! show in one way of running a case, and nowhere else.
+//! A good integrator with one fault on other systems than the oscillator: mistakes that show in one
+//! way of running a case, and nowhere else.
 //!
 //! Without a fault it is the engine `ode_solvers-dopri5`, whose bounds it is held to. Some faults
 //! are a system that was misread, some an entry that was ([`Misled`]), some stand in the loop.
@@ -14,6 +14,7 @@ use super::super::script::GuardRise;
 use super::super::{Accuracy, Declaration, Engine, Outcome, Role, SystemOutcome, SystemTask, Task};
 use super::integrator::end_of_step;
 use super::misled::{Memory, Misled, SystemFault};
+use super::other_systems_alone;
 use crate::system::{Affine, CheckedSystem, Direction, System, Values};
 use nalgebra::Dyn;
 use std::sync::Arc;
@@ -35,7 +36,7 @@ impl Engine for FaultyOnSystems {
     }
 
     fn run(&self, _: &Task, _: Accuracy, _: &Limits) -> Result<Outcome, Failure> {
-        Err(Failure::new("runs other systems than the oscillator"))
+        other_systems_alone()
     }
 
     fn run_system(
