@@ -51,8 +51,7 @@ pub use parameters::{Parameter, Parameters, UnknownParameter};
 pub use phase::{Phase, UnknownPhase};
 pub use run::exit::{Endless, Exit};
 pub use run::growth::{Growth, GrowthRecorder};
-pub use run::segment::{Sample, Segment};
-pub use run::trajectory::{Step, Trajectory};
+pub use run::trajectory::{Sample, Segment, Step, Trajectory};
 pub use run::variation;
 pub use state::State;
 

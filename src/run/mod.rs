@@ -3,7 +3,6 @@
 pub mod exit;
 pub mod growth;
 pub mod one_sided;
-pub mod segment;
 pub mod stages;
 pub mod switch;
 pub mod trajectory;

@@ -1,7 +1,7 @@
 //! How a phase ends by plain one-sided steps in any arithmetic, as a reference for the search.
 //!
-//! As in [`crate::crossing::stepping`] no step passes a crossing; here the arithmetic may be one of
-//! more digits, in which the phase begins with the same f64 values and is decided with its own
+//! No step passes a crossing, as in [`crate::crossing::stepping`]; here the arithmetic may be one
+//! of more digits, in which the phase begins with the same f64 values and is decided with its own
 //! rounding room.
 
 use crate::crossing::stepping::safe_step;
@@ -13,7 +13,7 @@ use crate::flow::progression::Progression;
 use crate::flow::{Flow, Point};
 use crate::model::{Model, Motion};
 use crate::numeric::number::Number;
-use crate::run::segment::Segment;
+use crate::run::trajectory::Segment;
 use crate::state::State;
 
 /// How the one-sided search says that a phase ends.
