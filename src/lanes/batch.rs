@@ -120,10 +120,10 @@ pub struct PhaseEnds {
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub struct Batch {
-    /// Constants.
+    /// The constants of the lanes' models.
     pub shape: Shape<LaneValues>,
-    /// Beginnings.
+    /// How the phases begin.
     pub begin: Begin,
-    /// Ends.
+    /// How the phases end.
     pub end: PhaseEnds,
 }

@@ -97,8 +97,8 @@ pub(super) enum StretchEnd<S> {
 /// it.
 const SHORTEST: f64 = 16.0 * f64::EPSILON;
 
-/// Runs an integration by stretches of one mode, each from the moment given to an event or to some later
-/// time in the same mode, the end of the integration at the latest.
+/// Runs an integration by stretches of one mode, each from the moment given to an event or to some
+/// later time in the same mode, the end of the integration at the latest.
 pub(super) fn join<E: Equations>(
     integration: &Integration<'_, E>,
     meter: &Meter<E::Mode>,

@@ -32,8 +32,8 @@ pub struct Timed {
     /// The best time of each round, ns a forcing period.
     pub series: RoundTimes,
     /// What share of the time is the harness's own: one less the median over the rounds of that
-    /// round's quotient, the engine's part alone ([`super::library_part`]) over the whole run. A share
-    /// that is next to nothing may come out below zero.
+    /// round's quotient, the engine's part alone ([`super::library_part`]) over the whole run. A
+    /// share that is next to nothing may come out below zero.
     pub harness_share: Option<f64>,
 }
 

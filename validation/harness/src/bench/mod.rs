@@ -2,8 +2,8 @@
 //! the truth; what an event costs against the floor; versions against each other.
 //!
 //! A time means something only beside another that was taken in the same rounds ([`rounds`]), of an
-//! answer that was right ([`timed_case`]). Who is timed is a [`contestant`]; what versions are compared
-//! by, a [`workload`].
+//! answer that was right ([`timed_case`]). Who is timed is a [`contestant`]; what versions are
+//! compared by, a [`workload`].
 
 pub mod cases;
 pub mod clock;

@@ -12,7 +12,7 @@ pub enum Suite {
     Full,
 }
 
-/// A suite, as far as its tolerances are chosen.
+/// A suite with the tolerances that are chosen of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SuiteScope {
     suite: Suite,
@@ -27,7 +27,7 @@ impl From<Suite> for SuiteScope {
 }
 
 impl SuiteScope {
-    /// The same at these tolerances alone; at all of the suite's where there are none. Engines
+    /// Narrows the suite to these tolerances; an empty list leaves all of the suite's. Engines
     /// without a tolerance are not concerned.
     #[must_use]
     pub fn at(self, tolerances: Vec<f64>) -> Self {

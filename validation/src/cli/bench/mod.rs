@@ -162,14 +162,14 @@ fn chosen_engines<'a>(
     Ok(all.iter().map(AsRef::as_ref).filter(|it| is_unit(*it) || matches(*it)).collect())
 }
 
-/// What is raced on.
+/// The cases that engines are timed on.
 struct TimedCases {
     oscillator: Vec<TimedCase>,
     systems: Vec<TimedSystemCase>,
 }
 
 impl TimedCases {
-    /// Those of the cases that are named, or of the oscillator's usual ones.
+    /// The cases that are named, or the oscillator's usual ones.
     fn of(patterns: &[Regex]) -> Result<Self> {
         let all = Cases::embedded()?;
         let own = all.oscillator.iter().map(|it| it.name.as_str());
@@ -205,7 +205,7 @@ fn in_order<C>(
     chosen
 }
 
-/// The cases that are raced where none are named, and that versions are compared by.
+/// The cases that are timed where none are named, and that versions are compared by.
 fn usual_cases() -> Result<Vec<TimedCase>> {
     Ok(TimedCases::of(&[])?.oscillator)
 }

@@ -78,8 +78,8 @@ impl Engine for Dop853 {
         STAGES * task.span * (FIRST_ORDER * rate / tolerance).sqrt()
     }
 
-    /// As of the oscillator, with the largest rate at which theta changes a state's rate over its
-    /// scale; a mode in which theta changes nothing costs nothing.
+    /// The work as on the oscillator, by the largest rate at which theta changes a state's rate
+    /// over its scale; a mode in which theta changes nothing costs nothing.
     fn least_work_on(&self, task: &SystemTask, accuracy: Accuracy) -> f64 {
         let Some(tolerance) = accuracy.tolerance().filter(|_| !self.clock) else { return 0.0 };
         let system = task.system.system();
