@@ -11,7 +11,7 @@
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use percuss_validation::bench::contestant::enter;
-use percuss_validation::bench::course::Course;
+use percuss_validation::bench::timed_case::TimedCase;
 use percuss_validation::case::embedded;
 use percuss_validation::engine::{Accuracy, Stepping, all};
 use percuss_validation::truth::Library;
@@ -22,10 +22,10 @@ fn engines(criterion: &mut Criterion) {
     let mut cases = embedded().expect("the cases are read").into_iter();
     let case = cases.find(|case| case.name == CASE).expect("the case is there");
     let library = Library::embedded().expect("the tables are read");
-    let course = Course::of(&case, &library).expect("a course");
+    let case = TimedCase::of(&case, &library).expect("a case");
     let mut group = criterion.benchmark_group(CASE);
     group.sample_size(10);
-    group.throughput(Throughput::Elements(course.periods() as u64));
+    group.throughput(Throughput::Elements(case.periods() as u64));
     for engine in all() {
         let declaration = engine.declaration();
         let setting = match declaration.stepping {
@@ -34,7 +34,7 @@ fn engines(criterion: &mut Criterion) {
             _ => Accuracy::Tolerance(1e-9),
         };
         // What would take more than a second is not run.
-        let Ok(mut timed) = enter(*engine, &course, setting) else { continue };
+        let Ok(mut timed) = enter(*engine, &case, setting) else { continue };
         group.bench_function(declaration.name, |bencher| bencher.iter(|| timed.call()));
     }
     group.finish();

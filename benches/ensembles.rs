@@ -11,6 +11,7 @@ use percuss::dynamics::ensemble::{Member, Watcher, follow_by};
 use percuss::dynamics::section::section;
 use percuss::lanes::Instructions;
 use percuss::{Endless, Entry, Model, Parameters, Start};
+use percuss_validation::bench::rounds::RoundTimes;
 use percuss_validation::score::Spread;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::hint::black_box;
@@ -30,12 +31,12 @@ const SPELL: Duration = Duration::from_millis(500);
 const PROCESS: &str = "--process";
 
 /// Counts what passes.
-struct Count {
+struct EventCounter {
     left: u32,
     switches: u64,
 }
 
-impl Watcher for Count {
+impl Watcher for EventCounter {
     fn see(&mut self, strobe: &Entry, _: Option<Endless>) -> ControlFlow<()> {
         black_box(strobe);
         self.left -= 1;
@@ -71,7 +72,7 @@ impl Ensemble {
     fn run(&self, by: Instructions) -> u64 {
         let (counts, _) = follow_by(by, self.starts.len(), |number| {
             let entry = self.starts[number];
-            let watcher = Count { left: PERIODS, switches: 0 };
+            let watcher = EventCounter { left: PERIODS, switches: 0 };
             let first = entry.instant.after_periods(1, 1);
             Member { model: &self.model, entry, first, horizon: None, watcher }
         });
@@ -100,18 +101,14 @@ fn threads(count: usize) -> ThreadPool {
     ThreadPoolBuilder::new().num_threads(count).build().expect("a pool of threads")
 }
 
-fn median(values: Vec<f64>) -> f64 {
-    Spread::of(values).median
-}
-
 /// Instruction sets beside the scalar solver, one thread.
 fn one_core(ensemble: &Ensemble) {
     let sets = Instructions::available();
     let rounds: Vec<Vec<f64>> =
         (0..ROUNDS).map(|_| sets.iter().map(|set| ensemble.cost(*set)).collect()).collect();
+    let costs = |k: usize| RoundTimes(rounds.iter().map(|round| round[k]).collect());
     for (k, set) in sets.iter().enumerate() {
-        let cost = median(rounds.iter().map(|round| round[k]).collect());
-        let gain = median(rounds.iter().map(|round| round[0] / round[k]).collect());
+        let (cost, gain) = (costs(k).median(), costs(0).ratio_to(&costs(k)));
         println!(
             "  {:8} {cost:6.1} ns a switch, {gain:.2} times the scalar throughput",
             set.name()
@@ -144,7 +141,8 @@ fn two_cores(ensemble: &Ensemble) {
         [ensemble, &both].map(|it| two.install(|| it.throughput()) / apart)
     };
     let rounds: Vec<[f64; 2]> = (0..ROUNDS).map(quotients).collect();
-    let [half, same] = [0, 1].map(|k| median(rounds.iter().map(|round| round[k]).collect()));
+    let [half, same] =
+        [0, 1].map(|k| Spread::of(rounds.iter().map(|round| round[k]).collect()).median);
     println!("two threads: {same:.2} of what two processes reach ({half:.2} with half the starts)");
 }
 

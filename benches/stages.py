@@ -16,14 +16,14 @@ import sys
 # A call belongs to a stage by its name or by its file, the first rule that fits; a chain by its
 # innermost call.
 STAGES = [
-    ("certificate", re.compile(r"certif|stays_below|/certificate\.rs|/walk\.rs|/tangents\.rs")),
+    ("certificate", re.compile(r"certif|stays_below|/certificate\.rs|/piecewise\.rs|/tangents\.rs")),
     ("time and angle", re.compile(r"after_with_forcing|instant_after|/instant\.rs")),
-    ("guess", re.compile(r"outlook|roughly_after|/trend\.rs|/swing\.rs|/contact_ahead\.rs|guess\S* \S*/switch\.rs")),
+    ("guess", re.compile(r"hint|roughly_after|/slow_envelope\.rs|/contact_parts\.rs|/contact_ahead\.rs|guess\S* \S*/switch\.rs")),
     ("closed form", re.compile(r"evaluate|/flow/|/remainders\.rs")),
     ("root", re.compile(r"/root\.rs|/series\.rs")),
 ]
 JOINING = "joining"
-SOLVER = re.compile(r"/src/(crossing|flow)/|/src/(switch|instant)\.rs")
+SOLVER = re.compile(r"/src/(crossing|flow)/|/src/(run/switch|model/instant)\.rs")
 
 
 def counts(profile, program):

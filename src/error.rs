@@ -58,9 +58,9 @@ impl std::error::Error for InputError {}
 /// A text that names none of the values of a type.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownName {
-    /// What it should name.
+    /// What the text should name.
     pub what: &'static str,
-    /// The text.
+    /// The text that was given.
     pub given: String,
     /// The names that are accepted.
     pub accepted: Vec<&'static str>,

@@ -51,8 +51,7 @@ pub use parameters::{Parameter, Parameters, UnknownParameter};
 pub use phase::{Phase, UnknownPhase};
 pub use run::exit::{Endless, Exit};
 pub use run::growth::{Growth, GrowthRecorder};
-pub use run::segment::{Sample, Segment};
-pub use run::trajectory::{Step, Trajectory};
+pub use run::trajectory::{Sample, Segment, Step, Trajectory};
 pub use run::variation;
 pub use state::State;
 
@@ -63,7 +62,7 @@ pub mod insides {
     pub use crate::flow::constants::Constants;
     pub use crate::model::Motion;
     pub use crate::numeric::{angle, remainders, two_word};
-    pub use crate::run::judgement::{Effort, Judgement};
+    pub use crate::run::one_sided::{Effort, OneSidedEnd};
 
     pub mod crossing {
         pub use crate::crossing::*;

@@ -238,20 +238,20 @@ fn beside_changes(
 ) -> Option<[(Model, Entry); 2]> {
     let model = Model::new(parameters).expect("in range");
     let entry = |number: f64| model.start(&start(number)).expect("a start");
-    let word = |number: f64| -> Vec<_> {
+    let sequence = |number: f64| -> Vec<_> {
         let start = entry(number);
         let segments = model.trajectory(start).until(start.instant.after_periods(periods, 1));
         segments.map(|segment| segment.phase()).take(6).collect()
     };
     let (mut low, mut high) = (number, number + 0.2);
-    let first = word(low);
-    if first == word(high) {
+    let first = sequence(low);
+    if first == sequence(high) {
         return None;
     }
     // To a share of 1e-11: nearer than 1e-5 to a graze, and decided.
     for _ in 0..34 {
         let middle = 0.5 * (low + high);
-        if word(middle) == first { low = middle } else { high = middle }
+        if sequence(middle) == first { low = middle } else { high = middle }
     }
     Some([(model, entry(low)), (model, entry(high))])
 }

@@ -5,7 +5,7 @@
 //! refuses.
 
 use percuss::insides::Constants;
-use percuss::insides::crossing::certificate::{Ends, Proof};
+use percuss::insides::crossing::certificate::{Proof, ThresholdEnds};
 use percuss::insides::crossing::guarded::Guarded;
 use percuss::insides::flow::forcing::EntryAngle;
 use percuss::insides::flow::no_contact::NoContact;
@@ -52,7 +52,7 @@ fn later_roots<G: Guarded>(phase: &G, until: f64) -> Vec<f64> {
 fn ask<G: Guarded>(phase: &G, steps: &Steps, until: f64, about: &impl std::fmt::Debug) -> usize {
     let roots = later_roots(phase, until);
     for root in &roots {
-        let ends = Ends { right: true, ..phase.imposed() };
+        let ends = ThresholdEnds { right: true, ..phase.imposed() };
         let verdict = phase.certify(steps, &phase.entry(), &phase.at(*root), ends);
         assert_ne!(verdict, Proof::Inside, "{about:?}: {root:e} is not the first crossing");
     }

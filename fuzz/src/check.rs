@@ -3,7 +3,7 @@
 use crate::double_double::{DoubleDouble, UNIT};
 use crate::{Case, Family};
 use percuss::insides::crossing::limit::{GRANTED, LAST_ROOT, MOST, PER_RADIAN};
-use percuss::insides::{Effort, Judgement};
+use percuss::insides::{Effort, OneSidedEnd};
 use percuss::{Exit, Model, Parameters, Phase, Segment, State};
 
 /// Phases followed in one run.
@@ -162,19 +162,19 @@ fn judge(
         _ => left,
     };
     let effort = Effort { horizon, evaluations: JUDGE_EVALUATIONS, unit: UNIT };
-    let judgement = segment.judged_in::<DoubleDouble>(model, &effort);
+    let found = segment.one_sided_end_in::<DoubleDouble>(model, &effort);
     tally.judged += 1;
-    let alike = match (segment.exit(), judgement) {
-        (_, Judgement::Undecided) => return Ok(()),
-        (Exit::Switch(next), Judgement::Crossing { elapsed, rises, width }) => {
+    let alike = match (segment.exit(), found) {
+        (_, OneSidedEnd::Undecided) => return Ok(()),
+        (Exit::Switch(next), OneSidedEnd::Crossing { elapsed, rises, width }) => {
             let side =
                 segment.phase() != Phase::Contact || rises == (next.phase() == Phase::Progression);
             side && (elapsed - lasts).abs() <= WIDTHS * width
         }
         (Exit::Switch(_) | Exit::Undecidable, _) => false,
-        (_, Judgement::Clear) => true,
+        (_, OneSidedEnd::Clear) => true,
         // The horizon may fall into what rounding moves the switch by.
-        (_, Judgement::Crossing { elapsed, width, .. }) => elapsed > left - WIDTHS * width,
+        (_, OneSidedEnd::Crossing { elapsed, width, .. }) => elapsed > left - WIDTHS * width,
     };
     tally.decided += 1;
     if !alike && touched {
@@ -182,7 +182,7 @@ fn judge(
         return Ok(());
     }
     let exit = segment.exit();
-    ensure!(alike, "in 106 bits {judgement:?}, in f64 {lasts:e}, {exit:?}, {:?}", segment.entry());
+    ensure!(alike, "in 106 bits {found:?}, in f64 {lasts:e}, {exit:?}, {:?}", segment.entry());
     Ok(())
 }
 

@@ -66,7 +66,7 @@ pub enum Proof {
 
 /// The ends of a piece that are known to lie on a threshold.
 #[derive(Clone, Copy, Debug)]
-pub struct Ends {
+pub struct ThresholdEnds {
     /// The left value is a threshold, exactly, by the switch that began the phase.
     pub left: bool,
     /// Whether the left slope is exactly zero as well.
@@ -75,7 +75,7 @@ pub struct Ends {
     pub right: bool,
 }
 
-impl Ends {
+impl ThresholdEnds {
     /// No end is known to lie on a threshold: for pieces that bound the guard from outside.
     pub const FREE: Self = Self { left: false, left_double: false, right: false };
 }
@@ -83,7 +83,7 @@ impl Ends {
 impl Piece {
     /// Checks all Bernstein coefficients against the corridor, with `slack` for rounding.
     #[inline]
-    pub fn verdict(&self, corridor: &Corridor, ends: Ends, slack: f64) -> Proof {
+    pub fn verdict(&self, corridor: &Corridor, ends: ThresholdEnds, slack: f64) -> Proof {
         let (pairs, middle) = self.coefficients();
         let mut excesses = pairs.map(|pair| pair.map(|coefficient| corridor.excess(coefficient)));
         let (lowest, highest) = self.bounds(middle);
@@ -118,7 +118,12 @@ impl Piece {
     /// bounding polynomials are divided at their crests, which takes no evaluation and narrows the
     /// hull.
     #[cold]
-    pub fn stays_inside_in_parts(&self, corridor: &Corridor, ends: Ends, slack: f64) -> bool {
+    pub fn stays_inside_in_parts(
+        &self,
+        corridor: &Corridor,
+        ends: ThresholdEnds,
+        slack: f64,
+    ) -> bool {
         let (pairs, middle) = self.coefficients();
         let (lowest, highest) = self.bounds(middle);
         let (below, above) = (in_order(pairs, lowest), in_order(pairs, highest));
@@ -229,8 +234,8 @@ const DIVISIONS: i32 = 3;
 struct Excess([f64; 9]);
 
 impl Excess {
-    fn is_negative(&self, ends: Ends, slack: f64, divisions: i32) -> bool {
-        let Ends { left, left_double, right } = ends;
+    fn is_negative(&self, ends: ThresholdEnds, slack: f64, divisions: i32) -> bool {
+        let ThresholdEnds { left, left_double, right } = ends;
         let known = |i: usize| match i {
             0 => left,
             1 => left_double,
@@ -246,8 +251,12 @@ impl Excess {
             return false;
         }
         let (before, after) = divided(self.0, (crest as f64 / 8.0).clamp(0.25, 0.75));
-        Self(before).is_negative(Ends { right: false, ..ends }, slack, divisions - 1)
-            && Self(after).is_negative(Ends { right, ..Ends::FREE }, slack, divisions - 1)
+        Self(before).is_negative(ThresholdEnds { right: false, ..ends }, slack, divisions - 1)
+            && Self(after).is_negative(
+                ThresholdEnds { right, ..ThresholdEnds::FREE },
+                slack,
+                divisions - 1,
+            )
     }
 }
 

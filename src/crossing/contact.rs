@@ -1,7 +1,7 @@
 //! The guards of a contact: the trial force rises to 1 (progression) or falls to 0 (separation).
 
 use crate::crossing::allowances::STEP_ROUNDINGS;
-use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
+use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
 use crate::crossing::contact_parts::{ContactParts, ContactShape};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::higher_orders::ContactOrders;
@@ -204,8 +204,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         }
     }
 
-    fn imposed(&self) -> Ends {
-        Ends { left: self.offset == 0.0, left_double: false, right: false }
+    fn imposed(&self) -> ThresholdEnds {
+        ThresholdEnds { left: self.offset == 0.0, left_double: false, right: false }
     }
 
     #[inline(always)]
@@ -217,7 +217,13 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         self.rests_by_rounding()
     }
 
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof {
+    fn certify(
+        &self,
+        steps: &Steps,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: ThresholdEnds,
+    ) -> Proof {
         let corridor = self.corridor();
         let room = self.room_of_length(left, right);
         let slack = slack(self, left, right) + room;
@@ -329,7 +335,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         steps: &Steps,
         (left, split, free): (&Point<f64>, &Split, f64),
         right: &Point<f64>,
-        (ends, room): (Ends, f64),
+        (ends, room): (ThresholdEnds, f64),
     ) -> Proof {
         /// Under stronger damping the free part's derivatives would multiply its rounding.
         const MILD: f64 = 4.0;
@@ -353,46 +359,21 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         }
         let level = b - self.reference;
         let [z, z1, z2, z3] = self.split(right).free;
-        let slow = Piece {
+        let unforced = Piece {
             left: [x + level, x1, x2, x3],
             right: [z + level, z1, z2, z3],
             length,
             eighth: (-free, free),
         };
         let corridor = self.corridor().narrowed(split.amplitude);
-        self.near(slow.verdict(&corridor, Ends::FREE, slack + room), room, [left, right])
+        self.near(
+            unforced.verdict(&corridor, ThresholdEnds::FREE, slack + room),
+            room,
+            [left, right],
+        )
     }
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::flow::Flow;
-    use crate::parameters::Parameters;
-
-    /// A touch in a wide room stands where shorter pieces would touch as well: at both ends the
-    /// guard is beyond its threshold, or short of it by no more than rounding.
-    #[test]
-    fn a_touch_in_a_wide_room_stands_between_two_ends_on_a_threshold() {
-        let constants: Constants<f64> = Constants::new(&Parameters::default());
-        let angle = EntryAngle { radians: 1.0, sin: 1.0_f64.sin(), cos: 1.0_f64.cos() };
-        let entry = State { p: 0.32, y: 0.01, q: 0.3 };
-        let contact = Contact { constants, entry, angle, offset: 0.322, reference: 0.0 };
-        let mut point = contact.at(3.0);
-        let slack = slack(&contact, &point, &point);
-        let mut at = |excess: f64| {
-            point.guard.orders[0] = -excess;
-            point
-        };
-        let (on, beyond, off) = (at(-0.5 * slack), at(0.5 * slack), at(-2.0 * slack));
-        let room = 1e-3 * slack;
-        let near = |room, left, right| contact.near(Proof::Touches, room, [left, right]);
-        for left in [&on, &beyond] {
-            assert_eq!(near(room, left, &on), Proof::Touches);
-            assert_eq!(near(room, left, &off), Proof::Open);
-            assert_eq!(near(room, &off, left), Proof::Open);
-        }
-        assert_eq!(near(room, &off, &off), Proof::Open);
-        assert_eq!(near(0.0, &off, &off), Proof::Touches);
-    }
-}
+#[path = "contact_tests.rs"]
+mod tests;

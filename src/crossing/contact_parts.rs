@@ -5,7 +5,7 @@
 //! turns both by known factors, so that places around an evaluation need none of their own.
 
 use crate::crossing::allowances::{PIECES, REST};
-use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
+use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
 use crate::flow::steps::ContactStep;
 use crate::numeric::real::Real;
 
@@ -115,11 +115,11 @@ impl ContactParts<f64> {
         &self,
         orders: &[f64; 4],
         (right, right_orders): (f64, &[f64; 4]),
-        ends: Ends,
+        ends: ThresholdEnds,
         shape: &ContactShape,
         step: &ContactStep<f64>,
     ) -> bool {
-        let inside = |left: &[f64; 4], right: &[f64; 4], length: f64, ends: Ends| {
+        let inside = |left: &[f64; 4], right: &[f64; 4], length: f64, ends: ThresholdEnds| {
             let eighth = (-shape.eighth, shape.eighth);
             let piece = Piece { left: *left, right: *right, length, eighth };
             match piece.verdict(&shape.corridor, ends, shape.slack) {
@@ -129,11 +129,11 @@ impl ContactParts<f64> {
             }
         };
         let (mut here, mut orders) = (*self, *orders);
-        let mut left_ends = Ends { right: false, ..ends };
+        let mut left_ends = ThresholdEnds { right: false, ..ends };
         for _ in 0..PIECES {
             let rest = right - here.elapsed;
             if rest < REST * step.length {
-                let ends = Ends { right: ends.right, ..left_ends };
+                let ends = ThresholdEnds { right: ends.right, ..left_ends };
                 return inside(&orders, right_orders, rest, ends);
             }
             let next = here.after(step);
@@ -141,7 +141,7 @@ impl ContactParts<f64> {
             if !inside(&orders, &next_orders, step.length, left_ends) {
                 return false;
             }
-            (here, orders, left_ends) = (next, next_orders, Ends::FREE);
+            (here, orders, left_ends) = (next, next_orders, ThresholdEnds::FREE);
         }
         false
     }

@@ -1,7 +1,7 @@
 //! What the search asks of a phase.
 
 use crate::crossing::allowances::SLACK;
-use crate::crossing::certificate::{Corridor, Ends, Proof};
+use crate::crossing::certificate::{Corridor, Proof, ThresholdEnds};
 use crate::crossing::series::{REACH, SHORT_REACH, Series};
 use crate::flow::steps::Steps;
 use crate::flow::{Flow, Point};
@@ -28,7 +28,7 @@ pub trait Guarded: Flow<f64> {
     fn entry(&self) -> Point<f64>;
 
     /// The zeros of the guard that are imposed at the start.
-    fn imposed(&self) -> Ends;
+    fn imposed(&self) -> ThresholdEnds;
 
     /// A guess, or a proof, about what comes after `left`; nothing after `limit` matters.
     fn hint(&self, steps: &Steps, left: &Point<f64>, limit: f64) -> SearchHint;
@@ -39,7 +39,13 @@ pub trait Guarded: Flow<f64> {
     }
 
     /// Tries to prove that the guard stays inside between two evaluations.
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof;
+    fn certify(
+        &self,
+        steps: &Steps,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: ThresholdEnds,
+    ) -> Proof;
 
     /// The time at which a piece that could not be certified is divided.
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64;

@@ -1,6 +1,6 @@
 //! The guard of a flight: h rises to zero at the impact.
 
-use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
+use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::higher_orders::PushedOrders;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
@@ -123,8 +123,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         }
     }
 
-    fn imposed(&self) -> Ends {
-        Ends { left: self.surface.is_some(), left_double: self.separates(), right: false }
+    fn imposed(&self) -> ThresholdEnds {
+        ThresholdEnds { left: self.surface.is_some(), left_double: self.separates(), right: false }
     }
 
     #[inline(always)]
@@ -146,7 +146,13 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         envelope.hint(steps, left.elapsed, (place, inside), limit)
     }
 
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof {
+    fn certify(
+        &self,
+        steps: &Steps,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: ThresholdEnds,
+    ) -> Proof {
         let whole = left.elapsed == 0.0 && ends.left_double && ends.right;
         if whole && stays_below(self, steps, right) {
             return Proof::Inside;

@@ -12,7 +12,7 @@
 //! pulls inwards (it is concave then), else by its chord.
 
 use crate::crossing::allowances::REST;
-use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
+use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
 use crate::flow::steps::{FreeStep, GRIP, PULLING, PUSHING, SINKING, Steps};
 
 /// A guard's excess in parts, at some place.
@@ -153,7 +153,13 @@ impl<'a> PiecewiseCertificate<'a> {
     /// What can be said about the excess between the two ends, which round it within `slack`. The
     /// parts may be far larger than their sum: a touch that only their rounding hides is left to
     /// shorter pieces, which are certified by evaluations alone.
-    pub fn decided(self, left: PieceEnd, right: PieceEnd, ends: Ends, slack: f64) -> Proof {
+    pub fn decided(
+        self,
+        left: PieceEnd,
+        right: PieceEnd,
+        ends: ThresholdEnds,
+        slack: f64,
+    ) -> Proof {
         const MUCH: f64 = 16.0;
         match self.verdict(left, right, ends) {
             (Proof::Touches, room) if room > MUCH * slack => Proof::Open,
@@ -163,12 +169,12 @@ impl<'a> PiecewiseCertificate<'a> {
 
     /// What can be said about the excess between the two ends by their parts, and within which
     /// room.
-    fn verdict(mut self, left: PieceEnd, right: PieceEnd, ends: Ends) -> (Proof, f64) {
+    fn verdict(mut self, left: PieceEnd, right: PieceEnd, ends: ThresholdEnds) -> (Proof, f64) {
         let rate = self.shape.rate;
         let pushes = left.parts.lasting > 0.0;
         let decay_times = if pushes { PUSHING } else { PULLING };
         let length = right.parts.elapsed - left.parts.elapsed;
-        let left_ends = Ends { right: false, ..ends };
+        let left_ends = ThresholdEnds { right: false, ..ends };
         if rate * self.steps.piece.length <= decay_times || rate * length <= decay_times {
             return self.between((left, left_ends), (right, ends.right));
         }
@@ -192,8 +198,10 @@ impl<'a> PiecewiseCertificate<'a> {
             orders[0] = right.orders[0];
         }
         self.line = Some(line);
-        let (rest, last_room) = self
-            .between((self.end(settled), Ends::FREE), (PieceEnd { orders, ..right }, ends.right));
+        let (rest, last_room) = self.between(
+            (self.end(settled), ThresholdEnds::FREE),
+            (PieceEnd { orders, ..right }, ends.right),
+        );
         (first.max(rest), room.max(last_room))
     }
 
@@ -208,7 +216,7 @@ impl<'a> PiecewiseCertificate<'a> {
     /// Goes from the left end until the amplitude takes over, then back from the right end.
     fn between(
         &self,
-        (mut near, mut near_ends): (PieceEnd, Ends),
+        (mut near, mut near_ends): (PieceEnd, ThresholdEnds),
         (mut far, mut is_root): (PieceEnd, bool),
     ) -> (Proof, f64) {
         let step = &self.steps.piece;
@@ -221,18 +229,19 @@ impl<'a> PiecewiseCertificate<'a> {
                 return (worst, room);
             }
             if far.parts.elapsed - near.parts.elapsed < REST * step.length {
-                let last = self.piece(&near, &far, Ends { right: is_root, ..near_ends });
+                let last = self.piece(&near, &far, ThresholdEnds { right: is_root, ..near_ends });
                 return (worst.max(last), room);
             }
             let (left, right, ends);
             if here < -(room + rounding) {
                 let next = self.end(far.parts.before(step, self.shape));
-                (left, right, ends) = (next, far, Ends { right: is_root, ..Ends::FREE });
+                (left, right, ends) =
+                    (next, far, ThresholdEnds { right: is_root, ..ThresholdEnds::FREE });
                 (far, is_root) = (next, false);
             } else {
                 let next = self.end(near.parts.after(step, self.shape));
                 (left, right, ends) = (near, next, near_ends);
-                (near, near_ends) = (next, Ends::FREE);
+                (near, near_ends) = (next, ThresholdEnds::FREE);
             }
             let verdict = self.piece(&left, &right, ends);
             // A crest that rounding hides stops no pieces short of the whole stretch.
@@ -267,7 +276,7 @@ impl<'a> PiecewiseCertificate<'a> {
         Crests { here: here + amplitude, most: most + amplitude, rounding }
     }
 
-    fn piece(&self, left: &PieceEnd, right: &PieceEnd, ends: Ends) -> Proof {
+    fn piece(&self, left: &PieceEnd, right: &PieceEnd, ends: ThresholdEnds) -> Proof {
         let FreeShape { strength, omega6, rate8, .. } = *self.shape;
         let lift = match self.line {
             None => left.parts.lasting.max(0.0) * rate8,

@@ -1,6 +1,6 @@
 //! The guard of a progression: the drift velocity w falls to zero when the slider's bottom stops.
 
-use crate::crossing::certificate::{Corridor, Ends, Piece, Proof};
+use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::series::{Push, Series, short_decay};
@@ -71,8 +71,8 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         }
     }
 
-    fn imposed(&self) -> Ends {
-        Ends { left: self.drift_rate == 0.0, left_double: false, right: false }
+    fn imposed(&self) -> ThresholdEnds {
+        ThresholdEnds { left: self.drift_rate == 0.0, left_double: false, right: false }
     }
 
     #[inline(always)]
@@ -88,7 +88,13 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         envelope.hint(steps, left.elapsed, (place, true), limit)
     }
 
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof {
+    fn certify(
+        &self,
+        steps: &Steps,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: ThresholdEnds,
+    ) -> Proof {
         if left.elapsed == 0.0 && ends.right && self.stops_once(right) {
             return Proof::Inside;
         }

@@ -2,7 +2,7 @@
 
 use std::ops::ControlFlow;
 
-use crate::crossing::certificate::{Ends, Proof};
+use crate::crossing::certificate::{Proof, ThresholdEnds};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::limit::Limit;
 use crate::crossing::root::{bracketed, evaluate_again, follow, middle};
@@ -98,7 +98,7 @@ impl CandidateSearch {
         root: &Root,
         horizon: f64,
     ) -> bool {
-        let ends = Ends { right: true, ..phase.imposed() };
+        let ends = ThresholdEnds { right: true, ..phase.imposed() };
         root.elapsed().high <= horizon
             && phase.certify(steps, &self.left, &root.point, ends) == Proof::Inside
     }
@@ -128,7 +128,7 @@ struct Search<'a, G> {
     /// Everything up to here is proved to be clear.
     left: Point<f64>,
     /// What is known of the ends of the piece that begins there.
-    ends: Ends,
+    ends: ThresholdEnds,
     /// The advice where to go on from there.
     hint: SearchHint,
     /// What the advice has led to, if it has been followed already.
@@ -184,7 +184,7 @@ impl<'a, G: Guarded> Search<'a, G> {
                 },
             };
             self.left = reached;
-            self.ends = Ends::FREE;
+            self.ends = ThresholdEnds::FREE;
             self.hint = self.phase.hint(self.steps, &self.left, self.horizon);
         }
     }
@@ -292,7 +292,7 @@ fn onwards(hint: SearchHint, left: f64, least_step: &mut f64) -> SearchHint {
 fn settle<G: Guarded>(
     (phase, steps): (&G, &Steps),
     left: Point<f64>,
-    mut ends: Ends,
+    mut ends: ThresholdEnds,
     target: Target,
     (limit, counters): (&Limit, &mut Counters),
 ) -> Result<Target, f64> {
@@ -309,7 +309,7 @@ fn settle<G: Guarded>(
 fn divide<G: Guarded>(
     (phase, steps): (&G, &Steps),
     mut left: Point<f64>,
-    mut ends: Ends,
+    mut ends: ThresholdEnds,
     target: Target,
     (limit, counters): (&Limit, &mut Counters),
 ) -> Result<Target, f64> {
@@ -340,7 +340,7 @@ fn divide<G: Guarded>(
         }
         counters.undecidable += u64::from(verdict != Proof::Inside);
         left = *right;
-        ends = Ends::FREE;
+        ends = ThresholdEnds::FREE;
         pending.pop();
         if pending.is_empty() {
             return Ok(target);

@@ -44,7 +44,7 @@ use crate::model::instant::Instant;
 use crate::model::{Model, Motion};
 use crate::phase::Phase;
 use crate::run::exit::{Endless, Exit};
-use crate::run::segment::Segment;
+use crate::run::trajectory::Segment;
 
 /// Batches for the standard error.
 pub const BATCHES: u64 = 32;
@@ -52,8 +52,8 @@ pub const BATCHES: u64 = 32;
 /// Lyapunov exponents of a motion.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Spectrum {
-    /// Per forcing period, largest first; minus infinity where an impact annihilates a
-    /// direction.
+    /// The exponents per forcing period, largest first; minus infinity where an impact annihilates
+    /// a direction.
     pub exponents_per_period: [f64; 3],
     /// The standard errors of the exponents, from the scatter of the means over [`BATCHES`] batches
     /// of equal length: honest as soon as a batch is longer than the motion remembers. NaN of what

@@ -5,8 +5,7 @@ use crate::model::Model;
 use crate::model::entry::Entry;
 use crate::model::instant::Instant;
 use crate::run::exit::{Endless, Exit};
-use crate::run::segment::Segment;
-use crate::run::trajectory::Trajectory;
+use crate::run::trajectory::{Segment, Trajectory};
 use std::ops::ControlFlow;
 
 /// The strobes of one motion from some instant on: one pass over its phases, in constant memory.

@@ -7,7 +7,7 @@
 //! kept: of a phase on the slider exactly, from its duration.
 
 use crate::model::{Model, Motion};
-use crate::run::segment::Segment;
+use crate::run::trajectory::Segment;
 use crate::run::variation::{Matrix, P, Q, Y};
 
 /// A contact is passed in pieces in which its slowest part shrinks by at most exp(-LONGEST_DECAY).

@@ -1,8 +1,7 @@
 //! What the closed forms need of the parameters, computed once.
 
 use crate::flow::damped::Damping;
-use crate::flow::forced::Forced;
-use crate::flow::steady::Steady;
+use crate::flow::forced::{Forced, Steady};
 use crate::numeric::number::Number;
 use crate::parameters::Parameters;
 

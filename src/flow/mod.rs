@@ -12,7 +12,6 @@ pub mod forced;
 pub mod forcing;
 pub mod no_contact;
 pub mod progression;
-pub mod steady;
 pub mod steps;
 
 use crate::numeric::number::Number;

@@ -4,7 +4,7 @@
 //! for certificates, without a library function.
 
 use crate::flow::damped::Damping;
-use crate::flow::steady::Steady;
+use crate::flow::forced::Steady;
 use crate::numeric::remainders::{Circular, circular};
 use crate::parameters::Parameters;
 use std::f64::consts::{PI, TAU};

@@ -1,7 +1,7 @@
 //! As many phases of one kind as there are lanes: how they begin and what becomes of them.
 
 use super::shape::Shape;
-use super::wide::Column;
+use super::wide::LaneValues;
 
 /// What the lanes of a batch have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -66,24 +66,24 @@ impl LaneTask {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Begin {
     /// omega tau mod 2 pi.
-    pub angle: Column,
+    pub angle: LaneValues,
     /// The second word of the forcing angle.
-    pub angle_low: Column,
+    pub angle_low: LaneValues,
     /// Velocity of the mass.
-    pub y: Column,
+    pub y: LaneValues,
     /// Displacement of the slider's top; the mass is in touch with it.
-    pub q: Column,
+    pub q: LaneValues,
     /// The guard's value: in contact the force less its reference; in progression the drift
     /// velocity.
-    pub first: Column,
+    pub first: LaneValues,
     /// A second value: in contact the reference; in progression the velocity of the slider's top.
-    pub second: Column,
+    pub second: LaneValues,
     /// The strobe's time in forcing cycles from the phase's own.
-    pub due_cycles: Column,
+    pub due_cycles: LaneValues,
     /// The strobe's forcing angle.
-    pub due: Column,
+    pub due: LaneValues,
     /// The second word of the strobe's forcing angle.
-    pub due_low: Column,
+    pub due_low: LaneValues,
 }
 
 /// How the phases end.
@@ -91,28 +91,28 @@ pub struct Begin {
 pub struct PhaseEnds {
     /// One where the lane's result is proved; where it is not, the lane's other numbers mean
     /// nothing.
-    pub proved: Column,
+    pub proved: LaneValues,
     /// omega tau mod 2 pi at the switch.
-    pub angle: Column,
+    pub angle: LaneValues,
     /// The second word of the forcing angle at the switch.
-    pub angle_low: Column,
+    pub angle_low: LaneValues,
     /// Forcing cycles passed.
-    pub cycles: Column,
+    pub cycles: LaneValues,
     /// Displacement of the mass (at a strobe).
-    pub p: Column,
+    pub p: LaneValues,
     /// Velocity of the mass.
-    pub y: Column,
+    pub y: LaneValues,
     /// Displacement of the slider's top (not where contact or progression end).
-    pub q: Column,
+    pub q: LaneValues,
     /// The guard: at an impact the trial force, at a contact's end the threshold, at a strobe the
     /// guard.
-    pub guard: Column,
+    pub guard: LaneValues,
     /// Drift gained.
-    pub drift: Column,
+    pub drift: LaneValues,
     /// The velocity of the slider's top at a strobe in progression.
-    pub closing: Column,
+    pub closing: LaneValues,
     /// The largest term of the guard at a strobe in progression.
-    pub terms: Column,
+    pub terms: LaneValues,
 }
 
 /// Constants, beginnings and ends of all lanes; a column is as long as a line of the cache and
@@ -120,10 +120,10 @@ pub struct PhaseEnds {
 #[derive(Clone, Copy, Debug, Default)]
 #[repr(align(64))]
 pub struct Batch {
-    /// Constants.
-    pub shape: Shape<Column>,
-    /// Beginnings.
+    /// The constants of the lanes' models.
+    pub shape: Shape<LaneValues>,
+    /// How the phases begin.
     pub begin: Begin,
-    /// Ends.
+    /// How the phases end.
     pub end: PhaseEnds,
 }

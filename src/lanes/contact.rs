@@ -1,7 +1,7 @@
 //! Contacts ([`crate::flow::contact`]): evaluation and landing; guess and certificate are in
 //! [`super::contact_ahead`].
 
-use super::contact_shape::Forms;
+use super::contact_constants::Forms;
 use super::contact_steps::{LaneParts, each};
 use super::harmonic::Angle;
 use super::root::{Fineness, LanePhase, LaneRoot, find};

@@ -6,7 +6,7 @@
 
 use super::certificate::LanePiece;
 use super::contact::LaneContact;
-use super::contact_shape::Forms;
+use super::contact_constants::Forms;
 use super::contact_steps::{ContactSteps, LaneParts, each};
 use super::guess::meeting;
 use super::root::Fineness;

@@ -4,7 +4,7 @@
 //! left of it has the derivatives of the slow one when the fast one has died out. Steps then
 //! begin as short as the fast one's life and double up to the length of all others.
 
-use super::contact_shape::Forms;
+use super::contact_constants::Forms;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::contact_parts::ContactParts;

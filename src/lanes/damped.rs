@@ -1,7 +1,7 @@
 //! Free oscillation in contact ([`crate::flow::damped`]): a rotation, a series near critical
 //! damping, two exponentials above.
 
-use super::contact_shape::Forms;
+use super::contact_constants::Forms;
 use super::functions::{cosines, shrink, turn_of};
 use super::shape::Shape;
 use super::wide::{Mask, Wide};

@@ -1,7 +1,7 @@
 //! Forced oscillation in contact ([`crate::flow::forced`]): divided by P, and near resonance as a
 //! divided difference, each only where some lane needs it.
 
-use super::contact_shape::Forms;
+use super::contact_constants::Forms;
 use super::functions::short_turn;
 use super::shape::Shape;
 use super::wide::Wide;

@@ -1,7 +1,7 @@
 //! The vectors' functions against the library's.
 
 use super::super::instructions::{Instructions, Permit};
-use super::super::wide::{Column, WIDEST};
+use super::super::wide::{LaneValues, WIDEST};
 use super::*;
 use crate::numeric::real::Real;
 use crate::numeric::remainders::{Circular, circular, circular_of, decay};
@@ -10,9 +10,9 @@ use pulp::WithSimd;
 
 /// Sine and cosine, then the turn of `rate * x`, the decay of |x| and the short turn of x.
 struct All<'a> {
-    x: &'a Column,
+    x: &'a LaneValues,
     rate: f64,
-    out: &'a mut [Column; 11],
+    out: &'a mut [LaneValues; 11],
 }
 
 impl WithSimd for All<'_> {
@@ -44,7 +44,7 @@ impl WithSimd for All<'_> {
     }
 }
 
-fn computed(permit: Permit, x: &Column, rate: f64) -> [Column; 11] {
+fn computed(permit: Permit, x: &LaneValues, rate: f64) -> [LaneValues; 11] {
     let mut out = [[0.0; WIDEST]; 11];
     let all = All { x, rate, out: &mut out };
     match permit {
@@ -64,7 +64,7 @@ fn close(a: f64, b: f64, ulps: f64, size: f64) -> Result<(), TestCaseError> {
 }
 
 fn agree(x: [f64; WIDEST], rate: f64) -> Result<(), TestCaseError> {
-    let mut before: Option<[Column; 11]> = None;
+    let mut before: Option<[LaneValues; 11]> = None;
     for permit in Instructions::available().into_iter().filter_map(Instructions::permit) {
         let lanes = permit.width();
         let out = computed(permit, &x, rate);

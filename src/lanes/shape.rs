@@ -1,6 +1,6 @@
 //! What the lanes need of the parameters: of one model, and of as many as there are lanes.
 
-use super::wide::{Column, Wide};
+use super::wide::{LaneValues, Wide};
 use crate::crossing::allowances::SHORT_LIVED;
 use crate::flow::constants::Constants;
 use crate::flow::steps::Steps;
@@ -15,7 +15,7 @@ macro_rules! shape {
             $($(#[$text])* pub $name: T,)*
         }
 
-        impl Shape<Column> {
+        impl Shape<LaneValues> {
             /// Takes one lane's constants.
             pub fn set(&mut self, lane: usize, shape: &Shape<f64>) {
                 $(self.$name[lane] = shape.$name;)*

@@ -12,7 +12,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 pub const WIDEST: usize = 8;
 
 /// A value of each lane in memory.
-pub type Column = [f64; WIDEST];
+pub type LaneValues = [f64; WIDEST];
 
 /// One f64 per lane.
 #[derive(Clone, Copy, Debug)]
@@ -37,13 +37,13 @@ impl<S: Simd> Wide<S> {
 
     /// The first lanes of a column.
     #[inline(always)]
-    pub fn load(simd: S, column: &Column) -> Self {
+    pub fn load(simd: S, column: &LaneValues) -> Self {
         Self { simd, value: S::as_simd_f64s(column).0[0] }
     }
 
     /// Writes the lanes to the first places of a column.
     #[inline(always)]
-    pub fn store(self, column: &mut Column) {
+    pub fn store(self, column: &mut LaneValues) {
         S::as_mut_simd_f64s(column).0[0] = self.value;
     }
 

@@ -2,13 +2,13 @@
 
 use super::batch::{Batch, Begin, LaneTask, PhaseEnds};
 use super::contact::{LaneContact, Release};
-use super::contact_shape::Forms;
+use super::contact_constants::Forms;
 use super::flight::{Flight, Impact};
 use super::harmonic::Angle;
 use super::root::Fineness;
 use super::shape::Shape;
 use super::slip::{Slip, SlipStrobe, Stop};
-use super::wide::{Column, Mask, Wide};
+use super::wide::{LaneValues, Mask, Wide};
 use super::words::Words;
 use crate::numeric::real::Real;
 use pulp::{Simd, WithSimd};
@@ -52,7 +52,7 @@ const LONGEST: f64 = 1e5;
 
 impl<'a, S: Simd> LoadedLanes<'a, S> {
     #[inline(always)]
-    fn load(&self, column: &Column) -> Wide<S> {
+    fn load(&self, column: &LaneValues) -> Wide<S> {
         Wide::load(self.simd, column)
     }
 

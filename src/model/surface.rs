@@ -78,7 +78,7 @@ pub(crate) fn on_threshold(
     threshold: f64,
     force: [f64; 3],
 ) -> ModeEntry {
-    let direction = ladder(constants, state.y, threshold, force);
+    let direction = first_derivative_off_zero(constants, state.y, threshold, force);
     if threshold == 0.0 { at_zero(direction) } else { at_one(direction, state.y) }
 }
 
@@ -99,17 +99,20 @@ fn at_one(direction: f64, y: f64) -> ModeEntry {
 }
 
 /// The first derivative of the trial force, on a threshold, that is not zero within its rounding.
-fn ladder(constants: &Constants<f64>, y: f64, f: f64, force: [f64; 3]) -> f64 {
+fn first_derivative_off_zero(constants: &Constants<f64>, y: f64, f: f64, force: [f64; 3]) -> f64 {
     let Constants { a, b, two_xi, omega, .. } = *constants;
     let pull = force[0] + (b - f);
-    // On the threshold with all lower derivatives zero each rung is the one before, differentiated.
-    let rungs = [
+    // On the threshold with all lower derivatives zero each is the one before, differentiated.
+    let derivatives = [
         (two_xi * pull + y, two_xi * (a + b.abs() + f) + y.abs()),
         (two_xi * force[1] + pull, two_xi * a * omega + a + b.abs() + f),
         (two_xi * force[2] + force[1], a * omega * (two_xi * omega + 1.0)),
         (omega * omega * (b - f), omega * omega * (b.abs() + f)),
     ];
-    rungs.iter().find(|(rung, size)| rung.abs() > FOUR_ULPS * size).map_or(0.0, |(rung, _)| *rung)
+    derivatives
+        .iter()
+        .find(|(value, size)| value.abs() > FOUR_ULPS * size)
+        .map_or(0.0, |(value, _)| *value)
 }
 
 #[cfg(test)]

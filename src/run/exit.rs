@@ -20,10 +20,10 @@ pub enum Endless {
 }
 
 impl Endless {
-    /// All reasons.
+    /// All reasons for which a phase never ends.
     pub const ALL: [Self; 3] = [Self::NeverReturns, Self::NeverStops, Self::RestsForEver];
 
-    /// The name in words.
+    /// The reason in words.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
         match self {

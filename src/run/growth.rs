@@ -6,7 +6,7 @@
 //! start). The start alone would not do: on a stable orbit its influence dies out while every step
 //! still rounds.
 
-use crate::run::segment::Segment;
+use crate::run::trajectory::Segment;
 use crate::run::variation::{IDENTITY, Matrix, P, Q, SwitchDerivative, V, Y, product, times};
 
 /// The growth of tau, p, y, q and v at one switch or sample.

@@ -2,8 +2,7 @@
 
 pub mod exit;
 pub mod growth;
-pub mod judgement;
-pub mod segment;
+pub mod one_sided;
 pub mod stages;
 pub mod switch;
 pub mod trajectory;

@@ -1,14 +1,25 @@
-//! The run: phases joined at their switches (the method of Section 3), as an iterator.
+//! The run: phases joined at their switches (the method of Section 3), as an iterator over its
+//! segments. A segment is one phase from its entry to its end, with anything inside it on demand.
 
-use crate::crossing::Counters;
+use crate::crossing::allowances::FOUR_ULPS;
+use crate::crossing::stepping;
+use crate::crossing::{Counters, Crossing};
 use crate::error::InputError;
-use crate::model::Model;
-use crate::model::entry::Entry;
+use crate::flow::constants::Constants;
+use crate::flow::contact::Contact;
+use crate::flow::forcing::EntryAngle;
+use crate::flow::progression::Progression;
+use crate::flow::{Flow, Point};
+use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
+use crate::model::surface;
+use crate::model::{Model, Motion};
 use crate::numeric::two_word::TwoWord;
 use crate::parameters::within;
-use crate::run::segment::Segment;
+use crate::phase::Phase;
+use crate::run::exit::Exit;
 use crate::run::switch::{Begun, End, Passed, pass};
+use crate::state::State;
 use std::iter::FusedIterator;
 
 /// An iterator over the phases of a run; memory does not grow with its length.
@@ -154,5 +165,226 @@ impl Iterator for Trajectory {
         let passed = self.pass()?;
         let (begun, next) = self.last_and_next();
         Some(Segment::passed(&self.model, begun, &passed, &next.entry))
+    }
+}
+
+/// The motion at some instant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Sample {
+    /// Bounded co-ordinates.
+    pub state: State,
+    /// Drift v.
+    pub v: f64,
+}
+
+/// A segment of a run: one phase from its entry to its end.
+#[derive(Clone, Copy, Debug)]
+pub struct Segment {
+    entry: Entry,
+    exit: Exit,
+    duration: TwoWord,
+    angle: EntryAngle<f64>,
+    constants: Constants<f64>,
+}
+
+impl Segment {
+    /// The phase that has begun; if a switch ends it, `next` becomes the one that follows
+    /// ([`pass`]).
+    pub(crate) fn new(
+        model: &Model,
+        begun: &Begun,
+        next: &mut Begun,
+        horizon: Option<&Instant>,
+        counters: &mut Counters,
+    ) -> Self {
+        let passed = pass(model, begun, next, horizon, counters);
+        Self::passed(model, begun, &passed, &next.entry)
+    }
+
+    /// The phase that has been passed so, and how the next one begins if a switch has ended it.
+    #[inline]
+    pub(crate) fn passed(model: &Model, begun: &Begun, passed: &Passed, next: &Entry) -> Self {
+        let Begun { entry, angle, .. } = *begun;
+        let exit = match passed.end {
+            End::Switch => Exit::Switch(*next),
+            End::Horizon => Exit::Horizon,
+            End::Endless(why) => Exit::Endless(why),
+            End::Undecidable => Exit::Undecidable,
+        };
+        Self { entry, exit, duration: passed.duration, angle, constants: *model.constants() }
+    }
+
+    pub(crate) fn constants(&self) -> &Constants<f64> {
+        &self.constants
+    }
+
+    /// The closed form from which the end of the phase was found, with all that is known exactly at
+    /// its entry.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn motion(&self) -> Motion<'_> {
+        Motion::new(&self.constants, &self.entry, self.angle)
+    }
+
+    /// The entry at which the phase begins.
+    #[must_use]
+    pub fn entry(&self) -> &Entry {
+        &self.entry
+    }
+
+    /// How it ends.
+    #[must_use]
+    pub fn exit(&self) -> &Exit {
+        &self.exit
+    }
+
+    /// The segment's phase.
+    #[must_use]
+    pub fn phase(&self) -> Phase {
+        self.entry.phase()
+    }
+
+    /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless, as far as
+    /// it is proved if it is undecidable.
+    #[must_use]
+    pub fn duration(&self) -> f64 {
+        self.duration.value()
+    }
+
+    /// The phase's duration in two words.
+    #[must_use]
+    pub fn duration_two_word(&self) -> TwoWord {
+        self.duration
+    }
+
+    /// The motion a time `elapsed` after the phase began, at most [`Self::duration`].
+    #[must_use]
+    pub fn at(&self, elapsed: f64) -> Sample {
+        self.at_two_word(TwoWord::new(elapsed))
+    }
+
+    /// The state as [`Self::at`] gives it; late in a long phase the second word of the time
+    /// matters.
+    fn at_two_word(&self, elapsed: TwoWord) -> Sample {
+        let (_, state, drift) = self.shifted_to(elapsed);
+        Sample { state, v: drift.value() }
+    }
+
+    /// The nearest evaluation, and state and drift shifted by the second word of the time.
+    fn shifted_to(&self, elapsed: TwoWord) -> (Point<f64>, State, TwoWord) {
+        let point = self.point(elapsed.high);
+        let rest = elapsed.low;
+        let [p_rate, y_rate, q_rate, v_rate] = self.field(&point);
+        let State { p, y, q } = point.state;
+        let state = State { p: p + rest * p_rate, y: y + rest * y_rate, q: q + rest * q_rate };
+        let drift = self.entry.drift.plus(TwoWord::sum(point.drift, rest * v_rate));
+        (point, state, drift)
+    }
+
+    /// The right-hand sides of Eqs. (11) to (13): rates of p, y, q and v.
+    pub(crate) fn field(&self, point: &Point<f64>) -> [f64; 4] {
+        let force = self.constants.b + point.force[0];
+        let [guard, ..] = point.guard.orders;
+        let slider = point.slider_velocity;
+        match self.motion() {
+            Motion::NoContact(_) => [point.state.y, force, slider, 0.0],
+            Motion::Contact(contact) => [slider, force - (contact.reference + guard), slider, 0.0],
+            Motion::Progression(_) => [slider, force - 1.0, slider, guard],
+        }
+    }
+
+    pub(crate) fn point(&self, elapsed: f64) -> Point<f64> {
+        match self.motion() {
+            Motion::NoContact(flight) => flight.at(elapsed),
+            Motion::Contact(contact) => contact.at(elapsed),
+            Motion::Progression(progression) => progression.at(elapsed),
+        }
+    }
+
+    /// The motion at an instant inside the phase.
+    #[must_use]
+    pub fn at_instant(&self, instant: &Instant) -> Sample {
+        self.at_two_word(instant.since(&self.entry.instant, self.constants.omega))
+    }
+
+    /// Time from the phase's beginning to an instant.
+    #[must_use]
+    pub fn elapsed_at(&self, instant: &Instant) -> f64 {
+        instant.since(&self.entry.instant, self.constants.omega).value()
+    }
+
+    /// The entry at an instant inside the segment: a run that begins there goes on as this one
+    /// does, to within rounding.
+    #[must_use]
+    pub fn entry_at(&self, instant: &Instant) -> Entry {
+        let elapsed = instant.since(&self.entry.instant, self.constants.omega);
+        if elapsed.value() <= 0.0 {
+            return self.entry;
+        }
+        let (point, state, drift) = self.shifted_to(elapsed);
+        let guard = point.guard.orders[0] + elapsed.low * point.guard.orders[1];
+        let (state, mode) = match self.motion() {
+            Motion::NoContact(flight) => {
+                let constants = &flight.constants;
+                if state.p < state.q + constants.g {
+                    (state, ModeEntry::Apart)
+                } else {
+                    surface::mode_entry(constants, state, None, point.force)
+                }
+            }
+            Motion::Contact(Contact { constants, reference, .. }) => {
+                let f = reference + guard;
+                if f.min(1.0 - f) > FOUR_ULPS {
+                    (state, ModeEntry::Contact { offset: guard, reference })
+                } else {
+                    surface::mode_entry(constants, state, Some(f), point.force)
+                }
+            }
+            Motion::Progression(Progression { constants, .. }) => {
+                if guard > FOUR_ULPS * point.guard.largest_term {
+                    let closing = point.slider_velocity;
+                    (state, ModeEntry::Progression { drift_rate: guard, closing })
+                } else {
+                    surface::mode_entry(constants, state, None, point.force)
+                }
+            }
+        };
+        Entry { instant: *instant, state, drift, mode }
+    }
+
+    /// How long the phase lasts by plain one-sided stepping (the reference): infinite if it does
+    /// not end within `horizon`, none if that takes more than `evaluations`.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn judged_duration(&self, horizon: f64, evaluations: u64) -> Option<f64> {
+        let mut counters = Counters::default();
+        let crossing = match self.motion() {
+            Motion::NoContact(flight) => {
+                stepping::first_crossing(&flight, horizon, evaluations, &mut counters)
+            }
+            Motion::Contact(contact) => {
+                stepping::first_crossing(&contact, horizon, evaluations, &mut counters)
+            }
+            Motion::Progression(slip) => {
+                stepping::first_crossing(&slip, horizon, evaluations, &mut counters)
+            }
+        };
+        crossing.map(|crossing| match crossing {
+            Crossing::At(root) => root.elapsed().value(),
+            _ => f64::INFINITY,
+        })
+    }
+
+    /// Whether the phase is undecidable and the instant lies behind what is proved of it.
+    #[must_use]
+    pub fn is_undecided_at(&self, instant: &Instant) -> bool {
+        self.exit == Exit::Undecidable && self.elapsed_at(instant) > self.duration()
+    }
+
+    /// Whether the phase is over by then.
+    #[must_use]
+    pub fn ends_by(&self, instant: &Instant) -> bool {
+        matches!(&self.exit, Exit::Switch(next) if next.instant <= *instant)
     }
 }

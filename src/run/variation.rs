@@ -15,7 +15,7 @@ use crate::model::entry::ModeEntry;
 use crate::numeric::remainders::decay;
 use crate::phase::Phase;
 use crate::run::exit::Exit;
-use crate::run::segment::Segment;
+use crate::run::trajectory::Segment;
 
 /// Index of the forcing angle in a [`Matrix`].
 pub const ANGLE: usize = 0;

@@ -66,9 +66,9 @@ const SHADES: [Colour; 6] = [
 ];
 
 /// The arrays of a merged sweep.
-struct Sweep(ZipArchive<File>);
+struct MergedSweep(ZipArchive<File>);
 
-impl Sweep {
+impl MergedSweep {
     fn open(file: &str) -> Result<Self> {
         Ok(Self(ZipArchive::new(File::open(file).with_context(|| file.to_owned())?)?))
     }
@@ -94,10 +94,10 @@ fn main() -> Result<()> {
         );
     };
     let parameter: Parameter = other.parse()?;
-    let mut sweep = Sweep::open(file)?;
+    let mut sweep = MergedSweep::open(file)?;
     let (x, y) = (sweep.f8("omega")?, sweep.f8(other)?);
     let drift = sweep.f8("drift_per_period")?;
-    let periods = periods(&mut Sweep::open(strobes)?, drift.len())?;
+    let periods = periods(&mut MergedSweep::open(strobes)?, drift.len())?;
     let regimes = regimes(&mut sweep, &drift, &periods)?;
     // The quantiles of the drifts that are any, so that each shade fills as much of the picture.
     let mut some: Vec<f64> = drift.iter().copied().filter(|it| is_drift(*it)).collect();
@@ -159,7 +159,7 @@ fn entry(name: &str, colour: Colour) -> KeyEntry {
 }
 
 /// The least period of each motion's last strobes; more than half of them where they have none.
-fn periods(sweep: &mut Sweep, motions: usize) -> Result<Vec<usize>> {
+fn periods(sweep: &mut MergedSweep, motions: usize) -> Result<Vec<usize>> {
     let [p, y, q] = [sweep.f8("p")?, sweep.f8("y")?, sweep.f8("q")?];
     let strobes = p.len() / motions;
     let is_same = |i: usize, j: usize| {
@@ -175,7 +175,7 @@ fn periods(sweep: &mut Sweep, motions: usize) -> Result<Vec<usize>> {
     Ok((0..motions).map(period).collect())
 }
 
-fn regimes(sweep: &mut Sweep, drift: &[f64], periods: &[usize]) -> Result<Vec<Regime>> {
+fn regimes(sweep: &mut MergedSweep, drift: &[f64], periods: &[usize]) -> Result<Vec<Regime>> {
     let exponents = sweep.f8("exponents_per_period")?;
     let errors = sweep.f8("standard_error")?;
     let endless: Vec<i32> = sweep.array("endless")?;

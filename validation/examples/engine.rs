@@ -32,7 +32,7 @@ impl Engine for Heun {
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let step = accuracy.step().ok_or_else(|| Failure::new("needs a step"))?;
         let step = step * shortest_time(&task.parameters);
-        let mut walk = Walk {
+        let mut walk = HeunRun {
             equations: Oscillator::of(&task.parameters, task.forcing_angle),
             work: Work::default(),
         };
@@ -64,12 +64,12 @@ impl Engine for Heun {
 }
 
 /// The equations, and what was counted.
-struct Walk {
+struct HeunRun {
     equations: Oscillator,
     work: Work,
 }
 
-impl Walk {
+impl HeunRun {
     fn step(&mut self, phase: Phase, t: f64, state: &[f64; 4], length: f64) -> [f64; 4] {
         let (mut here, mut there) = ([0.0; 4], [0.0; 4]);
         self.equations.derivatives(phase, t, state, &mut here);

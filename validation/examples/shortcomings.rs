@@ -1,7 +1,7 @@
 //! Writes `shortcomings.toml` anew from a `report.json` of the full suite.
 //!
 //! `cargo run --release --example shortcomings -- REPORT...` prints the file: every bound that
-//! fails in one of the reports becomes a row of its engine's defect, with a floor and a ceiling
+//! fails in one of the reports becomes a row of its engine's defect, with a range
 //! around the figure that was measured; rows that no report has stay as they are. An engine has one
 //! defect on the oscillator and one on other systems. Reasons are people's: those of
 //! the present file are kept, a new defect gets an empty one, which the program refuses to read.
@@ -25,14 +25,14 @@ const COUNTS: [&str; 5] =
 type Key = (String, String, String, String);
 
 /// Engine, case and setting.
-type Place = (String, String, String);
+type RowKey = (String, String, String);
 
 /// An engine and a group of its rows: those of the oscillator, or of other systems the events, the
 /// errors and the runs without a result. Each group has a reason of its own.
-type Group = (String, &'static str);
+type RowGroup = (String, &'static str);
 
-/// The rows of each group, with floor and ceiling.
-type Defects = BTreeMap<Group, BTreeMap<Key, (f64, f64)>>;
+/// The rows of each group, with the range of each.
+type Defects = BTreeMap<RowGroup, BTreeMap<Key, (f64, f64)>>;
 
 fn main() -> Result<()> {
     let mut defects = Defects::new();
@@ -63,7 +63,7 @@ fn main() -> Result<()> {
         "# Known shortcomings of engines on the cases inside the binary, row by row: case, tolerance (or"
     );
     println!(
-        "# negative step), quantity, statistic, floor and ceiling of the figure that is out of bounds."
+        "# negative step), quantity, statistic, least and largest value of the figure that is out of bounds."
     );
     println!(
         "# Made by `cargo run --release --example shortcomings -- REPORT`; the reasons are people's."
@@ -71,8 +71,10 @@ fn main() -> Result<()> {
     for (group, rows) in defects {
         let (why, engine) = (whys.get(&group).cloned().unwrap_or_default(), group.0);
         println!("\n[[defects]]\nengine = {engine:?}\nwhy = {why:?}\nrows = [");
-        for ((case, setting, quantity, statistic), (floor, ceiling)) in rows {
-            println!("    [{case:?}, {setting}, {quantity:?}, {statistic:?}, {floor}, {ceiling}],");
+        for ((case, setting, quantity, statistic), (at_least, at_most)) in rows {
+            println!(
+                "    [{case:?}, {setting}, {quantity:?}, {statistic:?}, {at_least}, {at_most}],"
+            );
         }
         println!("]");
     }
@@ -80,7 +82,7 @@ fn main() -> Result<()> {
 }
 
 /// The group of an engine's row.
-fn group(engine: &str, case: &str, quantity: &str, systems: &BTreeSet<String>) -> Group {
+fn group(engine: &str, case: &str, quantity: &str, systems: &BTreeSet<String>) -> RowGroup {
     let events = ["events_missed", "events_spurious", "phase_word"];
     let group = match quantity {
         _ if !systems.contains(case) => "",
@@ -92,7 +94,7 @@ fn group(engine: &str, case: &str, quantity: &str, systems: &BTreeSet<String>) -
 }
 
 /// A row's engine, case and setting (a step is negative, the exact solver has none).
-fn place(row: &Value) -> Result<Place> {
+fn place(row: &Value) -> Result<RowKey> {
     let text = |key: &str| row[key].as_str().map(str::to_owned).context("a row has names");
     let setting = match (row["tolerance"].as_f64(), row["step"].as_f64()) {
         (Some(tolerance), _) => float(tolerance),
@@ -122,8 +124,8 @@ fn collect(row: &Value, systems: &BTreeSet<String>, defects: &mut Defects) -> Re
     Ok(())
 }
 
-/// Floor and ceiling around a figure. One that cannot exceed `most` stays below it by half of what
-/// there is to it, because a ceiling above it would bound nothing.
+/// The range around a figure. One that cannot exceed `most` stays below it by half of what
+/// there is to it, because a limit above it would bound nothing.
 fn range(quantity: &str, value: f64, limit: f64, most: Option<f64>) -> (f64, f64) {
     if ["phase_word", "runs_failed"].contains(&quantity) {
         (1.0, 1.0)
@@ -145,20 +147,20 @@ fn float(value: f64) -> String {
 fn present(
     path: &str,
     systems: &BTreeSet<String>,
-    reported: &BTreeSet<Place>,
+    reported: &BTreeSet<RowKey>,
     defects: &mut Defects,
-) -> Result<BTreeMap<Group, String>> {
+) -> Result<BTreeMap<RowGroup, String>> {
     let text = std::fs::read_to_string(path).with_context(|| path.to_owned())?;
     let file: PresentFile = toml::from_str(&text).with_context(|| path.to_owned())?;
     let mut reasons = BTreeMap::new();
     for PresentDefect { engine, why, rows } in file.defects {
-        for (case, setting, quantity, statistic, floor, ceiling) in rows {
+        for (case, setting, quantity, statistic, at_least, at_most) in rows {
             let group = group(&engine, &case, &quantity, systems);
             reasons.entry(group.clone()).or_insert_with(|| why.clone());
             let place = (engine.clone(), case, float(setting));
             if !reported.contains(&place) {
                 let key = (place.1, place.2, quantity, statistic);
-                defects.entry(group).or_default().insert(key, (floor, ceiling));
+                defects.entry(group).or_default().insert(key, (at_least, at_most));
             }
         }
     }

@@ -4,12 +4,12 @@
 use crate::exact;
 use crate::support::{refused, run, stdout, text};
 use percuss::Phase;
-use percuss_validation::bench::alone::alone;
 use percuss_validation::bench::cases::{SYSTEMS, USUAL};
 use percuss_validation::bench::contest::{contest_at, most_accurate, system_contest};
 use percuss_validation::bench::contestant::{Contestant, EnteredEngine, settings};
-use percuss_validation::bench::course::Course;
-use percuss_validation::bench::system_course::SystemCourse;
+use percuss_validation::bench::library_part::library_part;
+use percuss_validation::bench::timed_case::TimedCase;
+use percuss_validation::bench::timed_system_case::TimedSystemCase;
 use percuss_validation::case::Cases;
 use percuss_validation::engine::{
     Accuracy, CONTROL, Engine, Limits, Location, Script, SystemOutcome, all, wrong,
@@ -17,9 +17,9 @@ use percuss_validation::engine::{
 use percuss_validation::truth::Library;
 use std::path::{Path, PathBuf};
 
-fn course(name: &str) -> Course {
+fn case(name: &str) -> TimedCase {
     let library = Library::embedded().expect("the tables are read");
-    Course::of(&exact::case(name), &library).expect("a course")
+    TimedCase::of(&exact::case(name), &library).expect("a case")
 }
 
 fn exact_solver() -> &'static dyn Engine {
@@ -32,7 +32,7 @@ const SHOWN: [&str; 5] = ["wrong-omega", "wrong-xi", "wrong-drift", "wrong-arcta
 
 #[test]
 fn a_wrong_answer_has_no_time() {
-    let course = course("impact-into-progression");
+    let case = case("impact-into-progression");
     let faulty = wrong().iter().map(|it| it.engine);
     let faulty = faulty.filter(|it| SHOWN.contains(&it.declaration().name));
     let engines: Vec<EnteredEngine> =
@@ -40,7 +40,7 @@ fn a_wrong_answer_has_no_time() {
     assert_eq!(engines.len(), 2 + SHOWN.len());
     let asked: Vec<(&dyn Contestant, Accuracy)> =
         engines.iter().map(|it| (it as &dyn Contestant, Accuracy::Exact)).collect();
-    let finishers = contest_at(&course, &asked, 2, &|| ());
+    let finishers = contest_at(&case, &asked, 2, &|| ());
     for finisher in &finishers[..2] {
         let timed = finisher.result.as_ref().expect("it is right");
         assert_eq!(timed.series.0.len(), 2);
@@ -56,74 +56,74 @@ fn a_wrong_answer_has_no_time() {
 #[test]
 fn the_usual_cases_are_there_and_the_exact_solver_is_right_on_them() {
     for name in USUAL {
-        let course = course(name);
+        let case = case(name);
         let found =
-            contest_at(&course, &[(&EnteredEngine(exact_solver()), Accuracy::Exact)], 1, &|| ());
+            contest_at(&case, &[(&EnteredEngine(exact_solver()), Accuracy::Exact)], 1, &|| ());
         let timed = found[0].result.as_ref().expect("right");
         assert!(timed.score.state_error < 1e-10, "{name}: {:?}", timed.score);
-        assert_eq!(timed.work.steps, course.truth.events.len() as u64 + 1);
+        assert_eq!(timed.work.steps, case.truth.events.len() as u64 + 1);
     }
 }
 
-fn system_courses() -> Vec<SystemCourse> {
+fn system_cases() -> Vec<TimedSystemCase> {
     let library = Library::embedded().expect("the tables are read");
     let cases = Cases::embedded().expect("the cases are read").systems;
     let named = |name: &&str| cases.iter().find(|it| it.name == **name).expect("a case");
-    SYSTEMS.iter().map(|it| SystemCourse::of(named(it), &library).expect("a course")).collect()
+    SYSTEMS.iter().map(|it| TimedSystemCase::of(named(it), &library).expect("a case")).collect()
 }
 
 /// Every system is raced, and the exact solver's answers are right: its own part is the same run.
 #[test]
 fn the_exact_solver_is_right_on_every_system() {
-    let courses = system_courses();
-    let mut raced: Vec<_> = courses.iter().map(|it| it.problem.exact.name.as_str()).collect();
+    let timed_cases = system_cases();
+    let mut raced: Vec<_> = timed_cases.iter().map(|it| it.problem.exact.name.as_str()).collect();
     raced.sort_unstable();
     raced.dedup();
     let all: Vec<_> = percuss_validation::systems::SYSTEMS.iter().map(|it| it.0).collect();
     assert_eq!(raced, all);
-    for course in &courses {
-        let found = system_contest(course, &[&EnteredEngine(exact_solver())], 1, &|| ());
-        let timed = found[0].result.as_ref().unwrap_or_else(|it| panic!("{}: {it}", course.name));
-        assert!(timed.score.state_error < 1e-9, "{}: {:?}", course.name, timed.score);
+    for case in &timed_cases {
+        let found = system_contest(case, &[&EnteredEngine(exact_solver())], 1, &|| ());
+        let timed = found[0].result.as_ref().unwrap_or_else(|it| panic!("{}: {it}", case.name));
+        assert!(timed.score.state_error < 1e-9, "{}: {:?}", case.name, timed.score);
         assert_eq!(timed.series.0.len(), 1);
-        assert!(timed.harness_share.is_some(), "{}", course.name);
+        assert!(timed.harness_share.is_some(), "{}", case.name);
     }
 }
 
 #[test]
 fn a_wrong_answer_of_a_system_has_no_score() {
-    for course in system_courses() {
-        let run = || exact_solver().run_system(&course.task, Accuracy::Exact, &Limits::default());
+    for case in system_cases() {
+        let run = || exact_solver().run_system(&case.task, Accuracy::Exact, &Limits::default());
         let right = run().expect("a run");
-        assert!(course.score(&right).is_ok());
+        assert!(case.score(&right).is_ok());
         let refused = |change: &dyn Fn(&mut SystemOutcome)| {
             let mut answer = right.clone();
             change(&mut answer);
-            course.score(&answer).is_err_and(|it| it.reason.starts_with("wrong: "))
+            case.score(&answer).is_err_and(|it| it.reason.starts_with("wrong: "))
         };
-        let scale = course.task.system.system().time_scale;
-        assert!(refused(&|it| it.events.truncate(it.events.len() - 1)), "{}", course.name);
-        assert!(refused(&|it| it.events.push(it.events[0])), "{}", course.name);
-        assert!(refused(&|it| it.events[0].elapsed += 2e-3 * scale), "{}", course.name);
-        assert!(refused(&|it| it.events[0].elapsed = f64::NAN), "{}", course.name);
-        assert!(refused(&|it| it.end[0] = f64::NAN), "{}", course.name);
+        let scale = case.task.system.system().time_scale;
+        assert!(refused(&|it| it.events.truncate(it.events.len() - 1)), "{}", case.name);
+        assert!(refused(&|it| it.events.push(it.events[0])), "{}", case.name);
+        assert!(refused(&|it| it.events[0].elapsed += 2e-3 * scale), "{}", case.name);
+        assert!(refused(&|it| it.events[0].elapsed = f64::NAN), "{}", case.name);
+        assert!(refused(&|it| it.end[0] = f64::NAN), "{}", case.name);
     }
 }
 
 /// The share of the harness is measured on this run: its answer has to be that of the whole run.
 #[test]
 fn an_engine_that_is_told_its_events_makes_the_same_run() {
-    let course = course("impact-into-progression");
+    let case = case("impact-into-progression");
     for engine in all() {
         let settings = settings(engine.declaration().stepping);
         let setting = settings[2.min(settings.len() - 1)];
-        let told = alone(*engine, &course, setting, Limits::default()).expect("the same run");
+        let told = library_part(*engine, &case, setting, Limits::default()).expect("the same run");
         let mut told = told.expect("something is left out");
         let name = engine.declaration().name;
         assert_eq!(told.call().and_then(|()| told.check()), Ok(()), "{name}");
     }
     // An engine that the harness does not meter is not thought to be free of the harness.
-    let unmetered = alone(CONTROL, &course, Accuracy::Exact, Limits::default());
+    let unmetered = library_part(CONTROL, &case, Accuracy::Exact, Limits::default());
     assert!(unmetered.is_ok_and(|it| it.is_none()));
 }
 
@@ -131,13 +131,13 @@ fn an_engine_that_is_told_its_events_makes_the_same_run() {
 /// none.
 #[test]
 fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
-    let course = course("impact-into-progression");
+    let case = case("impact-into-progression");
     let none = Script::of::<Phase, [f64; 4]>(&[]);
     let limits = Limits::default();
     let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
     for engine in integrators {
         let accuracy = settings(engine.declaration().stepping)[2];
-        let found = none.follow(|| engine.run(&course.task, accuracy, &limits));
+        let found = none.follow(|| engine.run(&case.task, accuracy, &limits));
         let (name, by) = (engine.declaration().name, engine.declaration().events);
         let found = found.map(|it| it.events.len()).unwrap_or_default();
         assert_eq!(found == 0, by == Location::Harness, "{name}: {found} events");

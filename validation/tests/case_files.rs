@@ -42,7 +42,7 @@ fn fields_that_are_wrong() {
         (
             "[horizon]",
             "[[shortcomings]]\nengine = \"x\"\nquantity = \"state_error\"\nat_least = 2\nat_most = 1\nwhy = \"-\"\n[horizon]",
-            &["at_least = 2.0 and at_most = 1.0 are not accepted", "a floor and"],
+            &["at_least = 2.0 and at_most = 1.0 are not accepted", "at_least is at most at_most"],
         ),
     ];
     for (from, to, wanted) in wrong {

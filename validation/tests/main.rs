@@ -19,6 +19,7 @@ mod contributing;
 mod dynamics_verbs;
 mod events;
 mod every_flag;
+mod export;
 mod findings;
 mod formats;
 mod growth;

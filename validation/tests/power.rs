@@ -3,8 +3,8 @@
 use percuss::{Model, Parameters, Start};
 use percuss_validation::case::{Case, Cases, defaults, embedded};
 use percuss_validation::engine::{
-    Accuracy, CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, Wrong, WrongWay, faulty,
-    wrong, wrong_on_systems,
+    Accuracy, CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, WrongEngine, WrongWay,
+    faulty, wrong, wrong_on_systems,
 };
 use percuss_validation::power::{
     AS_EXACT, Finding, Gate, Standard, all_on_systems, examine, examine_on_systems, is_run,
@@ -50,7 +50,7 @@ fn light_touch() -> Vec<Prepared> {
     prepare(vec![case], &library, Suite::Quick).expect("the case is made ready")
 }
 
-fn findings(wrong: &[Wrong], cases: &[Prepared], standard: Standard) -> Vec<Finding> {
+fn findings(wrong: &[WrongEngine], cases: &[Prepared], standard: Standard) -> Vec<Finding> {
     let bounds = defaults().expect("the bounds are read").bounds;
     wrong.iter().map(|it| examine(it, cases, standard, &bounds)).collect()
 }
@@ -80,11 +80,11 @@ fn the_control_passes_where_the_faults_do_not() {
     let cases = prepared().into_iter().chain(light_touch());
     let (grazes, others): (Vec<_>, Vec<_>) =
         cases.partition(|it| it.case.name.starts_with("graze"));
-    let control = Wrong { engine: CONTROL, fault: "none" };
+    let control = WrongEngine { engine: CONTROL, fault: "none" };
     for finding in findings(&[control], &others, standard) {
         assert!(!finding.caught(), "the control fails: {:?}", finding.gates);
     }
-    let failed = |wrong: Wrong| -> usize {
+    let failed = |wrong: WrongEngine| -> usize {
         let cases = [&others, &grazes].into_iter();
         let all = cases.flat_map(|cases| findings(&[wrong], cases, AS_LARGE));
         all.flat_map(|it| it.gates.into_values()).map(|trip| trip.failed).sum()
@@ -129,7 +129,7 @@ fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
             let trips = found.iter().any(|finding| finding.gates[&gate].failed > 0);
             assert!(trips, "no fault of an integrator trips {}", gate.name());
         }
-        let control = Wrong { engine: FAULTY_CONTROL, fault: "none" };
+        let control = WrongEngine { engine: FAULTY_CONTROL, fault: "none" };
         for finding in findings(&[control], &cases, standard) {
             assert!(!finding.caught(), "{} {:?}", finding.engine, finding.gates);
         }
@@ -160,7 +160,7 @@ fn faults_in_ways_of_running_are_caught_there_and_nowhere_else() {
         }
     }
     for standard in Standard::of_faulty() {
-        let wrong = Wrong { engine: FAULTY_ON_SYSTEMS_CONTROL, fault: "none" };
+        let wrong = WrongEngine { engine: FAULTY_ON_SYSTEMS_CONTROL, fault: "none" };
         let control = WrongWay { wrong, way: Way::Simultaneous };
         let Finding { failed_on, elsewhere, without_result, .. } =
             examine_on_systems(&control, &cases, standard, &bounds);

@@ -3,7 +3,7 @@
 use crate::support;
 use percuss_validation::case::Cases;
 use percuss_validation::engine::all;
-use percuss_validation::suite::{Scope, Suite, size};
+use percuss_validation::suite::{Suite, SuiteScope, size};
 use std::path::{Path, PathBuf};
 
 fn root() -> PathBuf {
@@ -115,7 +115,7 @@ fn the_known_shortcomings_are_those_of_the_full_suite() {
     let defects = file["defects"].as_array().expect("defects").iter();
     let rows: Vec<_> = defects.flat_map(|it| it["rows"].as_array().expect("rows")).collect();
     let of_system = |row: &toml::Value| row[0].as_str().is_some_and(|it| systems.contains(&it));
-    for tolerance in Scope::from(Suite::Full).tolerances() {
+    for tolerance in SuiteScope::from(Suite::Full).tolerances() {
         let at_it = |row: &toml::Value| row[1].as_float() == Some(*tolerance);
         let count =
             |system: bool| rows.iter().filter(|it| at_it(it) && of_system(it) == system).count();

@@ -91,7 +91,7 @@ fn with_shortcoming(quantity: &str, at_least: &str, at_most: &str) -> (Option<i3
 }
 
 #[test]
-fn a_shortcoming_is_known_between_its_floor_and_its_ceiling_alone() {
+fn a_shortcoming_is_known_within_its_range_alone() {
     let (code, table) = with_shortcoming("state_error", "1e-12", "1e-3");
     assert_eq!(code, Some(0), "{table}");
     assert!(table.contains(" 1 known, 0 fail"), "{table}");

@@ -6,7 +6,7 @@
 use super::Attractor;
 use super::catalog::AttractorCatalog;
 use super::grid::{Basins, Grid};
-use super::known::{Known, Label};
+use super::known::{KnownAttractor, Label};
 use super::settle::LONG_RUN;
 use crate::dynamics::strobe::{StrobeMap, StrobePoint};
 use std::ops::Range;
@@ -39,7 +39,7 @@ pub struct LabelledBlock {
     /// How many attractors all blocks know.
     shared_count: usize,
     /// The attractors that only starts of this block have led to.
-    found: Vec<Known>,
+    found: Vec<KnownAttractor>,
     /// The numbers of the labels ([`Label::number`]): places among the shared attractors, then
     /// among those found.
     labels: Vec<i32>,
@@ -127,7 +127,7 @@ impl Basins {
     #[must_use]
     pub fn joined(grid: Grid, blocks: impl IntoIterator<Item = LabelledBlock>) -> Self {
         let mut shared = Vec::new();
-        let mut found: Vec<Known> = Vec::new();
+        let mut found: Vec<KnownAttractor> = Vec::new();
         let mut labels = Vec::with_capacity(grid.len());
         for block in blocks {
             shared.extend(block.shared);
@@ -150,7 +150,7 @@ impl Basins {
 }
 
 /// The place of an attractor among those that are known, which it joins if it is new.
-fn place_of(known: &mut Vec<Known>, new: Known) -> usize {
+fn place_of(known: &mut Vec<KnownAttractor>, new: KnownAttractor) -> usize {
     let same = known.iter().position(|it| it.is(&new));
     same.unwrap_or_else(|| {
         known.push(new);
@@ -166,7 +166,7 @@ mod tests {
     use crate::dynamics::attractor::{AttractorKind, Window};
 
     /// An attractor of period 1 at a place on the p axis, with a ball of radius 1e-3 as its trap.
-    fn at(p: f64) -> Known {
+    fn at(p: f64) -> KnownAttractor {
         let attractor = Attractor {
             kind: AttractorKind::Periodic,
             orbit: None,
@@ -175,7 +175,10 @@ mod tests {
             lyapunov_per_period: -1.0,
             lyapunov_error: 0.0,
         };
-        Known { attractor, evidence: Evidence::Traps(vec![Trap::ball([p, 0.0, 0.0], 1e-3)]) }
+        KnownAttractor {
+            attractor,
+            evidence: Evidence::Traps(vec![Trap::ball([p, 0.0, 0.0], 1e-3)]),
+        }
     }
 
     fn grid(columns: u32, rows: u32) -> Grid {

@@ -1,6 +1,6 @@
 //! The attractors that are known so far, and where starts lead.
 
-use super::known::{Known, Label};
+use super::known::{KnownAttractor, Label};
 use super::recognition::Recognition;
 use super::settle::{AttractorSearch, Settled};
 use super::{Attractor, horizon};
@@ -14,7 +14,7 @@ use crate::model::entry::Entry;
 pub struct AttractorCatalog {
     map: StrobeMap,
     transient: u64,
-    known: Vec<Known>,
+    known: Vec<KnownAttractor>,
 }
 
 /// Starts looked at in one go: what is kept of each until then is ten times its label.
@@ -44,7 +44,7 @@ impl AttractorCatalog {
     }
 
     /// The attractors with what motions near them are recognised by, in the same order.
-    pub(super) fn known(&self) -> &[Known] {
+    pub(super) fn known(&self) -> &[KnownAttractor] {
         &self.known
     }
 

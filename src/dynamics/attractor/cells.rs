@@ -15,7 +15,7 @@ pub(super) const RECURRENCES: u32 = 48;
 /// A set of cells.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Cells {
+pub(super) struct CellSet {
     width: f64,
     #[cfg_attr(feature = "serde", serde(serialize_with = "in_order"))]
     visited: HashSet<[i64; 3]>,
@@ -30,7 +30,7 @@ fn in_order<S: serde::Serializer>(
     serializer.collect_seq(cells.iter().collect::<std::collections::BTreeSet<_>>())
 }
 
-impl Cells {
+impl CellSet {
     /// The cells that some points lie in.
     pub fn of(points: &[StrobePoint]) -> Self {
         let extent = |i: usize| {

@@ -41,15 +41,15 @@ pub struct Scale {
 /// Basin entropy of labels in boxes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Entropy {
-    /// Cells along each side of a box.
+    /// The number of cells along each side of a box.
     pub side: u32,
-    /// Mean over all boxes, in natural units.
+    /// The mean entropy over all boxes, in natural units.
     pub all: f64,
-    /// Mean over the boxes that hold more than one label; NaN where there is none.
+    /// The mean entropy over the boxes that hold more than one label; NaN where there is none.
     pub boundary: f64,
-    /// Standard error of the latter; NaN of a single box.
+    /// The standard error of `boundary`; NaN for a single box.
     pub boundary_error: f64,
-    /// How many such boxes there are.
+    /// How many boxes hold more than one label.
     pub boundary_boxes: u64,
 }
 

@@ -1,7 +1,7 @@
 //! What is known of an attractor that has been met: what a motion near it is recognised by.
 
 use super::Attractor;
-use super::cells::Cells;
+use super::cells::CellSet;
 use super::trap::Trap;
 
 /// The place to which a start leads.
@@ -32,7 +32,7 @@ impl Label {
 /// An attractor and what a motion near it is recognised by.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub(super) struct Known {
+pub(super) struct KnownAttractor {
     pub attractor: Attractor,
     pub evidence: Evidence,
 }
@@ -42,7 +42,7 @@ pub(super) struct Known {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Evidence {
     Traps(Vec<Trap>),
-    Cells(Cells),
+    Cells(CellSet),
 }
 
 /// Two runs are on one attractor when this share of one lies in the cells of the other.
@@ -51,7 +51,7 @@ const SAME: f64 = 0.5;
 /// trap's radius: it need not come closer still.
 pub(super) const AT_REST: f64 = 1e-12;
 
-impl Known {
+impl KnownAttractor {
     /// Whether both are the same attractor.
     pub fn is(&self, other: &Self) -> bool {
         match (&self.evidence, &other.evidence) {

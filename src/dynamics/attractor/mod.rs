@@ -61,7 +61,7 @@ pub enum AttractorKind {
 }
 
 impl AttractorKind {
-    /// All kinds.
+    /// All kinds of attractors.
     pub const ALL: [Self; 4] =
         [Self::Periodic, Self::Chaotic, Self::QuasiPeriodic, Self::Unidentified];
 

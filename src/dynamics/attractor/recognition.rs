@@ -1,7 +1,7 @@
 //! The recognition of a motion that approaches a known attractor.
 
 use super::cells::RECURRENCES;
-use super::known::{AT_REST, Evidence, Known, Label};
+use super::known::{AT_REST, Evidence, KnownAttractor, Label};
 use super::trap::Trap;
 use crate::dynamics::ensemble::Watcher;
 use crate::dynamics::strobe::StrobePoint;
@@ -14,7 +14,7 @@ const TURNS: u32 = 3;
 
 /// Watches for what is known.
 pub(super) struct Recognition<'a> {
-    watch: Watch<'a>,
+    recognizer: Recognizer<'a>,
     label: Option<Label>,
     last: Entry,
     /// Strobes met, and the number after which it is given up.
@@ -26,8 +26,21 @@ pub(super) struct Recognition<'a> {
 }
 
 impl<'a> Recognition<'a> {
-    pub fn new(known: &'a [Known], from: Entry, most: u64, seen: &'a (dyn Fn(u64) + Sync)) -> Self {
-        Self { watch: Watch::new(known), label: None, last: from, met: 0, most, events: 0, seen }
+    pub fn new(
+        known: &'a [KnownAttractor],
+        from: Entry,
+        most: u64,
+        seen: &'a (dyn Fn(u64) + Sync),
+    ) -> Self {
+        Self {
+            recognizer: Recognizer::new(known),
+            label: None,
+            last: from,
+            met: 0,
+            most,
+            events: 0,
+            seen,
+        }
     }
 
     /// How many events the motion has met.
@@ -46,7 +59,7 @@ impl Watcher for Recognition<'_> {
         self.label = if escapes(endless) {
             Some(Label::Escaping)
         } else {
-            self.watch.see(self.met, &strobe.point()).map(Label::Attractor)
+            self.recognizer.see(self.met, &strobe.point()).map(Label::Attractor)
         };
         (self.last, self.met) = (*strobe, self.met + 1);
         if self.label.is_some() {
@@ -68,8 +81,8 @@ pub(super) fn escapes(endless: Option<Endless>) -> bool {
 }
 
 /// What one motion has met of the known attractors.
-pub(super) struct Watch<'a> {
-    known: &'a [Known],
+pub(super) struct Recognizer<'a> {
+    known: &'a [KnownAttractor],
     /// Strobes in a row in the cells of each.
     streaks: Vec<u32>,
     entered: Option<EnteredTrap<'a>>,
@@ -84,8 +97,8 @@ struct EnteredTrap<'a> {
     turns: u32,
 }
 
-impl<'a> Watch<'a> {
-    pub fn new(known: &'a [Known]) -> Self {
+impl<'a> Recognizer<'a> {
+    pub fn new(known: &'a [KnownAttractor]) -> Self {
         Self { known, streaks: vec![0; known.len()], entered: None }
     }
 
@@ -143,7 +156,7 @@ mod tests {
     use crate::dynamics::attractor::{Attractor, AttractorKind};
 
     /// An attractor of period 1 in the origin, with a ball of radius 1 as its trap.
-    fn origin() -> Known {
+    fn origin() -> KnownAttractor {
         let attractor = Attractor {
             kind: AttractorKind::Periodic,
             orbit: None,
@@ -152,14 +165,14 @@ mod tests {
             lyapunov_per_period: -1.0,
             lyapunov_error: 0.0,
         };
-        Known { attractor, evidence: Evidence::Traps(vec![Trap::ball([0.0; 3], 1.0)]) }
+        KnownAttractor { attractor, evidence: Evidence::Traps(vec![Trap::ball([0.0; 3], 1.0)]) }
     }
 
     /// How many strobes at these distances it takes to recognise a motion.
     fn recognised_after(distances: &[f64]) -> Option<usize> {
         let known = [origin()];
-        let mut watch = Watch::new(&known);
-        let mut see = |(n, x): (usize, &f64)| watch.see(n as u64, &[*x, 0.0, 0.0]);
+        let mut recognizer = Recognizer::new(&known);
+        let mut see = |(n, x): (usize, &f64)| recognizer.see(n as u64, &[*x, 0.0, 0.0]);
         distances.iter().enumerate().position(|it| see(it).is_some())
     }
 

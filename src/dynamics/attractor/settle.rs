@@ -1,8 +1,8 @@
 //! What a motion settles on that approaches no attractor known so far.
 
-use super::cells::{Cells, REFERENCE};
-use super::known::{Evidence, Known, Label};
-use super::recognition::{Watch, escapes};
+use super::cells::{CellSet, REFERENCE};
+use super::known::{Evidence, KnownAttractor, Label};
+use super::recognition::{Recognizer, escapes};
 use super::trap::Trap;
 use super::{Attractor, AttractorKind, ERRORS, horizon};
 use crate::dynamics::lyapunov::Spectrum;
@@ -37,13 +37,13 @@ pub(super) enum Settled {
     /// The motion leads to a known attractor or escapes, or it is not known where it leads.
     Label(Label),
     /// The motion leads to an attractor that was not met before.
-    New(Box<Known>),
+    New(Box<KnownAttractor>),
 }
 
 /// Looks for attractors of a map that are not known yet.
 pub(super) struct AttractorSearch<'a> {
     pub map: &'a StrobeMap,
-    pub known: &'a [Known],
+    pub known: &'a [KnownAttractor],
 }
 
 impl AttractorSearch<'_> {
@@ -84,26 +84,26 @@ impl AttractorSearch<'_> {
         let traps = Trap::all(self.map, &orbit);
         let period = u64::from(orbit.period());
         let attractor = Attractor::periodic(self.map, orbit);
-        let new = Known { attractor, evidence: Evidence::Traps(traps) };
+        let new = KnownAttractor { attractor, evidence: Evidence::Traps(traps) };
         let known = std::slice::from_ref(&new);
-        let mut watch = Watch::new(known);
+        let mut recognizer = Recognizer::new(known);
         let mut ahead = self.section(*last, TURNS * period);
         let arrives = (0..TURNS * period)
-            .any(|n| ahead.next().is_some_and(|it| watch.see(n, &it.point()).is_some()));
+            .any(|n| ahead.next().is_some_and(|it| recognizer.see(n, &it.point()).is_some()));
         arrives.then(|| Settled::New(Box::new(new)))
     }
 
     /// A long run that may turn out to be on an attractor without period.
     fn reference(&self, from: Entry) -> Option<Settled> {
         let mut section = self.section(from, REFERENCE);
-        let mut watch = Watch::new(self.known);
+        let mut recognizer = Recognizer::new(self.known);
         let mut run = Vec::with_capacity(REFERENCE as usize);
         for n in 0..REFERENCE {
             let strobe = section.next()?;
             if escapes(section.endless()) {
                 return Some(Settled::Label(Label::Escaping));
             }
-            if let Some(known) = watch.see(n, &strobe.point()) {
+            if let Some(known) = recognizer.see(n, &strobe.point()) {
                 return Some(Settled::Label(Label::Attractor(known)));
             }
             run.push(strobe);
@@ -115,8 +115,8 @@ impl AttractorSearch<'_> {
         let points: Vec<StrobePoint> = run.iter().map(Entry::point).collect();
         let kind = kind_of(&spectrum, repeats(&points).is_some());
         let attractor = Attractor::of_run(kind, &points, &spectrum);
-        let evidence = Evidence::Cells(Cells::of(&points));
-        Some(Settled::New(Box::new(Known { attractor, evidence })))
+        let evidence = Evidence::Cells(CellSet::of(&points));
+        Some(Settled::New(Box::new(KnownAttractor { attractor, evidence })))
     }
 }
 

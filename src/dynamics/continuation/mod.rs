@@ -84,7 +84,7 @@ pub enum BifurcationKind {
 }
 
 impl BifurcationKind {
-    /// All kinds.
+    /// All kinds of bifurcations.
     pub const ALL: [Self; 4] = [Self::Fold, Self::Flip, Self::NeimarkSacker, Self::Grazing];
 
     /// The name used in files.

@@ -6,8 +6,8 @@ use crate::model::Model;
 use crate::model::entry::Entry;
 use crate::model::instant::Instant;
 use crate::run::exit::{Endless, Exit};
-use crate::run::segment::Segment;
 use crate::run::switch::Begun;
+use crate::run::trajectory::Segment;
 use std::ops::ControlFlow;
 
 /// A motion and where it is.

@@ -3,7 +3,7 @@
 use super::cursor::Cursor;
 use super::{Tally, Watcher};
 use crate::crossing::allowances::FOUR_ULPS;
-use crate::lanes::{Begin, Column, LaneTask, PhaseEnds, Shape};
+use crate::lanes::{Begin, LaneTask, LaneValues, PhaseEnds, Shape};
 use crate::model::Model;
 use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
@@ -38,7 +38,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
     }
 
     /// Gives a lane the constants.
-    pub fn shape(&self, lane: usize, shape: &mut Shape<Column>) {
+    pub fn shape(&self, lane: usize, shape: &mut Shape<LaneValues>) {
         if let Some(mine) = &self.shape {
             shape.set(lane, mine);
         }

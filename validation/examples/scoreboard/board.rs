@@ -1,7 +1,8 @@
 //! The scoreboard: a line an engine, its default set-up beside the expert's.
 
-use super::read::{Engine, Report, Row};
+use super::read::{EngineJson, ReportJson, RowJson};
 use anyhow::{Result, bail};
+use percuss_validation::score::Spread;
 use std::collections::BTreeSet;
 
 /// What the name of a set-up ends with that is the documentation's first example.
@@ -19,27 +20,27 @@ pub(crate) struct Board {
     /// The kinds of trouble.
     pub(crate) kinds: Vec<String>,
     /// The engines, the best first.
-    pub(crate) lines: Vec<Line>,
+    pub(crate) lines: Vec<BoardLine>,
 }
 
 /// An engine with both of its set-ups, as far as they were run.
-pub(crate) struct Line {
+pub(crate) struct BoardLine {
     /// The name without the ending of the default.
     pub(crate) name: String,
     pub(crate) library: String,
     pub(crate) version: String,
     pub(crate) language: String,
-    pub(crate) expert: Option<Score>,
-    pub(crate) default: Option<Score>,
+    pub(crate) expert: Option<SetupResult>,
+    pub(crate) default: Option<SetupResult>,
 }
 
 /// What a set-up found, and at what cost.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Score {
+pub(crate) struct SetupResult {
     /// Over all rows.
-    pub(crate) all: Tally,
+    pub(crate) all: EventCounts,
     /// For each kind of trouble.
-    pub(crate) kinds: Vec<Tally>,
+    pub(crate) kinds: Vec<EventCounts>,
     /// Right-hand sides per event: the median over the rows that found every event.
     pub(crate) rhs: Option<f64>,
     /// Microseconds per event in the integrator itself, over the same rows.
@@ -50,14 +51,14 @@ pub(crate) struct Score {
 
 /// Events counted as the ranking counts them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Tally {
+pub(crate) struct EventCounts {
     pub(crate) found: u64,
     pub(crate) spurious: u64,
     pub(crate) total: u64,
 }
 
-impl Tally {
-    fn add(&mut self, row: &Row) {
+impl EventCounts {
+    fn add(&mut self, row: &RowJson) {
         let judged = row.verdict != "not-scored";
         self.found += row.events_matched.filter(|_| judged).unwrap_or_default();
         self.spurious += row.events_spurious.unwrap_or_default();
@@ -77,7 +78,7 @@ impl Tally {
 
 impl Board {
     /// The scoreboard of these reports.
-    pub(crate) fn of(reports: &[Report]) -> Result<Self> {
+    pub(crate) fn of(reports: &[ReportJson]) -> Result<Self> {
         let rows = || reports.iter().flat_map(|report| &report.results);
         let mut kinds: BTreeSet<String> = rows().flat_map(|row| row.trouble.clone()).collect();
         if rows().any(|row| row.trouble.is_empty()) {
@@ -87,15 +88,15 @@ impl Board {
         let mut tolerances: Vec<f64> = rows().filter_map(|row| row.tolerance).collect();
         tolerances.sort_by(|a, b| b.total_cmp(a));
         tolerances.dedup();
-        let mut lines: Vec<Line> = Vec::new();
+        let mut lines: Vec<BoardLine> = Vec::new();
         for report in reports {
             for engine in &report.engines {
-                put(&mut lines, engine, Score::of(engine, report, &kinds))?;
+                put(&mut lines, engine, SetupResult::of(engine, report, &kinds))?;
             }
         }
         lines.sort_by(|a, b| b.rank().0.cmp(&a.rank().0).then(b.rank().1.total_cmp(&a.rank().1)));
 
-        let made = |it: &Report| {
+        let made = |it: &ReportJson| {
             let commit = it.commit.as_deref().unwrap_or("no commit");
             format!("percuss {} at {commit}, on {}", it.percuss, it.cpu)
         };
@@ -107,11 +108,11 @@ impl Board {
 }
 
 /// Puts a set-up into the line of its engine and version.
-fn put(lines: &mut Vec<Line>, engine: &Engine, score: Score) -> Result<()> {
+fn put(lines: &mut Vec<BoardLine>, engine: &EngineJson, score: SetupResult) -> Result<()> {
     let name = engine.name.strip_suffix(DEFAULT).unwrap_or(&engine.name);
     let place = lines.iter().position(|it| it.name == name && it.version == engine.version);
     let place = place.unwrap_or_else(|| {
-        lines.push(Line {
+        lines.push(BoardLine {
             name: name.to_owned(),
             library: engine.library.clone(),
             version: engine.version.clone(),
@@ -130,33 +131,36 @@ fn put(lines: &mut Vec<Line>, engine: &Engine, score: Score) -> Result<()> {
     Ok(())
 }
 
-impl Line {
+impl BoardLine {
     /// Whether it is the reference, and its better share of events.
     fn rank(&self) -> (bool, f64) {
-        let share =
-            |score: &Option<Score>| score.as_ref().map_or(f64::NEG_INFINITY, |it| it.all.share());
+        let share = |score: &Option<SetupResult>| {
+            score.as_ref().map_or(f64::NEG_INFINITY, |it| it.all.share())
+        };
         let best = self.expert.as_ref().map_or(share(&self.default), |it| it.all.share());
         (self.name.starts_with("exact"), best)
     }
 }
 
-impl Score {
-    fn of(engine: &Engine, report: &Report, kinds: &[String]) -> Self {
-        let rows: Vec<&Row> = report.results.iter().filter(|it| it.engine == engine.name).collect();
-        let tally = |rows: &mut dyn Iterator<Item = &&Row>| {
-            let mut tally = Tally::default();
+impl SetupResult {
+    fn of(engine: &EngineJson, report: &ReportJson, kinds: &[String]) -> Self {
+        let rows: Vec<&RowJson> =
+            report.results.iter().filter(|it| it.engine == engine.name).collect();
+        let tally = |rows: &mut dyn Iterator<Item = &&RowJson>| {
+            let mut tally = EventCounts::default();
             rows.for_each(|row| tally.add(row));
             tally
         };
-        let is_of = |row: &Row, kind: &String| {
+        let is_of = |row: &RowJson, kind: &String| {
             row.trouble.contains(kind) || (row.trouble.is_empty() && kind == OSCILLATOR)
         };
         let of_kind = |kind: &String| tally(&mut rows.iter().filter(|row| is_of(row, kind)));
         let whole =
-            |row: &&&Row| row.events_total > 0 && row.events_matched == Some(row.events_total);
-        let each = |figure: fn(&Row) -> Option<f64>| {
-            let of = |row: &&Row| Some(figure(row)? / row.events_total as f64);
-            median(rows.iter().filter(whole).filter_map(of).collect())
+            |row: &&&RowJson| row.events_total > 0 && row.events_matched == Some(row.events_total);
+        let each = |figure: fn(&RowJson) -> Option<f64>| {
+            let of = |row: &&RowJson| Some(figure(row)? / row.events_total as f64);
+            let median = Spread::of(rows.iter().filter(whole).filter_map(of).collect()).median;
+            Some(median).filter(|it| it.is_finite())
         };
         Self {
             all: tally(&mut rows.iter()),
@@ -170,14 +174,4 @@ impl Score {
 
 fn microseconds(ns: u64) -> f64 {
     ns as f64 / 1000.0
-}
-
-fn median(mut values: Vec<f64>) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    let (n, middle) = (values.len(), values.len() / 2);
-    match n {
-        0 => None,
-        _ if n % 2 == 1 => Some(values[middle]),
-        _ => Some((values[middle - 1] + values[middle]) / 2.0),
-    }
 }

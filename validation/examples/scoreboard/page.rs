@@ -1,6 +1,6 @@
 //! The scoreboard as Markdown and as HTML.
 
-use super::board::{Board, Line, Score, Tally};
+use super::board::{Board, BoardLine, EventCounts, SetupResult};
 use anyhow::Result;
 use askama::Template;
 
@@ -28,7 +28,7 @@ pub(crate) fn markdown(board: &Board) -> String {
              after the stroke.\n\n";
     let mut columns = vec!["engine".to_owned()];
     columns.extend(board.kinds.iter().cloned());
-    let line = |it: &Line| {
+    let line = |it: &BoardLine| {
         let kinds = (0..board.kinds.len()).map(|k| both(it, |score| percent(&score.kinds[k])));
         [named(it)].into_iter().chain(kinds).collect()
     };
@@ -54,16 +54,17 @@ fn table(columns: &[String], right: usize, lines: impl Iterator<Item = Vec<Strin
     [line(columns), line(&rules)].into_iter().chain(lines.map(|it| line(&it))).collect()
 }
 
-fn named(line: &Line) -> String {
+fn named(line: &BoardLine) -> String {
     format!("{} {}", line.name, line.version)
 }
 
 /// The cells of an engine in the first table.
-fn cells(line: &Line) -> [String; 11] {
-    let of = |score: &Option<Score>, figure: fn(&Score) -> String| {
+fn cells(line: &BoardLine) -> [String; 11] {
+    let of = |score: &Option<SetupResult>, figure: fn(&SetupResult) -> String| {
         score.as_ref().map_or(NOTHING.to_owned(), figure)
     };
-    let pair = |figure: fn(&Score) -> String| [of(&line.expert, figure), of(&line.default, figure)];
+    let pair =
+        |figure: fn(&SetupResult) -> String| [of(&line.expert, figure), of(&line.default, figure)];
     let best = line.expert.as_ref().or(line.default.as_ref());
     let [found, found_default] = pair(|it| percent(&it.all));
     let [spurious, spurious_default] = pair(|it| it.all.spurious.to_string());
@@ -84,7 +85,7 @@ fn cells(line: &Line) -> [String; 11] {
 }
 
 /// The expert's figure and the default's, where each was run.
-fn both(line: &Line, figure: impl Fn(&Score) -> String) -> String {
+fn both(line: &BoardLine, figure: impl Fn(&SetupResult) -> String) -> String {
     let [expert, default] = [&line.expert, &line.default].map(|it| it.as_ref().map(&figure));
     match (expert, default) {
         (Some(expert), Some(default)) => format!("{expert} / {default}"),
@@ -94,7 +95,7 @@ fn both(line: &Line, figure: impl Fn(&Score) -> String) -> String {
     }
 }
 
-fn percent(tally: &Tally) -> String {
+fn percent(tally: &EventCounts) -> String {
     tally.percent().map_or(NOTHING.to_owned(), |it| it.to_string())
 }
 
@@ -109,7 +110,7 @@ fn figure(value: Option<f64>) -> String {
 
 #[derive(Template)]
 #[template(path = "scoreboard.html")]
-struct Page<'a> {
+struct ScoreboardPage<'a> {
     head: String,
     kinds: &'a [String],
     lines: Vec<HtmlLine>,
@@ -133,11 +134,11 @@ struct KindCell {
 /// # Errors
 /// What the template says.
 pub(crate) fn html(board: &Board) -> Result<String> {
-    let cell = |score: &Option<Score>, k: usize| KindCell {
+    let cell = |score: &Option<SetupResult>, k: usize| KindCell {
         shown: score.as_ref().map_or(NOTHING.to_owned(), |it| percent(&it.kinds[k])),
         share: score.as_ref().and_then(|it| it.kinds[k].percent()).unwrap_or_default(),
     };
-    let line = |it: &Line| HtmlLine {
+    let line = |it: &BoardLine| HtmlLine {
         name: named(it),
         cells: cells(it),
         kinds: (0..board.kinds.len())
@@ -145,5 +146,5 @@ pub(crate) fn html(board: &Board) -> Result<String> {
             .collect(),
     };
     let lines = board.lines.iter().map(line).collect();
-    Ok(Page { head: head(board), kinds: &board.kinds, lines }.render()?)
+    Ok(ScoreboardPage { head: head(board), kinds: &board.kinds, lines }.render()?)
 }

@@ -5,17 +5,17 @@ use serde::Deserialize;
 
 /// A report.
 #[derive(Deserialize)]
-pub(crate) struct Report {
+pub(crate) struct ReportJson {
     pub(crate) percuss: String,
     pub(crate) commit: Option<String>,
     pub(crate) cpu: String,
-    pub(crate) engines: Vec<Engine>,
-    pub(crate) results: Vec<Row>,
+    pub(crate) engines: Vec<EngineJson>,
+    pub(crate) results: Vec<RowJson>,
 }
 
 /// An engine of a report.
 #[derive(Clone, Deserialize)]
-pub(crate) struct Engine {
+pub(crate) struct EngineJson {
     pub(crate) name: String,
     pub(crate) library: String,
     pub(crate) version: String,
@@ -24,7 +24,7 @@ pub(crate) struct Engine {
 
 /// A row of a report.
 #[derive(Clone, Deserialize)]
-pub(crate) struct Row {
+pub(crate) struct RowJson {
     pub(crate) case: String,
     pub(crate) trouble: Vec<String>,
     pub(crate) engine: String,
@@ -39,7 +39,7 @@ pub(crate) struct Row {
 }
 
 /// Reads a report.
-pub(crate) fn report(path: &str) -> Result<Report> {
+pub(crate) fn report(path: &str) -> Result<ReportJson> {
     let text = std::fs::read_to_string(path).with_context(|| path.to_owned())?;
     serde_json::from_str(&text).with_context(|| format!("{path} is no report.json of this version"))
 }

@@ -130,7 +130,7 @@ pub(super) struct PreparedCases {
 }
 
 impl PreparedCases {
-    /// Those of the oscillator, then those of other systems.
+    /// All cases: those of the oscillator, then those of other systems.
     pub(super) fn all(&self) -> Vec<&dyn CaseRun> {
         let oscillator = self.oscillator.iter().map(|it| it as &dyn CaseRun);
         oscillator.chain(self.systems.iter().map(|it| it as &dyn CaseRun)).collect()

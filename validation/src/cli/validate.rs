@@ -5,10 +5,10 @@ use super::names::ENGINES;
 use super::programs::ProgramFlags;
 use super::{OUT_OF_BOUNDS, parse, say, work};
 use crate::case::Defaults;
-use crate::engine::{self, Engine, Wrong, WrongWay, hush_contained_panics};
+use crate::engine::{self, Engine, WrongEngine, WrongWay, hush_contained_panics};
 use crate::power::{self, Finding, Standard};
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
-use crate::suite::{self, Scope, Suite};
+use crate::suite::{self, Suite, SuiteScope};
 use anyhow::{Result, bail};
 use clap::Args;
 use regex::Regex;
@@ -82,8 +82,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
 }
 
 /// The suite, as far as tolerances are chosen.
-fn scope(arguments: &Arguments) -> Result<Scope> {
-    let all = Scope::from(arguments.suite);
+fn scope(arguments: &Arguments) -> Result<SuiteScope> {
+    let all = SuiteScope::from(arguments.suite);
     let is_other = |it: &&parse::Typed<f64>| !all.tolerances().contains(&it.value);
     if let Some(other) = arguments.tolerance.iter().find(is_other) {
         let shown: Vec<_> = all.tolerances().iter().map(|it| format!("{it:e}")).collect();
@@ -96,7 +96,7 @@ fn scope(arguments: &Arguments) -> Result<Scope> {
 /// asked.
 #[derive(Default)]
 struct WrongEngines {
-    anywhere: Vec<(Wrong, Standard)>,
+    anywhere: Vec<(WrongEngine, Standard)>,
     on_systems: Vec<(WrongWay, Standard)>,
 }
 

@@ -6,7 +6,7 @@
 use super::array::{Array, ArrayValues};
 use super::plan::Plan;
 use super::run::Sweep;
-use super::shard::{Damage, Place};
+use super::shard::{Damage, TileLocation};
 use super::spool::{ArrayNumber, NumberType, Spool};
 use super::tiling;
 use crate::arrays::Npz;
@@ -39,7 +39,7 @@ impl fmt::Display for NotMerged {
 pub struct Merge<'a> {
     sweep: &'a Sweep<'a>,
     /// The place of each tile.
-    places: Vec<Place>,
+    places: Vec<TileLocation>,
 }
 
 impl NotMerged {
@@ -59,14 +59,14 @@ impl<'a> Merge<'a> {
         Ok(Self { sweep, places: places(sweep)? })
     }
 
-    /// Writes all points as an `.npz` file; spools are kept in `folder` meanwhile. `told` is called
+    /// Writes all points as an `.npz` file; spools are kept in `folder` meanwhile. `done` is called
     /// as points are done.
     ///
     /// # Errors
     /// What cannot be written, and a shard that has changed meanwhile.
-    pub fn write(&self, folder: &Path, out: &mut dyn Write, told: &dyn Fn()) -> Result<()> {
+    pub fn write(&self, folder: &Path, out: &mut dyn Write, done: &dyn Fn()) -> Result<()> {
         let Self { sweep, places } = self;
-        let spools = spooled(sweep, places, folder, told)?;
+        let spools = spooled(sweep, places, folder, done)?;
         archive(sweep, spools, out)
     }
 }
@@ -99,7 +99,7 @@ fn archive(sweep: &Sweep<'_>, spools: Vec<Spool>, out: &mut dyn Write) -> Result
 }
 
 /// The place of each tile, if all are there.
-fn places(sweep: &Sweep<'_>) -> Result<Vec<Place>> {
+fn places(sweep: &Sweep<'_>) -> Result<Vec<TileLocation>> {
     let mut places = Vec::new();
     let mut not_merged = Vec::new();
     for shard in 0..sweep.plan.shards {
@@ -117,9 +117,9 @@ fn places(sweep: &Sweep<'_>) -> Result<Vec<Place>> {
 
 fn spooled(
     sweep: &Sweep<'_>,
-    places: &[Place],
+    places: &[TileLocation],
     folder: &Path,
-    told: &dyn Fn(),
+    done: &dyn Fn(),
 ) -> Result<Vec<Spool>> {
     let mut spools: Vec<Spool> = Vec::new();
     let mut tile = 0;
@@ -135,7 +135,7 @@ fn spooled(
             let arrays = sweep.work.join(&point, &mut blocks);
             let arrays = arrays.with_context(|| format!("at {point}"))?;
             add_point(&mut spools, &arrays, folder)?;
-            told();
+            done();
         }
         tile = beside.end;
     }

@@ -31,7 +31,7 @@ pub use merge::{Merge, NotMerged};
 #[cfg(feature = "mpi")]
 pub use mpi::Ranks;
 pub use plan::{Plan, PlanFile};
-pub use run::{Sweep, Told};
+pub use run::{Sweep, SweepObserver};
 pub use shard::Damage;
 pub use status::{ShardState, SweepStatus};
 pub use work::{SweepVerb, Tiles};

@@ -2,7 +2,7 @@
 //! free, and writes a shard when all its tiles are back.
 
 use super::folder::Lock;
-use super::run::{Sweep, Told};
+use super::run::{Sweep, SweepObserver};
 use anyhow::{Context, Result, anyhow};
 use mpi::collective::SystemOperation;
 use mpi::environment::Universe;
@@ -68,8 +68,13 @@ impl Ranks {
     ///
     /// # Errors
     /// On rank 0, what the verb objects to, and a folder that cannot be written.
-    pub fn run(&self, sweep: &Sweep<'_>, pool: &ThreadPool, told: &dyn Told) -> Result<()> {
-        if self.is_first() { self.hand_out(sweep, told) } else { self.work(sweep, pool) }
+    pub fn run(
+        &self,
+        sweep: &Sweep<'_>,
+        pool: &ThreadPool,
+        observer: &dyn SweepObserver,
+    ) -> Result<()> {
+        if self.is_first() { self.hand_out(sweep, observer) } else { self.work(sweep, pool) }
     }
 
     // MPI is called by the main thread only, as it demands of who has asked for no more.
@@ -87,14 +92,14 @@ impl Ranks {
         }
     }
 
-    fn hand_out(&self, sweep: &Sweep<'_>, told: &dyn Told) -> Result<()> {
+    fn hand_out(&self, sweep: &Sweep<'_>, observer: &dyn SweepObserver) -> Result<()> {
         let world = self.universe.world();
-        let mut queue = Queue::new(sweep, told);
+        let mut queue = Queue::new(sweep, observer);
         let mut failed = None;
         let mut left = world.size() - 1;
         while left > 0 {
             let (message, status) = world.any_process().receive_vec::<u8>();
-            if let Err(error) = queue.take(sweep, &message, told) {
+            if let Err(error) = queue.take(sweep, &message, observer) {
                 failed.get_or_insert(error);
             }
             // After a failure the ranks are sent home one by one: none waits for ever.
@@ -122,12 +127,12 @@ struct Queue {
 }
 
 impl Queue {
-    fn new(sweep: &Sweep<'_>, told: &dyn Told) -> Self {
-        let shards = sweep.open_shards(told).into_iter().rev();
+    fn new(sweep: &Sweep<'_>, observer: &dyn SweepObserver) -> Self {
+        let shards = sweep.open_shards(observer).into_iter().rev();
         let of = |shard: u32| sweep.dealt.deal.tiles_of(shard).iter().rev();
         let tiles: Vec<_> =
             shards.flat_map(|shard| of(shard).map(move |tile| (shard, *tile))).collect();
-        told.begun(tiles.len() as u64);
+        observer.begun(tiles.len() as u64);
         Self { tiles, under_way: BTreeMap::new(), open: BTreeMap::new() }
     }
 
@@ -144,7 +149,12 @@ impl Queue {
     }
 
     /// Takes what a rank has sent; writes a shard that is complete by that.
-    fn take(&mut self, sweep: &Sweep<'_>, message: &[u8], told: &dyn Told) -> Result<()> {
+    fn take(
+        &mut self,
+        sweep: &Sweep<'_>,
+        message: &[u8],
+        observer: &dyn SweepObserver,
+    ) -> Result<()> {
         if message.is_empty() {
             return Ok(());
         }
@@ -152,7 +162,7 @@ impl Queue {
         let shard = self.under_way.remove(&tile).context("a tile that was not handed out")?;
         let open = self.open.get_mut(&shard).context("a shard that is not open")?;
         open.tiles.insert(tile, outcome.map_err(|why| anyhow!(why))?);
-        told.tile();
+        observer.tile();
         if open.tiles.len() == sweep.dealt.deal.tiles_of(shard).len() {
             let Some(done) = self.open.remove(&shard) else { return Ok(()) };
             let tiles: Vec<Vec<u8>> = done.tiles.into_values().collect();

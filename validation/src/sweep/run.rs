@@ -23,8 +23,8 @@ pub struct Sweep<'a> {
     pub(super) identity: Identity,
 }
 
-/// What is told of a run.
-pub trait Told: Sync {
+/// Hears how the computation of a sweep goes on.
+pub trait SweepObserver: Sync {
     /// A shard's file is there, but cannot be used: why.
     fn redone(&self, shard: u32, why: &Damage);
     /// Another process computes this shard as well.
@@ -89,14 +89,14 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     /// What the verb objects to, and a folder that cannot be written.
-    pub fn run(&self, shard: u32, told: &dyn Told) -> Result<()> {
-        if self.is_open(shard, told) {
-            told.begun(self.dealt.deal.tiles_of(shard).len() as u64);
+    pub fn run(&self, shard: u32, observer: &dyn SweepObserver) -> Result<()> {
+        if self.is_open(shard, observer) {
+            observer.begun(self.dealt.deal.tiles_of(shard).len() as u64);
             let lock = self.folder.lock(shard)?;
             if !lock.is_ours() && self.folder.is_locked(shard) {
-                told.doubled(shard);
+                observer.doubled(shard);
             }
-            self.compute(shard, told)?;
+            self.compute(shard, observer)?;
         }
         Ok(())
     }
@@ -106,52 +106,52 @@ impl<'a> Sweep<'a> {
     ///
     /// # Errors
     /// What the verb objects to, and a folder that cannot be written.
-    pub fn run_all(&self, told: &dyn Told) -> Result<()> {
-        let open = self.open_shards(told);
+    pub fn run_all(&self, observer: &dyn SweepObserver) -> Result<()> {
+        let open = self.open_shards(observer);
         let tiles = |shard: &u32| self.dealt.deal.tiles_of(*shard).len() as u64;
-        told.begun(open.iter().map(tiles).sum());
+        observer.begun(open.iter().map(tiles).sum());
         let mut left = Vec::new();
         for shard in open {
             let lock = self.folder.lock(shard)?;
             if !lock.is_ours() && self.folder.is_locked(shard) {
                 left.push(shard);
             } else if self.shard(shard).is_err() {
-                self.compute(shard, told)?;
+                self.compute(shard, observer)?;
             } else {
-                (0..tiles(&shard)).for_each(|_| told.tile());
+                (0..tiles(&shard)).for_each(|_| observer.tile());
             }
         }
         for shard in left {
             let _lock = self.folder.lock(shard)?;
             if self.shard(shard).is_err() {
-                self.compute(shard, told)?;
+                self.compute(shard, observer)?;
             }
         }
         Ok(())
     }
 
     /// The shards that are still to be computed.
-    pub(super) fn open_shards(&self, told: &dyn Told) -> Vec<u32> {
-        (0..self.plan.shards).filter(|shard| self.is_open(*shard, told)).collect()
+    pub(super) fn open_shards(&self, observer: &dyn SweepObserver) -> Vec<u32> {
+        (0..self.plan.shards).filter(|shard| self.is_open(*shard, observer)).collect()
     }
 
-    fn is_open(&self, shard: u32, told: &dyn Told) -> bool {
+    fn is_open(&self, shard: u32, observer: &dyn SweepObserver) -> bool {
         match self.shard(shard) {
             Ok(_) => false,
             Err(Damage::Missing) => true,
             Err(why) => {
-                told.redone(shard, &why);
+                observer.redone(shard, &why);
                 true
             }
         }
     }
 
-    fn compute(&self, shard: u32, told: &dyn Told) -> Result<()> {
+    fn compute(&self, shard: u32, observer: &dyn SweepObserver) -> Result<()> {
         let begun = Instant::now();
         let numbers = self.dealt.deal.tiles_of(shard);
         let compute = |tile: &u64| {
             let done = self.tile(*tile);
-            told.tile();
+            observer.tile();
             done
         };
         // A block of a point is large, and takes all threads itself.

@@ -136,10 +136,10 @@ impl Shard {
     }
 
     /// The places of the tiles in the file, and their lengths, in order.
-    pub fn places(&self) -> impl Iterator<Item = (u64, Place)> {
+    pub fn places(&self) -> impl Iterator<Item = (u64, TileLocation)> {
         let shard = self.head.shard;
         let places = self.head.tiles.iter().scan(self.from, move |from, (tile, length)| {
-            let place = Place { shard, from: *from, length: *length };
+            let place = TileLocation { shard, from: *from, length: *length };
             *from += length;
             Some((*tile, place))
         });
@@ -149,13 +149,13 @@ impl Shard {
 
 /// The place of a tile's bytes.
 #[derive(Clone, Copy, Debug)]
-pub struct Place {
+pub struct TileLocation {
     shard: u32,
     from: u64,
     length: u64,
 }
 
-impl Place {
+impl TileLocation {
     /// The tile's bytes.
     ///
     /// # Errors

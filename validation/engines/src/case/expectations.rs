@@ -119,7 +119,7 @@ impl FileText<'_> {
         })
     }
 
-    /// Refuses a range between a floor and a ceiling that holds no number.
+    /// Refuses a range from a least to a largest value that holds no number.
     pub(super) fn range<T>(
         &self,
         place: &Spanned<T>,
@@ -132,8 +132,8 @@ impl FileText<'_> {
             return Ok(());
         }
         let what = format!(
-            "at_least = {at_least:?} and at_most = {at_most:?} are not accepted: a floor and a \
-             ceiling above it"
+            "at_least = {at_least:?} and at_most = {at_most:?} are not accepted: at_least is at \
+             most at_most"
         );
         Err(self.error(place, &what))
     }

@@ -24,7 +24,7 @@ struct DefectTable {
     rows: Vec<Spanned<KnownRow>>,
 }
 
-/// Case, tolerance (or negative step), quantity, statistic, floor and ceiling.
+/// Case, tolerance (or negative step), quantity, statistic, least and largest value.
 type KnownRow = (String, f64, Quantity, Statistic, f64, f64);
 
 /// Reads the known shortcomings.

@@ -16,7 +16,7 @@ const MAX_PERIODS: i64 = 1_000_000_000;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "the tables of a case")]
-struct CaseFile {
+struct CaseToml {
     case: CaseTable,
     #[serde(default)]
     parameters: ParameterTable,
@@ -164,7 +164,7 @@ impl FileText<'_> {
 /// [`FileError`] names the file's line, the field, its value and what is accepted.
 pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
     let source = FileText { file, text };
-    let wire: CaseFile = source.parse()?;
+    let wire: CaseToml = source.parse()?;
     let given = source.given(wire.parameters, wire.start)?;
     let problem = given.check().map_err(FileError)?;
     let start = Instant::at(given.parameters.omega, given.start.tau, given.start.cycle);

@@ -9,7 +9,7 @@ use std::fmt::Debug;
 
 /// Numbers side by side: the states of a system, or a mode's guards.
 pub trait Numbers: Copy + Debug + Default + PartialEq + AsRef<[f64]> + AsMut<[f64]> {
-    /// These numbers.
+    /// Holds a copy of these numbers.
     fn of(values: &[f64]) -> Self;
 
     /// One number so many times; arrays have a length of their own.

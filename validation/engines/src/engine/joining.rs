@@ -21,7 +21,7 @@ pub(super) struct Times {
 }
 
 /// A run that an integrator is asked for, in the time elapsed since its start.
-pub(super) struct Course<'a, E: Equations> {
+pub(super) struct Integration<'a, E: Equations> {
     pub(super) equations: E,
     pub(super) mode: E::Mode,
     pub(super) state: E::State,
@@ -32,8 +32,8 @@ pub(super) struct Course<'a, E: Equations> {
     pub(super) watched: Option<&'a Watched>,
 }
 
-impl<'a, E: Coordinates> Course<'a, E> {
-    /// The course of the oscillator that a task asks for.
+impl<'a, E: Coordinates> Integration<'a, E> {
+    /// The integration of the oscillator that a task asks for.
     pub(super) fn of(task: &'a Task, equations: E) -> Self {
         let period = task.problem.model.period();
         Self {
@@ -97,19 +97,19 @@ pub(super) enum StretchEnd<S> {
 /// it.
 const SHORTEST: f64 = 16.0 * f64::EPSILON;
 
-/// Runs a course by stretches of one mode, each from the moment given to an event or to some later
-/// time in the same mode, the end of the course at the latest.
+/// Runs an integration by stretches of one mode, each from the moment given to an event or to some
+/// later time in the same mode, the end of the integration at the latest.
 pub(super) fn join<E: Equations>(
-    course: &Course<'_, E>,
+    integration: &Integration<'_, E>,
     meter: &Meter<E::Mode>,
     mut stretch: impl FnMut(&Moment<E>, &mut Sampler<E::State>) -> Result<StretchEnd<E::State>, Failure>,
 ) -> Result<Outcome<E::Mode, E::State>, Failure> {
-    let Course { equations, span, .. } = course;
+    let Integration { equations, span, .. } = integration;
     let mut outcome = Outcome::default();
-    course.watched.iter().for_each(|watched| meter.watch(watched));
-    let mut sampler = Sampler::new(course.samples.clone());
-    let mut now = Moment::start(equations, course.mode, course.state);
-    let mut instant = Instant::default();
+    integration.watched.iter().for_each(|watched| meter.watch(watched));
+    let mut sampler = Sampler::new(integration.samples.clone());
+    let mut now = Moment::start(equations, integration.mode, integration.state);
+    let mut instant = SimultaneousEvents::default();
     sampler.take(0.0, |_| Ok::<_, Failure>(now.state))?;
     let goes_on = |now: &Moment<E>| now.entered.fires.is_some() || span - now.t > SHORTEST * span;
     while goes_on(&now) && !meter.has_seen_enough(now.t) {
@@ -164,12 +164,12 @@ const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
 
 /// The events of one instant, counted.
 #[derive(Default)]
-struct Instant {
+struct SimultaneousEvents {
     last: f64,
     count: u32,
 }
 
-impl Instant {
+impl SimultaneousEvents {
     /// Counts an event; whether it is one too many in its instant.
     fn is_crowded(&mut self, t: f64) -> bool {
         self.count = if t - self.last <= ONE_INSTANT * t { self.count + 1 } else { 1 };

@@ -6,11 +6,11 @@
 //! interval is seen wherever the dense output shows it. Rates come from the equations of motion.
 //! The crossing itself is then narrowed down to the last bit.
 
-use super::alone::GuardRise;
 use super::equations::{Entered, Equations, NO_GUARD, Numbers};
 use super::joining::Moment;
 use super::meter::{Failure, Meter};
-use super::sampler::Crossing;
+use super::sampler::CountedCrossing;
+use super::script::GuardRise;
 /// Instants inside a step at which the guards are looked at.
 const INTERIOR: u32 = 8;
 /// Evaluations after which a bracket has shrunk as far as it will.
@@ -69,7 +69,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         begin: f64,
         end: f64,
         state_at: &mut StateAt<'_, E::State>,
-        counted: &mut Vec<Crossing<E::State>>,
+        counted: &mut Vec<CountedCrossing<E::State>>,
     ) -> Result<Option<GuardRise>, Failure> {
         if let Some(told) = self.meter.told() {
             return Ok(told.up_to(end));
@@ -94,7 +94,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         left: &GuardValues<E::Guards>,
         right: &GuardValues<E::Guards>,
         state_at: &mut StateAt<'_, E::State>,
-        counted: &mut Vec<Crossing<E::State>>,
+        counted: &mut Vec<CountedCrossing<E::State>>,
     ) -> Result<Option<GuardRise>, Failure> {
         if let Some(told) = self.meter.told() {
             return Ok(told.up_to(right.t));
@@ -109,7 +109,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
         left: &GuardValues<E::Guards>,
         right: &GuardValues<E::Guards>,
         state_at: &mut StateAt<'_, E::State>,
-        counted: &mut Vec<Crossing<E::State>>,
+        counted: &mut Vec<CountedCrossing<E::State>>,
     ) -> Result<Option<GuardRise>, Failure> {
         let mut first: Option<GuardRise> = None;
         let guards = self.equations.count(self.mode);
@@ -126,7 +126,7 @@ impl<'a, E: Equations> GuardSearch<'a, E> {
             let before = |t: &f64| first.is_none_or(|first| *t <= first.t * (1.0 + ONE_INSTANT));
             if let Some(t) = found.filter(before) {
                 let t = first.map_or(t, |first| t.min(first.t));
-                counted.push(Crossing { t, guard, state: state_at(t)? });
+                counted.push(CountedCrossing { t, guard, state: state_at(t)? });
             }
         }
         counted[known..].sort_by(|one, other| one.t.total_cmp(&other.t));

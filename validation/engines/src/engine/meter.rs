@@ -3,7 +3,7 @@
 //! A hung thread cannot be killed, so the limits are enforced where the library calls back, in the
 //! right-hand side and in the guards: they unwind to [`contain`].
 
-use super::alone::ToldCrossings;
+use super::script::ToldCrossings;
 use super::trace::{GuardSample, Recorder, Watched};
 use super::{Outcome, Work};
 use percuss::Phase;
@@ -85,7 +85,7 @@ impl<M: Copy> Meter<M> {
     }
 
     /// The times of this run's events, if it is made without the harness's own part
-    /// ([`super::alone`]).
+    /// ([`super::script`]).
     pub(super) fn told(&self) -> Option<&ToldCrossings> {
         self.told.as_ref()
     }

@@ -5,7 +5,6 @@
 //! set up the way an expert user of its library would; what that took stands in its module.
 
 mod accuracy;
-mod alone;
 mod answer;
 mod cubic;
 mod declaration;
@@ -27,6 +26,7 @@ mod percussive;
 mod pins;
 mod registry;
 mod sampler;
+mod script;
 mod system_task;
 #[cfg(test)]
 mod systems;
@@ -37,7 +37,6 @@ mod watching;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
-pub use alone::Script;
 pub use answer::{answer, answer_system};
 pub use declaration::{Colours, Declaration, Location, REFERENCE, Role};
 pub(crate) use equations::NO_GUARD;
@@ -47,10 +46,11 @@ pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use percussive::percussive;
 pub use registry::{add, all, exact, select};
+pub use script::Script;
 pub use system_task::{SystemEvent, SystemOutcome, SystemTask};
 pub use trace::{GuardSample, Trace, Watched};
 pub use wrong::{
-    CONTROL, COOLDOWN, Closed, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, SOUND, Way, Wrong,
+    CONTROL, COOLDOWN, Closed, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, SOUND, Way, WrongEngine,
     WrongWay, faulty, faulty_on_systems, wrong, wrong_on_systems,
 };
 

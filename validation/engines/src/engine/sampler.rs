@@ -2,7 +2,7 @@
 
 /// A crossing that ends nothing.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Crossing<S> {
+pub(super) struct CountedCrossing<S> {
     pub(super) t: f64,
     pub(super) guard: usize,
     pub(super) state: S,
@@ -13,7 +13,7 @@ pub(super) struct Sampler<S> {
     times: Vec<f64>,
     taken: Vec<S>,
     /// Crossings in the stretch that is being run, in the order of their times.
-    pub(super) counted: Vec<Crossing<S>>,
+    pub(super) counted: Vec<CountedCrossing<S>>,
 }
 
 impl<S: Clone> Sampler<S> {

@@ -1,6 +1,6 @@
 //! A run of any system, and what comes of it.
 
-use super::joining::{Course, Times};
+use super::joining::{Integration, Times};
 use super::{Event, Failure, Numbers, Outcome, Watched};
 use crate::system::{Affine, CheckedSystem, SystemProblem, Values};
 use std::sync::Arc;
@@ -69,8 +69,8 @@ impl SystemTask {
     }
 }
 
-impl<'a> Course<'a, Affine<'a>> {
-    /// The course of the system that a task asks for.
+impl<'a> Integration<'a, Affine<'a>> {
+    /// The integration of the system that a task asks for.
     pub(super) fn of_system(task: &'a SystemTask) -> Self {
         let system = &*task.system;
         let instants = task.watched.as_ref().map_or(&task.samples, |watched| &watched.instants);

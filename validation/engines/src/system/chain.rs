@@ -7,7 +7,7 @@
 use super::MOST_STATES;
 
 /// A row over (x, cos theta, sin theta, 1).
-pub(super) type Wide = [f64; MOST_STATES + 3];
+pub(super) type AugmentedRow = [f64; MOST_STATES + 3];
 
 /// How far rounding may take a sum from zero, relative to its terms.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
@@ -19,18 +19,22 @@ const TIME_ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 pub(super) struct ModeMatrix {
     /// How many states there are.
     pub(super) size: usize,
-    pub(super) rows: Vec<Wide>,
+    pub(super) rows: Vec<AugmentedRow>,
 }
 
 impl ModeMatrix {
     /// The row of a row's derivative.
-    pub(super) fn derivative(&self, row: &Wide) -> Wide {
+    pub(super) fn derivative(&self, row: &AugmentedRow) -> AugmentedRow {
         multiplied(row, &self.rows, self.size + 3)
     }
 }
 
 /// A row times a matrix that is given by its rows.
-pub(super) fn multiplied(row: &Wide, matrix: &[Wide], width: usize) -> Wide {
+pub(super) fn multiplied(
+    row: &AugmentedRow,
+    matrix: &[AugmentedRow],
+    width: usize,
+) -> AugmentedRow {
     let mut product = [0.0; MOST_STATES + 3];
     for (factor, line) in row.iter().zip(matrix) {
         for (entry, value) in product.iter_mut().zip(line).take(width) {
@@ -41,7 +45,7 @@ pub(super) fn multiplied(row: &Wide, matrix: &[Wide], width: usize) -> Wide {
 }
 
 /// A row's value and the size of its terms, in a state at (cos theta, sin theta).
-pub(super) fn value(row: &Wide, x: &[f64], [cos, sin]: [f64; 2]) -> (f64, f64) {
+pub(super) fn value(row: &AugmentedRow, x: &[f64], [cos, sin]: [f64; 2]) -> (f64, f64) {
     let size = x.len();
     let others = [row[size] * cos, row[size + 1] * sin, row[size + 2]];
     let terms = row.iter().zip(x).map(|(factor, x)| factor * x).chain(others);
@@ -51,7 +55,7 @@ pub(super) fn value(row: &Wide, x: &[f64], [cos, sin]: [f64; 2]) -> (f64, f64) {
 /// A row with its derivatives in one mode.
 #[derive(Clone, Debug)]
 pub(super) struct Chain {
-    pub(super) rows: Vec<Wide>,
+    pub(super) rows: Vec<AugmentedRow>,
 }
 
 /// The first derivative that is not zero.
@@ -64,14 +68,20 @@ pub(super) struct Leading {
 
 impl Chain {
     /// As many derivatives as z has entries: if these are zero, all are.
-    pub(super) fn new(row: Wide, motion: &ModeMatrix) -> Self {
-        let next = |row: &Wide| Some(motion.derivative(row));
+    pub(super) fn new(row: AugmentedRow, motion: &ModeMatrix) -> Self {
+        let next = |row: &AugmentedRow| Some(motion.derivative(row));
         Self { rows: std::iter::successors(Some(row), next).take(motion.size + 3).collect() }
     }
 
     /// The derivatives that are zero after an event because of its guard, a bit each.
-    pub(super) fn zeros_after(&self, guard: &Wide, reset: &[Wide], size: usize) -> u16 {
-        let zero = |(k, row): (usize, &Wide)| u16::from(is_multiple(row, guard, reset, size)) << k;
+    pub(super) fn zeros_after(
+        &self,
+        guard: &AugmentedRow,
+        reset: &[AugmentedRow],
+        size: usize,
+    ) -> u16 {
+        let zero =
+            |(k, row): (usize, &AugmentedRow)| u16::from(is_multiple(row, guard, reset, size)) << k;
         self.rows.iter().enumerate().map(zero).sum()
     }
 
@@ -96,7 +106,12 @@ impl Chain {
 }
 
 /// Whether a row after a reset is a multiple of an event's guard before it, and so zero there.
-fn is_multiple(row: &Wide, guard: &Wide, reset: &[Wide], size: usize) -> bool {
+fn is_multiple(
+    row: &AugmentedRow,
+    guard: &AugmentedRow,
+    reset: &[AugmentedRow],
+    size: usize,
+) -> bool {
     let width = size + 3;
     let before = multiplied(row, reset, width);
     let terms = multiplied(&row.map(f64::abs), &absolute(reset), width);
@@ -109,6 +124,6 @@ fn is_multiple(row: &Wide, guard: &Wide, reset: &[Wide], size: usize) -> bool {
     })
 }
 
-fn absolute(matrix: &[Wide]) -> Vec<Wide> {
+fn absolute(matrix: &[AugmentedRow]) -> Vec<AugmentedRow> {
     matrix.iter().map(|row| row.map(f64::abs)).collect()
 }

@@ -1,7 +1,7 @@
 //! A system that is whole: every row of the right length, every successor there, and what an
 //! integrator wants to know beforehand computed once.
 
-use super::chain::{Chain, ModeMatrix, Wide, value};
+use super::chain::{AugmentedRow, Chain, ModeMatrix, value};
 use super::spectrum::spectrum;
 use super::{Direction, MOST_GUARDS, MOST_STATES, Mode, Row, System, Until};
 use crate::engine::Failure;
@@ -45,7 +45,7 @@ pub(super) struct Guard {
 #[derive(Clone, Debug)]
 pub(super) struct ModeEnd {
     /// The matrix R of z+ = R z.
-    pub(super) reset: Vec<Wide>,
+    pub(super) reset: Vec<AugmentedRow>,
     pub(super) next: Vec<Successor>,
 }
 
@@ -171,22 +171,22 @@ impl CheckedSystem {
     }
 }
 
-fn wide(row: &Row) -> Wide {
+fn wide(row: &Row) -> AugmentedRow {
     std::array::from_fn(|i| row.get(i).copied().unwrap_or_default())
 }
 
 fn motion(system: &System, mode: &Mode) -> ModeMatrix {
     let size = system.states.len();
-    let mut rows: Vec<Wide> = (0..size).map(|i| wide(&mode.rate(i))).collect();
-    let [mut cos, mut sin] = [Wide::default(); 2];
+    let mut rows: Vec<AugmentedRow> = (0..size).map(|i| wide(&mode.rate(i))).collect();
+    let [mut cos, mut sin] = [AugmentedRow::default(); 2];
     cos[size + 1] = -system.omega;
     sin[size] = system.omega;
-    rows.extend([cos, sin, Wide::default()]);
+    rows.extend([cos, sin, AugmentedRow::default()]);
     ModeMatrix { size, rows }
 }
 
 fn guards(mode: &Mode, motion: &ModeMatrix) -> Vec<Guard> {
-    let chain = |row: &Wide| Chain::new(*row, motion);
+    let chain = |row: &AugmentedRow| Chain::new(*row, motion);
     let until = mode.until.iter().enumerate();
     let until =
         until.map(|(event, it)| Guard { event, ends: true, chain: chain(&wide(&it.guard)) });
@@ -216,8 +216,8 @@ fn are_forced(guards: &[Guard], order: usize, system: &System) -> bool {
 
 fn passage(until: &Until, motions: &[ModeMatrix], guards: &[Vec<Guard>]) -> ModeEnd {
     let size = motions.first().map_or(0, |motion| motion.size);
-    let unit = |i: usize| -> Wide { std::array::from_fn(|j| f64::from(u8::from(i == j))) };
-    let mut reset: Vec<Wide> = (0..size + 3).map(unit).collect();
+    let unit = |i: usize| -> AugmentedRow { std::array::from_fn(|j| f64::from(u8::from(i == j))) };
+    let mut reset: Vec<AugmentedRow> = (0..size + 3).map(unit).collect();
     if let Some(rows) = &until.reset {
         reset.iter_mut().zip(rows).for_each(|(line, row)| *line = wide(row));
     }

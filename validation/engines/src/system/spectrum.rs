@@ -5,7 +5,7 @@
 
 /// What is known of a matrix's eigenvalues.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Spectrum {
+pub(super) struct Rates {
     /// The largest modulus.
     pub(super) fastest: f64,
     /// The largest imaginary part.
@@ -22,15 +22,15 @@ const REAL: f64 = 1e-3;
 const ZERO: f64 = 1e-9;
 
 /// The spectrum of a square matrix.
-pub(super) fn spectrum(matrix: &[Vec<f64>]) -> Spectrum {
+pub(super) fn spectrum(matrix: &[Vec<f64>]) -> Rates {
     let size = matrix.iter().flatten().fold(0.0, |size: f64, entry| size.max(entry.abs()));
     if size == 0.0 || !size.is_finite() {
-        return Spectrum::default();
+        return Rates::default();
     }
     let scaled: Vec<Vec<f64>> =
         matrix.iter().map(|row| row.iter().map(|entry| entry / size).collect()).collect();
     let roots = roots(&characteristic(&scaled));
-    let mut found = Spectrum::default();
+    let mut found = Rates::default();
     for (real, imaginary) in roots {
         let modulus = real.hypot(imaginary);
         found.fastest = found.fastest.max(size * modulus);

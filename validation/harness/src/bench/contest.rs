@@ -1,10 +1,10 @@
-//! One course, all contestants: who answers rightly at which setting, and how fast.
+//! One case, all contestants: who answers rightly at which setting, and how fast.
 
 use super::contestant::{Contestant, settings as settings_of};
-use super::course::{Course, Score};
 use super::rounds::{Benchmark, PACE, RoundTimes, race};
-use super::system_course::SystemCourse;
 use super::timed::ContestEntry;
+use super::timed_case::{Score, TimedCase};
+use super::timed_system_case::TimedSystemCase;
 use crate::engine::{Accuracy, Declaration, Failure, REFERENCE, Stepping, Work};
 
 /// A contestant at a setting, and what came of it.
@@ -32,41 +32,41 @@ pub struct Timed {
     /// The best time of each round, ns a forcing period.
     pub series: RoundTimes,
     /// What share of the time is the harness's own: one less the median over the rounds of that
-    /// round's quotient, the engine's part alone ([`super::alone`]) over the whole run. A share
-    /// that is next to nothing may come out below zero.
+    /// round's quotient, the engine's part alone ([`super::library_part`]) over the whole run. A
+    /// share that is next to nothing may come out below zero.
     pub harness_share: Option<f64>,
 }
 
 /// Races all contestants at all their settings.
 pub fn contest(
-    course: &Course,
+    case: &TimedCase,
     contestants: &[&dyn Contestant],
     rounds: usize,
     done: &dyn Fn(),
 ) -> Vec<Finisher> {
     let settings = |it: &&dyn Contestant| settings_of(it.declaration().stepping);
     let asked = contestants.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
-    contest_at(course, &asked.collect::<Vec<_>>(), rounds, done)
+    contest_at(case, &asked.collect::<Vec<_>>(), rounds, done)
 }
 
 /// Races contestants at the settings given.
 pub fn contest_at(
-    course: &Course,
+    case: &TimedCase,
     asked: &[(&dyn Contestant, Accuracy)],
     rounds: usize,
     done: &dyn Fn(),
 ) -> Vec<Finisher> {
     let entered = asked.iter().map(|(contestant, setting)| {
-        let entry = qualified(*contestant, course, *setting);
+        let entry = qualified(*contestant, case, *setting);
         done();
-        Entered { declaration: contestant.declaration(), setting: *setting, entry }
+        Entrant { declaration: contestant.declaration(), setting: *setting, entry }
     });
-    raced(entered.collect(), course.periods(), rounds, done)
+    raced(entered.collect(), case.periods(), rounds, done)
 }
 
 /// Races the contestants that run systems, at all their settings.
 pub fn system_contest(
-    course: &SystemCourse,
+    case: &TimedSystemCase,
     contestants: &[&dyn Contestant],
     rounds: usize,
     done: &dyn Fn(),
@@ -77,21 +77,23 @@ pub fn system_contest(
     let settings = |it: &&dyn Contestant| settings_of(it.declaration().stepping);
     let asked = able.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
     let entered = asked.map(|(contestant, setting)| {
-        let entry = contestant.enter_system(course, setting).and_then(right);
+        let entry = contestant.enter_system(case, setting).and_then(right);
         done();
-        Entered { declaration: contestant.declaration(), setting, entry }
+        Entrant { declaration: contestant.declaration(), setting, entry }
     });
-    raced(entered.collect(), course.periods(), rounds, done)
+    raced(entered.collect(), case.periods(), rounds, done)
 }
 
 /// Races the contestants whose first answer was right.
-fn raced(mut all: Vec<Entered<'_>>, periods: f64, rounds: usize, done: &dyn Fn()) -> Vec<Finisher> {
+fn raced(mut all: Vec<Entrant<'_>>, periods: f64, rounds: usize, done: &dyn Fn()) -> Vec<Finisher> {
     let places = 2 * all.len();
     let mut benchmarks: Vec<&mut dyn Benchmark> = Vec::new();
-    for ContestEntry { timed, alone } in all.iter_mut().filter_map(|it| it.entry.as_mut().ok()) {
+    for ContestEntry { timed, library_part } in
+        all.iter_mut().filter_map(|it| it.entry.as_mut().ok())
+    {
         benchmarks.push(&mut **timed);
-        if let Some(alone) = alone {
-            benchmarks.push(&mut **alone);
+        if let Some(part) = library_part {
+            benchmarks.push(&mut **part);
         }
     }
     // Those that are out take no time; their share of the work is done.
@@ -99,16 +101,16 @@ fn raced(mut all: Vec<Entered<'_>>, periods: f64, rounds: usize, done: &dyn Fn()
     let mut raced = race(&mut benchmarks, rounds, PACE, done).into_iter();
     let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced")));
     let mut result = |entry: Result<ContestEntry<'_>, Failure>| {
-        let ContestEntry { timed, alone } = entry?;
-        let (whole, alone) = (next(), alone.map(|_| next()));
+        let ContestEntry { timed, library_part } = entry?;
+        let (whole, library_part) = (next(), library_part.map(|_| next()));
         let whole = whole?;
-        let share = alone.and_then(Result::ok).map(|alone| 1.0 - alone.ratio_to(&whole));
+        let share = library_part.and_then(Result::ok).map(|part| 1.0 - part.ratio_to(&whole));
         let scale = 1.0 / (timed.runs() * periods);
         let series = RoundTimes(whole.0.into_iter().map(|time| time * scale).collect());
         let harness_share = share.filter(|it| it.is_finite());
         Ok(Timed { score: timed.score()?, work: timed.work(), series, harness_share })
     };
-    let finisher = |Entered { declaration, setting, entry }| {
+    let finisher = |Entrant { declaration, setting, entry }| {
         let Declaration { name, library, stepping, .. } = declaration;
         Finisher { name, library, stepping, setting, result: result(entry) }
     };
@@ -116,7 +118,7 @@ fn raced(mut all: Vec<Entered<'_>>, periods: f64, rounds: usize, done: &dyn Fn()
 }
 
 /// A contestant at a setting, if its answer is right.
-struct Entered<'a> {
+struct Entrant<'a> {
     declaration: Declaration,
     setting: Accuracy,
     entry: Result<ContestEntry<'a>, Failure>,
@@ -125,12 +127,12 @@ struct Entered<'a> {
 /// The contestants that are timed: those whose answer is right.
 fn qualified<'a>(
     contestant: &'a dyn Contestant,
-    course: &'a Course,
+    case: &'a TimedCase,
     setting: Accuracy,
 ) -> Result<ContestEntry<'a>, Failure> {
-    let timed = contestant.enter(course, setting)?;
-    let entry = right(ContestEntry { timed, alone: None })?;
-    Ok(ContestEntry { alone: contestant.alone(course, setting)?, ..entry })
+    let timed = contestant.enter(case, setting)?;
+    let entry = right(ContestEntry { timed, library_part: None })?;
+    Ok(ContestEntry { library_part: contestant.library_part(case, setting)?, ..entry })
 }
 
 /// A contestant whose answer is right.

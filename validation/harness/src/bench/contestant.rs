@@ -1,15 +1,15 @@
-//! Who is timed: whatever can run a course and show what came of it.
+//! Who is timed: whatever can run a case and show what came of it.
 //!
 //! An engine is one ([`EnteredEngine`]). Something that is no engine, such as many runs at once
 //! ([`super::lanes`]), implements [`Contestant`] in a file of its own and is named in
 //! [`super::contestants`].
 
-use super::alone::alone;
-use super::course::{Course, Score};
+use super::library_part::library_part;
 use super::rounds::Benchmark;
-use super::system_course::SystemCourse;
 use super::system_run::system_entry;
 use super::timed::{ContestEntry, TimedRun};
+use super::timed_case::{Score, TimedCase};
+use super::timed_system_case::TimedSystemCase;
 use crate::engine::{
     Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, Work, contain,
 };
@@ -18,18 +18,18 @@ use crate::number::brief;
 /// Calls (right-hand sides, Jacobians, guards) beyond which a run is given up: a second or less.
 const BUDGET: u64 = 5_000_000;
 
-/// Something that can be timed on a course.
+/// Something that can be timed on a case.
 pub trait Contestant: Sync {
     /// What the contestant says of itself: its name, its library, how its accuracy is chosen.
     fn declaration(&self) -> Declaration;
 
-    /// Made ready for a course; nothing of this is timed.
+    /// Made ready for a case; nothing of this is timed.
     ///
     /// # Errors
     /// Why it does not run there.
     fn enter<'a>(
         &'a self,
-        course: &'a Course,
+        case: &'a TimedCase,
         setting: Accuracy,
     ) -> Result<Box<dyn TimedRun + 'a>, Failure>;
 
@@ -38,9 +38,9 @@ pub trait Contestant: Sync {
     ///
     /// # Errors
     /// Why it does not run there, or is not the same run then.
-    fn alone<'a>(
+    fn library_part<'a>(
         &'a self,
-        _course: &'a Course,
+        _course: &'a TimedCase,
         _setting: Accuracy,
     ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
         Ok(None)
@@ -58,7 +58,7 @@ pub trait Contestant: Sync {
     /// Why it does not run there.
     fn enter_system<'a>(
         &'a self,
-        _course: &'a SystemCourse,
+        _course: &'a TimedSystemCase,
         _setting: Accuracy,
     ) -> Result<ContestEntry<'a>, Failure> {
         Err(Failure::new("it runs the oscillator alone"))
@@ -75,18 +75,18 @@ impl Contestant for EnteredEngine {
 
     fn enter<'a>(
         &'a self,
-        course: &'a Course,
+        case: &'a TimedCase,
         setting: Accuracy,
     ) -> Result<Box<dyn TimedRun + 'a>, Failure> {
-        enter(self.0, course, setting)
+        enter(self.0, case, setting)
     }
 
-    fn alone<'a>(
+    fn library_part<'a>(
         &'a self,
-        course: &'a Course,
+        case: &'a TimedCase,
         setting: Accuracy,
     ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
-        alone(self.0, course, setting, limits())
+        library_part(self.0, case, setting, limits())
     }
 
     fn runs_systems(&self) -> bool {
@@ -95,12 +95,12 @@ impl Contestant for EnteredEngine {
 
     fn enter_system<'a>(
         &'a self,
-        course: &'a SystemCourse,
+        case: &'a TimedSystemCase,
         setting: Accuracy,
     ) -> Result<ContestEntry<'a>, Failure> {
         self.0.available().map_err(Failure::new)?;
-        within_budget(self.0.least_work_on(&course.task, setting))?;
-        system_entry(self.0, course, setting, limits())
+        within_budget(self.0.least_work_on(&case.task, setting))?;
+        system_entry(self.0, case, setting, limits())
     }
 }
 
@@ -108,18 +108,18 @@ fn limits() -> Limits {
     Limits { calls: BUDGET, ..Limits::default() }
 }
 
-/// An engine made ready for a course.
+/// An engine made ready for a case.
 ///
 /// # Errors
 /// Why it does not run there.
 pub fn enter<'a>(
     engine: &'a dyn Engine,
-    course: &'a Course,
+    case: &'a TimedCase,
     setting: Accuracy,
 ) -> Result<Box<dyn TimedRun + 'a>, Failure> {
     engine.available().map_err(Failure::new)?;
-    within_budget(engine.least_work(&course.task, setting))?;
-    Ok(Box::new(EngineHeat { engine, course, setting, answer: Outcome::default() }))
+    within_budget(engine.least_work(&case.task, setting))?;
+    Ok(Box::new(EngineHeat { engine, case, setting, answer: Outcome::default() }))
 }
 
 /// Refuses a run that takes more right-hand sides than it may.
@@ -135,15 +135,15 @@ fn within_budget(least: f64) -> Result<(), Failure> {
 
 struct EngineHeat<'a> {
     engine: &'a dyn Engine,
-    course: &'a Course,
+    case: &'a TimedCase,
     setting: Accuracy,
     answer: Outcome,
 }
 
 impl Benchmark for EngineHeat<'_> {
     fn call(&mut self) -> Result<(), Failure> {
-        let Self { engine, course, setting, .. } = self;
-        self.answer = contain(|| engine.run(&course.task, *setting, &limits()))?;
+        let Self { engine, case, setting, .. } = self;
+        self.answer = contain(|| engine.run(&case.task, *setting, &limits()))?;
         Ok(())
     }
 
@@ -154,7 +154,7 @@ impl Benchmark for EngineHeat<'_> {
 
 impl TimedRun for EngineHeat<'_> {
     fn score(&self) -> Result<Score, Failure> {
-        self.course.score(&self.answer)
+        self.case.score(&self.answer)
     }
 
     fn work(&self) -> Work {

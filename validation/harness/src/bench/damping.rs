@@ -3,7 +3,7 @@
 
 use super::contest::{Finisher, contest_at};
 use super::contestant::Contestant;
-use super::course::Course;
+use super::timed_case::TimedCase;
 use crate::engine::{Accuracy, Failure, Role, Stepping};
 use percuss::Parameters;
 
@@ -35,8 +35,8 @@ pub fn over_xi(
     let asked = asked(contestants);
     let point = |xi: f64| {
         let parameters = Parameters { xi, omega: OMEGA, ..Parameters::default() };
-        let course = Course::from_rest(parameters, PERIODS)?;
-        Ok(DampingPoint { xi, finishers: contest_at(&course, &asked, rounds, done) })
+        let case = TimedCase::from_rest(parameters, PERIODS)?;
+        Ok(DampingPoint { xi, finishers: contest_at(&case, &asked, rounds, done) })
     };
     XI.into_iter().map(point).collect()
 }

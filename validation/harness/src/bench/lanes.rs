@@ -5,9 +5,9 @@
 //! them as well.
 
 use super::contestant::Contestant;
-use super::course::{Course, Score};
 use super::rounds::Benchmark;
 use super::timed::TimedRun;
+use super::timed_case::{Score, TimedCase};
 use crate::engine::{Accuracy, Declaration, Failure, Outcome, Work};
 use crate::engine::{contain, exact, run_in_lanes};
 use percuss::lanes::Instructions;
@@ -30,21 +30,21 @@ impl Contestant for ExactLanes {
 
     fn enter<'a>(
         &'a self,
-        course: &'a Course,
+        case: &'a TimedCase,
         _: Accuracy,
     ) -> Result<Box<dyn TimedRun + 'a>, Failure> {
-        Ok(Box::new(Many { course, answers: Vec::new() }))
+        Ok(Box::new(Many { case, answers: Vec::new() }))
     }
 }
 
 struct Many<'a> {
-    course: &'a Course,
+    case: &'a TimedCase,
     answers: Vec<Outcome>,
 }
 
 impl Benchmark for Many<'_> {
     fn call(&mut self) -> Result<(), Failure> {
-        let task = &self.course.task;
+        let task = &self.case.task;
         self.answers = contain(|| Ok(run_in_lanes(Instructions::widest(), task, RUNS)))?;
         Ok(())
     }
@@ -62,7 +62,7 @@ impl TimedRun for Many<'_> {
     /// The worst of all.
     fn score(&self) -> Result<Score, Failure> {
         let none = Failure::new("no run has ended");
-        let mut scores = self.answers.iter().map(|answer| self.course.score(answer));
+        let mut scores = self.answers.iter().map(|answer| self.case.score(answer));
         let first = scores.next().ok_or(none)??;
         scores.try_fold(first, |worst, score| Ok(worst.or_worse(&score?)))
     }

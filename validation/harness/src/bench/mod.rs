@@ -2,17 +2,15 @@
 //! the truth; what an event costs against the floor; versions against each other.
 //!
 //! A time means something only beside another that was taken in the same rounds ([`rounds`]), of an
-//! answer that was right ([`course`]). Who is timed is a [`contestant`]; what versions are compared
-//! by, a [`workload`].
+//! answer that was right ([`timed_case`]). Who is timed is a [`contestant`]; what versions are
+//! compared by, a [`workload`].
 
-pub mod alone;
 pub mod cases;
 pub mod clock;
 pub mod compare;
 pub mod competitor;
 pub mod contest;
 pub mod contestant;
-pub mod course;
 pub mod damping;
 pub mod equal_accuracy;
 pub mod floor;
@@ -21,14 +19,16 @@ pub mod history;
 pub mod instructions;
 pub mod lanes;
 pub mod length;
+pub mod library_part;
 mod pictures;
 pub mod report;
 pub mod rounds;
 mod summary;
-pub mod system_course;
 mod system_run;
 pub mod table;
 pub mod timed;
+pub mod timed_case;
+pub mod timed_system_case;
 pub mod workload;
 
 pub use pictures::{history as history_picture, pictures};

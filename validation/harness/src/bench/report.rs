@@ -1,11 +1,11 @@
 //! What a `bench` holds: the keys of `bench.json`.
 
 use super::contest::{Finisher, exact, most_accurate};
-pub use super::course::CaseEntry;
 use super::damping::DampingPoint;
 use super::equal_accuracy::{AccuracyPoint, Basis, LOOSE, TIGHT, time_at};
 use super::floor::Floors;
 use super::length::Length;
+pub use super::timed_case::CaseEntry;
 use crate::build::Build;
 use crate::engine::{REFERENCE, Stepping};
 use crate::number::shortest;
@@ -19,7 +19,7 @@ pub struct Bench {
     pub build: Build,
     /// Interleaved rounds.
     pub rounds: usize,
-    /// The courses.
+    /// The cases.
     pub cases: Vec<CaseEntry>,
     /// A row for each case, contestant and setting.
     pub results: Vec<BenchRow>,
@@ -52,7 +52,7 @@ pub struct BenchRow {
     /// Ratio of times at errors of at most 1e-9.
     #[serde(rename = "ratio_at_1e-9")]
     pub ratio_at_1e_9: Option<f64>,
-    /// Share of the time that is the harness's own ([`super::alone`]).
+    /// Share of the time that is the harness's own ([`super::library_part`]).
     pub harness_share: Option<f64>,
     pub rhs_per_period: Option<f64>,
     /// Whether this is the setting at which this engine errs least here.
@@ -151,7 +151,7 @@ pub struct Damped {
 
 /// What was measured.
 pub struct Measurement<'a> {
-    /// The courses and who ran on each.
+    /// The cases and who ran on each.
     pub contests: &'a [(CaseEntry, Vec<Finisher>)],
     /// The floor.
     pub floors: &'a Floors,
@@ -166,8 +166,8 @@ impl Bench {
     #[must_use]
     pub fn new(build: Build, rounds: usize, measured: Measurement<'_>) -> Self {
         let Measurement { contests, floors, length, damping } = measured;
-        let cases: Vec<_> = contests.iter().map(|(course, _)| course.clone()).collect();
-        let results: Vec<_> = contests.iter().flat_map(|(course, all)| rows(course, all)).collect();
+        let cases: Vec<_> = contests.iter().map(|(case, _)| case.clone()).collect();
+        let results: Vec<_> = contests.iter().flat_map(|(case, all)| rows(case, all)).collect();
         let floor =
             Floor { chained_ns: floors.chained.best(), independent_ns: floors.independent.best() };
         let exact =
@@ -186,13 +186,13 @@ impl Bench {
     }
 }
 
-fn rows(course: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
+fn rows(case: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
     let unit = exact(finishers).map(|it| it.series.clone()).unwrap_or_default();
     let row = |it: &Finisher| {
         let timed = it.result.as_ref().ok();
         let best = most_accurate(finishers, it.name).is_some_and(|best| std::ptr::eq(best, it));
         BenchRow {
-            case: course.case.clone(),
+            case: case.case.clone(),
             engine: it.name.to_owned(),
             tolerance: it.setting.tolerance(),
             step: it.setting.step(),
@@ -206,7 +206,7 @@ fn rows(course: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
             rhs_per_period: timed
                 .map(|it| it.work.rhs_evaluations)
                 .filter(|it| *it > 0)
-                .map(|it| it as f64 / course.periods),
+                .map(|it| it as f64 / case.periods),
             most_accurate: best,
             adaptive: !matches!(it.stepping, Stepping::Exact | Stepping::Fixed { .. }),
             why: it.result.as_ref().err().map(ToString::to_string),

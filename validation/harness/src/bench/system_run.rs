@@ -1,10 +1,10 @@
 //! An engine on a run of any other system than the oscillator: the whole run, and its own part.
 
-use super::alone::told;
-use super::course::Score;
+use super::library_part::told;
 use super::rounds::Benchmark;
-use super::system_course::SystemCourse;
 use super::timed::{ContestEntry, TimedRun};
+use super::timed_case::Score;
+use super::timed_system_case::TimedSystemCase;
 use crate::engine::{
     Accuracy, Engine, Failure, Limits, Numbers, SystemOutcome, Work, contain, exact,
 };
@@ -12,31 +12,31 @@ use crate::system::Values;
 use std::hint::black_box;
 
 /// An engine made ready for a run. What of it is the engine's alone is told apart as
-/// [`super::alone`] does it, where the answer is then the same to the last bit.
+/// [`super::library_part`] does it, where the answer is then the same to the last bit.
 ///
 /// # Errors
 /// Why the engine does not run there.
 pub fn system_entry<'a>(
     engine: &'a dyn Engine,
-    course: &'a SystemCourse,
+    case: &'a TimedSystemCase,
     setting: Accuracy,
     limits: Limits,
 ) -> Result<ContestEntry<'a>, Failure> {
-    let run = move || engine.run_system(&course.task, setting, &limits);
+    let run = move || engine.run_system(&case.task, setting, &limits);
     let answer = contain(run)?;
-    let alone: Option<Box<dyn Benchmark + 'a>> =
+    let library_part: Option<Box<dyn Benchmark + 'a>> =
         if engine.declaration().name == exact().declaration().name {
-            Some(Box::new(ExactEvents { course, end: answer.end, last: answer.end }))
+            Some(Box::new(ExactEvents { case, end: answer.end, last: answer.end }))
         } else {
             // Events at the entry of a mode are not located, so that not every run can be told.
             told(answer.clone(), run).ok().flatten()
         };
-    Ok(ContestEntry { timed: Box::new(SystemHeat { run, course, answer }), alone })
+    Ok(ContestEntry { timed: Box::new(SystemHeat { run, case, answer }), library_part })
 }
 
 struct SystemHeat<'a, F> {
     run: F,
-    course: &'a SystemCourse,
+    case: &'a TimedSystemCase,
     answer: SystemOutcome,
 }
 
@@ -53,7 +53,7 @@ impl<F: Fn() -> Result<SystemOutcome, Failure>> Benchmark for SystemHeat<'_, F> 
 
 impl<F: Fn() -> Result<SystemOutcome, Failure>> TimedRun for SystemHeat<'_, F> {
     fn score(&self) -> Result<Score, Failure> {
-        self.course.score(&self.answer)
+        self.case.score(&self.answer)
     }
 
     fn work(&self) -> Work {
@@ -63,15 +63,15 @@ impl<F: Fn() -> Result<SystemOutcome, Failure>> TimedRun for SystemHeat<'_, F> {
 
 /// The exact solver's events to the horizon, without a table.
 struct ExactEvents<'a> {
-    course: &'a SystemCourse,
+    case: &'a TimedSystemCase,
     end: Values,
     last: Values,
 }
 
 impl Benchmark for ExactEvents<'_> {
     fn call(&mut self) -> Result<(), Failure> {
-        let problem = &*self.course.problem;
-        let horizon = black_box(problem.clock(self.course.task.span));
+        let problem = &*self.case.problem;
+        let horizon = black_box(problem.clock(self.case.task.span));
         let run = problem.solver.run(&problem.start, horizon);
         let last = run.and_then(|run| run.map(black_box).last());
         let last = last.ok_or_else(|| Failure::new("a run without end"))?;
@@ -85,6 +85,6 @@ impl Benchmark for ExactEvents<'_> {
     }
 
     fn rounds(&self) -> usize {
-        super::alone::ROUNDS
+        super::library_part::ROUNDS
     }
 }

@@ -1,12 +1,12 @@
 //! What is timed: a run, and beside it the engine's own part of it.
 
-use super::course::Score;
 use super::rounds::Benchmark;
+use super::timed_case::Score;
 use crate::engine::{Failure, Work};
 
-/// A contestant on a course. What is timed is its `call`.
+/// A contestant on a case. What is timed is its `call`.
 pub trait TimedRun: Benchmark {
-    /// Runs of the course's length that a call makes.
+    /// Runs of the case's length that a call makes.
     fn runs(&self) -> f64 {
         1.0
     }
@@ -26,5 +26,5 @@ pub struct ContestEntry<'a> {
     /// The whole run.
     pub timed: Box<dyn TimedRun + 'a>,
     /// The part of it that is not the harness's.
-    pub alone: Option<Box<dyn Benchmark + 'a>>,
+    pub library_part: Option<Box<dyn Benchmark + 'a>>,
 }

@@ -3,8 +3,8 @@
 //!
 //! Work of another kind is one more [`Workload`], named in [`all`].
 
-use super::course::Course;
 use super::rounds::Benchmark;
+use super::timed_case::TimedCase;
 use crate::engine::Failure;
 use percuss::{Counters, Entry, Model, Step};
 use std::hint::black_box;
@@ -23,16 +23,16 @@ pub trait Workload {
 
 /// Events of a case's run, followed beyond its horizon; one that ends is begun again.
 pub struct Switches<'a> {
-    course: &'a Course,
+    case: &'a TimedCase,
 }
 
 impl Workload for Switches<'_> {
     fn name(&self) -> String {
-        format!("switches/{}", self.course.name)
+        format!("switches/{}", self.case.name)
     }
 
     fn run(&self, units: u64) -> Result<u64, Failure> {
-        let problem = &self.course.task.problem;
+        let problem = &self.case.task.problem;
         let (mut done, mut evaluations) = (0, 0);
         while done < units {
             let counters = switches(&problem.model, problem.entry, units - done);
@@ -58,10 +58,10 @@ fn switches(model: &Model, entry: Entry, most: u64) -> Counters {
     run.counters()
 }
 
-/// The workloads of these courses.
+/// The workloads of these cases.
 #[must_use]
-pub fn all(courses: &[Course]) -> Vec<Box<dyn Workload + '_>> {
-    let own = courses.iter().map(|course| Box::new(Switches { course }) as Box<dyn Workload + '_>);
+pub fn all(timed_cases: &[TimedCase]) -> Vec<Box<dyn Workload + '_>> {
+    let own = timed_cases.iter().map(|case| Box::new(Switches { case }) as Box<dyn Workload + '_>);
     own.collect()
 }
 

@@ -10,7 +10,7 @@ mod systems;
 pub use systems::{all_on_systems, examine_on_systems, is_run};
 
 use crate::case::{Bound, Quantity};
-use crate::engine::{Accuracy, Limits, REFERENCE, SOUND, Way, Wrong, faulty, wrong};
+use crate::engine::{Accuracy, Limits, REFERENCE, SOUND, Way, WrongEngine, faulty, wrong};
 use crate::number::brief;
 use crate::score::{Checked, Expected, Measures, Subject, Verdict, judge};
 use crate::suite::{CaseRun, Extent, Prepared};
@@ -119,7 +119,7 @@ impl Finding {
 
     /// Gathers what the gates said, case by case.
     fn of(
-        wrong: &Wrong,
+        wrong: &WrongEngine,
         standard: Standard,
         outcomes: impl IntoIterator<Item = (String, Option<Vec<Checked>>)>,
     ) -> Self {
@@ -208,7 +208,7 @@ impl Standard {
 
 /// Every engine that is wrong on purpose, with what it is held to.
 #[must_use]
-pub fn all() -> Vec<(Wrong, Standard)> {
+pub fn all() -> Vec<(WrongEngine, Standard)> {
     let integrators = Standard::of_faulty().into_iter();
     let integrators = integrators.flat_map(|held| faulty().iter().map(move |it| (*it, held)));
     wrong().iter().map(|it| (*it, AS_EXACT)).chain(integrators).collect()
@@ -216,14 +216,19 @@ pub fn all() -> Vec<(Wrong, Standard)> {
 
 /// Runs a wrong engine on all cases.
 #[must_use]
-pub fn examine(wrong: &Wrong, cases: &[Prepared], standard: Standard, bounds: &[Bound]) -> Finding {
+pub fn examine(
+    wrong: &WrongEngine,
+    cases: &[Prepared],
+    standard: Standard,
+    bounds: &[Bound],
+) -> Finding {
     let one = |case: &Prepared| (case.case.name.clone(), held(wrong, case, standard, bounds));
     let outcomes: Vec<_> = cases.par_iter().map(one).collect();
     Finding::of(wrong, standard, outcomes)
 }
 
 fn held(
-    wrong: &Wrong,
+    wrong: &WrongEngine,
     prepared: &Prepared,
     standard: Standard,
     defaults: &[Bound],

@@ -4,7 +4,7 @@
 use super::{AS_EXACT, Finding, Standard, judged};
 use crate::case::Bound;
 use crate::engine::{
-    COOLDOWN, Equations, Limits, Way, Wrong, WrongWay, faulty_on_systems, wrong_on_systems,
+    COOLDOWN, Equations, Limits, Way, WrongEngine, WrongWay, faulty_on_systems, wrong_on_systems,
 };
 use crate::score::Checked;
 use crate::suite::{CaseRun, PreparedSystem};
@@ -113,7 +113,7 @@ pub fn examine_on_systems(
 }
 
 fn held(
-    wrong: &Wrong,
+    wrong: &WrongEngine,
     case: &PreparedSystem,
     standard: Standard,
     defaults: &[Bound],

@@ -2,11 +2,11 @@
 //!
 //! In every phase (p, y, q, v, cos, sin, 1) obeys a linear system with constant coefficients, so
 //! the derivative of a phase's flow is a matrix exponential: no closed form of the solver is used.
-//! Along a switch the flow's derivative is completed by the field times the gradient of the switch
-//! time.
+//! Through an event the flow's derivative is completed by the field times the gradient of the
+//! event's time.
 //!
-//! G at switch n, for one quantity: the largest, over m <= n and at least 1, of the norm of the
-//! quantity's derivative with respect to the state just before switch m (forcing angle, p, y, q, v;
+//! G at event n, for one quantity: the largest, over m <= n and at least 1, of the norm of the
+//! quantity's derivative with respect to the state just before event m (forcing angle, p, y, q, v;
 //! m = 0 is the start). Samples at a fixed tau use the plain derivative.
 
 use crate::truth::{Truth, TruthRow};
@@ -229,18 +229,18 @@ mod tests {
                 }
                 _ => None,
             });
-        rows.take(SWITCHES).collect()
+        rows.take(EVENTS).collect()
     }
 
-    const SWITCHES: usize = 5;
+    const EVENTS: usize = 5;
     /// Central differences of values known to about 1e-15 with this step are good to 1e-8.
     const STEP: f64 = 1e-6;
     const DIFFERENCE: f64 = 1e-4;
 
-    /// The derivatives of a switch with respect to the start's p and y are what finite differences
+    /// The derivatives of an event with respect to the start's p and y are what finite differences
     /// of the exact solver say. (The start lies in flight: both may vary freely.)
     #[test]
-    fn derivatives_along_switches_agree_with_differences() {
+    fn derivatives_through_events_agree_with_differences() {
         let cases = embedded().unwrap_or_default();
         let library = Library::embedded().ok();
         for name in ["stiff-xi-0-3", "over-damped-xi-1-5", "impact-into-progression"] {
@@ -260,7 +260,7 @@ mod tests {
             let p = |step: f64| events(case, Start { p: case.start.p + step, ..case.start });
             let y = |step: f64| events(case, Start { y: case.start.y + step, ..case.start });
             let (by_p, by_y) = ([p(STEP), p(-STEP)], [y(STEP), y(-STEP)]);
-            for n in 0..SWITCHES {
+            for n in 0..EVENTS {
                 let phase = begin.phase.unwrap_or(Phase::Contact);
                 motion.switch(
                     phase,

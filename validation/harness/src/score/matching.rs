@@ -76,7 +76,7 @@ mod tests {
         [(1.0, Contact), (1.5, NoContact), (3.0, Contact), (3.2, Progression)];
 
     #[test]
-    fn a_missed_and_a_spurious_switch_are_told_apart() {
+    fn a_missed_and_a_spurious_event_are_told_apart() {
         let found = [(1.01, Contact), (3.0, Contact), (3.1, NoContact), (3.2, Progression)];
         let matching = Matching::of(&events(&TRUTH), &events(&found), 0.05);
         assert_eq!(matching.pairs, [(0, 0), (2, 1), (3, 3)]);

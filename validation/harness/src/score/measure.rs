@@ -140,7 +140,7 @@ pub fn measure(
     let horizon =
         if whole { truth.span() } else { truth.samples[scored.saturating_sub(1)].elapsed.value() };
     let window = WINDOW * period;
-    // A switch just past the horizon may be the partner of one just before it.
+    // An event just past the horizon may be the partner of one just before it.
     let rows = prefix(&truth.events, |row| row.elapsed.value() <= horizon + window);
     let found = prefix(&outcome.events, |event| event.elapsed <= horizon + window);
     let (truths, own) = (occurrences(rows), occurrences(&outcome.events));
@@ -266,7 +266,7 @@ fn state_constant(
     worst((1..scored).map(|n| {
         let (row, growth) = (&truth.samples[n], &growth.samples[n]);
         let state = outcome.samples.get(n).copied().unwrap_or([f64::NAN; 4]);
-        let passed = |switch: &&TruthRow| switch.elapsed.minus(row.elapsed).value() <= 0.0;
+        let passed = |event: &&TruthRow| event.elapsed.minus(row.elapsed).value() <= 0.0;
         events += truth.events[events..].iter().take_while(passed).count();
         let largest = worst((0..4).map(|k| relative(row.state[k], state[k]) / growth[k]));
         largest / (unit * (events.max(1)) as f64)

@@ -4,7 +4,7 @@
 //! A long run in chaos only multiplies what happens in one passage through contact; here that
 //! passage is measured itself, from many states. Each run ends at a strobe, the start of a forcing
 //! period: the first after its separation, at most the eighth. Half of all single periods hold no
-//! switch at all, so the figures are of the runs that had an impact.
+//! event at all, so the figures are of the runs that had an impact.
 
 use super::growth::RunGrowth;
 use super::restart_figures::{Restart, RestartError, RestartResult};
@@ -92,8 +92,8 @@ impl RestartRun {
             let grid = (0, Truth::SAMPLES_PER_PERIOD);
             Truth::replayed(&parameters, &problem.entry, strobe(periods), grid).ok()
         };
-        let after = |switch: &TruthRow| {
-            let instant = problem.entry.instant.after(switch.elapsed, parameters.omega);
+        let after = |event: &TruthRow| {
+            let instant = problem.entry.instant.after(event.elapsed, parameters.omega);
             u64::try_from(instant.cycle() + 1).unwrap_or(1).min(MOST_PERIODS)
         };
         // The truth is followed to the last strobe, then cut at its own.
@@ -125,7 +125,7 @@ impl RestartRun {
     }
 
     fn same_phases(&self, outcome: &Outcome) -> bool {
-        let truth = self.truth.events.iter().map(|switch| switch.phase);
+        let truth = self.truth.events.iter().map(|event| event.phase);
         truth.eq(outcome.events.iter().map(|event| Some(event.mode)))
     }
 }
@@ -142,15 +142,15 @@ fn scale(unit: f64, truth: TwoWord, growth: f64) -> f64 {
 fn passage(truth: &Truth) -> (bool, Option<TruthRow>) {
     let mut before = truth.start.phase;
     let mut impact = false;
-    for switch in &truth.events {
-        if switch.phase == Some(Phase::NoContact) {
+    for event in &truth.events {
+        if event.phase == Some(Phase::NoContact) {
             if impact {
-                return (true, Some(*switch));
+                return (true, Some(*event));
             }
         } else if before == Some(Phase::NoContact) {
             impact = true;
         }
-        before = switch.phase;
+        before = event.phase;
     }
     (impact, None)
 }

@@ -7,7 +7,7 @@ use crate::number::brief;
 
 /// What became of an expected failure on a row.
 pub(super) enum Answer {
-    /// The figure lies between floor and ceiling; the reason of the failure.
+    /// The figure lies in the stated range; the reason of the failure.
     Shows(String),
     /// The figure lies elsewhere; what is out of date.
     OutOfDate(String),
@@ -15,7 +15,7 @@ pub(super) enum Answer {
 
 /// Holds a shortcoming against a row; a bound that fails as stated becomes known.
 ///
-/// It shows if the bound on its quantity fails with a figure between its floor and its ceiling.
+/// It shows if the bound on its quantity fails with a figure in the range that it states.
 /// What was not measured shows nothing.
 pub(super) fn answer(
     known: &Shortcoming,

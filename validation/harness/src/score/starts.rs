@@ -29,7 +29,7 @@ pub fn far_apart(problem: &Problem, count: usize, periods: u64) -> Vec<Problem> 
     let model = problem.model;
     let begin = problem.entry.instant;
     let instant = |k: u64| begin.after_periods(TRANSIENT * PARTS + k * step, PARTS);
-    // A state that rounding puts on another phase's side of a switch is passed over: a few in 1e15.
+    // A state that rounding puts on another phase's side of an event is passed over: a few in 1e15.
     let last = 2 * count as u64;
     let mut segments = model.trajectory(problem.entry).until(instant(last));
     let Some(mut segment) = segments.next() else { return Vec::new() };

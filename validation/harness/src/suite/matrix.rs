@@ -1,7 +1,7 @@
 //! The whole matrix: every engine on every case at every tolerance, in parallel and in order.
 
 use super::probes::{Extent, Probes};
-use super::scope::{Scope, Suite};
+use super::scope::{Suite, SuiteScope};
 use crate::case::{Bound, Case, Defaults, FileError, Shortcoming};
 use crate::engine::{
     Accuracy, Engine, Failure, Limits, Outcome, Role, SampleGrid, SystemOutcome, SystemTask, Task,
@@ -293,7 +293,7 @@ impl CaseRun for Prepared {
 pub fn run<'a>(
     cases: &[&'a dyn CaseRun],
     engines: &[&'static dyn Engine],
-    scope: &Scope,
+    scope: &SuiteScope,
     defaults: &Defaults,
     done: &(impl Fn() + Sync),
 ) -> Vec<Scored> {
@@ -315,11 +315,11 @@ pub fn run<'a>(
 
 /// How many rows [`run`] makes.
 #[must_use]
-pub fn size(cases: usize, engines: &[&'static dyn Engine], scope: &Scope) -> usize {
+pub fn size(cases: usize, engines: &[&'static dyn Engine], scope: &SuiteScope) -> usize {
     cases * engines.iter().map(|engine| accuracies(*engine, scope).len()).sum::<usize>()
 }
 
-fn accuracies(engine: &dyn Engine, scope: &Scope) -> Vec<Accuracy> {
+fn accuracies(engine: &dyn Engine, scope: &SuiteScope) -> Vec<Accuracy> {
     scope.accuracies(engine.declaration().stepping)
 }
 

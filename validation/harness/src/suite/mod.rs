@@ -7,5 +7,5 @@ mod system;
 
 pub use matrix::{Answered, CaseRun, Measured, Prepared, Scored, Status, one, prepare, run, size};
 pub use probes::{Extent, is_shown};
-pub use scope::{Scope, Suite};
+pub use scope::{Suite, SuiteScope};
 pub use system::{ELSEWHERE, PreparedSystem, prepare_systems};

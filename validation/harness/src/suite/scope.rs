@@ -12,22 +12,22 @@ pub enum Suite {
     Full,
 }
 
-/// A suite, as far as its tolerances are chosen.
+/// A suite with the tolerances that are chosen of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scope {
+pub struct SuiteScope {
     suite: Suite,
     tolerances: Vec<f64>,
 }
 
-impl From<Suite> for Scope {
+impl From<Suite> for SuiteScope {
     fn from(suite: Suite) -> Self {
         let adaptive = suite.accuracies(Stepping::Adaptive);
         Self { suite, tolerances: adaptive.into_iter().filter_map(Accuracy::tolerance).collect() }
     }
 }
 
-impl Scope {
-    /// The same at these tolerances alone; at all of the suite's where there are none. Engines
+impl SuiteScope {
+    /// Narrows the suite to these tolerances; an empty list leaves all of the suite's. Engines
     /// without a tolerance are not concerned.
     #[must_use]
     pub fn at(self, tolerances: Vec<f64>) -> Self {

@@ -6,7 +6,7 @@
 //! phase in 106 bits too; where one does not, the search counts it, and the run is undecided.
 
 use super::forms::TruthMotion;
-use percuss::insides::crossing::certificate::{Corridor, Ends, Proof};
+use percuss::insides::crossing::certificate::{Corridor, Proof, ThresholdEnds};
 use percuss::insides::crossing::guarded::{Guarded, SearchHint};
 use percuss::insides::crossing::search::first_crossing;
 use percuss::insides::crossing::series::Series;
@@ -42,7 +42,7 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
         Self::cautious(self.0.entry())
     }
 
-    fn imposed(&self) -> Ends {
+    fn imposed(&self) -> ThresholdEnds {
         self.0.imposed()
     }
 
@@ -50,7 +50,13 @@ impl<G: Guarded> Guarded for Cautious<'_, G> {
         self.0.hint(steps, left, limit)
     }
 
-    fn certify(&self, steps: &Steps, left: &Point<f64>, right: &Point<f64>, ends: Ends) -> Proof {
+    fn certify(
+        &self,
+        steps: &Steps,
+        left: &Point<f64>,
+        right: &Point<f64>,
+        ends: ThresholdEnds,
+    ) -> Proof {
         self.0.certify(steps, left, right, ends)
     }
 

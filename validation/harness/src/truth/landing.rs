@@ -8,7 +8,7 @@ use percuss::{Entry, Phase, State};
 
 /// A decision closer than this, in units of the terms it is made from, is not taken. A million
 /// times the unit of 106 bits times the growth of a long run is below it, and that a run meets it
-/// by chance has a probability of about 1e-18 a switch.
+/// by chance has a probability of about 1e-18 an event.
 pub(super) const UNDECIDED: f64 = 1e-18;
 
 /// The rule of the f64 starts: within four units in the last place counts as on the surface or on a

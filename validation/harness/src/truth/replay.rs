@@ -2,8 +2,8 @@
 //!
 //! It shares its closed forms with the solver, so what it measures is rounding and nothing else;
 //! the tables of `reference_data/` vouch for the forms, and it is itself held against their digits.
-//! The order of events is that of f64 with room to spare ([`super::cautious`]); each switch time is
-//! refined in 106 bits, the state is landed there, and everything is carried on in 106 bits.
+//! The order of events is that of f64 with room to spare ([`super::cautious`]); each event's time
+//! is refined in 106 bits, the state is landed there, and everything is carried on in 106 bits.
 
 use super::DoubleDouble;
 use super::cautious::crossing;
@@ -112,7 +112,7 @@ impl Replay {
     fn passage(&self, begin: Beginning) -> Result<ReplayedPhase, &'static str> {
         let omega = self.forms.omega;
         let span = self.horizon.since(&begin.instant, omega).value();
-        // The search's horizon is a little late: whether a switch comes before it is decided here.
+        // The search's horizon is a little late: whether an event comes before it is decided here.
         let limit = span.max(0.0) * (1.0 + 1e-12) + f64::MIN_POSITIVE;
         let passage = |next| Ok(ReplayedPhase { begin, next, omega });
         match crossing(&self.forms.rounded(&begin.motion), &self.forms.steps, limit) {
@@ -120,7 +120,7 @@ impl Replay {
             (Crossing::Stage(_) | Crossing::Undecided(_), _) => Err("the end of a phase"),
             (Crossing::Horizon | Crossing::Never, _) => passage(None),
             (Crossing::At(root), _) => {
-                let at = refine(&begin.motion, &root).ok_or("a switch time")?;
+                let at = refine(&begin.motion, &root).ok_or("the time of an event")?;
                 let elapsed = at.elapsed.into();
                 let instant = begin.instant.after(elapsed, omega);
                 if instant > self.horizon {
@@ -201,7 +201,7 @@ fn refine(motion: &TruthMotion<DoubleDouble>, root: &Root) -> Option<Point<Doubl
     None
 }
 
-/// A switch time to 2^-104 of itself.
+/// The time of an event to 2^-104 of itself.
 const RESOLUTION: f64 = f64::EPSILON * f64::EPSILON;
 
 fn leaves_upwards(motion: &TruthMotion<DoubleDouble>, root: &Root) -> bool {

@@ -9,7 +9,7 @@ use percuss::{Entry, Instant, Parameters};
 /// The longest case without tables, in forcing periods: what is longer is not to be had in seconds.
 const PERIODS: f64 = 1000.0;
 /// The most events that a replayed run may have.
-const SWITCHES: usize = 1_000_000;
+const EVENTS: usize = 1_000_000;
 
 impl Truth {
     /// The truth of a case of which there are no tables. It shares its closed forms with the exact
@@ -69,7 +69,7 @@ impl Truth {
                 let start = rows.remove(0);
                 return Ok(Self { start, events: rows, end, samples: sampled });
             }
-            if rows.len() > SWITCHES {
+            if rows.len() > EVENTS {
                 break;
             }
         }

@@ -62,8 +62,8 @@ impl SystemTruth {
         events: (&str, &str),
         samples: (&str, &str),
     ) -> Result<Self, FileError> {
-        let table = Table::read(case, events, true)?;
-        let sampled = Table::read(case, samples, false)?;
+        let table = SystemTable::read(case, events, true)?;
+        let sampled = SystemTable::read(case, samples, false)?;
         let refused = |what: &str| FileError::of(events.0, what);
         let (last, rest) = table.rows.split_last().ok_or_else(|| refused("holds no row"))?;
         let (start, events_between) =
@@ -105,13 +105,13 @@ fn number(system: &System, mode: usize, name: &str) -> Option<usize> {
     until.chain(mode.watch.iter().map(|it| &it.name)).position(|it| it == name)
 }
 
-struct Table {
+struct SystemTable {
     heading: BTreeMap<String, String>,
     /// Each with the name of its event.
     rows: Vec<(String, SystemTruthRow)>,
 }
 
-impl Table {
+impl SystemTable {
     fn read(
         case: &SystemCase,
         (file, text): (&str, &str),

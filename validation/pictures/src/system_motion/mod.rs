@@ -13,7 +13,7 @@ use super::{Drawing, font, palette};
 use layout::Layout;
 use percuss::affine::{Event, Solver, System};
 use percuss::number::Number;
-use sampled::{Mark, Piece, event_names, marks, pieces};
+use sampled::{Mark, SampledSegment, event_names, marks, pieces};
 use std::collections::BTreeMap;
 
 /// The largest number of states that one picture shows.
@@ -43,7 +43,7 @@ pub struct SystemMotion {
     modes: Vec<String>,
     /// The names of the events that occur.
     events: Vec<String>,
-    pieces: Vec<Piece>,
+    pieces: Vec<SampledSegment>,
     marks: Vec<Mark>,
 }
 

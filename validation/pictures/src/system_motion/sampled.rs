@@ -16,7 +16,7 @@ const MOST_NAMES: usize = 12;
 const OTHERS: &str = "other events";
 
 /// The motion between two events: time and the states that are shown, several times.
-pub(super) struct Piece {
+pub(super) struct SampledSegment {
     pub mode: usize,
     pub points: Vec<Vec<f64>>,
 }
@@ -61,7 +61,7 @@ pub(super) fn pieces<T: Number>(
     solver: &Solver<T>,
     run: &[Event<T>],
     shown: &[usize],
-) -> Vec<Piece> {
+) -> Vec<SampledSegment> {
     let whole = match run {
         [first, .., last] => between(first, last).to_f64().abs(),
         _ => 0.0,
@@ -78,7 +78,7 @@ pub(super) fn pieces<T: Number>(
             figures(time.value(), &state, shown)
         };
         let points = (0..=count as u32).map(point).collect();
-        (share > 0.0).then_some(Piece { mode: ends[0].mode, points })
+        (share > 0.0).then_some(SampledSegment { mode: ends[0].mode, points })
     };
     run.windows(2).filter_map(piece).collect()
 }

@@ -11,9 +11,9 @@ use super::{DONE, OUT_OF_BOUNDS, format, output, parse, work};
 use crate::bench::compare::worker::serve;
 use crate::bench::contest::{self, Finisher, contest, system_contest};
 use crate::bench::contestant::Contestant;
-use crate::bench::course::Course;
 use crate::bench::report::{CaseEntry, Measurement};
-use crate::bench::system_course::SystemCourse;
+use crate::bench::timed_case::TimedCase;
+use crate::bench::timed_system_case::TimedSystemCase;
 use crate::bench::{Bench, cases, contestants, damping, floor, length, pictures};
 use crate::bench::{table, workload};
 use crate::build;
@@ -78,13 +78,13 @@ fn race(arguments: &Arguments) -> Result<u8> {
     let _programs = arguments.programs.start()?;
     let all = contestants();
     let contestants = chosen_engines(&all, &arguments.engine)?;
-    let courses = Courses::of(&arguments.case)?;
+    let timed_cases = TimedCases::of(&arguments.case)?;
     if let Some(folder) = &arguments.out {
         make_folder(folder)?;
     }
     hush_contained_panics();
     // One thread, this pool's, so that its own time is that of the ensembles too.
-    let bench = work::pool(Some(1))?.install(|| measured(arguments, &contestants, &courses))?;
+    let bench = work::pool(Some(1))?.install(|| measured(arguments, &contestants, &timed_cases))?;
     if let Some(folder) = &arguments.out {
         write(&bench, folder)?;
     }
@@ -96,20 +96,20 @@ fn race(arguments: &Arguments) -> Result<u8> {
 
 /// Serves one side of a comparison of two binaries.
 fn worker() -> Result<()> {
-    let courses = usual_courses()?;
-    let workloads = workload::all(&courses);
+    let timed_cases = usual_cases()?;
+    let workloads = workload::all(&timed_cases);
     serve(&build::this(), &workloads, io::stdin().lock(), io::stdout().lock()).context("worker")
 }
 
 fn measured(
     arguments: &Arguments,
     contestants: &[&dyn Contestant],
-    courses: &Courses,
+    timed_cases: &TimedCases,
 ) -> Result<Bench> {
     let rounds = usize::from(arguments.rounds);
     // Length and xi are of no case: they belong to the whole.
     let whole = arguments.case.is_empty();
-    let Courses { oscillator, systems } = courses;
+    let TimedCases { oscillator, systems } = timed_cases;
     let bar = bar(arguments, contestants, oscillator.len() + systems.len(), whole);
     let done = || bar.inc(1);
     // First, while the process holds nothing: its peak is then the run's own.
@@ -131,12 +131,12 @@ const FLOOR_ROUNDS: usize = 5;
 fn bar(
     arguments: &Arguments,
     contestants: &[&dyn Contestant],
-    courses: usize,
+    timed_cases: usize,
     whole: bool,
 ) -> work::Bar {
     let rounds = usize::from(arguments.rounds);
-    let mut size =
-        courses as u64 * contest::size(contestants, rounds) + floor::size(0, FLOOR_ROUNDS * rounds);
+    let mut size = timed_cases as u64 * contest::size(contestants, rounds)
+        + floor::size(0, FLOOR_ROUNDS * rounds);
     if whole {
         size += length::size(arguments.long) + damping::size(contestants, rounds);
     }
@@ -162,14 +162,14 @@ fn chosen_engines<'a>(
     Ok(all.iter().map(AsRef::as_ref).filter(|it| is_unit(*it) || matches(*it)).collect())
 }
 
-/// What is raced on.
-struct Courses {
-    oscillator: Vec<Course>,
-    systems: Vec<SystemCourse>,
+/// The cases that engines are timed on.
+struct TimedCases {
+    oscillator: Vec<TimedCase>,
+    systems: Vec<TimedSystemCase>,
 }
 
-impl Courses {
-    /// Those of the cases that are named, or of the oscillator's usual ones.
+impl TimedCases {
+    /// The cases that are named, or the oscillator's usual ones.
     fn of(patterns: &[Regex]) -> Result<Self> {
         let all = Cases::embedded()?;
         let own = all.oscillator.iter().map(|it| it.name.as_str());
@@ -183,10 +183,11 @@ impl Courses {
         };
         let library = Library::embedded()?;
         let chosen = in_order(&cases::USUAL, all.oscillator, |it| &it.name, wanted);
-        let oscillator = chosen.iter().map(|it| Course::of(it, &library)).collect::<Result<_, _>>();
+        let oscillator =
+            chosen.iter().map(|it| TimedCase::of(it, &library)).collect::<Result<_, _>>();
         let chosen = in_order(&cases::SYSTEMS, all.systems, |it| &it.name, wanted);
         let systems =
-            chosen.iter().map(|it| SystemCourse::of(it, &library)).collect::<Result<_, _>>();
+            chosen.iter().map(|it| TimedSystemCase::of(it, &library)).collect::<Result<_, _>>();
         Ok(Self { oscillator: oscillator?, systems: systems? })
     }
 }
@@ -204,9 +205,9 @@ fn in_order<C>(
     chosen
 }
 
-/// The courses that are raced where none are named, and that versions are compared by.
-fn usual_courses() -> Result<Vec<Course>> {
-    Ok(Courses::of(&[])?.oscillator)
+/// The cases that are timed where none are named, and that versions are compared by.
+fn usual_cases() -> Result<Vec<TimedCase>> {
+    Ok(TimedCases::of(&[])?.oscillator)
 }
 
 fn write(bench: &Bench, folder: &Path) -> Result<()> {

@@ -1,12 +1,12 @@
 //! `bench record`: lines of this version, appended to the history.
 
 use super::output::{Destination, check_file, reader_left, write_whole};
-use super::{parse, usual_courses, work};
+use super::{parse, usual_cases, work};
 use crate::bench::contestant::enter;
-use crate::bench::course::Course;
 use crate::bench::floor::{self, Floors};
 use crate::bench::history::{self, Figures, History, HistoryRecord};
 use crate::bench::rounds::RoundTimes;
+use crate::bench::timed_case::TimedCase;
 use crate::bench::{instructions, workload};
 use crate::build;
 use crate::engine::{Accuracy, Failure, exact};
@@ -33,8 +33,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     check_file("--history", &arguments.history)?;
     let before = raw(&arguments.history)?;
     History::read(&arguments.history).map_err(|what| anyhow!("--history {what}"))?;
-    let courses = usual_courses()?;
-    let records = records(arguments, &courses)?;
+    let timed_cases = usual_cases()?;
+    let records = records(arguments, &timed_cases)?;
     let text = History { records: records.clone() }.text().map_err(|what| anyhow!(what))?;
     let gap = if before.is_empty() || before.ends_with('\n') { "" } else { "\n" };
     let whole = format!("{before}{gap}{text}");
@@ -65,14 +65,14 @@ fn raw(path: &Path) -> Result<String> {
     }
 }
 
-fn records(arguments: &Arguments, courses: &[Course]) -> Result<Vec<HistoryRecord>> {
+fn records(arguments: &Arguments, timed_cases: &[TimedCase]) -> Result<Vec<HistoryRecord>> {
     let rounds = usize::from(arguments.rounds);
-    let workloads = workload::all(courses);
-    let counted = if arguments.instructions { courses.len() as u64 } else { 0 };
+    let workloads = workload::all(timed_cases);
+    let counted = if arguments.instructions { timed_cases.len() as u64 } else { 0 };
     let bar = work::bar(2 * floor::size(workloads.len(), rounds) + counted, "turns");
     let half = || floor::floors(&workloads, rounds, &|| bar.inc(1));
     let halves = [half()?, half()?];
-    let record = |(i, course): (usize, &Course)| {
+    let record = |(i, case): (usize, &TimedCase)| {
         let name = workloads[i].name();
         let instructions = if arguments.instructions {
             let count = instructions::per_unit(&name).context("--instructions")?;
@@ -81,17 +81,17 @@ fn records(arguments: &Arguments, courses: &[Course]) -> Result<Vec<HistoryRecor
         } else {
             None
         };
-        let figures = Figures { instructions, ..figures(course, &halves, i)? };
+        let figures = Figures { instructions, ..figures(case, &halves, i)? };
         Ok(HistoryRecord::of(build::this(), &name, figures))
     };
-    let records = courses.iter().enumerate().map(record).collect();
+    let records = timed_cases.iter().enumerate().map(record).collect();
     bar.finish_and_clear();
     records
 }
 
 /// What both halves of the rounds say of a workload.
-fn figures(course: &Course, halves: &[Floors; 2], i: usize) -> Result<Figures, Failure> {
-    let mut timed = enter(exact(), course, Accuracy::Exact)?;
+fn figures(case: &TimedCase, halves: &[Floors; 2], i: usize) -> Result<Figures, Failure> {
+    let mut timed = enter(exact(), case, Accuracy::Exact)?;
     timed.call()?;
     let cost = |half: &Floors| {
         let cost = half.switches.get(i).cloned();

@@ -18,7 +18,9 @@ use super::work::{self, Bar};
 use super::{DONE, OUT_OF_BOUNDS, note, say};
 #[cfg(feature = "mpi")]
 use crate::sweep::Ranks;
-use crate::sweep::{Damage, Folder, Merge, NotMerged, Plan, Sweep, SweepStatus, SweepVerb, Told};
+use crate::sweep::{
+    Damage, Folder, Merge, NotMerged, Plan, Sweep, SweepObserver, SweepStatus, SweepVerb,
+};
 use anyhow::{Result, anyhow, bail};
 use clap::{Args, Subcommand};
 use shown::{Format, StatusJson};
@@ -225,7 +227,7 @@ struct SweepProgress {
     bar: Bar,
 }
 
-impl Told for SweepProgress {
+impl SweepObserver for SweepProgress {
     fn redone(&self, shard: u32, why: &Damage) {
         note(&format!("shard {shard} ({}) is {why}; it is computed again", Folder::name(shard)));
     }

@@ -36,8 +36,8 @@ pub(super) fn picture(
     let scene = Scene {
         at: it.at,
         first: task.phase.as_str().to_owned(),
-        truth: Side { values: truth, events: truth_events(prepared, it) },
-        engine: Side {
+        truth: SceneCurve { values: truth, events: truth_events(prepared, it) },
+        engine: SceneCurve {
             values: engine_at(&task, it.guarded, &outcome),
             events: engine_events(&outcome, it),
         },
@@ -110,8 +110,8 @@ pub(super) struct Scene {
     pub(super) instants: Vec<f64>,
     /// What holds at the start.
     pub(super) first: String,
-    pub(super) truth: Side,
-    pub(super) engine: Side,
+    pub(super) truth: SceneCurve,
+    pub(super) engine: SceneCurve,
     pub(super) steps: Vec<f64>,
     /// Times of looks at the guard, and what they saw, in the order of the times.
     pub(super) looks: Vec<[f64; 2]>,
@@ -119,7 +119,7 @@ pub(super) struct Scene {
 
 /// Truth or engine: its values at the instants, and its events with what begins there and whether
 /// both have them.
-pub(super) struct Side {
+pub(super) struct SceneCurve {
     pub(super) values: Vec<f64>,
     pub(super) events: Vec<(f64, String, bool)>,
 }
@@ -141,8 +141,8 @@ impl Scene {
         }
     }
 
-    fn course(&self, [from, to]: [f64; 2], side: &Side) -> ViewCourse {
-        let Side { values, events } = side;
+    fn course(&self, [from, to]: [f64; 2], side: &SceneCurve) -> ViewCourse {
+        let SceneCurve { values, events } = side;
         let before = events.iter().take_while(|event| event.0 < from).last();
         let phase = before.map_or(&self.first, |event| &event.1).clone();
         let inside = events.iter().filter(|event| from <= event.0 && event.0 <= to);

@@ -1,6 +1,6 @@
 //! The first wrong event of a row of a piecewise-affine system, and its picture.
 
-use super::course::{Scene, Side, in_order, telling};
+use super::course::{Scene, SceneCurve, in_order, telling};
 use super::scales::Scales;
 use super::{EventPicture, MismatchKind, View};
 use crate::engine::{
@@ -162,13 +162,13 @@ pub(super) fn picture(
     let scene = Scene {
         at: it.at,
         first: name(task.mode),
-        truth: Side {
+        truth: SceneCurve {
             values: of_states(&mut states.iter().map(Vec::as_slice)),
             events: rows
                 .map(|(i, row)| (row.elapsed.value(), name(row.mode), known(|pair| pair.0, i)))
                 .collect(),
         },
-        engine: Side {
+        engine: SceneCurve {
             values: match trace {
                 Some(_) => of_states(&mut outcome.samples.iter().map(|it| &it[..])),
                 None => Vec::new(),

@@ -202,7 +202,7 @@ pub(super) struct TroubleSign {
     /// The level, as of [`RecallCell`]; 5 where nothing was scored.
     pub level: u8,
     pub shown: String,
-    /// The same, but nothing where all is found: there the colour says it.
+    /// What a narrow cell shows: nothing where all is found, because there the colour says it.
     pub short: String,
     pub title: String,
 }

@@ -12,9 +12,9 @@ use super::state::of_size;
 use super::{COLOURS, LIBRARY, LONGEST_STEP, ModeField, reason};
 use crate::engine::equations::Equations;
 use crate::engine::field::Oscillator;
-use crate::engine::joining::{Course, Moment, StretchEnd, join};
+use crate::engine::joining::{Integration, Moment, StretchEnd, join};
 use crate::engine::meter::{Failure, Limits, Meter};
-use crate::engine::sampler::{Crossing, Sampler};
+use crate::engine::sampler::{CountedCrossing, Sampler};
 use crate::engine::trace::GuardSample;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
@@ -51,8 +51,9 @@ impl Engine for BuiltIn {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let course = Course::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
-        run(&course, accuracy, limits)
+        let integration =
+            Integration::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
+        run(&integration, accuracy, limits)
     }
 
     fn run_system(
@@ -61,24 +62,24 @@ impl Engine for BuiltIn {
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
-        let course = Course::of_system(task);
-        of_size(course.state.as_ref().len(), || run(&course, accuracy, limits))
+        let integration = Integration::of_system(task);
+        of_size(integration.state.as_ref().len(), || run(&integration, accuracy, limits))
     }
 }
 
-/// Runs a course with the library's events.
+/// Runs an integration with the library's events.
 fn run<E: Equations<State: State<f64>>>(
-    course: &Course<'_, E>,
+    integration: &Integration<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
 ) -> Result<Outcome<E::Mode, E::State>, Failure> {
     let tolerance = accuracy.wanted_tolerance()?;
     let meter = Meter::new(limits);
-    let Course { equations, span, times, .. } = *course;
+    let Integration { equations, span, times, .. } = *integration;
     let longest = LONGEST_STEP * times.period;
-    join(course, &meter, |from, sampler| {
+    join(integration, &meter, |from, sampler| {
         let field = ModeField { equations, mode: from.mode, meter: &meter };
-        let guard = |guard| Guard { field, guard };
+        let guard = |guard| GuardEvent { field, guard };
         let guards: Vec<_> = (0..equations.most_guards()).map(guard).collect();
         let mut watch = BuiltinEvents::new(field, &guards, from, span, sampler);
         let mut method = Rkv655e::method(equations.dimension(), tolerance, longest, 0.0);
@@ -89,12 +90,12 @@ fn run<E: Equations<State: State<f64>>>(
 }
 
 /// A guard as an event of the library's.
-struct Guard<'a, E: Equations> {
+struct GuardEvent<'a, E: Equations> {
     field: ModeField<'a, E>,
     guard: usize,
 }
 
-impl<E: Equations<State: State<f64>>> Event<f64, E::State> for Guard<'_, E> {
+impl<E: Equations<State: State<f64>>> Event<f64, E::State> for GuardEvent<'_, E> {
     fn config(&self) -> EventConfig {
         let ends = self.field.equations.ends(self.field.mode, self.guard);
         EventConfig::new(CrossingDirection::Positive, ends.then_some(1))
@@ -116,7 +117,7 @@ impl<E: Equations<State: State<f64>>> Event<f64, E::State> for Guard<'_, E> {
 struct BuiltinEvents<'a, E: Equations<State: State<f64>>> {
     field: ModeField<'a, E>,
     from: Moment<E>,
-    events: Vec<EventSolout<'a, f64, E::State, Guard<'a, E>>>,
+    events: Vec<EventSolout<'a, f64, E::State, GuardEvent<'a, E>>>,
     sampler: &'a mut Sampler<E::State>,
     last: E::State,
     ended: Option<Result<StretchEnd<E::State>, Failure>>,
@@ -125,7 +126,7 @@ struct BuiltinEvents<'a, E: Equations<State: State<f64>>> {
 impl<'a, E: Equations<State: State<f64>>> BuiltinEvents<'a, E> {
     fn new(
         field: ModeField<'a, E>,
-        guards: &'a [Guard<'a, E>],
+        guards: &'a [GuardEvent<'a, E>],
         from: &Moment<E>,
         span: f64,
         sampler: &'a mut Sampler<E::State>,
@@ -135,7 +136,7 @@ impl<'a, E: Equations<State: State<f64>>> BuiltinEvents<'a, E> {
     }
 
     /// Keeps those crossings of a step that end nothing and come before the mode ends.
-    fn count(&mut self, mut crossings: Vec<Crossing<E::State>>, until: f64) {
+    fn count(&mut self, mut crossings: Vec<CountedCrossing<E::State>>, until: f64) {
         crossings.retain(|crossing| crossing.t <= until);
         crossings.sort_by(|one, other| one.t.total_cmp(&other.t));
         self.sampler.counted.append(&mut crossings);
@@ -155,13 +156,13 @@ impl<E: Equations<State: State<f64>>> Solout<f64, E::State> for BuiltinEvents<'_
     where
         I: Interpolation<f64, E::State> + ?Sized,
     {
-        let mut first: Option<Crossing<E::State>> = None;
+        let mut first: Option<CountedCrossing<E::State>> = None;
         let mut counted = Vec::new();
         for (guard, event) in self.events.iter_mut().enumerate() {
             let mut found = Solution::new();
             event.solout(end, begin, state, before, interpolator, &mut found);
             let (Some(t), Some(state)) = (found.t.last(), found.y.last()) else { continue };
-            let crossing = Crossing { t: *t, guard, state: *state };
+            let crossing = CountedCrossing { t: *t, guard, state: *state };
             if !self.field.equations.ends(self.field.mode, guard) {
                 // A guard that is zero at its mode's entry has no sign there.
                 let no_sign = begin <= self.from.began && self.from.entered.is_zero(guard);
@@ -182,7 +183,7 @@ impl<E: Equations<State: State<f64>>> Solout<f64, E::State> for BuiltinEvents<'_
         let taken = self.sampler.take(until, state_at);
         self.ended = match (taken, first) {
             (Err(failure), _) => Some(Err(failure)),
-            (Ok(()), Some(Crossing { t, guard, state })) => {
+            (Ok(()), Some(CountedCrossing { t, guard, state })) => {
                 Some(Ok(StretchEnd::Switch { t, guard, state }))
             }
             (Ok(()), None) => return ControlFlag::Continue,

@@ -36,7 +36,7 @@ mod watch;
 
 use super::equations::Equations;
 use super::field::{Coordinates, Oscillator};
-use super::joining::{Course, join};
+use super::joining::{Integration, join};
 use super::meter::{Failure, Limits, Meter};
 use super::original::OriginalOscillator;
 use super::{
@@ -103,8 +103,8 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let course = Course::of(task, E::of(&task.parameters, task.forcing_angle));
-        run::<M, E>(&course, accuracy, limits)
+        let integration = Integration::of(task, E::of(&task.parameters, task.forcing_angle));
+        run::<M, E>(&integration, accuracy, limits)
     }
 
     fn is_explicit(&self) -> bool {
@@ -124,24 +124,24 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
         if !E::BOUNDED {
             return Err(Failure::new("its co-ordinates are the oscillator's"));
         }
-        let course = Course::of_system(task);
-        of_size(course.state.as_ref().len(), || run::<M, _>(&course, accuracy, limits))
+        let integration = Integration::of_system(task);
+        of_size(integration.state.as_ref().len(), || run::<M, _>(&integration, accuracy, limits))
     }
 }
 
-/// Runs a course with one of the library's methods.
+/// Runs an integration with one of the library's methods.
 fn run<M: LibraryMethod, E: Equations<State: State<f64>>>(
-    course: &Course<'_, E>,
+    integration: &Integration<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
 ) -> Result<Outcome<E::Mode, E::State>, Failure> {
     let tolerance = accuracy.wanted_tolerance()?;
     let meter = Meter::new(limits);
-    let Course { equations, span, times, .. } = *course;
+    let Integration { equations, span, times, .. } = *integration;
     let longest = M::longest_step(&times);
     // The library begins its multistep method, at order 1, with steps below rounding.
     let first = if M::MULTISTEP { tolerance.sqrt() * times.shortest } else { 0.0 };
-    join(course, &meter, |from, sampler| {
+    join(integration, &meter, |from, sampler| {
         let field = ModeField { equations, mode: from.mode, meter: &meter };
         let mut watch = StepWatch::<M, E>::new(field, from, (tolerance, span), sampler);
         let mut method = M::method(equations.dimension(), tolerance, longest, first);

@@ -2,13 +2,13 @@
 
 use super::method::{Inside, LibraryMethod};
 use super::{ModeField, reason};
-use crate::engine::alone::GuardRise;
 use crate::engine::cubic::{Cubic, CubicEnd};
 use crate::engine::equations::Equations;
 use crate::engine::joining::{Moment, StretchEnd};
 use crate::engine::location::{GuardSearch, StateAt};
 use crate::engine::meter::Failure;
 use crate::engine::sampler::Sampler;
+use crate::engine::script::GuardRise;
 use crate::engine::walk::Walk;
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;

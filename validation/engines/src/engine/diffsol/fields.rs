@@ -48,14 +48,14 @@ pub(super) enum Field<'a> {
 }
 
 /// Equations that the library is compiled for.
-pub(super) trait Known: Equations {
+pub(super) trait DiffsolEquations: Equations {
     /// These equations, with the mode that is run and who counts the calls.
     fn field<'a>(&self, mode: &'a Cell<Self::Mode>, meter: &'a Meter<Self::Mode>) -> Field<'a>
     where
         Self: 'a;
 }
 
-impl Known for Oscillator {
+impl DiffsolEquations for Oscillator {
     fn field<'a>(&self, mode: &'a Cell<Phase>, meter: &'a Meter<Phase>) -> Field<'a>
     where
         Self: 'a,
@@ -64,7 +64,7 @@ impl Known for Oscillator {
     }
 }
 
-impl Known for Affine<'_> {
+impl DiffsolEquations for Affine<'_> {
     fn field<'a>(&self, mode: &'a Cell<usize>, meter: &'a Meter<usize>) -> Field<'a>
     where
         Self: 'a,
@@ -74,7 +74,7 @@ impl Known for Affine<'_> {
 }
 
 /// What a problem is made of beside its field.
-pub(super) struct Given<'a> {
+pub(super) struct ProblemSettings<'a> {
     pub(super) state: &'a [f64],
     pub(super) guards: usize,
     pub(super) period: f64,
@@ -84,7 +84,7 @@ pub(super) struct Given<'a> {
 /// The library's problem.
 pub(super) fn problem<'a>(
     field: Field<'a>,
-    given: &Given<'a>,
+    given: &ProblemSettings<'a>,
 ) -> Result<OdeSolverProblem<impl DiffsolProblem + 'a>, Failure> {
     let state = given.state;
     OdeBuilder::<DenseMatrix>::new()

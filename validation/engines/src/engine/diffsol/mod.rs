@@ -22,14 +22,14 @@ mod method;
 mod mode;
 
 use super::field::Oscillator;
-use super::joining::{Course, join};
+use super::joining::{Integration, join};
 use super::meter::{Failure, Limits, Meter};
 use super::{
     Accuracy, Colours, Declaration, Engine, Location, Outcome, SystemOutcome, SystemTask, Task,
     pins,
 };
 use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec};
-use fields::{Given, Known, problem};
+use fields::{DiffsolEquations, ProblemSettings, problem};
 use method::{Bdf, DiffsolMethod, Esdirk34, TrBdf2, Tsit45};
 use mode::DiffsolRun;
 use std::cell::Cell;
@@ -75,8 +75,9 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let course = Course::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
-        run::<M, _>(&course, accuracy, limits)
+        let integration =
+            Integration::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
+        run::<M, _>(&integration, accuracy, limits)
     }
 
     fn run_system(
@@ -85,22 +86,22 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
-        run::<M, _>(&Course::of_system(task), accuracy, limits)
+        run::<M, _>(&Integration::of_system(task), accuracy, limits)
     }
 }
 
-/// Runs a course with one of the library's methods.
-fn run<M: DiffsolMethod, E: Known>(
-    course: &Course<'_, E>,
+/// Runs an integration with one of the library's methods.
+fn run<M: DiffsolMethod, E: DiffsolEquations>(
+    integration: &Integration<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
 ) -> Result<Outcome<E::Mode, E::State>, Failure> {
     let tolerance = accuracy.wanted_tolerance()?;
     let meter = Meter::new(limits);
-    let Course { equations, span, times, .. } = *course;
-    let mode = Cell::new(course.mode);
-    let given = Given {
-        state: course.state.as_ref(),
+    let Integration { equations, span, times, .. } = *integration;
+    let mode = Cell::new(integration.mode);
+    let given = ProblemSettings {
+        state: integration.state.as_ref(),
         guards: equations.most_guards(),
         period: times.period,
         tolerance,
@@ -108,7 +109,7 @@ fn run<M: DiffsolMethod, E: Known>(
     let problem = problem(equations.field(&mode, &meter), &given)?;
     let longest = LONGEST_STEP * times.period;
     let run = DiffsolRun { span, longest, meter: &meter, equations };
-    join(course, &meter, |from, sampler| {
+    join(integration, &meter, |from, sampler| {
         mode.set(from.mode);
         run.one_mode::<M, _>(&problem, from, sampler)
     })

@@ -5,7 +5,7 @@ use super::method::{DiffsolMethod, DiffsolProblem};
 use crate::engine::equations::{Equations, Numbers};
 use crate::engine::joining::{Moment, StretchEnd};
 use crate::engine::meter::{Failure, Meter};
-use crate::engine::sampler::{Crossing, Sampler};
+use crate::engine::sampler::{CountedCrossing, Sampler};
 use diffsol::ode_solver::OdeSolverStatistics;
 use diffsol::{OdeSolverMethod, OdeSolverProblem, OdeSolverStopReason, StateRefMut};
 
@@ -17,7 +17,7 @@ pub(super) struct DiffsolRun<'a, E: Equations> {
 }
 
 /// A root that ends nothing.
-struct Root<E: Equations> {
+struct PassedRoot<E: Equations> {
     mode: E::Mode,
     guard: usize,
     t: f64,
@@ -75,11 +75,11 @@ impl<E: Equations> DiffsolRun<'_, E> {
                     }
                     for guard in rising {
                         if !is_known(from, root, guard, sampler) {
-                            sampler.counted.push(Crossing { t: root, guard, state });
+                            sampler.counted.push(CountedCrossing { t: root, guard, state });
                         }
                     }
                     let end: E::State = plain(solver.state().y);
-                    let left = Root { mode: from.mode, guard, t: root, state };
+                    let left = PassedRoot { mode: from.mode, guard, t: root, state };
                     let more = self.has_more(&left, solver.state().t, &end);
                     if more && root < solver.state().t {
                         sampler.take(root, state_at)?;
@@ -116,8 +116,8 @@ impl<E: Equations> DiffsolRun<'_, E> {
 
     /// Whether the rest of a step after a root that ends nothing hides another: a guard that ends
     /// the mode has risen by the step's end, or one that is counted has.
-    fn has_more(&self, root: &Root<E>, end: f64, there: &E::State) -> bool {
-        let Root { mode, guard, t, state } = root;
+    fn has_more(&self, root: &PassedRoot<E>, end: f64, there: &E::State) -> bool {
+        let PassedRoot { mode, guard, t, state } = root;
         let after = self.equations.guards(*mode, end, there.as_ref());
         let event = self.equations.event(*mode, *guard);
         let risen = |other: usize| {

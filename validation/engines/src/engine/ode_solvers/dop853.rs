@@ -13,7 +13,7 @@ use super::{COLOURS, LIBRARY, NEVER_STIFF, STEPS, TimedField, packed, plain};
 use crate::engine::cubic::CubicEnd;
 use crate::engine::equations::{Equations, Numbers};
 use crate::engine::field::Oscillator;
-use crate::engine::joining::{Course, Moment, StretchEnd, join};
+use crate::engine::joining::{Integration, Moment, StretchEnd, join};
 use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
@@ -78,8 +78,8 @@ impl Engine for Dop853 {
         STAGES * task.span * (FIRST_ORDER * rate / tolerance).sqrt()
     }
 
-    /// As of the oscillator, with the largest rate at which theta changes a state's rate over its
-    /// scale; a mode in which theta changes nothing costs nothing.
+    /// The work as on the oscillator, by the largest rate at which theta changes a state's rate
+    /// over its scale; a mode in which theta changes nothing costs nothing.
     fn least_work_on(&self, task: &SystemTask, accuracy: Accuracy) -> f64 {
         let Some(tolerance) = accuracy.tolerance().filter(|_| !self.clock) else { return 0.0 };
         let system = task.system.system();
@@ -92,11 +92,12 @@ impl Engine for Dop853 {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let course = Course::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
+        let integration =
+            Integration::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
         if self.clock {
-            run::<_, U5>(&course, [true, false], accuracy, limits)
+            run::<_, U5>(&integration, [true, false], accuracy, limits)
         } else {
-            run::<_, U4>(&course, [false; 2], accuracy, limits)
+            run::<_, U4>(&integration, [false; 2], accuracy, limits)
         }
     }
 
@@ -106,13 +107,13 @@ impl Engine for Dop853 {
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
-        run::<_, Dyn>(&Course::of_system(task), [self.clock, true], accuracy, limits)
+        run::<_, Dyn>(&Integration::of_system(task), [self.clock, true], accuracy, limits)
     }
 }
 
-/// Runs a course on vectors of so many dimensions.
+/// Runs an integration on vectors of so many dimensions.
 fn run<E: Equations, D: Dim>(
-    course: &Course<'_, E>,
+    integration: &Integration<'_, E>,
     [clock, heun]: [bool; 2],
     accuracy: Accuracy,
     limits: &Limits,
@@ -122,10 +123,11 @@ where
 {
     let tolerance = accuracy.wanted_tolerance()?;
     let meter = Meter::new(limits);
-    let longest = longest_step(&course.times);
+    let longest = longest_step(&integration.times);
     let vectors = PhantomData;
-    let run = Dop853Run::<E, D> { course, clock, heun, tolerance, longest, meter: &meter, vectors };
-    join(course, &meter, |from, sampler| run.stretch(from, sampler))
+    let run =
+        Dop853Run::<E, D> { integration, clock, heun, tolerance, longest, meter: &meter, vectors };
+    join(integration, &meter, |from, sampler| run.stretch(from, sampler))
 }
 
 /// A state moved on at these rates.
@@ -138,7 +140,7 @@ fn moved<S: Numbers>(state: &S, rates: &S, length: f64) -> S {
 }
 
 struct Dop853Run<'a, E: Equations, D> {
-    course: &'a Course<'a, E>,
+    integration: &'a Integration<'a, E>,
     clock: bool,
     heun: bool,
     tolerance: f64,
@@ -157,14 +159,14 @@ where
         sampler: &mut Sampler<E::State>,
     ) -> Result<StretchEnd<E::State>, Failure> {
         let longest = self.longest;
-        let ahead = self.course.times.period.min(MOST_STEPS * longest);
-        let until = (from.t + ahead).min(self.course.span);
+        let ahead = self.integration.times.period.min(MOST_STEPS * longest);
+        let until = (from.t + ahead).min(self.integration.span);
         let mut points = self.integrate(from.mode, (from.t, from.state), until, longest, 0.0)?;
         if let Some(last) = points.last_mut().filter(|last| last.0 > until - TINY * longest) {
             // It is the end but for rounding.
             last.0 = until;
         }
-        let search = GuardSearch::new(self.course.equations, from, self.meter);
+        let search = GuardSearch::new(self.integration.equations, from, self.meter);
         walk(search, from, points, sampler, |left, _, t| self.again(from.mode, left, t))
     }
 
@@ -187,7 +189,7 @@ where
 
     fn rates(&self, mode: E::Mode, t: f64, state: &E::State) -> E::State {
         let mut rates = *state;
-        self.course.equations.derivatives(mode, t, state.as_ref(), rates.as_mut());
+        self.integration.equations.derivatives(mode, t, state.as_ref(), rates.as_mut());
         self.meter.rhs(rates.as_ref());
         rates
     }
@@ -202,7 +204,7 @@ where
         first: f64,
     ) -> Result<Vec<CubicEnd<E::State>>, Failure> {
         let (begin, state) = from;
-        let equations = self.course.equations;
+        let equations = self.integration.equations;
         let field = TimedField { equations, mode, meter: self.meter, from: state, stale: None };
         let mut solver = ::ode_solvers::Dop853::from_param(
             field,

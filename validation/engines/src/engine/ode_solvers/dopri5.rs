@@ -4,13 +4,13 @@
 //! right state; in dense mode it does not.
 
 use super::{COLOURS, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, TimedField, packed, plain};
-use crate::engine::alone::GuardRise;
 use crate::engine::equations::Equations;
 use crate::engine::field::Coordinates;
-use crate::engine::joining::{Course, Moment, StretchEnd, join};
+use crate::engine::joining::{Integration, Moment, StretchEnd, join};
 use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
+use crate::engine::script::GuardRise;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
     Task, pins,
@@ -51,8 +51,8 @@ impl<E: Coordinates> Engine for Dopri5<E> {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let course = Course::of(task, E::of(&task.parameters, task.forcing_angle));
-        run::<E, U4>(&course, accuracy, limits)
+        let integration = Integration::of(task, E::of(&task.parameters, task.forcing_angle));
+        run::<E, U4>(&integration, accuracy, limits)
     }
 
     fn is_explicit(&self) -> bool {
@@ -72,13 +72,13 @@ impl<E: Coordinates> Engine for Dopri5<E> {
         if !E::BOUNDED {
             return Err(Failure::new("its co-ordinates are the oscillator's"));
         }
-        run::<_, Dyn>(&Course::of_system(task), accuracy, limits)
+        run::<_, Dyn>(&Integration::of_system(task), accuracy, limits)
     }
 }
 
-/// Runs a course on vectors of so many dimensions.
+/// Runs an integration on vectors of so many dimensions.
 fn run<E: Equations, D: Dim>(
-    course: &Course<'_, E>,
+    integration: &Integration<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
 ) -> Result<Outcome<E::Mode, E::State>, Failure>
@@ -87,8 +87,8 @@ where
 {
     let tolerance = accuracy.wanted_tolerance()?;
     let meter = Meter::new(limits);
-    let mut run = Dopri5Run::<E, D>::new(course, tolerance, &meter);
-    join(course, &meter, |from, sampler| {
+    let mut run = Dopri5Run::<E, D>::new(integration, tolerance, &meter);
+    join(integration, &meter, |from, sampler| {
         let stretch = run.integrate(from)?;
         let crossing = run.first_crossing(from, &stretch, sampler)?;
         let state_at = |t: f64| stretch.at(t);
@@ -102,9 +102,9 @@ where
     })
 }
 
-/// The library's method on one course.
+/// The library's method on one integration.
 pub(in crate::engine) struct Dopri5Run<'a, E: Equations, D> {
-    course: &'a Course<'a, E>,
+    integration: &'a Integration<'a, E>,
     tolerance: f64,
     meter: &'a Meter<E::Mode>,
     /// The step to begin the next stretch with; zero: the library chooses.
@@ -115,7 +115,7 @@ pub(in crate::engine) struct Dopri5Run<'a, E: Equations, D> {
 }
 
 /// A stretch of one mode, with the ends of its steps.
-pub(in crate::engine) struct Stretch<E: Equations, D: Dim>
+pub(in crate::engine) struct DenseStretch<E: Equations, D: Dim>
 where
     DefaultAllocator: Allocator<D>,
 {
@@ -126,7 +126,7 @@ where
     pub(in crate::engine) end: E::State,
 }
 
-impl<E: Equations, D: Dim> Stretch<E, D>
+impl<E: Equations, D: Dim> DenseStretch<E, D>
 where
     DefaultAllocator: Allocator<D>,
 {
@@ -146,19 +146,19 @@ where
     DefaultAllocator: Allocator<D>,
 {
     pub(in crate::engine) fn new(
-        course: &'a Course<'a, E>,
+        integration: &'a Integration<'a, E>,
         tolerance: f64,
         meter: &'a Meter<E::Mode>,
     ) -> Self {
-        Self { course, tolerance, meter, step: 0.0, stale: None, vectors: PhantomData }
+        Self { integration, tolerance, meter, step: 0.0, stale: None, vectors: PhantomData }
     }
 
     /// Integrates one mode for at most a forcing period, or to the first step's end outside it.
     pub(in crate::engine) fn integrate(
         &mut self,
         from: &Moment<E>,
-    ) -> Result<Stretch<E, D>, Failure> {
-        let Course { equations, span, times, .. } = self.course;
+    ) -> Result<DenseStretch<E, D>, Failure> {
+        let Integration { equations, span, times, .. } = self.integration;
         let field = TimedField {
             equations: *equations,
             mode: from.mode,
@@ -194,17 +194,17 @@ where
         let ends = solver.x_out().clone();
         self.step = ends.windows(2).last().map_or(0.0, |pair| pair[1] - pair[0]);
         let end = plain(equations, end);
-        Ok(Stretch { equations: *equations, output, begin: from.t, ends, end })
+        Ok(DenseStretch { equations: *equations, output, begin: from.t, ends, end })
     }
 
     /// The first instant of a stretch at which a guard has risen to zero.
     pub(in crate::engine) fn first_crossing(
         &self,
         from: &Moment<E>,
-        stretch: &Stretch<E, D>,
+        stretch: &DenseStretch<E, D>,
         sampler: &mut Sampler<E::State>,
     ) -> Result<Option<GuardRise>, Failure> {
-        let search = GuardSearch::new(self.course.equations, from, self.meter);
+        let search = GuardSearch::new(self.integration.equations, from, self.meter);
         let mut begin = stretch.begin;
         let counted = &mut sampler.counted;
         for end in stretch.ends.iter().copied().filter(|end| *end > stretch.begin) {

@@ -11,7 +11,7 @@ use super::{COLOURS, LIBRARY, TimedField, packed, plain};
 use crate::engine::cubic::Cubic;
 use crate::engine::equations::Equations;
 use crate::engine::field::Oscillator;
-use crate::engine::joining::{Course, Moment, StretchEnd, join};
+use crate::engine::joining::{Integration, Moment, StretchEnd, join};
 use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
@@ -54,8 +54,9 @@ impl Engine for Rk4 {
     }
 
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let course = Course::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
-        run::<_, U4>(&course, accuracy, limits)
+        let integration =
+            Integration::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
+        run::<_, U4>(&integration, accuracy, limits)
     }
 
     fn run_system(
@@ -64,27 +65,27 @@ impl Engine for Rk4 {
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
-        run::<_, Dyn>(&Course::of_system(task), accuracy, limits)
+        run::<_, Dyn>(&Integration::of_system(task), accuracy, limits)
     }
 }
 
-/// Runs a course on vectors of so many dimensions.
+/// Runs an integration on vectors of so many dimensions.
 fn run<E: Equations, D: Dim>(
-    course: &Course<'_, E>,
+    integration: &Integration<'_, E>,
     accuracy: Accuracy,
     limits: &Limits,
 ) -> Result<Outcome<E::Mode, E::State>, Failure>
 where
     DefaultAllocator: Allocator<D>,
 {
-    let step = accuracy.wanted_step()? * course.times.shortest;
+    let step = accuracy.wanted_step()? * integration.times.shortest;
     let meter = Meter::new(limits);
-    let run = Rk4Run::<E, D> { course, step, meter: &meter, vectors: PhantomData };
-    join(course, &meter, |from, sampler| run.stretch(from, sampler))
+    let run = Rk4Run::<E, D> { integration, step, meter: &meter, vectors: PhantomData };
+    join(integration, &meter, |from, sampler| run.stretch(from, sampler))
 }
 
 struct Rk4Run<'a, E: Equations, D> {
-    course: &'a Course<'a, E>,
+    integration: &'a Integration<'a, E>,
     step: f64,
     meter: &'a Meter<E::Mode>,
     vectors: PhantomData<fn() -> D>,
@@ -99,7 +100,7 @@ where
         from: &Moment<E>,
         sampler: &mut Sampler<E::State>,
     ) -> Result<StretchEnd<E::State>, Failure> {
-        let Course { equations, span, times, .. } = self.course;
+        let Integration { equations, span, times, .. } = self.integration;
         let longest = times.period.min(MOST_STEPS * self.step);
         let length = longest.min(span - from.t);
         let count = (length / self.step).ceil().max(1.0);

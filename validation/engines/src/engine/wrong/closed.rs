@@ -14,10 +14,10 @@ pub struct Closed {
     parameters: Parameters,
     begun: [f64; 4],
     angle: f64,
-    form: Form,
+    form: ClosedForm,
 }
 
-enum Form {
+enum ClosedForm {
     Flight(NoContact<f64>),
     Contact(Contact<f64>),
     Printed,
@@ -43,17 +43,23 @@ impl Closed {
         let force = constants.two_xi * y + q;
         let form = match phase {
             Phase::NoContact => {
-                Form::Flight(NoContact { constants, entry, angle: angles, surface: None })
+                ClosedForm::Flight(NoContact { constants, entry, angle: angles, surface: None })
             }
-            Phase::Contact if as_printed && parameters.xi < 1.0 => Form::Printed,
+            Phase::Contact if as_printed && parameters.xi < 1.0 => ClosedForm::Printed,
             Phase::Contact => {
                 let (offset, reference) = (force, 0.0);
-                Form::Contact(Contact { constants, entry, angle: angles, offset, reference })
+                ClosedForm::Contact(Contact { constants, entry, angle: angles, offset, reference })
             }
             Phase::Progression => {
                 let closing = (1.0 - q) * constants.rate;
                 let drift_rate = y - closing;
-                Form::Slip(Progression { constants, entry, angle: angles, drift_rate, closing })
+                ClosedForm::Slip(Progression {
+                    constants,
+                    entry,
+                    angle: angles,
+                    drift_rate,
+                    closing,
+                })
             }
         };
         Self { parameters: *parameters, begun, angle, form }
@@ -63,10 +69,10 @@ impl Closed {
     #[must_use]
     pub fn at(&self, d: f64) -> [f64; 4] {
         let point = match &self.form {
-            Form::Flight(flight) => flight.at(d),
-            Form::Contact(contact) => contact.at(d),
-            Form::Slip(slip) => slip.at(d),
-            Form::Printed => {
+            ClosedForm::Flight(flight) => flight.at(d),
+            ClosedForm::Contact(contact) => contact.at(d),
+            ClosedForm::Slip(slip) => slip.at(d),
+            ClosedForm::Printed => {
                 let [_, y, q, v] = self.begun;
                 let [y, q] = printed::contact(&self.parameters, self.angle, [y, q], d);
                 return [q + self.parameters.g, y, q, v];

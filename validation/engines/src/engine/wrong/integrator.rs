@@ -3,19 +3,19 @@
 //!
 //! Without a fault it is the engine `ode_solvers-dopri5`, whose bounds it is held to.
 
-use super::super::alone::GuardRise;
 use super::super::cubic::{Cubic, CubicEnd};
 use super::super::equations::Equations;
 use super::super::field::{GUARDS, Oscillator};
-use super::super::joining::{Course, Moment, StretchEnd, join};
+use super::super::joining::{Integration, Moment, StretchEnd, join};
 use super::super::meter::{Failure, Limits, Meter};
 use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{self, Dopri5Run};
+use super::super::script::GuardRise;
 use super::super::{Accuracy, Declaration, Engine, Outcome, Role, Task};
 use nalgebra::U4;
 use percuss::{Parameters, Phase};
 
-type Stretch = dopri5::Stretch<Oscillator, U4>;
+type OscillatorStretch = dopri5::DenseStretch<Oscillator, U4>;
 
 /// What is wrong.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -68,9 +68,9 @@ impl Engine for Faulty {
         }
         let meter = Meter::new(limits);
         let equations = Oscillator::of(&self.parameters(task), task.forcing_angle);
-        let course = Course::of(task, equations);
-        let mut run = Dopri5Run::<_, U4>::new(&course, tolerance, &meter);
-        let mut watch = FaultyWatch {
+        let integration = Integration::of(task, equations);
+        let mut run = Dopri5Run::<_, U4>::new(&integration, tolerance, &meter);
+        let mut detection = FaultyDetection {
             slip: self.slip,
             equations,
             tolerance,
@@ -78,18 +78,18 @@ impl Engine for Faulty {
             overlooking: false,
             before: None,
         };
-        join(&course, &meter, |from, sampler| {
-            run.stale = watch.stale(from);
+        join(&integration, &meter, |from, sampler| {
+            run.stale = detection.stale(from);
             let stretch = run.integrate(from)?;
             let sound = run.first_crossing(from, &stretch, sampler)?;
-            let Some(GuardRise { t, guard }) = watch.notice(&stretch, from, sound)? else {
-                sampler.take(stretch.last(), |t| watch.state_at(&stretch, from.mode, t))?;
+            let Some(GuardRise { t, guard }) = detection.notice(&stretch, from, sound)? else {
+                sampler.take(stretch.last(), |t| detection.state_at(&stretch, from.mode, t))?;
                 return Ok(StretchEnd::Inside { t: stretch.last(), state: stretch.end });
             };
-            sampler.take(t, |t| watch.state_at(&stretch, from.mode, t))?;
+            sampler.take(t, |t| detection.state_at(&stretch, from.mode, t))?;
             run.step = 0.0;
-            watch.before = Some(from.mode);
-            let state = watch.state_at(&stretch, from.mode, t)?;
+            detection.before = Some(from.mode);
+            let state = detection.state_at(&stretch, from.mode, t)?;
             Ok(StretchEnd::Switch { t, guard, state })
         })
     }
@@ -106,7 +106,7 @@ impl Faulty {
 }
 
 /// Finds events with the fault.
-struct FaultyWatch {
+struct FaultyDetection {
     slip: IntegratorFault,
     equations: Oscillator,
     tolerance: f64,
@@ -118,7 +118,7 @@ struct FaultyWatch {
     before: Option<Phase>,
 }
 
-impl FaultyWatch {
+impl FaultyDetection {
     /// The phase whose derivative begins a stretch: that before the last event, if that is the
     /// fault.
     fn stale(&self, from: &Moment<Oscillator>) -> Option<Phase> {
@@ -128,7 +128,7 @@ impl FaultyWatch {
     /// The crossing that this integrator notices in a stretch; `sound` is the right one.
     fn notice(
         &mut self,
-        stretch: &Stretch,
+        stretch: &OscillatorStretch,
         from: &Moment<Oscillator>,
         sound: Option<GuardRise>,
     ) -> Result<Option<GuardRise>, Failure> {
@@ -158,7 +158,7 @@ impl FaultyWatch {
         self.overlooking
     }
 
-    fn late(&self, stretch: &Stretch, crossing: GuardRise) -> GuardRise {
+    fn late(&self, stretch: &OscillatorStretch, crossing: GuardRise) -> GuardRise {
         let t = (crossing.t + LATE * self.tolerance).min(stretch.last());
         GuardRise { t, ..crossing }
     }
@@ -166,7 +166,7 @@ impl FaultyWatch {
     /// The first change of sign from one step's end to the next.
     fn by_sign(
         &self,
-        stretch: &Stretch,
+        stretch: &OscillatorStretch,
         phase: Phase,
         any_direction: bool,
     ) -> Result<Option<GuardRise>, Failure> {
@@ -189,7 +189,7 @@ impl FaultyWatch {
 
     fn bisect(
         &self,
-        stretch: &Stretch,
+        stretch: &OscillatorStretch,
         phase: Phase,
         guard: usize,
         (mut left, mut right): (f64, f64),
@@ -203,12 +203,22 @@ impl FaultyWatch {
         Ok(right)
     }
 
-    fn guards(&self, stretch: &Stretch, phase: Phase, t: f64) -> Result<[f64; GUARDS], Failure> {
+    fn guards(
+        &self,
+        stretch: &OscillatorStretch,
+        phase: Phase,
+        t: f64,
+    ) -> Result<[f64; GUARDS], Failure> {
         Ok(self.equations.guards(phase, t, &self.state_at(stretch, phase, t)?))
     }
 
     /// The state inside a stretch, by the interpolant that this integrator has.
-    fn state_at(&self, stretch: &Stretch, phase: Phase, t: f64) -> Result<[f64; 4], Failure> {
+    fn state_at(
+        &self,
+        stretch: &OscillatorStretch,
+        phase: Phase,
+        t: f64,
+    ) -> Result<[f64; 4], Failure> {
         if self.slip != IntegratorFault::LowOrder {
             return stretch.at(t);
         }

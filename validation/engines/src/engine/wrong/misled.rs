@@ -3,7 +3,7 @@
 
 use super::super::SystemOutcome;
 use super::super::equations::{Entered, Equations};
-use super::super::joining::Course;
+use super::super::joining::Integration;
 use crate::system::{Affine, Values};
 use std::cell::{Cell, RefCell};
 
@@ -58,11 +58,15 @@ impl Memory {
     }
 
     /// Gives events that end a mode the states before their resets.
-    pub(super) fn put_back(&self, outcome: &mut SystemOutcome, course: &Course<'_, Misled<'_>>) {
+    pub(super) fn put_back(
+        &self,
+        outcome: &mut SystemOutcome,
+        integration: &Integration<'_, Misled<'_>>,
+    ) {
         let mut before = self.before.take().into_iter();
-        let mut mode = course.mode;
+        let mut mode = integration.mode;
         for event in &mut outcome.events {
-            let equations = &course.equations;
+            let equations = &integration.equations;
             let guards = 0..equations.count(mode);
             let ends = guards.into_iter().any(|guard| {
                 equations.event(mode, guard) == event.event && equations.ends(mode, guard)

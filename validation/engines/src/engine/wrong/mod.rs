@@ -17,7 +17,8 @@ mod systems;
 mod ties;
 mod walk;
 
-use super::Engine;
+use super::meter::Failure;
+use super::{Engine, Outcome};
 use altered::{Alteration, Altered};
 pub use closed::Closed;
 use integrator::{Faulty, IntegratorFault};
@@ -29,7 +30,7 @@ use walk::{WalkFault, WrongWalk};
 
 /// A wrong engine and what is wrong with it.
 #[derive(Clone, Copy)]
-pub struct Wrong {
+pub struct WrongEngine {
     /// The engine.
     pub engine: &'static dyn Engine,
     /// The engine's fault, in a phrase.
@@ -42,40 +43,40 @@ pub static CONTROL: &dyn Engine = &WrongWalk { name: "walk-control", fault: Walk
 /// How rarely an engine drops an event.
 pub const DROPPED: [u64; 2] = [100, 1000];
 
-static WRONG: [Wrong; 9] = [
-    Wrong {
+static WRONG: [WrongEngine; 9] = [
+    WrongEngine {
         engine: &WrongWalk { name: "wrong-dropped-100", fault: WalkFault::Dropped(DROPPED[0]) },
         fault: "every hundredth event is dropped",
     },
-    Wrong {
+    WrongEngine {
         engine: &WrongWalk { name: "wrong-dropped-1000", fault: WalkFault::Dropped(DROPPED[1]) },
         fault: "every thousandth event is dropped",
     },
-    Wrong {
+    WrongEngine {
         engine: &Altered { name: "wrong-omega", change: Alteration::Frequency },
         fault: "omega is larger by 0.002",
     },
-    Wrong {
+    WrongEngine {
         engine: &Altered { name: "wrong-xi", change: Alteration::Damping },
         fault: "xi is larger by 1 %",
     },
-    Wrong {
+    WrongEngine {
         engine: &Altered { name: "wrong-drift", change: Alteration::Drift },
         fault: "Eq. (20) as printed, with + before the exponential",
     },
-    Wrong {
+    WrongEngine {
         engine: &WrongWalk { name: "wrong-arctan", fault: WalkFault::Arctangent },
         fault: "Eqs. (15) to (17) as printed, with arctan for beta and delta",
     },
-    Wrong {
+    WrongEngine {
         engine: &WrongWalk { name: "wrong-sign-change", fault: WalkFault::SignChange },
         fault: "guards are looked at only where a step ends, for a change of sign",
     },
-    Wrong {
+    WrongEngine {
         engine: &WrongWalk { name: "wrong-impact", fault: WalkFault::ContactAtImpact },
         fault: "every impact goes into contact, none straight into progression",
     },
-    Wrong {
+    WrongEngine {
         engine: &Altered { name: "wrong-clock", change: Alteration::Clock },
         fault: "time is one number: omega tau loses digits late in a run",
     },
@@ -83,7 +84,7 @@ static WRONG: [Wrong; 9] = [
 
 /// All of them.
 #[must_use]
-pub fn wrong() -> &'static [Wrong] {
+pub fn wrong() -> &'static [WrongEngine] {
     &WRONG
 }
 
@@ -96,11 +97,11 @@ const SELDOM: u64 = 20;
 
 macro_rules! faulty {
     ($name:literal, $slip:expr, $fault:literal) => {
-        Wrong { engine: &Faulty { name: $name, slip: $slip }, fault: $fault }
+        WrongEngine { engine: &Faulty { name: $name, slip: $slip }, fault: $fault }
     };
 }
 
-static FAULTY: [Wrong; 9] = [
+static FAULTY: [WrongEngine; 9] = [
     faulty!(
         "dopri5-drops",
         IntegratorFault::Dropped(SELDOM),
@@ -142,7 +143,7 @@ static FAULTY: [Wrong; 9] = [
 
 /// Integrators with one fault each, held to the bounds of the engine without it, [`SOUND`].
 #[must_use]
-pub fn faulty() -> &'static [Wrong] {
+pub fn faulty() -> &'static [WrongEngine] {
     &FAULTY
 }
 
@@ -188,13 +189,13 @@ impl Way {
 #[derive(Clone, Copy)]
 pub struct WrongWay {
     /// The engine and its fault.
-    pub wrong: Wrong,
+    pub wrong: WrongEngine,
     /// Where the fault shows.
     pub way: Way,
 }
 
 static WRONG_ON_SYSTEMS: [WrongWay; 1] = [WrongWay {
-    wrong: Wrong {
+    wrong: WrongEngine {
         engine: &LastFirst { name: "wrong-last-first" },
         fault: "of events in one instant the file's last comes first",
     },
@@ -214,7 +215,7 @@ pub static FAULTY_ON_SYSTEMS_CONTROL: &dyn Engine =
 macro_rules! faulty_on_systems {
     ($way:ident, $name:literal, $slip:ident, $fault:literal) => {
         WrongWay {
-            wrong: Wrong {
+            wrong: WrongEngine {
                 engine: &FaultyOnSystems { name: $name, slip: SystemFault::$slip },
                 fault: $fault,
             },
@@ -290,4 +291,9 @@ static FAULTY_ON_SYSTEMS: [WrongWay; 10] = [
 #[must_use]
 pub fn faulty_on_systems() -> &'static [WrongWay] {
     &FAULTY_ON_SYSTEMS
+}
+
+/// The answer of an engine that runs other systems alone when it is asked to run the oscillator.
+fn other_systems_alone() -> Result<Outcome, Failure> {
+    Err(Failure::new("runs other systems than the oscillator"))
 }

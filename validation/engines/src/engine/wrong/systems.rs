@@ -1,19 +1,20 @@
-//! The same good integrator with one fault each on other systems than the oscillator: mistakes that
-//! show in one way of running a case, and nowhere else.
+//! A good integrator with one fault on other systems than the oscillator: mistakes that show in one
+//! way of running a case, and nowhere else.
 //!
 //! Without a fault it is the engine `ode_solvers-dopri5`, whose bounds it is held to. Some faults
 //! are a system that was misread, some an entry that was ([`Misled`]), some stand in the loop.
 
-use super::super::alone::GuardRise;
 use super::super::equations::Equations;
-use super::super::joining::{Course, Moment, StretchEnd, join};
+use super::super::joining::{Integration, Moment, StretchEnd, join};
 use super::super::meter::{Failure, Limits, Meter};
 use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{self, Dopri5Run};
-use super::super::sampler::{Crossing, Sampler};
+use super::super::sampler::{CountedCrossing, Sampler};
+use super::super::script::GuardRise;
 use super::super::{Accuracy, Declaration, Engine, Outcome, Role, SystemOutcome, SystemTask, Task};
 use super::integrator::end_of_step;
 use super::misled::{Memory, Misled, SystemFault};
+use super::other_systems_alone;
 use crate::system::{Affine, CheckedSystem, Direction, System, Values};
 use nalgebra::Dyn;
 use std::sync::Arc;
@@ -26,7 +27,7 @@ pub(super) struct FaultyOnSystems {
     pub(super) slip: SystemFault,
 }
 
-type Stretch<'a> = dopri5::Stretch<Misled<'a>, Dyn>;
+type SystemStretch<'a> = dopri5::DenseStretch<Misled<'a>, Dyn>;
 
 impl Engine for FaultyOnSystems {
     fn declaration(&self) -> Declaration {
@@ -35,7 +36,7 @@ impl Engine for FaultyOnSystems {
     }
 
     fn run(&self, _: &Task, _: Accuracy, _: &Limits) -> Result<Outcome, Failure> {
-        Err(Failure::new("runs other systems than the oscillator"))
+        other_systems_alone()
     }
 
     fn run_system(
@@ -48,11 +49,11 @@ impl Engine for FaultyOnSystems {
         let system = Arc::new(self.slip.misread(&task.system)?);
         let task = SystemTask { system, ..task.clone() };
         let memory = Memory::default();
-        let course = misled(&task, self.slip, &memory);
+        let integration = misled(&task, self.slip, &memory);
         let meter = Meter::new(limits);
-        let mut run = Dopri5Run::<_, Dyn>::new(&course, tolerance, &meter);
-        let watch = Watch { slip: self.slip, memory: &memory, task: &task };
-        let mut outcome = join(&course, &meter, |from, sampler| {
+        let mut run = Dopri5Run::<_, Dyn>::new(&integration, tolerance, &meter);
+        let watch = FaultySystemDetection { slip: self.slip, memory: &memory, task: &task };
+        let mut outcome = join(&integration, &meter, |from, sampler| {
             let stretch = run.integrate(from)?;
             let sound = run.first_crossing(from, &stretch, sampler)?;
             watch.count_at_start(from, sampler);
@@ -67,7 +68,7 @@ impl Engine for FaultyOnSystems {
             Ok(StretchEnd::Switch { t, guard, state: stretch.at(t)? })
         })?;
         if self.slip == SystemFault::StateBefore {
-            memory.put_back(&mut outcome, &course);
+            memory.put_back(&mut outcome, &integration);
         }
         Ok(outcome)
     }
@@ -111,30 +112,31 @@ fn turn(system: &mut System, other: impl Fn(Direction) -> Direction) {
     }
 }
 
-/// The course of a task with equations that are misled.
+/// The integration of a task with equations that are misled.
 fn misled<'a>(
     task: &'a SystemTask,
     slip: SystemFault,
     memory: &'a Memory,
-) -> Course<'a, Misled<'a>> {
-    let Course { equations, mode, state, span, samples, times, watched } = Course::of_system(task);
+) -> Integration<'a, Misled<'a>> {
+    let Integration { equations, mode, state, span, samples, times, watched } =
+        Integration::of_system(task);
     let equations = Misled { sound: equations, slip, memory };
-    Course { equations, mode, state, span, samples, times, watched }
+    Integration { equations, mode, state, span, samples, times, watched }
 }
 
 /// Finds events with the fault.
-struct Watch<'a> {
+struct FaultySystemDetection<'a> {
     slip: SystemFault,
     memory: &'a Memory,
     task: &'a SystemTask,
 }
 
-impl Watch<'_> {
+impl FaultySystemDetection<'_> {
     /// The crossing that is noticed in a stretch; `sound` is the right one.
     fn notice(
         &self,
         from: &Moment<Misled<'_>>,
-        stretch: &Stretch<'_>,
+        stretch: &SystemStretch<'_>,
         sound: Option<GuardRise>,
     ) -> Option<GuardRise> {
         let found = sound.filter(|it| !self.memory.overlooks(it.guard) && !self.is_cool(from, it));
@@ -165,7 +167,7 @@ impl Watch<'_> {
         // An event that counts in both directions has two guards; one will do.
         let mut guards: Vec<usize> = zero.collect();
         guards.dedup_by_key(|guard| equations.event(from.mode, *guard));
-        let at = |guard: usize| Crossing { t: from.t, guard, state: from.state };
+        let at = |guard: usize| CountedCrossing { t: from.t, guard, state: from.state };
         sampler.counted.splice(0..0, guards.into_iter().map(at));
     }
 }

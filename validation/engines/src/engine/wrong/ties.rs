@@ -4,6 +4,7 @@ use super::super::exact::Exact;
 use super::super::{
     Accuracy, Declaration, Engine, Failure, Limits, Outcome, Role, SystemOutcome, SystemTask, Task,
 };
+use super::other_systems_alone;
 use crate::system::SystemProblem;
 use std::sync::Arc;
 
@@ -18,7 +19,7 @@ impl Engine for LastFirst {
     }
 
     fn run(&self, _: &Task, _: Accuracy, _: &Limits) -> Result<Outcome, Failure> {
-        Err(Failure::new("runs other systems than the oscillator"))
+        other_systems_alone()
     }
 
     fn run_system(

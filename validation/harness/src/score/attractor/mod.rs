@@ -1,4 +1,4 @@
-//! Same attractor: whether an engine's long run in chaos has the right statistics.
+//! The same-attractor test: whether an engine's long run in chaos has the right statistics.
 //!
 //! Where errors grow exponentially a long run cannot be compared point by point; what it visits,
 //! how often, and how fast it drifts can. Distances are those between an engine's section and a

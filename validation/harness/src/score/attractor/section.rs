@@ -47,8 +47,8 @@ impl RunSection {
         Self::judged(task, outcome, transient, &task.problem)
     }
 
-    /// Like [`RunSection::of`], with the exact map of another problem: the one that the run should
-    /// have solved.
+    /// The section as [`RunSection::of`] makes it, with the exact map of another problem: the one
+    /// that the run should have solved.
     pub(super) fn judged(
         task: &Task,
         outcome: &Outcome,

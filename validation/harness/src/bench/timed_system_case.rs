@@ -1,7 +1,7 @@
 //! What contestants run of any other system than the oscillator, held to the truth as
-//! [`super::course`] holds the oscillator.
+//! [`super::timed_case`] holds the oscillator.
 
-use super::course::{CaseEntry, Score};
+use super::timed_case::{CaseEntry, Score};
 use crate::case::{FileError, SystemCase};
 use crate::engine::{Ended, Failure, SystemOutcome, SystemTask};
 use crate::number::brief;
@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 /// A run of a system to be made and what is true of it.
 #[derive(Clone, Debug)]
-pub struct SystemCourse {
-    /// The name of the course's case.
+pub struct TimedSystemCase {
+    /// The name of the case.
     pub name: String,
     /// The trouble that the case makes.
     pub trouble: String,
@@ -28,7 +28,7 @@ pub struct SystemCourse {
     occurrences: Vec<Occurrence>,
 }
 
-impl SystemCourse {
+impl TimedSystemCase {
     /// The run of a case.
     ///
     /// # Errors
@@ -45,13 +45,13 @@ impl SystemCourse {
         Ok(Self { name, trouble, task, problem, truth, names, occurrences })
     }
 
-    /// The length of the course in what stands for forcing periods.
+    /// The length of the case in what stands for forcing periods.
     #[must_use]
     pub fn periods(&self) -> f64 {
         self.task.span / self.task.system.period()
     }
 
-    /// What a bench says of the course.
+    /// What a bench says of the case.
     #[must_use]
     pub fn entry(&self) -> CaseEntry {
         CaseEntry {

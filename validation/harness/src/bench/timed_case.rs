@@ -29,8 +29,8 @@ impl CaseEntry {
 
 /// A run to be made and what is true of it.
 #[derive(Clone, Debug)]
-pub struct Course {
-    /// The name of the course's case.
+pub struct TimedCase {
+    /// The name of the case.
     pub name: String,
     /// The regime it stands for.
     pub regime: String,
@@ -66,7 +66,7 @@ impl Score {
 /// A grid without samples: only the events and the end are asked for.
 const NO_SAMPLES: SampleGrid = SampleGrid { per_period: 1, count: 0 };
 
-impl Course {
+impl TimedCase {
     /// The run of a case.
     ///
     /// # Errors
@@ -99,7 +99,7 @@ impl Course {
         })
     }
 
-    /// What a bench says of the course.
+    /// What a bench says of the case.
     #[must_use]
     pub fn entry(&self) -> CaseEntry {
         CaseEntry {
@@ -110,7 +110,7 @@ impl Course {
         }
     }
 
-    /// The length of the course in forcing periods.
+    /// The length of the case in forcing periods.
     #[must_use]
     pub fn periods(&self) -> f64 {
         self.task.span / self.task.problem.model.period()

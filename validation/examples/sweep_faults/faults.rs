@@ -1,201 +1,14 @@
-//! Spoils sweeps in all the ways that clusters do, and counts what is lost or doubled.
-//!
-//! ```sh
-//! cargo run --release -p percuss-validation --example sweep_faults -- docs/SWEEPS.md
-//! ```
-//!
-//! writes its table between the marks of that page. The program that it runs lies beside it: build
-//! it first, by `cargo build --release`. Full disks and read-only folders need root on Linux.
+//! The faults: what is done to a sweep, and what is then lost, doubled or refused.
 
+use super::{PLAN, SHARDS, SweepTrial, Tried};
 use anyhow::{Context, Result, bail, ensure};
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::{Child, Command, Output, Stdio};
+use std::path::Path;
+use std::process::Command;
 use std::time::{Duration, Instant};
-use tempfile::TempDir;
 
-const PLAN: &str = r#"
-[sweep]
-verb = "lyapunov"
-shards = 6
-[fixed]
-transient = 100
-periods = 4000
-[[axis]]
-parameter = "omega"
-from = 0.6
-to = 1.9
-steps = 20
-[[axis]]
-parameter = "b"
-from = 0.05
-to = 0.3
-steps = 9
-"#;
-const SHARDS: u32 = 6;
-
-/// What became of one kind of fault.
-struct Tried {
-    fault: &'static str,
-    times: u32,
-    lost: u32,
-    doubled: u32,
-    outcome: &'static str,
-}
-
-/// A sweep in a folder of its own.
-struct Bench {
-    program: PathBuf,
-    folder: TempDir,
-    /// The merged bytes of an undisturbed run.
-    expected: Vec<u8>,
-    /// How long one shard takes.
-    shard: Duration,
-}
-
-fn main() -> Result<()> {
-    let page = std::env::args().nth(1).context("the page that gets the table is missing")?;
-    let program = std::env::current_exe()?.with_file_name("../percuss").canonicalize()?;
-    let mut bench = Bench::new(program)?;
-    bench.measure()?;
-    let tried = [
-        bench.killed()?,
-        bench.lost_worker()?,
-        bench.killed_merge()?,
-        bench.two_workers()?,
-        bench.two_runs()?,
-        bench.altered()?,
-        bench.another_program()?,
-        bench.edited_plan()?,
-        bench.clock_skew()?,
-    ];
-    let mut rows: Vec<String> = tried.iter().map(Tried::row).collect();
-    for row in [bench.full_disk(), bench.read_only()] {
-        rows.push(
-            row.map_or_else(|error| format!("| not tried: {error:#} | 0 | | | |"), |it| it.row()),
-        );
-    }
-    let head = "| fault | times | lost | doubled | what happened |\n|---|---|---|---|---|";
-    splice(Path::new(&page), &format!("{head}\n{}", rows.join("\n")))
-}
-
-impl Tried {
-    fn row(&self) -> String {
-        let Self { fault, times, lost, doubled, outcome } = self;
-        format!("| {fault} | {times} | {lost} | {doubled} | {outcome} |")
-    }
-}
-
-/// Puts a table between the marks of a page.
-fn splice(page: &Path, table: &str) -> Result<()> {
-    const MARKS: [&str; 2] = ["<!-- faults -->", "<!-- end of faults -->"];
-    let text = fs::read_to_string(page)?;
-    let (before, rest) = text.split_once(MARKS[0]).context("the page has no mark")?;
-    let (_, after) = rest.split_once(MARKS[1]).context("the page has no second mark")?;
-    println!("{table}");
-    Ok(fs::write(page, format!("{before}{}\n{table}\n{}{after}", MARKS[0], MARKS[1]))?)
-}
-
-impl Bench {
-    fn new(program: PathBuf) -> Result<Self> {
-        let folder = tempfile::tempdir()?;
-        fs::write(folder.path().join("plan.toml"), PLAN)?;
-        Ok(Self { program, folder, expected: Vec::new(), shard: Duration::ZERO })
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn command(&self, step: &str, out: &Path) -> Command {
-        let mut command = Command::new(&self.program);
-        command.args(["sweep", step, "--threads", "1", "--plan"]).arg(self.path("plan.toml"));
-        command.arg("--out").arg(out).stdout(Stdio::piped()).stderr(Stdio::piped());
-        command
-    }
-
-    fn run(&self, step: &str, out: &Path, more: &[&str]) -> Result<Output> {
-        Ok(self.command(step, out).args(more).output()?)
-    }
-
-    fn done(&self, step: &str, out: &Path, more: &[&str]) -> Result<()> {
-        let output = self.run(step, out, more)?;
-        let said = String::from_utf8_lossy(&output.stderr);
-        ensure!(output.status.success(), "{step} {more:?}: {said}");
-        Ok(())
-    }
-
-    /// A step that is refused with this exit code and these words.
-    fn refused(&self, step: &str, out: &Path, more: &[&str], code: i32, words: &str) -> Result<()> {
-        let output = self.run(step, out, more)?;
-        let said = String::from_utf8_lossy(&output.stderr);
-        ensure!(
-            output.status.code() == Some(code) && said.contains(words),
-            "{step} {more:?} is expected to say {words}: {:?} {said}",
-            output.status
-        );
-        Ok(())
-    }
-
-    fn start(&self, out: &Path, shard: Option<u32>) -> Result<Child> {
-        let mut command = self.command("run", out);
-        if let Some(shard) = shard {
-            command.arg("--shard").arg(format!("{shard}/{SHARDS}"));
-        }
-        Ok(command.spawn()?)
-    }
-
-    fn shard(out: &Path, shard: u32) -> PathBuf {
-        out.join(format!("{shard:05}.shard"))
-    }
-
-    /// The files of finished shards.
-    fn finished(out: &Path) -> Vec<(u32, Vec<u8>)> {
-        let read = |shard| Some((shard, fs::read(Self::shard(out, shard)).ok()?));
-        (0..SHARDS).filter_map(read).collect()
-    }
-
-    /// Counts the shards that were finished before and are gone or changed now.
-    fn lost(out: &Path, before: &[(u32, Vec<u8>)]) -> u32 {
-        let is_there = |(shard, bytes): &&(u32, Vec<u8>)| {
-            fs::read(Self::shard(out, *shard)).is_ok_and(|it| it == *bytes)
-        };
-        before.len() as u32 - before.iter().filter(is_there).count() as u32
-    }
-
-    /// Ends the sweep; 1 if its merged bytes are not those of an undisturbed one.
-    fn differs(&self, out: &Path) -> Result<u32> {
-        self.done("run", out, &[])?;
-        Ok(u32::from(self.merged(out)? != self.expected))
-    }
-
-    fn merged(&self, out: &Path) -> Result<Vec<u8>> {
-        let merged = self.path("merged.npz");
-        self.done("merge", out, &["--output", &merged.display().to_string()])?;
-        Ok(fs::read(merged)?)
-    }
-
-    /// An undisturbed run.
-    fn measure(&mut self) -> Result<()> {
-        let out = self.path("undisturbed");
-        let begun = Instant::now();
-        self.done("run", &out, &[])?;
-        self.shard = begun.elapsed() / SHARDS;
-        self.expected = self.merged(&out)?;
-        eprintln!("a shard takes {:?}", self.shard);
-        Ok(())
-    }
-
-    /// A folder with a few finished shards.
-    fn begun(&self, name: &str) -> Result<PathBuf> {
-        let out = self.path(name);
-        let _ = fs::remove_dir_all(&out);
-        self.done("run", &out, &["--shard", "1/6"])?;
-        self.done("run", &out, &["--shard", "4/6"])?;
-        Ok(out)
-    }
-
-    fn killed(&self) -> Result<Tried> {
+impl SweepTrial {
+    pub(super) fn killed(&self) -> Result<Tried> {
         let (times, mut lost, mut doubled) = (50, 0, 0);
         let out = self.path("killed");
         for time in 0..times {
@@ -215,7 +28,7 @@ impl Bench {
         Ok(Tried { fault: "kill -9 while a shard is computed", times, lost, doubled, outcome })
     }
 
-    fn lost_worker(&self) -> Result<Tried> {
+    pub(super) fn lost_worker(&self) -> Result<Tried> {
         let (times, mut lost, mut doubled) = (10, 0, 0);
         for _ in 0..times {
             let out = self.begun("lost")?;
@@ -233,7 +46,7 @@ impl Bench {
         Ok(Tried { fault: "a worker that is lost for good", times, lost, doubled, outcome })
     }
 
-    fn killed_merge(&self) -> Result<Tried> {
+    pub(super) fn killed_merge(&self) -> Result<Tried> {
         let (times, mut lost, mut doubled) = (20, 0, 0);
         let (out, merged) = (self.path("undisturbed"), self.path("half.npz"));
         let begun = Instant::now();
@@ -254,7 +67,7 @@ impl Bench {
         Ok(Tried { fault: "kill -9 while shards are merged", times, lost, doubled, outcome })
     }
 
-    fn two_workers(&self) -> Result<Tried> {
+    pub(super) fn two_workers(&self) -> Result<Tried> {
         let (times, mut lost, mut doubled) = (10, 0, 0);
         for _ in 0..times {
             let out = self.begun("two")?;
@@ -271,7 +84,7 @@ impl Bench {
         Ok(Tried { fault: "two workers on one shard", times, lost, doubled, outcome })
     }
 
-    fn two_runs(&self) -> Result<Tried> {
+    pub(super) fn two_runs(&self) -> Result<Tried> {
         let (times, mut lost, mut doubled) = (5, 0, 0);
         for _ in 0..times {
             let out = self.begun("runs")?;
@@ -288,7 +101,7 @@ impl Bench {
         Ok(Tried { fault: "two runs of all shards at once", times, lost, doubled, outcome })
     }
 
-    fn altered(&self) -> Result<Tried> {
+    pub(super) fn altered(&self) -> Result<Tried> {
         let (times, mut lost, mut doubled) = (50, 0, 0);
         let out = self.path("altered");
         self.done("run", &out, &[])?;
@@ -313,7 +126,7 @@ impl Bench {
         Ok(Tried { fault: "one bit altered, or the file cut", times, lost, doubled, outcome })
     }
 
-    fn another_program(&self) -> Result<Tried> {
+    pub(super) fn another_program(&self) -> Result<Tried> {
         let (mut times, mut lost) = (0, 0);
         let out = self.begun("program")?;
         let before = Self::finished(&out);
@@ -337,7 +150,7 @@ impl Bench {
         Ok(Tried { fault, times, lost, doubled, outcome })
     }
 
-    fn edited_plan(&self) -> Result<Tried> {
+    pub(super) fn edited_plan(&self) -> Result<Tried> {
         let (mut times, mut lost) = (0, 0);
         let out = self.begun("plan")?;
         let before = Self::finished(&out);
@@ -355,7 +168,7 @@ impl Bench {
         Ok(Tried { fault: "a plan edited after the first shard", times, lost, doubled, outcome })
     }
 
-    fn clock_skew(&self) -> Result<Tried> {
+    pub(super) fn clock_skew(&self) -> Result<Tried> {
         let (mut times, mut lost, mut doubled) = (0, 0, 0);
         for seconds in [0, 1_000_000_000, 4_000_000_000] {
             let out = self.begun("clock")?;
@@ -372,7 +185,7 @@ impl Bench {
         Ok(Tried { fault: "files of 1970, 2001 and 2096", times, lost, doubled, outcome })
     }
 
-    fn full_disk(&self) -> Result<Tried> {
+    pub(super) fn full_disk(&self) -> Result<Tried> {
         let (times, mut lost, mut doubled) = (10, 0, 0);
         for time in 0..times {
             let out = self.path("full");
@@ -398,7 +211,7 @@ impl Bench {
         Ok(Tried { fault: "a full disk", times, lost, doubled, outcome })
     }
 
-    fn read_only(&self) -> Result<Tried> {
+    pub(super) fn read_only(&self) -> Result<Tried> {
         let out = self.path("read-only");
         fs::create_dir_all(&out)?;
         mount(&["-t", "tmpfs", "tmpfs"], &out)?;

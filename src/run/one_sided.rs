@@ -1,7 +1,7 @@
 //! How a phase ends by plain one-sided steps in any arithmetic, as a reference for the search.
 //!
-//! As in [`crate::crossing::stepping`] no step passes a crossing; here the arithmetic may be one of
-//! more digits, in which the phase begins with the same f64 values and is decided with its own
+//! No step passes a crossing, as in [`crate::crossing::stepping`]; here the arithmetic may be one
+//! of more digits, in which the phase begins with the same f64 values and is decided with its own
 //! rounding room.
 
 use crate::crossing::stepping::safe_step;
@@ -13,12 +13,12 @@ use crate::flow::progression::Progression;
 use crate::flow::{Flow, Point};
 use crate::model::{Model, Motion};
 use crate::numeric::number::Number;
-use crate::run::segment::Segment;
+use crate::run::trajectory::Segment;
 use crate::state::State;
 
 /// How the one-sided search says that a phase ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Judgement {
+pub enum OneSidedEnd {
     /// The phase ends by a crossing.
     Crossing {
         /// The elapsed time at which the guard crosses.
@@ -46,7 +46,7 @@ pub struct Effort {
 }
 
 /// A phase in some arithmetic, with its thresholds and a bound of its guard's bend.
-struct Judged<'a, P, B> {
+struct OneSidedSearch<'a, P, B> {
     phase: &'a P,
     /// The lower and the upper threshold.
     corridor: [Option<f64>; 2],
@@ -61,7 +61,7 @@ impl Segment {
     /// How the phase ends by one-sided steps in the arithmetic `T`.
     #[doc(hidden)]
     #[must_use]
-    pub fn judged_in<T: Number>(&self, model: &Model, effort: &Effort) -> Judgement {
+    pub fn one_sided_end_in<T: Number>(&self, model: &Model, effort: &Effort) -> OneSidedEnd {
         let constants = Constants::<T>::new(model.parameters());
         let it = Constants::<f64>::new(model.parameters());
         let State { p, y, q } = self.entry().state;
@@ -84,14 +84,15 @@ impl Segment {
                 let head_start =
                     if flight.surface == Some(0.0) { -3.0 * first / third } else { 0.0 };
                 let corridor = [None, Some(0.0)];
-                Judged { phase: &phase, corridor, bend, head_start, underflow }.ends(effort)
+                OneSidedSearch { phase: &phase, corridor, bend, head_start, underflow }.ends(effort)
             }
             Motion::Contact(contact) => {
                 let [offset, reference] = [contact.offset, contact.reference].map(T::exact);
                 let phase = Contact { constants, entry, angle, offset, reference };
                 let bend = |at: &Point<T>| free_bend(&phase, at) + it.steady.amplitude * it.omega2;
                 let corridor = [Some(-contact.reference), Some(1.0 - contact.reference)];
-                Judged { phase: &phase, corridor, bend, head_start: 0.0, underflow }.ends(effort)
+                OneSidedSearch { phase: &phase, corridor, bend, head_start: 0.0, underflow }
+                    .ends(effort)
             }
             Motion::Progression(slip) => {
                 let [drift_rate, closing] = [slip.drift_rate, slip.closing].map(T::exact);
@@ -101,7 +102,8 @@ impl Segment {
                     it.a * it.omega + lag * it.rate * it.rate
                 };
                 let corridor = [Some(0.0), None];
-                Judged { phase: &phase, corridor, bend, head_start: 0.0, underflow }.ends(effort)
+                OneSidedSearch { phase: &phase, corridor, bend, head_start: 0.0, underflow }
+                    .ends(effort)
             }
         }
     }
@@ -114,8 +116,8 @@ fn free_bend<T: Number>(contact: &Contact<T>, at: &Point<T>) -> f64 {
     (second - forced[2]).to_f64().hypot((third - forced[3]).to_f64())
 }
 
-impl<P, B> Judged<'_, P, B> {
-    fn ends<T: Number>(&self, effort: &Effort) -> Judgement
+impl<P, B> OneSidedSearch<'_, P, B> {
+    fn ends<T: Number>(&self, effort: &Effort) -> OneSidedEnd
     where
         P: Flow<T>,
         B: Fn(&Point<T>) -> f64,
@@ -141,18 +143,18 @@ impl<P, B> Judged<'_, P, B> {
                 blind += 1;
                 step = step.max((2.0 * room / bend).sqrt()).max(2.0 * room / slope.abs());
             } else if blind > 0 {
-                return Judgement::Undecided;
+                return OneSidedEnd::Undecided;
             }
             // Written so that a NaN decides nothing.
             if !(step > 0.0 && blind <= BLIND) {
-                return Judgement::Undecided;
+                return OneSidedEnd::Undecided;
             }
             elapsed = elapsed + T::exact(step);
             if elapsed.to_f64() > effort.horizon {
-                return if blind == 0 { Judgement::Clear } else { Judgement::Undecided };
+                return if blind == 0 { OneSidedEnd::Clear } else { OneSidedEnd::Undecided };
             }
         }
-        Judgement::Undecided
+        OneSidedEnd::Undecided
     }
 
     /// How far the guard is outside each threshold.
@@ -165,9 +167,9 @@ impl<P, B> Judged<'_, P, B> {
 }
 
 /// The crossing just before a point that is outside by `excess`.
-fn crossing<T: Number>(point: &Point<T>, rises: bool, excess: f64) -> Judgement {
+fn crossing<T: Number>(point: &Point<T>, rises: bool, excess: f64) -> OneSidedEnd {
     let slope = point.guard.orders[1].to_f64().abs();
     let room = 4.0 * f64::EPSILON * point.guard.largest_term.to_f64();
     let width = (room + excess) / slope + 4.0 * f64::EPSILON * point.elapsed.to_f64();
-    Judgement::Crossing { elapsed: point.elapsed.to_f64(), rises, width }
+    OneSidedEnd::Crossing { elapsed: point.elapsed.to_f64(), rises, width }
 }

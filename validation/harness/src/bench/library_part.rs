@@ -6,8 +6,8 @@
 //! sides, Jacobians and guards that the library calls, and the joining of phases at events. For the
 //! exact solver the table of events is left out. The answer has to be the same to the last bit.
 
-use super::course::Course;
 use super::rounds::Benchmark;
+use super::timed_case::TimedCase;
 use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Script, contain, exact};
 use percuss::Step;
 use std::hint::black_box;
@@ -15,22 +15,22 @@ use std::hint::black_box;
 /// Rounds in which the run alone is timed: as many as a long call takes part in.
 pub(super) const ROUNDS: usize = 3;
 
-/// The library's part of an engine's run on a course; nothing for an engine of which nothing is
+/// The library's part of an engine's run on a case; nothing for an engine of which nothing is
 /// left out.
 ///
 /// # Errors
 /// Why the engine does not run there.
-pub fn alone<'a>(
+pub fn library_part<'a>(
     engine: &'a dyn Engine,
-    course: &'a Course,
+    case: &'a TimedCase,
     setting: Accuracy,
     limits: Limits,
 ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
-    let answer = contain(|| engine.run(&course.task, setting, &limits))?;
+    let answer = contain(|| engine.run(&case.task, setting, &limits))?;
     if engine.declaration().name == exact().declaration().name {
-        return Ok(Some(Box::new(ExactSteps { course, end: answer.end, last: answer.end })));
+        return Ok(Some(Box::new(ExactSteps { case, end: answer.end, last: answer.end })));
     }
-    told(answer, move || engine.run(&course.task, setting, &limits))
+    told(answer, move || engine.run(&case.task, setting, &limits))
 }
 
 /// A run that gave this answer, told its events; nothing where nothing is left out then.
@@ -85,14 +85,14 @@ where
 
 /// The exact solver's steps to the horizon, without a table.
 struct ExactSteps<'a> {
-    course: &'a Course,
+    case: &'a TimedCase,
     end: [f64; 4],
     last: [f64; 4],
 }
 
 impl Benchmark for ExactSteps<'_> {
     fn call(&mut self) -> Result<(), Failure> {
-        let task = &self.course.task;
+        let task = &self.case.task;
         let entry = black_box(task.problem.entry);
         let mut run = task.problem.model.trajectory(entry).until(task.horizon);
         while let Some(step) = run.step() {
