@@ -16,15 +16,15 @@ import org.apache.commons.math3.ode.sampling.StepInterpolator;
  *
  * <p>{@code METHOD-default} is the user guide: the steps of its first integrator, 1e-8 to 100; for
  * each event a handler whose {@code g} is the guard and whose {@code eventOccurred} stops the run;
- * the tolerances, with that of an event's time among them; and nothing else. How often handlers look
- * has no default: once a step. {@code METHOD} is what an expert adds:
+ * the tolerances, with that of an event's time among them; and nothing else. How often handlers
+ * look has no default: once a step. {@code METHOD} is what an expert adds:
  *
  * <ul>
  *   <li>Steps are at most an eighth of a forcing period and of a turn, and guards are looked at
  *       eight times as often, inside of steps.
  *   <li>An event's time converges to rounding, and steps have no least length.
- *   <li>A guard that is zero where a mode begins has the sign that it has just after it, until it has
- *       moved away by more than the tolerance hides.
+ *   <li>A guard that is zero where a mode begins has the sign that it has just after it, until it
+ *       has moved away by more than the tolerance hides.
  *   <li>What follows an event is told by the first derivative that is not zero.
  * </ul>
  */
@@ -38,7 +38,8 @@ final class CommonsMath {
 
     private CommonsMath() {}
 
-    private static AbstractIntegrator integrator(PercussCourse course, String name, boolean expert) {
+    private static AbstractIntegrator integrator(
+            PercussCourse course, String name, boolean expert) {
         double least = expert ? 0 : LEAST_STEP;
         double longest = expert ? course.longestStep() : LONGEST_STEP;
         double absolute = course.run.tolerance.absolute, relative = course.run.tolerance.relative;

@@ -8,10 +8,11 @@ import java.util.TreeMap;
 /** A run as it is made: what is asked for, its state, and what is reported of it. */
 final class PercussCourse {
     /** How much of a guard that was zero where its mode begins the first steps may hide, in
-     *  tolerances: of a simple zero, which it leaves at once, and of a multiple one, which it leaves
-     *  slowly. */
+     *  tolerances: of a simple zero, which it leaves at once, and of a multiple one, which it
+     *  leaves slowly. */
     private static final double SIMPLE = 0.1, MULTIPLE = 10;
-    /** So many events in one instant end a run, and so many stretches in so little of it fail it. */
+    /** So many events in one instant end a run, and so many stretches in so little of a run are one
+     *  event that is found again and again. */
     private static final int MOST_AT_ONCE = 64, MOST_STRETCHES = 200;
     private static final double ONE_INSTANT = 8 * Math.ulp(1.0), NO_PROGRESS = 1e-9;
 
@@ -125,7 +126,8 @@ final class PercussCourse {
         return (order == 1 ? SIMPLE : MULTIPLE) * errors;
     }
 
-    /** Runs a mode to its first event that ends it, whose place it returns, or to the horizon: -1. */
+    /** Runs a mode to the first event that ends it, whose place it returns, or to the horizon,
+     *  which is -1. */
     interface Stretch {
         int run(Map<Integer, PercussSystem.Leading> zeros);
     }

@@ -3,7 +3,7 @@ import java.util.List;
 import java.util.Map;
 import java.util.TreeMap;
 
-/** A system's equations, as a request brings them. What is read stands in fields of the same names. */
+/** A system's equations, as a request brings them: what is read has fields of the same names. */
 final class PercussSystem {
     /** Displacements of so many roundings are none. */
     private static final double ROUNDING = 64 * Math.ulp(1.0);
@@ -11,7 +11,8 @@ final class PercussSystem {
     double omega, phi;
     List<Mode> modes;
 
-    /** A mode: z' = A z + c + B (cos theta, sin theta). Rows are over (z, cos theta, sin theta, 1). */
+    /** A mode: z' = A z + c + B (cos theta, sin theta). A row is over (z, cos theta, sin theta,
+     *  1). */
     static final class Mode {
         double[][] A, B;
         double[] c;
@@ -46,8 +47,8 @@ final class PercussSystem {
      *  sign; the order is -1 where all are zero. */
     record Leading(int order, int sign) {}
 
-    /** What is known of a mode where it begins: the first event that ends it at once, or -1, and the
-     *  guards that are zero there. */
+    /** What is known of a mode where it begins: the first event that ends it at once, or -1, and
+     *  the guards that are zero there. */
     record Entry(int fires, Map<Integer, Leading> zeros) {}
 
     static PercussSystem read(Gson gson, com.google.gson.JsonElement wire) {
@@ -109,8 +110,8 @@ final class PercussSystem {
         return Math.sqrt(apart) <= 1e-12 * size * Math.sqrt(dot(row, row));
     }
 
-    /** The first derivative of row . w along a mode that is not zero. What is a multiple of the guard
-     *  that was passed, if one was, is zero there, whatever rounding says. */
+    /** The first derivative of row . w along a mode that is not zero. What is a multiple of the
+     *  guard that was passed, if one was, is zero there, whatever rounding says. */
     Leading leading(double[] row, int mode, double t, double[] z, Event passed) {
         double[] w = wide(t, z);
         for (int order = 0; order < w.length; order++) {
@@ -145,8 +146,8 @@ final class PercussSystem {
         return after;
     }
 
-    /** The mode that follows an event, for the state after it: by the signs of conditions alone, zero
-     *  or not, or by the first derivatives that are not zero. */
+    /** The mode that follows an event, for the state after it: by the signs of conditions alone,
+     *  zero or not, or by the first derivatives that are not zero. */
     int follows(Event event, double t, double[] after, boolean plainly) {
         double[] w = wide(t, after);
         for (Successor next : event.successors) {

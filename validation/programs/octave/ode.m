@@ -18,7 +18,8 @@
 
 source(fullfile(fileparts(mfilename("fullpath")), "percuss_program.m"));
 
-% The options of a documentation's example. They are made once a run: odeset takes longer than a step.
+% The options of a documentation's example. They are made once a run, because odeset takes longer
+% than a step.
 function options = usual_options(events)
   global course
   options = course.options;

@@ -278,8 +278,8 @@ class Course:
 
 
 def in_pairs(methods):
-    """The set-ups `NAME` and `NAME-default` of each method that finds events by itself. `methods` has
-    for each name what the method is, and its order, or None."""
+    """The set-ups `NAME` and `NAME-default` of each method that finds events by itself. `methods`
+    has for each name what the method is, and its order, or None."""
     return [
         {
             "name": name + suffix,

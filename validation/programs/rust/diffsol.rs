@@ -1,13 +1,13 @@
-//! diffsol with its own root finding as its book's example of a bouncing ball has it, run by percuss:
-//! steps until a root is found, the interpolated state there, the event's change of it, written into
-//! the same solver, which goes on from there; the tolerances, and nothing else. What an expert adds
-//! is percuss's own engine `diffsol-bdf`.
+//! diffsol with its own root finding as its book's example of a bouncing ball has it, run by
+//! percuss: steps until a root is found, the interpolated state there, the event's change of it,
+//! written into the same solver, which goes on from there; the tolerances, and nothing else. What
+//! an expert adds is percuss's own engine `diffsol-bdf`.
 //!
 //! - As `solve` does, the stop time is set again after each root.
-//! - The example puts the ball above the ground by `f64::EPSILON` at the least. So do all guards that
-//!   end the mode that follows: the state is moved to their inside by that much.
-//! - Roots have no direction. One that the guard leaves on the wrong side is passed over: the run goes
-//!   on from there, as it does from an event that is only counted.
+//! - The example puts the ball above the ground by `f64::EPSILON` at the least. Here the state is
+//!   moved inside of each guard that ends the mode that follows, by that much.
+//! - Roots have no direction. One that the guard leaves on the wrong side is passed over: the run
+//!   goes on from there, as it does from an event that is only counted.
 
 mod percuss_program;
 
