@@ -18,13 +18,13 @@
 
 source(fullfile(fileparts(mfilename("fullpath")), "percuss_program.m"));
 
-% The options of a documentation's example.
+% The options of a documentation's example. They are made once a run, because odeset takes longer
+% than a step.
 function options = usual_options(events)
   global course
-  tolerance = course.run.tolerance;
-  options = odeset("RelTol", tolerance.relative, "AbsTol", tolerance.absolute);
+  options = course.options;
   if nargin > 0 && ! isempty(course.modes{course.mode}.events)
-    options = odeset(options, "Events", events);
+    options.Events = events;
   end
 end
 
@@ -90,7 +90,8 @@ end
 % The state at a time, from the beginning of a step.
 function z = state_at(method, t, begin, z)
   if t > begin
-    options = odeset(usual_options(), "InitialStep", t - begin);
+    options = usual_options();
+    options.InitialStep = t - begin;
     [~, states] = method(@rates, [begin, t], z, options);
     z = states(end, :).';
   end
@@ -105,11 +106,14 @@ function t = root_of(method, place)
   for n = 1:8
     w = wide_of(t, state_at(method, t, seen(1).t, seen(1).z));
     move = (event.row * w) / (event.row * course.modes{course.mode}.wide * w);
-    next = min(max(t - move, seen(1).t), seen(2).t);
-    if ! isfinite(next) || abs(next - t) <= 32 * eps(t)
+    if ! isfinite(move)
       break
     end
-    t = next;
+    t = min(max(t - move, seen(1).t), seen(2).t);
+    % What is left is the square of it.
+    if abs(move) <= 1e-8 * (seen(2).t - seen(1).t)
+      break
+    end
   end
 end
 
@@ -137,8 +141,9 @@ function [t, z, crossed] = stretch(method, orders, ways)
   times = course.run.times;
   turn = min([times.period, times.turn]);
   left = course.run.span - course.t;
-  options = odeset(usual_options(@(t, z) expert_events(t, z, hidden)), "MaxStep", 0.125 * turn, ...
-                   "InitialStep", min(1e-3 * turn, left));
+  options = usual_options(@(t, z) expert_events(t, z, hidden));
+  options.MaxStep = 0.125 * turn;
+  options.InitialStep = min(1e-3 * turn, left);
   solved = method(@rates, [course.t, course.run.span], course.z, options);
   course.steps += numel(solved.x) - 1;
   t = solved.x(end);
@@ -199,6 +204,9 @@ function by_experts(method)
 end
 
 function make(setup)
+  global course
+  tolerance = course.run.tolerance;
+  course.options = odeset("RelTol", tolerance.relative, "AbsTol", tolerance.absolute);
   methods = struct("ode45", @ode45, "ode23", @ode23, "ode15s", @ode15s);
   name = strrep(setup, "-default", "");
   if strcmp(name, setup)

@@ -24,7 +24,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from percuss_program import Failure, serve, unavailable
+from percuss_program import Failure, in_pairs, serve, unavailable
 
 try:
     import diffrax
@@ -184,18 +184,6 @@ def make(setup, course):
             stretch(course, name, True, {})
 
 
-def setups():
-    for name, (_, method, order, _) in METHODS.items():
-        for suffix in ("", "-default"):
-            yield {
-                "name": name + suffix,
-                "method": method,
-                "order": order,
-                "events": "library",
-                "dense_output": True,
-                "stepping": "adaptive",
-            }
-
-
 if __name__ == "__main__":
-    serve("diffrax", diffrax.__version__, list(setups()), make)
+    methods = {name: said[1:3] for name, said in METHODS.items()}
+    serve("diffrax", diffrax.__version__, in_pairs(methods), make)

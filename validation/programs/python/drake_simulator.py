@@ -17,7 +17,7 @@ that follows from it, and is the window's end.
 
 from importlib.metadata import version
 
-from percuss_program import serve, unavailable
+from percuss_program import in_pairs, serve, unavailable
 
 try:
     from pydrake.systems.analysis import ResetIntegratorFromFlags, Simulator
@@ -122,18 +122,5 @@ def make(setup, course):
             stretch(course, name, {}, True)
 
 
-def setups():
-    for name, (method, order) in METHODS.items():
-        for suffix in ("", "-default"):
-            yield {
-                "name": name + suffix,
-                "method": method,
-                "order": order,
-                "events": "library",
-                "dense_output": True,
-                "stepping": "adaptive",
-            }
-
-
 if __name__ == "__main__":
-    serve("drake", version("drake"), list(setups()), make)
+    serve("drake", version("drake"), in_pairs(METHODS), make)

@@ -277,6 +277,23 @@ class Course:
         }
 
 
+def in_pairs(methods):
+    """The set-ups `NAME` and `NAME-default` of each method that finds events by itself. `methods`
+    has for each name what the method is, and its order, or None."""
+    return [
+        {
+            "name": name + suffix,
+            "method": method,
+            "order": order,
+            "events": "library",
+            "dense_output": True,
+            "stepping": "adaptive",
+        }
+        for name, (method, order) in methods.items()
+        for suffix in ("", "-default")
+    ]
+
+
 def serve(library, version, setups, make):
     """Answers requests until there are no more. `make` takes the name of a set-up and a `Course`,
     and runs it to its end."""

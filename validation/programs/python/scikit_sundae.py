@@ -14,7 +14,7 @@ what an expert adds:
 """
 
 import numpy as np
-from percuss_program import Failure, serve, unavailable
+from percuss_program import Failure, in_pairs, serve, unavailable
 
 try:
     import sksundae
@@ -134,18 +134,7 @@ def make(setup, course):
     course.by_experts(lambda zeros: (stretch(course, name, zeros, options), {}))
 
 
-def setups():
-    for name, method in METHODS.items():
-        for suffix in ("", "-default"):
-            yield {
-                "name": name + suffix,
-                "method": method,
-                "events": "library",
-                "dense_output": True,
-                "stepping": "adaptive",
-            }
-
-
 if __name__ == "__main__":
+    methods = {name: (method, None) for name, method in METHODS.items()}
     version = f"{sksundae.__version__} with SUNDIALS {sksundae.SUNDIALS_VERSION}"
-    serve("scikit-sundae", version, list(setups()), make)
+    serve("scikit-sundae", version, in_pairs(methods), make)

@@ -14,7 +14,7 @@ nothing else. `METHOD` is what an expert adds:
 - Implicit methods are given their Jacobian.
 """
 
-from percuss_program import Failure, serve, unavailable
+from percuss_program import Failure, in_pairs, serve, unavailable
 
 try:
     import scipy
@@ -127,18 +127,6 @@ def make(setup, course):
         by_default(course, method)
 
 
-def setups():
-    for name, (_, method, order) in METHODS.items():
-        for suffix in ("", "-default"):
-            yield {
-                "name": name + suffix,
-                "method": method,
-                "order": order,
-                "events": "library",
-                "dense_output": True,
-                "stepping": "adaptive",
-            }
-
-
 if __name__ == "__main__":
-    serve("scipy", scipy.__version__, list(setups()), make)
+    methods = {name: said[1:] for name, said in METHODS.items()}
+    serve("scipy", scipy.__version__, in_pairs(methods), make)

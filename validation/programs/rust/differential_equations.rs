@@ -1,7 +1,7 @@
 //! differential-equations with its built-in events as its documentation's first example has them,
 //! run by percuss: `dop853`, an `Event` with a direction that ends the run, the tolerances, and
 //! nothing else. What an expert adds is percuss's own engine `differential-equations-rkv655e`.
-//! Modes with more than three events are refused: the builder takes them one by one.
+//! The builder takes its events one by one, each a type of its own: a mode has at most eight here.
 
 mod percuss_program;
 
@@ -39,6 +39,15 @@ impl Event<f64, Vec<f64>> for Guard {
     }
 }
 
+/// Solves with the guards of these places, one call of the builder each.
+macro_rules! solve {
+    ($run:expr, $method:expr, $guards:expr, $($place:literal)*) => {{
+        let run = $run;
+        $(let run = run.event(&$guards[$place]);)*
+        run.method($method).solve()
+    }};
+}
+
 /// Runs to the first event that the library finds.
 fn stretch(course: &mut Course) -> Result<(), Box<dyn std::error::Error>> {
     let (mode, span) = (course.mode(), course.run.span);
@@ -51,12 +60,17 @@ fn stretch(course: &mut Course) -> Result<(), Box<dyn std::error::Error>> {
         .rtol(course.run.tolerance.relative)
         .atol(course.run.tolerance.absolute);
     let run = IVP::ode(&field, course.t, span, course.z.clone()).t_eval(times);
-    let solution = match guards.as_slice() {
-        [] => run.method(method).solve(),
-        [one] => run.event(one).method(method).solve(),
-        [one, two] => run.event(one).event(two).method(method).solve(),
-        [one, two, three] => run.event(one).event(two).event(three).method(method).solve(),
-        _ => return Err("the builder takes its events one by one; this program adds three".into()),
+    let solution = match guards.len() {
+        0 => solve!(run, method, guards,),
+        1 => solve!(run, method, guards, 0),
+        2 => solve!(run, method, guards, 0 1),
+        3 => solve!(run, method, guards, 0 1 2),
+        4 => solve!(run, method, guards, 0 1 2 3),
+        5 => solve!(run, method, guards, 0 1 2 3 4),
+        6 => solve!(run, method, guards, 0 1 2 3 4 5),
+        7 => solve!(run, method, guards, 0 1 2 3 4 5 6),
+        8 => solve!(run, method, guards, 0 1 2 3 4 5 6 7),
+        more => return Err(format!("{more} events; this program adds at most eight").into()),
     };
     let solution = solution.map_err(|why| format!("{why:?}"))?;
     course.steps += solution.steps.total() as u64;

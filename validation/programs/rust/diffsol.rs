@@ -1,9 +1,13 @@
-//! diffsol with its own root finding as its book's bouncing ball has it, run by percuss: steps
-//! until a root is found, the interpolated state there, the event's own change of it, and a start
-//! from there; the tolerances, and nothing else. What an expert adds is percuss's own engine
-//! `diffsol-bdf`.
+//! diffsol with its own root finding as its book's example of a bouncing ball has it, run by
+//! percuss: steps until a root is found, the interpolated state there, the event's change of it,
+//! written into the same solver, which goes on from there; the tolerances, and nothing else. What
+//! an expert adds is percuss's own engine `diffsol-bdf`.
 //!
-//! Roots have no direction. One that the guard leaves on the wrong side is passed over.
+//! - As `solve` does, the stop time is set again after each root.
+//! - The example puts the ball above the ground by `f64::EPSILON` at the least. Here the state is
+//!   moved inside of each guard that ends the mode that follows, by that much.
+//! - Roots have no direction. One that the guard leaves on the wrong side is passed over: the run
+//!   goes on from there, as it does from an event that is only counted.
 
 mod percuss_program;
 
@@ -12,7 +16,9 @@ use diffsol::{
     OdeSolverStopReason,
 };
 use percuss_program::{Course, serve};
+use std::cell::Cell;
 use std::error::Error;
+use std::rc::Rc;
 
 type Vector = NalgebraVec<f64>;
 
@@ -20,9 +26,42 @@ fn values(z: &Vector) -> Vec<f64> {
     z.batch_as_slice(0).to_vec()
 }
 
-/// Steps to the first root.
-fn stretch<'a, Eqn>(
+/// The state of now, moved to the inside of its mode.
+fn inside(course: &Course) -> Vec<f64> {
+    let (mode, mut z) = (course.mode(), course.z.clone());
+    for (place, event) in mode.events().iter().enumerate().filter(|(_, event)| event.ends()) {
+        let slope = &event.guard()[..z.len()];
+        let size: f64 = slope.iter().map(|it| it * it).sum();
+        let out = mode.guard(place, course.t, &z) + f64::EPSILON;
+        if out > 0.0 && size > 0.0 {
+            z.iter_mut().zip(slope).for_each(|(z, slope)| *z -= out / size * slope);
+        }
+    }
+    z
+}
+
+/// Writes the state at a root, after its event, into the solver, as the example does.
+fn go_on<'a, Eqn>(
+    course: &Course,
+    solver: &mut impl OdeSolverMethod<'a, Eqn>,
+) -> Result<(), Box<dyn Error>>
+where
+    Eqn: OdeEquations<T = f64, V = Vector> + 'a,
+{
+    let state = solver.state_mut();
+    state.y.batch_as_mut_slice(0).copy_from_slice(&course.z);
+    state.dy.batch_as_mut_slice(0).copy_from_slice(&course.mode().rates(course.t, &course.z));
+    *state.t = course.t;
+    if course.goes_on() {
+        solver.set_stop_time(course.run.span)?;
+    }
+    Ok(())
+}
+
+/// Runs to the end.
+fn run<'a, Eqn>(
     course: &mut Course,
+    now: &Cell<usize>,
     mut solver: impl OdeSolverMethod<'a, Eqn>,
 ) -> Result<(), Box<dyn Error>>
 where
@@ -30,7 +69,7 @@ where
 {
     let span = course.run.span;
     solver.set_stop_time(span)?;
-    loop {
+    while course.goes_on() {
         let reason = solver.step()?;
         course.step()?;
         let reached = match reason {
@@ -45,52 +84,62 @@ where
             OdeSolverStopReason::InternalTimestep => {}
             OdeSolverStopReason::TstopReached => {
                 (course.t, course.z) = (span, values(solver.state().y));
-                return Ok(());
             }
             OdeSolverStopReason::RootFound(root, place) => {
                 let mode = course.mode();
-                let state = values(&solver.interpolate(root)?);
                 let after = mode.guard(place, solver.state().t, &values(solver.state().y));
-                if mode.events()[place].sign() * after >= 0.0 {
-                    return course.event(root, place, state);
+                let state = values(&solver.interpolate(root)?);
+                if mode.events()[place].sign() * after < 0.0 {
+                    (course.t, course.z) = (root, state);
+                } else {
+                    course.event(root, place, state)?;
+                    if mode.events()[place].ends() {
+                        now.set(course.modes().1);
+                        course.z = inside(course);
+                    }
                 }
-                (course.t, course.z) = (root, state);
-                return Ok(());
+                go_on(course, &mut solver)?;
             }
         }
     }
+    Ok(())
 }
 
 fn make(course: &mut Course) -> Result<(), Box<dyn Error>> {
-    while course.goes_on() {
-        let mode = course.mode();
-        let [rates, jacobian, guards] = [0; 3].map(|_| course.mode());
-        let (z, size) = (course.z.clone(), course.z.len());
-        let problem = OdeBuilder::<NalgebraMat<f64>>::new()
-            .t0(course.t)
-            .rtol(course.run.tolerance.relative)
-            .atol([course.run.tolerance.absolute])
-            .rhs_implicit(
-                move |z, _, t, out| out.copy_from_slice(&rates.rates(t, z)),
-                move |_, _, _, v, out| out.copy_from_slice(&jacobian.jacobian(v)),
-            )
-            .init(move |_, _, out| out.copy_from_slice(&z), size)
-            .root(
-                move |z, _, t, out| {
-                    for (place, out) in out.iter_mut().enumerate() {
-                        *out = guards.guard(place, t, z);
-                    }
-                },
-                mode.events().len(),
-            )
-            .build()?;
-        if course.run.setup.starts_with("bdf") {
-            stretch(course, problem.bdf::<NalgebraLU<f64>>()?)?;
-        } else {
-            stretch(course, problem.tsit45()?)?;
-        }
+    let (modes, first) = course.modes();
+    let most = modes.iter().map(|mode| mode.events().len()).max().unwrap_or(0);
+    let (modes, now) = (Rc::new(modes), Rc::new(Cell::new(first)));
+    let [rates, jacobian, guards] = [0; 3].map(|_| {
+        let (modes, now) = (Rc::clone(&modes), Rc::clone(&now));
+        move || Rc::clone(&modes[now.get()])
+    });
+    let (z, size) = (course.z.clone(), course.z.len());
+    let problem = OdeBuilder::<NalgebraMat<f64>>::new()
+        .t0(course.t)
+        .rtol(course.run.tolerance.relative)
+        .atol([course.run.tolerance.absolute])
+        .rhs_implicit(
+            move |z, _, t, out| out.copy_from_slice(&rates().rates(t, z)),
+            move |_, _, _, v, out| out.copy_from_slice(&jacobian().jacobian(v)),
+        )
+        .init(move |_, _, out| out.copy_from_slice(&z), size)
+        .root(
+            move |z, _, t, out| {
+                let mode = guards();
+                for (place, out) in out.iter_mut().enumerate() {
+                    // Where other modes have more events than this one there is no root.
+                    let is_own = place < mode.events().len();
+                    *out = if is_own { mode.guard(place, t, z) } else { -1.0 };
+                }
+            },
+            most,
+        )
+        .build()?;
+    if course.run.setup.starts_with("bdf") {
+        run(course, &now, problem.bdf::<NalgebraLU<f64>>()?)
+    } else {
+        run(course, &now, problem.tsit45()?)
     }
-    Ok(())
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -15,9 +15,20 @@ use percuss_programs::ProgramEngine;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Engines that no set-up makes right: deSolve 1.34 gives the root's state with a time that is not
-/// the root's, the end of the step.
-const WRONG: [&str; 1] = ["desolve-radau"];
+/// Engines that no set-up makes right, as measured on these two runs.
+const WRONG: [&str; 6] = [
+    // The root's state comes with a time that is not the root's, the end of the step.
+    "desolve-radau",
+    // Events are located on an interpolant of a lower order than the steps: their times in the
+    // oscillator are off by more than the 200 tolerances that others stay within.
+    "arkode-dirk",
+    "arkode-erk8",
+    "odeint-rosenbrock4",
+    // IDA gives up on the ball: "IDASolve failed".
+    "octave-ode15s",
+    // It misses an impact of the ball.
+    "commons-math-gbs",
+];
 
 const TOLERANCE: Accuracy = Accuracy::Tolerance(1e-8);
 const SPAN: f64 = 3.9;

@@ -98,6 +98,11 @@ impl Event {
         }
     }
 
+    /// The row of its guard.
+    pub fn guard(&self) -> &[f64] {
+        &self.guard
+    }
+
     /// Whether it ends its mode.
     pub fn ends(&self) -> bool {
         !self.successors.is_empty()
@@ -200,6 +205,11 @@ impl Course {
     /// The mode of now.
     pub fn mode(&self) -> Rc<Mode> {
         Rc::clone(&self.modes[self.mode])
+    }
+
+    /// All modes, and the place of that of now among them.
+    pub fn modes(&self) -> (Vec<Rc<Mode>>, usize) {
+        (self.modes.clone(), self.mode)
     }
 
     /// Whether the run has not come to its end.
