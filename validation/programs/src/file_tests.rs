@@ -64,7 +64,8 @@ fn the_programs_here_and_their_shortcomings_are_accepted() {
     let known = shortcomings(&path).unwrap_or_default();
     assert!(programs.len() >= 12 && known.len() >= 100, "{} {}", programs.len(), known.len());
     for it in known {
-        let of_a_program = |name: &str| it.engine.as_str().starts_with(&format!("^(?:{name}\\-"));
-        assert!(programs.iter().any(|it| of_a_program(&it.name)), "{}", it.engine);
+        let engine = it.engine.to_string();
+        let of_a_program = |name: &str| engine.starts_with(&format!("{name}-"));
+        assert!(programs.iter().any(|it| of_a_program(&it.name)), "{engine}");
     }
 }

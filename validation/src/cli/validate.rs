@@ -11,6 +11,7 @@ use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::{self, Suite, SuiteScope};
 use anyhow::{Result, bail};
 use clap::Args;
+use rayon::prelude::*;
 use regex::Regex;
 
 /// Hold every engine against the truth on every case
@@ -49,12 +50,17 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let wrong = WrongEngines::of(arguments);
     let steps = suite::size(all.len(), &engines, &scope) + wrong.count();
     let bar = work::bar(steps as u64, "rows");
-    let rows = pool.install(|| suite::run(&all, &engines, &scope, &defaults, &|| bar.inc(1)));
+    // Together, so that no thread waits for the last of the rows.
+    let (rows, findings) = pool.install(|| {
+        rayon::join(
+            || suite::run(&all, &engines, &scope, &defaults, &|| bar.inc(1)),
+            || wrong.examine(&cases, &defaults, &|| bar.inc(1)),
+        )
+    });
     let asked = suite::size(all.len(), &engines, &scope);
     if rows.len() != asked {
         bail!("{} rows were made where {asked} were asked for", rows.len());
     }
-    let findings = pool.install(|| wrong.examine(&cases, &defaults, &|| bar.inc(1)));
     bar.finish_and_clear();
     let evidence = ReportEvidence::gather(
         (&cases.oscillator, &cases.systems),
@@ -117,15 +123,20 @@ impl WrongEngines {
     }
 
     /// What the gates make of them.
-    fn examine(&self, cases: &PreparedCases, defaults: &Defaults, done: &dyn Fn()) -> Vec<Finding> {
+    fn examine(
+        &self,
+        cases: &PreparedCases,
+        defaults: &Defaults,
+        done: &(impl Fn() + Sync),
+    ) -> Vec<Finding> {
         let PreparedCases { oscillator, systems } = cases;
         let anywhere = self
             .anywhere
-            .iter()
+            .par_iter()
             .map(|(it, held)| power::examine(it, oscillator, *held, &defaults.bounds));
         let on_systems = self
             .on_systems
-            .iter()
+            .par_iter()
             .map(|(it, held)| power::examine_on_systems(it, systems, *held, &defaults.of_systems));
         anywhere.chain(on_systems).inspect(|_| done()).collect()
     }

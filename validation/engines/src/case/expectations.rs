@@ -1,6 +1,6 @@
 //! What a case file says of engines: bounds and known shortcomings.
 
-use super::bound::{Bound, Quantity, Shortcoming, Statistic};
+use super::bound::{Bound, NamePattern, Quantity, Shortcoming, Statistic};
 use super::located::{FileError, FileText};
 use crate::engine::Accuracy;
 use regex::Regex;
@@ -89,7 +89,7 @@ fn accuracies(tolerance: Option<Several>, step: Option<Several>) -> Vec<Accuracy
 
 impl FileText<'_> {
     pub(super) fn bound(&self, table: BoundTable) -> Result<Bound, FileError> {
-        let engine = self.regex("engine", &table.engine)?;
+        let engine = self.pattern("engine", &table.engine)?;
         if table.limit.get_ref().is_nan() {
             return Err(self.refused("limit", &table.limit));
         }
@@ -108,8 +108,8 @@ impl FileText<'_> {
         let ShortcomingTable { at_least, at_most, quantity, why, .. } = table;
         self.range(&at_least, *at_least.get_ref(), at_most)?;
         Ok(Shortcoming {
-            case: table.case.map(|case| self.regex("case", &case)).transpose()?,
-            engine: self.regex("engine", &table.engine)?,
+            case: table.case.map(|case| self.pattern("case", &case)).transpose()?,
+            engine: self.pattern("engine", &table.engine)?,
             at: accuracies(table.tolerance, table.step),
             quantity,
             statistic: table.statistic.unwrap_or(Statistic::Value),
@@ -138,12 +138,9 @@ impl FileText<'_> {
         Err(self.error(place, &what))
     }
 
-    fn regex(&self, key: &str, pattern: &Spanned<String>) -> Result<Regex, FileError> {
-        whole(pattern.get_ref()).map_err(|_| self.refused(key, pattern))
+    /// A pattern of whole names.
+    fn pattern(&self, key: &str, pattern: &Spanned<String>) -> Result<NamePattern, FileError> {
+        let whole = Regex::new(&format!("^(?:{})$", pattern.get_ref()));
+        whole.map(NamePattern::Matching).map_err(|_| self.refused(key, pattern))
     }
-}
-
-/// A pattern of whole names.
-pub(super) fn whole(pattern: &str) -> Result<Regex, regex::Error> {
-    Regex::new(&format!("^(?:{pattern})$"))
 }

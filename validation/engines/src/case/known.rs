@@ -1,10 +1,8 @@
 //! `shortcomings.toml`: known shortcomings of engines on the cases inside the binary, row by row.
 
-use super::bound::{Quantity, Shortcoming, Statistic};
-use super::expectations::whole;
+use super::bound::{NamePattern, Quantity, Shortcoming, Statistic};
 use super::located::{FileError, FileText};
 use crate::engine::Accuracy;
-use regex::Regex;
 use serde::Deserialize;
 use toml::Spanned;
 
@@ -52,15 +50,12 @@ impl FileText<'_> {
     ) -> Result<Shortcoming, FileError> {
         let (ref case, setting, quantity, statistic, at_least, at_most) = *row.get_ref();
         self.range(row, at_least, at_most)?;
-        let exactly = |name: &str| {
-            whole(&regex::escape(name)).map_err(|error| self.error(row, &error.to_string()))
-        };
-        let pattern: Regex = exactly(case)?;
+        let exactly = |name: &str| NamePattern::Exactly(name.to_owned());
         let accuracy =
             if setting < 0.0 { Accuracy::Step(-setting) } else { Accuracy::Tolerance(setting) };
         Ok(Shortcoming {
-            case: Some(pattern),
-            engine: exactly(engine)?,
+            case: Some(exactly(case)),
+            engine: exactly(engine),
             at: vec![accuracy],
             quantity,
             statistic,

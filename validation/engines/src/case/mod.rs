@@ -14,7 +14,7 @@ pub mod systems;
 mod wire;
 
 pub use accepted::accepted;
-pub use bound::{Bound, Quantity, Shortcoming, Statistic};
+pub use bound::{Bound, NamePattern, Quantity, Shortcoming, Statistic};
 pub use expectations::Defaults;
 pub use library::{
     Cases, defaults, defaults_of_own_cases, embedded, from_directory, shortcomings_of,
