@@ -19,14 +19,14 @@ use std::sync::Arc;
 const WRONG: [&str; 6] = [
     // The root's state comes with a time that is not the root's, the end of the step.
     "desolve-radau",
-    // Events are located on an interpolant of a lower order than the steps: their times in the
-    // oscillator are off by more than the 200 tolerances that others stay within.
+    // Times of events in the oscillator are off by more than the 200 tolerances that others stay
+    // within; an interpolant of a lower order than the steps is the likely reason.
     "arkode-dirk",
     "arkode-erk8",
     "odeint-rosenbrock4",
     // IDA gives up on the ball: "IDASolve failed".
     "octave-ode15s",
-    // It misses an impact of the ball.
+    // It misses an impact of the ball; whether the library or its program does is not known.
     "commons-math-gbs",
 ];
 
