@@ -42,8 +42,10 @@ pub struct Run<'a, T> {
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
     pub(super) enclosure: Option<Enclosure>,
-    /// The errors of the start itself, before the rounding of its modal co-ordinates.
-    start_errors: Option<Errors>,
+    /// The start, with the errors that it has before the rounding of its modal co-ordinates.
+    start: Event<T>,
+    /// The event that was given out last, or the start.
+    last: Event<T>,
 }
 
 /// The quotient of the rates after and before an impact, from its fastest occurrence.
@@ -62,7 +64,7 @@ impl<T: Number> Solver<T> {
     /// A start whose structural zeros cannot be told.
     pub fn run(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
         let mut run = self.at_start(start, until)?;
-        run.enter();
+        run.begin(None);
         Some(run)
     }
 
@@ -84,10 +86,7 @@ impl<T: Number> Solver<T> {
             *size += error(T::exact(terms.sum()));
         }
         sizes[self.system.dimension() - 1] = 0.0;
-        let enclosure = Enclosure::of(&sizes);
-        run.start_errors = Some(run.errors(&enclosure));
-        run.enclosure = Some(enclosure);
-        run.enter();
+        run.begin(Some(Enclosure::of(&sizes)));
         Some(run)
     }
 
@@ -96,6 +95,9 @@ impl<T: Number> Solver<T> {
         let mut structure = self.known.lend();
         let node = structure.start(&self.system, start)?;
         let entered = clock::start(start);
+        let mode = start.mode;
+        let begun =
+            Event { what: What::Start, time: entered, state: Vec::new(), mode, errors: None };
         let mut run = Run {
             solver: self,
             structure,
@@ -114,7 +116,8 @@ impl<T: Number> Solver<T> {
             queue: VecDeque::new(),
             ended: false,
             enclosure: None,
-            start_errors: None,
+            start: begun.clone(),
+            last: begun,
         };
         let (sin, cos) = self.sin_cos(&entered);
         for (entry, [c, s, one]) in run.state.iter_mut().zip(&start.state) {
@@ -151,9 +154,7 @@ impl<T: Number> Run<'_, T> {
     /// The start, as an event at which nothing happens but that the run begins.
     #[must_use]
     pub fn start(&self) -> Event<T> {
-        let mut event = self.event(What::Start, self.entered, &self.state);
-        event.errors.clone_from(&self.start_errors);
-        event
+        self.start.clone()
     }
 
     /// What the run has cost so far.
@@ -171,6 +172,15 @@ impl<T: Number> Run<'_, T> {
     fn complete(&mut self) {
         let (sin, cos) = self.solver.sin_cos(&self.entered);
         complete(&mut self.state, self.solver, sin, cos);
+    }
+
+    /// Begins the run, with the errors of the start where they are followed.
+    fn begin(&mut self, enclosure: Option<Enclosure>) {
+        self.start = self.event(What::Start, self.entered, &self.state);
+        self.start.errors = enclosure.as_ref().map(|it| self.errors(it));
+        self.last.clone_from(&self.start);
+        self.enclosure = enclosure;
+        self.enter();
     }
 
     /// Begins the segment of the present node: looks at each guard's first derivative that is not a
@@ -226,14 +236,21 @@ impl<T: Number> Run<'_, T> {
         self.segment = Some(segment);
     }
 
-    /// Ends the run here.
+    /// Ends the run: at an instant of its own, which is then the entry, or at that of the last
+    /// event.
     fn end(&mut self, ending: Ending<T>) {
-        if !self.ended {
-            self.ended = true;
-            let mut event = self.event(What::End(ending), self.entered, &self.state);
-            event.errors = self.enclosure.as_ref().map(|it| self.errors(it));
-            self.queue.push_back(event);
+        if self.ended {
+            return;
         }
+        self.ended = true;
+        let what = What::End(ending);
+        let event = if matches!(ending, Ending::Horizon | Ending::LeavesDomain) {
+            let errors = self.enclosure.as_ref().map(|it| self.errors(it));
+            Event { errors, ..self.event(what, self.entered, &self.state) }
+        } else {
+            Event { what, ..self.queue.back().unwrap_or(&self.last).clone() }
+        };
+        self.queue.push_back(event);
     }
 
     #[inline]
@@ -472,6 +489,7 @@ impl<T: Number> Iterator for Run<'_, T> {
     fn next(&mut self) -> Option<Event<T>> {
         loop {
             if let Some(event) = self.queue.pop_front() {
+                self.last.clone_from(&event);
                 return Some(event);
             }
             if self.ended {

@@ -2,6 +2,7 @@
 
 mod attack;
 mod brute;
+mod endings;
 mod files;
 mod known;
 mod oscillator;
