@@ -1,6 +1,6 @@
 //! A run: segments joined at their events, by the rules of docs/SYSTEM_FORMAT.md.
 
-use super::clock::{self, Time};
+use super::clock::Time;
 use super::enclosure::{Crossing, Enclosure};
 use super::event::{Ending, Errors, Event, What};
 use super::flow::Flow;
@@ -21,7 +21,7 @@ const MOST_AT_ONCE: u32 = 64;
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
 pub struct Run<'a, T> {
     pub(super) solver: &'a Solver<T>,
-    pub(super) structure: Loan<'a>,
+    pub(super) structure: Loan<'a, T>,
     work: Work,
     horizon: T,
     pub(super) node: usize,
@@ -93,19 +93,18 @@ impl<T: Number> Solver<T> {
     /// A run whose first segment is not entered yet.
     fn at_start(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
         let mut structure = self.known.lend();
-        let node = structure.start(&self.system, start)?;
-        let entered = clock::start(start);
+        let begun = structure.begun(&self.system, start, || self.worked_out(start))?;
         let mode = start.mode;
-        let begun =
-            Event { what: What::Start, time: entered, state: Vec::new(), mode, errors: None };
-        let mut run = Run {
+        let first =
+            Event { what: What::Start, time: begun.time, state: Vec::new(), mode, errors: None };
+        Some(Run {
             solver: self,
             structure,
             work: Work::default(),
             horizon: until,
-            node,
-            entered,
-            state: [T::zero(); LARGEST_DIMENSION],
+            node: begun.node,
+            entered: begun.time,
+            state: begun.state,
             tracks: Vec::new(),
             ends: Ends::default(),
             segment: None,
@@ -116,16 +115,21 @@ impl<T: Number> Solver<T> {
             queue: VecDeque::new(),
             ended: false,
             enclosure: None,
-            start: begun.clone(),
-            last: begun,
-        };
-        let (sin, cos) = self.sin_cos(&entered);
-        for (entry, [c, s, one]) in run.state.iter_mut().zip(&start.state) {
+            start: first.clone(),
+            last: first,
+        })
+    }
+
+    /// Time and state of a start.
+    fn worked_out(&self, start: &StartPoint) -> (Time<T>, Vector<T>) {
+        let time = Time::of(&start.time);
+        let (sin, cos) = self.sin_cos(&time);
+        let mut states = [T::zero(); LARGEST_DIMENSION];
+        for (entry, [c, s, one]) in states.iter_mut().zip(&start.state) {
             let number = |it| rounded::<T>(&super::modal::Real::of(it));
             *entry = number(c) * cos + number(s) * sin + number(one);
         }
-        run.complete();
-        Some(run)
+        (time, self.complete(&states[..start.state.len()], &time))
     }
 
     /// The states at a time with cos theta, sin theta and 1 appended.
@@ -165,13 +169,6 @@ impl<T: Number> Run<'_, T> {
 
     pub(super) fn tracks_live(&self, guard: usize) -> bool {
         self.tracks[guard].live
-    }
-
-    /// Fills in cos theta, sin theta and 1.
-    #[inline]
-    fn complete(&mut self) {
-        let (sin, cos) = self.solver.sin_cos(&self.entered);
-        complete(&mut self.state, self.solver, sin, cos);
     }
 
     /// Begins the run, with the errors of the start where they are followed.
