@@ -136,7 +136,8 @@ mod tests {
     #[test]
     fn products_are_remainders_of_products() {
         for prime in PRIMES {
-            let ends = [0, 1, 2, 30, 31, 32, prime / 2, prime - 32, prime - 31, prime - 2, prime - 1];
+            let ends =
+                [0, 1, 2, 30, 31, 32, prime / 2, prime - 32, prime - 31, prime - 2, prime - 1];
             let spread = (1..200_u64).map(|n| n.wrapping_mul(0x9e37_79b9_7f4a_7c15) % prime);
             let numbers: Vec<u64> = ends.into_iter().chain(spread).collect();
             for a in &numbers {

@@ -11,7 +11,7 @@ use super::solver::{self, Solver};
 use super::structure::Firing;
 use super::system::{Direction, LARGEST_DIMENSION, StartPoint};
 use super::track::{Track, Work};
-use super::vector::{Vector, rounded, unit};
+use super::vector::{UNDERFLOW, Vector, dot, rounded, unit};
 use crate::number::Number;
 use std::collections::VecDeque;
 
@@ -316,9 +316,18 @@ impl<T: Number> Run<'_, T> {
     fn here(&self) -> (Time<T>, Vector<T>) {
         let point = &self.ends.left;
         let elapsed = if self.solver.backward { -point.time } else { point.time };
-        let time = self.entered.after(elapsed);
+        let mut time = self.entered.after(elapsed);
         let mode = self.structure.node(self.node).mode;
-        let mut state = self.solver.modes[mode].flow.state(&point.y);
+        let solver::SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
+        let mut state = flow.state(&point.y);
+        if point.later != T::zero() {
+            time = time.after(if self.solver.backward { -point.later } else { point.later });
+            let before = state;
+            let states = &mut state[..self.solver.system.states.len()];
+            for (entry, row) in states.iter_mut().zip(matrix) {
+                *entry = *entry + dot(row, &before, flow.dimension) * point.later;
+            }
+        }
         let (sin, cos) = self.solver.sin_cos(&time);
         complete(&mut state, self.solver, sin, cos);
         (time, state)
@@ -513,13 +522,14 @@ fn roundings<T: Number>(
     entry: &Vector<T>,
 ) -> [f64; LARGEST_DIMENSION] {
     /// What is lost where the last word of a number underflows.
-    const UNDERFLOW: f64 = 1e-280;
-    let margin = (flow.dimension + 6) as f64 * unit::<T>();
+    const LAST_WORD: f64 = 1e-280;
+    // One of them for the rest of the way to a crossing.
+    let margin = (flow.dimension + 7) as f64 * unit::<T>();
     let (now, before) = (flow.sizes(y), flow.sizes(entry));
     std::array::from_fn(|n| {
         // What is made of zeros stays zero.
-        let lost = if before[n] > 0.0 || now[n] > 0.0 { UNDERFLOW } else { 0.0 };
-        margin * now[n] + lost
+        let lost = if before[n] > 0.0 || now[n] > 0.0 { LAST_WORD } else { 0.0 };
+        margin * now[n] + lost + UNDERFLOW * before[n]
     })
 }
 

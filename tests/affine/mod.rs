@@ -4,6 +4,7 @@ mod attack;
 mod brute;
 mod endings;
 mod files;
+mod hostile;
 mod known;
 mod oscillator;
 mod random;
