@@ -127,8 +127,8 @@ fn a_crest_that_underflows_is_right_or_undecided() {
         let first = name(&crest, &all[0]);
         let right = if below { "reached" } else { "end" };
         assert!(first == right || first == "undecided", "{sign}{power}: {first}");
-        // Where it stays below by more than what is lost, that is seen.
-        assert!(below || power > 22 || first == right, "{sign}{power}: {first}");
+        // Where it stays below by more than what may be lost, 1e-21 of it, that is seen.
+        assert!(below || power > 20 || first == right, "{sign}{power}: {first}");
         assert!(work.pieces < 1000, "{work:?}");
     }
 }
