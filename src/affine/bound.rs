@@ -8,6 +8,7 @@
 
 use super::modal::{self, Kind, Real};
 use super::motion::nilpotent;
+use super::vector::euclidean;
 
 /// How many derivatives of a row are held, its value included.
 pub(super) const ORDERS: usize = 17;
@@ -124,8 +125,7 @@ fn summit(j: usize, rate: f64) -> f64 {
 }
 
 fn norm(part: &[Real]) -> f64 {
-    let squares = part.iter().map(|it| it.to_f64() * it.to_f64());
-    squares.sum::<f64>().sqrt()
+    euclidean(part.iter().map(Real::to_f64))
 }
 
 /// The fastest first; last those that nothing bounds for ever.

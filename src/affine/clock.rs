@@ -1,7 +1,7 @@
 //! Time, and the angle of the forcing, as a sum of two numbers that is never rounded to one.
 
 use super::modal::Real;
-use super::system::{Forcing, StartPoint};
+use super::system::Forcing;
 use super::vector::unit;
 use crate::number::Number;
 use dashu_ratio::RBig;
@@ -56,11 +56,6 @@ fn sum<T: Number>(a: T, b: T) -> Time<T> {
     let high = a + b;
     let seen = high - a;
     Time { high, low: (a - (high - seen)) + (b - seen) }
-}
-
-/// The time of a start.
-pub(super) fn start<T: Number>(start: &StartPoint) -> Time<T> {
-    Time::of(&start.time)
 }
 
 impl<T: Number> Clock<T> {

@@ -15,7 +15,8 @@ pub enum What<T> {
     End(Ending<T>),
 }
 
-/// How a run ends.
+/// How a run ends. An ending that has no instant of its own, as all but the first and the third, has
+/// the time and the state of the last event, watched ones included, or of the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending<T> {
     /// The horizon is reached.
@@ -28,12 +29,12 @@ pub enum Ending<T> {
     NoProgress,
     /// A mode is entered where one of its guards is positive already.
     BeyondGuard,
-    /// The arithmetic has no digits left to decide what comes next.
+    /// The arithmetic has no digits left to decide what comes next, or that takes too much work.
     Undecided,
 }
 
 /// An event of a run.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Event<T> {
     /// What happens.
     pub what: What<T>,
@@ -45,6 +46,28 @@ pub struct Event<T> {
     pub mode: usize,
     /// Bounds of the errors, in a run that follows them.
     pub errors: Option<Errors>,
+}
+
+impl<T: Clone> Clone for Event<T> {
+    fn clone(&self) -> Self {
+        Self {
+            what: self.what.clone(),
+            time: self.time.clone(),
+            state: self.state.clone(),
+            mode: self.mode,
+            errors: self.errors.clone(),
+        }
+    }
+
+    /// Reuses the memory of the state.
+    #[inline]
+    fn clone_from(&mut self, other: &Self) {
+        self.what.clone_from(&other.what);
+        self.time.clone_from(&other.time);
+        self.state.clone_from(&other.state);
+        self.mode = other.mode;
+        self.errors.clone_from(&other.errors);
+    }
 }
 
 /// Bounds of the errors of an event's time and state.

@@ -4,7 +4,7 @@ use super::bound::{self, Later, ORDERS};
 use super::modal::{self, Real};
 use super::motion::BlockMotion;
 use super::system::{LARGEST_DIMENSION, Row};
-use super::vector::{Vector, vector};
+use super::vector::{UNDERFLOW, Vector, euclidean, vector};
 use crate::number::Number;
 
 /// A mode's closed form.
@@ -39,6 +39,8 @@ pub(super) struct Block<T> {
 pub(super) struct ModalRow<T> {
     /// The row's derivatives.
     pub orders: Vec<Vector<T>>,
+    /// How many of them there are up to the last that is not zero.
+    pub last: usize,
     /// The co-ordinates that it is made of, in their order.
     pub columns: Vec<Column<T>>,
     /// The blocks that it is made of, in their order.
@@ -108,7 +110,10 @@ impl<T: Number> Flow<T> {
             vector(&entries)
         };
         let orders: Vec<Vector<T>> = (0..ORDERS).map(order).collect();
-        let mut modal = ModalRow { orders, columns: Vec::new(), parts: Vec::new(), blocks: 0 };
+        let is_there = |order: &Vector<T>| order.iter().any(|it| *it != T::zero());
+        let last = orders.iter().rposition(is_there).map_or(0, |it| it + 1);
+        let mut modal =
+            ModalRow { orders, last, columns: Vec::new(), parts: Vec::new(), blocks: 0 };
         for (n, (block, part)) in blocks.iter().zip(&parts).enumerate() {
             let norms = bound::norms(block, part);
             if norms.iter().any(|it| *it > 0.0) {
@@ -175,15 +180,11 @@ impl<T: Number> Flow<T> {
     pub fn norms<U: Number>(&self, y: &Vector<U>) -> Vector<f64> {
         let mut norms = [0.0; LARGEST_DIMENSION];
         for (n, block) in self.blocks.iter().enumerate() {
-            let (first, size) = (y[block.at].to_f64(), block.size);
+            let size = block.size;
             norms[n] = if size == 1 {
-                first.abs()
+                y[block.at].to_f64().abs()
             } else {
-                let mut sum = first * first;
-                for other in &y[block.at + 1..block.at + size] {
-                    sum += other.to_f64() * other.to_f64();
-                }
-                sum.sqrt()
+                euclidean(y[block.at..block.at + size].iter().map(|it| it.to_f64()))
             };
         }
         norms
@@ -227,7 +228,7 @@ impl<T: Number> Flow<T> {
     ) -> f64 {
         let mut sum = 0.0;
         for part in &row.parts {
-            sum += part.later.bound(&part.norms, order, length) * sizes[part.block];
+            sum += part.bound(order, length, sizes);
         }
         sum * (1.0 + 1e-12)
     }
@@ -236,6 +237,17 @@ impl<T: Number> Flow<T> {
     #[inline]
     pub fn fastest_growth(&self) -> f64 {
         self.blocks.iter().fold(0.0, |most: f64, block| most.max(block.growth))
+    }
+}
+
+impl RowPart {
+    /// A bound of the part in a derivative over `length`, from the norms of the blocks'
+    /// co-ordinates.
+    #[inline]
+    pub fn bound(&self, order: usize, length: f64, sizes: &Vector<f64>) -> f64 {
+        let size = sizes[self.block];
+        // Nothing comes of zeros, even where a factor of theirs overflows.
+        if size == 0.0 { 0.0 } else { self.later.bound(&self.norms, order, length) * size }
     }
 }
 
@@ -287,6 +299,13 @@ impl<T: Number> ModalRow<T> {
     #[inline]
     pub fn size(&self, y: &Vector<T>) -> f64 {
         self.columns.iter().map(|it| it.size * y[it.at].to_f64().abs()).sum()
+    }
+
+    /// What underflow may do to the row at most, at any time after the modal co-ordinates are these.
+    pub fn underflow(&self, y: &Vector<T>) -> f64 {
+        let moving = self.columns.iter().filter(|it| y[it.at] != T::zero());
+        let terms = moving.map(|it| (UNDERFLOW * (1.0 + y[it.at].to_f64().abs())) * it.size);
+        terms.map(|it| it.max(UNDERFLOW)).sum()
     }
 
     /// A derivative, and the sum of the sizes of what it is summed from.

@@ -67,7 +67,7 @@ pub(super) fn judge<T: Number>(
     zeros: usize,
 ) -> Judged {
     let mut hull = interpolant(ends, lengths);
-    if eighth > 0.0 {
+    if eighth != 0.0 {
         hull[4] = hull[4] + lengths.middle * T::exact(eighth);
     }
     if from != 0.0 || to != 0.0 {
@@ -76,11 +76,13 @@ pub(super) fn judge<T: Number>(
             *entry = *entry + T::exact(from * (1.0 - share) + to * share);
         }
     }
-    let size = hull.iter().map(|it| it.to_f64().abs()).fold(0.0, f64::max);
-    let slack = slack + 16.0 * unit::<T>() * size;
-    if !size.is_finite() {
+    // Unlike the largest of them, a sum has what is no number.
+    let sum = hull.iter().map(|it| it.to_f64().abs()).sum::<f64>();
+    if !(sum + slack).is_finite() {
         return Judged::Open(0.0);
     }
+    let size = hull.iter().map(|it| it.to_f64().abs()).fold(0.0, f64::max);
+    let slack = slack + 16.0 * unit::<T>() * size;
     // A single bit of the sign of each tells most pieces apart.
     if is_clear(&hull, slack, zeros) {
         return Judged::Clear;

@@ -1,60 +1,88 @@
-//! What runs have learned of a system's graph of structural zeros, kept for the runs that follow.
+//! What runs have learned of a system, kept for the runs that follow: its graph of structural zeros,
+//! and the starts that they had.
 
+use super::clock::Time;
+use super::starts::{Begun, Starts};
 use super::structure::Structure;
+use super::system::{StartPoint, System};
+use super::vector::Vector;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex};
 
 /// How many graphs are kept: one for each thread that runs the system.
 const MOST: usize = 64;
 
-/// Graphs that no run uses now.
+/// What no run uses now.
 #[derive(Clone, Debug)]
-pub(super) struct Known {
+pub(super) struct Known<T> {
     /// The graph that nothing has been learned of.
     blank: Structure,
-    learned: Arc<Mutex<Vec<Structure>>>,
+    learned: Arc<Mutex<Vec<Learned<T>>>>,
 }
 
-/// A graph that a run uses, and gives back.
+/// What the runs of one thread have learned.
+#[derive(Clone, Debug)]
+struct Learned<T> {
+    structure: Structure,
+    starts: Starts<T>,
+}
+
+/// The graph that a run uses, and gives back.
 #[derive(Debug)]
-pub(super) struct Loan<'a> {
-    own: Structure,
-    known: &'a Known,
+pub(super) struct Loan<'a, T> {
+    own: Learned<T>,
+    known: &'a Known<T>,
 }
 
-impl Known {
+impl<T> Known<T> {
     pub fn of(blank: Structure) -> Self {
         Self { blank, learned: Arc::default() }
     }
 
     /// A graph for a run.
-    pub fn lend(&self) -> Loan<'_> {
+    pub fn lend(&self) -> Loan<'_, T> {
         let learned = self.learned.lock().ok().and_then(|mut all| all.pop());
-        Loan { own: learned.unwrap_or_else(|| self.blank.clone()), known: self }
+        let blank = || Learned { structure: self.blank.clone(), starts: Starts::default() };
+        Loan { own: learned.unwrap_or_else(blank), known: self }
     }
 }
 
-impl Drop for Loan<'_> {
+impl<T: Copy> Loan<'_, T> {
+    /// What a run begins with, as [`Starts::begun`] has it.
+    pub fn begun(
+        &mut self,
+        system: &System,
+        point: &StartPoint,
+        worked_out: impl FnOnce() -> (Time<T>, Vector<T>),
+    ) -> Option<Begun<T>> {
+        let Learned { structure, starts } = &mut self.own;
+        starts.begun(system, structure, point, worked_out)
+    }
+}
+
+impl<T> Drop for Loan<'_, T> {
     fn drop(&mut self) {
         if let Ok(mut all) = self.known.learned.lock()
             && all.len() < MOST
         {
-            all.push(std::mem::take(&mut self.own));
+            let structure = std::mem::take(&mut self.own.structure);
+            let starts = std::mem::take(&mut self.own.starts);
+            all.push(Learned { structure, starts });
         }
     }
 }
 
-impl Deref for Loan<'_> {
+impl<T> Deref for Loan<'_, T> {
     type Target = Structure;
     #[inline]
     fn deref(&self) -> &Structure {
-        &self.own
+        &self.own.structure
     }
 }
 
-impl DerefMut for Loan<'_> {
+impl<T> DerefMut for Loan<'_, T> {
     #[inline]
     fn deref_mut(&mut self) -> &mut Structure {
-        &mut self.own
+        &mut self.own.structure
     }
 }

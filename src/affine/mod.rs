@@ -21,6 +21,7 @@ mod residue;
 mod run;
 mod search;
 mod solver;
+mod starts;
 mod structural;
 mod structure;
 mod system;

@@ -22,6 +22,8 @@ pub(super) struct Segment<'a, T> {
     pub entry: Vector<T>,
     /// What errors made before the segment may do to each guard; empty where they are not followed.
     pub inherited: Vec<f64>,
+    /// What underflow may do to each guard; empty as well.
+    lost: Vec<f64>,
     /// The time up to which the guards' Taylor series at entry are good; negative where no guard
     /// begins with a structural zero, which they keep.
     pub early: f64,
@@ -37,6 +39,9 @@ pub(super) struct Segment<'a, T> {
 #[derive(Clone, Debug)]
 pub(super) struct Point<T> {
     pub time: T,
+    /// How much later a guard is zero, by its value and slope here: a time that rounding hides in
+    /// the values of guards.
+    pub later: T,
     /// The modal co-ordinates; those of blocks that no guard is made of are the entry's.
     pub y: Vector<T>,
     /// The norms of each block's co-ordinates, once [`Segment::measure`] was asked for them.
@@ -65,8 +70,11 @@ impl<'a, T: Number> Segment<'a, T> {
                 early |= track.zeros > 0;
             }
         }
+        let lost = if inherited.is_empty() { &[] } else { rows };
+        let lost = lost.iter().map(|row| row.underflow(&entry)).collect();
         let series = OnceCell::new();
-        let mut segment = Self { flow, rows, entry, inherited, early: -1.0, series, zeros, blocks };
+        let mut segment =
+            Self { flow, rows, entry, inherited, lost, early: -1.0, series, zeros, blocks };
         if early {
             segment.early = segment.series_limit();
         }
@@ -94,7 +102,7 @@ impl<'a, T: Number> Segment<'a, T> {
             let guard = |(row, zeros): (&ModalRow<T>, &usize)| -> [T; ORDERS] {
                 let mut coefficients = [T::zero(); ORDERS];
                 let mut factorial = T::one();
-                for (k, coefficient) in coefficients.iter_mut().enumerate() {
+                for (k, coefficient) in coefficients[..row.last].iter_mut().enumerate() {
                     if k > 1 {
                         factorial = factorial * T::exact(k as f64);
                     }
@@ -111,7 +119,7 @@ impl<'a, T: Number> Segment<'a, T> {
     /// The guards at entry, with their structural zeros.
     #[inline]
     pub fn begin(&self, point: &mut Point<T>) {
-        (point.time, point.y) = (T::zero(), self.entry);
+        (point.time, point.later, point.y) = (T::zero(), T::zero(), self.entry);
         self.fill(point);
         for (n, zeros) in self.zeros.iter().enumerate().filter(|(_, zeros)| **zeros > 0) {
             point.orders[n].iter_mut().take(*zeros).for_each(|order| *order = T::zero());
@@ -124,7 +132,7 @@ impl<'a, T: Number> Segment<'a, T> {
     #[inline]
     pub fn evaluate(&self, point: &mut Point<T>, time: T, work: &mut Work) {
         work.evaluations += 1;
-        (point.time, point.y) = (time, self.entry);
+        (point.time, point.later, point.y) = (time, T::zero(), self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);
         self.fill_all(point);
     }
@@ -133,7 +141,7 @@ impl<'a, T: Number> Segment<'a, T> {
     #[inline]
     pub fn evaluate_guard(&self, n: usize, point: &mut Point<T>, time: T, work: &mut Work) {
         work.evaluations += 1;
-        (point.time, point.y) = (time, self.entry);
+        (point.time, point.later, point.y) = (time, T::zero(), self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);
         if self.is_early(point) {
             self.fill_early(point);
@@ -216,8 +224,8 @@ impl<'a, T: Number> Segment<'a, T> {
     fn inherit(&self, point: &mut Point<T>) {
         if !self.inherited.is_empty() {
             let growth = libm::exp(self.flow.fastest_growth() * point.time.to_f64().abs());
-            let errors = point.slack.iter_mut().zip(&self.inherited);
-            errors.for_each(|(slack, inherited)| *slack += inherited * growth);
+            let errors = point.slack.iter_mut().zip(self.inherited.iter().zip(&self.lost));
+            errors.for_each(|(slack, (inherited, lost))| *slack += (inherited + lost) * growth);
         }
     }
 }
@@ -226,7 +234,8 @@ impl<T: Number> Default for Point<T> {
     #[inline]
     fn default() -> Self {
         let (y, norms) = ([T::zero(); LARGEST_DIMENSION], [0.0; LARGEST_DIMENSION]);
-        Self { time: T::zero(), y, norms, orders: SmallVec::new(), slack: SmallVec::new() }
+        let (time, later) = (T::zero(), T::zero());
+        Self { time, later, y, norms, orders: SmallVec::new(), slack: SmallVec::new() }
     }
 }
 

@@ -130,7 +130,7 @@ fn eighths<T: Number>(row: &ModalRow<T>, left: &Point<T>, longest: f64) -> Vecto
     let mut rests = [0.0; LARGEST_DIMENSION];
     let mut sum = 0.0;
     for (n, part) in row.parts.iter().enumerate().rev() {
-        sum += part.later.bound(&part.norms, 8, longest) * left.norms[part.block];
+        sum += part.bound(8, longest, &left.norms);
         rests[n] = sum;
     }
     rests
@@ -150,7 +150,7 @@ fn eighth<T: Number>(
         // An even derivative of a decay has its sign.
         let falls = part.later == Later::Fading && part_of(row, part, track, &left.y) <= 0.0;
         if !falls {
-            sum += part.later.bound(&part.norms, 8, length) * left.norms[part.block];
+            sum += part.bound(8, length, &left.norms);
         }
     }
     sum * OUTWARD
@@ -161,9 +161,9 @@ fn eighth<T: Number>(
 #[inline]
 fn derivatives<T: Number>(row: &ModalRow<T>, left: &Point<T>, cut: usize, length: f64) -> f64 {
     let size = |part: &RowPart| {
-        let norm = |k: usize| part.later.bound(&part.norms, k, length);
+        let norm = |k: usize| part.bound(k, length, &left.norms);
         let weighted = 3.0 / 7.0 * norm(1) + length * (norm(2) / 14.0 + length * norm(3) / 210.0);
-        weighted * length * left.norms[part.block]
+        weighted * length
     };
     row.parts[cut..].iter().map(size).sum()
 }
@@ -220,6 +220,9 @@ fn polynomial_reach(orders: &[f64; 4], zeros: usize, slack: f64) -> f64 {
 fn length(orders: &[f64; 4], eighth: f64, zeros: usize, size: impl Fn() -> f64) -> f64 {
     if eighth == 0.0 {
         return f64::INFINITY;
+    }
+    if eighth.is_nan() || eighth == f64::INFINITY {
+        return 0.0;
     }
     let room = REMAINDER * MIDDLE / eighth;
     let [value, slope, bend, _] = orders.map(f64::abs);

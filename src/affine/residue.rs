@@ -8,8 +8,11 @@ use dashu_int::ops::UnsignedAbs;
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 
-/// The two largest primes below 2^61.
-const PRIMES: [u64; 2] = [(1 << 61) - 1, (1 << 61) - 31];
+/// Residues have fewer bits.
+const BITS: u32 = 61;
+
+/// The two largest primes below 2^61, which is 1 modulo the first and 31 modulo the second.
+const PRIMES: [u64; 2] = [(1 << BITS) - 1, (1 << BITS) - 31];
 
 /// A rational number modulo both primes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -32,7 +35,8 @@ impl Residue {
             if below == 0 {
                 return None;
             }
-            *residue = times(above, inverse(below, prime), prime);
+            // Most numbers are integers.
+            *residue = if below == 1 { above } else { times(above, inverse(below, prime), prime) };
         }
         Some(Self(residues))
     }
@@ -53,11 +57,11 @@ impl Residue {
     }
 
     pub fn plus(self, other: Self) -> Self {
-        self.with(other, |a, b, prime| (a + b) % prime)
+        self.with(other, |a, b, prime| once_less(a + b, prime))
     }
 
     pub fn minus(self, other: Self) -> Self {
-        self.with(other, |a, b, prime| (a + prime - b) % prime)
+        self.with(other, |a, b, prime| once_less(a + prime - b, prime))
     }
 
     /// The inverse, where the number is not zero modulo either prime.
@@ -68,6 +72,11 @@ impl Residue {
     fn with(self, other: Self, operation: impl Fn(u64, u64, u64) -> u64) -> Self {
         Self(std::array::from_fn(|n| operation(self.0[n], other.0[n], PRIMES[n])))
     }
+}
+
+/// The residues of a row; none if a number has none.
+pub(super) fn residues(row: &[RBig]) -> Option<Residues> {
+    row.iter().map(Residue::of).collect()
 }
 
 /// `row * matrix`.
@@ -91,8 +100,19 @@ fn remainder(number: &UBig, prime: u64) -> u64 {
 }
 
 fn times(a: u64, b: u64, prime: u64) -> u64 {
-    // Below 2^61, because the prime is.
-    (u128::from(a) * u128::from(b) % u128::from(prime)) as u64
+    let short = (1 << BITS) - prime;
+    // Below 2^66 after the first, and below 2^61 + 2^10 after the second.
+    once_less(folded(folded(u128::from(a) * u128::from(b), short), short) as u64, prime)
+}
+
+/// A number that is congruent and has about 61 bits less, where 2^61 is `short` modulo the prime.
+fn folded(number: u128, short: u64) -> u128 {
+    (number >> BITS) * u128::from(short) + (number & ((1 << BITS) - 1))
+}
+
+/// The remainder of a number below twice the prime.
+fn once_less(number: u64, prime: u64) -> u64 {
+    if number >= prime { number - prime } else { number }
 }
 
 /// a^(p - 2), by Fermat.
@@ -106,4 +126,28 @@ fn inverse(a: u64, prime: u64) -> u64 {
         exponent >>= 1;
     }
     power
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// By the remainder of the whole product.
+    #[test]
+    fn products_are_remainders_of_products() {
+        for prime in PRIMES {
+            let ends =
+                [0, 1, 2, 30, 31, 32, prime / 2, prime - 32, prime - 31, prime - 2, prime - 1];
+            let spread = (1..200_u64).map(|n| n.wrapping_mul(0x9e37_79b9_7f4a_7c15) % prime);
+            let numbers: Vec<u64> = ends.into_iter().chain(spread).collect();
+            for a in &numbers {
+                for b in &numbers {
+                    let whole = u128::from(*a) * u128::from(*b) % u128::from(prime);
+                    assert_eq!(u128::from(times(*a, *b, prime)), whole);
+                    assert_eq!(once_less(a + b, prime), (a + b) % prime);
+                }
+                assert_eq!(if *a == 0 { 1 } else { times(*a, inverse(*a, prime), prime) }, 1);
+            }
+        }
+    }
 }

@@ -1,6 +1,6 @@
 //! A run: segments joined at their events, by the rules of docs/SYSTEM_FORMAT.md.
 
-use super::clock::{self, Time};
+use super::clock::Time;
 use super::enclosure::{Crossing, Enclosure};
 use super::event::{Ending, Errors, Event, What};
 use super::flow::Flow;
@@ -11,7 +11,7 @@ use super::solver::{self, Solver};
 use super::structure::Firing;
 use super::system::{Direction, LARGEST_DIMENSION, StartPoint};
 use super::track::{Track, Work};
-use super::vector::{Vector, rounded, unit};
+use super::vector::{UNDERFLOW, Vector, dot, rounded, unit};
 use crate::number::Number;
 use std::collections::VecDeque;
 
@@ -21,7 +21,7 @@ const MOST_AT_ONCE: u32 = 64;
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
 pub struct Run<'a, T> {
     pub(super) solver: &'a Solver<T>,
-    pub(super) structure: Loan<'a>,
+    pub(super) structure: Loan<'a, T>,
     work: Work,
     horizon: T,
     pub(super) node: usize,
@@ -42,8 +42,10 @@ pub struct Run<'a, T> {
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
     pub(super) enclosure: Option<Enclosure>,
-    /// The errors of the start itself, before the rounding of its modal co-ordinates.
-    start_errors: Option<Errors>,
+    /// The start, with the errors that it has before the rounding of its modal co-ordinates.
+    start: Event<T>,
+    /// The event that was given out last, or the start.
+    last: Event<T>,
 }
 
 /// The quotient of the rates after and before an impact, from its fastest occurrence.
@@ -62,7 +64,7 @@ impl<T: Number> Solver<T> {
     /// A start whose structural zeros cannot be told.
     pub fn run(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
         let mut run = self.at_start(start, until)?;
-        run.enter();
+        run.begin(None);
         Some(run)
     }
 
@@ -84,26 +86,25 @@ impl<T: Number> Solver<T> {
             *size += error(T::exact(terms.sum()));
         }
         sizes[self.system.dimension() - 1] = 0.0;
-        let enclosure = Enclosure::of(&sizes);
-        run.start_errors = Some(run.errors(&enclosure));
-        run.enclosure = Some(enclosure);
-        run.enter();
+        run.begin(Some(Enclosure::of(&sizes)));
         Some(run)
     }
 
     /// A run whose first segment is not entered yet.
     fn at_start(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
         let mut structure = self.known.lend();
-        let node = structure.start(&self.system, start)?;
-        let entered = clock::start(start);
-        let mut run = Run {
+        let begun = structure.begun(&self.system, start, || self.worked_out(start))?;
+        let mode = start.mode;
+        let first =
+            Event { what: What::Start, time: begun.time, state: Vec::new(), mode, errors: None };
+        Some(Run {
             solver: self,
             structure,
             work: Work::default(),
             horizon: until,
-            node,
-            entered,
-            state: [T::zero(); LARGEST_DIMENSION],
+            node: begun.node,
+            entered: begun.time,
+            state: begun.state,
             tracks: Vec::new(),
             ends: Ends::default(),
             segment: None,
@@ -114,15 +115,21 @@ impl<T: Number> Solver<T> {
             queue: VecDeque::new(),
             ended: false,
             enclosure: None,
-            start_errors: None,
-        };
-        let (sin, cos) = self.sin_cos(&entered);
-        for (entry, [c, s, one]) in run.state.iter_mut().zip(&start.state) {
+            start: first.clone(),
+            last: first,
+        })
+    }
+
+    /// Time and state of a start.
+    fn worked_out(&self, start: &StartPoint) -> (Time<T>, Vector<T>) {
+        let time = Time::of(&start.time);
+        let (sin, cos) = self.sin_cos(&time);
+        let mut states = [T::zero(); LARGEST_DIMENSION];
+        for (entry, [c, s, one]) in states.iter_mut().zip(&start.state) {
             let number = |it| rounded::<T>(&super::modal::Real::of(it));
             *entry = number(c) * cos + number(s) * sin + number(one);
         }
-        run.complete();
-        Some(run)
+        (time, self.complete(&states[..start.state.len()], &time))
     }
 
     /// The states at a time with cos theta, sin theta and 1 appended.
@@ -151,9 +158,7 @@ impl<T: Number> Run<'_, T> {
     /// The start, as an event at which nothing happens but that the run begins.
     #[must_use]
     pub fn start(&self) -> Event<T> {
-        let mut event = self.event(What::Start, self.entered, &self.state);
-        event.errors.clone_from(&self.start_errors);
-        event
+        self.start.clone()
     }
 
     /// What the run has cost so far.
@@ -166,11 +171,13 @@ impl<T: Number> Run<'_, T> {
         self.tracks[guard].live
     }
 
-    /// Fills in cos theta, sin theta and 1.
-    #[inline]
-    fn complete(&mut self) {
-        let (sin, cos) = self.solver.sin_cos(&self.entered);
-        complete(&mut self.state, self.solver, sin, cos);
+    /// Begins the run, with the errors of the start where they are followed.
+    fn begin(&mut self, enclosure: Option<Enclosure>) {
+        self.start = self.event(What::Start, self.entered, &self.state);
+        self.start.errors = enclosure.as_ref().map(|it| self.errors(it));
+        self.last.clone_from(&self.start);
+        self.enclosure = enclosure;
+        self.enter();
     }
 
     /// Begins the segment of the present node: looks at each guard's first derivative that is not a
@@ -226,14 +233,21 @@ impl<T: Number> Run<'_, T> {
         self.segment = Some(segment);
     }
 
-    /// Ends the run here.
+    /// Ends the run: at an instant of its own, which is then the entry, or at that of the last
+    /// event.
     fn end(&mut self, ending: Ending<T>) {
-        if !self.ended {
-            self.ended = true;
-            let mut event = self.event(What::End(ending), self.entered, &self.state);
-            event.errors = self.enclosure.as_ref().map(|it| self.errors(it));
-            self.queue.push_back(event);
+        if self.ended {
+            return;
         }
+        self.ended = true;
+        let what = What::End(ending);
+        let event = if matches!(ending, Ending::Horizon | Ending::LeavesDomain) {
+            let errors = self.enclosure.as_ref().map(|it| self.errors(it));
+            Event { errors, ..self.event(what, self.entered, &self.state) }
+        } else {
+            Event { what, ..self.queue.back().unwrap_or(&self.last).clone() }
+        };
+        self.queue.push_back(event);
     }
 
     #[inline]
@@ -302,9 +316,18 @@ impl<T: Number> Run<'_, T> {
     fn here(&self) -> (Time<T>, Vector<T>) {
         let point = &self.ends.left;
         let elapsed = if self.solver.backward { -point.time } else { point.time };
-        let time = self.entered.after(elapsed);
+        let mut time = self.entered.after(elapsed);
         let mode = self.structure.node(self.node).mode;
-        let mut state = self.solver.modes[mode].flow.state(&point.y);
+        let solver::SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
+        let mut state = flow.state(&point.y);
+        if point.later != T::zero() {
+            time = time.after(if self.solver.backward { -point.later } else { point.later });
+            let before = state;
+            let states = &mut state[..self.solver.system.states.len()];
+            for (entry, row) in states.iter_mut().zip(matrix) {
+                *entry = *entry + dot(row, &before, flow.dimension) * point.later;
+            }
+        }
         let (sin, cos) = self.solver.sin_cos(&time);
         complete(&mut state, self.solver, sin, cos);
         (time, state)
@@ -472,6 +495,7 @@ impl<T: Number> Iterator for Run<'_, T> {
     fn next(&mut self) -> Option<Event<T>> {
         loop {
             if let Some(event) = self.queue.pop_front() {
+                self.last.clone_from(&event);
                 return Some(event);
             }
             if self.ended {
@@ -498,13 +522,14 @@ fn roundings<T: Number>(
     entry: &Vector<T>,
 ) -> [f64; LARGEST_DIMENSION] {
     /// What is lost where the last word of a number underflows.
-    const UNDERFLOW: f64 = 1e-280;
-    let margin = (flow.dimension + 6) as f64 * unit::<T>();
+    const LAST_WORD: f64 = 1e-280;
+    // One of them for the rest of the way to a crossing.
+    let margin = (flow.dimension + 7) as f64 * unit::<T>();
     let (now, before) = (flow.sizes(y), flow.sizes(entry));
     std::array::from_fn(|n| {
         // What is made of zeros stays zero.
-        let lost = if before[n] > 0.0 || now[n] > 0.0 { UNDERFLOW } else { 0.0 };
-        margin * now[n] + lost
+        let lost = if before[n] > 0.0 || now[n] > 0.0 { LAST_WORD } else { 0.0 };
+        margin * now[n] + lost + UNDERFLOW * before[n]
     })
 }
 

@@ -17,8 +17,13 @@ use super::track::{Track, Work, outward};
 use super::vector::unit;
 use crate::number::Number;
 
-/// The largest number of pieces of a segment.
-const MOST_PIECES: u64 = 1 << 22;
+/// The largest number of pieces from one event to the next, of all guards together: about a
+/// second's work in 106 bits. A mode of many guards has [`FEWEST_PIECES`] nevertheless.
+const MOST_PIECES: u64 = 1 << 18;
+const FEWEST_PIECES: u64 = 1 << 14;
+
+/// As how many pieces more one counts that is not passed whole, because it is divided.
+const OPEN: u64 = 8;
 
 /// How a search ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,7 +55,10 @@ impl<T: Number> Segment<'_, T> {
         work: &mut Work,
     ) -> Found {
         let mut most = f64::INFINITY;
-        for _ in 0..MOST_PIECES {
+        let guards = live(tracks).count().max(1) as u64;
+        let mut work_left = (MOST_PIECES / guards).max(FEWEST_PIECES);
+        while work_left > 0 {
+            work_left -= 1;
             if ends.left.time >= limit {
                 return Found::Nothing;
             }
@@ -59,7 +67,9 @@ impl<T: Number> Segment<'_, T> {
             }
             self.measure(&mut ends.left);
             let reaches = self.reaches(tracks, &ends.left);
-            self.look_ahead(tracks, ends, &reaches, limit, most, work);
+            if !self.look_ahead(tracks, ends, &reaches, limit, most, work) {
+                return Found::Lost;
+            }
             let length = (ends.right.time - ends.left.time).to_f64();
             work.pieces += 1;
             let Some(share) = self.clear_share(tracks, &reaches, ends, work) else {
@@ -68,7 +78,10 @@ impl<T: Number> Segment<'_, T> {
                 clear_zeros(tracks);
                 continue;
             };
-            if !live(tracks).all(|(n, _)| ends.left.orders[n][0].to_f64().is_finite()) {
+            work_left = work_left.saturating_sub(OPEN);
+            let left = &ends.left;
+            let is_told = |n: usize| (left.orders[n][0].to_f64().abs() + left.slack[n]).is_finite();
+            if !live(tracks).all(|(n, _)| is_told(n)) {
                 // Where numbers overflow, nothing is told.
                 return Found::Lost;
             }
@@ -108,7 +121,8 @@ impl<T: Number> Segment<'_, T> {
         reaches
     }
 
-    /// Evaluates the right end of the next piece.
+    /// Evaluates the right end of the next piece, unless overflow hides how long a piece may be or
+    /// rounding has no instant so near.
     #[inline]
     fn look_ahead(
         &self,
@@ -118,18 +132,26 @@ impl<T: Number> Segment<'_, T> {
         limit: T,
         most: f64,
         work: &mut Work,
-    ) {
+    ) -> bool {
         let left = &ends.left;
         let mut length = most;
         for (n, track) in live(tracks) {
+            if reaches[n].length.is_nan() || reaches[n].length <= 0.0 {
+                return false;
+            }
             length = length.min(reaches[n].length).min(self.near_root(track, &left.orders[n]));
         }
         let mut end = left.time + T::exact(length);
-        let inside = left.time < end && end < limit;
+        if end <= left.time {
+            return false;
+        }
+        // A sum with infinity is no number in two words.
+        let inside = end < limit;
         if !inside {
             end = limit;
         }
         self.evaluate(&mut ends.right, end, work);
+        true
     }
 
     /// A length a little beyond the root that the first two terms of a guard suggest, if it begins
@@ -217,11 +239,12 @@ impl<T: Number> Segment<'_, T> {
         let fourth = self.flow.bound_by(&self.rows[n], 4, &at.norms, within);
         let change = within * (bend.abs() + within * (0.5 * third.abs() + within * fourth / 6.0));
         let steadily = change < 0.5 * slope;
-        steadily.then(|| Rising {
-            after: self.root(n, track, at),
-            within,
-            error: 2.0 * slack / slope,
-        })
+        if !steadily {
+            return None;
+        }
+        let after = self.root(n, track, at);
+        let is_told = after.to_f64().is_finite();
+        is_told.then(|| Rising { after, within, error: 2.0 * slack / slope })
     }
 
     /// The time to a root that is near a point.
@@ -230,14 +253,19 @@ impl<T: Number> Segment<'_, T> {
         let first = outward(&at.orders[n], track);
         let outward = T::exact(track.outward);
         let mut terms = [T::zero(); 8];
-        for (k, term) in terms.iter_mut().enumerate() {
+        let last = self.rows[n].last.clamp(4, 8);
+        for (k, term) in terms[..last].iter_mut().enumerate() {
             let order = if k < 4 { first[k] } else { self.rows[n].order(k, &at.y).0 * outward };
+            if !order.to_f64().is_finite() {
+                // It is a first guess, which fewer terms give as well.
+                break;
+            }
             *term = order * T::inverse_factorial(k);
         }
         let mut step = newton(&first);
         for _ in 0..2 {
             let (mut value, mut slope) = (T::zero(), T::zero());
-            for term in terms.iter().rev() {
+            for term in terms[..last].iter().rev() {
                 slope = slope * step + value;
                 value = value * step + *term;
             }
@@ -292,10 +320,21 @@ impl<T: Number> Segment<'_, T> {
             last = size;
             self.evaluate_guard(n, point, better, work);
         }
+        point.later = remaining(&point.orders[n]);
         // A crossing exactly at the limit counts.
         let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
         if point.time > limit + room { Found::Nothing } else { Found::Crossing(guards) }
     }
+}
+
+/// The rest of the way to a root, where that is so short that the slope does not change: then a
+/// product with it does what another evaluation would do.
+#[inline]
+fn remaining<T: Number>(orders: &[T; 4]) -> T {
+    const SHORT: f64 = 1e-6;
+    let step = -orders[0] / orders[1];
+    let [slope, bend] = [orders[1].to_f64(), orders[2].to_f64()];
+    if (step.to_f64() * bend).abs() <= SHORT * slope.abs() { step } else { T::zero() }
 }
 
 /// The step to the root of a cubic that is near zero, by Newton's method.

@@ -17,7 +17,7 @@ pub struct Solver<T> {
     pub(super) system: System,
     pub(super) modes: Vec<SolverMode<T>>,
     pub(super) clock: Option<Clock<T>>,
-    pub(super) known: Known,
+    pub(super) known: Known<T>,
     pub(super) backward: bool,
 }
 

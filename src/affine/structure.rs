@@ -4,10 +4,9 @@
 //! run therefore walks through a small graph, whose nodes are modes with their spaces of zeros;
 //! each is worked out once.
 
-use super::residue::{Residue, Residues, row_times};
-use super::structural::{Zeros, kernel};
-use super::system::{Mode, Row, StartPoint, Successor, System, Until};
-use dashu_ratio::RBig;
+use super::residue::{Residue, Residues, residues, row_times};
+use super::structural::Zeros;
+use super::system::{Mode, Row, Successor, System, Until};
 use std::collections::HashMap;
 use std::sync::Arc;
 
@@ -81,10 +80,12 @@ impl Structure {
         &self.nodes[node]
     }
 
-    /// The node of a start.
-    pub fn start(&mut self, system: &System, start: &StartPoint) -> Option<usize> {
-        let zeros = zeros_at_start(system, start)?;
-        Some(self.intern(start.mode, zeros))
+    /// The node of a start, which may be one that is known.
+    pub fn at_start(&mut self, mode: usize, zeros: &Zeros, known: Option<usize>) -> usize {
+        let same = |node: &usize| {
+            self.nodes.get(*node).is_some_and(|it| it.mode == mode && it.zeros == *zeros)
+        };
+        known.filter(same).unwrap_or_else(|| self.intern(mode, zeros.clone()))
     }
 
     /// The guards that are zero at an event because others are.
@@ -207,7 +208,7 @@ fn is_impact(own: &ModeResidues, until: usize, zeros: &Zeros, after: &Zeros) -> 
 impl ModeResidues {
     fn of(mode: &Mode) -> Option<Self> {
         let until = mode.until.iter().map(|it| &it.guard);
-        let guards = until.chain(mode.watch.iter().map(|it| &it.guard)).map(residues);
+        let guards = until.chain(mode.watch.iter().map(|it| &it.guard)).map(|it| residues(it));
         let next = |until: &Until| {
             let one = |it: &Successor| match &it.when {
                 Some(row) => residues(row).map(|row| (Some(row), it.mode)),
@@ -224,38 +225,6 @@ impl ModeResidues {
     }
 }
 
-fn residues(row: &Row) -> Option<Residues> {
-    row.iter().map(Residue::of).collect()
-}
-
 fn matrix(rows: &[Row]) -> Option<Vec<Residues>> {
-    rows.iter().map(residues).collect()
-}
-
-/// The left kernel of the start's coefficients over cos theta, sin theta and 1.
-fn zeros_at_start(system: &System, start: &StartPoint) -> Option<Zeros> {
-    let zero_angle = match &system.forcing {
-        Some(forcing) => (&forcing.omega * &start.time + &forcing.phi).is_zero(),
-        None => true,
-    };
-    let mut rows: Vec<[RBig; 3]> = start.state.clone();
-    if system.forcing.is_some() {
-        rows.push([RBig::ONE, RBig::ZERO, RBig::ZERO]);
-        rows.push([RBig::ZERO, RBig::ONE, RBig::ZERO]);
-    }
-    rows.push([RBig::ZERO, RBig::ZERO, RBig::ONE]);
-    let row = |[cos, sin, one]: &[RBig; 3]| {
-        // At theta = 0 the cosine is 1 and the sine 0.
-        let row = if zero_angle {
-            vec![RBig::ZERO, RBig::ZERO, cos + one]
-        } else {
-            vec![cos.clone(), sin.clone(), one.clone()]
-        };
-        residues(&row)
-    };
-    let mut zeros = Zeros::default();
-    for row in kernel(rows.iter().map(row).collect::<Option<_>>()?) {
-        zeros.insert(&row);
-    }
-    Some(zeros)
+    rows.iter().map(|it| residues(it)).collect()
 }

@@ -106,7 +106,7 @@ pub enum Direction {
 }
 
 /// The point at which a run begins.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct StartPoint {
     /// The index of the mode.
     pub mode: usize,

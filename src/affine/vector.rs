@@ -4,6 +4,10 @@ use super::modal::Real;
 use super::system::LARGEST_DIMENSION;
 use crate::number::Number;
 
+/// What underflow takes from a number at most, in a few operations; nothing in f64 is smaller than
+/// one 64th of it.
+pub(super) const UNDERFLOW: f64 = f64::from_bits(64);
+
 /// The entries of z, or of the modal co-ordinates; those beyond the dimension are zero.
 pub(super) type Vector<T> = [T; LARGEST_DIMENSION];
 
@@ -23,6 +27,22 @@ pub(super) fn dot<T: Number>(a: &Vector<T>, b: &Vector<T>, dimension: usize) -> 
         sum = sum + *a * *b;
     }
     sum
+}
+
+/// The Euclidean norm of some entries, which overflows or vanishes only where it has to.
+#[inline]
+pub(super) fn euclidean(entries: impl Iterator<Item = f64> + Clone) -> f64 {
+    const SMALLEST: f64 = 1e-280;
+    let square: f64 = entries.clone().map(|it| it * it).sum();
+    if square > SMALLEST && square < f64::INFINITY {
+        return square.sqrt();
+    }
+    let largest = entries.clone().fold(0.0, |most: f64, it| most.max(it.abs()));
+    if largest == 0.0 || largest == f64::INFINITY {
+        return largest;
+    }
+    let shares = entries.map(|it| it / largest);
+    largest * shares.map(|it| it * it).sum::<f64>().sqrt()
 }
 
 /// A wide number, rounded to an arithmetic of one or two words.

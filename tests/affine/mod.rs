@@ -2,7 +2,9 @@
 
 mod attack;
 mod brute;
+mod endings;
 mod files;
+mod hostile;
 mod known;
 mod oscillator;
 mod random;

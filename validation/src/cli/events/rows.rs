@@ -68,21 +68,13 @@ impl Rows<'_> {
         let run = start.and_then(|it| self.solver.run_enclosed(it, DoubleDouble::exact(until)));
         let Some(run) = run else { bail!("{}: its start is not decided", self.system.name) };
         let mut listed = EventListing { decided: true, ..EventListing::default() };
-        let first = run.start();
-        self.push(&mut listed, &first, String::new());
-        self.collect(run, first, &mut listed)?;
+        self.push(&mut listed, &run.start(), String::new());
+        self.collect(run, &mut listed)?;
         Ok(listed)
     }
 
-    fn collect(
-        &self,
-        run: Run<'_, DoubleDouble>,
-        mut before: Event<DoubleDouble>,
-        listed: &mut EventListing,
-    ) -> Result<()> {
+    fn collect(&self, run: Run<'_, DoubleDouble>, listed: &mut EventListing) -> Result<()> {
         for event in run {
-            let event = in_the_row(event, &before);
-            before = event.clone();
             if self.most.is_some_and(|most| listed.rows.len() > most) {
                 return Ok(());
             }
@@ -193,16 +185,6 @@ impl Rows<'_> {
                 Ok(out.write_all(&writer.into_inner()?)?)
             }),
         }
-    }
-}
-
-/// An event as its row has it: an ending that has no instant of its own is at the event before,
-/// a watched one too, where the run has it at the beginning of its segment.
-fn in_the_row(event: Event<DoubleDouble>, before: &Event<DoubleDouble>) -> Event<DoubleDouble> {
-    match event.what {
-        What::End(Ending::Horizon | Ending::LeavesDomain) => event,
-        What::End(_) => Event { what: event.what, ..before.clone() },
-        _ => event,
     }
 }
 
