@@ -15,8 +15,8 @@ pub enum What<T> {
     End(Ending<T>),
 }
 
-/// How a run ends. An ending that has no instant of its own, as all but the first and the third, has
-/// the time and the state of the last event, watched ones included, or of the start.
+/// How a run ends. An ending that has no instant of its own, as all but the first and the third,
+/// has the time and the state of the last event, watched ones included, or of the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending<T> {
     /// The horizon is reached.

@@ -301,7 +301,8 @@ impl<T: Number> ModalRow<T> {
         self.columns.iter().map(|it| it.size * y[it.at].to_f64().abs()).sum()
     }
 
-    /// What underflow may do to the row at most, at any time after the modal co-ordinates are these.
+    /// What underflow may do to the row at most, at any time after the modal co-ordinates are
+    /// these.
     pub fn underflow(&self, y: &Vector<T>) -> f64 {
         let moving = self.columns.iter().filter(|it| y[it.at] != T::zero());
         let terms = moving.map(|it| (UNDERFLOW * (1.0 + y[it.at].to_f64().abs())) * it.size);

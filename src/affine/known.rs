@@ -1,5 +1,5 @@
-//! What runs have learned of a system, kept for the runs that follow: its graph of structural zeros,
-//! and the starts that they had.
+//! What runs have learned of a system, kept for the runs that follow: its graph of structural
+//! zeros, and the starts that they had.
 
 use super::clock::Time;
 use super::starts::{Begun, Starts};

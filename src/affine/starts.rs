@@ -1,5 +1,5 @@
-//! The starts of runs, with what follows from a start alone: it is exact arithmetic, which would take
-//! longer than the events of a short run.
+//! The starts of runs, with what follows from a start alone: it is exact arithmetic, which would
+//! take longer than the events of a short run.
 
 use super::clock::Time;
 use super::residue::residues;

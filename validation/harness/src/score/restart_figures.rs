@@ -25,8 +25,8 @@ pub struct RestartError {
 pub struct Restart {
     /// Runs made.
     pub runs: usize,
-    /// Runs with an impact; in other systems than the oscillator, with an event. The spreads and the histogram are of these; `failed` and
-    /// `wrong_sequences` count all runs.
+    /// Runs with an impact; in other systems than the oscillator, with an event. The spreads and
+    /// the histogram are of these; `failed` and `wrong_sequences` count all runs.
     pub with_impact: usize,
     /// Runs that the truth leaves undecided, which are not made.
     pub undecided: usize,
