@@ -102,11 +102,11 @@ pub(super) fn scored_horizon(
     let unit = scale.unit;
     let largest = |row: &SystemTruthRow| row.growth.iter().fold(row.growth_time, |a, b| a.max(*b));
     let is_lost = |row: &SystemTruthRow| unit * largest(row) > SCORED_ERROR;
-    let times: Vec<TwoWord> = truth.events.iter().map(|it| it.elapsed).collect();
+    let times: Vec<f64> = truth.events.iter().map(|it| it.elapsed.value()).collect();
     let unit_of_time = unit * task.system.system().time_scale;
     let mixed_up = |n: usize, row: &SystemTruthRow| unit_of_time * row.growth_time > gap(&times, n);
     // Events of one instant are lost together, with the first of them.
-    let is_first = |n: usize| n == 0 || times[n].minus(times[n - 1]).value() > 0.0;
+    let is_first = |n: usize| n == 0 || times[n] > times[n - 1];
     let mut firsts = truth.events.iter().enumerate().filter(|(n, _)| is_first(*n));
     let event = firsts.find(|(n, row)| is_lost(row) || mixed_up(*n, row));
     let sample = truth.samples.iter().find(|row| is_lost(row));
@@ -117,26 +117,24 @@ pub(super) fn scored_horizon(
         return (truth.end.elapsed.value(), true);
     }
     let samples = truth.samples.iter().map(|row| row.elapsed.value());
-    let before = times.iter().map(|it| it.value()).chain(samples).filter(|time| *time < lost);
+    let before = times.iter().copied().chain(samples).filter(|time| *time < lost);
     (before.fold(0.0, f64::max), false)
 }
 
 /// The instants from which on the mode is in doubt: an event whose successor hangs by less than the
 /// errors that are allowed, or a graze that ends its mode or does not by as little.
-fn in_doubt(times: &[TwoWord], scale: SystemScale<'_>) -> impl Iterator<Item = f64> {
+fn in_doubt(times: &[f64], scale: SystemScale<'_>) -> impl Iterator<Item = f64> {
     let allowed = MOST_UNITS * scale.unit;
     let grazes = scale.grazes.iter().filter(move |it| it.ends && it.is_undecidable(allowed));
-    let grazed = grazes.map(|it| it.events.clone().next().map_or(it.elapsed, |n| times[n].value()));
+    let grazed = grazes.map(|it| it.events.clone().next().map_or(it.elapsed, |n| times[n]));
     let decisions = scale.decisions.iter().filter(move |it| it.margin <= allowed * it.growth);
     grazed.chain(decisions.map(|it| it.elapsed))
 }
 
-/// How far an event is from the nearest one at another instant, or from the start: instants that
-/// f64 does not tell apart may still be two.
-fn gap(times: &[TwoWord], n: usize) -> f64 {
-    let before = times[..n].iter().rev().chain([&TwoWord::ZERO]);
-    let before = before.map(|it| times[n].minus(*it).value());
-    let after = times[n + 1..].iter().map(|it| it.minus(times[n]).value());
+/// How far an event is from the nearest one at another instant, or from the start.
+fn gap(times: &[f64], n: usize) -> f64 {
+    let before = times[..n].iter().rev().chain([&0.0]).map(|it| times[n] - it);
+    let after = times[n + 1..].iter().map(|it| it - times[n]);
     let before = before.into_iter().find(|gap| *gap > 0.0);
     before.into_iter().chain(after.into_iter().find(|gap| *gap > 0.0)).fold(f64::INFINITY, f64::min)
 }

@@ -159,7 +159,16 @@ impl SystemRestartRun {
         // The exact solver knows which values are zero by the model.
         let decisions = if accuracy == Accuracy::Exact { &[][..] } else { &self.decisions };
         let scale = SystemScale { unit, grazes: &self.grazes, decisions };
-        scored_horizon(&self.task, &self.truth, scale).1
+        self.has_an_order() && scored_horizon(&self.task, &self.truth, scale).1
+    }
+
+    /// Whether f64 tells the events' instants apart as far as they differ. Rounding the start of a
+    /// run towards events of one instant leaves their order to its last digits.
+    fn has_an_order(&self) -> bool {
+        self.truth.events.windows(2).all(|pair| {
+            let [first, second] = [pair[0].elapsed, pair[1].elapsed];
+            first.value() != second.value() || second.minus(first).value() == 0.0
+        })
     }
 
     fn error(&self, names: &EventNames, outcome: &SystemOutcome, unit: f64) -> RestartError {
