@@ -271,13 +271,25 @@ fn every_line_of_the_summary_fits_a_hundred_columns() {
     let said = text(&output.stdout);
     let widest = said.lines().map(|line| line.chars().count()).max();
     assert!(widest.is_some_and(|widest| widest <= 100), "{said}");
-    assert!(said.contains("found/checked/all") && !said.contains("state err"), "{said}");
+    assert!(said.contains("found/checked/all") && !said.contains("checked/all rious"), "{said}");
     // A terminal shows the last lines: the ranking and the failures with nothing but counts below.
     let order = ["not run: ", "found/checked/all", "rank: ", "fails on ", " rows: "];
     let places = order.map(|word| said.find(word).unwrap_or_else(|| panic!("{word}: {said}")));
     assert!(places.is_sorted(), "{places:?} {said}");
     let few = stdout(&["validate", "-c", "^small-b$", "-e", "exact"]);
-    assert!(few.contains("state err"), "{few}");
+    assert!(few.contains("found/  spu-"), "{few}");
+}
+
+/// The rows of every engine fit, those with the longest names and with steps among them.
+#[test]
+fn rows_fit_a_hundred_columns() {
+    let said = stdout(&["validate", "-c", "^small-b$", "--rows"]);
+    let rows = said.lines().take_while(|line| !line.is_empty());
+    let widest = rows.map(|line| line.chars().count()).max();
+    assert!(widest.is_some_and(|widest| widest <= 100), "{said}");
+    for word in ["differential-equations-rkv655e-original", " 1/64 ", " 6/6/6 ", " not-run"] {
+        assert!(said.contains(word), "{word}: {said}");
+    }
 }
 
 /// Many failing cases are counted by system; rows and the other formats name them all.

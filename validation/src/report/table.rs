@@ -7,38 +7,44 @@ use comfy_table::{CellAlignment, Table, presets};
 
 /// The widest line, in columns.
 pub const WIDTH: usize = 100;
+/// Lines of the header of the rows.
+const HEADER_LINES: usize = 2;
 
-/// Every row, one line each.
+/// Every row, one line each, below the name of its case.
 pub(super) fn row_table(rows: &[ReportRow]) -> String {
     let mut table = Table::new();
     table.load_preset(presets::NOTHING);
     table.set_header([
-        "case",
-        "engine",
-        "tol",
-        "scored",
-        "events",
-        "missed",
-        "spurious",
-        "time err",
-        "state err",
-        "drift err",
-        "rhs",
-        "verdict",
+        "\nengine",
+        "tol,\nstep",
+        "found/\nchecked/all",
+        "spu-\nrious",
+        "time\nerror",
+        "state\nerror",
+        "\nrhs",
+        "\nverdict",
     ]);
-    let mut before = "";
     for row in rows {
-        let case = if row.case == before { "" } else { &row.case };
-        before = &row.case;
-        table.add_row(cells(case, row));
+        table.add_row(cells(row));
     }
-    for column in table.column_iter_mut().skip(2).take(9) {
+    for column in table.column_iter_mut().skip(1).take(6) {
         column.set_cell_alignment(CellAlignment::Right);
     }
     for column in table.column_iter_mut() {
-        column.set_padding((0, 2));
+        column.set_padding((0, 1));
     }
-    text(&table)
+    let text = text(&table);
+    let mut lines = text.lines();
+    let mut shown: Vec<&str> = lines.by_ref().take(HEADER_LINES).collect();
+    let mut before = "";
+    for (line, row) in lines.zip(rows) {
+        if row.case != before {
+            before = &row.case;
+            shown.push(before);
+        }
+        shown.push(line);
+    }
+    shown.join("\n") + "\n"
 }
 
 /// The reasons of rows without a result and of rows whose failure nothing excuses.
@@ -53,24 +59,19 @@ pub(super) fn reasons(rows: &[ReportRow]) -> String {
     rows.iter().filter(bad).map(line).collect()
 }
 
-fn cells(case: &str, row: &ReportRow) -> [String; 12] {
+fn cells(row: &ReportRow) -> [String; 8] {
     let count = |count: Option<usize>| count.map_or("-".to_owned(), |count| count.to_string());
     let figure = |value: f64| if value.is_nan() { "-".to_owned() } else { brief(value) };
+    let found = row.events_matched.zip(row.events_expected);
     [
-        case.to_owned(),
-        row.engine.to_owned(),
-        setting(row),
-        if row.horizon_periods.is_nan() {
-            "-".to_owned()
-        } else {
-            format!("{:.1}", row.horizon_periods)
-        },
-        count(row.events_expected),
-        count(row.events_missed),
+        format!(" {}", row.engine),
+        short_setting(row),
+        found.map_or("-".to_owned(), |(found, checked)| {
+            format!("{found}/{checked}/{}", row.events_total)
+        }),
         count(row.events_spurious),
         figure(row.event_time_error.max),
         figure(row.state_error.max),
-        figure(row.drift_error),
         row.rhs_evaluations.map_or("-".to_owned(), |count| count.to_string()),
         row.verdict.as_str().to_owned(),
     ]
@@ -80,6 +81,12 @@ fn cells(case: &str, row: &ReportRow) -> [String; 12] {
 fn setting(row: &ReportRow) -> String {
     let setting = row.setting();
     if setting.is_empty() { "-".to_owned() } else { setting }
+}
+
+/// The tolerance, or the step as a fraction where it is one of few digits.
+fn short_setting(row: &ReportRow) -> String {
+    let inverse = row.step.map_or(f64::NAN, f64::recip);
+    if inverse.fract() == 0.0 { format!("1/{inverse}") } else { setting(row) }
 }
 
 /// Breaks a text into lines of at most [`WIDTH`] columns, the later ones indented.
