@@ -27,7 +27,7 @@ pub(super) struct SystemRun<'a> {
 
 /// How many units of error a method may be off anywhere: the widest bound on the constants of a
 /// class of methods.
-const MOST_UNITS: f64 = 20.0;
+pub(super) const MOST_UNITS: f64 = 20.0;
 
 /// What tells how far a run of a system is scored.
 #[derive(Clone, Copy, Debug)]

@@ -8,7 +8,7 @@
 use super::decisions::{Decision, decisions};
 use super::event_names::EventNames;
 use super::graze::Graze;
-use super::measure_system::{SystemRun, SystemScale, off, scored_horizon};
+use super::measure_system::{MOST_UNITS, SystemRun, SystemScale, off, scored_horizon};
 use super::restart_figures::{Restart, RestartError, RestartResult};
 use super::statistics::worst;
 use super::system_grazes::system_grazes;
@@ -159,15 +159,17 @@ impl SystemRestartRun {
         // The exact solver knows which values are zero by the model.
         let decisions = if accuracy == Accuracy::Exact { &[][..] } else { &self.decisions };
         let scale = SystemScale { unit, grazes: &self.grazes, decisions };
-        self.has_an_order() && scored_horizon(&self.task, &self.truth, scale).1
+        self.has_an_order(unit) && scored_horizon(&self.task, &self.truth, scale).1
     }
 
-    /// Whether f64 tells the events' instants apart as far as they differ. Rounding the start of a
-    /// run towards events of one instant leaves their order to its last digits.
-    fn has_an_order(&self) -> bool {
+    /// Whether the errors that a method is allowed leave the order of events that are not of one
+    /// instant. Rounding the start of a run towards such an instant leaves it to its last digits.
+    fn has_an_order(&self, unit: f64) -> bool {
+        let scale = self.task.system.system().time_scale;
         self.truth.events.windows(2).all(|pair| {
-            let [first, second] = [pair[0].elapsed, pair[1].elapsed];
-            first.value() != second.value() || second.minus(first).value() == 0.0
+            let apart = pair[1].elapsed.minus(pair[0].elapsed).value();
+            let size = scale + pair[1].elapsed.value();
+            apart == 0.0 || apart > MOST_UNITS * unit * size * pair[1].growth_time
         })
     }
 
