@@ -13,7 +13,7 @@ use super::mismatch::{Excused, Mismatch};
 use super::occurrence::Occurrence;
 use super::probed::ProbeResults;
 use super::statistics::{Spread, worst};
-use crate::engine::{SystemOutcome, SystemTask};
+use crate::engine::{Accuracy, SystemOutcome, SystemTask};
 use crate::truth::{SystemTruth, SystemTruthRow};
 use percuss::TwoWord;
 
@@ -38,6 +38,20 @@ pub struct SystemScale<'a> {
     pub grazes: &'a [Graze],
     /// The decisions of the true run; none where structural zeros are known.
     pub decisions: &'a [Decision],
+}
+
+impl<'a> SystemScale<'a> {
+    /// What an engine is held to along a true run.
+    #[must_use]
+    pub fn of(
+        (accuracy, unit): (Accuracy, f64),
+        grazes: &'a [Graze],
+        decisions: &'a [Decision],
+    ) -> Self {
+        // The exact solver knows which values are zero by the model.
+        let decisions = if accuracy == Accuracy::Exact { &[][..] } else { decisions };
+        Self { unit, grazes, decisions }
+    }
 }
 
 /// Measures a run.

@@ -156,9 +156,7 @@ impl Restarts<'_> {
 impl SystemRestartRun {
     /// Whether errors of this unit leave open nothing that follows.
     fn is_decided(&self, accuracy: Accuracy, unit: f64) -> bool {
-        // The exact solver knows which values are zero by the model.
-        let decisions = if accuracy == Accuracy::Exact { &[][..] } else { &self.decisions };
-        let scale = SystemScale { unit, grazes: &self.grazes, decisions };
+        let scale = SystemScale::of((accuracy, unit), &self.grazes, &self.decisions);
         self.has_an_order(unit) && scored_horizon(&self.task, &self.truth, scale).1
     }
 

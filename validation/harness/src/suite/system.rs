@@ -76,9 +76,7 @@ impl PreparedSystem {
         let began = Instant::now();
         let outcome = answer_system(engine, &self.task, accuracy, limits)?;
         let wall = began.elapsed();
-        // The exact solver knows which values are zero by the model.
-        let decisions = if accuracy == Accuracy::Exact { &[][..] } else { &self.decisions };
-        let scale = SystemScale { unit, grazes: &self.grazes, decisions };
+        let scale = SystemScale::of((accuracy, unit), &self.grazes, &self.decisions);
         let measures = measure_system(&self.task, &self.truth, &self.names, &outcome, scale);
         Ok(Measured { measures, answered: Answered::System(outcome), wall })
     }

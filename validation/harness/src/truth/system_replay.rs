@@ -65,9 +65,7 @@ impl SystemTruth {
     /// not decide the run so far.
     #[must_use]
     pub fn states(case: &SystemCase, instants: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let solver =
-            if case.backward { Solver::backward(&case.system) } else { Solver::new(&case.system) };
-        let (solver, start) = (solver.ok()?, case.system.start.as_ref()?);
+        let (solver, start) = (solver(case).ok()?, case.system.start.as_ref()?);
         let replay = SystemReplay { case, solver: &solver, begin: Time::of(&start.time) };
         let events = replay.events(start).ok()?;
         let (last, events) = events.split_last()?;
