@@ -31,11 +31,8 @@ impl SystemProblem {
         let start = start.ok_or_else(|| Failure::new("the system has no [start]"))?;
         let solver = if backward { Solver::backward(&exact) } else { Solver::new(&exact) };
         let solver = solver.map_err(Failure::new)?;
-        let mut checked = CheckedSystem::new(System::from(&exact))?;
-        if backward {
-            checked = checked.backward()?;
-        }
-        Ok(Self { exact, solver, checked: Arc::new(checked), start, backward })
+        let checked = checked(&exact, backward)?;
+        Ok(Self { exact, solver, checked, start, backward })
     }
 
     /// The system from another start.
@@ -44,12 +41,8 @@ impl SystemProblem {
     /// A start that the engines do not take.
     pub fn from_start(&self, start: StartPoint) -> Result<Self, Failure> {
         let exact = affine::System { start: Some(start.clone()), ..self.exact.clone() };
-        let mut checked = CheckedSystem::new(System::from(&exact))?;
-        if self.backward {
-            checked = checked.backward()?;
-        }
-        let solver = self.solver.clone();
-        Ok(Self { exact, solver, checked: Arc::new(checked), start, backward: self.backward })
+        let checked = checked(&exact, self.backward)?;
+        Ok(Self { exact, solver: self.solver.clone(), checked, start, backward: self.backward })
     }
 
     /// The clock's time at the start, rounded.
@@ -86,4 +79,10 @@ impl SystemProblem {
     pub fn turn(&self) -> f64 {
         self.checked.turn().min(self.period())
     }
+}
+
+/// A system in plain numbers, in the direction of a run.
+fn checked(exact: &affine::System, backward: bool) -> Result<Arc<CheckedSystem>, Failure> {
+    let forward = CheckedSystem::new(System::from(exact))?;
+    Ok(Arc::new(if backward { forward.backward()? } else { forward }))
 }
