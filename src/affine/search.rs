@@ -10,6 +10,7 @@
 //! optimising across them; so what runs at every event is marked to be inlined, here and in the
 //! modules that this one uses.
 
+use super::flow::ModalRow;
 use super::hull::{Judged, Lengths};
 use super::point::{Ends, PerGuard, Point, Segment};
 use super::reach::Reach;
@@ -25,6 +26,9 @@ const FEWEST_PIECES: u64 = 1 << 14;
 /// As how many pieces more one counts that is not passed whole, because it is divided.
 const OPEN: u64 = 8;
 
+/// The number of Taylor terms that are summed to guess at a crossing, at most.
+const TERMS: usize = 8;
+
 /// How a search ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Found {
@@ -39,9 +43,28 @@ pub(super) enum Found {
 
 /// A crossing that is proved to be the only one shortly after a point.
 struct Rising<T> {
+    /// The number of the guard.
+    guard: usize,
+    /// When it is, after the point, by a Taylor polynomial.
     after: T,
+    /// By what the last step towards the polynomial's root was.
+    change: f64,
+    /// How long after the point it is at most.
     within: f64,
+    /// The guard's rate at the point; half of it is the least that it has before `within`.
+    slope: f64,
+    /// What rounding may do to the time.
     error: f64,
+}
+
+/// The first crossing of all guards.
+struct Crossing<T> {
+    /// When it is, by Taylor polynomials.
+    time: T,
+    /// Between which times its first guard is proved to cross.
+    between: [T; 2],
+    /// The guards that cross within what rounding may do, as bits.
+    guards: u64,
 }
 
 impl<T: Number> Segment<'_, T> {
@@ -99,8 +122,8 @@ impl<T: Number> Segment<'_, T> {
                 continue;
             }
             self.measure(&mut ends.left);
-            if let Some((time, guards)) = self.rising(tracks, &ends.left, work) {
-                return self.settled(tracks, ends, (time, guards), limit, work);
+            if let Some(crossing) = self.rising(tracks, &ends.left, work) {
+                return self.settled(tracks, ends, crossing, limit, work);
             }
             most = 0.25 * length;
         }
@@ -194,35 +217,57 @@ impl<T: Number> Segment<'_, T> {
 
     /// The first crossing shortly after a point, if it is proved to be one.
     #[inline]
-    fn rising(&self, tracks: &[Track], at: &Point<T>, work: &mut Work) -> Option<(T, u64)> {
-        let mut rising = PerGuard::new();
+    fn rising(&self, tracks: &[Track], at: &Point<T>, work: &mut Work) -> Option<Crossing<T>> {
+        let mut all: PerGuard<Rising<T>> = PerGuard::new();
         for (n, track) in live(tracks) {
-            rising.push(self.rises(n, track, at));
+            all.extend(self.rises(n, track, at));
         }
-        let first = rising.iter().flatten().map(|it| it.after);
-        let first = first.reduce(|a, b| if b < a { b } else { a })?;
-        let within = rising.iter().flatten().filter(|it| it.after <= first).map(|it| it.within);
-        let within = within.fold(0.0, f64::max);
-        let error = rising.iter().flatten().filter(|it| it.after <= first).map(|it| it.error);
-        let error = error.fold(0.0, f64::max);
+        let first = all.iter().reduce(|a, b| if b.after < a.after { b } else { a })?;
         let mut guards = 0;
-        for ((n, track), rises) in live(tracks).zip(&rising) {
-            match rises {
-                Some(rises) if (rises.after - first).to_f64() <= rises.error + error => {
-                    guards |= 1 << n;
-                }
-                Some(_) => {}
-                None => {
-                    let excess = self.excess(n, track, at, within);
-                    let below = excess <= 4.0 * at.slack[n];
-                    if !below {
-                        return None;
-                    }
-                    work.undecidable += u64::from(excess >= -at.slack[n]);
-                }
+        for it in &all {
+            if self.is_tied(at, first, it)? {
+                guards |= 1 << it.guard;
             }
         }
-        Some((at.time + first, guards))
+        for (n, track) in live(tracks).filter(|(n, _)| all.iter().all(|it| it.guard != *n)) {
+            let excess = self.excess(n, track, at, first.within);
+            let below = excess <= 4.0 * at.slack[n];
+            if !below {
+                return None;
+            }
+            work.undecidable += u64::from(excess >= -at.slack[n]);
+        }
+        let lowest = all.iter().find(|it| guards & (1 << it.guard) != 0)?;
+        let earliest = at.time - T::exact(4.0 * lowest.error);
+        let between = [earliest, at.time + T::exact(lowest.within)];
+        Some(Crossing { time: at.time + first.after, between, guards })
+    }
+
+    /// Whether a guard crosses together with the first, within what rounding may do. Where
+    /// polynomials hide which is first, nothing is told.
+    #[inline]
+    fn is_tied(&self, at: &Point<T>, first: &Rising<T>, other: &Rising<T>) -> Option<bool> {
+        if first.guard == other.guard {
+            return Some(true);
+        }
+        let gap = (other.after - first.after).to_f64();
+        let error = first.error + other.error;
+        let hidden = self.truncation(at, first) + self.truncation(at, other);
+        if gap > error + hidden {
+            return Some(false);
+        }
+        (hidden <= error).then_some(gap <= error)
+    }
+
+    /// What the rest of a guard's Taylor series, and steps that were not taken, may do to the time
+    /// of a crossing.
+    #[inline]
+    fn truncation(&self, at: &Point<T>, it: &Rising<T>) -> f64 {
+        let row = &self.rows[it.guard];
+        let terms = terms(row);
+        let next = self.flow.bound_by(row, terms, &at.norms, it.within);
+        let rest = (1..=terms).fold(next, |rest, k| rest * it.within / k as f64);
+        it.change + 2.0 * rest / it.slope
     }
 
     /// Whether a guard rises through zero once, shortly after a point, and when.
@@ -242,19 +287,20 @@ impl<T: Number> Segment<'_, T> {
         if !steadily {
             return None;
         }
-        let after = self.root(n, track, at);
-        let is_told = after.to_f64().is_finite();
-        is_told.then(|| Rising { after, within, error: 2.0 * slack / slope })
+        let (after, change) = self.root(n, track, at);
+        let (is_told, error) = (after.to_f64().is_finite(), 2.0 * slack / slope);
+        is_told.then_some(Rising { guard: n, after, change, within, slope, error })
     }
 
-    /// The time to a root that is near a point.
+    /// The time to a root of a guard's Taylor polynomial that is near a point, and the last step
+    /// towards it. Where the polynomial is not the guard's, it may be far from a crossing.
     #[inline]
-    fn root(&self, n: usize, track: &Track, at: &Point<T>) -> T {
+    fn root(&self, n: usize, track: &Track, at: &Point<T>) -> (T, f64) {
         let first = outward(&at.orders[n], track);
         let outward = T::exact(track.outward);
-        let mut terms = [T::zero(); 8];
-        let last = self.rows[n].last.clamp(4, 8);
-        for (k, term) in terms[..last].iter_mut().enumerate() {
+        let mut all = [T::zero(); TERMS];
+        let last = terms(&self.rows[n]);
+        for (k, term) in all[..last].iter_mut().enumerate() {
             let order = if k < 4 { first[k] } else { self.rows[n].order(k, &at.y).0 * outward };
             if !order.to_f64().is_finite() {
                 // It is a first guess, which fewer terms give as well.
@@ -262,16 +308,17 @@ impl<T: Number> Segment<'_, T> {
             }
             *term = order * T::inverse_factorial(k);
         }
-        let mut step = newton(&first);
+        let (mut step, mut change) = (newton(&first), f64::INFINITY);
         for _ in 0..2 {
             let (mut value, mut slope) = (T::zero(), T::zero());
-            for term in terms[..last].iter().rev() {
+            for term in all[..last].iter().rev() {
                 slope = slope * step + value;
                 value = value * step + *term;
             }
-            step = step - value / slope;
+            let by = value / slope;
+            (step, change) = (step - by, by.to_f64().abs());
         }
-        step
+        (step, change)
     }
 
     /// A bound of a guard over a short time after a point.
@@ -289,32 +336,50 @@ impl<T: Number> Segment<'_, T> {
     }
 
     /// The crossing to the last digit. Of the guards only the first that crosses is evaluated
-    /// there.
+    /// there. Newton's steps are taken while they shrink and stay where the crossing is proved to
+    /// be; elsewhere that is halved.
     #[inline]
     fn settled(
         &self,
         tracks: &[Track],
         ends: &mut Ends<T>,
-        (time, guards): (T, u64),
+        crossing: Crossing<T>,
         limit: T,
         work: &mut Work,
     ) -> Found {
-        const ROUNDS: usize = 8;
-        let n = guards.trailing_zeros() as usize;
+        const ROUNDS: usize = 128;
+        let n = crossing.guards.trailing_zeros() as usize;
         let point = &mut ends.left;
-        self.evaluate_guard(n, point, time, work);
+        let [mut low, mut high] = crossing.between;
+        let inside = low <= crossing.time && crossing.time <= high;
+        let half = T::exact(0.5);
+        let guess = if inside { crossing.time } else { (low + high) * half };
+        self.evaluate_guard(n, point, guess, work);
         let mut last = f64::INFINITY;
         for _ in 0..ROUNDS {
             // A value within a few roundings of its terms shows no better time.
             let noise = 4.0 * unit::<T>() * self.rows[n].size(&point.y);
-            if point.orders[n][0].to_f64().abs() <= noise {
+            let orders = outward(&point.orders[n], &tracks[n]);
+            let value = orders[0].to_f64();
+            if value.abs() <= noise {
                 break;
             }
-            let step = newton(&outward(&point.orders[n], &tracks[n]));
-            let (better, size) = (point.time + step, step.to_f64().abs());
-            // Steps that do not shrink are rounding.
-            let far = size > unit::<T>() * point.time.to_f64().abs() && size < 0.25 * last;
-            if !far || better <= T::zero() {
+            *(if value < 0.0 { &mut low } else { &mut high }) = point.time;
+            let step = newton(&orders);
+            let (mut better, mut size) = (point.time + step, step.to_f64().abs());
+            if size <= unit::<T>() * point.time.to_f64().abs() {
+                break;
+            }
+            if !(size < 0.25 * last && low < better && better < high) {
+                // Steps that do not shrink are rounding, where that can be what the value is.
+                better = (low + high) * half;
+                let known = low < better && better < high;
+                if value.abs() <= 4.0 * point.slack[n] || !known {
+                    break;
+                }
+                size = (better - point.time).to_f64().abs();
+            }
+            if better <= T::zero() {
                 break;
             }
             last = size;
@@ -323,8 +388,14 @@ impl<T: Number> Segment<'_, T> {
         point.later = remaining(&point.orders[n]);
         // A crossing exactly at the limit counts.
         let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
-        if point.time > limit + room { Found::Nothing } else { Found::Crossing(guards) }
+        if point.time > limit + room { Found::Nothing } else { Found::Crossing(crossing.guards) }
     }
+}
+
+/// The number of a guard's Taylor terms that are summed to guess at a crossing.
+#[inline]
+fn terms<T>(row: &ModalRow<T>) -> usize {
+    row.last.clamp(4, TERMS)
 }
 
 /// The rest of the way to a root, where that is so short that the slope does not change: then a

@@ -23,3 +23,11 @@ fn random_systems_have_events_and_crests() {
     }
     assert!(met.events > 400 && met.crests > 20, "{met:?}");
 }
+
+/// A guard crosses 40 decay times of its smallest part after the point that its crossing is
+/// guessed from: the guess by a Taylor polynomial is before the event that the segment begins with.
+#[test]
+fn a_crossing_beyond_the_reach_of_a_polynomial() {
+    let checked = check(4_083_550_187_308_645_049, &mut Met::default());
+    assert!(checked.is_ok(), "{}", checked.unwrap_err());
+}
