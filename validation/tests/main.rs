@@ -44,6 +44,7 @@ mod spoiled;
 mod strobe_derivative;
 mod sweep;
 mod system_cases;
+mod system_grazes;
 mod systems;
 mod systems_page;
 mod terminal;

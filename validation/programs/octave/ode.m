@@ -10,6 +10,9 @@
 % - Octave finds an event by linear interpolation over the whole step. The root is sought again, by
 %   integrating from the beginning of that step.
 % - The first step is given: the one that Octave chooses may pass the end of the time span.
+% - The first step is short beside the time after which a guard may be zero: a terminal event in the
+%   first step does not end the run.
+% - ode15s is given the slope at the start, which Octave 7.3 takes to be zero, and the Jacobian.
 % - Of all guards that change their signs in a step the first counts; Octave takes the first of the
 %   list.
 % - A guard that is zero where a mode begins has the sign that it has just after it until the first
@@ -26,6 +29,15 @@ function options = usual_options(events)
   if nargin > 0 && ! isempty(course.modes{course.mode}.events)
     options.Events = events;
   end
+end
+
+% What an expert adds for a run that begins here: ode15s is told the slope and the Jacobian.
+function options = expert_options(t, z, varargin)
+  global course
+  options = usual_options(varargin{:});
+  mode = course.modes{course.mode};
+  options.Jacobian = mode.wide(1:mode.size, 1:mode.size);
+  options.InitialSlope = rates(t, z);
 end
 
 function [value, terminal, direction] = all_events(t, z)
@@ -89,20 +101,27 @@ end
 
 % The state at a time, from the beginning of a step.
 function z = state_at(method, t, begin, z)
-  if t > begin
-    options = usual_options();
+  if t - begin <= 64 * eps * abs(t)
+    % IDA refuses so short a time.
+    z = z + (t - begin) * rates(begin, z);
+  else
+    options = expert_options(begin, z);
     options.InitialStep = t - begin;
     [~, states] = method(@rates, [begin, t], z, options);
     z = states(end, :).';
   end
 end
 
-% Where a guard has its root in the last step: Newton's method, from the secant.
+% Where a guard has its root in the last step: Newton's method, from the secant or the end.
 function t = root_of(method, place)
   global course seen
   event = course.modes{course.mode}.events{place};
   ends = [seen(1).value(place), seen(2).value(place)];
-  t = seen(1).t - ends(1) * (seen(2).t - seen(1).t) / (ends(2) - ends(1));
+  % A guard that begins at zero has another root there: the one that is sought is later.
+  t = seen(2).t;
+  if abs(ends(1)) > realmin()
+    t = seen(1).t - ends(1) * (t - seen(1).t) / (ends(2) - ends(1));
+  end
   for n = 1:8
     w = wide_of(t, state_at(method, t, seen(1).t, seen(1).z));
     move = (event.row * w) / (event.row * course.modes{course.mode}.wide * w);
@@ -123,12 +142,27 @@ function sample_until(method, upto)
   wanted = due(upto);
   if ! isempty(wanted)
     times = unique([course.t, wanted, upto]);
-    [t, z] = method(@rates, times, course.z, usual_options());
+    [t, z] = method(@rates, times, course.z, expert_options(course.t, course.z));
     [~, rows] = ismember(wanted, t);
     if numel(times) == 2
       rows(:) = numel(t);
     end
     sample(z(rows, :).');
+  end
+end
+
+% The time after which a guard may be zero, by its first two derivatives that are not zero.
+function time = soonest(orders)
+  global course
+  mode = course.modes{course.mode};
+  w = wide_of(course.t, course.z);
+  time = Inf;
+  for n = find(isfinite(orders))
+    row = mode.events{n}.row * mode.wide ^ orders(n);
+    ratio = -(row * w) / (row * mode.wide * w);
+    if ratio > 0
+      time = min(time, (orders(n) + 1) * ratio);
+    end
   end
 end
 
@@ -141,23 +175,27 @@ function [t, z, crossed] = stretch(method, orders, ways)
   times = course.run.times;
   turn = min([times.period, times.turn]);
   left = course.run.span - course.t;
-  options = usual_options(@(t, z) expert_events(t, z, hidden));
+  options = expert_options(course.t, course.z, @(t, z) expert_events(t, z, hidden));
   options.MaxStep = 0.125 * turn;
-  options.InitialStep = min(1e-3 * turn, left);
+  options.InitialStep = min([1e-3 * turn, left, max(0.25 * soonest(orders), 1e-12 * turn)]);
   solved = method(@rates, [course.t, course.run.span], course.z, options);
   course.steps += numel(solved.x) - 1;
   t = solved.x(end);
   z = solved.y(:, end);
   crossed = [];
-  if ! isfield(solved, "ie") || isempty(solved.ie)
+  found = [];
+  if isfield(solved, "ie") && ! isempty(solved.ie)
+    signs = cellfun(@(event) event.sign, course.modes{course.mode}.events);
+    way = sign(sign(seen(2).value) - sign(seen(1).value));
+    found = find(way != 0 & (signs == 0 | signs == way));
+  end
+  % An event at the begin, which an entry's zero may be taken for, ends nothing.
+  if isempty(found)
     if t < course.run.span
       error("the method gave up at %g", t);
     end
     return
   end
-  signs = cellfun(@(event) event.sign, course.modes{course.mode}.events);
-  way = sign(seen(2).value) .* (sign(seen(2).value) != sign(seen(1).value));
-  found = find(way != 0 & (signs == 0 | signs == way));
   roots = Inf(size(signs));
   for n = found
     roots(n) = root_of(method, n);

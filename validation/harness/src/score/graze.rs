@@ -11,7 +11,6 @@ use crate::engine::{Closed, Equations, GUARDS, Oscillator, Task};
 use crate::truth::{Truth, TruthRow};
 use percuss::{Parameters, Phase};
 use std::f64::consts::PI;
-use std::ops::Range;
 
 /// Margins above this, in units of displacement or of force, are no grazes.
 const WIDEST: f64 = 1e-2;
@@ -31,8 +30,9 @@ pub struct Graze {
     pub margin: f64,
     /// Largest error of the guard there that one unit of error may have become.
     pub growth: f64,
-    /// The truth's events that this graze makes: none where the guard stays short.
-    pub events: Range<usize>,
+    /// The truth's events that this graze makes: none where the guard stays short. Events of other
+    /// guards that are only watched may lie between them.
+    pub events: Vec<usize>,
     /// The mode in which the guard is looked at.
     pub mode: usize,
     /// The event that a crossing there would be; `None` in the oscillator, where any other phase
@@ -160,7 +160,7 @@ impl Scan<'_> {
         while let Some(at) = segment.maximum(guard, (from, length), step) {
             let margin = segment.guards(at)[guard];
             if (-WIDEST..0.0).contains(&margin) {
-                found.push(self.graze(n, segment, (guard, at), n..n));
+                found.push(self.graze(n, segment, (guard, at), Vec::new()));
             }
             from = at + step;
             if from >= length {
@@ -180,7 +180,7 @@ impl Scan<'_> {
             let soon = next.elapsed.value() - segment.began - length <= 4.0 * (at - length);
             next.phase == Some(segment.phase) && soon
         });
-        let events = if returns { n..n + 2 } else { n..n + 1 };
+        let events = if returns { vec![n, n + 1] } else { vec![n] };
         let found = self.graze(n, segment, (guard, at), events);
         (found.margin <= WIDEST).then_some(found)
     }
@@ -190,7 +190,7 @@ impl Scan<'_> {
         n: usize,
         segment: &GuardedSegment,
         (guard, at): (usize, f64),
-        events: Range<usize>,
+        events: Vec<usize>,
     ) -> Graze {
         let elapsed = segment.began + at;
         let growth = self.guard_growth(segment.phase, &segment.closed.at(at), elapsed);

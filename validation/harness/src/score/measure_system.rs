@@ -140,7 +140,7 @@ pub(super) fn scored_horizon(
 fn in_doubt(times: &[f64], scale: SystemScale<'_>) -> impl Iterator<Item = f64> {
     let allowed = MOST_UNITS * scale.unit;
     let grazes = scale.grazes.iter().filter(move |it| it.ends && it.is_undecidable(allowed));
-    let grazed = grazes.map(|it| it.events.clone().next().map_or(it.elapsed, |n| times[n]));
+    let grazed = grazes.map(|it| it.events.first().map_or(it.elapsed, |n| times[*n]));
     let decisions = scale.decisions.iter().filter(move |it| it.margin <= allowed * it.growth);
     grazed.chain(decisions.map(|it| it.elapsed))
 }

@@ -88,8 +88,9 @@ impl Mismatch {
     ) -> Excused {
         let mut excused = Excused::default();
         for graze in grazes.iter().filter(|it| it.is_undecidable(allowed)) {
-            let missed: Vec<_> = graze.events.clone().filter(|i| self.missed.contains(i)).collect();
-            let whole = graze.events.clone().all(|i| self.lost.contains(&i));
+            let missed: Vec<_> =
+                graze.events.iter().copied().filter(|i| self.missed.contains(i)).collect();
+            let whole = graze.events.iter().all(|i| self.lost.contains(i));
             let touch = graze.events.len() == graze.makes && whole && !missed.is_empty();
             let crossing = if graze.events.is_empty() {
                 self.spurious_crossing(graze, found, window, &excused)
@@ -143,12 +144,12 @@ mod tests {
         Occurrence { elapsed, event: 0, mode: Some(number(phase)) }
     }
 
-    fn graze(elapsed: f64, margin: f64, events: std::ops::Range<usize>) -> Graze {
+    fn graze(elapsed: f64, margin: f64, events: impl IntoIterator<Item = usize>) -> Graze {
         Graze {
             elapsed,
             margin,
             growth: 1.0,
-            events,
+            events: events.into_iter().collect(),
             mode: number(NoContact),
             event: None,
             ends: true,

@@ -6,7 +6,6 @@ use super::graze::Graze;
 use crate::system::{Direction, System, SystemProblem};
 use crate::truth::{SystemTruth, SystemTruthRow};
 use percuss::affine::{Event, Time, What};
-use std::ops::Range;
 
 /// Margins above this part of a guard's size are no grazes.
 const WIDEST: f64 = 1e-2;
@@ -37,6 +36,10 @@ pub fn system_grazes(
         .enumerate()
         .flat_map(|(n, (begin, end))| scan.segment(n, begin, end))
         .collect();
+    // Both segments that meet at an extremum may have found it.
+    let same = 1e-9 * problem.turn();
+    found.sort_by(|a, b| a.event.cmp(&b.event).then(a.elapsed.total_cmp(&b.elapsed)));
+    found.dedup_by(|b, a| a.event == b.event && b.elapsed - a.elapsed <= same);
     found.sort_by(|a, b| a.elapsed.total_cmp(&b.elapsed));
     found
 }
@@ -84,6 +87,11 @@ impl SystemScan<'_> {
         let watch = mode.watch.iter().map(|it| (&it.guard, Some(it.direction)));
         let all = until.chain(watch).enumerate();
         all.map(|(event, (row, direction))| ScannedGuard { event, row, direction }).collect()
+    }
+
+    /// Whether an event is only watched in a mode, which goes on.
+    fn is_watched(&self, mode: usize, row: &SystemTruthRow) -> bool {
+        row.mode == mode && row.event >= self.system.modes[mode].until.len()
     }
 
     /// How many events a crossing makes that turns back at once.
@@ -147,8 +155,15 @@ impl SystemSegment<'_> {
         let turn = self.scan.problem.turn();
         let looks = (length / turn * LOOKS).clamp(FEWEST_LOOKS, MOST_LOOKS);
         let mut step = length / looks;
-        // The crossing that ends the segment may turn back soon after it.
-        let beyond = if guard.direction.is_none() { 0.25 * turn } else { 0.0 };
+        // The crossing that ends the segment may turn back soon after it. An event that is only
+        // watched may be the extremum itself, and rounding puts that on either side of it.
+        let watched = |it: &SystemTruthRow| self.scan.is_watched(self.mode, it);
+        let goes_on = self.scan.truth.events.get(n).is_some_and(watched);
+        let beyond = match guard.direction {
+            None => 0.25 * turn,
+            Some(_) if goes_on => step,
+            Some(_) => 0.0,
+        };
         if length <= 0.0 {
             return Vec::new();
         }
@@ -209,37 +224,61 @@ impl SystemSegment<'_> {
         let elapsed = self.began + at;
         let growth = scan.growth(guard.row, state, elapsed) * n.max(1) as f64;
         let makes = scan.makes(self.mode, guard);
-        let crossed = if margin < 0.0 { None } else { self.crossed(n, guard, makes, maximum) };
+        let crossed = if margin < 0.0 { None } else { self.crossed(n, guard, at, maximum) };
         // What touches zero exactly crosses nothing.
         let touches = margin <= ON_GUARD * size;
-        let events = crossed.or_else(|| touches.then_some(n..n))?;
+        let events = crossed.or_else(|| touches.then(Vec::new))?;
         let event = Some(scan.names.number(self.mode, guard.event));
         Some(Graze { elapsed, margin, growth, events, mode: self.mode, event, ends: until, makes })
     }
 
-    /// The truth's events that a touch makes: those at the ends of the segment in which it turns.
+    /// The truth's events that a touch makes: the crossings just before and just after it.
     fn crossed(
         &self,
         n: usize,
         guard: &ScannedGuard<'_>,
-        makes: usize,
+        at: f64,
         maximum: bool,
-    ) -> Option<Range<usize>> {
-        let events = &self.scan.truth.events;
-        let own = |k: usize| events.get(k).is_some_and(|it| it.event == guard.event);
-        match guard.direction {
+    ) -> Option<Vec<usize>> {
+        let Some(direction) = guard.direction else {
             // The segment ends by the crossing, and a mode that is left is entered again.
-            None => (own(n) && events.len() >= n + makes).then_some(n..n + makes),
-            Some(Direction::Both) => {
-                let before = n.checked_sub(1)?;
-                (own(before) && own(n)).then_some(before..n + 1)
-            }
+            let events = &self.scan.truth.events;
+            let makes = self.scan.makes(self.mode, guard);
+            let own = events.get(n).is_some_and(|it| it.event == guard.event);
+            return (own && events.len() >= n + makes).then(|| (n..n + makes).collect());
+        };
+        let before = || self.watched(guard, at, (0..n).rev());
+        let after = || self.watched(guard, at, n..self.scan.truth.events.len());
+        match direction {
+            Direction::Both => Some(vec![before()?, after()?]),
             // Up and down again, or down and up: the one of the two that is counted.
-            Some(direction) => {
-                let first = (direction == Direction::Rising) == maximum;
-                let place = if first { n.checked_sub(1)? } else { n };
-                own(place).then_some(place..place + 1)
-            }
+            _ if (direction == Direction::Rising) == maximum => Some(vec![before()?]),
+            _ => Some(vec![after()?]),
         }
+    }
+
+    /// The nearest of these events that is a watched guard's, if the guard goes one way from it to
+    /// its extremum, or back, and nothing ends the mode between them.
+    fn watched(
+        &self,
+        guard: &ScannedGuard<'_>,
+        at: f64,
+        mut candidates: impl Iterator<Item = usize>,
+    ) -> Option<usize> {
+        const LOOKS_BETWEEN: u32 = 16;
+        let events = &self.scan.truth.events;
+        let is_own = |k: &usize| events[*k].event == guard.event && events[*k].mode == self.mode;
+        let mut open = true;
+        let found = candidates.find(|k| {
+            open &= self.scan.is_watched(self.mode, &events[*k]);
+            !open || is_own(k)
+        });
+        let own = found.filter(|_| open)?;
+        let from = events[own].elapsed.value() - self.began;
+        let share = |k: u32| f64::from(k) / f64::from(LOOKS_BETWEEN);
+        let mut rates =
+            (0..LOOKS_BETWEEN).map(|k| self.rate(guard.row, from + share(k) * (at - from)) > 0.0);
+        let first = rates.next()?;
+        rates.all(|it| it == first).then_some(own)
     }
 }
