@@ -41,7 +41,7 @@ fn random_start(draw: &mut Draw, model: &Model) -> Entry {
 }
 
 #[derive(Debug, Default)]
-struct Score {
+struct Agreement {
     switches: u64,
     given_up: u64,
     /// Differences on segments that one of the two called undecidable.
@@ -78,7 +78,7 @@ fn room(model: &Model, segment: &Segment, next: &Entry) -> f64 {
     32.0 * f64::EPSILON * (terms / slope.abs() + d)
 }
 
-fn judge(model: &Model, segment: &Segment, undecidable: bool, score: &mut Score) {
+fn judge(model: &Model, segment: &Segment, undecidable: bool, score: &mut Agreement) {
     let (found, next) = match segment.exit() {
         Exit::Switch(next) => (segment.duration(), next),
         // Not a switch: the judge must not find one either, as far as it can look.
@@ -111,7 +111,7 @@ fn judge(model: &Model, segment: &Segment, undecidable: bool, score: &mut Score)
     }
 }
 
-fn run(model: &Model, start: Entry, switches: usize, score: &mut Score) {
+fn run(model: &Model, start: Entry, switches: usize, score: &mut Agreement) {
     let horizon = start.instant.after_periods(1_000_000, 1);
     let mut trajectory = model.trajectory(start).until(horizon);
     let mut before = Counters::default();
@@ -123,8 +123,8 @@ fn run(model: &Model, start: Entry, switches: usize, score: &mut Score) {
     }
 }
 
-fn agree(per_regime: usize, random_models: usize, per_model: usize) -> Score {
-    let mut score = Score::default();
+fn agree(per_regime: usize, random_models: usize, per_model: usize) -> Agreement {
+    let mut score = Agreement::default();
     let mut draw = Draw(2004);
     for (omega, xi) in REGIMES {
         let model = Model::new(Parameters { omega, xi, ..Parameters::default() }).unwrap();
@@ -139,7 +139,7 @@ fn agree(per_regime: usize, random_models: usize, per_model: usize) -> Score {
         let start = random_start(&mut draw, &model);
         run(&model, start, per_model, &mut score);
     }
-    let Score { switches, given_up, undecidable, worst, disagreements } = &score;
+    let Agreement { switches, given_up, undecidable, worst, disagreements } = &score;
     println!(
         "{switches} switches, {given_up} given up, {undecidable} undecidable, {} disagreements, worst {worst:.2} rooms",
         disagreements.len()

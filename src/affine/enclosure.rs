@@ -21,7 +21,7 @@ const OUTWARD: f64 = 1.0 + 1e-9;
 
 /// An error of z and of the time.
 #[derive(Clone, Copy, Debug)]
-struct Column {
+struct ErrorColumn {
     state: [f64; LARGEST_DIMENSION],
     time: f64,
 }
@@ -29,11 +29,11 @@ struct Column {
 /// The errors of a state and its time.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Enclosure {
-    columns: Vec<Column>,
+    columns: Vec<ErrorColumn>,
 }
 
 /// What the errors at an event follow from.
-pub(super) struct Crossing<'a, T> {
+pub(super) struct EnclosedCrossing<'a, T> {
     pub flow: &'a Flow<T>,
     pub matrix: &'a [Vector<T>],
     pub guard: &'a ModalRow<T>,
@@ -76,19 +76,19 @@ impl Enclosure {
         self.sum(|column| flow.bound(row, 0, &flow.modal_rounded(&column.state), 0.0))
     }
 
-    fn sum(&self, entry: impl Fn(&Column) -> f64) -> f64 {
+    fn sum(&self, entry: impl Fn(&ErrorColumn) -> f64) -> f64 {
         self.columns.iter().map(|column| entry(column).abs()).sum::<f64>() * OUTWARD
     }
 
     /// The errors at a fixed time after the entry.
     pub fn later<T: Number>(&self, flow: &Flow<T>, elapsed: T) -> Self {
         let transition = flow.transition(elapsed);
-        let later = |column: &Column| {
+        let later = |column: &ErrorColumn| {
             let mut state = [0.0; LARGEST_DIMENSION];
             for (factor, own) in column.state.iter().zip(&transition) {
                 state.iter_mut().zip(own).for_each(|(sum, entry)| *sum += factor * entry);
             }
-            Column { state, time: column.time }
+            ErrorColumn { state, time: column.time }
         };
         Self { columns: self.columns.iter().map(later).collect() }
     }
@@ -107,16 +107,16 @@ impl Enclosure {
         for column in &mut self.columns {
             column.delayed(-column.time, &rates);
         }
-        let mut own = Column { state: [0.0; LARGEST_DIMENSION], time: 0.0 };
+        let mut own = ErrorColumn { state: [0.0; LARGEST_DIMENSION], time: 0.0 };
         own.delayed(rounded, &rates);
-        self.columns.push(Column { time: 0.0, ..own });
+        self.columns.push(ErrorColumn { time: 0.0, ..own });
         self.add_box(&bends(matrix, &rates, whole));
         self
     }
 
     /// The errors at a crossing, before its reset.
-    pub fn at_crossing<T: Number>(&self, crossing: &Crossing<'_, T>) -> Self {
-        let Crossing { flow, guard, y, .. } = crossing;
+    pub fn at_crossing<T: Number>(&self, crossing: &EnclosedCrossing<'_, T>) -> Self {
+        let EnclosedCrossing { flow, guard, y, .. } = crossing;
         let order = |k: usize| dot(&guard.orders[k], y, flow.dimension).to_f64();
         let (slope, bend) = (order(1), order(2));
         let [value_row, slope_row] = [0, 1].map(|k| guard.orders[k].map(Number::to_f64));
@@ -135,7 +135,7 @@ impl Enclosure {
         // The second order of the crossing's time, and of the flow over it.
         let whole = shift + rounded;
         let second = 2.0 * whole * (bend.abs() * whole + slope_error) / slope.abs();
-        let mut own = Column { state: [0.0; LARGEST_DIMENSION], time: 0.0 };
+        let mut own = ErrorColumn { state: [0.0; LARGEST_DIMENSION], time: 0.0 };
         own.delayed((rounded + second) * OUTWARD, &rates);
         later.columns.push(own);
         later.add_box(&bends(crossing.matrix, &rates, whole));
@@ -144,12 +144,12 @@ impl Enclosure {
 
     /// The errors after a reset, whose rows have the sizes given by the errors of their roundings.
     pub fn after_reset<T: Number>(&self, reset: &[Vector<T>], roundings: &[f64]) -> Self {
-        let after = |column: &Column| {
+        let after = |column: &ErrorColumn| {
             let mut state = [0.0; LARGEST_DIMENSION];
             for (entry, row) in state.iter_mut().zip(reset) {
                 *entry = row.iter().zip(&column.state).map(|(a, b)| a.to_f64() * b).sum();
             }
-            Column { state, time: column.time }
+            ErrorColumn { state, time: column.time }
         };
         let mut errors = Self { columns: self.columns.iter().map(after).collect() };
         errors.add_box(roundings);
@@ -161,7 +161,7 @@ impl Enclosure {
     pub fn add_entry<T: Number>(&mut self, flow: &Flow<T>, state: &Vector<T>, unit: f64) {
         let roundings = flow.entry_roundings(state, unit).into_iter();
         let there = roundings.filter(|state| state.iter().any(|it| *it != 0.0));
-        self.columns.extend(there.map(|state| Column { state, time: 0.0 }));
+        self.columns.extend(there.map(|state| ErrorColumn { state, time: 0.0 }));
     }
 
     /// Adds an error to each entry by itself.
@@ -169,7 +169,7 @@ impl Enclosure {
         for (n, error) in errors.iter().enumerate().filter(|(_, error)| **error > 0.0) {
             let mut state = [0.0; LARGEST_DIMENSION];
             state[n] = *error;
-            self.columns.push(Column { state, time: 0.0 });
+            self.columns.push(ErrorColumn { state, time: 0.0 });
         }
     }
 
@@ -177,13 +177,13 @@ impl Enclosure {
         if self.columns.len() <= MOST_COLUMNS {
             return;
         }
-        let size = |column: &Column| {
+        let size = |column: &ErrorColumn| {
             column.state.iter().map(|it| it.abs()).sum::<f64>() + column.time.abs()
         };
         self.columns.sort_by(|a, b| size(b).total_cmp(&size(a)));
         let small = Self { columns: self.columns.split_off(KEPT) };
         self.add_box(&small.state());
-        let time = Column { state: [0.0; LARGEST_DIMENSION], time: small.time() };
+        let time = ErrorColumn { state: [0.0; LARGEST_DIMENSION], time: small.time() };
         self.columns.push(time);
     }
 }
@@ -202,7 +202,7 @@ fn bends<T: Number>(matrix: &[Vector<T>], rates: &[f64], time: f64) -> Vec<f64> 
     matrix.iter().map(size).collect()
 }
 
-impl Column {
+impl ErrorColumn {
     /// The error where the crossing is later by `delay`.
     fn delayed(&mut self, delay: f64, rates: &[f64]) {
         for (entry, rate) in self.state.iter_mut().zip(rates) {

@@ -11,7 +11,7 @@ use crate::number::Number;
 #[derive(Clone, Debug)]
 pub(super) struct Flow<T> {
     pub dimension: usize,
-    pub blocks: Vec<Block<T>>,
+    pub blocks: Vec<FlowBlock<T>>,
     /// How long a bound may be asked for: a growing block grows by at most e.
     pub longest: f64,
     /// The matrix W of all blocks, by columns.
@@ -24,7 +24,7 @@ pub(super) struct Flow<T> {
 
 /// A block of modal co-ordinates that move by themselves.
 #[derive(Clone, Debug)]
-pub(super) struct Block<T> {
+pub(super) struct FlowBlock<T> {
     pub at: usize,
     pub size: usize,
     motion: BlockMotion<T>,
@@ -42,7 +42,7 @@ pub(super) struct ModalRow<T> {
     /// How many of them there are up to the last that is not zero.
     pub last: usize,
     /// The co-ordinates that it is made of, in their order.
-    pub columns: Vec<Column<T>>,
+    pub columns: Vec<RowColumn<T>>,
     /// The blocks that it is made of, in their order.
     pub parts: Vec<RowPart>,
     /// The blocks of `parts`, a bit each.
@@ -51,7 +51,7 @@ pub(super) struct ModalRow<T> {
 
 /// A co-ordinate's factors in a row.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Column<T> {
+pub(super) struct RowColumn<T> {
     pub at: usize,
     /// The part of each order: of the value and of three derivatives.
     pub orders: [T; 4],
@@ -90,10 +90,10 @@ impl<T: Number> Flow<T> {
             flow.from_modal.extend(transposed(&block.columns));
             let at = to_modal.len();
             to_modal.extend(block.rows.iter().cloned());
-            flow.blocks.push(Block::of(block, at));
+            flow.blocks.push(FlowBlock::of(block, at));
         }
         let rate =
-            |block: &Block<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
+            |block: &FlowBlock<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
         flow.longest = 1.0 / flow.blocks.iter().map(rate).fold(0.0, f64::max);
         flow.to_modal = transposed(&to_modal);
         let rounded = |row: &Vector<T>| row.map(Number::to_f64);
@@ -252,13 +252,13 @@ impl RowPart {
 }
 
 impl<T: Number> ModalRow<T> {
-    fn add_part(&mut self, n: usize, block: &Block<T>, norms: [f64; ORDERS]) {
+    fn add_part(&mut self, n: usize, block: &FlowBlock<T>, norms: [f64; ORDERS]) {
         let first = self.columns.len();
         for at in block.at..block.at + block.size {
             let orders = [0, 1, 2, 3].map(|k: usize| self.orders[k][at]);
             let used = self.orders.iter().any(|order| order[at] != T::zero());
             if used {
-                self.columns.push(Column { at, orders, size: orders[0].to_f64().abs() });
+                self.columns.push(RowColumn { at, orders, size: orders[0].to_f64().abs() });
             }
         }
         let columns = (first, self.columns.len());
@@ -314,7 +314,7 @@ impl<T: Number> ModalRow<T> {
     pub fn order(&self, order: usize, y: &Vector<T>) -> (T, f64) {
         let row = &self.orders[order];
         let (mut sum, mut size) = (T::zero(), 0.0);
-        for Column { at, .. } in &self.columns {
+        for RowColumn { at, .. } in &self.columns {
             let term = row[*at] * y[*at];
             sum = sum + term;
             size += term.to_f64().abs();
@@ -323,7 +323,7 @@ impl<T: Number> ModalRow<T> {
     }
 }
 
-impl<T: Number> Block<T> {
+impl<T: Number> FlowBlock<T> {
     fn of(block: &modal::Block, at: usize) -> Self {
         let motion = BlockMotion::of(block);
         let (growth, later) = (bound::growth(block), Later::of(block));

@@ -2,7 +2,7 @@
 //! zeros, and the starts that they had.
 
 use super::clock::Time;
-use super::starts::{Begun, Starts};
+use super::starts::{RunStart, Starts};
 use super::structure::Structure;
 use super::system::{StartPoint, System};
 use super::vector::Vector;
@@ -54,7 +54,7 @@ impl<T: Copy> Loan<'_, T> {
         system: &System,
         point: &StartPoint,
         worked_out: impl FnOnce() -> (Time<T>, Vector<T>),
-    ) -> Option<Begun<T>> {
+    ) -> Option<RunStart<T>> {
         let Learned { structure, starts } = &mut self.own;
         starts.begun(system, structure, point, worked_out)
     }

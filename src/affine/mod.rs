@@ -38,4 +38,4 @@ pub use solver::{Solver, Unprepared};
 pub use system::{
     Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, Until, Watch,
 };
-pub use track::Work;
+pub use track::SearchWork;

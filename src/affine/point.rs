@@ -3,7 +3,7 @@
 use super::bound::ORDERS;
 use super::flow::{Flow, ModalRow};
 use super::system::LARGEST_DIMENSION;
-use super::track::{Track, Work};
+use super::track::{SearchWork, Track};
 use super::vector::{Vector, unit};
 use crate::number::Number;
 use smallvec::SmallVec;
@@ -130,7 +130,7 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// Evaluates the closed form, as far as guards need it.
     #[inline]
-    pub fn evaluate(&self, point: &mut Point<T>, time: T, work: &mut Work) {
+    pub fn evaluate(&self, point: &mut Point<T>, time: T, work: &mut SearchWork) {
         work.evaluations += 1;
         (point.time, point.later, point.y) = (time, T::zero(), self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);
@@ -139,7 +139,7 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// Evaluates the closed form and one guard; what others have in the point is not of its time.
     #[inline]
-    pub fn evaluate_guard(&self, n: usize, point: &mut Point<T>, time: T, work: &mut Work) {
+    pub fn evaluate_guard(&self, n: usize, point: &mut Point<T>, time: T, work: &mut SearchWork) {
         work.evaluations += 1;
         (point.time, point.later, point.y) = (time, T::zero(), self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);

@@ -1,7 +1,7 @@
 //! A run: segments joined at their events, by the rules of docs/SYSTEM_FORMAT.md.
 
 use super::clock::Time;
-use super::enclosure::{Crossing, Enclosure};
+use super::enclosure::{EnclosedCrossing, Enclosure};
 use super::event::{Ending, Errors, Event, What};
 use super::flow::Flow;
 use super::known::Loan;
@@ -10,7 +10,7 @@ use super::search::Found;
 use super::solver::{self, Solver};
 use super::structure::Firing;
 use super::system::{Direction, LARGEST_DIMENSION, StartPoint};
-use super::track::{Track, Work};
+use super::track::{SearchWork, Track};
 use super::vector::{UNDERFLOW, Vector, dot, rounded, unit};
 use crate::number::Number;
 use std::collections::VecDeque;
@@ -22,7 +22,7 @@ const MOST_AT_ONCE: u32 = 64;
 pub struct Run<'a, T> {
     pub(super) solver: &'a Solver<T>,
     pub(super) structure: Loan<'a, T>,
-    work: Work,
+    work: SearchWork,
     horizon: T,
     pub(super) node: usize,
     /// The time at which the segment was entered, and the state there.
@@ -100,7 +100,7 @@ impl<T: Number> Solver<T> {
         Some(Run {
             solver: self,
             structure,
-            work: Work::default(),
+            work: SearchWork::default(),
             horizon: until,
             node: begun.node,
             entered: begun.time,
@@ -163,7 +163,7 @@ impl<T: Number> Run<'_, T> {
 
     /// What the run has cost so far.
     #[must_use]
-    pub fn work(&self) -> Work {
+    pub fn work(&self) -> SearchWork {
         self.work
     }
 
@@ -375,7 +375,7 @@ impl<T: Number> Run<'_, T> {
         let first = guards.trailing_zeros() as usize;
         let inherited = segment.inherited[first]
             * libm::exp(solver_mode.flow.fastest_growth() * point.time.to_f64());
-        let mut errors = enclosure.at_crossing(&Crossing {
+        let mut errors = enclosure.at_crossing(&EnclosedCrossing {
             flow: &solver_mode.flow,
             matrix: &solver_mode.matrix,
             guard: &solver_mode.guards[first],

@@ -14,7 +14,7 @@ use super::flow::ModalRow;
 use super::hull::{Judged, Lengths};
 use super::point::{Ends, PerGuard, Point, Segment};
 use super::reach::Reach;
-use super::track::{Track, Work, outward};
+use super::track::{SearchWork, Track, outward};
 use super::vector::unit;
 use crate::number::Number;
 
@@ -58,7 +58,7 @@ struct Rising<T> {
 }
 
 /// The first crossing of all guards.
-struct Crossing<T> {
+struct FirstCrossing<T> {
     /// When it is, by Taylor polynomials.
     time: T,
     /// Between which times its first guard is proved to cross.
@@ -75,7 +75,7 @@ impl<T: Number> Segment<'_, T> {
         tracks: &mut [Track],
         ends: &mut Ends<T>,
         limit: T,
-        work: &mut Work,
+        work: &mut SearchWork,
     ) -> Found {
         let mut most = f64::INFINITY;
         let guards = live(tracks).count().max(1) as u64;
@@ -154,7 +154,7 @@ impl<T: Number> Segment<'_, T> {
         reaches: &[Reach],
         limit: T,
         most: f64,
-        work: &mut Work,
+        work: &mut SearchWork,
     ) -> bool {
         let left = &ends.left;
         let mut length = most;
@@ -201,7 +201,7 @@ impl<T: Number> Segment<'_, T> {
         tracks: &[Track],
         reaches: &[Reach],
         ends: &Ends<T>,
-        work: &mut Work,
+        work: &mut SearchWork,
     ) -> Option<f64> {
         let lengths = Lengths::of(ends.right.time - ends.left.time);
         let mut share: Option<f64> = None;
@@ -217,7 +217,12 @@ impl<T: Number> Segment<'_, T> {
 
     /// The first crossing shortly after a point, if it is proved to be one.
     #[inline]
-    fn rising(&self, tracks: &[Track], at: &Point<T>, work: &mut Work) -> Option<Crossing<T>> {
+    fn rising(
+        &self,
+        tracks: &[Track],
+        at: &Point<T>,
+        work: &mut SearchWork,
+    ) -> Option<FirstCrossing<T>> {
         let mut all: PerGuard<Rising<T>> = PerGuard::new();
         for (n, track) in live(tracks) {
             all.extend(self.rises(n, track, at));
@@ -240,7 +245,7 @@ impl<T: Number> Segment<'_, T> {
         let lowest = all.iter().find(|it| guards & (1 << it.guard) != 0)?;
         let earliest = at.time - T::exact(4.0 * lowest.error);
         let between = [earliest, at.time + T::exact(lowest.within)];
-        Some(Crossing { time: at.time + first.after, between, guards })
+        Some(FirstCrossing { time: at.time + first.after, between, guards })
     }
 
     /// Whether a guard crosses together with the first, within what rounding may do. Where
@@ -343,9 +348,9 @@ impl<T: Number> Segment<'_, T> {
         &self,
         tracks: &[Track],
         ends: &mut Ends<T>,
-        crossing: Crossing<T>,
+        crossing: FirstCrossing<T>,
         limit: T,
-        work: &mut Work,
+        work: &mut SearchWork,
     ) -> Found {
         const ROUNDS: usize = 128;
         let n = crossing.guards.trailing_zeros() as usize;

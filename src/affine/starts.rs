@@ -25,12 +25,12 @@ pub(super) struct Starts<T> {
 struct KnownStart<T> {
     point: StartPoint,
     zeros: Zeros,
-    begun: Begun<T>,
+    begun: RunStart<T>,
 }
 
 /// What a run begins with.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Begun<T> {
+pub(super) struct RunStart<T> {
     /// The node of the graph of structural zeros.
     pub node: usize,
     pub time: Time<T>,
@@ -52,7 +52,7 @@ impl<T: Copy> Starts<T> {
         structure: &mut Structure,
         point: &StartPoint,
         worked_out: impl FnOnce() -> (Time<T>, Vector<T>),
-    ) -> Option<Begun<T>> {
+    ) -> Option<RunStart<T>> {
         if let Some(known) = self.known.iter_mut().find(|it| it.point == *point) {
             // A graph that has grown too large has lost its nodes.
             known.begun.node = structure.at_start(point.mode, &known.zeros, Some(known.begun.node));
@@ -61,7 +61,7 @@ impl<T: Copy> Starts<T> {
         let zeros = zeros_at_start(system, point)?;
         let node = structure.at_start(point.mode, &zeros, None);
         let (time, state) = worked_out();
-        let begun = Begun { node, time, state };
+        let begun = RunStart { node, time, state };
         self.keep(KnownStart { point: point.clone(), zeros, begun });
         Some(begun)
     }

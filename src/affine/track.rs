@@ -15,7 +15,7 @@ pub(super) struct Track {
 
 /// What a search has cost.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Work {
+pub struct SearchWork {
     /// Evaluations of the closed form.
     pub evaluations: u64,
     /// Pieces that were certified.

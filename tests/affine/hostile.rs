@@ -3,7 +3,7 @@
 
 use super::{name, names, system};
 use crate::double_double::DoubleDouble;
-use percuss::affine::{Event, Solver, System, Work};
+use percuss::affine::{Event, SearchWork, Solver, System};
 use percuss::number::Number;
 
 /// What a search of one guard may take from one event to the next.
@@ -21,7 +21,7 @@ fn in_form(parameters: &str, equations: &str, guard: &str, reset: &str, start: &
     ))
 }
 
-fn run<T: Number>(system: &System, until: f64, enclosed: bool) -> (Vec<Event<T>>, Work) {
+fn run<T: Number>(system: &System, until: f64, enclosed: bool) -> (Vec<Event<T>>, SearchWork) {
     let solver = Solver::<T>::new(system).unwrap();
     let (start, until) = (system.start.as_ref().unwrap(), T::exact(until));
     let run = if enclosed { solver.run_enclosed(start, until) } else { solver.run(start, until) };

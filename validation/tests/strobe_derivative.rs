@@ -97,14 +97,14 @@ fn over_several_periods_for_both_targets_of_an_impact() {
 }
 
 /// A flight that just touches the slider if it begins at `y`, and one that hits it a little above.
-struct Graze {
+struct GrazingStart {
     model: Model,
     start: Instant,
     p: f64,
     y: f64,
 }
 
-impl Graze {
+impl GrazingStart {
     fn entry(&self, distance: f64) -> Entry {
         let map = StrobeMap::new(self.model, self.start);
         map.entry([self.p, self.y + distance, 0.01]).unwrap()
@@ -154,7 +154,7 @@ fn bounded(matrix: &Matrix) -> Jacobian {
 
 #[test]
 fn the_map_has_a_corner_at_a_graze_and_no_square_root() {
-    let graze = Graze::found();
+    let graze = GrazingStart::found();
     let model = graze.model;
     let end = graze.start.after_periods(2, 1);
     let mut last: Option<(f64, f64)> = None;
@@ -205,7 +205,7 @@ fn the_map_has_a_corner_at_a_graze_and_no_square_root() {
 /// derivative's.
 #[test]
 fn one_sided_differences_at_the_graze_are_the_two_derivatives() {
-    let graze = Graze::found();
+    let graze = GrazingStart::found();
     let end = graze.start.after_periods(2, 1);
     let at = |distance: f64| -> StrobePoint {
         let column = image(graze.model.parameters(), &graze.entry(distance), 1, 0.0, end);

@@ -11,7 +11,7 @@ mod real;
 
 pub(super) use self::matrix::row_times;
 use self::matrix::{Matrix, identity, inverse, largest, null_space, product, shifted, transposed};
-use self::polynomial::{Root, eigenvalues};
+use self::polynomial::{Eigenvalue, eigenvalues};
 pub(super) use self::real::Real;
 use super::system::Row;
 
@@ -74,10 +74,11 @@ fn whole(matrix: &Matrix) -> Block {
 }
 
 /// Eigenvalues that are chained by small distances.
-fn clusters(roots: Vec<Root>, time_scale: f64) -> Vec<Vec<Root>> {
-    let mut clusters: Vec<Vec<Root>> = Vec::new();
+fn clusters(roots: Vec<Eigenvalue>, time_scale: f64) -> Vec<Vec<Eigenvalue>> {
+    let mut clusters: Vec<Vec<Eigenvalue>> = Vec::new();
     for root in roots {
-        let near = |cluster: &Vec<Root>| cluster.iter().any(|it| close(it, &root, time_scale));
+        let near =
+            |cluster: &Vec<Eigenvalue>| cluster.iter().any(|it| close(it, &root, time_scale));
         let (joined, apart): (Vec<_>, Vec<_>) = clusters.into_iter().partition(near);
         clusters = apart;
         clusters.push(joined.into_iter().flatten().chain([root]).collect());
@@ -86,18 +87,18 @@ fn clusters(roots: Vec<Root>, time_scale: f64) -> Vec<Vec<Root>> {
 }
 
 /// Whether two eigenvalues, or the one and the other's conjugate, are close.
-fn close(a: &Root, b: &Root, time_scale: f64) -> bool {
+fn close(a: &Eigenvalue, b: &Eigenvalue, time_scale: f64) -> bool {
     let gap = (&a.value - &b.value).norm().to_f64();
     is_close(gap, a, b, time_scale)
 }
 
-fn is_close(gap: f64, a: &Root, b: &Root, time_scale: f64) -> bool {
+fn is_close(gap: f64, a: &Eigenvalue, b: &Eigenvalue, time_scale: f64) -> bool {
     let larger = a.value.norm().to_f64().max(b.value.norm().to_f64());
     gap < CLOSE * larger || gap * time_scale < SLOW
 }
 
-fn block(matrix: &Matrix, cluster: &[Root]) -> Option<Block> {
-    let dimensions = cluster.iter().map(Root::dimensions).sum();
+fn block(matrix: &Matrix, cluster: &[Eigenvalue]) -> Option<Block> {
+    let dimensions = cluster.iter().map(Eigenvalue::dimensions).sum();
     let annihilator = cluster.iter().fold(identity(matrix.len()), |product_so_far, root| {
         let factor = factor(matrix, root);
         (0..root.multiplicity).fold(product_so_far, |it, _| product(&it, &factor))
@@ -113,7 +114,7 @@ fn block(matrix: &Matrix, cluster: &[Root]) -> Option<Block> {
 }
 
 /// The factor (M - root) of a real root, or (M - root)(M - conjugate) of a pair.
-fn factor(matrix: &Matrix, root: &Root) -> Matrix {
+fn factor(matrix: &Matrix, root: &Eigenvalue) -> Matrix {
     if root.is_real() {
         return shifted(matrix, &-&root.value.re);
     }
@@ -122,7 +123,7 @@ fn factor(matrix: &Matrix, root: &Root) -> Matrix {
 }
 
 /// The block in the form of its kind.
-fn named(mut block: Block, cluster: &[Root]) -> Block {
+fn named(mut block: Block, cluster: &[Eigenvalue]) -> Block {
     let [root] = cluster else { return block };
     if root.is_real() {
         let rate = root.value.re.clone();
@@ -138,7 +139,7 @@ fn named(mut block: Block, cluster: &[Root]) -> Block {
 
 /// Co-ordinates in which a pair's matrix is ((rate, frequency), (-frequency, rate)): the real and
 /// the imaginary part of an eigenvector.
-fn rotating(block: &Block, root: &Root) -> Option<Block> {
+fn rotating(block: &Block, root: &Eigenvalue) -> Option<Block> {
     let (rate, frequency) = (&root.value.re, &root.value.im);
     let [[p, q], [r, s]] = [0, 1].map(|i| [0, 1].map(|j| &block.matrix[i][j]));
     let zero = Real::zero();

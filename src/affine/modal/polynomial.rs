@@ -10,12 +10,12 @@ type Polynomial = Vec<RBig>;
 
 /// A root with its multiplicity. Of a pair of complex roots the one above the real axis is there.
 #[derive(Clone, Debug)]
-pub struct Root {
+pub struct Eigenvalue {
     pub value: Complex,
     pub multiplicity: usize,
 }
 
-impl Root {
+impl Eigenvalue {
     pub fn is_real(&self) -> bool {
         self.value.im.is_zero()
     }
@@ -27,11 +27,11 @@ impl Root {
 }
 
 /// The eigenvalues of a matrix; none if the iteration does not converge.
-pub fn eigenvalues(matrix: &[Row]) -> Option<Vec<Root>> {
+pub fn eigenvalues(matrix: &[Row]) -> Option<Vec<Eigenvalue>> {
     let mut roots = Vec::new();
     for (n, factor) in squarefree(&characteristic(matrix)).into_iter().enumerate() {
         for value in simple_roots(&factor)? {
-            roots.push(Root { value, multiplicity: n + 1 });
+            roots.push(Eigenvalue { value, multiplicity: n + 1 });
         }
     }
     Some(roots)

@@ -21,7 +21,7 @@ struct CaseToml {
     #[serde(default)]
     parameters: ParameterTable,
     #[serde(default)]
-    start: StartTable,
+    start: CaseStart,
     horizon: Spanned<HorizonTable>,
     #[serde(default)]
     probes: ProbesTable,
@@ -38,7 +38,7 @@ struct ProblemFile {
     #[serde(default)]
     parameters: ParameterTable,
     #[serde(default)]
-    start: StartTable,
+    start: CaseStart,
     #[serde(rename = "case")]
     _case: Option<IgnoredAny>,
     #[serde(rename = "horizon")]
@@ -73,7 +73,7 @@ struct ParameterTable {
 
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, expecting = "a table, [start]")]
-struct StartTable {
+struct CaseStart {
     tau: Option<Spanned<f64>>,
     p: Option<Spanned<f64>>,
     y: Option<Spanned<f64>>,
@@ -115,7 +115,7 @@ fn each<T, U, E>(list: Vec<T>, check: impl Fn(T) -> Result<U, E>) -> Result<Vec<
 }
 
 impl FileText<'_> {
-    fn given(&self, parameters: ParameterTable, start: StartTable) -> Result<Given, FileError> {
+    fn given(&self, parameters: ParameterTable, start: CaseStart) -> Result<Given, FileError> {
         let mut given = Given::default();
         let model = &mut given.parameters;
         let state = &mut given.start;

@@ -179,12 +179,12 @@ mod tests {
     }
 
     /// Right until its `last` check.
-    struct Faulty {
+    struct FaultyBenchmark {
         checks: u32,
         last: u32,
     }
 
-    impl Benchmark for Faulty {
+    impl Benchmark for FaultyBenchmark {
         fn call(&mut self) -> Result<(), Failure> {
             Ok(())
         }
@@ -199,7 +199,7 @@ mod tests {
     fn a_racer_that_answers_wrongly_in_any_batch_has_no_times() {
         let pace = RoundPace { batch: 1e4, batches: 2 };
         let (mut right, mut late) =
-            (Faulty { checks: 0, last: u32::MAX }, Faulty { checks: 0, last: 3 });
+            (FaultyBenchmark { checks: 0, last: u32::MAX }, FaultyBenchmark { checks: 0, last: 3 });
         let results = race(&mut [&mut right, &mut late], 4, pace, &|| ());
         assert!(results[0].as_ref().is_ok_and(|series| series.0.len() == 4), "{results:?}");
         assert_eq!(results[1], Err(Failure::new("wrong")));

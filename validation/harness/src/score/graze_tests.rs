@@ -34,7 +34,7 @@ fn stated_margins_are_found_from_both_sides() {
         let size: f64 = format!("1e-{exponent}").parse().unwrap_or(f64::NAN);
         let touch = of_case(&format!("graze-overlap-1e-{exponent}"));
         let touch = touch.iter().find(|it| agrees(it.margin, size));
-        assert!(touch.is_some_and(|it| it.events == (0..2)), "1e-{exponent}: {touch:?}");
+        assert!(touch.is_some_and(|it| it.events == [0, 1]), "1e-{exponent}: {touch:?}");
         let miss = of_case(&format!("graze-miss-1e-{exponent}"));
         let miss = miss.iter().find(|it| agrees(it.margin, -size));
         assert!(miss.is_some_and(|it| it.events.is_empty()), "-1e-{exponent}: {miss:?}");
@@ -72,8 +72,11 @@ fn only_what_is_allowed_anyway_is_undecidable() {
 #[test]
 fn all_near_misses_of_a_segment_are_found() {
     let between = |name: &str, event: usize| -> Vec<f64> {
-        let misses = of_case(name).into_iter().filter(|it| it.events == (event..event));
-        misses.map(|it| it.elapsed).collect()
+        let (task, truth, growth) = followed(name);
+        let begin = event.checked_sub(1).map_or(0.0, |n| truth.events[n].elapsed.value());
+        let segment = begin..truth.events[event].elapsed.value();
+        let misses = grazes(&task, &truth, &growth).into_iter().filter(|it| it.events.is_empty());
+        misses.map(|it| it.elapsed).filter(|it| segment.contains(it)).collect()
     };
     let period = std::f64::consts::TAU / 1.4;
     for (name, event, count, apart) in
@@ -151,8 +154,8 @@ fn a_phase_that_comes_back_soon_belongs_to_the_graze() {
         let found = scan.segment(0, &truth.start, &truth.events[0]);
         found.into_iter().find(|it| it.elapsed == graze.elapsed).map(|it| it.events)
     };
-    assert_eq!(events_with_return_at(3.9), Some(0..2));
-    assert_eq!(events_with_return_at(4.1), Some(0..1));
+    assert_eq!(events_with_return_at(3.9), Some(vec![0, 1]));
+    assert_eq!(events_with_return_at(4.1), Some(vec![0]));
 }
 
 /// An error is allowed against 1 + |value|: the largest of the three contributions counts, whatever

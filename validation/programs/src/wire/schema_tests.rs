@@ -96,13 +96,13 @@ fn the_examples_of_the_page_are_messages() {
 }
 
 /// A change of an answer.
-type Change = fn(&mut Value);
+type Spoiling = fn(&mut Value);
 
 /// What the schema refuses in an answer is refused by its reader.
 #[test]
 fn reader_and_schema_agree() {
     let schema = schema("answer");
-    let changes: [Change; 12] = [
+    let changes: [Spoiling; 12] = [
         |it| it["percuss_protocol"] = json!(2),
         |it| it["id"] = json!(-1),
         |it| it["mood"] = json!(1),

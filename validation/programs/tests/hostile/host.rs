@@ -1,7 +1,7 @@
 //! A process that runs one program: how much memory that takes, and what is left of the program
 //! when its host ends it.
 
-use super::kinds::{Expected, KINDS};
+use super::kinds::{ExpectedEnd, KINDS};
 use super::left::{left, processes};
 use super::rows::{program, run};
 use libtest_mimic::{Failed, Trial};
@@ -61,7 +61,7 @@ fn hosted(kind: &str) -> Result<String, Failed> {
 
 fn memory_is_bounded(kind: &str) -> Result<(), Failed> {
     let is_kind = KINDS.iter().any(|(it, expected)| {
-        *it == kind && matches!(expected, Expected::Row(_) | Expected::Right)
+        *it == kind && matches!(expected, ExpectedEnd::Row(_) | ExpectedEnd::Right)
     });
     let peak: u64 = hosted(kind)?.parse()?;
     if !is_kind || peak == 0 || peak > MOST {

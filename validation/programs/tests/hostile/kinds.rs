@@ -2,7 +2,7 @@
 
 /// What comes of a kind.
 #[derive(Clone, Copy, Debug)]
-pub enum Expected {
+pub enum ExpectedEnd {
     /// Nothing: the answer is right.
     Right,
     /// The row fails for a reason that holds this.
@@ -17,10 +17,10 @@ pub enum Expected {
     Unavailable(&'static str),
 }
 
-use Expected::{Late, LateStart, Right, Row, Start, Unavailable};
+use ExpectedEnd::{Late, LateStart, Right, Row, Start, Unavailable};
 
 /// Every kind; docs/PROTOCOL.md lists the same.
-pub const KINDS: &[(&str, Expected)] = &[
+pub const KINDS: &[(&str, ExpectedEnd)] = &[
     // Before the first request, or in the answer to it.
     ("no-command", Unavailable("there is no command")),
     ("no-library", Unavailable("the library is not installed")),

@@ -1,6 +1,6 @@
 //! Rows of programs that misbehave, one test a kind.
 
-use super::kinds::{Expected, KINDS};
+use super::kinds::{ExpectedEnd, KINDS};
 use super::left::{left, processes};
 use libtest_mimic::{Arguments, Failed, Trial};
 use percuss_engines::engine::{
@@ -20,7 +20,7 @@ const SHORT: Duration = Duration::from_secs(1);
 /// Runs the tests.
 pub fn test() {
     let arguments = Arguments::from_args();
-    let kind = |&(kind, expected): &(&'static str, Expected)| {
+    let kind = |&(kind, expected): &(&'static str, ExpectedEnd)| {
         Trial::test(kind, move || Ok(check(kind, expected)?))
     };
     let mut trials: Vec<Trial> = KINDS.iter().map(kind).collect();
@@ -78,18 +78,21 @@ pub fn run(engine: &ProgramEngine, wall: Duration) -> Result<SystemOutcome, Fail
     answer_system(engine, &task(3), Accuracy::Tolerance(1e-6), &limits)
 }
 
-fn check(kind: &str, expected: Expected) -> Result<(), String> {
+fn check(kind: &str, expected: ExpectedEnd) -> Result<(), String> {
     let token = format!("token-{kind}-{}", std::process::id());
-    let timeout = if matches!(expected, Expected::LateStart(_)) { SHORT } else { ENOUGH };
+    let timeout = if matches!(expected, ExpectedEnd::LateStart(_)) { SHORT } else { ENOUGH };
     let started = program(kind, &token, timeout).start();
     match (started, expected) {
-        (Ok(engines), Expected::Right) => rows(kind, &engines, None, &token)?,
-        (Ok(engines), Expected::Row(why)) => rows(kind, &engines, Some((why, ENOUGH)), &token)?,
-        (Ok(engines), Expected::Late(why)) => rows(kind, &engines, Some((why, SHORT)), &token)?,
-        (Err(not @ NotStarted::Unavailable { .. }), Expected::Unavailable(why)) => {
+        (Ok(engines), ExpectedEnd::Right) => rows(kind, &engines, None, &token)?,
+        (Ok(engines), ExpectedEnd::Row(why)) => rows(kind, &engines, Some((why, ENOUGH)), &token)?,
+        (Ok(engines), ExpectedEnd::Late(why)) => rows(kind, &engines, Some((why, SHORT)), &token)?,
+        (Err(not @ NotStarted::Unavailable { .. }), ExpectedEnd::Unavailable(why)) => {
             no_rows(not, why)?;
         }
-        (Err(not @ NotStarted::Failed { .. }), Expected::Start(why) | Expected::LateStart(why)) => {
+        (
+            Err(not @ NotStarted::Failed { .. }),
+            ExpectedEnd::Start(why) | ExpectedEnd::LateStart(why),
+        ) => {
             no_rows(not, why)?;
         }
         (Ok(_), _) => return Err("it was started".to_owned()),

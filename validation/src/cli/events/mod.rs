@@ -4,20 +4,25 @@
 mod digits;
 mod draw;
 mod rows;
+mod write;
 
 use super::format::OutputFlags;
 use super::parse::{self, Typed};
 use super::{DONE, OUT_OF_BOUNDS, names, note};
 use crate::case::parse_system_case;
 use crate::systems::{SYSTEMS, named};
+use crate::truth::DoubleDouble;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use percuss::affine::{Solver, SystemFile};
-use rows::Rows;
+use percuss::affine::{Event, Solver, SystemFile};
+use rows::{Rows, RunEnd};
 use std::path::{Path, PathBuf};
 
 /// The horizon of --events, in the system's units of time.
 const LONGEST: f64 = 1e9;
+
+/// A picture of more events than this shows nothing.
+const MOST_DRAWN: usize = 20_000;
 
 /// Print the events of a piecewise-affine system, computed in 106 bits with enclosed errors
 #[derive(Args)]
@@ -101,17 +106,39 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let solver = if arguments.backward { Solver::backward(&system) } else { Solver::new(&system) }?;
     let digits = if arguments.digits.as_deref() == Some("25") { 25 } else { 17 };
     let shown = draw::shown(&system, arguments.states.as_deref())?;
-    let is_picture = format.is_picture();
-    let rows =
-        Rows { system: &system, solver: &solver, digits, most: arguments.events, is_picture };
-    let listed = rows.listed(until)?;
-    if is_picture {
-        draw::write(&solver, &listed.run, &shown, &arguments.output, format)?;
+    let rows = Rows { system: &system, solver: &solver, digits, most: arguments.events };
+    let destination = arguments.output.destination();
+    let mut end = RunEnd::default();
+    if format.is_picture() {
+        let run;
+        (run, end) = drawn(&rows, until)?;
+        draw::write(&solver, &run, &shown, &arguments.output, format)?;
     } else {
-        rows.write(&listed, &arguments.output, format)?;
+        destination.write(|out| {
+            end = match format {
+                Format::Json => write::json(&rows, until, out)?,
+                _ => write::csv(&rows, until, out)?,
+            };
+            Ok(())
+        })?;
     }
-    listed.notes.iter().for_each(|it| note(it));
-    Ok(if listed.decided { DONE } else { OUT_OF_BOUNDS })
+    end.notes.iter().for_each(|it| note(it));
+    Ok(if end.undecided { OUT_OF_BOUNDS } else { DONE })
+}
+
+/// The start and all events, for a picture.
+fn drawn(rows: &Rows<'_>, until: f64) -> Result<(Vec<Event<DoubleDouble>>, RunEnd)> {
+    let mut run = Vec::new();
+    let end = rows.each(until, &mut |_, event| {
+        if run.len() > MOST_DRAWN {
+            bail!(
+                "a picture of more than {MOST_DRAWN} events is not accepted: --output or --format of csv or json is, or a shorter run"
+            );
+        }
+        run.push(event);
+        Ok(())
+    })?;
+    Ok((run, end))
 }
 
 /// Refuses flags that the run takes no notice of.

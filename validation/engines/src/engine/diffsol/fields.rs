@@ -15,13 +15,13 @@ use std::cell::Cell;
 
 /// The equations of the mode that is run, with who counts the calls.
 #[derive(Clone, Copy)]
-pub(super) struct ModeField<'a, E, M> {
+pub(super) struct DiffsolField<'a, E, M> {
     equations: E,
     mode: &'a Cell<M>,
     meter: &'a Meter<M>,
 }
 
-impl<M: Copy, E: Equations<Mode = M>> ModeField<'_, E, M> {
+impl<M: Copy, E: Equations<Mode = M>> DiffsolField<'_, E, M> {
     fn rhs(&self, t: f64, u: &[f64], du: &mut [f64]) {
         self.equations.derivatives(self.mode.get(), t, u, du);
         self.meter.rhs(du);
@@ -43,8 +43,8 @@ impl<M: Copy, E: Equations<Mode = M>> ModeField<'_, E, M> {
 /// The oscillator, or any other system.
 #[derive(Clone, Copy)]
 pub(super) enum Field<'a> {
-    Oscillator(ModeField<'a, Oscillator, Phase>),
-    System(ModeField<'a, Affine<'a>, usize>),
+    Oscillator(DiffsolField<'a, Oscillator, Phase>),
+    System(DiffsolField<'a, Affine<'a>, usize>),
 }
 
 /// Equations that the library is compiled for.
@@ -60,7 +60,7 @@ impl DiffsolEquations for Oscillator {
     where
         Self: 'a,
     {
-        Field::Oscillator(ModeField { equations: *self, mode, meter })
+        Field::Oscillator(DiffsolField { equations: *self, mode, meter })
     }
 }
 
@@ -69,7 +69,7 @@ impl DiffsolEquations for Affine<'_> {
     where
         Self: 'a,
     {
-        Field::System(ModeField { equations: *self, mode, meter })
+        Field::System(DiffsolField { equations: *self, mode, meter })
     }
 }
 

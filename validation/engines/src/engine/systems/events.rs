@@ -1,7 +1,7 @@
 //! Events of other kinds: simultaneous ones, multiple zeros, sliding, clocks, runs back in time.
 
 use super::models::{bouncing_ball, buck_converter, dry_friction, plastic_ball, spheres};
-use super::{Answer, Asked, BUILT_IN, FIRST_ORDER, check, every, every_on};
+use super::{AskedRun, BUILT_IN, EngineAnswer, FIRST_ORDER, check, every, every_on};
 use crate::engine::Ended;
 use crate::system::Direction;
 use std::f64::consts::{PI, TAU};
@@ -12,7 +12,7 @@ use std::sync::Arc;
 fn three_collisions_in_one_instant() {
     let system = spheres(3, 1.0);
     let state = [0.0, 2.0, 4.0, 1.0, 0.0, -1.0];
-    let asked = Asked { system: &system, mode: 0, state: &state, span: 3.0 };
+    let asked = AskedRun { system: &system, mode: 0, state: &state, span: 3.0 };
     for (name, unit, outcome) in every(&asked) {
         let outcome = outcome.unwrap_or_default();
         assert_eq!(outcome.events.len(), 3, "{name}: {outcome:?}");
@@ -29,8 +29,8 @@ fn three_collisions_in_one_instant() {
 #[test]
 fn an_accumulation_ends_the_run() {
     let system = bouncing_ball(0.5);
-    let asked = Asked { system: &system, mode: 0, state: &[0.0, 1.0], span: 6.0 };
-    let ends = |(name, _, outcome): Answer| {
+    let asked = AskedRun { system: &system, mode: 0, state: &[0.0, 1.0], span: 6.0 };
+    let ends = |(name, _, outcome): EngineAnswer| {
         (name, outcome.map(|it| (it.ended, it.events.iter().filter(|it| it.event == 0).count())))
     };
     let ends: Vec<_> = every(&asked).into_iter().map(ends).collect();
@@ -51,7 +51,7 @@ fn an_accumulation_ends_the_run() {
 fn friction_sticks_and_slips() {
     for sticking in [0.5, 0.7] {
         let system = dry_friction(1.2, 0.4, 0.5, sticking);
-        let asked = Asked { system: &system, mode: 2, state: &[0.0, 0.0], span: 60.0 };
+        let asked = AskedRun { system: &system, mode: 2, state: &[0.0, 0.0], span: 60.0 };
         let truth = asked.truth(1e-2);
         assert!(truth.len() > 10 && truth.iter().any(|it| it.1 == 2), "{truth:?}");
         check(&asked, &truth, 20.0, &[FIRST_ORDER, BUILT_IN]);
@@ -62,7 +62,7 @@ fn friction_sticks_and_slips() {
 #[test]
 fn the_buck_converter_follows_its_closed_form() {
     let system = buck_converter();
-    let asked = Asked { system: &system, mode: 0, state: &[0.0, 0.0, 0.0], span: 7.9e-3 };
+    let asked = AskedRun { system: &system, mode: 0, state: &[0.0, 0.0, 0.0], span: 7.9e-3 };
     let truth = asked.truth(2e-6);
     assert!(truth.len() > 20, "{truth:?}");
     check(&asked, &truth, 20.0, &[BUILT_IN]);
@@ -90,7 +90,7 @@ fn a_ball_leaves_a_shaking_table() {
         [(0, 0, begin), (0, 1, begin + right)]
     };
     let truth = [cycle(0.0), cycle(1.0)].concat();
-    let asked = Asked {
+    let asked = AskedRun {
         system: &system,
         mode: 1,
         state: &[-1.0, 0.0],
@@ -105,7 +105,7 @@ fn back_in_time_a_mode_is_left_once() {
     let mut system = bouncing_ball(0.5);
     system.modes[0].watch[0].direction = Direction::Both;
     // Highest at 0.75 before the start and on the floor at 1.75, in times that decrease.
-    let asked = Asked { system: &system, mode: 0, state: &[0.21875, -0.75], span: 4.0 };
+    let asked = AskedRun { system: &system, mode: 0, state: &[0.21875, -0.75], span: 4.0 };
     let mut task = asked.task();
     let Ok(backward) = task.system.backward() else { unreachable!("the ball is checked") };
     task.system = Arc::new(backward);

@@ -1,7 +1,7 @@
 //! Systems whose events are known: rational times, limit cycles, published instants.
 
 use super::models::{bouncing_ball, relay, rigid_oscillator, spheres, two_state_switching};
-use super::{Asked, BUILT_IN, FIRST_ORDER, SAMPLES, check, every};
+use super::{AskedRun, BUILT_IN, FIRST_ORDER, SAMPLES, check, every};
 
 /// Times of impact are 2 (1 + e + e^2 + ...), and halfway between them the ball is highest.
 #[test]
@@ -14,7 +14,7 @@ fn the_bouncing_ball_is_a_geometric_series() {
         t += dwell;
         dwell *= 0.5;
     }
-    let asked = Asked { system: &system, mode: 0, state: &[0.0, 1.0], span: t + 0.25 * dwell };
+    let asked = AskedRun { system: &system, mode: 0, state: &[0.0, 1.0], span: t + 0.25 * dwell };
     check(&asked, &truth, 20.0, &[BUILT_IN]);
 }
 
@@ -22,7 +22,7 @@ fn the_bouncing_ball_is_a_geometric_series() {
 #[test]
 fn samples_lie_on_their_flights() {
     let system = bouncing_ball(0.5);
-    let asked = Asked { system: &system, mode: 0, state: &[0.0, 1.0], span: 3.9 };
+    let asked = AskedRun { system: &system, mode: 0, state: &[0.0, 1.0], span: 3.9 };
     for (name, unit, outcome) in every(&asked).into_iter().filter(|it| it.0 != BUILT_IN) {
         let samples = outcome.unwrap_or_default().samples;
         assert_eq!(samples.len(), SAMPLES as usize + 1, "{name}");
@@ -64,7 +64,7 @@ fn the_relay_settles_to_its_limit_cycle() {
         let period = half_period(delta);
         assert!((period - known).abs() < 1e-6, "{period}");
         let system = relay(delta);
-        let asked = Asked { system: &system, mode: 0, state: &[0.0, 0.0, 0.0], span: 40.0 };
+        let asked = AskedRun { system: &system, mode: 0, state: &[0.0, 0.0, 0.0], span: 40.0 };
         for (name, unit, outcome) in every(&asked).into_iter().filter(|it| it.0 != BUILT_IN) {
             let events = outcome.map(|it| it.events).unwrap_or_default();
             let times: Vec<f64> = events.iter().map(|event| event.elapsed).collect();
@@ -81,7 +81,7 @@ fn the_relay_settles_to_its_limit_cycle() {
 fn spheres_meet_at_rational_times() {
     let system = spheres(3, 1.0);
     let state = [0.0, 2.0, 4.5, 1.0, 0.0, -0.5];
-    let asked = Asked { system: &system, mode: 0, state: &state, span: 5.0 };
+    let asked = AskedRun { system: &system, mode: 0, state: &state, span: 5.0 };
     check(&asked, &[(0, 0, 1.0), (1, 0, 5.0 / 3.0), (0, 0, 3.0)], 20.0, &[]);
 }
 
@@ -92,7 +92,7 @@ fn two_state_switching_is_as_published() {
     let system = two_state_switching();
     let times = [1.108_306_167_771, 2.129_685_355_155, 3.054_152_906_996, 4.075_532_094_379];
     let truth: Vec<_> = times.iter().enumerate().map(|(n, t)| (0, (n + 1) % 2, *t)).collect();
-    let asked = Asked { system: &system, mode: 0, state: &[4.2, 0.3], span: 4.5 };
+    let asked = AskedRun { system: &system, mode: 0, state: &[4.2, 0.3], span: 4.5 };
     let stiff = [
         "diffsol-tsit45",
         "ode_solvers-dopri5",
@@ -111,7 +111,7 @@ fn two_state_switching_is_as_published() {
 #[test]
 fn the_rigid_oscillator_follows_its_closed_form() {
     let system = rigid_oscillator(0.05, 2.0, 2.0, 0.5);
-    let asked = Asked { system: &system, mode: 0, state: &[0.3, 0.1], span: 30.0 };
+    let asked = AskedRun { system: &system, mode: 0, state: &[0.3, 0.1], span: 30.0 };
     let truth = asked.truth(1e-2);
     assert!(truth.len() > 20, "{truth:?}");
     check(&asked, &truth, 20.0, &[FIRST_ORDER, BUILT_IN]);

@@ -17,14 +17,14 @@ const TOLERANCE: f64 = 1e-8;
 const STEP: f64 = 1.0 / 32.0;
 
 /// A run that is asked for.
-pub(super) struct Asked<'a> {
+pub(super) struct AskedRun<'a> {
     pub(super) system: &'a System,
     pub(super) mode: usize,
     pub(super) state: &'a [f64],
     pub(super) span: f64,
 }
 
-impl Asked<'_> {
+impl AskedRun<'_> {
     fn task(&self) -> SystemTask {
         let system = CheckedSystem::new(self.system.clone());
         let Ok(system) = system else { unreachable!("{:?}", system.err()) };
@@ -36,7 +36,7 @@ impl Asked<'_> {
     }
 
     /// The events by the closed form.
-    fn truth(&self, step: f64) -> Vec<truth::Found> {
+    fn truth(&self, step: f64) -> Vec<truth::TrueEvent> {
         truth::Walked::new(self.system, step).run(self.mode, self.state, self.span).0
     }
 }
@@ -45,7 +45,7 @@ impl Asked<'_> {
 const SAMPLES: u32 = 50;
 
 /// What each integrator makes of a run, with its unit of error.
-fn every(asked: &Asked<'_>) -> Vec<Answer> {
+fn every(asked: &AskedRun<'_>) -> Vec<EngineAnswer> {
     every_on(&asked.task())
 }
 
@@ -62,9 +62,9 @@ fn accuracy(engine: &dyn Engine) -> Option<Accuracy> {
 }
 
 /// An integrator's name, its unit of error, and its answer.
-type Answer = (&'static str, f64, Result<SystemOutcome, Failure>);
+type EngineAnswer = (&'static str, f64, Result<SystemOutcome, Failure>);
 
-fn every_on(task: &SystemTask) -> Vec<Answer> {
+fn every_on(task: &SystemTask) -> Vec<EngineAnswer> {
     hush_contained_panics();
     let one = |engine: &&'static dyn Engine| {
         let declaration = engine.declaration();
@@ -80,7 +80,7 @@ fn every_on(task: &SystemTask) -> Vec<Answer> {
 /// further off than `most` units of error times the number of events so far.
 fn departure(
     outcome: &SystemOutcome,
-    truth: &[truth::Found],
+    truth: &[truth::TrueEvent],
     (unit, time_scale): (f64, f64),
     most: f64,
 ) -> Option<String> {
@@ -109,7 +109,7 @@ const FIRST_ORDER: &str = "ode_solvers-dop853";
 
 /// Checks every integrator against the truth, but for those that are `excused`: these depart, each
 /// for the reason that its name here says.
-fn check(asked: &Asked<'_>, truth: &[truth::Found], most: f64, excused: &[&str]) {
+fn check(asked: &AskedRun<'_>, truth: &[truth::TrueEvent], most: f64, excused: &[&str]) {
     let mut departures = Vec::new();
     for (name, unit, outcome) in every(asked) {
         let departure = match outcome {

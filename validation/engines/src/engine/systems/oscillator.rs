@@ -1,6 +1,6 @@
 //! The oscillator written down as any other system is run like the oscillator itself.
 
-use super::{Asked, SystemTask, accuracy, every_on};
+use super::{AskedRun, SystemTask, accuracy, every_on};
 use crate::case::Given;
 use crate::engine::{
     Ended, Event, Limits, Numbers, Outcome, SampleGrid, SystemEvent, SystemOutcome, Task, Watched,
@@ -57,7 +57,7 @@ fn a_run_that_is_watched_is_the_same_run() {
     let task = task();
     let system = percussive(&task.parameters, task.forcing_angle);
     let mode = place(task.phase);
-    let asked = Asked { system: &system, mode, state: &task.state, span: task.span };
+    let asked = AskedRun { system: &system, mode, state: &task.state, span: task.span };
     let plain = asked.task();
     let window = [0.3 * task.span, 0.6 * task.span];
     let instants = vec![0.4 * task.span, 0.5 * task.span];

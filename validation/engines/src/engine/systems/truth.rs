@@ -5,7 +5,7 @@
 use crate::system::{Row, System};
 
 /// An event: which of its mode's, the mode after it, and its time.
-pub(super) type Found = (usize, usize, f64);
+pub(super) type TrueEvent = (usize, usize, f64);
 
 type Matrix = Vec<Vec<f64>>;
 
@@ -21,7 +21,7 @@ impl<'a> Walked<'a> {
     }
 
     /// The events up to `span` from a mode and a state, and the state there.
-    pub(super) fn run(&self, mode: usize, x: &[f64], span: f64) -> (Vec<Found>, Vec<f64>) {
+    pub(super) fn run(&self, mode: usize, x: &[f64], span: f64) -> (Vec<TrueEvent>, Vec<f64>) {
         let (mut t, mut mode) = (0.0, mode);
         let (sin, cos) = self.system.phi.sin_cos();
         let mut z = [x, &[cos, sin, 1.0]].concat();
