@@ -135,11 +135,12 @@ impl<T: Number> Flow<T> {
         times(&self.from_modal, y)
     }
 
-    /// The sizes of what each entry of the state is summed from.
-    pub fn sizes(&self, y: &Vector<T>) -> [f64; LARGEST_DIMENSION] {
+    /// The sizes of what each entry of the state is summed from, where the modal co-ordinates have
+    /// sizes.
+    pub fn sizes(&self, y: &Vector<f64>) -> [f64; LARGEST_DIMENSION] {
         let mut sizes = [0.0; LARGEST_DIMENSION];
         for (column, entry) in self.from_modal.iter().zip(y) {
-            let terms = column.iter().map(|it| (it.to_f64() * entry.to_f64()).abs());
+            let terms = column.iter().map(|it| (it.to_f64() * entry).abs());
             sizes.iter_mut().zip(terms).for_each(|(size, term)| *size += term);
         }
         sizes
@@ -173,6 +174,15 @@ impl<T: Number> Flow<T> {
                 block.motion.advance(&mut y[block.at..block.at + block.size], time);
             }
         }
+    }
+
+    /// The sizes of what the modal co-ordinates a time later are summed from.
+    pub fn sizes_later(&self, y: &Vector<T>, time: T) -> Vector<f64> {
+        let mut sizes = y.map(Number::to_f64);
+        for block in &self.blocks {
+            block.motion.sizes(&mut sizes[block.at..block.at + block.size], time.to_f64());
+        }
+        sizes
     }
 
     /// The norms of each block's co-ordinates.
@@ -297,7 +307,7 @@ impl<T: Number> ModalRow<T> {
 
     /// The sum of the sizes of what the row's value is summed from.
     #[inline]
-    pub fn size(&self, y: &Vector<T>) -> f64 {
+    pub fn size<U: Number>(&self, y: &Vector<U>) -> f64 {
         self.columns.iter().map(|it| it.size * y[it.at].to_f64().abs()).sum()
     }
 

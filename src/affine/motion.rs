@@ -118,6 +118,32 @@ impl<T: Number> BlockMotion<T> {
             Self::Cluster(powers) => powers.advance(y, time),
         }
     }
+
+    /// The sizes of what [`Self::advance`] sums each co-ordinate from, in units of which it rounds
+    /// by a few: terms may cancel, so the co-ordinate itself can be much smaller.
+    pub fn sizes(&self, y: &mut [f64], time: f64) {
+        let decay = |rate: &Words<T>| libm::exp(rate.high.to_f64() * time);
+        y.iter_mut().for_each(|entry| *entry = entry.abs());
+        match self {
+            Self::Still => {}
+            Self::Real { rate } => y[0] *= decay(rate),
+            Self::Pair { rate, .. } => {
+                let norm = libm::hypot(y[0], y[1]) * rate.as_ref().map_or(1.0, decay);
+                y.fill(norm);
+            }
+            Self::Nilpotent { rate, entries, index } => {
+                let size = |it: &Entry<T>| {
+                    let &Entry { row, column, value } = it;
+                    Entry { row, column, value: value.to_f64().abs() }
+                };
+                polynomial(&entries.iter().map(size).collect::<Vec<_>>(), *index, y, time);
+                // Five roundings a power are more than those of a sum.
+                let factor = 2.0 * rate.as_ref().map_or(1.0, decay);
+                y.iter_mut().for_each(|entry| *entry *= factor);
+            }
+            Self::Cluster(powers) => powers.sizes(y, time),
+        }
+    }
 }
 
 fn entries<T: Number>(matrix: &[Vec<Real>]) -> Vec<Entry<T>> {
@@ -240,5 +266,30 @@ impl<T: Number> Powers<T> {
         for k in (1..2 * T::TERMS).rev() {
             step(&self.matrix, rest / T::exact(k as f64), &start, y);
         }
+    }
+
+    /// The sizes of what the products are summed from, once for each of them.
+    fn sizes(&self, y: &mut [f64], time: f64) {
+        let size = y.len();
+        let mut digits = libm::floor(time / self.step).max(0.0) as u64;
+        let mut products = 1.0;
+        for table in &self.tables {
+            let digit = (digits & 15) as usize;
+            digits >>= 4;
+            if digit > 0 {
+                products += 1.0;
+                let last = copied(y);
+                for (entry, row) in y.iter_mut().zip(&table[digit - 1]) {
+                    let terms = row[..size].iter().zip(&last);
+                    *entry = terms.map(|(factor, it)| factor.to_f64().abs() * it).sum();
+                }
+            }
+            if digits == 0 {
+                break;
+            }
+        }
+        // The last product is exp(B rest) with |B rest| below 1/2.
+        let most = y.iter().fold(0.0, |most: f64, it| most.max(*it));
+        y.iter_mut().for_each(|entry| *entry = products * (*entry + most));
     }
 }

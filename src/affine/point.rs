@@ -125,7 +125,7 @@ impl<'a, T: Number> Segment<'a, T> {
             point.orders[n].iter_mut().take(*zeros).for_each(|order| *order = T::zero());
             point.slack[n] = 0.0;
         }
-        self.inherit(point);
+        self.inherit(point, false);
     }
 
     /// Evaluates the closed form, as far as guards need it.
@@ -143,24 +143,26 @@ impl<'a, T: Number> Segment<'a, T> {
         work.evaluations += 1;
         (point.time, point.later, point.y) = (time, T::zero(), self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);
-        if self.is_early(point) {
+        let early = self.is_early(point);
+        if early {
             self.fill_early(point);
         } else {
             let (orders, size) = self.rows[n].sized_orders(&point.y);
             (point.orders[n], point.slack[n]) = (orders, self.margin() * size);
         }
-        self.inherit(point);
+        self.inherit(point, !early);
     }
 
     /// All guards of a point whose co-ordinates are there.
     #[inline]
     pub fn fill_all(&self, point: &mut Point<T>) {
-        if self.is_early(point) {
+        let early = self.is_early(point);
+        if early {
             self.fill_early(point);
         } else {
             self.fill(point);
         }
-        self.inherit(point);
+        self.inherit(point, !early);
     }
 
     /// Whether the guards at a point are summed from their series.
@@ -220,9 +222,16 @@ impl<'a, T: Number> Segment<'a, T> {
         }
     }
 
+    /// In a run that follows its errors, adds what they do to guards, and what rounding does where
+    /// terms of the closed form have cancelled.
     #[inline]
-    fn inherit(&self, point: &mut Point<T>) {
+    fn inherit(&self, point: &mut Point<T>, is_closed_form: bool) {
         if !self.inherited.is_empty() {
+            if is_closed_form {
+                let sizes = self.flow.sizes_later(&self.entry, point.time);
+                let slack = point.slack.iter_mut().zip(self.rows);
+                slack.for_each(|(slack, row)| *slack = slack.max(self.margin() * row.size(&sizes)));
+            }
             let growth = libm::exp(self.flow.fastest_growth() * point.time.to_f64().abs());
             let errors = point.slack.iter_mut().zip(self.inherited.iter().zip(&self.lost));
             errors.for_each(|(slack, (inherited, lost))| *slack += (inherited + lost) * growth);

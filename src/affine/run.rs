@@ -298,7 +298,7 @@ impl<T: Number> Run<'_, T> {
             let errors = errors.later(flow, limit);
             let rounded = 4.0 * unit::<T>() * limit.to_f64().abs();
             let mut errors = errors.at_given_time(flow, matrix, &self.state, rounded);
-            errors.add_box(&roundings(flow, &self.ends.left.y, &self.modal));
+            errors.add_box(&roundings(flow, &self.modal, limit));
             self.enclosure = Some(errors);
         }
         self.end(Ending::Horizon);
@@ -388,7 +388,7 @@ impl<T: Number> Run<'_, T> {
                 + 1e-3 * unit::<T>(),
             unit: unit::<T>(),
         });
-        errors.add_box(&roundings(&solver_mode.flow, &point.y, &segment.entry));
+        errors.add_box(&roundings(&solver_mode.flow, &segment.entry, point.time));
         Some(errors)
     }
 
@@ -514,18 +514,15 @@ impl<T: Number> Iterator for Run<'_, T> {
 
 impl<T: Number> std::iter::FusedIterator for Run<'_, T> {}
 
-/// What rounding may have done to each entry of a state that is evaluated, from its modal
-/// co-ordinates now and at the entry of its segment.
-fn roundings<T: Number>(
-    flow: &Flow<T>,
-    y: &Vector<T>,
-    entry: &Vector<T>,
-) -> [f64; LARGEST_DIMENSION] {
+/// What rounding may have done to each entry of a state that is evaluated a time after its
+/// segment's entry.
+fn roundings<T: Number>(flow: &Flow<T>, entry: &Vector<T>, elapsed: T) -> [f64; LARGEST_DIMENSION] {
     /// What is lost where the last word of a number underflows.
     const LAST_WORD: f64 = 1e-280;
     // One of them for the rest of the way to a crossing.
     let margin = (flow.dimension + 7) as f64 * unit::<T>();
-    let (now, before) = (flow.sizes(y), flow.sizes(entry));
+    let now = flow.sizes(&flow.sizes_later(entry, elapsed));
+    let before = flow.sizes(&entry.map(Number::to_f64));
     std::array::from_fn(|n| {
         // What is made of zeros stays zero.
         let lost = if before[n] > 0.0 || now[n] > 0.0 { LAST_WORD } else { 0.0 };

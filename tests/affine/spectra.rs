@@ -31,3 +31,11 @@ fn a_crossing_beyond_the_reach_of_a_polynomial() {
     let checked = check(4_083_550_187_308_645_049, &mut Met::default());
     assert!(checked.is_ok(), "{}", checked.unwrap_err());
 }
+
+/// A polynomial of degree four is 60 times smaller at an event than the terms that it is summed
+/// from: rounding does what it does to them.
+#[test]
+fn errors_of_terms_that_cancel_are_enclosed() {
+    let checked = check(12_308_008_711_722_896_483, &mut Met::default());
+    assert!(checked.is_ok(), "{}", checked.unwrap_err());
+}

@@ -60,8 +60,20 @@ fn versions_stand_side_by_side_and_none_is_there_twice() {
     assert_eq!(lines, ["1.0", "2.0"]);
     let twice = board(&[report("1.0"), report("1.0")]);
     assert!(
-        twice.is_err_and(|it| it.to_string() == "lib-bdf-default 1.0 is in more than one report")
+        twice
+            .is_err_and(|it| it.to_string() == "lib-bdf-default 1.0 has a in more than one report")
     );
+}
+
+#[test]
+fn portions_of_other_cases_are_one_run() {
+    let mut portion = report("1.0");
+    portion["results"] = json!([row("lib-bdf", "c", &["jump"], Some([3, 0]))]);
+    let both = board(&[report("1.0"), portion]).expect("a board");
+    let text = page::markdown(&both);
+    assert!(text.contains("3 cases at 1e-6;"), "{text}");
+    // 22 of 30, and by default 5 of 20.
+    assert!(text.contains("| lib-bdf 1.0 | Lib | C 17 | 73 | 25 | 0 | 2 |"), "{text}");
 }
 
 #[test]

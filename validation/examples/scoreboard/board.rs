@@ -89,10 +89,8 @@ impl Board {
         tolerances.sort_by(|a, b| b.total_cmp(a));
         tolerances.dedup();
         let mut lines: Vec<BoardLine> = Vec::new();
-        for report in reports {
-            for engine in &report.engines {
-                put(&mut lines, engine, SetupResult::of(engine, report, &kinds))?;
-            }
+        for (engine, rows) in setups(reports)? {
+            put(&mut lines, engine, SetupResult::of(&rows, &kinds));
         }
         lines.sort_by(|a, b| b.rank().0.cmp(&a.rank().0).then(b.rank().1.total_cmp(&a.rank().1)));
 
@@ -107,8 +105,33 @@ impl Board {
     }
 }
 
+/// Each set-up of a version, with its rows: a long run is made in portions of some cases each.
+fn setups(reports: &[ReportJson]) -> Result<Vec<(&EngineJson, Vec<&RowJson>)>> {
+    let mut found: Vec<(&EngineJson, Vec<&RowJson>)> = Vec::new();
+    for report in reports {
+        for engine in &report.engines {
+            let rows = report.results.iter().filter(|it| it.engine == engine.name);
+            let is_same =
+                |it: &EngineJson| (&it.name, &it.version) == (&engine.name, &engine.version);
+            let Some((_, known)) = found.iter_mut().find(|(it, _)| is_same(it)) else {
+                found.push((engine, rows.collect()));
+                continue;
+            };
+            let cases: BTreeSet<&str> = known.iter().map(|it| it.case.as_str()).collect();
+            for row in rows {
+                if cases.contains(row.case.as_str()) {
+                    let EngineJson { name, version, .. } = engine;
+                    bail!("{name} {version} has {} in more than one report", row.case);
+                }
+                known.push(row);
+            }
+        }
+    }
+    Ok(found)
+}
+
 /// Puts a set-up into the line of its engine and version.
-fn put(lines: &mut Vec<BoardLine>, engine: &EngineJson, score: SetupResult) -> Result<()> {
+fn put(lines: &mut Vec<BoardLine>, engine: &EngineJson, score: SetupResult) {
     let name = engine.name.strip_suffix(DEFAULT).unwrap_or(&engine.name);
     let place = lines.iter().position(|it| it.name == name && it.version == engine.version);
     let place = place.unwrap_or_else(|| {
@@ -124,11 +147,7 @@ fn put(lines: &mut Vec<BoardLine>, engine: &EngineJson, score: SetupResult) -> R
     });
     let is_default = engine.name.ends_with(DEFAULT);
     let slot = if is_default { &mut lines[place].default } else { &mut lines[place].expert };
-    if slot.is_some() {
-        bail!("{} {} is in more than one report", engine.name, engine.version);
-    }
     *slot = Some(score);
-    Ok(())
 }
 
 impl BoardLine {
@@ -143,9 +162,7 @@ impl BoardLine {
 }
 
 impl SetupResult {
-    fn of(engine: &EngineJson, report: &ReportJson, kinds: &[String]) -> Self {
-        let rows: Vec<&RowJson> =
-            report.results.iter().filter(|it| it.engine == engine.name).collect();
+    fn of(rows: &[&RowJson], kinds: &[String]) -> Self {
         let tally = |rows: &mut dyn Iterator<Item = &&RowJson>| {
             let mut tally = EventCounts::default();
             rows.for_each(|row| tally.add(row));

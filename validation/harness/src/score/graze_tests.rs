@@ -74,7 +74,7 @@ fn all_near_misses_of_a_segment_are_found() {
     let between = |name: &str, event: usize| -> Vec<f64> {
         let (task, truth, growth) = followed(name);
         let begin = event.checked_sub(1).map_or(0.0, |n| truth.events[n].elapsed.value());
-        let segment = begin..truth.events[event].elapsed.value();
+        let segment = begin..truth.events.get(event).unwrap_or(&truth.end).elapsed.value();
         let misses = grazes(&task, &truth, &growth).into_iter().filter(|it| it.events.is_empty());
         misses.map(|it| it.elapsed).filter(|it| segment.contains(it)).collect()
     };
