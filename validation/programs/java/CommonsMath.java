@@ -1,7 +1,9 @@
 import java.io.IOException;
+import java.io.InputStream;
 import java.util.ArrayList;
 import java.util.List;
 import java.util.Map;
+import java.util.Properties;
 import org.apache.commons.math3.ode.AbstractIntegrator;
 import org.apache.commons.math3.ode.FirstOrderDifferentialEquations;
 import org.apache.commons.math3.ode.events.EventHandler;
@@ -157,9 +159,16 @@ final class CommonsMath {
                 Integer order = it[2] == null ? null : Integer.valueOf(it[2]);
                 setups.add(PercussProgram.setup(it[0] + suffix, it[1], order));
             }
-        // The library's manifest has its version.
-        String version = AbstractIntegrator.class.getPackage().getImplementationVersion();
-        PercussProgram.serve(
-                "commons-math", version == null ? "unknown" : version, setups, CommonsMath::make);
+        PercussProgram.serve("commons-math", version(), setups, CommonsMath::make);
+    }
+
+    /** The library's version, which its build leaves in its archive. */
+    private static String version() throws IOException {
+        Properties build = new Properties();
+        try (InputStream in = AbstractIntegrator.class.getResourceAsStream(
+                "/META-INF/maven/org.apache.commons/commons-math3/pom.properties")) {
+            if (in != null) build.load(in);
+        }
+        return build.getProperty("version", "unknown");
     }
 }
