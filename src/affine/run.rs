@@ -293,6 +293,10 @@ impl<T: Number> Run<'_, T> {
     /// The run ends a time after the entry.
     fn at_horizon(&mut self, mode: usize, limit: T) {
         (self.entered, self.state) = self.here();
+        if limit > T::zero() {
+            // The time since an entry long before is rounded; the horizon is not.
+            self.entered = Time { high: self.horizon, low: T::zero() };
+        }
         let solver::SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
         if let Some(errors) = &self.enclosure {
             let errors = errors.later(flow, limit);

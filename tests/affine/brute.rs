@@ -103,3 +103,12 @@ proptest! {
         }
     }
 }
+
+/// The last segment began nine units of time before the horizon: a sum with that is rounded.
+#[test]
+fn a_run_ends_at_its_horizon_to_the_last_digit() {
+    let system = system(&text([-4, -7, -2, 0], -6, 9, 0, [-8, -7]));
+    let events = events::<f64>(&system, 12.0);
+    let time = events.last().map(|it| it.time);
+    assert!(time.is_some_and(|it| it.high == 12.0 && it.low == 0.0), "{time:?}");
+}
