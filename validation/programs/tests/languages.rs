@@ -16,7 +16,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Engines that no set-up makes right, as measured on these two runs.
-const WRONG: [&str; 5] = [
+const WRONG: [&str; 6] = [
     // The root's state comes with a time that is not the root's, the end of the step.
     "desolve-radau",
     // Times of events in the oscillator are off by more than the 200 tolerances that others stay
@@ -24,6 +24,8 @@ const WRONG: [&str; 5] = [
     "arkode-dirk",
     "arkode-erk8",
     "odeint-rosenbrock4",
+    // Its error control is absolute: flights of the ball as low as the tolerance are not resolved.
+    "octave-ode15s",
     // It misses an impact of the ball; whether the library or its program does is not known.
     "commons-math-gbs",
 ];
