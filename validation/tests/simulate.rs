@@ -259,14 +259,19 @@ fn numbers_read_back() {
 
 #[test]
 fn a_reader_that_leaves_early_is_no_error() {
-    let mut command = Command::new(percuss(&[]).get_program());
-    command.args(["simulate", "--periods", "1000000", "--samples", "100"]);
-    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().expect("started");
-    let mut first = String::new();
-    BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut first).expect("read");
-    assert_eq!(first, "tau,phase,p,y,q,v,x,z\n");
-    let mut said = String::new();
-    child.stderr.take().expect("a pipe").read_to_string(&mut said).expect("read");
-    assert!(child.wait().expect("ended").success(), "{said}");
-    assert_eq!(said, "");
+    for (words, header) in [
+        ("simulate --periods 1000000 --samples 100", "tau,phase,p,y,q,v,x,z\n"),
+        ("events relay-feedback --until 3000", "n,time,event,mode,x1,x2,x3\n"),
+    ] {
+        let mut command = Command::new(percuss(&[]).get_program());
+        command.args(words.split(' ')).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut child = command.spawn().expect("started");
+        let mut first = String::new();
+        BufReader::new(child.stdout.take().expect("a pipe")).read_line(&mut first).expect("read");
+        assert_eq!(first, header);
+        let mut said = String::new();
+        child.stderr.take().expect("a pipe").read_to_string(&mut said).expect("read");
+        assert!(child.wait().expect("ended").success(), "{words}: {said}");
+        assert_eq!(said, "");
+    }
 }

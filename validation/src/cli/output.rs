@@ -55,6 +55,11 @@ impl Destination {
     }
 }
 
+/// Writes a value as JSON on one line, for what is written piece by piece.
+pub(super) fn json_value(out: &mut dyn Write, value: &impl Serialize) -> Result<()> {
+    Ok(serde_json::to_writer(out, value).map_err(io::Error::from)?)
+}
+
 /// Whether the error is that whoever read our output has left.
 pub(super) fn reader_left(error: &anyhow::Error) -> bool {
     let is_pipe = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;

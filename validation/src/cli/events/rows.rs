@@ -51,10 +51,8 @@ impl Rows<'_> {
         let Some(run) = run else { bail!("{}: its start is not decided", self.system.name) };
         let mut end = RunEnd::default();
         let begin = run.start();
-        for (n, event) in std::iter::once(begin).chain(run).enumerate() {
-            if self.most.is_some_and(|most| n > most) {
-                break;
-            }
+        let most = self.most.map_or(usize::MAX, |most| most + 1);
+        for (n, event) in std::iter::once(begin).chain(run).take(most).enumerate() {
             let name = self.name(&event, &mut end);
             let row = self.row(n, &event, name)?;
             if !has_digits(&row.time) {

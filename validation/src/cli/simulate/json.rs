@@ -3,10 +3,11 @@
 use super::plan::{PlannedRun, RunEnding};
 use super::rows::{RunRow, Sink};
 use crate::cli::model::ParametersJson;
+use crate::cli::output::json_value;
 use anyhow::Result;
 use percuss::Phase;
 use serde::Serialize;
-use std::io::{self, Write};
+use std::io::Write;
 
 pub(super) struct Json<'a> {
     out: &'a mut dyn Write,
@@ -56,10 +57,6 @@ impl<'a> Json<'a> {
     pub(super) fn new(out: &'a mut dyn Write) -> Self {
         Self { out, rows: 0 }
     }
-
-    fn value(&mut self, value: &impl Serialize) -> Result<()> {
-        Ok(serde_json::to_writer(&mut *self.out, value).map_err(io::Error::from)?)
-    }
 }
 
 impl Sink for Json<'_> {
@@ -69,19 +66,22 @@ impl Sink for Json<'_> {
             "{{\"schema\":1,\"percuss\":\"{}\",\"parameters\":",
             env!("CARGO_PKG_VERSION")
         )?;
-        self.value(&ParametersJson::from(plan.problem.model.parameters()))?;
+        json_value(self.out, &ParametersJson::from(plan.problem.model.parameters()))?;
         write!(self.out, ",\"start\":")?;
         let given = plan.problem.start;
         let state = plan.problem.entry.state;
-        self.value(&StartJson {
-            tau: given.tau,
-            p: state.p,
-            y: state.y,
-            q: state.q,
-            v: given.v,
-            cycle: given.cycle,
-            phase: given.phase.map(Phase::as_str),
-        })?;
+        json_value(
+            self.out,
+            &StartJson {
+                tau: given.tau,
+                p: state.p,
+                y: state.y,
+                q: state.q,
+                v: given.v,
+                cycle: given.cycle,
+                phase: given.phase.map(Phase::as_str),
+            },
+        )?;
         Ok(write!(self.out, ",\"rows\":[")?)
     }
 
@@ -91,8 +91,12 @@ impl Sink for Json<'_> {
         let RunRow { index, phase, instant, state: [p, y, q, v], co_ordinates } = *row;
         let (tau, cycle, angle) = (instant.tau(plan.omega()), instant.cycle(), instant.angle());
         match co_ordinates {
-            None => self.value(&SwitchRow { index, phase, tau, p, y, q, v, cycle, angle }),
-            Some([x, z]) => self.value(&SampleRow { tau, phase, p, y, q, v, x, z, cycle, angle }),
+            None => {
+                json_value(self.out, &SwitchRow { index, phase, tau, p, y, q, v, cycle, angle })
+            }
+            Some([x, z]) => {
+                json_value(self.out, &SampleRow { tau, phase, p, y, q, v, x, z, cycle, angle })
+            }
         }
     }
 
