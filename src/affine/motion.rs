@@ -242,23 +242,33 @@ impl<T: Number> Powers<T> {
         Self { step, tables, matrix: matrix.iter().map(|row| vector(row)).collect() }
     }
 
+    /// The matrices of the tables whose product is exp(B t), but for the rest of the time.
+    #[inline]
+    fn factors(&self, steps: f64) -> impl Iterator<Item = &Vec<Vector<T>>> {
+        let mut digits = steps as u64;
+        let chosen = self.tables.iter().map_while(move |table| {
+            let digit = (digits > 0).then_some((digits & 15) as usize)?;
+            digits >>= 4;
+            Some((table, digit))
+        });
+        chosen.filter_map(|(table, digit)| Some(&table[digit.checked_sub(1)?]))
+    }
+
+    /// How many steps of the tables a time has.
+    #[inline]
+    fn steps(&self, time: f64) -> f64 {
+        libm::floor(time / self.step).max(0.0)
+    }
+
     #[inline]
     fn advance(&self, y: &mut [T], time: T) {
         let size = y.len();
-        let steps = libm::floor(time.to_f64() / self.step).max(0.0);
+        let steps = self.steps(time.to_f64());
         let rest = time - T::exact(steps * self.step);
-        let mut digits = steps as u64;
-        for table in &self.tables {
-            let digit = (digits & 15) as usize;
-            digits >>= 4;
-            if digit > 0 {
-                let last: Vector<T> = copied(y);
-                for (entry, row) in y.iter_mut().zip(&table[digit - 1]) {
-                    *entry = dot(row, &last, size);
-                }
-            }
-            if digits == 0 {
-                break;
+        for matrix in self.factors(steps) {
+            let last: Vector<T> = copied(y);
+            for (entry, row) in y.iter_mut().zip(matrix) {
+                *entry = dot(row, &last, size);
             }
         }
         let start: Vector<T> = copied(y);
@@ -271,21 +281,13 @@ impl<T: Number> Powers<T> {
     /// The sizes of what the products are summed from, once for each of them.
     fn sizes(&self, y: &mut [f64], time: f64) {
         let size = y.len();
-        let mut digits = libm::floor(time / self.step).max(0.0) as u64;
         let mut products = 1.0;
-        for table in &self.tables {
-            let digit = (digits & 15) as usize;
-            digits >>= 4;
-            if digit > 0 {
-                products += 1.0;
-                let last = copied(y);
-                for (entry, row) in y.iter_mut().zip(&table[digit - 1]) {
-                    let terms = row[..size].iter().zip(&last);
-                    *entry = terms.map(|(factor, it)| factor.to_f64().abs() * it).sum();
-                }
-            }
-            if digits == 0 {
-                break;
+        for matrix in self.factors(self.steps(time)) {
+            products += 1.0;
+            let last = copied(y);
+            for (entry, row) in y.iter_mut().zip(matrix) {
+                let terms = row[..size].iter().zip(&last);
+                *entry = terms.map(|(factor, it)| factor.to_f64().abs() * it).sum();
             }
         }
         // The last product is exp(B rest) with |B rest| below 1/2.

@@ -224,7 +224,8 @@ impl SystemSegment<'_> {
         let elapsed = self.began + at;
         let growth = scan.growth(guard.row, state, elapsed) * n.max(1) as f64;
         let makes = scan.makes(self.mode, guard);
-        let crossed = if margin < 0.0 { None } else { self.crossed(n, guard, at, maximum) };
+        let crossed =
+            if margin < 0.0 { None } else { self.crossed(n, guard, makes, (at, maximum)) };
         // What touches zero exactly crosses nothing.
         let touches = margin <= ON_GUARD * size;
         let events = crossed.or_else(|| touches.then(Vec::new))?;
@@ -237,13 +238,12 @@ impl SystemSegment<'_> {
         &self,
         n: usize,
         guard: &ScannedGuard<'_>,
-        at: f64,
-        maximum: bool,
+        makes: usize,
+        (at, maximum): (f64, bool),
     ) -> Option<Vec<usize>> {
         let Some(direction) = guard.direction else {
             // The segment ends by the crossing, and a mode that is left is entered again.
             let events = &self.scan.truth.events;
-            let makes = self.scan.makes(self.mode, guard);
             let own = events.get(n).is_some_and(|it| it.event == guard.event);
             return (own && events.len() >= n + makes).then(|| (n..n + makes).collect());
         };
