@@ -4,6 +4,7 @@ mod accumulation;
 mod bound;
 mod build;
 mod clock;
+mod crossing;
 mod enclosure;
 mod error;
 mod event;

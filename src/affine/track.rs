@@ -29,3 +29,9 @@ pub struct SearchWork {
 pub(super) fn outward<T: Number>(orders: &[T; 4], track: &Track) -> [T; 4] {
     if track.outward < 0.0 { orders.map(|it| -it) } else { *orders }
 }
+
+/// The guards that can cross, with their numbers.
+#[inline]
+pub(super) fn live(tracks: &[Track]) -> impl Iterator<Item = (usize, &Track)> {
+    tracks.iter().enumerate().filter(|(_, track)| track.live)
+}
