@@ -9,7 +9,7 @@
 //! - Steps are at most an eighth of a turn of the elastic contact too: guards are looked at at
 //!   their ends, where their rates show a peak inside.
 
-use super::{COLOURS, LIBRARY, NEVER_STIFF, STEPS, TimedField, packed, plain};
+use super::{COLOURS, LIBRARY, NEVER_STIFF, STEPS, TimedField, on_vectors_of, packed, plain};
 use crate::engine::cubic::CubicEnd;
 use crate::engine::equations::{Equations, Numbers};
 use crate::engine::field::Oscillator;
@@ -25,7 +25,7 @@ use crate::engine::{
 use crate::system::Mode;
 use ::ode_solvers::OutputType;
 use nalgebra::allocator::Allocator;
-use nalgebra::{DefaultAllocator, Dim, Dyn, U4, U5};
+use nalgebra::{DefaultAllocator, Dim, U4, U5};
 use std::marker::PhantomData;
 
 const STAGES: f64 = 12.0;
@@ -107,7 +107,9 @@ impl Engine for Dop853 {
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
-        run::<_, Dyn>(&Integration::of_system(task), [self.clock, true], accuracy, limits)
+        let integration = Integration::of_system(task);
+        let states = task.system.system().states.len() + usize::from(self.clock);
+        on_vectors_of!(states, run(&integration, [self.clock, true], accuracy, limits))
     }
 }
 

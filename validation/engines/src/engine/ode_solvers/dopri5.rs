@@ -3,7 +3,9 @@
 //! It is run with `integrate_with_continuous_output_model`: in continuous mode `solout` gets the
 //! right state; in dense mode it does not.
 
-use super::{COLOURS, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, TimedField, packed, plain};
+use super::{
+    COLOURS, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, TimedField, on_vectors_of, packed, plain,
+};
 use crate::engine::equations::Equations;
 use crate::engine::field::Coordinates;
 use crate::engine::joining::{Integration, Moment, StretchEnd, join};
@@ -18,7 +20,7 @@ use crate::engine::{
 use ::ode_solvers::continuous_output_model::ContinuousOutputModel;
 use ::ode_solvers::{OVector, OutputType};
 use nalgebra::allocator::Allocator;
-use nalgebra::{DefaultAllocator, Dim, Dyn, U4};
+use nalgebra::{DefaultAllocator, Dim, U4};
 use std::marker::PhantomData;
 
 /// ode_solvers' `Dopri5` on some equations.
@@ -72,7 +74,9 @@ impl<E: Coordinates> Engine for Dopri5<E> {
         if !E::BOUNDED {
             return Err(Failure::new("its co-ordinates are the oscillator's"));
         }
-        run::<_, Dyn>(&Integration::of_system(task), accuracy, limits)
+        let integration = Integration::of_system(task);
+        let states = task.system.system().states.len();
+        on_vectors_of!(states, run(&integration, accuracy, limits))
     }
 }
 

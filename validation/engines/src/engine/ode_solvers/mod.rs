@@ -3,8 +3,9 @@
 //! - Each runs at most one forcing period of one mode at a time; `solout` stops it at the end of a
 //!   step that leaves the mode, and the harness locates the event ([`GuardSearch`]).
 //! - Steps are at most an eighth of a forcing period, so that no step hides a whole mode.
-//! - The oscillator's states are vectors of its own size; those of other systems are the library's
-//!   dynamic vectors, of the system's own size.
+//! - States are vectors of the system's own size: of two and four states, which most systems have,
+//!   and which forced systems have here, of a size that the compiler knows, of others the library's
+//!   dynamic vectors.
 //! - Stiffness detection (`n_stiff`) is switched off: it gives up on light damping, where the
 //!   integration is dear but right.
 //! - Times are elapsed since the start: the library's dense output fails for negative ones.
@@ -46,6 +47,19 @@ const LONGEST_STEP: f64 = 0.125;
 const STEPS: u32 = u32::MAX - 1;
 /// Switches its stiffness detection off.
 const NEVER_STIFF: u32 = u32::MAX;
+
+/// Calls a function of an integration's vectors with those of so many states. The library allocates
+/// each dynamic vector anew: a step of `Dop853` takes ten times as long on them.
+macro_rules! on_vectors_of {
+    ($states:expr, $run:ident($($argument:expr),*)) => {
+        match $states {
+            2 => $run::<_, nalgebra::U2>($($argument),*),
+            4 => $run::<_, nalgebra::U4>($($argument),*),
+            _ => $run::<_, nalgebra::Dyn>($($argument),*),
+        }
+    };
+}
+pub(in crate::engine) use on_vectors_of;
 
 /// The right-hand side of one mode, and the end of it. One more component of the state than the
 /// system has is time.

@@ -7,7 +7,7 @@
 //!
 //! [`shortest_time`]: crate::engine::shortest_time
 
-use super::{COLOURS, LIBRARY, TimedField, packed, plain};
+use super::{COLOURS, LIBRARY, TimedField, on_vectors_of, packed, plain};
 use crate::engine::cubic::Cubic;
 use crate::engine::equations::Equations;
 use crate::engine::field::Oscillator;
@@ -21,7 +21,7 @@ use crate::engine::{
     Task, pins, shortest_time,
 };
 use nalgebra::allocator::Allocator;
-use nalgebra::{DefaultAllocator, Dim, Dyn, U4};
+use nalgebra::{DefaultAllocator, Dim, U4};
 use std::marker::PhantomData;
 
 /// ode_solvers' `Rk4`.
@@ -65,7 +65,9 @@ impl Engine for Rk4 {
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
-        run::<_, Dyn>(&Integration::of_system(task), accuracy, limits)
+        let integration = Integration::of_system(task);
+        let states = task.system.system().states.len();
+        on_vectors_of!(states, run(&integration, accuracy, limits))
     }
 }
 
