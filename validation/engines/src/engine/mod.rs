@@ -211,6 +211,12 @@ pub trait Engine: Sync {
         false
     }
 
+    /// The longest step of a run of any other system, where the engine does not leave that to its
+    /// library.
+    fn longest_step_on(&self, _task: &SystemTask) -> Option<f64> {
+        None
+    }
+
     /// [`Engine::least_work`] of a run of any other system.
     fn least_work_on(&self, _task: &SystemTask, _accuracy: Accuracy) -> f64 {
         0.0

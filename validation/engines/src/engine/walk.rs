@@ -12,8 +12,9 @@ use super::location::{GuardSearch, GuardValues};
 use super::meter::Failure;
 use super::sampler::Sampler;
 
-/// The longest step, in forcing periods and in turns of the elastic contact.
-const LONGEST_STEP: f64 = 0.125;
+/// The longest step, in forcing periods; of a method that is walked, also in turns of the elastic
+/// contact.
+pub(super) const LONGEST_STEP: f64 = 0.125;
 
 /// The longest step of a method that is walked.
 pub(super) fn longest_step(times: &Times) -> f64 {

@@ -143,7 +143,13 @@ impl CaseRun for PreparedSystem {
         // it has stages: a longer run takes more than a right-hand side for each of these times.
         let stiff =
             if engine.is_explicit() { self.task.span * self.task.system.decay() } else { 0.0 };
-        engine.least_work_on(&self.task, accuracy).max(stiff)
+        // A method of order p has at least p stages where it is explicit, and half as many elsewhere.
+        let order = engine.declaration().order.unwrap_or(1);
+        let stages = if engine.is_explicit() { order } else { order.div_ceil(2) };
+        let short = engine
+            .longest_step_on(&self.task)
+            .map_or(0.0, |longest| f64::from(stages) * self.task.span / longest);
+        engine.least_work_on(&self.task, accuracy).max(stiff).max(short)
     }
 
     fn attempt(

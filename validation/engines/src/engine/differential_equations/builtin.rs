@@ -9,13 +9,14 @@
 
 use super::method::{LibraryMethod, Rkv655e};
 use super::state::of_size;
-use super::{COLOURS, LIBRARY, LONGEST_STEP, ModeField, reason};
+use super::{COLOURS, LIBRARY, ModeField, reason};
 use crate::engine::equations::Equations;
 use crate::engine::field::Oscillator;
 use crate::engine::joining::{Integration, Moment, StretchEnd, join};
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::{CountedCrossing, Sampler};
 use crate::engine::trace::GuardSample;
+use crate::engine::walk::LONGEST_STEP;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
     Task, pins,
@@ -44,6 +45,10 @@ impl Engine for BuiltIn {
             role: Role::Rows,
             colours: COLOURS,
         }
+    }
+
+    fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
+        Some(LONGEST_STEP * task.system.period())
     }
 
     fn is_explicit(&self) -> bool {

@@ -1,12 +1,12 @@
 //! The library's methods, each with its tolerances and limits.
 
-use super::{LONGEST_STEP, ModeField, reason};
+use super::{ModeField, reason};
 use crate::engine::Stepping;
 use crate::engine::cubic::CubicEnd;
 use crate::engine::equations::Equations;
 use crate::engine::joining::Times;
 use crate::engine::meter::Failure;
-use crate::engine::walk::longest_step;
+use crate::engine::walk::{LONGEST_STEP, longest_step};
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{

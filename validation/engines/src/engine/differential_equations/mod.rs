@@ -39,6 +39,7 @@ use super::field::{Coordinates, Oscillator};
 use super::joining::{Integration, join};
 use super::meter::{Failure, Limits, Meter};
 use super::original::OriginalOscillator;
+use super::walk::LONGEST_STEP;
 use super::{
     Accuracy, Colours, Declaration, Engine, Location, Outcome, Role, SystemOutcome, SystemTask,
     Task, pins,
@@ -57,8 +58,6 @@ pub(super) use builtin::BuiltIn;
 const LIBRARY: &str = "differential-equations";
 /// Green.
 const COLOURS: Colours = Colours::Hues(128.0, 172.0);
-/// The longest step, in forcing periods.
-const LONGEST_STEP: f64 = 0.125;
 
 /// The library with one of its methods, on some equations.
 pub(super) struct SteppedLibrary<M, E> {
@@ -105,6 +104,10 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let integration = Integration::of(task, E::of(&task.parameters, task.forcing_angle));
         run::<M, E>(&integration, accuracy, limits)
+    }
+
+    fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
+        (!M::MULTISTEP).then(|| LONGEST_STEP * task.system.period())
     }
 
     fn is_explicit(&self) -> bool {

@@ -24,6 +24,7 @@ mod mode;
 use super::field::Oscillator;
 use super::joining::{Integration, join};
 use super::meter::{Failure, Limits, Meter};
+use super::walk::LONGEST_STEP;
 use super::{
     Accuracy, Colours, Declaration, Engine, Location, Outcome, SystemOutcome, SystemTask, Task,
     pins,
@@ -51,8 +52,6 @@ pub(super) static TSIT45: Diffsol<Tsit45> = Diffsol(PhantomData);
 const COLOURS: Colours = Colours::Hues(196.0, 250.0);
 /// The first step tried, in forcing periods; the library then chooses by its own rule.
 const FIRST_STEP: f64 = 1e-3;
-/// The longest step, in forcing periods.
-const LONGEST_STEP: f64 = 0.125;
 
 impl<M: DiffsolMethod> Engine for Diffsol<M> {
     fn declaration(&self) -> Declaration {
@@ -68,6 +67,10 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
             role: M::ROLE,
             colours: COLOURS,
         }
+    }
+
+    fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
+        M::ONE_STEP.then(|| LONGEST_STEP * task.system.period())
     }
 
     fn is_explicit(&self) -> bool {

@@ -3,9 +3,7 @@
 //! It is run with `integrate_with_continuous_output_model`: in continuous mode `solout` gets the
 //! right state; in dense mode it does not.
 
-use super::{
-    COLOURS, LIBRARY, LONGEST_STEP, NEVER_STIFF, STEPS, TimedField, on_vectors_of, packed, plain,
-};
+use super::{COLOURS, LIBRARY, NEVER_STIFF, STEPS, TimedField, on_vectors_of, packed, plain};
 use crate::engine::equations::Equations;
 use crate::engine::field::Coordinates;
 use crate::engine::joining::{Integration, Moment, StretchEnd, join};
@@ -13,6 +11,7 @@ use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::script::GuardRise;
+use crate::engine::walk::LONGEST_STEP;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
     Task, pins,
@@ -55,6 +54,10 @@ impl<E: Coordinates> Engine for Dopri5<E> {
     fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let integration = Integration::of(task, E::of(&task.parameters, task.forcing_angle));
         run::<E, U4>(&integration, accuracy, limits)
+    }
+
+    fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
+        Some(LONGEST_STEP * task.system.period())
     }
 
     fn is_explicit(&self) -> bool {

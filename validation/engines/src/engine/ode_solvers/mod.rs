@@ -41,8 +41,6 @@ pub(super) static DOP853_TIME: Dop853 =
 const LIBRARY: &str = "ode_solvers";
 /// Red to orange.
 const COLOURS: Colours = Colours::Hues(8.0, 42.0);
-/// The longest step, in forcing periods.
-const LONGEST_STEP: f64 = 0.125;
 /// Instead of the library's limit of steps: the meter's is the one that counts.
 const STEPS: u32 = u32::MAX - 1;
 /// Switches its stiffness detection off.
