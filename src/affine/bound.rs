@@ -6,7 +6,7 @@
 //! a maximum, s^j exp(rate s)/j! <= (j/(e |rate|))^j/j!, and with a rate of zero its sum is finite.
 //! All other blocks grow at most by their logarithmic norm.
 
-use super::modal::{self, Kind, Real};
+use super::modal::{self, BigReal, Kind};
 use super::motion::nilpotent;
 use super::vector::euclidean;
 
@@ -31,7 +31,7 @@ pub(super) enum Later {
 
 impl Later {
     pub fn of(block: &modal::Block) -> Self {
-        let never_grows = |rate: &Real| *rate <= Real::zero();
+        let never_grows = |rate: &BigReal| *rate <= BigReal::zero();
         match &block.kind {
             Kind::Real(rate) if rate.is_zero() => Self::Polynomial,
             // A polynomial of higher degree has no bound of its eighth derivative for all times.
@@ -88,27 +88,27 @@ pub(super) fn growth(block: &modal::Block) -> f64 {
 }
 
 /// A row's derivatives in a block, those that are zero exactly so.
-pub(super) fn derivatives(row: &[Real], block: &modal::Block) -> Vec<Vec<Real>> {
+pub(super) fn derivatives(row: &[BigReal], block: &modal::Block) -> Vec<Vec<BigReal>> {
     let mut parts = modal::derivatives(row, block, ORDERS);
     if let Kind::Real(rate) | Kind::Nilpotent(rate) = &block.kind
         && rate.is_zero()
     {
         let (_, index) = nilpotent(block, rate);
-        parts.iter_mut().skip(index).flatten().for_each(|it| *it = Real::zero());
+        parts.iter_mut().skip(index).flatten().for_each(|it| *it = BigReal::zero());
     }
     parts
 }
 
 /// The norms of a row's derivatives in a block, raised to what they are at most later where a
 /// nilpotent block decays.
-pub(super) fn norms(block: &modal::Block, parts: &[Vec<Real>]) -> [f64; ORDERS] {
-    let plain = |part: &Vec<Real>| norm(part) * OUTWARD;
+pub(super) fn norms(block: &modal::Block, parts: &[Vec<BigReal>]) -> [f64; ORDERS] {
+    let plain = |part: &Vec<BigReal>| norm(part) * OUTWARD;
     match &block.kind {
-        Kind::Nilpotent(rate) if *rate < Real::zero() => {
+        Kind::Nilpotent(rate) if *rate < BigReal::zero() => {
             let (matrix, index) = nilpotent(block, rate);
             let rate = -rate.to_f64();
-            let sum = |part: &Vec<Real>| {
-                let next = |last: &Vec<Real>| Some(modal::row_times(last, &matrix));
+            let sum = |part: &Vec<BigReal>| {
+                let next = |last: &Vec<BigReal>| Some(modal::row_times(last, &matrix));
                 let powers = std::iter::successors(Some(part.clone()), next).take(index);
                 powers.enumerate().map(|(j, row)| norm(&row) * summit(j, rate)).sum::<f64>()
                     * OUTWARD
@@ -124,8 +124,8 @@ fn summit(j: usize, rate: f64) -> f64 {
     (1..=j).map(|n| j as f64 / (std::f64::consts::E * rate * n as f64)).product::<f64>() * OUTWARD
 }
 
-fn norm(part: &[Real]) -> f64 {
-    euclidean(part.iter().map(Real::to_f64))
+fn norm(part: &[BigReal]) -> f64 {
+    euclidean(part.iter().map(BigReal::to_f64))
 }
 
 /// The fastest first; last those that nothing bounds for ever.

@@ -2,7 +2,9 @@
 
 use super::error::SystemError;
 use super::expression::{Scope, condition, expression, is_name};
-use super::file::{ModeTable, Parameter, Scalar, StartTable, SystemFile, UntilTable, WatchTable};
+use super::file::{
+    GivenParameter, ModeTable, Scalar, StartTable, SystemFile, UntilTable, WatchTable,
+};
 use super::form::Form;
 use super::system::{
     Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, Until, Watch,
@@ -72,7 +74,7 @@ fn system(file: &SystemFile) -> Result<System, SystemError> {
 }
 
 /// A parameter's name and value.
-fn parameter((name, it): (&String, &Parameter)) -> Option<(String, f64)> {
+fn parameter((name, it): (&String, &GivenParameter)) -> Option<(String, f64)> {
     number(&it.value).map(|value| (name.clone(), value.to_f64().value()))
 }
 
@@ -118,7 +120,7 @@ impl<'a> Names<'a> {
         let (forced, values) = (tables.forcing.is_some(), BTreeMap::new());
         let mut names = Self { file, states, forced, values, open: Vec::new(), with_states: true };
         names.check_names()?;
-        for (name, Parameter { value, place }) in &file.parameters {
+        for (name, GivenParameter { value, place }) in &file.parameters {
             let number = number(value).ok_or_else(|| {
                 let what = "a parameter is a finite number; an expression belongs into [let]";
                 SystemError::at(place, &format!("{name}: {what}"))
@@ -461,7 +463,7 @@ fn start_point(
     let refuse = |what: &str| SystemError::at(&table.place, what);
     let known: Vec<_> = places.keys().map(String::as_str).collect();
     let mode = match table.entries.get("mode") {
-        Some(Parameter { value: Scalar::Text(name), place }) => {
+        Some(GivenParameter { value: Scalar::Text(name), place }) => {
             places.get(name).copied().ok_or_else(|| {
                 let what =
                     format!("there is no mode {name:?}: accepted is one of {}", known.join(", "));
@@ -472,7 +474,7 @@ fn start_point(
     };
     names.with_states = false;
     let time = match table.entries.get("t") {
-        Some(Parameter { value, place }) if !names.states.iter().any(|it| it == "t") => {
+        Some(GivenParameter { value, place }) if !names.states.iter().any(|it| it == "t") => {
             names.constant_at("t", value, place)?
         }
         _ => RBig::ZERO,
@@ -480,7 +482,7 @@ fn start_point(
     let states = names.states.clone();
     let mut state = Vec::with_capacity(states.len());
     for name in &states {
-        let Some(Parameter { value, place }) = table.entries.get(name) else {
+        let Some(GivenParameter { value, place }) = table.entries.get(name) else {
             return Err(refuse(&format!("the state {name} is missing in [start]")));
         };
         let form = names.affine(value);

@@ -1,6 +1,6 @@
 //! Time, and the angle of the forcing, as a sum of two numbers that is never rounded to one.
 
-use super::modal::Real;
+use super::modal::BigReal;
 use super::system::Forcing;
 use super::vector::unit;
 use crate::number::Number;
@@ -26,7 +26,7 @@ impl<T: Number> Time<T> {
     /// A rational time, rounded to two words.
     #[must_use]
     pub fn of(number: &RBig) -> Self {
-        let real = Real::of(number);
+        let real = BigReal::of(number);
         let (high, low) = real.words();
         if unit::<T>() > 1e-20 {
             return Self { high: T::exact(high), low: T::exact(low) };

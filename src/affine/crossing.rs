@@ -5,7 +5,7 @@
 //! form settles it inside of the proved bracket.
 
 use super::flow::ModalRow;
-use super::point::{PerGuard, Point, Segment};
+use super::point::{GuardedPoint, PerGuard, Segment};
 use super::track::{SearchWork, Track, live, outward};
 use super::vector::unit;
 use crate::number::Number;
@@ -45,7 +45,7 @@ impl<T: Number> Segment<'_, T> {
     pub fn rising(
         &self,
         tracks: &[Track],
-        at: &Point<T>,
+        at: &GuardedPoint<T>,
         work: &mut SearchWork,
     ) -> Option<FirstCrossing<T>> {
         let mut all: PerGuard<Rising<T>> = PerGuard::new();
@@ -76,7 +76,7 @@ impl<T: Number> Segment<'_, T> {
     /// Whether a guard crosses together with the first, within what rounding may do. Where
     /// polynomials hide which is first, nothing is told.
     #[inline]
-    fn is_tied(&self, at: &Point<T>, first: &Rising<T>, other: &Rising<T>) -> Option<bool> {
+    fn is_tied(&self, at: &GuardedPoint<T>, first: &Rising<T>, other: &Rising<T>) -> Option<bool> {
         if first.guard == other.guard {
             return Some(true);
         }
@@ -92,7 +92,7 @@ impl<T: Number> Segment<'_, T> {
     /// What the rest of a guard's Taylor series, and steps that were not taken, may do to the time
     /// of a crossing.
     #[inline]
-    fn truncation(&self, at: &Point<T>, it: &Rising<T>) -> f64 {
+    fn truncation(&self, at: &GuardedPoint<T>, it: &Rising<T>) -> f64 {
         let row = &self.rows[it.guard];
         let terms = terms(row);
         let next = self.flow.bound_by(row, terms, &at.norms, it.within);
@@ -102,7 +102,7 @@ impl<T: Number> Segment<'_, T> {
 
     /// Whether a guard rises through zero once, shortly after a point, and when.
     #[inline]
-    fn rises(&self, n: usize, track: &Track, at: &Point<T>) -> Option<Rising<T>> {
+    fn rises(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> Option<Rising<T>> {
         let orders = outward(&at.orders[n], track);
         let slack = at.slack[n];
         let [value, slope, bend, third] = orders.map(Number::to_f64);
@@ -125,7 +125,7 @@ impl<T: Number> Segment<'_, T> {
     /// The time to a root of a guard's Taylor polynomial that is near a point, and the last step
     /// towards it. Where the polynomial is not the guard's, it may be far from a crossing.
     #[inline]
-    fn root(&self, n: usize, track: &Track, at: &Point<T>) -> (T, f64) {
+    fn root(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> (T, f64) {
         let first = outward(&at.orders[n], track);
         let outward = T::exact(track.outward);
         let mut all = [T::zero(); TERMS];
@@ -153,7 +153,7 @@ impl<T: Number> Segment<'_, T> {
 
     /// A bound of a guard over a short time after a point.
     #[inline]
-    fn excess(&self, n: usize, track: &Track, at: &Point<T>, within: f64) -> f64 {
+    fn excess(&self, n: usize, track: &Track, at: &GuardedPoint<T>, within: f64) -> f64 {
         let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::to_f64);
         let fourth = self.flow.bound_by(&self.rows[n], 4, &at.norms, within);
         let rest = 0.5 * bend.abs() + within * (third.abs() / 6.0 + within * fourth / 24.0);
@@ -172,7 +172,7 @@ impl<T: Number> Segment<'_, T> {
     pub fn settled(
         &self,
         tracks: &[Track],
-        point: &mut Point<T>,
+        point: &mut GuardedPoint<T>,
         crossing: &FirstCrossing<T>,
         limit: T,
         work: &mut SearchWork,

@@ -15,13 +15,13 @@ pub struct SystemFile {
     pub(super) file: String,
     pub(super) text: String,
     pub(super) tables: Tables,
-    pub(super) parameters: BTreeMap<String, Parameter>,
+    pub(super) parameters: BTreeMap<String, GivenParameter>,
     pub(super) start: Option<StartTable>,
 }
 
 /// A parameter's value and the place that gave it.
 #[derive(Clone, Debug)]
-pub(super) struct Parameter {
+pub(super) struct GivenParameter {
     pub value: Scalar,
     pub place: String,
 }
@@ -30,7 +30,7 @@ pub(super) struct Parameter {
 #[derive(Clone, Debug)]
 pub(super) struct StartTable {
     pub place: String,
-    pub entries: BTreeMap<String, Parameter>,
+    pub entries: BTreeMap<String, GivenParameter>,
 }
 
 type Entries = BTreeMap<String, Spanned<Scalar>>;
@@ -165,7 +165,7 @@ impl SystemFile {
     /// A name that is no parameter of the system.
     pub fn set(&mut self, name: &str, value: f64, place: &str) -> Result<(), SystemError> {
         let place = place.to_owned();
-        self.replace(name, Parameter { value: Scalar::Decimal(value), place })
+        self.replace(name, GivenParameter { value: Scalar::Decimal(value), place })
     }
 
     /// Replaces parameters and start by those of another file's `[parameters]` and `[start]`. Its
@@ -196,7 +196,7 @@ impl SystemFile {
         Ok(())
     }
 
-    fn replace(&mut self, name: &str, parameter: Parameter) -> Result<(), SystemError> {
+    fn replace(&mut self, name: &str, parameter: GivenParameter) -> Result<(), SystemError> {
         if let Some(old) = self.parameters.get_mut(name) {
             *old = parameter;
             return Ok(());
@@ -219,10 +219,10 @@ impl SystemFile {
     }
 }
 
-fn placed(source: Source<'_>, entries: Entries) -> BTreeMap<String, Parameter> {
+fn placed(source: Source<'_>, entries: Entries) -> BTreeMap<String, GivenParameter> {
     let place = |(name, value): (String, Spanned<Scalar>)| {
         let place = source.place(&value.span());
-        (name, Parameter { value: value.into_inner(), place })
+        (name, GivenParameter { value: value.into_inner(), place })
     };
     entries.into_iter().map(place).collect()
 }

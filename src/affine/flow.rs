@@ -1,7 +1,7 @@
 //! The closed form of a mode: z(t) = exp(M t) z, block by block.
 
 use super::bound::{self, Later, ORDERS};
-use super::modal::{self, Real};
+use super::modal::{self, BigReal};
 use super::motion::BlockMotion;
 use super::system::{LARGEST_DIMENSION, Row};
 use super::vector::{UNDERFLOW, Vector, euclidean, vector};
@@ -103,7 +103,7 @@ impl<T: Number> Flow<T> {
 
     /// A row of z in modal co-ordinates.
     pub fn row(&self, row: &Row, blocks: &[modal::Block]) -> ModalRow<T> {
-        let row: Vec<Real> = row.iter().map(Real::of).collect();
+        let row: Vec<BigReal> = row.iter().map(BigReal::of).collect();
         let parts: Vec<_> = blocks.iter().map(|block| bound::derivatives(&row, block)).collect();
         let order = |k: usize| {
             let entries: Vec<_> = parts.iter().flat_map(|part| part[k].iter().cloned()).collect();
@@ -375,7 +375,7 @@ fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: &[T], facto
     }
 }
 
-fn transposed<T: Number>(matrix: &[Vec<Real>]) -> Vec<Vector<T>> {
+fn transposed<T: Number>(matrix: &[Vec<BigReal>]) -> Vec<Vector<T>> {
     let columns = matrix.first().map_or(0, Vec::len);
     let column = |n: usize| vector(&matrix.iter().map(|row| row[n].clone()).collect::<Vec<_>>());
     (0..columns).map(column).collect()

@@ -1,6 +1,6 @@
 //! How the modal co-ordinates of a block move: exp(B t) y.
 
-use super::modal::{self, Kind, Real};
+use super::modal::{self, BigReal, Kind};
 use super::system::LARGEST_DIMENSION;
 use super::vector::{Vector, dot, rounded, unit, vector};
 use crate::number::Number;
@@ -10,7 +10,7 @@ const NOTHING: f64 = 4.909093465297727e-91;
 
 /// A number in two words of an arithmetic.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Words<T> {
+pub(super) struct SplitNumber<T> {
     high: T,
     low: T,
 }
@@ -20,16 +20,16 @@ pub(super) enum BlockMotion<T> {
     /// The block stands still: exp(B t) = 1.
     Still,
     Real {
-        rate: Words<T>,
+        rate: SplitNumber<T>,
     },
     Pair {
-        rate: Option<Words<T>>,
-        frequency: Words<T>,
+        rate: Option<SplitNumber<T>>,
+        frequency: SplitNumber<T>,
     },
     /// The matrix to the power of `index` is zero.
     Nilpotent {
-        rate: Option<Words<T>>,
-        entries: Vec<Entry<T>>,
+        rate: Option<SplitNumber<T>>,
+        entries: Vec<MatrixEntry<T>>,
         index: usize,
     },
     Cluster(Box<Powers<T>>),
@@ -37,7 +37,7 @@ pub(super) enum BlockMotion<T> {
 
 /// An entry of a matrix that is not zero.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Entry<T> {
+pub(super) struct MatrixEntry<T> {
     row: usize,
     column: usize,
     value: T,
@@ -52,25 +52,25 @@ pub(super) struct Powers<T> {
     matrix: Vec<Vector<T>>,
 }
 
-fn words<T: Number>(value: &Real) -> Words<T> {
+fn words<T: Number>(value: &BigReal) -> SplitNumber<T> {
     let high: T = rounded(value);
     // What is left beyond an arithmetic of two words is not resolved by it either.
     let rest = if unit::<T>() > 1e-20 { value.words().1 } else { 0.0 };
-    Words { high, low: T::exact(rest) }
+    SplitNumber { high, low: T::exact(rest) }
 }
 
-fn nonzero<T: Number>(value: &Real) -> Option<Words<T>> {
+fn nonzero<T: Number>(value: &BigReal) -> Option<SplitNumber<T>> {
     (!value.is_zero()).then(|| words(value))
 }
 
 /// The matrix of a block less its rate, and the least power of it that is zero.
-pub(super) fn nilpotent(block: &modal::Block, rate: &Real) -> (Vec<Vec<Real>>, usize) {
+pub(super) fn nilpotent(block: &modal::Block, rate: &BigReal) -> (Vec<Vec<BigReal>>, usize) {
     let mut matrix = block.matrix.clone();
     for (n, row) in matrix.iter_mut().enumerate() {
         row[n] = &row[n] - rate;
     }
     let beside = modal::norm(&block.matrix).max(modal::norm(&matrix));
-    let nothing = |power: &Vec<Vec<Real>>, k: usize| {
+    let nothing = |power: &Vec<Vec<BigReal>>, k: usize| {
         modal::norm(power) <= NOTHING * libm::pow(beside, k as f64)
     };
     let powers = modal::multiples(&matrix, matrix.len());
@@ -122,7 +122,7 @@ impl<T: Number> BlockMotion<T> {
     /// The sizes of what [`Self::advance`] sums each co-ordinate from, in units of which it rounds
     /// by a few: terms may cancel, so the co-ordinate itself can be much smaller.
     pub fn sizes(&self, y: &mut [f64], time: f64) {
-        let decay = |rate: &Words<T>| libm::exp(rate.high.to_f64() * time);
+        let decay = |rate: &SplitNumber<T>| libm::exp(rate.high.to_f64() * time);
         y.iter_mut().for_each(|entry| *entry = entry.abs());
         match self {
             Self::Still => {}
@@ -132,9 +132,9 @@ impl<T: Number> BlockMotion<T> {
                 y.fill(norm);
             }
             Self::Nilpotent { rate, entries, index } => {
-                let size = |it: &Entry<T>| {
-                    let &Entry { row, column, value } = it;
-                    Entry { row, column, value: value.to_f64().abs() }
+                let size = |it: &MatrixEntry<T>| {
+                    let &MatrixEntry { row, column, value } = it;
+                    MatrixEntry { row, column, value: value.to_f64().abs() }
                 };
                 polynomial(&entries.iter().map(size).collect::<Vec<_>>(), *index, y, time);
                 // Five roundings a power are more than those of a sum.
@@ -146,11 +146,11 @@ impl<T: Number> BlockMotion<T> {
     }
 }
 
-fn entries<T: Number>(matrix: &[Vec<Real>]) -> Vec<Entry<T>> {
+fn entries<T: Number>(matrix: &[Vec<BigReal>]) -> Vec<MatrixEntry<T>> {
     let mut entries = Vec::new();
     for (row, values) in matrix.iter().enumerate() {
         for (column, value) in values.iter().enumerate().filter(|(_, it)| !it.is_zero()) {
-            entries.push(Entry { row, column, value: rounded(value) });
+            entries.push(MatrixEntry { row, column, value: rounded(value) });
         }
     }
     entries
@@ -158,14 +158,14 @@ fn entries<T: Number>(matrix: &[Vec<Real>]) -> Vec<Entry<T>> {
 
 /// `y = exp(N time) y` by Horner's scheme.
 #[inline]
-fn polynomial<T: Number>(entries: &[Entry<T>], index: usize, y: &mut [T], time: T) {
+fn polynomial<T: Number>(entries: &[MatrixEntry<T>], index: usize, y: &mut [T], time: T) {
     let mut start = [T::zero(); LARGEST_DIMENSION];
     start[..y.len()].copy_from_slice(y);
     let mut last = start;
     for k in (1..index).rev() {
         let factor = if k == 1 { time } else { time / T::exact(k as f64) };
         y.copy_from_slice(&start[..y.len()]);
-        for Entry { row, column, value } in entries {
+        for MatrixEntry { row, column, value } in entries {
             y[*row] = y[*row] + factor * (*value * last[*column]);
         }
         if k > 1 {
@@ -192,7 +192,7 @@ fn copied<T: Number>(y: &[T]) -> Vector<T> {
 }
 
 #[inline]
-fn decay<T: Number>(rate: Option<Words<T>>, time: T, y: &mut [T]) {
+fn decay<T: Number>(rate: Option<SplitNumber<T>>, time: T, y: &mut [T]) {
     let Some(rate) = rate else { return };
     let factor = exponential(rate, time);
     y.iter_mut().for_each(|entry| *entry = *entry * factor);
@@ -200,20 +200,20 @@ fn decay<T: Number>(rate: Option<Words<T>>, time: T, y: &mut [T]) {
 
 /// A product with a rate, and what rounding took from it.
 #[inline]
-fn product<T: Number>(rate: Words<T>, time: T) -> (T, T) {
+fn product<T: Number>(rate: SplitNumber<T>, time: T) -> (T, T) {
     let high = rate.high * time;
     (high, rate.high.product_error(time) + rate.low * time)
 }
 
 #[inline]
-fn exponential<T: Number>(rate: Words<T>, time: T) -> T {
+fn exponential<T: Number>(rate: SplitNumber<T>, time: T) -> T {
     let (high, low) = product(rate, time);
     let value = high.exp();
     value + value * low
 }
 
 #[inline]
-fn circular<T: Number>(frequency: Words<T>, time: T) -> (T, T) {
+fn circular<T: Number>(frequency: SplitNumber<T>, time: T) -> (T, T) {
     let (high, low) = product(frequency, time);
     let (sin, cos) = high.sin_cos();
     (sin + low * cos, cos - low * sin)
@@ -223,7 +223,7 @@ impl<T: Number> Powers<T> {
     /// Tables up to 16^12 steps, beyond any horizon.
     const LEVELS: usize = 12;
 
-    fn of(matrix: &[Vec<Real>]) -> Self {
+    fn of(matrix: &[Vec<BigReal>]) -> Self {
         let size = modal::norm(matrix);
         let exponent = if size > 0.0 { -libm::ceil(libm::log2(size)) - 1.0 } else { 0.0 };
         let step = libm::exp2(exponent);
@@ -235,7 +235,7 @@ impl<T: Number> Powers<T> {
                 Some(split) => split,
                 None => break,
             };
-            let rounded = |it: &Vec<Vec<Real>>| it.iter().map(|row| vector(row)).collect();
+            let rounded = |it: &Vec<Vec<BigReal>>| it.iter().map(|row| vector(row)).collect();
             tables.push(table.iter().map(rounded).collect());
             first = last.clone();
         }

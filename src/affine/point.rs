@@ -37,7 +37,7 @@ pub(super) struct Segment<'a, T> {
 
 /// The guards at an instant.
 #[derive(Clone, Debug)]
-pub(super) struct Point<T> {
+pub(super) struct GuardedPoint<T> {
     pub time: T,
     /// How much later a guard is zero, by its value and slope here: a time that rounding hides in
     /// the values of guards.
@@ -118,7 +118,7 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// The guards at entry, with their structural zeros.
     #[inline]
-    pub fn begin(&self, point: &mut Point<T>) {
+    pub fn begin(&self, point: &mut GuardedPoint<T>) {
         (point.time, point.later, point.y) = (T::zero(), T::zero(), self.entry);
         self.fill(point);
         for (n, zeros) in self.zeros.iter().enumerate().filter(|(_, zeros)| **zeros > 0) {
@@ -130,7 +130,7 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// Evaluates the closed form, as far as guards need it.
     #[inline]
-    pub fn evaluate(&self, point: &mut Point<T>, time: T, work: &mut SearchWork) {
+    pub fn evaluate(&self, point: &mut GuardedPoint<T>, time: T, work: &mut SearchWork) {
         work.evaluations += 1;
         (point.time, point.later, point.y) = (time, T::zero(), self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);
@@ -139,7 +139,13 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// Evaluates the closed form and one guard; what others have in the point is not of its time.
     #[inline]
-    pub fn evaluate_guard(&self, n: usize, point: &mut Point<T>, time: T, work: &mut SearchWork) {
+    pub fn evaluate_guard(
+        &self,
+        n: usize,
+        point: &mut GuardedPoint<T>,
+        time: T,
+        work: &mut SearchWork,
+    ) {
         work.evaluations += 1;
         (point.time, point.later, point.y) = (time, T::zero(), self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);
@@ -155,7 +161,7 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// All guards of a point whose co-ordinates are there.
     #[inline]
-    pub fn fill_all(&self, point: &mut Point<T>) {
+    pub fn fill_all(&self, point: &mut GuardedPoint<T>) {
         let early = self.is_early(point);
         if early {
             self.fill_early(point);
@@ -167,7 +173,7 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// Whether the guards at a point are summed from their series.
     #[inline]
-    pub fn is_early(&self, point: &Point<T>) -> bool {
+    pub fn is_early(&self, point: &GuardedPoint<T>) -> bool {
         point.time.to_f64() <= self.early
     }
 
@@ -179,19 +185,19 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// Works out the norms of a point's blocks.
     #[inline]
-    pub fn measure(&self, point: &mut Point<T>) {
+    pub fn measure(&self, point: &mut GuardedPoint<T>) {
         point.norms = self.flow.norms(&point.y);
     }
 
     /// Evaluates the blocks of a point that no guard is made of.
     #[inline]
-    pub fn complete(&self, point: &mut Point<T>) {
+    pub fn complete(&self, point: &mut GuardedPoint<T>) {
         self.flow.advance(&mut point.y, point.time, !self.blocks);
     }
 
     /// The guards from the co-ordinates.
     #[inline]
-    fn fill(&self, point: &mut Point<T>) {
+    fn fill(&self, point: &mut GuardedPoint<T>) {
         let margin = self.margin();
         let count = self.rows.len();
         point.orders.resize(count, [T::zero(); 4]);
@@ -210,7 +216,7 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// The guards from their Taylor series.
     #[inline]
-    fn fill_early(&self, point: &mut Point<T>) {
+    fn fill_early(&self, point: &mut GuardedPoint<T>) {
         point.orders.clear();
         point.slack.clear();
         let margin = self.margin();
@@ -225,7 +231,7 @@ impl<'a, T: Number> Segment<'a, T> {
     /// In a run that follows its errors, adds what they do to guards, and what rounding does where
     /// terms of the closed form have cancelled.
     #[inline]
-    fn inherit(&self, point: &mut Point<T>, is_closed_form: bool) {
+    fn inherit(&self, point: &mut GuardedPoint<T>, is_closed_form: bool) {
         if !self.inherited.is_empty() {
             if is_closed_form {
                 let sizes = self.flow.sizes_later(&self.entry, point.time);
@@ -239,7 +245,7 @@ impl<'a, T: Number> Segment<'a, T> {
     }
 }
 
-impl<T: Number> Default for Point<T> {
+impl<T: Number> Default for GuardedPoint<T> {
     #[inline]
     fn default() -> Self {
         let (y, norms) = ([T::zero(); LARGEST_DIMENSION], [0.0; LARGEST_DIMENSION]);
@@ -251,8 +257,8 @@ impl<T: Number> Default for Point<T> {
 /// The two ends of a piece.
 #[derive(Clone, Debug)]
 pub(super) struct Ends<T> {
-    pub left: Point<T>,
-    pub right: Point<T>,
+    pub left: GuardedPoint<T>,
+    pub right: GuardedPoint<T>,
 }
 
 impl<T> Ends<T> {
@@ -266,7 +272,7 @@ impl<T> Ends<T> {
 impl<T: Number> Default for Ends<T> {
     #[inline]
     fn default() -> Self {
-        Self { left: Point::default(), right: Point::default() }
+        Self { left: GuardedPoint::default(), right: GuardedPoint::default() }
     }
 }
 

@@ -9,7 +9,7 @@
 use super::bound::Later;
 use super::flow::{ModalRow, RowPart};
 use super::hull::{self, Judged, Lengths};
-use super::point::{Ends, Point, Segment, root};
+use super::point::{Ends, GuardedPoint, Segment, root};
 use super::system::LARGEST_DIMENSION;
 use super::track::{Track, outward};
 use super::vector::Vector;
@@ -42,7 +42,7 @@ pub(super) struct Reach {
 impl<T: Number> Segment<'_, T> {
     /// How far a guard is looked at from a point.
     #[inline]
-    pub fn reach(&self, n: usize, track: &Track, left: &Point<T>, longest: f64) -> Reach {
+    pub fn reach(&self, n: usize, track: &Track, left: &GuardedPoint<T>, longest: f64) -> Reach {
         let row = &self.rows[n];
         let orders = outward(&left.orders[n], track).map(Number::to_f64);
         let rests = eighths(row, left, longest);
@@ -96,7 +96,7 @@ impl<T: Number> Segment<'_, T> {
 fn enclose<T: Number>(
     row: &ModalRow<T>,
     track: &Track,
-    left: &Point<T>,
+    left: &GuardedPoint<T>,
     (begin, rests, longest): (f64, &Vector<f64>, f64),
     reach: &mut Reach,
 ) {
@@ -126,7 +126,7 @@ fn enclose<T: Number>(
 
 /// Bounds of the eighth derivative of all blocks from each on.
 #[inline]
-fn eighths<T: Number>(row: &ModalRow<T>, left: &Point<T>, longest: f64) -> Vector<f64> {
+fn eighths<T: Number>(row: &ModalRow<T>, left: &GuardedPoint<T>, longest: f64) -> Vector<f64> {
     let mut rests = [0.0; LARGEST_DIMENSION];
     let mut sum = 0.0;
     for (n, part) in row.parts.iter().enumerate().rev() {
@@ -141,7 +141,7 @@ fn eighths<T: Number>(row: &ModalRow<T>, left: &Point<T>, longest: f64) -> Vecto
 fn eighth<T: Number>(
     row: &ModalRow<T>,
     track: &Track,
-    left: &Point<T>,
+    left: &GuardedPoint<T>,
     cut: usize,
     length: f64,
 ) -> f64 {
@@ -159,7 +159,12 @@ fn eighth<T: Number>(
 /// The sizes of what derivatives are summed from, as far as a coefficient of a hull has them: the
 /// third and fourth have most, 3/7 L, L^2/14 and L^3/210 of the first three.
 #[inline]
-fn derivatives<T: Number>(row: &ModalRow<T>, left: &Point<T>, cut: usize, length: f64) -> f64 {
+fn derivatives<T: Number>(
+    row: &ModalRow<T>,
+    left: &GuardedPoint<T>,
+    cut: usize,
+    length: f64,
+) -> f64 {
     let size = |part: &RowPart| {
         let norm = |k: usize| part.bound(k, length, &left.norms);
         let weighted = 3.0 / 7.0 * norm(1) + length * (norm(2) / 14.0 + length * norm(3) / 210.0);

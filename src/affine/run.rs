@@ -126,7 +126,7 @@ impl<T: Number> Solver<T> {
         let (sin, cos) = self.sin_cos(&time);
         let mut states = [T::zero(); LARGEST_DIMENSION];
         for (entry, [c, s, one]) in states.iter_mut().zip(&start.state) {
-            let number = |it| rounded::<T>(&super::modal::Real::of(it));
+            let number = |it| rounded::<T>(&super::modal::BigReal::of(it));
             *entry = number(c) * cos + number(s) * sin + number(one);
         }
         (time, self.complete(&states[..start.state.len()], &time))

@@ -10,7 +10,7 @@
 //! modules that this one uses.
 
 use super::hull::{Judged, Lengths};
-use super::point::{Ends, PerGuard, Point, Segment};
+use super::point::{Ends, GuardedPoint, PerGuard, Segment};
 use super::reach::Reach;
 use super::track::{SearchWork, Track, live};
 use super::vector::unit;
@@ -104,7 +104,7 @@ impl<T: Number> Segment<'_, T> {
 
     /// How far each guard is looked at from a point.
     #[inline]
-    fn reaches(&self, tracks: &[Track], left: &Point<T>) -> PerGuard<Reach> {
+    fn reaches(&self, tracks: &[Track], left: &GuardedPoint<T>) -> PerGuard<Reach> {
         let longest = self.flow.longest;
         let mut reaches = PerGuard::new();
         for (n, track) in tracks.iter().enumerate() {

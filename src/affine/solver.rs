@@ -5,7 +5,7 @@ use super::clock::{Clock, Time};
 use super::event::Event;
 use super::flow::{Flow, ModalRow};
 use super::known::Known;
-use super::modal::{self, Real};
+use super::modal::{self, BigReal};
 use super::structure::Structure;
 use super::system::{LARGEST_DIMENSION, Mode, Row, System};
 use super::vector::{Vector, rounded};
@@ -130,7 +130,7 @@ impl<T: Number> Solver<T> {
 pub(super) fn numbers<T: Number>(row: &Row) -> Vector<T> {
     let mut vector = [T::zero(); LARGEST_DIMENSION];
     for (entry, number) in vector.iter_mut().zip(row) {
-        *entry = rounded(&Real::of(number));
+        *entry = rounded(&BigReal::of(number));
     }
     vector
 }
@@ -142,7 +142,7 @@ fn changes<T: Number>(reset: &[Row]) -> Vec<Change<T>> {
     };
     let factors = |row: &Row| {
         let there = row.iter().enumerate().filter(|(_, it)| !it.is_zero());
-        there.map(|(k, it)| (k, rounded(&Real::of(it)))).collect()
+        there.map(|(k, it)| (k, rounded(&BigReal::of(it)))).collect()
     };
     let changed = reset.iter().enumerate().filter(|(n, row)| !kept(*n, row));
     changed.map(|(n, row)| (n, factors(row))).collect()

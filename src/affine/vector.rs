@@ -1,6 +1,6 @@
 //! Vectors of the state, and numbers rounded to an arithmetic.
 
-use super::modal::Real;
+use super::modal::BigReal;
 use super::system::LARGEST_DIMENSION;
 use crate::number::Number;
 
@@ -46,13 +46,13 @@ pub(super) fn euclidean(entries: impl Iterator<Item = f64> + Clone) -> f64 {
 }
 
 /// A wide number, rounded to an arithmetic of one or two words.
-pub(super) fn rounded<T: Number>(value: &Real) -> T {
+pub(super) fn rounded<T: Number>(value: &BigReal) -> T {
     let (high, low) = value.words();
     T::exact(high) + T::exact(low)
 }
 
 /// A row in the arithmetic, with zeros beyond its end.
-pub(super) fn vector<T: Number>(row: &[Real]) -> Vector<T> {
+pub(super) fn vector<T: Number>(row: &[BigReal]) -> Vector<T> {
     let mut vector = [T::zero(); LARGEST_DIMENSION];
     for (entry, value) in vector.iter_mut().zip(row) {
         *entry = rounded(value);

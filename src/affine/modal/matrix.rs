@@ -1,24 +1,24 @@
 //! Matrices of wide numbers, as rows.
 
-use super::real::Real;
+use super::real::BigReal;
 
-pub type Matrix = Vec<Vec<Real>>;
+pub type BigMatrix = Vec<Vec<BigReal>>;
 
 /// What is left of a zero after elimination, beside what was there: 2^-320.
 const NOTHING: isize = -320;
 
-pub fn identity(size: usize) -> Matrix {
-    let entry = |same| if same { Real::one() } else { Real::zero() };
+pub fn identity(size: usize) -> BigMatrix {
+    let entry = |same| if same { BigReal::one() } else { BigReal::zero() };
     (0..size).map(|i| (0..size).map(|j| entry(i == j)).collect()).collect()
 }
 
-pub fn product(a: &Matrix, b: &Matrix) -> Matrix {
+pub fn product(a: &BigMatrix, b: &BigMatrix) -> BigMatrix {
     a.iter().map(|row| row_times(row, b)).collect()
 }
 
-pub fn row_times(row: &[Real], matrix: &Matrix) -> Vec<Real> {
+pub fn row_times(row: &[BigReal], matrix: &BigMatrix) -> Vec<BigReal> {
     let columns = matrix.first().map_or(0, Vec::len);
-    let mut sums = vec![Real::zero(); columns];
+    let mut sums = vec![BigReal::zero(); columns];
     for (factor, matrix_row) in row.iter().zip(matrix).filter(|(factor, _)| !factor.is_zero()) {
         for (sum, entry) in sums.iter_mut().zip(matrix_row) {
             *sum = &*sum + &(factor * entry);
@@ -28,7 +28,7 @@ pub fn row_times(row: &[Real], matrix: &Matrix) -> Vec<Real> {
 }
 
 /// `matrix + factor * identity`.
-pub fn shifted(matrix: &Matrix, factor: &Real) -> Matrix {
+pub fn shifted(matrix: &BigMatrix, factor: &BigReal) -> BigMatrix {
     let mut shifted = matrix.clone();
     for (n, row) in shifted.iter_mut().enumerate() {
         row[n] = &row[n] + factor;
@@ -36,20 +36,20 @@ pub fn shifted(matrix: &Matrix, factor: &Real) -> Matrix {
     shifted
 }
 
-pub fn transposed(matrix: &Matrix) -> Matrix {
+pub fn transposed(matrix: &BigMatrix) -> BigMatrix {
     let columns = matrix.first().map_or(0, Vec::len);
     (0..columns).map(|j| matrix.iter().map(|row| row[j].clone()).collect()).collect()
 }
 
 /// The largest size of an entry.
-pub fn largest(matrix: &Matrix) -> Real {
-    let larger = |a: Real, b: Real| if a < b { b } else { a };
-    matrix.iter().flatten().map(Real::abs).fold(Real::zero(), larger)
+pub fn largest(matrix: &BigMatrix) -> BigReal {
+    let larger = |a: BigReal, b: BigReal| if a < b { b } else { a };
+    matrix.iter().flatten().map(BigReal::abs).fold(BigReal::zero(), larger)
 }
 
 /// Eliminates with complete pivoting, and gives the right null space as columns, each with a 1 in a
 /// row of its own; none if the rank is another one than said.
-pub fn null_space(matrix: &Matrix, nullity: usize) -> Option<Matrix> {
+pub fn null_space(matrix: &BigMatrix, nullity: usize) -> Option<BigMatrix> {
     let mut rows = matrix.clone();
     let size = rows.len();
     let rank = size.checked_sub(nullity)?;
@@ -69,9 +69,9 @@ pub fn null_space(matrix: &Matrix, nullity: usize) -> Option<Matrix> {
         order.swap(step, column);
         eliminate(&mut rows, step);
     }
-    let mut columns = vec![vec![Real::zero(); nullity]; size];
+    let mut columns = vec![vec![BigReal::zero(); nullity]; size];
     for free in 0..nullity {
-        columns[order[rank + free]][free] = Real::one();
+        columns[order[rank + free]][free] = BigReal::one();
         for (step, row) in rows.iter().enumerate().take(rank) {
             columns[order[step]][free] = -&row[rank + free];
         }
@@ -80,8 +80,8 @@ pub fn null_space(matrix: &Matrix, nullity: usize) -> Option<Matrix> {
 }
 
 /// The largest entry that is left, with its row and column.
-fn pivot(rows: &Matrix, step: usize) -> Option<(Real, usize, usize)> {
-    let mut best: Option<(Real, usize, usize)> = None;
+fn pivot(rows: &BigMatrix, step: usize) -> Option<(BigReal, usize, usize)> {
+    let mut best: Option<(BigReal, usize, usize)> = None;
     for (at, row) in rows.iter().enumerate().skip(step) {
         for (column, entry) in row.iter().enumerate().skip(step) {
             let size = entry.abs();
@@ -94,7 +94,7 @@ fn pivot(rows: &Matrix, step: usize) -> Option<(Real, usize, usize)> {
 }
 
 /// Makes the pivot 1, and the rest of its column 0.
-fn eliminate(rows: &mut Matrix, step: usize) {
+fn eliminate(rows: &mut BigMatrix, step: usize) {
     let pivot = rows[step][step].clone();
     rows[step].iter_mut().for_each(|entry| *entry = &*entry / &pivot);
     let pivot_row = rows[step].clone();
@@ -110,9 +110,9 @@ fn eliminate(rows: &mut Matrix, step: usize) {
 }
 
 /// The inverse of a small matrix, by the same elimination with rows' pivots; none if it has none.
-pub fn inverse(matrix: &Matrix) -> Option<Matrix> {
+pub fn inverse(matrix: &BigMatrix) -> Option<BigMatrix> {
     let size = matrix.len();
-    let mut rows: Matrix = matrix.clone();
+    let mut rows: BigMatrix = matrix.clone();
     for (row, unit) in rows.iter_mut().zip(identity(size)) {
         row.extend(unit);
     }

@@ -10,9 +10,11 @@ mod polynomial;
 mod real;
 
 pub(super) use self::matrix::row_times;
-use self::matrix::{Matrix, identity, inverse, largest, null_space, product, shifted, transposed};
+use self::matrix::{
+    BigMatrix, identity, inverse, largest, null_space, product, shifted, transposed,
+};
 use self::polynomial::{Eigenvalue, eigenvalues};
-pub(super) use self::real::Real;
+pub(super) use self::real::BigReal;
 use super::system::Row;
 
 /// Eigenvalues stay together if their distance is below this share of the larger one: the
@@ -31,12 +33,12 @@ const NOTHING: isize = -500;
 #[derive(Clone, Debug)]
 pub(super) enum Kind {
     /// One simple real eigenvalue.
-    Real(Real),
+    Real(BigReal),
     /// One pair of simple eigenvalues: rate and frequency; B = ((rate, frequency), (-frequency,
     /// rate)).
-    Pair(Real, Real),
+    Pair(BigReal, BigReal),
     /// One real eigenvalue, and B less it is nilpotent.
-    Nilpotent(Real),
+    Nilpotent(BigReal),
     /// Eigenvalues that are close to each other.
     Cluster,
 }
@@ -46,29 +48,29 @@ pub(super) enum Kind {
 pub(super) struct Block {
     pub kind: Kind,
     /// The matrix X, as rows.
-    pub columns: Matrix,
+    pub columns: BigMatrix,
     /// The matrix W.
-    pub rows: Matrix,
+    pub rows: BigMatrix,
     /// The matrix B.
-    pub matrix: Matrix,
+    pub matrix: BigMatrix,
 }
 
 /// The blocks of a matrix; none if it cannot be taken apart at this precision.
 pub(super) fn blocks(exact: &[Row], time_scale: f64) -> Option<Vec<Block>> {
-    let matrix: Matrix = exact.iter().map(|row| row.iter().map(Real::of).collect()).collect();
+    let matrix: BigMatrix = exact.iter().map(|row| row.iter().map(BigReal::of).collect()).collect();
     let clusters = clusters(eigenvalues(exact)?, time_scale);
     let blocks: Option<Vec<_>> = clusters.iter().map(|it| block(&matrix, it)).collect();
     Some(blocks.unwrap_or_else(|| vec![whole(&matrix)]))
 }
 
 /// `row * columns * matrix^k` of a block for k from 0 to `count` - 1: a row's derivatives.
-pub(super) fn derivatives(row: &[Real], block: &Block, count: usize) -> Vec<Vec<Real>> {
+pub(super) fn derivatives(row: &[BigReal], block: &Block, count: usize) -> Vec<Vec<BigReal>> {
     let first = row_times(row, &block.columns);
-    let next = |last: &Vec<Real>| Some(row_times(last, &block.matrix));
+    let next = |last: &Vec<BigReal>| Some(row_times(last, &block.matrix));
     std::iter::successors(Some(first), next).take(count).collect()
 }
 
-fn whole(matrix: &Matrix) -> Block {
+fn whole(matrix: &BigMatrix) -> Block {
     let unit = identity(matrix.len());
     Block { kind: Kind::Cluster, columns: unit.clone(), rows: unit, matrix: matrix.clone() }
 }
@@ -97,7 +99,7 @@ fn is_close(gap: f64, a: &Eigenvalue, b: &Eigenvalue, time_scale: f64) -> bool {
     gap < CLOSE * larger || gap * time_scale < SLOW
 }
 
-fn block(matrix: &Matrix, cluster: &[Eigenvalue]) -> Option<Block> {
+fn block(matrix: &BigMatrix, cluster: &[Eigenvalue]) -> Option<Block> {
     let dimensions = cluster.iter().map(Eigenvalue::dimensions).sum();
     let annihilator = cluster.iter().fold(identity(matrix.len()), |product_so_far, root| {
         let factor = factor(matrix, root);
@@ -108,13 +110,17 @@ fn block(matrix: &Matrix, cluster: &[Eigenvalue]) -> Option<Block> {
     let rows = product(&inverse(&product(&left, &columns))?, &left);
     let mut inner = product(&product(&rows, matrix), &columns);
     let nothing = largest(matrix).scaled(NOTHING);
-    inner.iter_mut().flatten().filter(|it| it.abs() <= nothing).for_each(|it| *it = Real::zero());
+    inner
+        .iter_mut()
+        .flatten()
+        .filter(|it| it.abs() <= nothing)
+        .for_each(|it| *it = BigReal::zero());
     let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner };
     Some(named(block, cluster))
 }
 
 /// The factor (M - root) of a real root, or (M - root)(M - conjugate) of a pair.
-fn factor(matrix: &Matrix, root: &Eigenvalue) -> Matrix {
+fn factor(matrix: &BigMatrix, root: &Eigenvalue) -> BigMatrix {
     if root.is_real() {
         return shifted(matrix, &-&root.value.re);
     }
@@ -142,8 +148,8 @@ fn named(mut block: Block, cluster: &[Eigenvalue]) -> Block {
 fn rotating(block: &Block, root: &Eigenvalue) -> Option<Block> {
     let (rate, frequency) = (&root.value.re, &root.value.im);
     let [[p, q], [r, s]] = [0, 1].map(|i| [0, 1].map(|j| &block.matrix[i][j]));
-    let zero = Real::zero();
-    let turned: Matrix = if q.abs() >= r.abs() {
+    let zero = BigReal::zero();
+    let turned: BigMatrix = if q.abs() >= r.abs() {
         vec![vec![q.clone(), zero], vec![rate - p, frequency.clone()]]
     } else {
         vec![vec![rate - s, frequency.clone()], vec![r.clone(), zero]]
@@ -155,28 +161,28 @@ fn rotating(block: &Block, root: &Eigenvalue) -> Option<Block> {
 }
 
 /// The largest row sum of a matrix.
-pub(super) fn norm(matrix: &[Vec<Real>]) -> f64 {
+pub(super) fn norm(matrix: &[Vec<BigReal>]) -> f64 {
     let sums = matrix.iter().map(|row| row.iter().map(|it| it.to_f64().abs()).sum());
     sums.fold(0.0, f64::max)
 }
 
 /// exp(B 2^exponent), where |B 2^exponent| is at most 1/2: a Taylor series to the last bit.
-pub(super) fn exponential(matrix: &[Vec<Real>], exponent: isize) -> Matrix {
+pub(super) fn exponential(matrix: &[Vec<BigReal>], exponent: isize) -> BigMatrix {
     const TERMS: usize = 120;
-    let scaled: Matrix =
+    let scaled: BigMatrix =
         matrix.iter().map(|row| row.iter().map(|it| it.scaled(exponent)).collect()).collect();
     let mut sum = identity(matrix.len());
     for k in (1..=TERMS).rev() {
-        let factor = Real::exact(k as f64);
+        let factor = BigReal::exact(k as f64);
         sum = product(&scaled, &sum);
         sum.iter_mut().flatten().for_each(|it| *it = &*it / &factor);
-        sum = shifted(&sum, &Real::one());
+        sum = shifted(&sum, &BigReal::one());
     }
     sum
 }
 
 /// The first, second, ... power of a matrix.
-pub(super) fn multiples(matrix: &Matrix, count: usize) -> Vec<Matrix> {
-    let next = |last: &Matrix| Some(product(last, matrix));
+pub(super) fn multiples(matrix: &BigMatrix, count: usize) -> Vec<BigMatrix> {
+    let next = |last: &BigMatrix| Some(product(last, matrix));
     std::iter::successors(Some(matrix.clone()), next).take(count).collect()
 }

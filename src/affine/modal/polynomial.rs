@@ -1,7 +1,7 @@
 //! The characteristic polynomial with exact coefficients, its factors of equal multiplicity, and
 //! their roots.
 
-use super::real::{BITS, Complex, Real};
+use super::real::{BITS, BigComplex, BigReal};
 use crate::affine::system::Row;
 use dashu_ratio::RBig;
 
@@ -11,7 +11,7 @@ type Polynomial = Vec<RBig>;
 /// A root with its multiplicity. Of a pair of complex roots the one above the real axis is there.
 #[derive(Clone, Debug)]
 pub struct Eigenvalue {
-    pub value: Complex,
+    pub value: BigComplex,
     pub multiplicity: usize,
 }
 
@@ -130,12 +130,12 @@ fn greatest_common_divisor(a: &Polynomial, b: &Polynomial) -> Polynomial {
 }
 
 /// The roots of a polynomial that has each once: Aberth's iteration, all of them at a time.
-fn simple_roots(polynomial: &Polynomial) -> Option<Vec<Complex>> {
+fn simple_roots(polynomial: &Polynomial) -> Option<Vec<BigComplex>> {
     const ROUNDS: usize = 2000;
-    let coefficients: Vec<_> = polynomial.iter().map(Real::of).collect();
+    let coefficients: Vec<_> = polynomial.iter().map(BigReal::of).collect();
     let degree = coefficients.len() - 1;
     if degree == 1 {
-        return Some(vec![Complex::real(&-&coefficients[0] / &coefficients[1])]);
+        return Some(vec![BigComplex::real(&-&coefficients[0] / &coefficients[1])]);
     }
     let mut roots = beginnings(&coefficients);
     for _ in 0..ROUNDS {
@@ -153,24 +153,24 @@ fn simple_roots(polynomial: &Polynomial) -> Option<Vec<Complex>> {
 }
 
 /// Whether a step moves a root by less than the last quarter of its bits.
-fn is_small(step: &Complex, root: &Complex) -> bool {
+fn is_small(step: &BigComplex, root: &BigComplex) -> bool {
     const LAST: isize = 3 * BITS as isize / 4;
     step.norm_square() <= root.norm_square().scaled(-2 * LAST)
 }
 
 /// Starts on circles whose radii follow the coefficients (Bini's choice, by the upper hull of their
 /// logarithms).
-fn beginnings(coefficients: &[Real]) -> Vec<Complex> {
-    let logarithm = |it: &Real| {
+fn beginnings(coefficients: &[BigReal]) -> Vec<BigComplex> {
+    let logarithm = |it: &BigReal| {
         let (mut size, mut shift) = (it.abs(), 0.0);
         if size.is_zero() {
             return f64::NEG_INFINITY;
         }
         // Into the range of f64.
-        while size > Real::exact(1e300) {
+        while size > BigReal::exact(1e300) {
             (size, shift) = (size.scaled(-900), shift + 900.0);
         }
-        while size < Real::exact(1e-300) {
+        while size < BigReal::exact(1e-300) {
             (size, shift) = (size.scaled(900), shift - 900.0);
         }
         libm::log2(size.to_f64()) + shift
@@ -182,7 +182,7 @@ fn beginnings(coefficients: &[Real]) -> Vec<Complex> {
     while from < degree {
         if heights[from] == f64::NEG_INFINITY {
             // A root that is zero: it is found at once from a tiny start.
-            roots.push(Complex::new(Real::exact(1e-300), Real::exact(1e-300)));
+            roots.push(BigComplex::new(BigReal::exact(1e-300), BigReal::exact(1e-300)));
             from += 1;
             continue;
         }
@@ -195,21 +195,21 @@ fn beginnings(coefficients: &[Real]) -> Vec<Complex> {
             let (sin, cos) = libm::sincos(angle);
             let whole = libm::floor(radius);
             let rest = libm::exp2(radius - whole);
-            let scaled = |it: f64| Real::exact(it * rest).scaled(whole as isize);
-            roots.push(Complex::new(scaled(cos), scaled(sin)));
+            let scaled = |it: f64| BigReal::exact(it * rest).scaled(whole as isize);
+            roots.push(BigComplex::new(scaled(cos), scaled(sin)));
         }
         from = to;
     }
     roots
 }
 
-fn step(coefficients: &[Real], roots: &[Complex], n: usize) -> Complex {
+fn step(coefficients: &[BigReal], roots: &[BigComplex], n: usize) -> BigComplex {
     let at = &roots[n];
-    let mut value = Complex::real(Real::zero());
+    let mut value = BigComplex::real(BigReal::zero());
     let mut slope = value.clone();
     for coefficient in coefficients.iter().rev() {
         slope = &(&slope * at) + &value;
-        value = &(&value * at) + &Complex::real(coefficient.clone());
+        value = &(&value * at) + &BigComplex::real(coefficient.clone());
     }
     if value.norm_square().is_zero() {
         return value;
@@ -226,17 +226,17 @@ fn step(coefficients: &[Real], roots: &[Complex], n: usize) -> Complex {
 }
 
 /// Real roots, and of each pair the one above the real axis.
-fn above_the_axis(roots: Vec<Complex>) -> Vec<Complex> {
+fn above_the_axis(roots: Vec<BigComplex>) -> Vec<BigComplex> {
     const NOTHING: isize = BITS as isize / 2;
     let mut kept = Vec::new();
     for root in roots {
         let nothing = root.norm().scaled(-NOTHING);
         if root.im.abs() <= nothing {
-            kept.push(Complex::real(root.re));
-        } else if root.im > Real::zero() && root.re.abs() <= nothing {
+            kept.push(BigComplex::real(root.re));
+        } else if root.im > BigReal::zero() && root.re.abs() <= nothing {
             // An oscillation that neither grows nor decays is known to do so for ever.
-            kept.push(Complex::new(Real::zero(), root.im));
-        } else if root.im > Real::zero() {
+            kept.push(BigComplex::new(BigReal::zero(), root.im));
+        } else if root.im > BigReal::zero() {
             kept.push(root);
         }
     }

@@ -10,13 +10,13 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// hundred bits for twelve eigenvalues that are not merged.
 pub const BITS: usize = 640;
 
-type Wide = FBig<HalfEven, 2>;
+type BigFloat = FBig<HalfEven, 2>;
 
 /// A real number of [`BITS`] bits.
 #[derive(Clone, Debug)]
-pub struct Real(Wide);
+pub struct BigReal(BigFloat);
 
-impl Real {
+impl BigReal {
     pub fn zero() -> Self {
         Self::exact(0.0)
     }
@@ -28,7 +28,7 @@ impl Real {
     /// A finite f64, exactly.
     pub fn exact(value: f64) -> Self {
         // Not a number, and infinity, do not come from a system that has been read.
-        Self(Wide::try_from(value).unwrap_or(Wide::ZERO).with_precision(BITS).value())
+        Self(BigFloat::try_from(value).unwrap_or(BigFloat::ZERO).with_precision(BITS).value())
     }
 
     pub fn of(number: &RBig) -> Self {
@@ -49,11 +49,11 @@ impl Real {
     }
 
     pub fn is_zero(&self) -> bool {
-        self.0 == Wide::ZERO
+        self.0 == BigFloat::ZERO
     }
 
     pub fn abs(&self) -> Self {
-        if self.0 < Wide::ZERO { -self } else { self.clone() }
+        if self.0 < BigFloat::ZERO { -self } else { self.clone() }
     }
 
     pub fn sqrt(&self) -> Self {
@@ -73,31 +73,31 @@ impl Real {
     }
 }
 
-impl PartialEq for Real {
+impl PartialEq for BigReal {
     fn eq(&self, other: &Self) -> bool {
         self.0 == other.0
     }
 }
 
-impl PartialOrd for Real {
+impl PartialOrd for BigReal {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         self.0.partial_cmp(&other.0)
     }
 }
 
-impl Neg for &Real {
-    type Output = Real;
-    fn neg(self) -> Real {
-        Real(-self.0.clone())
+impl Neg for &BigReal {
+    type Output = BigReal;
+    fn neg(self) -> BigReal {
+        BigReal(-self.0.clone())
     }
 }
 
 macro_rules! operation {
     ($trait:ident, $name:ident, $symbol:tt) => {
-        impl $trait for &Real {
-            type Output = Real;
-            fn $name(self, other: &Real) -> Real {
-                Real((&self.0 $symbol &other.0).with_precision(BITS).value())
+        impl $trait for &BigReal {
+            type Output = BigReal;
+            fn $name(self, other: &BigReal) -> BigReal {
+                BigReal((&self.0 $symbol &other.0).with_precision(BITS).value())
             }
         }
     };
@@ -110,25 +110,25 @@ operation!(Div, div, /);
 
 /// A complex number.
 #[derive(Clone, Debug)]
-pub struct Complex {
-    pub re: Real,
-    pub im: Real,
+pub struct BigComplex {
+    pub re: BigReal,
+    pub im: BigReal,
 }
 
-impl Complex {
-    pub fn new(re: Real, im: Real) -> Self {
+impl BigComplex {
+    pub fn new(re: BigReal, im: BigReal) -> Self {
         Self { re, im }
     }
 
-    pub fn real(re: Real) -> Self {
-        Self { re, im: Real::zero() }
+    pub fn real(re: BigReal) -> Self {
+        Self { re, im: BigReal::zero() }
     }
 
-    pub fn norm_square(&self) -> Real {
+    pub fn norm_square(&self) -> BigReal {
         &(&self.re * &self.re) + &(&self.im * &self.im)
     }
 
-    pub fn norm(&self) -> Real {
+    pub fn norm(&self) -> BigReal {
         self.norm_square().sqrt()
     }
 
@@ -138,25 +138,25 @@ impl Complex {
     }
 }
 
-impl Add for &Complex {
-    type Output = Complex;
-    fn add(self, other: &Complex) -> Complex {
-        Complex::new(&self.re + &other.re, &self.im + &other.im)
+impl Add for &BigComplex {
+    type Output = BigComplex;
+    fn add(self, other: &BigComplex) -> BigComplex {
+        BigComplex::new(&self.re + &other.re, &self.im + &other.im)
     }
 }
 
-impl Sub for &Complex {
-    type Output = Complex;
-    fn sub(self, other: &Complex) -> Complex {
-        Complex::new(&self.re - &other.re, &self.im - &other.im)
+impl Sub for &BigComplex {
+    type Output = BigComplex;
+    fn sub(self, other: &BigComplex) -> BigComplex {
+        BigComplex::new(&self.re - &other.re, &self.im - &other.im)
     }
 }
 
-impl Mul for &Complex {
-    type Output = Complex;
-    fn mul(self, other: &Complex) -> Complex {
+impl Mul for &BigComplex {
+    type Output = BigComplex;
+    fn mul(self, other: &BigComplex) -> BigComplex {
         let re = &(&self.re * &other.re) - &(&self.im * &other.im);
         let im = &(&self.re * &other.im) + &(&self.im * &other.re);
-        Complex::new(re, im)
+        BigComplex::new(re, im)
     }
 }

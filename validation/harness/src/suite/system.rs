@@ -143,7 +143,8 @@ impl CaseRun for PreparedSystem {
         // it has stages: a longer run takes more than a right-hand side for each of these times.
         let stiff =
             if engine.is_explicit() { self.task.span * self.task.system.decay() } else { 0.0 };
-        // A method of order p has at least p stages where it is explicit, and half as many elsewhere.
+        // A method of order p has p stages or more if it is explicit, and else at least half as
+        // many.
         let order = engine.declaration().order.unwrap_or(1);
         let stages = if engine.is_explicit() { order } else { order.div_ceil(2) };
         let short = engine

@@ -16,20 +16,20 @@ pub(super) fn rows(system: &System) -> String {
     text(&lines)
 }
 
-type Cells = Vec<String>;
+type Fields = Vec<String>;
 
-fn line(words: [&str; 4], row: &[f64]) -> Cells {
+fn line(words: [&str; 4], row: &[f64]) -> Fields {
     let words = words.into_iter().map(str::to_owned);
     words.chain(row.iter().map(|value| shortest(*value))).collect()
 }
 
-fn rates(system: &System, mode: &Mode, lines: &mut Vec<Cells>) {
+fn rates(system: &System, mode: &Mode, lines: &mut Vec<Fields>) {
     for (i, state) in system.states.iter().enumerate() {
         lines.push(line([&mode.name, "", "rate", state], &mode.rate(i)));
     }
 }
 
-fn events(system: &System, mode: &Mode, lines: &mut Vec<Cells>) {
+fn events(system: &System, mode: &Mode, lines: &mut Vec<Fields>) {
     for until in &mode.until {
         lines.push(line([&mode.name, &until.name, "guard", "rising"], &until.guard));
         for (state, row) in system.states.iter().zip(until.reset.iter().flatten()) {
@@ -62,6 +62,6 @@ pub(super) fn start(task: &SystemTask) -> String {
     ])
 }
 
-fn text(lines: &[Cells]) -> String {
+fn text(lines: &[Fields]) -> String {
     lines.iter().map(|line| line.join(",") + "\n").collect()
 }

@@ -7,7 +7,7 @@ use crate::system::{Row, System};
 /// An event: which of its mode's, the mode after it, and its time.
 pub(super) type TrueEvent = (usize, usize, f64);
 
-type Matrix = Vec<Vec<f64>>;
+type SquareRows = Vec<Vec<f64>>;
 
 /// A system walked in steps.
 pub(super) struct Walked<'a> {
@@ -100,10 +100,10 @@ impl<'a> Walked<'a> {
         sum
     }
 
-    fn matrix(&self, mode: usize) -> Matrix {
+    fn matrix(&self, mode: usize) -> SquareRows {
         let here = &self.system.modes[mode];
         let size = here.c.len();
-        let mut rows: Matrix =
+        let mut rows: SquareRows =
             (0..size).map(|i| [here.a[i].as_slice(), &here.b[i], &[here.c[i]]].concat()).collect();
         let zero = vec![0.0; size + 3];
         let [mut cos, mut sin] = [zero.clone(), zero.clone()];
