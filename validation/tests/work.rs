@@ -1,19 +1,56 @@
 //! What the engines count: right-hand sides, Jacobians, linear solves and steps belong together.
 
 use crate::exact;
+use percuss_validation::case::Cases;
 use percuss_validation::engine::{
-    Accuracy, Engine, Limits, Outcome, SampleGrid, Stepping, Task, all,
+    Accuracy, Engine, Limits, Outcome, SampleGrid, Stepping, Task, all, answer_system,
 };
+use percuss_validation::suite::{CaseRun, PreparedSystem, Suite, prepare_systems};
+use percuss_validation::truth::Library;
 
 fn outcome(engine: &dyn Engine) -> Outcome {
     let case = exact::case("chaos-from-rest");
     let task = Task::of(&case, exact::problem(&case), SampleGrid { per_period: 4, count: 161 });
-    let accuracy = match engine.declaration().stepping {
+    engine.run(&task, loose(engine), &Limits::default()).expect("it runs")
+}
+
+fn loose(engine: &dyn Engine) -> Accuracy {
+    match engine.declaration().stepping {
         Stepping::Exact => Accuracy::Exact,
         Stepping::Fixed { .. } => Accuracy::Step(0.25),
         _ => Accuracy::Tolerance(1e-6),
-    };
-    engine.run(&task, accuracy, &Limits::default()).expect("it runs")
+    }
+}
+
+fn systems() -> Vec<PreparedSystem> {
+    let library = Library::embedded().expect("the tables are read");
+    let cases = Cases::embedded().expect("the cases are read");
+    prepare_systems(cases.systems, &library, Suite::Quick).expect("they are made ready")
+}
+
+/// What is known beforehand of a run's work is never more than what the run takes, or a row that
+/// the budget allows would not be run. It is most of the work where nothing happens but that steps
+/// are short.
+#[test]
+fn the_least_work_is_a_lower_bound() {
+    let mut largest: f64 = 0.0;
+    for case in systems() {
+        for engine in all().iter().filter(|engine| case.takes(**engine).is_ok()) {
+            let least = case.least_work(*engine, loose(*engine));
+            if !(1.0..1e5).contains(&least) {
+                continue;
+            }
+            let limits = Limits { calls: 3_000_000, ..Limits::default() };
+            let Ok(found) = answer_system(*engine, &case.task, loose(*engine), &limits) else {
+                continue;
+            };
+            let share = least / found.work.rhs_evaluations as f64;
+            let name = engine.declaration().name;
+            assert!(share <= 1.0, "{name} on {}: {least}, {:?}", case.name(), found.work);
+            largest = largest.max(share);
+        }
+    }
+    assert!(largest > 0.5, "{largest}");
 }
 
 /// Each right-hand side of a multistep method is one of Newton's iterations, which solves one

@@ -150,7 +150,9 @@ impl CaseRun for PreparedSystem {
         let short = engine
             .longest_step_on(&self.task)
             .map_or(0.0, |longest| f64::from(stages) * self.task.span / longest);
-        engine.least_work_on(&self.task, accuracy).max(stiff).max(short)
+        let whole = engine.least_work_on(&self.task, accuracy).max(stiff).max(short);
+        // A run may end before its horizon.
+        whole * (self.truth.end.elapsed.value() / self.task.span).min(1.0)
     }
 
     fn attempt(
