@@ -1,7 +1,7 @@
 //! Pictures of missed and spurious events, made from runs as `validate` makes them.
 
 use crate::exact;
-use percuss_validation::case::{Cases, defaults};
+use percuss_validation::case::defaults;
 use percuss_validation::engine::select;
 use percuss_validation::report::{EventPicture, MismatchKind, View, event_pictures};
 use percuss_validation::suite::{self, CaseRun, Suite};
@@ -87,10 +87,7 @@ fn a_row_without_a_wrong_event_has_no_picture() {
 /// names the modes and shows its guard, as true and as the engine had it.
 #[test]
 fn a_wrong_event_of_another_system_is_shown_alike() {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = Cases::embedded().expect("the cases are read").systems.into_iter();
-    let cases = cases.filter(|case| case.name == "buck-dense-output").collect();
-    let cases = suite::prepare_systems(cases, &library, Suite::Quick).expect("prepared");
+    let cases = exact::prepared_systems(|name| name == "buck-dense-output");
     let engines = select(&[Regex::new("^diffsol-tsit45$").expect("a pattern")]).expect("an engine");
     let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();
     let defaults = defaults().expect("bounds");

@@ -1,7 +1,8 @@
 //! Every engine that is wrong on purpose fails a bound, and every gate has a fault that trips it.
 
+use crate::exact;
 use percuss::{Model, Parameters, Start};
-use percuss_validation::case::{Case, Cases, defaults, embedded};
+use percuss_validation::case::{Case, defaults, embedded};
 use percuss_validation::engine::{
     Accuracy, CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, WrongEngine, WrongWay,
     faulty, wrong, wrong_on_systems,
@@ -9,7 +10,7 @@ use percuss_validation::engine::{
 use percuss_validation::power::{
     AS_EXACT, Finding, Gate, Standard, all_on_systems, examine, examine_on_systems, is_run,
 };
-use percuss_validation::suite::{Prepared, PreparedSystem, Suite, prepare, prepare_systems};
+use percuss_validation::suite::{Prepared, PreparedSystem, Suite, prepare};
 use percuss_validation::truth::Library;
 
 /// A few cases serve: chaos with all probes, the grazes, late cycles and impacts into progression.
@@ -137,9 +138,7 @@ fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
 }
 
 fn all_systems() -> Vec<PreparedSystem> {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = Cases::embedded().expect("the cases are read").systems;
-    prepare_systems(cases, &library, Suite::Quick).expect("the cases are made ready")
+    exact::prepared_systems(|_| true)
 }
 
 /// A fault in a way of running a case is caught by cases that are run in that way, and by no other.

@@ -3,13 +3,12 @@
 //! `cargo test --release --test harness restart_systems:: -- --nocapture` prints the figures of
 //! every case.
 
-use percuss_validation::case::Cases;
+use crate::exact::prepared_systems;
 use percuss_validation::engine::{
     Accuracy, Engine, Failure, Limits, REFERENCE, SystemOutcome, SystemTask, all, answer_system,
 };
 use percuss_validation::score::Restart;
-use percuss_validation::suite::{PreparedSystem, Suite, prepare_systems};
-use percuss_validation::truth::Library;
+use percuss_validation::suite::PreparedSystem;
 
 /// The bound of the oscillator's restarts, in eps (1 + |value|) x growth; 1.4 is the largest median
 /// of any case.
@@ -17,15 +16,8 @@ const MEDIAN: f64 = 2.0;
 /// The promise of ten roundings; 8.0 is the largest of all.
 const LARGEST: f64 = 10.0;
 
-fn prepared(accepts: impl Fn(&str) -> bool) -> Vec<PreparedSystem> {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = Cases::embedded().expect("the cases are read").systems.into_iter();
-    let chosen = cases.filter(|case| accepts(&case.name)).collect();
-    prepare_systems(chosen, &library, Suite::Quick).expect("the cases are made ready")
-}
-
 fn one(name: &str) -> PreparedSystem {
-    prepared(|it| it == name).pop().expect("the case")
+    prepared_systems(|it| it == name).pop().expect("the case")
 }
 
 fn scored(
@@ -45,7 +37,7 @@ const AS_EXACT: (Accuracy, f64) = (Accuracy::Exact, f64::EPSILON);
 #[test]
 fn the_exact_solver_keeps_its_digits_on_every_case() {
     let mut with_events = 0;
-    for case in prepared(|_| true) {
+    for case in prepared_systems(|_| true) {
         let name = &case.case.name;
         let restart = scored(&case, AS_EXACT, exactly);
         let Restart { units, time_units, runs, undecided, .. } = &restart;
@@ -103,7 +95,7 @@ fn failures_and_missed_events_are_counted() {
 /// Restarts pass at least two instants with events, and their truth has all of these.
 #[test]
 fn a_restart_passes_two_instants_with_events() {
-    for case in prepared(|name| name.starts_with("ball-") || name.starts_with("cradle")) {
+    for case in prepared_systems(|name| name.starts_with("ball-") || name.starts_with("cradle")) {
         for run in &case.restart.runs {
             assert!(run.truth.events.len() >= 2, "{}", case.case.name);
             let last = run.truth.events.last().expect("an event").elapsed.value();

@@ -1,16 +1,10 @@
 //! Grazes of other systems than the oscillator.
 
-use percuss_validation::case::Cases;
+use crate::exact;
 use percuss_validation::score::Graze;
-use percuss_validation::suite::{Suite, prepare_systems};
-use percuss_validation::truth::Library;
 
 fn grazes(case: &str) -> Vec<Graze> {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = Cases::embedded().expect("the cases are read").systems.into_iter();
-    let chosen = cases.filter(|it| it.name == case).collect();
-    let mut all = prepare_systems(chosen, &library, Suite::Quick).expect("it is made ready");
-    all.pop().expect("the case").grazes
+    exact::prepared_systems(|name| name == case).pop().expect("the case").grazes
 }
 
 /// The crest of a watched level is an event of another guard, between the two that a graze makes.

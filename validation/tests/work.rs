@@ -1,12 +1,10 @@
 //! What the engines count: right-hand sides, Jacobians, linear solves and steps belong together.
 
 use crate::exact;
-use percuss_validation::case::Cases;
 use percuss_validation::engine::{
     Accuracy, Engine, Limits, Outcome, SampleGrid, Stepping, Task, all, answer_system,
 };
-use percuss_validation::suite::{CaseRun, PreparedSystem, Suite, prepare_systems};
-use percuss_validation::truth::Library;
+use percuss_validation::suite::CaseRun;
 
 fn outcome(engine: &dyn Engine) -> Outcome {
     let case = exact::case("chaos-from-rest");
@@ -22,19 +20,13 @@ fn loose(engine: &dyn Engine) -> Accuracy {
     }
 }
 
-fn systems() -> Vec<PreparedSystem> {
-    let library = Library::embedded().expect("the tables are read");
-    let cases = Cases::embedded().expect("the cases are read");
-    prepare_systems(cases.systems, &library, Suite::Quick).expect("they are made ready")
-}
-
 /// What is known beforehand of a run's work is never more than what the run takes, or a row that
 /// the budget allows would not be run. It is most of the work where nothing happens but that steps
 /// are short.
 #[test]
 fn the_least_work_is_a_lower_bound() {
     let mut largest: f64 = 0.0;
-    for case in systems() {
+    for case in exact::prepared_systems(|_| true) {
         for engine in all().iter().filter(|engine| case.takes(**engine).is_ok()) {
             let least = case.least_work(*engine, loose(*engine));
             if !(1.0..1e5).contains(&least) {

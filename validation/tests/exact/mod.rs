@@ -1,8 +1,10 @@
 //! The exact solver as the harness runs it, and the problems that cases pose.
 
 use percuss::lanes::Instructions;
-use percuss_validation::case::{Case, Given, Problem, embedded};
+use percuss_validation::case::{Case, Cases, Given, Problem, embedded};
 use percuss_validation::engine::{Accuracy, Engine, Failure, Limits, Outcome, Task, all};
+use percuss_validation::suite::{PreparedSystem, Suite, prepare_systems};
+use percuss_validation::truth::Library;
 
 fn engine() -> &'static dyn Engine {
     let mut engines = all().iter().copied();
@@ -23,6 +25,14 @@ pub fn run_in_lanes(by: Instructions, task: &Task) -> Outcome {
 pub fn case(name: &str) -> Case {
     let cases = embedded().expect("the cases are read");
     cases.into_iter().find(|case| case.name == name).expect("the case is there")
+}
+
+/// The embedded cases of systems whose names are accepted, made ready for the quick suite.
+pub fn prepared_systems(accepts: impl Fn(&str) -> bool) -> Vec<PreparedSystem> {
+    let library = Library::embedded().expect("the tables are read");
+    let cases = Cases::embedded().expect("the cases are read").systems.into_iter();
+    let chosen = cases.filter(|case| accepts(&case.name)).collect();
+    prepare_systems(chosen, &library, Suite::Quick).expect("the cases are made ready")
 }
 
 /// A case's model at its start.

@@ -14,11 +14,16 @@ use super::sampler::Sampler;
 
 /// The longest step, in forcing periods; of a method that is walked, also in turns of the elastic
 /// contact.
-pub(super) const LONGEST_STEP: f64 = 0.125;
+const LONGEST_STEP: f64 = 0.125;
+
+/// The longest step on a motion of such a period.
+pub(super) const fn longest_of_period(period: f64) -> f64 {
+    LONGEST_STEP * period
+}
 
 /// The longest step of a method that is walked.
 pub(super) fn longest_step(times: &Times) -> f64 {
-    LONGEST_STEP * times.period.min(times.turn)
+    longest_of_period(times.period.min(times.turn))
 }
 
 /// A walk that has come to the end of a step.

@@ -92,6 +92,16 @@ impl PreparedSystem {
         (self.restart.runs.len() as f64 * share.min(1.0)) as usize
     }
 
+    /// Right-hand sides that a run takes at the least because an engine keeps its steps short.
+    fn least_work_of_short_steps(&self, engine: &dyn Engine) -> f64 {
+        let Some(longest) = engine.longest_step_on(&self.task) else { return 0.0 };
+        // A method of order p has p stages or more if it is explicit, and else at least half as
+        // many.
+        let order = engine.declaration().order.unwrap_or(1);
+        let stages = if engine.is_explicit() { order } else { order.div_ceil(2) };
+        f64::from(stages) * self.task.span / longest
+    }
+
     /// The time that stands for a forcing period.
     #[must_use]
     pub fn period(&self) -> f64 {
@@ -143,13 +153,7 @@ impl CaseRun for PreparedSystem {
         // it has stages: a longer run takes more than a right-hand side for each of these times.
         let stiff =
             if engine.is_explicit() { self.task.span * self.task.system.decay() } else { 0.0 };
-        // A method of order p has p stages or more if it is explicit, and else at least half as
-        // many.
-        let order = engine.declaration().order.unwrap_or(1);
-        let stages = if engine.is_explicit() { order } else { order.div_ceil(2) };
-        let short = engine
-            .longest_step_on(&self.task)
-            .map_or(0.0, |longest| f64::from(stages) * self.task.span / longest);
+        let short = self.least_work_of_short_steps(engine);
         let whole = engine.least_work_on(&self.task, accuracy).max(stiff).max(short);
         // A run may end before its horizon.
         whole * (self.truth.end.elapsed.value() / self.task.span).min(1.0)

@@ -16,7 +16,7 @@ use crate::engine::joining::{Integration, Moment, StretchEnd, join};
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::{CountedCrossing, Sampler};
 use crate::engine::trace::GuardSample;
-use crate::engine::walk::LONGEST_STEP;
+use crate::engine::walk::longest_of_period;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
     Task, pins,
@@ -48,7 +48,7 @@ impl Engine for BuiltIn {
     }
 
     fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
-        Some(LONGEST_STEP * task.system.period())
+        Some(longest_of_period(task.system.period()))
     }
 
     fn is_explicit(&self) -> bool {
@@ -81,7 +81,7 @@ fn run<E: Equations<State: State<f64>>>(
     let tolerance = accuracy.wanted_tolerance()?;
     let meter = Meter::new(limits);
     let Integration { equations, span, times, .. } = *integration;
-    let longest = LONGEST_STEP * times.period;
+    let longest = longest_of_period(times.period);
     join(integration, &meter, |from, sampler| {
         let field = ModeField { equations, mode: from.mode, meter: &meter };
         let guard = |guard| GuardEvent { field, guard };

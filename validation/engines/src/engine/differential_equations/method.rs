@@ -6,7 +6,7 @@ use crate::engine::cubic::CubicEnd;
 use crate::engine::equations::Equations;
 use crate::engine::joining::Times;
 use crate::engine::meter::Failure;
-use crate::engine::walk::{LONGEST_STEP, longest_step};
+use crate::engine::walk::{longest_of_period, longest_step};
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::methods::{
@@ -86,7 +86,7 @@ pub(in super::super) trait LibraryMethod {
     fn longest_step(times: &Times) -> f64 {
         match Self::INSIDE {
             Inside::Again => longest_step(times),
-            Inside::Interpolant | Inside::Cubic => LONGEST_STEP * times.period,
+            Inside::Interpolant | Inside::Cubic => longest_of_period(times.period),
         }
     }
 

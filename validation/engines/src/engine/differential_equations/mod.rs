@@ -39,7 +39,7 @@ use super::field::{Coordinates, Oscillator};
 use super::joining::{Integration, join};
 use super::meter::{Failure, Limits, Meter};
 use super::original::OriginalOscillator;
-use super::walk::LONGEST_STEP;
+use super::walk::longest_of_period;
 use super::{
     Accuracy, Colours, Declaration, Engine, Location, Outcome, Role, SystemOutcome, SystemTask,
     Task, pins,
@@ -107,7 +107,7 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
     }
 
     fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
-        (!M::MULTISTEP).then(|| LONGEST_STEP * task.system.period())
+        (!M::MULTISTEP).then(|| longest_of_period(task.system.period()))
     }
 
     fn is_explicit(&self) -> bool {

@@ -24,7 +24,7 @@ mod mode;
 use super::field::Oscillator;
 use super::joining::{Integration, join};
 use super::meter::{Failure, Limits, Meter};
-use super::walk::LONGEST_STEP;
+use super::walk::longest_of_period;
 use super::{
     Accuracy, Colours, Declaration, Engine, Location, Outcome, SystemOutcome, SystemTask, Task,
     pins,
@@ -70,7 +70,7 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
     }
 
     fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
-        M::ONE_STEP.then(|| LONGEST_STEP * task.system.period())
+        M::ONE_STEP.then(|| longest_of_period(task.system.period()))
     }
 
     fn is_explicit(&self) -> bool {
@@ -110,7 +110,7 @@ fn run<M: DiffsolMethod, E: DiffsolEquations>(
         tolerance,
     };
     let problem = problem(equations.field(&mode, &meter), &given)?;
-    let longest = LONGEST_STEP * times.period;
+    let longest = longest_of_period(times.period);
     let run = DiffsolRun { span, longest, meter: &meter, equations };
     join(integration, &meter, |from, sampler| {
         mode.set(from.mode);

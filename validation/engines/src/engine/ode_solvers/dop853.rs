@@ -17,7 +17,7 @@ use crate::engine::joining::{Integration, Moment, StretchEnd, join};
 use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
-use crate::engine::walk::{LONGEST_STEP, longest_step, walk};
+use crate::engine::walk::{longest_of_period, longest_step, walk};
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
     Task, pins,
@@ -67,7 +67,7 @@ impl Engine for Dop853 {
     }
 
     fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
-        Some(LONGEST_STEP * task.system.period())
+        Some(longest_of_period(task.system.period()))
     }
 
     fn is_explicit(&self) -> bool {

@@ -11,7 +11,7 @@ use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::script::GuardRise;
-use crate::engine::walk::LONGEST_STEP;
+use crate::engine::walk::longest_of_period;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
     Task, pins,
@@ -57,7 +57,7 @@ impl<E: Coordinates> Engine for Dopri5<E> {
     }
 
     fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
-        Some(LONGEST_STEP * task.system.period())
+        Some(longest_of_period(task.system.period()))
     }
 
     fn is_explicit(&self) -> bool {
@@ -174,7 +174,7 @@ where
             stale: self.stale.map(|mode| (from.t, mode)),
         };
         let until = (from.t + times.period).min(*span);
-        let longest = LONGEST_STEP * times.period;
+        let longest = longest_of_period(times.period);
         let mut solver = ::ode_solvers::Dopri5::from_param(
             field,
             from.t,

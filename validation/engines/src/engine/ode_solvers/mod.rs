@@ -3,9 +3,8 @@
 //! - Each runs at most one forcing period of one mode at a time; `solout` stops it at the end of a
 //!   step that leaves the mode, and the harness locates the event ([`GuardSearch`]).
 //! - Steps are at most an eighth of a forcing period, so that no step hides a whole mode.
-//! - States are vectors of the system's own size: of two and four states, which most systems have,
-//!   and which forced systems have here, of a size that the compiler knows, of others the library's
-//!   dynamic vectors.
+//! - States are vectors of the system's own size. The compiler knows it where there are two or four
+//!   states, as in most systems; all others are the library's dynamic vectors.
 //! - Stiffness detection (`n_stiff`) is switched off: it gives up on light damping, where the
 //!   integration is dear but right.
 //! - Times are elapsed since the start: the library's dense output fails for negative ones.
