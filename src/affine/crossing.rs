@@ -138,7 +138,7 @@ impl<T: Number> Segment<'_, T> {
             }
             *term = order * T::inverse_factorial(k);
         }
-        let (mut step, mut change) = (newton(&first), f64::INFINITY);
+        let (mut step, mut change) = (T::exact(reverted(&first)), f64::INFINITY);
         for _ in 0..2 {
             let (mut value, mut slope) = (T::zero(), T::zero());
             for term in all[..last].iter().rev() {
@@ -235,6 +235,19 @@ fn remaining<T: Number>(orders: &[T; 4]) -> T {
     let step = -orders[0] / orders[1];
     let [slope, bend] = [orders[1].to_f64(), orders[2].to_f64()];
     if (step.to_f64() * bend).abs() <= SHORT * slope.abs() { step } else { T::zero() }
+}
+
+/// The step to the root of a cubic that is near zero, by the series of its inverse to the third
+/// order: what a cubic tells of a guard is no more than that.
+#[inline]
+fn reverted<T: Number>(orders: &[T; 4]) -> f64 {
+    let [value, slope, bend, third] = orders.map(Number::to_f64);
+    let inverse = 1.0 / slope;
+    let step = -value * inverse;
+    let share = step * inverse;
+    let (second, third) = (0.5 * bend * share, third / 6.0 * step * share);
+    let square = second * second;
+    step + step * (5.0 * second * (third - square) + (2.0 * square - third) - second)
 }
 
 /// The step to the root of a cubic that is near zero, by Newton's method.

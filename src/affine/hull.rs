@@ -1,7 +1,7 @@
 //! Whether a guard stays negative on a piece, by the Bernstein coefficients of a polynomial that
 //! lies above it: the same theorem as in `crossing/certificate.rs`, in any arithmetic.
 
-use super::vector::unit;
+use super::vector::{larger, unit};
 use crate::crossing::certificate::MIDDLE;
 use crate::number::Number;
 use smallvec::SmallVec;
@@ -76,18 +76,21 @@ pub(super) fn judge<T: Number>(
             *entry = *entry + T::exact(from * (1.0 - share) + to * share);
         }
     }
-    // Unlike the largest of them, a sum has what is no number.
-    let sum = hull.iter().map(|it| it.to_f64().abs()).sum::<f64>();
+    let [mut sum, mut size, mut top] = [0.0, 0.0, f64::NEG_INFINITY];
+    for entry in hull.map(Number::to_f64) {
+        // Unlike the largest of them, a sum has what is no number.
+        sum += entry.abs();
+        size = larger(size, entry.abs());
+        top = larger(top, entry);
+    }
     if !(sum + slack).is_finite() {
         return Judged::Open(0.0);
     }
-    let size = hull.iter().map(|it| it.to_f64().abs()).fold(0.0, f64::max);
     let slack = slack + 16.0 * unit::<T>() * size;
-    // A single bit of the sign of each tells most pieces apart.
-    if is_clear(&hull, slack, zeros) {
+    if if zeros == 0 { top < -slack } else { is_clear(&hull, slack, zeros) } {
         return Judged::Clear;
     }
-    if size <= 64.0 * slack && hull.iter().all(|it| it.to_f64() <= slack) {
+    if size <= 64.0 * slack && top <= slack {
         return Judged::Touch;
     }
     Judged::Open(clear_share(&hull, slack, zeros))
@@ -129,7 +132,7 @@ fn is_clear<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> bool {
     if zeros == 0 {
         return hull.iter().all(|it| it.to_f64() < -slack);
     }
-    let size = hull.iter().map(|it| it.to_f64().abs()).fold(0.0, f64::max);
+    let size = hull.iter().fold(0.0, |size, it| larger(size, it.to_f64().abs()));
     let relative = 64.0 * unit::<T>() * size;
     let room = |n: usize| if n < 4 { relative } else { slack.max(relative) };
     hull.iter().enumerate().skip(zeros.min(8)).all(|(n, it)| it.to_f64() < -room(n))
@@ -171,36 +174,58 @@ fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f6
     if first == zeros || !hull[first..].iter().all(|it| *it >= 0.0) || hull[8] <= 0.0 {
         return None;
     }
-    Some(negative_until(&hull))
+    // The root of the control polygon is near that of the polynomial.
+    let (below, above) = (hull[first - 1], hull[first]);
+    let place = 0.125 * ((first - 1) as f64 + below / (below - above));
+    Some(negative_until(&hull, place))
 }
 
 /// A place just before the root of a hull that has one: where it is negative beyond rounding.
+/// Newton's method, kept between a place before the root and one behind it, aims at half the
+/// distance that is near enough; it begins at `place`, inside.
 #[inline]
-fn negative_until(hull: &[f64; 9]) -> f64 {
+fn negative_until(hull: &[f64; 9], mut place: f64) -> f64 {
     const STEPS: usize = 16;
     /// A difference of order k is off by 2^k roundings of k sums, and has the weight C(8, k): 3^8
     /// in all, and eight times that.
     const ROUNDING: f64 = 8.0 * 6561.0 * f64::EPSILON;
     let powers = powers(hull);
-    let size = hull.iter().fold(0.0, |most: f64, it| most.max(it.abs()));
+    let rounding = ROUNDING * hull.iter().fold(0.0, |size, it| larger(size, it.abs()));
     let (mut low, mut high) = (0.0, 1.0);
-    let (mut below, mut above) = (hull[0], hull[8]);
-    for step in 0..STEPS {
-        // The secant, kept off the ends; every third step halves.
-        let secant = low + (high - low) * (below / (below - above)).clamp(0.02, 0.98);
-        let halves = step % 3 == 2 || !(below < 0.0 && above > 0.0);
-        let middle = if halves { 0.5 * (low + high) } else { secant };
-        let value = powers.iter().rev().fold(0.0, |sum, it| sum * middle + it) + ROUNDING * size;
+    for _ in 0..STEPS {
+        let (value, slope) = value_and_slope(&powers, place);
+        let value = value + rounding;
+        let ahead = -value / slope;
         if value < 0.0 {
-            (low, below) = (middle, value);
+            low = place;
+            if ahead >= 0.0 && ahead < NEAR * place {
+                break;
+            }
         } else {
-            (high, above) = (middle, value);
+            high = place;
         }
         if high - low < NEAR * high {
             break;
         }
+        let aim = (1.0 - 0.5 * NEAR) * (place + ahead);
+        place = if low < aim && aim < high { aim } else { 0.5 * (low + high) };
     }
     low
+}
+
+/// A polynomial in powers, and its slope, each as four sums that do not wait for one another.
+#[inline]
+fn value_and_slope(powers: &[f64; 9], x: f64) -> (f64, f64) {
+    let [a, b, c, d, e, f, g, h, i] = *powers;
+    let square = x * x;
+    let fourth = square * square;
+    let value = (a + b * x)
+        + (c + d * x) * square
+        + ((e + f * x) + (g + h * x) * square + i * fourth) * fourth;
+    let slope = (b + 2.0 * c * x)
+        + (3.0 * d + 4.0 * e * x) * square
+        + ((5.0 * f + 6.0 * g * x) + (7.0 * h + 8.0 * i * x) * square) * fourth;
+    (value, slope)
 }
 
 /// The coefficients of a polynomial in powers, from its Bernstein coefficients: C(8, k) times their

@@ -159,29 +159,34 @@ fn entries<T: Number>(matrix: &[Vec<BigReal>]) -> Vec<MatrixEntry<T>> {
 /// `y = exp(N time) y` by Horner's scheme.
 #[inline]
 fn polynomial<T: Number>(entries: &[MatrixEntry<T>], index: usize, y: &mut [T], time: T) {
-    let mut start = [T::zero(); LARGEST_DIMENSION];
+    match y.len() {
+        0..=2 => polynomial_in::<T, 2>(entries, index, y, time),
+        3 => polynomial_in::<T, 3>(entries, index, y, time),
+        4 => polynomial_in::<T, 4>(entries, index, y, time),
+        _ => polynomial_in::<T, LARGEST_DIMENSION>(entries, index, y, time),
+    }
+}
+
+/// The product of [`polynomial`] in vectors of a known size, whose copies are moves of registers.
+#[inline(always)]
+fn polynomial_in<T: Number, const SIZE: usize>(
+    entries: &[MatrixEntry<T>],
+    index: usize,
+    y: &mut [T],
+    time: T,
+) {
+    let mut start = [T::zero(); SIZE];
     start[..y.len()].copy_from_slice(y);
     let mut last = start;
     for k in (1..index).rev() {
         let factor = if k == 1 { time } else { time / T::exact(k as f64) };
-        y.copy_from_slice(&start[..y.len()]);
+        let mut next = start;
         for MatrixEntry { row, column, value } in entries {
-            y[*row] = y[*row] + factor * (*value * last[*column]);
+            next[*row] = next[*row] + factor * (*value * last[*column]);
         }
-        if k > 1 {
-            last[..y.len()].copy_from_slice(y);
-        }
+        last = next;
     }
-}
-
-/// `y = start + factor * matrix * y`.
-#[inline]
-fn step<T: Number>(matrix: &[Vector<T>], factor: T, start: &Vector<T>, y: &mut [T]) {
-    let last: Vector<T> = copied(y);
-    let size = y.len();
-    for (n, entry) in y.iter_mut().enumerate() {
-        *entry = start[n] + factor * dot(&matrix[n], &last, size);
-    }
+    y.copy_from_slice(&last[..y.len()]);
 }
 
 #[inline]
@@ -260,22 +265,54 @@ impl<T: Number> Powers<T> {
         libm::floor(time / self.step).max(0.0)
     }
 
-    #[inline]
+    /// The co-ordinates a time later; called, because its vectors would take other motions' places
+    /// in registers.
+    #[inline(never)]
     fn advance(&self, y: &mut [T], time: T) {
-        let size = y.len();
+        match y.len() {
+            2 => self.advance_in::<2>(y, 2, time),
+            3 => self.advance_in::<3>(y, 3, time),
+            4 => self.advance_in::<4>(y, 4, time),
+            size => self.advance_in::<LARGEST_DIMENSION>(y, size, time),
+        }
+    }
+
+    /// The first `size` co-ordinates a time later, in vectors of a length that the compiler knows.
+    #[inline(always)]
+    fn advance_in<const SIZE: usize>(&self, y: &mut [T], size: usize, time: T) {
         let steps = self.steps(time.to_f64());
         let rest = time - T::exact(steps * self.step);
+        let mut now = [T::zero(); SIZE];
+        now[..size].copy_from_slice(&y[..size]);
         for matrix in self.factors(steps) {
-            let last: Vector<T> = copied(y);
-            for (entry, row) in y.iter_mut().zip(matrix) {
-                *entry = dot(row, &last, size);
+            let last = now;
+            for n in 0..size {
+                now[n] = dot(&matrix[n], &last, size);
             }
         }
-        let start: Vector<T> = copied(y);
-        // With |B rest| below 1/2 the terms beyond fall under the last digit.
-        for k in (1..2 * T::TERMS).rev() {
-            step(&self.matrix, rest / T::exact(k as f64), &start, y);
+        let start = now;
+        for k in (1..=self.terms(rest.to_f64())).rev() {
+            let (last, factor) = (now, rest / T::exact(k as f64));
+            for n in 0..size {
+                now[n] = start[n] + factor * dot(&self.matrix[n], &last, size);
+            }
         }
+        y[..size].copy_from_slice(&now[..size]);
+    }
+
+    /// How many terms of the series exp(B rest) the last digit needs.
+    #[inline]
+    fn terms(&self, rest: f64) -> usize {
+        /// Co-ordinates that are much smaller than the largest have digits of their own.
+        const BELOW: f64 = 1.0 / 4096.0;
+        // |B rest| is at most 1/2 where the rest is a step.
+        let size = 0.5 * (rest / self.step).abs();
+        let (mut terms, mut next) = (0, size);
+        while next > BELOW * unit::<T>() && terms < 2 * T::TERMS {
+            terms += 1;
+            next *= size / (terms + 1) as f64;
+        }
+        terms
     }
 
     /// The sizes of what the products are summed from, once for each of them.
