@@ -5,7 +5,7 @@
 //! form settles it inside of the proved bracket.
 
 use super::flow::ModalRow;
-use super::point::{GuardedPoint, PerGuard, Segment};
+use super::point::{GuardedPoint, Passed, PerGuard, Segment};
 use super::track::{SearchWork, Track, live, outward};
 use super::vector::unit;
 use crate::number::Number;
@@ -40,16 +40,18 @@ pub(super) struct FirstCrossing<T> {
 }
 
 impl<T: Number> Segment<'_, T> {
-    /// The first crossing shortly after a point, if it is proved to be one.
+    /// The first crossing shortly after a point, if it is proved to be one. Guards that have
+    /// passed are not looked at before their time.
     #[inline]
     pub fn rising(
         &self,
         tracks: &[Track],
         at: &GuardedPoint<T>,
+        passed: &Passed<T>,
         work: &mut SearchWork,
     ) -> Option<FirstCrossing<T>> {
         let mut all: PerGuard<Rising<T>> = PerGuard::new();
-        for (n, track) in live(tracks) {
+        for (n, track) in live(tracks).filter(|(n, _)| !passed.has(*n, at.time)) {
             all.extend(self.rises(n, track, at));
         }
         let first = all.iter().reduce(|a, b| if b.after < a.after { b } else { a })?;
@@ -59,7 +61,9 @@ impl<T: Number> Segment<'_, T> {
                 guards |= 1 << it.guard;
             }
         }
-        for (n, track) in live(tracks).filter(|(n, _)| all.iter().all(|it| it.guard != *n)) {
+        let end = at.time + T::exact(first.within);
+        let is_open = |n: usize| all.iter().all(|it| it.guard != n) && !passed.has(n, end);
+        for (n, track) in live(tracks).filter(|(n, _)| is_open(*n)) {
             let excess = self.excess(n, track, at, first.within);
             let below = excess <= 4.0 * at.slack[n];
             if !below {

@@ -259,20 +259,49 @@ impl<T: Number> Default for GuardedPoint<T> {
 pub(super) struct Ends<T> {
     pub left: GuardedPoint<T>,
     pub right: GuardedPoint<T>,
+    /// What is proved of guards from the left end on.
+    pub passed: Passed<T>,
+    /// Whether the right end is that of the piece in which the left end is a crossing.
+    pub is_ahead: bool,
 }
 
-impl<T> Ends<T> {
+/// Guards, as bits, that stay negative up to a time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Passed<T> {
+    pub guards: u64,
+    pub until: T,
+}
+
+impl<T: Number> Passed<T> {
+    /// Whether a guard stays negative up to a time.
+    #[inline]
+    pub fn has(&self, guard: usize, until: T) -> bool {
+        self.guards >> guard & 1 == 1 && until <= self.until
+    }
+}
+
+impl<T: Number> Ends<T> {
     /// Goes on to the right end.
     #[inline]
     pub fn step(&mut self) {
         std::mem::swap(&mut self.left, &mut self.right);
+        self.forget();
+    }
+
+    /// Forgets what is proved beyond the left end.
+    #[inline]
+    pub fn forget(&mut self) {
+        self.passed = Passed { guards: 0, until: T::zero() };
+        self.is_ahead = false;
     }
 }
 
 impl<T: Number> Default for Ends<T> {
     #[inline]
     fn default() -> Self {
-        Self { left: GuardedPoint::default(), right: GuardedPoint::default() }
+        let passed = Passed { guards: 0, until: T::zero() };
+        let (left, right) = (GuardedPoint::default(), GuardedPoint::default());
+        Self { left, right, passed, is_ahead: false }
     }
 }
 

@@ -70,7 +70,7 @@ impl<T: Number> Segment<'_, T> {
         ends: &Ends<T>,
         lengths: &Lengths<T>,
     ) -> Judged {
-        let Ends { left, right } = ends;
+        let Ends { left, right, .. } = ends;
         let row = &self.rows[n];
         let length = lengths.length.to_f64();
         let cut = if length <= reach.whole { 0 } else { reach.cut };

@@ -230,6 +230,7 @@ impl<T: Number> Run<'_, T> {
         });
         let segment = Segment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
         segment.begin(&mut self.ends.left);
+        self.ends.forget();
         self.segment = Some(segment);
     }
 
@@ -355,6 +356,7 @@ impl<T: Number> Run<'_, T> {
                 segment.fill_all(&mut self.ends.left);
             }
             self.tracks.iter_mut().for_each(|track| track.zeros = 0);
+            self.ends.passed.guards &= !guards;
             for n in bits(guards) {
                 self.tracks[n].zeros = 1;
                 self.ends.left.orders[n][0] = T::zero();

@@ -10,7 +10,7 @@
 //! modules that this one uses.
 
 use super::hull::{Judged, Lengths};
-use super::point::{Ends, GuardedPoint, PerGuard, Segment};
+use super::point::{Ends, GuardedPoint, Passed, PerGuard, Segment};
 use super::reach::Reach;
 use super::track::{SearchWork, Track, live};
 use super::vector::unit;
@@ -58,8 +58,13 @@ impl<T: Number> Segment<'_, T> {
                 return Found::Lost;
             }
             self.measure(&mut ends.left);
-            let reaches = self.reaches(tracks, &ends.left);
-            if !self.look_ahead(tracks, ends, &reaches, limit, most, work) {
+            let right = ends.right.time;
+            let is_ahead = ends.is_ahead && ends.left.time < right && right <= limit;
+            ends.is_ahead = false;
+            let passed = ends.passed;
+            let is_open = |n: usize| !(is_ahead && passed.has(n, right));
+            let reaches = self.reaches(tracks, &ends.left, is_open);
+            if !is_ahead && !self.look_ahead(tracks, ends, &reaches, limit, most, work) {
                 return Found::Lost;
             }
             let length = (ends.right.time - ends.left.time).to_f64();
@@ -91,7 +96,8 @@ impl<T: Number> Segment<'_, T> {
                 continue;
             }
             self.measure(&mut ends.left);
-            if let Some(crossing) = self.rising(tracks, &ends.left, work) {
+            if let Some(crossing) = self.rising(tracks, &ends.left, &ends.passed, work) {
+                ends.is_ahead = true;
                 return match self.settled(tracks, &mut ends.left, &crossing, limit, work) {
                     true => Found::Crossing(crossing.guards),
                     false => Found::Nothing,
@@ -102,13 +108,18 @@ impl<T: Number> Segment<'_, T> {
         Found::Lost
     }
 
-    /// How far each guard is looked at from a point.
+    /// How far each guard that is open is looked at from a point.
     #[inline]
-    fn reaches(&self, tracks: &[Track], left: &GuardedPoint<T>) -> PerGuard<Reach> {
+    fn reaches(
+        &self,
+        tracks: &[Track],
+        left: &GuardedPoint<T>,
+        is_open: impl Fn(usize) -> bool,
+    ) -> PerGuard<Reach> {
         let longest = self.flow.longest;
         let mut reaches = PerGuard::new();
         for (n, track) in tracks.iter().enumerate() {
-            reaches.push(match track.live {
+            reaches.push(match track.live && is_open(n) {
                 true => self.reach(n, track, left, longest),
                 false => Reach::default(),
             });
@@ -172,18 +183,24 @@ impl<T: Number> Segment<'_, T> {
         &self,
         tracks: &[Track],
         reaches: &[Reach],
-        ends: &Ends<T>,
+        ends: &mut Ends<T>,
         work: &mut SearchWork,
     ) -> Option<f64> {
-        let lengths = Lengths::of(ends.right.time - ends.left.time);
-        let mut share: Option<f64> = None;
+        let until = ends.right.time;
+        let lengths = Lengths::of(until - ends.left.time);
+        let (mut share, mut guards): (Option<f64>, u64) = (None, 0);
         for (n, track) in live(tracks) {
+            if ends.passed.has(n, until) {
+                guards |= 1 << n;
+                continue;
+            }
             match self.judge(n, track, &reaches[n], ends, &lengths) {
-                Judged::Clear => {}
+                Judged::Clear => guards |= 1 << n,
                 Judged::Touch => work.undecidable += 1,
                 Judged::Open(open) => share = Some(share.map_or(open, |it| it.min(open))),
             }
         }
+        ends.passed = Passed { guards, until };
         share
     }
 }

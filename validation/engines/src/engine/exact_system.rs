@@ -3,6 +3,7 @@
 use super::{Ended, Failure, Limits, Numbers, SystemEvent, SystemOutcome, SystemTask, Work};
 use crate::system::{SystemProblem, Values};
 use percuss::affine::{self, Ending, Time, What};
+use std::hint::black_box;
 
 /// Runs a task in closed form; the system has to be there with its exact coefficients.
 pub(super) fn run(task: &SystemTask, limits: &Limits) -> Result<SystemOutcome, Failure> {
@@ -12,7 +13,8 @@ pub(super) fn run(task: &SystemTask, limits: &Limits) -> Result<SystemOutcome, F
     let horizon = problem.clock(task.span);
     let run = problem.solver.run(&problem.start, horizon);
     let mut run = run.ok_or_else(|| Failure::new("the start is not decided"))?;
-    let mut record = Record { problem, task, outcome: SystemOutcome::default() };
+    let begin = Time::of(&problem.start.time);
+    let mut record = Record { problem, task, begin, outcome: SystemOutcome::default() };
     let mut segment = run.start();
     for event in run.by_ref() {
         record.sample(&segment, record.elapsed(&event.time));
@@ -33,23 +35,33 @@ pub(super) fn run(task: &SystemTask, limits: &Limits) -> Result<SystemOutcome, F
     Ok(outcome)
 }
 
+/// The state at the end of a run whose events are looked at and not kept: what the exact solver
+/// does by itself. It is here because generic code is as fast as the crate that compiles it.
+#[must_use]
+pub fn end_of_exact_run(problem: &SystemProblem, span: f64) -> Option<Values> {
+    let run = problem.solver.run(&problem.start, problem.clock(span))?;
+    let last = run.map(black_box).last()?;
+    Some(Values::of(&last.state))
+}
+
 struct Record<'a> {
     problem: &'a SystemProblem,
     task: &'a SystemTask,
+    /// The time of the start, which is a quotient of long integers in the problem.
+    begin: Time<f64>,
     outcome: SystemOutcome,
 }
 
 impl Record<'_> {
     fn elapsed(&self, time: &Time<f64>) -> f64 {
-        let begin: Time<f64> = Time::of(&self.problem.start.time);
-        let ahead = (time.high - begin.high) + (time.low - begin.low);
+        let ahead = (time.high - self.begin.high) + (time.low - self.begin.low);
         if self.problem.backward { -ahead } else { ahead }
     }
 
     /// The states asked for in the segment that `segment` begins, those at its end left out.
     fn sample(&mut self, segment: &affine::Event<f64>, end: f64) {
         let asked = &self.task.samples[self.outcome.samples.len()..];
-        let (problem, begin) = (self.problem, Time::of(&self.problem.start.time));
+        let (problem, begin) = (self.problem, self.begin);
         for elapsed in asked.iter().take_while(|elapsed| **elapsed < end) {
             let time = begin.after(if problem.backward { -elapsed } else { *elapsed });
             let state = problem.solver.state_at(segment, &time);

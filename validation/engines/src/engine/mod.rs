@@ -41,6 +41,7 @@ pub use answer::{answer, answer_system};
 pub use declaration::{Colours, Declaration, Location, REFERENCE, Role};
 pub(crate) use equations::NO_GUARD;
 pub use equations::{Entered, Equations, Numbers};
+pub use exact_system::end_of_exact_run;
 pub use field::{GUARDS, Oscillator, event_between};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};

@@ -6,7 +6,7 @@ use super::timed::{ContestEntry, TimedRun};
 use super::timed_case::Score;
 use super::timed_system_case::TimedSystemCase;
 use crate::engine::{
-    Accuracy, Engine, Failure, Limits, Numbers, SystemOutcome, Work, contain, exact,
+    Accuracy, Engine, Failure, Limits, SystemOutcome, Work, contain, end_of_exact_run, exact,
 };
 use crate::system::Values;
 use std::hint::black_box;
@@ -70,12 +70,8 @@ struct ExactEvents<'a> {
 
 impl Benchmark for ExactEvents<'_> {
     fn call(&mut self) -> Result<(), Failure> {
-        let problem = &*self.case.problem;
-        let horizon = black_box(problem.clock(self.case.task.span));
-        let run = problem.solver.run(&problem.start, horizon);
-        let last = run.and_then(|run| run.map(black_box).last());
-        let last = last.ok_or_else(|| Failure::new("a run without end"))?;
-        self.last = Values::of(&last.state);
+        let last = end_of_exact_run(&self.case.problem, black_box(self.case.task.span));
+        self.last = last.ok_or_else(|| Failure::new("a run without end"))?;
         Ok(())
     }
 
