@@ -26,11 +26,10 @@ pub(super) enum BlockMotion<T> {
         rate: Option<SplitNumber<T>>,
         frequency: SplitNumber<T>,
     },
-    /// The matrix to the power of `index` is zero.
+    /// The powers N^k/k! of the matrix less its rate, up to the last that is not zero.
     Nilpotent {
         rate: Option<SplitNumber<T>>,
-        entries: Vec<MatrixEntry<T>>,
-        index: usize,
+        powers: Vec<Vec<MatrixEntry<T>>>,
     },
     Cluster(Box<Powers<T>>),
 }
@@ -92,7 +91,7 @@ impl<T: Number> BlockMotion<T> {
                 if index <= 1 && rate.is_zero() {
                     return Self::Still;
                 }
-                Self::Nilpotent { rate: nonzero(rate), entries: entries(&matrix), index }
+                Self::Nilpotent { rate: nonzero(rate), powers: exponential_terms(&matrix, index) }
             }
             Kind::Cluster => Self::Cluster(Box::new(Powers::of(&block.matrix))),
         }
@@ -111,8 +110,8 @@ impl<T: Number> BlockMotion<T> {
                 y[1] = cos * second - sin * first;
                 decay(*rate, time, y);
             }
-            Self::Nilpotent { rate, entries, index } => {
-                polynomial(entries, *index, y, time);
+            Self::Nilpotent { rate, powers } => {
+                polynomial(powers, y, time);
                 decay(*rate, time, y);
             }
             Self::Cluster(powers) => powers.advance(y, time),
@@ -131,12 +130,13 @@ impl<T: Number> BlockMotion<T> {
                 let norm = libm::hypot(y[0], y[1]) * rate.as_ref().map_or(1.0, decay);
                 y.fill(norm);
             }
-            Self::Nilpotent { rate, entries, index } => {
+            Self::Nilpotent { rate, powers } => {
                 let size = |it: &MatrixEntry<T>| {
                     let &MatrixEntry { row, column, value } = it;
                     MatrixEntry { row, column, value: value.to_f64().abs() }
                 };
-                polynomial(&entries.iter().map(size).collect::<Vec<_>>(), *index, y, time);
+                let sizes = powers.iter().map(|entries| entries.iter().map(size).collect());
+                polynomial(&sizes.collect::<Vec<_>>(), y, time);
                 // Five roundings a power are more than those of a sum.
                 let factor = 2.0 * rate.as_ref().map_or(1.0, decay);
                 y.iter_mut().for_each(|entry| *entry *= factor);
@@ -146,47 +146,58 @@ impl<T: Number> BlockMotion<T> {
     }
 }
 
-fn entries<T: Number>(matrix: &[Vec<BigReal>]) -> Vec<MatrixEntry<T>> {
-    let mut entries = Vec::new();
-    for (row, values) in matrix.iter().enumerate() {
-        for (column, value) in values.iter().enumerate().filter(|(_, it)| !it.is_zero()) {
-            entries.push(MatrixEntry { row, column, value: rounded(value) });
+/// The terms N^k/k! of exp(N) for k from 1 on, where the power of `index` is zero.
+fn exponential_terms<T: Number>(matrix: &[Vec<BigReal>], index: usize) -> Vec<Vec<MatrixEntry<T>>> {
+    let mut terms = Vec::new();
+    let mut factorial = BigReal::one();
+    for (k, power) in modal::multiples(&matrix.to_vec(), index.saturating_sub(1)).iter().enumerate()
+    {
+        factorial = &factorial * &BigReal::exact((k + 1) as f64);
+        let mut entries = Vec::new();
+        for (row, values) in power.iter().enumerate() {
+            for (column, value) in values.iter().enumerate().filter(|(_, it)| !it.is_zero()) {
+                entries.push(MatrixEntry { row, column, value: rounded(&(value / &factorial)) });
+            }
         }
+        terms.push(entries);
     }
-    entries
+    terms
 }
 
-/// `y = exp(N time) y` by Horner's scheme.
+/// `y = exp(N time) y`, term by term.
 #[inline]
-fn polynomial<T: Number>(entries: &[MatrixEntry<T>], index: usize, y: &mut [T], time: T) {
+fn polynomial<T: Number>(powers: &[Vec<MatrixEntry<T>>], y: &mut [T], time: T) {
     match y.len() {
-        0..=2 => polynomial_in::<T, 2>(entries, index, y, time),
-        3 => polynomial_in::<T, 3>(entries, index, y, time),
-        4 => polynomial_in::<T, 4>(entries, index, y, time),
-        _ => polynomial_in::<T, LARGEST_DIMENSION>(entries, index, y, time),
+        0..=2 => polynomial_in::<T, 2>(powers, y, time),
+        3 => polynomial_in::<T, 3>(powers, y, time),
+        4 => polynomial_in::<T, 4>(powers, y, time),
+        _ => polynomial_in::<T, LARGEST_DIMENSION>(powers, y, time),
     }
 }
 
 /// The product of [`polynomial`] in vectors of a known size, whose copies are moves of registers.
 #[inline(always)]
 fn polynomial_in<T: Number, const SIZE: usize>(
-    entries: &[MatrixEntry<T>],
-    index: usize,
+    powers: &[Vec<MatrixEntry<T>>],
     y: &mut [T],
     time: T,
 ) {
-    let mut start = [T::zero(); SIZE];
-    start[..y.len()].copy_from_slice(y);
-    let mut last = start;
-    for k in (1..index).rev() {
-        let factor = if k == 1 { time } else { time / T::exact(k as f64) };
-        let mut next = start;
+    // Only the last sum rounds by what is there already.
+    let mut changes = [T::zero(); SIZE];
+    let mut factor = T::one();
+    for entries in powers {
+        factor = factor * time;
         for MatrixEntry { row, column, value } in entries {
-            next[*row] = next[*row] + factor * (*value * last[*column]);
+            let term = *value * y[*column];
+            // Nothing comes of zeros, even where a power of the time overflows.
+            if term != T::zero() {
+                changes[*row] = changes[*row] + factor * term;
+            }
         }
-        last = next;
     }
-    y.copy_from_slice(&last[..y.len()]);
+    for (entry, change) in y.iter_mut().zip(changes) {
+        *entry = *entry + change;
+    }
 }
 
 #[inline]

@@ -8,6 +8,7 @@ use super::vector::{Vector, unit};
 use crate::number::Number;
 use smallvec::SmallVec;
 use std::cell::OnceCell;
+use std::ops::Range;
 
 /// Guards of this number take no memory of their own.
 const INLINE: usize = 4;
@@ -24,8 +25,8 @@ pub(super) struct Segment<'a, T> {
     pub inherited: Vec<f64>,
     /// What underflow may do to each guard; empty as well.
     lost: Vec<f64>,
-    /// The time up to which the guards' Taylor series at entry are good; negative where no guard
-    /// begins with a structural zero, which they keep.
+    /// The time up to which the Taylor series at entry are good of guards that begin with a
+    /// structural zero, which they keep; negative where none does.
     pub early: f64,
     /// The series, once they are asked for.
     series: OnceCell<Vec<[T; ORDERS]>>,
@@ -81,13 +82,14 @@ impl<'a, T: Number> Segment<'a, T> {
         segment
     }
 
-    /// Up to which time the series of all guards are good without their last order.
+    /// Up to which time the series of these guards are good without their last order.
     #[inline]
     fn series_limit(&self) -> f64 {
         let norms = self.flow.norms(&self.entry);
         let longest = self.flow.longest;
         let mut limit = longest;
-        for (row, zeros) in self.rows.iter().zip(&self.zeros).filter(|(_, it)| **it < ORDERS) {
+        let is_by_series = |zeros: usize| 0 < zeros && zeros < ORDERS;
+        for (row, zeros) in self.rows.iter().zip(&self.zeros).filter(|it| is_by_series(*it.1)) {
             let last = self.flow.bound_by(row, ORDERS - 1, &norms, longest.min(1e300));
             let lead = row.order(*zeros, &self.entry).0.to_f64().abs();
             limit = limit.min(series_limit::<T>(lead, *zeros, last));
@@ -101,13 +103,9 @@ impl<'a, T: Number> Segment<'a, T> {
         self.series.get_or_init(|| {
             let guard = |(row, zeros): (&ModalRow<T>, &usize)| -> [T; ORDERS] {
                 let mut coefficients = [T::zero(); ORDERS];
-                let mut factorial = T::one();
-                for (k, coefficient) in coefficients[..row.last].iter_mut().enumerate() {
-                    if k > 1 {
-                        factorial = factorial * T::exact(k as f64);
-                    }
-                    if k >= *zeros {
-                        *coefficient = row.order(k, &self.entry).0 / factorial;
+                if *zeros > 0 {
+                    for k in *zeros..row.last {
+                        coefficients[k] = row.order(k, &self.entry).0 * T::inverse_factorial(k);
                     }
                 }
                 coefficients
@@ -120,20 +118,21 @@ impl<'a, T: Number> Segment<'a, T> {
     #[inline]
     pub fn begin(&self, point: &mut GuardedPoint<T>) {
         (point.time, point.later, point.y) = (T::zero(), T::zero(), self.entry);
-        self.fill(point);
-        for (n, zeros) in self.zeros.iter().enumerate().filter(|(_, zeros)| **zeros > 0) {
-            point.orders[n].iter_mut().take(*zeros).for_each(|order| *order = T::zero());
-            point.slack[n] = 0.0;
+        let (orders, slack) = point.guards(self.rows.len());
+        for (n, zeros) in self.zeros.iter().enumerate() {
+            (orders[n], slack[n]) = self.guard(n, &self.entry, None);
+            if *zeros > 0 {
+                orders[n].iter_mut().take(*zeros).for_each(|order| *order = T::zero());
+                slack[n] = 0.0;
+            }
         }
-        self.inherit(point, false);
+        self.inherit(0..self.rows.len(), point, |_| true);
     }
 
     /// Evaluates the closed form, as far as guards need it.
     #[inline]
     pub fn evaluate(&self, point: &mut GuardedPoint<T>, time: T, work: &mut SearchWork) {
-        work.evaluations += 1;
-        (point.time, point.later, point.y) = (time, T::zero(), self.entry);
-        self.flow.advance(&mut point.y, time, self.blocks);
+        self.go_to(point, time, work);
         self.fill_all(point);
     }
 
@@ -146,35 +145,37 @@ impl<'a, T: Number> Segment<'a, T> {
         time: T,
         work: &mut SearchWork,
     ) {
+        self.go_to(point, time, work);
+        let by_series = self.is_by_series(n, time.to_f64());
+        let series_at = by_series.then_some(time);
+        (point.orders[n], point.slack[n]) = self.guard(n, &point.y, series_at);
+        self.inherit(n..n + 1, point, |_| by_series);
+    }
+
+    #[inline]
+    fn go_to(&self, point: &mut GuardedPoint<T>, time: T, work: &mut SearchWork) {
         work.evaluations += 1;
         (point.time, point.later, point.y) = (time, T::zero(), self.entry);
         self.flow.advance(&mut point.y, time, self.blocks);
-        let early = self.is_early(point);
-        if early {
-            self.fill_early(point);
-        } else {
-            let (orders, size) = self.rows[n].sized_orders(&point.y);
-            (point.orders[n], point.slack[n]) = (orders, self.margin() * size);
-        }
-        self.inherit(point, !early);
     }
 
     /// All guards of a point whose co-ordinates are there.
     #[inline]
     pub fn fill_all(&self, point: &mut GuardedPoint<T>) {
-        let early = self.is_early(point);
-        if early {
-            self.fill_early(point);
-        } else {
-            self.fill(point);
+        let (time, y) = (point.time, point.y);
+        let is_by_series = |n: usize| self.is_by_series(n, time.to_f64());
+        let (orders, slack) = point.guards(self.rows.len());
+        for (n, (orders, slack)) in orders.iter_mut().zip(slack).enumerate() {
+            (*orders, *slack) = self.guard(n, &y, is_by_series(n).then_some(time));
         }
-        self.inherit(point, !early);
+        self.inherit(0..self.rows.len(), point, is_by_series);
     }
 
-    /// Whether the guards at a point are summed from their series.
+    /// Whether a guard is summed from its series at a time: where it begins with a structural zero,
+    /// until the closed form has as many digits.
     #[inline]
-    pub fn is_early(&self, point: &GuardedPoint<T>) -> bool {
-        point.time.to_f64() <= self.early
+    pub fn is_by_series(&self, n: usize, time: f64) -> bool {
+        self.zeros[n] > 0 && time <= self.early
     }
 
     /// What rounding does to a row, in sizes of what it is summed from.
@@ -195,53 +196,54 @@ impl<'a, T: Number> Segment<'a, T> {
         self.flow.advance(&mut point.y, point.time, !self.blocks);
     }
 
-    /// The guards from the co-ordinates.
+    /// Value and three derivatives of a guard, and what rounding may have done to the value: from
+    /// the co-ordinates, or from its Taylor series at a time.
     #[inline]
-    fn fill(&self, point: &mut GuardedPoint<T>) {
-        let margin = self.margin();
-        let count = self.rows.len();
-        point.orders.resize(count, [T::zero(); 4]);
-        point.slack.resize(count, 0.0);
-        let (orders, slack) = (&mut point.orders[..count], &mut point.slack[..count]);
-        let zeros = &self.zeros[..count];
-        for (n, row) in self.rows.iter().enumerate() {
-            if zeros[n] == ORDERS {
-                (orders[n], slack[n]) = ([T::zero(); 4], 0.0);
-                continue;
-            }
-            let (own, size) = row.sized_orders(&point.y);
-            (orders[n], slack[n]) = (own, margin * size);
+    fn guard(&self, n: usize, y: &Vector<T>, series_at: Option<T>) -> ([T; 4], f64) {
+        if self.zeros[n] == ORDERS {
+            return ([T::zero(); 4], 0.0);
         }
-    }
-
-    /// The guards from their Taylor series.
-    #[inline]
-    fn fill_early(&self, point: &mut GuardedPoint<T>) {
-        point.orders.clear();
-        point.slack.clear();
-        let margin = self.margin();
-        for ((coefficients, row), zeros) in self.series().iter().zip(self.rows).zip(&self.zeros) {
-            let (orders, size) = series(coefficients, point.time);
-            let value = if *zeros == 0 { margin * row.size(&self.entry) } else { 0.0 };
-            point.orders.push(orders);
-            point.slack.push(4.0 * unit::<T>() * size + value);
+        if let Some(time) = series_at {
+            let (orders, size) = series(&self.series()[n], time);
+            return (orders, 4.0 * unit::<T>() * size);
         }
+        let (orders, size) = self.rows[n].sized_orders(y);
+        (orders, self.margin() * size)
     }
 
     /// In a run that follows its errors, adds what they do to guards, and what rounding does where
     /// terms of the closed form have cancelled.
     #[inline]
-    fn inherit(&self, point: &mut GuardedPoint<T>, is_closed_form: bool) {
-        if !self.inherited.is_empty() {
-            if is_closed_form {
-                let sizes = self.flow.sizes_later(&self.entry, point.time);
-                let slack = point.slack.iter_mut().zip(self.rows);
-                slack.for_each(|(slack, row)| *slack = slack.max(self.margin() * row.size(&sizes)));
-            }
-            let growth = libm::exp(self.flow.fastest_growth() * point.time.to_f64().abs());
-            let errors = point.slack.iter_mut().zip(self.inherited.iter().zip(&self.lost));
-            errors.for_each(|(slack, (inherited, lost))| *slack += (inherited + lost) * growth);
+    fn inherit(
+        &self,
+        guards: Range<usize>,
+        point: &mut GuardedPoint<T>,
+        is_by_series: impl Fn(usize) -> bool,
+    ) {
+        if self.inherited.is_empty() {
+            return;
         }
+        let sizes = self.flow.sizes_later(&self.entry, point.time);
+        let growth = libm::exp(self.flow.fastest_growth() * point.time.to_f64().abs());
+        for n in guards {
+            let slack = &mut point.slack[n];
+            if !is_by_series(n) {
+                *slack = slack.max(self.margin() * self.rows[n].size(&sizes));
+            }
+            *slack += (self.inherited[n] + self.lost[n]) * growth;
+        }
+    }
+}
+
+impl<T: Number> GuardedPoint<T> {
+    /// The orders and slacks of so many guards.
+    #[inline]
+    fn guards(&mut self, count: usize) -> (&mut [[T; 4]], &mut [f64]) {
+        if self.orders.len() != count {
+            self.orders.resize(count, [T::zero(); 4]);
+            self.slack.resize(count, 0.0);
+        }
+        (&mut self.orders, &mut self.slack)
     }
 }
 

@@ -75,7 +75,7 @@ impl<T: Number> Segment<'_, T> {
         let length = lengths.length.to_f64();
         let cut = if length <= reach.whole { 0 } else { reach.cut };
         let mut slack = left.slack[n].max(right.slack[n]);
-        if !self.is_early(right) {
+        if !self.is_by_series(n, right.time.to_f64()) {
             slack += self.margin() * derivatives(row, left, cut, length);
         }
         if cut == 0 {
