@@ -26,20 +26,13 @@ pub(super) enum BlockMotion<T> {
         rate: Option<SplitNumber<T>>,
         frequency: SplitNumber<T>,
     },
-    /// The powers N^k/k! of the matrix less its rate, up to the last that is not zero.
+    /// The matrix to the power of `index` is zero.
     Nilpotent {
         rate: Option<SplitNumber<T>>,
-        powers: Vec<Vec<MatrixEntry<T>>>,
+        matrix: Vec<Vector<T>>,
+        index: usize,
     },
     Cluster(Box<Powers<T>>),
-}
-
-/// An entry of a matrix that is not zero.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct MatrixEntry<T> {
-    row: usize,
-    column: usize,
-    value: T,
 }
 
 /// exp(B t) by tables: t = step (d_0 + 16 d_1 + ...) + rest.
@@ -91,7 +84,8 @@ impl<T: Number> BlockMotion<T> {
                 if index <= 1 && rate.is_zero() {
                     return Self::Still;
                 }
-                Self::Nilpotent { rate: nonzero(rate), powers: exponential_terms(&matrix, index) }
+                let matrix = matrix.iter().map(|row| vector(row)).collect();
+                Self::Nilpotent { rate: nonzero(rate), matrix, index }
             }
             Kind::Cluster => Self::Cluster(Box::new(Powers::of(&block.matrix))),
         }
@@ -110,8 +104,8 @@ impl<T: Number> BlockMotion<T> {
                 y[1] = cos * second - sin * first;
                 decay(*rate, time, y);
             }
-            Self::Nilpotent { rate, powers } => {
-                polynomial(powers, y, time);
+            Self::Nilpotent { rate, matrix, index } => {
+                taylor(matrix, *index - 1, y, time);
                 decay(*rate, time, y);
             }
             Self::Cluster(powers) => powers.advance(y, time),
@@ -130,13 +124,9 @@ impl<T: Number> BlockMotion<T> {
                 let norm = libm::hypot(y[0], y[1]) * rate.as_ref().map_or(1.0, decay);
                 y.fill(norm);
             }
-            Self::Nilpotent { rate, powers } => {
-                let size = |it: &MatrixEntry<T>| {
-                    let &MatrixEntry { row, column, value } = it;
-                    MatrixEntry { row, column, value: value.to_f64().abs() }
-                };
-                let sizes = powers.iter().map(|entries| entries.iter().map(size).collect());
-                polynomial(&sizes.collect::<Vec<_>>(), y, time);
+            Self::Nilpotent { rate, matrix, index } => {
+                let sizes = matrix.iter().map(|row| row.map(|it| it.to_f64().abs()));
+                taylor(&sizes.collect::<Vec<_>>(), *index - 1, y, time);
                 // Five roundings a power are more than those of a sum.
                 let factor = 2.0 * rate.as_ref().map_or(1.0, decay);
                 y.iter_mut().for_each(|entry| *entry *= factor);
@@ -146,58 +136,37 @@ impl<T: Number> BlockMotion<T> {
     }
 }
 
-/// The terms N^k/k! of exp(N) for k from 1 on, where the power of `index` is zero.
-fn exponential_terms<T: Number>(matrix: &[Vec<BigReal>], index: usize) -> Vec<Vec<MatrixEntry<T>>> {
-    let mut terms = Vec::new();
-    let mut factorial = BigReal::one();
-    for (k, power) in modal::multiples(&matrix.to_vec(), index.saturating_sub(1)).iter().enumerate()
-    {
-        factorial = &factorial * &BigReal::exact((k + 1) as f64);
-        let mut entries = Vec::new();
-        for (row, values) in power.iter().enumerate() {
-            for (column, value) in values.iter().enumerate().filter(|(_, it)| !it.is_zero()) {
-                entries.push(MatrixEntry { row, column, value: rounded(&(value / &factorial)) });
-            }
-        }
-        terms.push(entries);
-    }
-    terms
-}
-
-/// `y = exp(N time) y`, term by term.
+/// `y = exp(B time) y` by so many terms of the Taylor series, in Horner's scheme.
 #[inline]
-fn polynomial<T: Number>(powers: &[Vec<MatrixEntry<T>>], y: &mut [T], time: T) {
+fn taylor<T: Number>(matrix: &[Vector<T>], terms: usize, y: &mut [T], time: T) {
     match y.len() {
-        0..=2 => polynomial_in::<T, 2>(powers, y, time),
-        3 => polynomial_in::<T, 3>(powers, y, time),
-        4 => polynomial_in::<T, 4>(powers, y, time),
-        _ => polynomial_in::<T, LARGEST_DIMENSION>(powers, y, time),
+        2 => taylor_in::<T, 2>(matrix, terms, y, 2, time),
+        3 => taylor_in::<T, 3>(matrix, terms, y, 3, time),
+        4 => taylor_in::<T, 4>(matrix, terms, y, 4, time),
+        size => taylor_in::<T, LARGEST_DIMENSION>(matrix, terms, y, size, time),
     }
 }
 
-/// The product of [`polynomial`] in vectors of a known size, whose copies are moves of registers.
+/// The sum of [`taylor`] in vectors of a length that the compiler knows, whose entries it keeps in
+/// registers.
 #[inline(always)]
-fn polynomial_in<T: Number, const SIZE: usize>(
-    powers: &[Vec<MatrixEntry<T>>],
+fn taylor_in<T: Number, const LENGTH: usize>(
+    matrix: &[Vector<T>],
+    terms: usize,
     y: &mut [T],
+    size: usize,
     time: T,
 ) {
-    // Only the last sum rounds by what is there already.
-    let mut changes = [T::zero(); SIZE];
-    let mut factor = T::one();
-    for entries in powers {
-        factor = factor * time;
-        for MatrixEntry { row, column, value } in entries {
-            let term = *value * y[*column];
-            // Nothing comes of zeros, even where a power of the time overflows.
-            if term != T::zero() {
-                changes[*row] = changes[*row] + factor * term;
-            }
+    let mut start = [T::zero(); LENGTH];
+    start[..size].copy_from_slice(y);
+    let mut now = start;
+    for k in (1..=terms).rev() {
+        let (last, factor) = (now, if k == 1 { time } else { time / T::exact(k as f64) });
+        for n in 0..size {
+            now[n] = start[n] + factor * dot(&matrix[n], &last, size);
         }
     }
-    for (entry, change) in y.iter_mut().zip(changes) {
-        *entry = *entry + change;
-    }
+    y.copy_from_slice(&now[..size]);
 }
 
 #[inline]
@@ -280,35 +249,16 @@ impl<T: Number> Powers<T> {
     /// in registers.
     #[inline(never)]
     fn advance(&self, y: &mut [T], time: T) {
-        match y.len() {
-            2 => self.advance_in::<2>(y, 2, time),
-            3 => self.advance_in::<3>(y, 3, time),
-            4 => self.advance_in::<4>(y, 4, time),
-            size => self.advance_in::<LARGEST_DIMENSION>(y, size, time),
-        }
-    }
-
-    /// The first `size` co-ordinates a time later, in vectors of a length that the compiler knows.
-    #[inline(always)]
-    fn advance_in<const SIZE: usize>(&self, y: &mut [T], size: usize, time: T) {
+        let size = y.len();
         let steps = self.steps(time.to_f64());
         let rest = time - T::exact(steps * self.step);
-        let mut now = [T::zero(); SIZE];
-        now[..size].copy_from_slice(&y[..size]);
         for matrix in self.factors(steps) {
-            let last = now;
-            for n in 0..size {
-                now[n] = dot(&matrix[n], &last, size);
+            let last: Vector<T> = copied(y);
+            for (entry, row) in y.iter_mut().zip(matrix) {
+                *entry = dot(row, &last, size);
             }
         }
-        let start = now;
-        for k in (1..=self.terms(rest.to_f64())).rev() {
-            let (last, factor) = (now, rest / T::exact(k as f64));
-            for n in 0..size {
-                now[n] = start[n] + factor * dot(&self.matrix[n], &last, size);
-            }
-        }
-        y[..size].copy_from_slice(&now[..size]);
+        taylor(&self.matrix, self.terms(rest.to_f64()), y, rest);
     }
 
     /// How many terms of the series exp(B rest) the last digit needs.
