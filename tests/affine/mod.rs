@@ -10,6 +10,7 @@ mod oscillator;
 mod random;
 mod spectra;
 mod tables;
+mod together;
 
 use crate::double_double::DoubleDouble;
 use percuss::affine::{Ending, Event, Solver, System, What};
