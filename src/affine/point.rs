@@ -104,8 +104,9 @@ impl<'a, T: Number> Segment<'a, T> {
             let guard = |(row, zeros): (&ModalRow<T>, &usize)| -> [T; ORDERS] {
                 let mut coefficients = [T::zero(); ORDERS];
                 if *zeros > 0 {
-                    for k in *zeros..row.last {
-                        coefficients[k] = row.order(k, &self.entry).0 * T::inverse_factorial(k);
+                    let orders = coefficients[..row.last].iter_mut().enumerate().skip(*zeros);
+                    for (k, coefficient) in orders {
+                        *coefficient = row.order(k, &self.entry).0 * T::inverse_factorial(k);
                     }
                 }
                 coefficients

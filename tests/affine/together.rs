@@ -52,7 +52,8 @@ fn compared(seed: u64) -> usize {
         let order = |x: &(usize, usize, f64), y: &(usize, usize, f64)| {
             (x.0, x.1).cmp(&(y.0, y.1)).then(x.2.total_cmp(&y.2))
         };
-        (a.sort_by(order), b.sort_by(order));
+        a.sort_by(order);
+        b.sort_by(order);
         let same = a.len() == b.len()
             && a.iter().zip(&b).all(|(x, y)| (x.0, x.1) == (y.0, y.1) && (x.2 - y.2).abs() < ROOM);
         assert!(same, "seed {seed}, watch {watch}: {a:?} together, {b:?} alone");
