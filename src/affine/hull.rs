@@ -87,7 +87,8 @@ pub(super) fn judge<T: Number>(
         return Judged::Open(0.0);
     }
     let slack = slack + 16.0 * unit::<T>() * size;
-    if if zeros == 0 { top < -slack } else { is_clear(&hull, slack, zeros) } {
+    let stays_below = top < -slack || zeros > 0 && is_clear(&hull, slack, zeros);
+    if stays_below {
         return Judged::Clear;
     }
     if size <= 64.0 * slack && top <= slack {
