@@ -1,9 +1,10 @@
 //! Whether a guard stays negative on a piece, by the Bernstein coefficients of a polynomial that
 //! lies above it: the same theorem as in `crossing/certificate.rs`, in any arithmetic.
 
-use super::vector::{larger, unit};
+use super::vector::unit;
 use crate::crossing::certificate::MIDDLE;
 use crate::number::Number;
+use crate::numeric::real::Real;
 use smallvec::SmallVec;
 
 /// Bernstein coefficients of degree eight.
@@ -76,12 +77,12 @@ pub(super) fn judge<T: Number>(
             *entry = *entry + T::exact(from * (1.0 - share) + to * share);
         }
     }
-    let [mut sum, mut size, mut top] = [0.0, 0.0, f64::NEG_INFINITY];
+    let [mut sum, mut size, mut top] = [0.0_f64, 0.0, f64::NEG_INFINITY];
     for entry in hull.map(Number::to_f64) {
         // Unlike the largest of them, a sum has what is no number.
         sum += entry.abs();
-        size = larger(size, entry.abs());
-        top = larger(top, entry);
+        size = size.larger(entry.abs());
+        top = top.larger(entry);
     }
     if !(sum + slack).is_finite() {
         return Judged::Open(0.0);
@@ -133,7 +134,7 @@ fn is_clear<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> bool {
     if zeros == 0 {
         return hull.iter().all(|it| it.to_f64() < -slack);
     }
-    let size = hull.iter().fold(0.0, |size, it| larger(size, it.to_f64().abs()));
+    let size = hull.iter().fold(0.0_f64, |size, it| size.larger(it.to_f64().abs()));
     let relative = 64.0 * unit::<T>() * size;
     let room = |n: usize| if n < 4 { relative } else { slack.max(relative) };
     hull.iter().enumerate().skip(zeros.min(8)).all(|(n, it)| it.to_f64() < -room(n))
@@ -191,7 +192,7 @@ fn negative_until(hull: &[f64; 9], mut place: f64) -> f64 {
     /// in all, and eight times that.
     const ROUNDING: f64 = 8.0 * 6561.0 * f64::EPSILON;
     let powers = powers(hull);
-    let rounding = ROUNDING * hull.iter().fold(0.0, |size, it| larger(size, it.abs()));
+    let rounding = ROUNDING * hull.iter().fold(0.0_f64, |size, it| size.larger(it.abs()));
     let (mut low, mut high) = (0.0, 1.0);
     for _ in 0..STEPS {
         let (value, slope) = value_and_slope(&powers, place);

@@ -26,11 +26,11 @@ pub(super) enum BlockMotion<T> {
         rate: Option<SplitNumber<T>>,
         frequency: SplitNumber<T>,
     },
-    /// The matrix to the power of `index` is zero.
+    /// The matrix is that of the block less its rate, and has so many powers that are not zero.
     Nilpotent {
         rate: Option<SplitNumber<T>>,
         matrix: Vec<Vector<T>>,
-        index: usize,
+        powers: usize,
     },
     Cluster(Box<Powers<T>>),
 }
@@ -85,7 +85,7 @@ impl<T: Number> BlockMotion<T> {
                     return Self::Still;
                 }
                 let matrix = matrix.iter().map(|row| vector(row)).collect();
-                Self::Nilpotent { rate: nonzero(rate), matrix, index }
+                Self::Nilpotent { rate: nonzero(rate), matrix, powers: index - 1 }
             }
             Kind::Cluster => Self::Cluster(Box::new(Powers::of(&block.matrix))),
         }
@@ -104,8 +104,8 @@ impl<T: Number> BlockMotion<T> {
                 y[1] = cos * second - sin * first;
                 decay(*rate, time, y);
             }
-            Self::Nilpotent { rate, matrix, index } => {
-                taylor(matrix, *index - 1, y, time);
+            Self::Nilpotent { rate, matrix, powers } => {
+                taylor(matrix, *powers, y, time);
                 decay(*rate, time, y);
             }
             Self::Cluster(powers) => powers.advance(y, time),
@@ -124,9 +124,9 @@ impl<T: Number> BlockMotion<T> {
                 let norm = libm::hypot(y[0], y[1]) * rate.as_ref().map_or(1.0, decay);
                 y.fill(norm);
             }
-            Self::Nilpotent { rate, matrix, index } => {
+            Self::Nilpotent { rate, matrix, powers } => {
                 let sizes = matrix.iter().map(|row| row.map(|it| it.to_f64().abs()));
-                taylor(&sizes.collect::<Vec<_>>(), *index - 1, y, time);
+                taylor(&sizes.collect::<Vec<_>>(), *powers, y, time);
                 // Five roundings a power are more than those of a sum.
                 let factor = 2.0 * rate.as_ref().map_or(1.0, decay);
                 y.iter_mut().for_each(|entry| *entry *= factor);

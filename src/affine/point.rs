@@ -119,7 +119,8 @@ impl<'a, T: Number> Segment<'a, T> {
     #[inline]
     pub fn begin(&self, point: &mut GuardedPoint<T>) {
         (point.time, point.later, point.y) = (T::zero(), T::zero(), self.entry);
-        let (orders, slack) = point.guards(self.rows.len());
+        point.make_room(self.rows.len());
+        let GuardedPoint { orders, slack, .. } = point;
         for (n, zeros) in self.zeros.iter().enumerate() {
             (orders[n], slack[n]) = self.guard(n, &self.entry, None);
             if *zeros > 0 {
@@ -163,11 +164,12 @@ impl<'a, T: Number> Segment<'a, T> {
     /// All guards of a point whose co-ordinates are there.
     #[inline]
     pub fn fill_all(&self, point: &mut GuardedPoint<T>) {
-        let (time, y) = (point.time, point.y);
+        let time = point.time;
         let is_by_series = |n: usize| self.is_by_series(n, time.to_f64());
-        let (orders, slack) = point.guards(self.rows.len());
+        point.make_room(self.rows.len());
+        let GuardedPoint { y, orders, slack, .. } = point;
         for (n, (orders, slack)) in orders.iter_mut().zip(slack).enumerate() {
-            (*orders, *slack) = self.guard(n, &y, is_by_series(n).then_some(time));
+            (*orders, *slack) = self.guard(n, y, is_by_series(n).then_some(time));
         }
         self.inherit(0..self.rows.len(), point, is_by_series);
     }
@@ -237,14 +239,13 @@ impl<'a, T: Number> Segment<'a, T> {
 }
 
 impl<T: Number> GuardedPoint<T> {
-    /// The orders and slacks of so many guards.
+    /// Has orders and slacks of so many guards.
     #[inline]
-    fn guards(&mut self, count: usize) -> (&mut [[T; 4]], &mut [f64]) {
+    fn make_room(&mut self, count: usize) {
         if self.orders.len() != count {
             self.orders.resize(count, [T::zero(); 4]);
             self.slack.resize(count, 0.0);
         }
-        (&mut self.orders, &mut self.slack)
     }
 }
 
@@ -264,11 +265,10 @@ pub(super) struct Ends<T> {
     pub right: GuardedPoint<T>,
     /// What is proved of guards from the left end on.
     pub passed: Passed<T>,
-    /// Whether the right end is that of the piece in which the left end is a crossing.
-    pub is_ahead: bool,
 }
 
-/// Guards, as bits, that stay negative up to a time.
+/// Guards, as bits, that stay negative up to a time: the right end of the last piece that was
+/// looked at.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Passed<T> {
     pub guards: u64,
@@ -276,6 +276,11 @@ pub(super) struct Passed<T> {
 }
 
 impl<T: Number> Passed<T> {
+    #[inline]
+    pub fn none() -> Self {
+        Self { guards: 0, until: T::zero() }
+    }
+
     /// Whether a guard stays negative up to a time.
     #[inline]
     pub fn has(&self, guard: usize, until: T) -> bool {
@@ -288,23 +293,15 @@ impl<T: Number> Ends<T> {
     #[inline]
     pub fn step(&mut self) {
         std::mem::swap(&mut self.left, &mut self.right);
-        self.forget();
-    }
-
-    /// Forgets what is proved beyond the left end.
-    #[inline]
-    pub fn forget(&mut self) {
-        self.passed = Passed { guards: 0, until: T::zero() };
-        self.is_ahead = false;
+        self.passed = Passed::none();
     }
 }
 
 impl<T: Number> Default for Ends<T> {
     #[inline]
     fn default() -> Self {
-        let passed = Passed { guards: 0, until: T::zero() };
         let (left, right) = (GuardedPoint::default(), GuardedPoint::default());
-        Self { left, right, passed, is_ahead: false }
+        Self { left, right, passed: Passed::none() }
     }
 }
 

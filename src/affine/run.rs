@@ -5,7 +5,7 @@ use super::enclosure::{EnclosedCrossing, Enclosure};
 use super::event::{Ending, Errors, Event, What};
 use super::flow::Flow;
 use super::known::Loan;
-use super::point::{Ends, Segment};
+use super::point::{Ends, Passed, Segment};
 use super::search::Found;
 use super::solver::{self, Solver};
 use super::structure::Firing;
@@ -230,7 +230,7 @@ impl<T: Number> Run<'_, T> {
         });
         let segment = Segment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
         segment.begin(&mut self.ends.left);
-        self.ends.forget();
+        self.ends.passed = Passed::none();
         self.segment = Some(segment);
     }
 
@@ -356,7 +356,6 @@ impl<T: Number> Run<'_, T> {
                 segment.fill_all(&mut self.ends.left);
             }
             self.tracks.iter_mut().for_each(|track| track.zeros = 0);
-            self.ends.passed.guards &= !guards;
             for n in bits(guards) {
                 self.tracks[n].zeros = 1;
                 self.ends.left.orders[n][0] = T::zero();

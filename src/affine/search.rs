@@ -47,6 +47,8 @@ impl<T: Number> Segment<'_, T> {
         work: &mut SearchWork,
     ) -> Found {
         let mut most = f64::INFINITY;
+        // After a crossing that is only watched the piece that it is in goes on.
+        let mut is_ahead = ends.left.time < ends.passed.until;
         let guards = live(tracks).count().max(1) as u64;
         let mut work_left = (MOST_PIECES / guards).max(FEWEST_PIECES);
         while work_left > 0 {
@@ -58,15 +60,12 @@ impl<T: Number> Segment<'_, T> {
                 return Found::Lost;
             }
             self.measure(&mut ends.left);
-            let right = ends.right.time;
-            let is_ahead = ends.is_ahead && ends.left.time < right && right <= limit;
-            ends.is_ahead = false;
-            let passed = ends.passed;
-            let is_open = |n: usize| !(is_ahead && passed.has(n, right));
-            let reaches = self.reaches(tracks, &ends.left, is_open);
+            let known = if is_ahead { ends.passed.guards } else { 0 };
+            let reaches = self.reaches(tracks, &ends.left, known);
             if !is_ahead && !self.look_ahead(tracks, ends, &reaches, limit, most, work) {
                 return Found::Lost;
             }
+            is_ahead = false;
             let length = (ends.right.time - ends.left.time).to_f64();
             work.pieces += 1;
             let Some(share) = self.clear_share(tracks, &reaches, ends, work) else {
@@ -97,7 +96,6 @@ impl<T: Number> Segment<'_, T> {
             }
             self.measure(&mut ends.left);
             if let Some(crossing) = self.rising(tracks, &ends.left, &ends.passed, work) {
-                ends.is_ahead = true;
                 return match self.settled(tracks, &mut ends.left, &crossing, limit, work) {
                     true => Found::Crossing(crossing.guards),
                     false => Found::Nothing,
@@ -108,18 +106,13 @@ impl<T: Number> Segment<'_, T> {
         Found::Lost
     }
 
-    /// How far each guard that is open is looked at from a point.
+    /// How far each guard is looked at from a point, but for those of which all is known.
     #[inline]
-    fn reaches(
-        &self,
-        tracks: &[Track],
-        left: &GuardedPoint<T>,
-        is_open: impl Fn(usize) -> bool,
-    ) -> PerGuard<Reach> {
+    fn reaches(&self, tracks: &[Track], left: &GuardedPoint<T>, known: u64) -> PerGuard<Reach> {
         let longest = self.flow.longest;
         let mut reaches = PerGuard::new();
         for (n, track) in tracks.iter().enumerate() {
-            reaches.push(match track.live && is_open(n) {
+            reaches.push(match track.live && known >> n & 1 == 0 {
                 true => self.reach(n, track, left, longest),
                 false => Reach::default(),
             });

@@ -19,12 +19,6 @@ pub(super) fn unit<T: Number>() -> f64 {
     if T::TERMS <= <f64 as Number>::TERMS { HALF } else { HALF * HALF * 4.0 }
 }
 
-/// The larger of two numbers, or the first where one of them is none: a single instruction.
-#[inline]
-pub(super) fn larger(a: f64, b: f64) -> f64 {
-    if b > a { b } else { a }
-}
-
 /// The sum of products of the first entries.
 #[inline]
 pub(super) fn dot<T: Number>(a: &[T], b: &[T], dimension: usize) -> T {
