@@ -7,7 +7,7 @@
 
 use super::flow::{Flow, ModalRow};
 use super::system::LARGEST_DIMENSION;
-use super::vector::{Vector, dot};
+use super::vector::{UNDERFLOW, Vector, dot, unit};
 use crate::number::Number;
 
 /// Columns beyond this are made a box.
@@ -210,4 +210,24 @@ impl ErrorColumn {
         }
         self.time += delay;
     }
+}
+
+/// What rounding may have done to each entry of a state that is evaluated a time after its
+/// segment's entry.
+pub(super) fn roundings<T: Number>(
+    flow: &Flow<T>,
+    entry: &Vector<T>,
+    elapsed: T,
+) -> [f64; LARGEST_DIMENSION] {
+    /// What is lost where the last word of a number underflows.
+    const LAST_WORD: f64 = 1e-280;
+    // One of them for the rest of the way to a crossing.
+    let margin = (flow.dimension + 7) as f64 * unit::<T>();
+    let now = flow.sizes(&flow.sizes_later(entry, elapsed));
+    let before = flow.sizes(&entry.map(Number::to_f64));
+    std::array::from_fn(|n| {
+        // What is made of zeros stays zero.
+        let lost = if before[n] > 0.0 || now[n] > 0.0 { LAST_WORD } else { 0.0 };
+        margin * now[n] + lost + UNDERFLOW * before[n]
+    })
 }

@@ -1,6 +1,7 @@
 //! The tables of a `*.system.toml`, as they are written; docs/SYSTEM_FORMAT.md has the format.
 
 use super::error::{Source, SystemError};
+use dashu_ratio::RBig;
 use serde::Deserialize;
 use serde::de::{self, Deserializer, IgnoredAny, Visitor};
 use std::collections::BTreeMap;
@@ -118,6 +119,17 @@ pub(super) enum Scalar {
     Text(String),
 }
 
+impl Scalar {
+    /// The exact value of a number; none of text and of what is not finite.
+    pub fn number(&self) -> Option<RBig> {
+        match self {
+            Self::Integer(integer) => Some(RBig::from(*integer)),
+            Self::Decimal(decimal) => RBig::try_from(*decimal).ok(),
+            Self::Text(_) => None,
+        }
+    }
+}
+
 impl<'de> Deserialize<'de> for Scalar {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         struct Read;
@@ -208,6 +220,20 @@ impl SystemFile {
             if known.is_empty() { "none".to_owned() } else { known.join(", ") }
         );
         Err(SystemError::at(&parameter.place, &what))
+    }
+
+    /// A name of lower-case words that are joined by hyphens.
+    pub(super) fn kebab(&self, name: &Spanned<String>) -> Result<String, SystemError> {
+        let text = name.get_ref();
+        let word = |word: &str| {
+            let belongs = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit();
+            !word.is_empty() && word.chars().all(belongs)
+        };
+        if text.split('-').all(word) {
+            return Ok(text.clone());
+        }
+        let what = format!("{text:?} is not accepted: lower-case words joined by hyphens are");
+        Err(self.error(&name.span(), &what))
     }
 
     pub(super) fn source(&self) -> Source<'_> {

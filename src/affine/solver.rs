@@ -124,6 +124,39 @@ impl<T: Number> Solver<T> {
     pub fn system(&self) -> &System {
         &self.system
     }
+
+    /// The states at a time with cos theta, sin theta and 1 appended.
+    pub(super) fn complete(&self, states: &[T], time: &Time<T>) -> Vector<T> {
+        let mut state = [T::zero(); LARGEST_DIMENSION];
+        state[..states.len()].copy_from_slice(states);
+        let (sin, cos) = self.sin_cos(time);
+        self.append(&mut state, sin, cos);
+        state
+    }
+
+    /// Sine and cosine of the forcing angle at a time; 0 and 1 where nothing is forced.
+    #[inline]
+    pub(super) fn sin_cos(&self, time: &Time<T>) -> (T, T) {
+        match &self.clock {
+            Some(clock) if self.backward => {
+                let time = Time { high: -time.high, low: -time.low };
+                clock.sin_cos(&time)
+            }
+            Some(clock) => clock.sin_cos(time),
+            None => (T::zero(), T::one()),
+        }
+    }
+
+    /// Appends cos theta, sin theta and 1 to the states, which come first.
+    #[inline]
+    pub(super) fn append(&self, state: &mut Vector<T>, sin: T, cos: T) {
+        let (states, dimension) = (self.system.states.len(), self.system.dimension());
+        state[dimension - 1] = T::one();
+        if dimension > states + 1 {
+            state[states] = cos;
+            state[states + 1] = sin;
+        }
+    }
 }
 
 /// A row in the arithmetic.

@@ -12,6 +12,9 @@ pub type Row = Vec<RBig>;
 /// The largest number of entries of z.
 pub const LARGEST_DIMENSION: usize = 12;
 
+/// The largest number of modes, of events in a mode and of successors of an event.
+pub(super) const LARGEST_COUNT: usize = 64;
+
 /// A piecewise-affine hybrid system.
 #[derive(Clone, Debug)]
 pub struct System {

@@ -1,0 +1,101 @@
+//! How a run begins: at a start, with the errors that the start has.
+
+use super::Run;
+use crate::affine::clock::Time;
+use crate::affine::enclosure::Enclosure;
+use crate::affine::event::{Event, What};
+use crate::affine::modal::BigReal;
+use crate::affine::point::Ends;
+use crate::affine::solver::Solver;
+use crate::affine::system::{LARGEST_DIMENSION, StartPoint};
+use crate::affine::track::SearchWork;
+use crate::affine::vector::{Vector, rounded, unit};
+use crate::number::Number;
+use std::collections::VecDeque;
+
+impl<T: Number> Solver<T> {
+    /// A run from a start up to a time.
+    ///
+    /// # Errors
+    /// A start whose structural zeros cannot be told.
+    pub fn run(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
+        let mut run = self.at_start(start, until)?;
+        run.begin(None);
+        Some(run)
+    }
+
+    /// A run that follows its own errors: each event has bounds of them, and what they leave open
+    /// ends the run as undecided.
+    ///
+    /// # Errors
+    /// A start whose structural zeros cannot be told.
+    pub fn run_enclosed(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
+        let mut run = self.at_start(start, until)?;
+        // Three products and two sums an entry; sine and cosine are good to two units.
+        let error = |size: T| 8.0 * unit::<T>() * size.to_f64().abs();
+        let mut sizes = [0.0; LARGEST_DIMENSION];
+        for (size, entry) in sizes.iter_mut().zip(&run.state) {
+            *size = error(*entry);
+        }
+        for (size, terms) in sizes.iter_mut().zip(&start.state) {
+            let terms = terms.iter().map(|it| it.to_f64().value().abs());
+            *size += error(T::exact(terms.sum()));
+        }
+        sizes[self.system.dimension() - 1] = 0.0;
+        run.begin(Some(Enclosure::of(&sizes)));
+        Some(run)
+    }
+
+    /// A run whose first segment is not entered yet.
+    fn at_start(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
+        let mut structure = self.known.lend();
+        let begun = structure.begun(&self.system, start, || self.worked_out(start))?;
+        let mode = start.mode;
+        let first =
+            Event { what: What::Start, time: begun.time, state: Vec::new(), mode, errors: None };
+        Some(Run {
+            solver: self,
+            structure,
+            work: SearchWork::default(),
+            horizon: until,
+            node: begun.node,
+            entered: begun.time,
+            state: begun.state,
+            tracks: Vec::new(),
+            ends: Ends::default(),
+            segment: None,
+            modal: [T::zero(); LARGEST_DIMENSION],
+            restitution: None,
+            at_entry: 0,
+            at_once: 0,
+            queue: VecDeque::new(),
+            ended: false,
+            enclosure: None,
+            start: first.clone(),
+            last: first,
+        })
+    }
+
+    /// Time and state of a start.
+    fn worked_out(&self, start: &StartPoint) -> (Time<T>, Vector<T>) {
+        let time = Time::of(&start.time);
+        let (sin, cos) = self.sin_cos(&time);
+        let mut states = [T::zero(); LARGEST_DIMENSION];
+        for (entry, [c, s, one]) in states.iter_mut().zip(&start.state) {
+            let number = |it| rounded::<T>(&BigReal::of(it));
+            *entry = number(c) * cos + number(s) * sin + number(one);
+        }
+        (time, self.complete(&states[..start.state.len()], &time))
+    }
+}
+
+impl<T: Number> Run<'_, T> {
+    /// Begins the run, with the errors of the start where they are followed.
+    fn begin(&mut self, enclosure: Option<Enclosure>) {
+        self.start = self.event(What::Start, self.entered, &self.state);
+        self.start.errors = enclosure.as_ref().map(|it| self.errors(it));
+        self.last.clone_from(&self.start);
+        self.enclosure = enclosure;
+        self.enter();
+    }
+}

@@ -1,0 +1,106 @@
+//! The guards that a search has found crossed: watched events, and the errors at the crossing.
+
+use super::Run;
+use crate::affine::clock::Time;
+use crate::affine::enclosure::{EnclosedCrossing, Enclosure, roundings};
+use crate::affine::event::{Ending, What};
+use crate::affine::structure::Firing;
+use crate::affine::system::Direction;
+use crate::affine::vector::{Vector, unit};
+use crate::number::Number;
+
+impl<T: Number> Run<'_, T> {
+    /// The guards of these bits are crossed.
+    pub(super) fn crossed(&mut self, guards: u64) {
+        let mode = self.structure.node(self.node).mode;
+        let until = self.solver.system.modes[mode].until.len();
+        let (time, state) = self.here();
+        let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
+        self.work.undecidable += u64::from(guards & !tied != 0);
+        let errors = self.errors_at(mode, guards, &state);
+        for n in bits(guards & !low_bits(until)) {
+            self.watched(mode, n, until, time, &state, errors.as_ref());
+            self.tracks[n].outward = -self.tracks[n].outward;
+        }
+        let ending = guards & low_bits(until);
+        if ending == 0 {
+            if let Some(segment) = &self.segment {
+                segment.fill_all(&mut self.ends.left);
+            }
+            self.tracks.iter_mut().for_each(|track| track.zeros = 0);
+            for n in bits(guards) {
+                self.tracks[n].zeros = 1;
+                self.ends.left.orders[n][0] = T::zero();
+            }
+            return;
+        }
+        if self.solver.backward {
+            (self.entered, self.state, self.enclosure) = (time, state, errors);
+            return self.end(Ending::LeavesDomain);
+        }
+        let guards = self.structure.tied(self.node, guards, false);
+        let until = ending.trailing_zeros() as usize;
+        self.enclosure = errors;
+        self.fire(Firing { until, guards, at_entry: false }, time, state);
+    }
+
+    /// The errors at a crossing, where they are followed.
+    fn errors_at(&self, mode: usize, guards: u64, state: &Vector<T>) -> Option<Enclosure> {
+        let (enclosure, segment) = (self.enclosure.as_ref()?, self.segment.as_ref()?);
+        let point = &self.ends.left;
+        let solver_mode = &self.solver.modes[mode];
+        let first = guards.trailing_zeros() as usize;
+        let inherited = segment.inherited[first]
+            * libm::exp(solver_mode.flow.fastest_growth() * point.time.to_f64());
+        let mut errors = enclosure.at_crossing(&EnclosedCrossing {
+            flow: &solver_mode.flow,
+            matrix: &solver_mode.matrix,
+            guard: &solver_mode.guards[first],
+            y: point.y,
+            elapsed: point.time,
+            state: *state,
+            // The guard is off zero by what was computed, and by what rounding did to that.
+            slack: (point.slack[first] - inherited).max(0.0)
+                + point.orders[first][0].to_f64().abs()
+                + 1e-3 * unit::<T>(),
+            unit: unit::<T>(),
+        });
+        errors.add_box(&roundings(&solver_mode.flow, &segment.entry, point.time));
+        Some(errors)
+    }
+
+    #[inline]
+    fn watched(
+        &mut self,
+        mode: usize,
+        n: usize,
+        until: usize,
+        time: Time<T>,
+        state: &Vector<T>,
+        errors: Option<&Enclosure>,
+    ) {
+        let rising = self.tracks[n].outward > 0.0;
+        let counted = match self.solver.system.modes[mode].watch[n - until].direction {
+            Direction::Rising => rising,
+            Direction::Falling => !rising,
+            Direction::Both => true,
+        };
+        if counted {
+            let mut event = self.event(What::Watch(mode, n - until), time, state);
+            event.errors = errors.map(|it| self.errors(it));
+            self.queue.push_back(event);
+        }
+    }
+}
+
+#[inline]
+fn bits(mask: u64) -> impl Iterator<Item = usize> {
+    let without_lowest = |mask: &u64| Some(mask & mask.wrapping_sub(1));
+    let masks = std::iter::successors(Some(mask), without_lowest).take_while(|it| *it != 0);
+    masks.map(|it| it.trailing_zeros() as usize)
+}
+
+#[inline]
+fn low_bits(count: usize) -> u64 {
+    if count >= 64 { u64::MAX } else { (1 << count) - 1 }
+}

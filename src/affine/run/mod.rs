@@ -1,0 +1,258 @@
+//! A run: segments joined at their events, by the rules of docs/SYSTEM_FORMAT.md.
+
+mod begin;
+mod crossed;
+mod transition;
+
+use crate::affine::clock::Time;
+use crate::affine::enclosure::{Enclosure, roundings};
+use crate::affine::event::{Ending, Errors, Event, What};
+use crate::affine::known::Loan;
+use crate::affine::point::{Ends, Passed, Segment};
+use crate::affine::search::Found;
+use crate::affine::solver::{Solver, SolverMode};
+use crate::affine::structure::Firing;
+use crate::affine::track::{SearchWork, Track};
+use crate::affine::vector::{Vector, dot, unit};
+use crate::number::Number;
+use std::collections::VecDeque;
+
+/// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
+pub struct Run<'a, T> {
+    pub(in crate::affine) solver: &'a Solver<T>,
+    pub(in crate::affine) structure: Loan<'a, T>,
+    work: SearchWork,
+    horizon: T,
+    pub(in crate::affine) node: usize,
+    /// The time at which the segment was entered, and the state there.
+    entered: Time<T>,
+    state: Vector<T>,
+    /// Each guard, with the place from which its search goes on.
+    tracks: Vec<Track>,
+    ends: Ends<T>,
+    segment: Option<Segment<'a, T>>,
+    pub(in crate::affine) modal: Vector<T>,
+    /// The coefficient of restitution of an impact, from its fastest occurrence.
+    pub(in crate::affine) restitution: Option<Restitution<T>>,
+    /// Guards that fire at the instant of entry.
+    at_entry: u64,
+    at_once: u32,
+    queue: VecDeque<Event<T>>,
+    ended: bool,
+    /// The errors at the entry of the segment, where they are followed.
+    pub(in crate::affine) enclosure: Option<Enclosure>,
+    /// The start, with the errors that it has before the rounding of its modal co-ordinates.
+    start: Event<T>,
+    /// The event that was given out last, or the start.
+    last: Event<T>,
+}
+
+/// The quotient of the rates after and before an impact, from its fastest occurrence.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::affine) struct Restitution<T> {
+    pub node: usize,
+    pub until: usize,
+    pub rate: f64,
+    pub quotient: T,
+}
+
+impl<T: Number> Run<'_, T> {
+    /// The start, as an event at which nothing happens but that the run begins.
+    #[must_use]
+    pub fn start(&self) -> Event<T> {
+        self.start.clone()
+    }
+
+    /// What the run has cost so far.
+    #[must_use]
+    pub fn work(&self) -> SearchWork {
+        self.work
+    }
+
+    pub(in crate::affine) fn tracks_live(&self, guard: usize) -> bool {
+        self.tracks[guard].live
+    }
+
+    /// Begins the segment of the present node: looks at each guard's first derivative that is not a
+    /// structural zero.
+    fn enter(&mut self) {
+        let node = self.structure.node(self.node);
+        let mode = node.mode;
+        let solver = self.solver;
+        let solver_mode = &solver.modes[mode];
+        let flow = &solver_mode.flow;
+        let until = solver.system.modes[mode].until.len();
+        self.modal = flow.modal(&self.state);
+        self.tracks.clear();
+        self.at_entry = 0;
+        let mut ending = None;
+        for (n, (row, order)) in
+            solver_mode.guards.iter().zip(node.multiplicities.iter()).enumerate()
+        {
+            let Some(order) = *order else {
+                self.tracks.push(Track { outward: 1.0, zeros: 0, live: false });
+                continue;
+            };
+            let (value, size) = row.order(order, &self.modal);
+            let value = value.to_f64();
+            let mut slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
+            if let Some(errors) = &self.enclosure {
+                slack += errors.of_row(flow, row, order);
+            }
+            let doubtful = value.abs() <= slack;
+            self.work.undecidable += u64::from(doubtful);
+            let outward = if n >= until && value > 0.0 { -1.0 } else { 1.0 };
+            self.tracks.push(Track { outward, zeros: order, live: true });
+            if n < until && value > 0.0 {
+                if order == 0 && !doubtful {
+                    ending = ending.or(Some(Ending::BeyondGuard));
+                } else if solver.backward {
+                    ending = ending.or(Some(Ending::LeavesDomain));
+                }
+                self.at_entry |= 1 << n;
+            }
+        }
+        if let Some(ending) = ending {
+            self.end(ending);
+        }
+        if let Some(errors) = &mut self.enclosure {
+            errors.add_entry(flow, &self.state, unit::<T>());
+        }
+        let inherited = self.enclosure.as_ref().map_or_else(Vec::new, |errors| {
+            solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect()
+        });
+        let segment = Segment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
+        segment.begin(&mut self.ends.left);
+        self.ends.passed = Passed::none();
+        self.segment = Some(segment);
+    }
+
+    /// Ends the run: at an instant of its own, which is then the entry, or at that of the last
+    /// event.
+    fn end(&mut self, ending: Ending<T>) {
+        if self.ended {
+            return;
+        }
+        self.ended = true;
+        let what = What::End(ending);
+        let event = if matches!(ending, Ending::Horizon | Ending::LeavesDomain) {
+            let errors = self.enclosure.as_ref().map(|it| self.errors(it));
+            Event { errors, ..self.event(what, self.entered, &self.state) }
+        } else {
+            Event { what, ..self.queue.back().unwrap_or(&self.last).clone() }
+        };
+        self.queue.push_back(event);
+    }
+
+    #[inline]
+    fn event(&self, what: What<T>, time: Time<T>, state: &Vector<T>) -> Event<T> {
+        let states = self.solver.system.states.len();
+        let mode = self.structure.node(self.node).mode;
+        Event { what, time, state: state[..states].to_vec(), mode, errors: None }
+    }
+
+    fn errors(&self, enclosure: &Enclosure) -> Errors {
+        let states = self.solver.system.states.len();
+        let rounding = 2.0 * unit::<T>() * self.entered.high.to_f64().abs();
+        Errors { time: enclosure.time() + rounding, state: enclosure.state()[..states].to_vec() }
+    }
+
+    /// Goes on to the next event.
+    fn advance(&mut self) {
+        if self.at_entry != 0 {
+            let guards = self.structure.tied(self.node, self.at_entry, true);
+            let until = self.at_entry.trailing_zeros() as usize;
+            self.fire(Firing { until, guards, at_entry: true }, self.entered, self.state);
+            return;
+        }
+        let mode = self.structure.node(self.node).mode;
+        let limit = self.limit();
+        let Some(segment) = &self.segment else { return self.end(Ending::Undecided) };
+        let ends = &mut self.ends;
+        match segment.first(&mut self.tracks, ends, limit, &mut self.work) {
+            Found::Lost => self.end(Ending::Undecided),
+            Found::Nothing => {
+                let limit = if limit > T::zero() { limit } else { T::zero() };
+                segment.evaluate(&mut ends.left, limit, &mut self.work);
+                segment.complete(&mut ends.left);
+                self.at_horizon(mode, limit);
+            }
+            Found::Crossing(guards) => {
+                segment.complete(&mut ends.left);
+                self.crossed(guards);
+            }
+        }
+    }
+
+    /// The run ends a time after the entry.
+    fn at_horizon(&mut self, mode: usize, limit: T) {
+        (self.entered, self.state) = self.here();
+        if limit > T::zero() {
+            // The time since an entry long before is rounded; the horizon is not.
+            self.entered = Time { high: self.horizon, low: T::zero() };
+        }
+        let SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
+        if let Some(errors) = &self.enclosure {
+            let errors = errors.later(flow, limit);
+            let rounded = 4.0 * unit::<T>() * limit.to_f64().abs();
+            let mut errors = errors.at_given_time(flow, matrix, &self.state, rounded);
+            errors.add_box(&roundings(flow, &self.modal, limit));
+            self.enclosure = Some(errors);
+        }
+        self.end(Ending::Horizon);
+    }
+
+    /// Time that is left until the horizon.
+    #[inline]
+    fn limit(&self) -> T {
+        let ahead = (self.horizon - self.entered.high) - self.entered.low;
+        if self.solver.backward { -ahead } else { ahead }
+    }
+
+    /// Time and state where the search has come to.
+    #[inline]
+    fn here(&self) -> (Time<T>, Vector<T>) {
+        let point = &self.ends.left;
+        let elapsed = if self.solver.backward { -point.time } else { point.time };
+        let mut time = self.entered.after(elapsed);
+        let mode = self.structure.node(self.node).mode;
+        let SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
+        let mut state = flow.state(&point.y);
+        if point.later != T::zero() {
+            time = time.after(if self.solver.backward { -point.later } else { point.later });
+            let before = state;
+            let states = &mut state[..self.solver.system.states.len()];
+            for (entry, row) in states.iter_mut().zip(matrix) {
+                *entry = *entry + dot(row, &before, flow.dimension) * point.later;
+            }
+        }
+        let (sin, cos) = self.solver.sin_cos(&time);
+        self.solver.append(&mut state, sin, cos);
+        (time, state)
+    }
+}
+
+impl<T: Number> Iterator for Run<'_, T> {
+    type Item = Event<T>;
+
+    fn next(&mut self) -> Option<Event<T>> {
+        loop {
+            if let Some(event) = self.queue.pop_front() {
+                self.last.clone_from(&event);
+                return Some(event);
+            }
+            if self.ended {
+                return None;
+            }
+            self.advance();
+            // What errors may have decided is no event of an enclosed run.
+            if self.enclosure.is_some() && self.work.undecidable > 0 {
+                self.queue.clear();
+                self.ended = false;
+                self.end(Ending::Undecided);
+            }
+        }
+    }
+}
+
+impl<T: Number> std::iter::FusedIterator for Run<'_, T> {}

@@ -1,0 +1,86 @@
+//! From an `until` to the next segment: the reset, the successor, and what ends a run there.
+
+use super::Run;
+use crate::affine::clock::Time;
+use crate::affine::event::{Ending, What};
+use crate::affine::structure::Firing;
+use crate::affine::vector::{Vector, unit};
+use crate::number::Number;
+
+/// How many events of `until` one instant may have.
+const MOST_AT_ONCE: u32 = 64;
+
+impl<T: Number> Run<'_, T> {
+    /// An `until` ends the mode: reset, successor, and the entry of the next segment.
+    pub(super) fn fire(&mut self, firing: Firing, time: Time<T>, before: Vector<T>) {
+        let solver = self.solver;
+        let mode = self.structure.node(self.node).mode;
+        self.at_once = if firing.at_entry { self.at_once + 1 } else { 1 };
+        let mut state = before;
+        for (n, factors) in &solver.modes[mode].changes[firing.until] {
+            let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
+            state[*n] = terms.fold(T::zero(), |sum, term| sum + term);
+        }
+        let successor = self.successor(mode, firing, &state);
+        let arrival = self.structure.arrival(self.node, firing);
+        let impact = arrival.impact;
+        let from = self.node;
+        let next = self.structure.enter(from, firing, successor);
+        self.node = next;
+        (self.entered, self.state) = (time, state);
+        let mut event = self.event(What::Until(mode, firing.until), time, &self.state);
+        if let Some(errors) = self.enclosure.take() {
+            let reset = &solver.modes[mode].resets[firing.until];
+            let sizes = reset.iter().map(|row| {
+                let terms = row.iter().zip(&before).map(|(a, b)| (a.to_f64() * b.to_f64()).abs());
+                (reset.len() + 2) as f64 * unit::<T>() * terms.sum::<f64>()
+            });
+            let errors = errors.after_reset(reset, &sizes.collect::<Vec<_>>());
+            event.errors = Some(self.errors(&errors));
+            self.enclosure = Some(errors);
+        }
+        self.queue.push_back(event);
+        self.enter();
+        if impact && next == from {
+            let below = solver.modes[mode].flow.modal(&before);
+            if let Some((earliest, latest)) = self.accumulation(mode, firing, &below, successor) {
+                return self.end(Ending::Accumulation(earliest, latest));
+            }
+        }
+        if self.at_once >= MOST_AT_ONCE {
+            self.end(Ending::NoProgress);
+        }
+    }
+
+    /// The first successor whose condition holds.
+    #[inline]
+    fn successor(&mut self, mode: usize, firing: Firing, state: &Vector<T>) -> usize {
+        let solver = self.solver;
+        let orders = &self.structure.arrival(self.node, firing).orders;
+        let conditions = &solver.modes[mode].conditions[firing.until];
+        let next = &solver.system.modes[mode].until[firing.until].next;
+        for (n, (condition, order)) in conditions.iter().zip(orders.iter()).enumerate() {
+            let (Some(condition), Some(order)) = (condition, *order) else {
+                if condition.is_none() {
+                    return n;
+                }
+                continue;
+            };
+            let flow = &solver.modes[next[n].mode].flow;
+            let modal = flow.modal(state);
+            let (value, size) = condition.order(order, &modal);
+            let value = value.to_f64();
+            let mut slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
+            if let Some(errors) = &self.enclosure {
+                // The errors before the reset bound those after it for all that follows here.
+                let reset = &solver.modes[mode].resets[firing.until];
+                slack += errors.after_reset(reset, &[]).of_row(flow, condition, order);
+            }
+            self.work.undecidable += u64::from(value.abs() <= slack);
+            if value > 0.0 {
+                return n;
+            }
+        }
+        conditions.len() - 1
+    }
+}
