@@ -23,7 +23,7 @@ fn results_do_not_depend_on_the_number_of_threads() {
         stdout(&[
             "validate",
             "-c",
-            "^(fig7d-period-6|graze-miss|relay-1e)",
+            "^(fig7d-period-6|fig7f-chaos|graze-miss|relay-1e)",
             "--threads",
             threads,
             "--out",

@@ -126,13 +126,6 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     ExitCode::from(code)
 }
 
-/// What [`run`] tells a user whose arguments are refused before any verb runs. Nothing is refused
-/// where the parser accepts them, or where they ask for help or the version.
-#[must_use]
-pub fn refusal_of(words: &[&str]) -> Option<String> {
-    command().try_get_matches_from(words).err().and_then(|it| refusal(&it))
-}
-
 fn dispatch(arguments: &Arguments) -> u8 {
     let result = match &arguments.verb {
         Verb::Simulate(simulate) => simulate::run(simulate).map(code),
@@ -177,30 +170,27 @@ fn verbs() -> String {
     names.join(", ")
 }
 
-/// Prints help or the version where they were asked for, and says why arguments are refused else.
+/// What clap objects to, in one line; help and version are no objections.
 fn usage(error: &clap::Error) -> u8 {
-    if let Some(refusal) = refusal(error) {
-        say(&refusal);
-        REFUSED
-    } else {
-        let _ = error.print();
-        DONE
-    }
-}
-
-/// What the user is told of arguments that are refused: nothing of help and of the version.
-fn refusal(error: &clap::Error) -> Option<String> {
     match error.kind() {
-        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => None,
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            let _ = error.print();
+            DONE
+        }
         ErrorKind::MissingSubcommand | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => {
-            Some(format!("no verb was given: accepted are {} (see percuss --help)", verbs()))
+            say(&format!("no verb was given: accepted are {} (see percuss --help)", verbs()));
+            REFUSED
         }
         ErrorKind::InvalidSubcommand => {
             let verb = error.get(ContextKind::InvalidSubcommand);
             let verb = verb.map_or_else(String::new, |verb| format!("'{verb}' "));
-            Some(format!("{verb}is no verb: accepted are {} (see percuss --help)", verbs()))
+            say(&format!("{verb}is no verb: accepted are {} (see percuss --help)", verbs()));
+            REFUSED
         }
-        _ => Some(objection(error)),
+        _ => {
+            say(&objection(error));
+            REFUSED
+        }
     }
 }
 
