@@ -29,7 +29,7 @@ impl Corridor {
     /// How far `value` is outside: negative inside, zero on a threshold.
     #[inline]
     pub fn excess(&self, value: f64) -> f64 {
-        larger(value - self.high, self.low - value)
+        (value - self.high).larger(self.low - value)
     }
 
     /// Narrower by `margin` on both sides.
@@ -82,7 +82,7 @@ impl ThresholdEnds {
 
 impl Piece {
     /// Checks all Bernstein coefficients against the corridor, with `slack` for rounding.
-    #[inline]
+    #[inline(always)]
     pub fn verdict(&self, corridor: &Corridor, ends: ThresholdEnds, slack: f64) -> Proof {
         let (pairs, middle) = self.coefficients();
         let mut excesses = pairs.map(|pair| pair.map(|coefficient| corridor.excess(coefficient)));
@@ -101,7 +101,7 @@ impl Piece {
                 excesses[1][1] = f64::NEG_INFINITY;
             }
         }
-        let worst = largest(excesses, larger(up, down));
+        let worst = largest(excesses, up.larger(down));
         let size = largest(pairs.map(|pair| pair.map(f64::abs)), middle.abs());
         let slack = slack + f64::EPSILON * size;
         // The middle coefficient holds all orders of both ends: any NaN is one there.
@@ -127,7 +127,7 @@ impl Piece {
         let (pairs, middle) = self.coefficients();
         let (lowest, highest) = self.bounds(middle);
         let (below, above) = (in_order(pairs, lowest), in_order(pairs, highest));
-        let size = below.iter().chain(&above).fold(0.0, |size, c| larger(size, c.abs()));
+        let size = below.iter().chain(&above).fold(0.0_f64, |size, c| size.larger(c.abs()));
         // Eight roundings more for each division.
         let slack = slack + 8.0 * f64::from(DIVISIONS + 1) * f64::EPSILON * size;
         let over = Excess(above.map(|coefficient| coefficient - corridor.high));
@@ -141,47 +141,13 @@ impl Piece {
         let square = self.length * self.length;
         let scale = square * square * (square * square) * (1.0 / MIDDLE);
         let (least, most) = self.eighth;
-        (middle + smaller(least, 0.0) * scale, middle + larger(most, 0.0) * scale)
+        (middle + least.smaller(0.0) * scale, middle + most.larger(0.0) * scale)
     }
 
     /// Bernstein coefficients of degree eight of the Hermite interpolant.
     #[inline]
-    fn coefficients(&self) -> Coefficients<f64> {
+    pub fn coefficients(&self) -> Coefficients<f64> {
         coefficients(&self.left, &self.right, self.length)
-    }
-
-    /// The time at which a piece is divided: at the place of the largest excess, so that a near
-    /// miss is met at its crest, where both halves are easily certified.
-    pub fn worst_place(&self, from: f64, corridor: &Corridor) -> f64 {
-        let step =
-            self.crest_next_to_an_end(corridor).unwrap_or_else(|| self.sampled_crest(corridor));
-        let place = from + step;
-        let inside = place > from && place < from + self.length;
-        if inside { place } else { from + 0.5 * self.length }
-    }
-
-    /// Makes one Newton step on the slope, where an end is already near a crest of the excess.
-    fn crest_next_to_an_end(&self, corridor: &Corridor) -> Option<f64> {
-        const NEAR: f64 = 0.1; // of the piece
-        let newton = |orders: &[f64; 4]| {
-            let [value, slope, bend, _] = *orders;
-            let outward = if value - corridor.high >= corridor.low - value { 1.0 } else { -1.0 };
-            (bend * outward < 0.0).then(|| -slope / bend)
-        };
-        let near = NEAR * self.length;
-        let from_left = newton(&self.left).filter(|step| *step > 0.0 && *step < near);
-        let from_right = newton(&self.right).filter(|step| *step < 0.0 && *step > -near);
-        from_left.or(from_right.map(|step| self.length + step))
-    }
-
-    fn sampled_crest(&self, corridor: &Corridor) -> f64 {
-        const PLACES: i32 = 32;
-        let (pairs, middle) = self.coefficients();
-        let coefficients = in_order(pairs, middle);
-        let excess = |s: &f64| corridor.excess(divided(coefficients, *s).1[0]);
-        let places = (3..=PLACES - 3).map(|k| f64::from(k) / f64::from(PLACES));
-        let crest = places.max_by(|s, t| excess(s).total_cmp(&excess(t)));
-        self.length * crest.unwrap_or(0.5)
     }
 }
 
@@ -261,18 +227,23 @@ impl Excess {
 }
 
 /// The coefficients from left to right.
-fn in_order([a, b, c, d]: [[f64; 2]; 4], middle: f64) -> [f64; 9] {
+pub fn in_order([a, b, c, d]: [[f64; 2]; 4], middle: f64) -> [f64; 9] {
     [a[0], b[0], c[0], d[0], middle, d[1], c[1], b[1], a[1]]
 }
 
 /// De Casteljau's division at a share of the length, where the later part begins with the value.
-fn divided(mut points: [f64; 9], place: f64) -> ([f64; 9], [f64; 9]) {
-    let (mut before, mut after) = ([0.0; 9], [0.0; 9]);
-    for order in (0..9).rev() {
-        (before[8 - order], after[order]) = (points[0], points[order]);
-        for i in 0..order {
-            points[i] += place * (points[i + 1] - points[i]);
+///
+/// It goes point by point: degree by degree, the points would be stored in pairs and loaded again
+/// shifted by one, for which processors wait.
+fn divided(points: [f64; 9], place: f64) -> ([f64; 9], [f64; 9]) {
+    let (mut before, mut after) = (points, points);
+    for (end, point) in points.into_iter().enumerate() {
+        let mut latest = point;
+        for of_a_degree in after[9 - end..].iter_mut().rev() {
+            let left = std::mem::replace(of_a_degree, latest);
+            latest = left + place * (latest - left);
         }
+        (before[end], after[8 - end]) = (latest, latest);
     }
     (before, after)
 }
@@ -280,19 +251,29 @@ fn divided(mut points: [f64; 9], place: f64) -> ([f64; 9], [f64; 9]) {
 /// The largest of four pairs and one more.
 #[inline]
 fn largest(pairs: [[f64; 2]; 4], middle: f64) -> f64 {
-    let side_by_side = |a: [f64; 2], b: [f64; 2]| [larger(a[0], b[0]), larger(a[1], b[1])];
+    let side_by_side = |a: [f64; 2], b: [f64; 2]| [a[0].larger(b[0]), a[1].larger(b[1])];
     let [a, b, c, d] = pairs;
     let [left, right] = side_by_side(side_by_side(a, b), side_by_side(c, d));
-    larger(larger(left, right), middle)
+    left.larger(right).larger(middle)
 }
 
-/// The larger of two numbers, in one instruction; of a NaN nothing is promised.
-#[inline]
-fn larger(a: f64, b: f64) -> f64 {
-    if a > b { a } else { b }
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
 
-#[inline]
-fn smaller(a: f64, b: f64) -> f64 {
-    if a < b { a } else { b }
+    #[test]
+    fn a_line_and_the_eighth_power_are_divided_as_they_are_known_to_be() {
+        let place = 0.25;
+        let numbers: [f64; 9] = std::array::from_fn(|n| n as f64);
+        let (before, after) = divided(numbers.map(|n| n / 8.0), place);
+        assert_eq!(before, numbers.map(|n| place * n / 8.0));
+        assert_eq!(after, numbers.map(|n| place + (1.0 - place) * n / 8.0));
+
+        let mut eighth_power = [0.0; 9];
+        eighth_power[8] = 1.0;
+        let (before, after) = divided(eighth_power, place);
+        let power = |n: f64| place.powi(8 - n as i32);
+        assert_eq!(before, numbers.map(|n| if n == 8.0 { power(0.0) } else { 0.0 }));
+        assert_eq!(after, numbers.map(power));
+    }
 }

@@ -35,6 +35,7 @@ pub mod certificate;
 pub mod contact;
 mod contact_ahead;
 pub mod contact_parts;
+mod crest;
 pub mod guarded;
 pub mod higher_orders;
 pub mod limit;

@@ -99,7 +99,7 @@ impl<T: Number> Forced<T> {
     }
 
     /// The response after `d`; `turn` belongs to `omega d`, `free` to `d`.
-    #[inline]
+    #[inline(always)]
     pub fn at(&self, d: T, turn: &Circular<T>, free: &Free<T>) -> Response<T> {
         match *self {
             Self::Plain { two_xi, omega, inverse } => {

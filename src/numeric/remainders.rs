@@ -99,7 +99,7 @@ fn same_sign<T: Number>(square: T, n: usize) -> T {
 
 /// 1/n! + s^2/(n+4)! + ... and 1/(n+2)! + s^2/(n+6)! + ..., so many terms in all: two chains that
 /// run side by side, each half as long.
-#[inline]
+#[inline(always)]
 fn every_other<T: Number>(square: T, n: usize, terms: usize) -> (T, T) {
     let fourth = square * square;
     let mut sums = [T::zero(); 2];
