@@ -11,7 +11,7 @@ use regex::Regex;
 fn pictures(case: &str, engine: &str) -> Vec<EventPicture> {
     let library = Library::embedded().expect("the tables are read");
     let cases = vec![exact::case(case)];
-    let cases = suite::prepare(cases, &library, Suite::Quick).expect("prepared");
+    let cases = suite::prepare(cases, &library, None).expect("prepared");
     let engine = Regex::new(&format!("^{engine}$")).expect("a pattern");
     let engines = select(&[engine]).expect("an engine");
     let defaults = defaults().expect("bounds");

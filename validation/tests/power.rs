@@ -27,7 +27,7 @@ fn prepared() -> Vec<Prepared> {
     let library = Library::embedded().expect("the tables are read");
     let cases = embedded().expect("the cases are read").into_iter();
     let chosen = cases.filter(|case| CASES.contains(&case.name.as_str())).collect();
-    prepare(chosen, &library, Suite::Quick).expect("the cases are made ready")
+    prepare(chosen, &library, Some(Suite::Quick)).expect("the cases are made ready")
 }
 
 /// A touch that the control's steps find and an integrator's longest pass by, wherever chaos leads:
@@ -48,7 +48,7 @@ fn light_touch() -> Vec<Prepared> {
     let start = Start { tau, p: state.p, y: state.y, q: Some(state.q), ..Start::default() };
     let case = Case { name: "light-touch".into(), parameters, start, ..case };
     let library = Library::embedded().expect("the tables are read").replaying();
-    prepare(vec![case], &library, Suite::Quick).expect("the case is made ready")
+    prepare(vec![case], &library, Some(Suite::Quick)).expect("the case is made ready")
 }
 
 fn findings(wrong: &[WrongEngine], cases: &[Prepared], standard: Standard) -> Vec<Finding> {
@@ -118,7 +118,7 @@ fn every_fault_of_an_integrator_is_caught_and_none_of_the_sound_one() {
     let library = Library::embedded().expect("the tables are read");
     let cases = embedded().expect("the cases are read").into_iter();
     let chosen = cases.filter(|case| INTEGRATED.contains(&case.name.as_str())).collect();
-    let cases = prepare(chosen, &library, Suite::Quick).expect("the cases are made ready");
+    let cases = prepare(chosen, &library, Some(Suite::Quick)).expect("the cases are made ready");
     for standard in Standard::of_faulty() {
         let found = findings(faulty(), &cases, standard);
         for finding in &found {

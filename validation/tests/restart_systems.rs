@@ -3,11 +3,11 @@
 //! `cargo test --release --test harness restart_systems:: -- --nocapture` prints the figures of
 //! every case.
 
-use crate::exact::prepared_systems;
+use crate::exact::probed_systems;
 use percuss_validation::engine::{
     Accuracy, Engine, Failure, Limits, REFERENCE, SystemOutcome, SystemTask, all, answer_system,
 };
-use percuss_validation::score::Restart;
+use percuss_validation::score::{Restart, SystemRestartTest};
 use percuss_validation::suite::PreparedSystem;
 
 /// The bound of the oscillator's restarts, in eps (1 + |value|) x growth; 1.4 is the largest median
@@ -17,7 +17,11 @@ const MEDIAN: f64 = 2.0;
 const LARGEST: f64 = 10.0;
 
 fn one(name: &str) -> PreparedSystem {
-    prepared_systems(|it| it == name).pop().expect("the case")
+    probed_systems(|it| it == name).pop().expect("the case")
+}
+
+fn test(case: &PreparedSystem) -> &SystemRestartTest {
+    case.restart.as_ref().expect("the case is probed")
 }
 
 fn scored(
@@ -25,7 +29,7 @@ fn scored(
     (accuracy, unit): (Accuracy, f64),
     run: impl Fn(&SystemTask) -> Result<SystemOutcome, Failure> + Sync,
 ) -> Restart {
-    case.restart.score_first(usize::MAX, (accuracy, unit), run)
+    test(case).score_first(usize::MAX, (accuracy, unit), run)
 }
 
 fn exactly(task: &SystemTask) -> Result<SystemOutcome, Failure> {
@@ -37,7 +41,7 @@ const AS_EXACT: (Accuracy, f64) = (Accuracy::Exact, f64::EPSILON);
 #[test]
 fn the_exact_solver_keeps_its_digits_on_every_case() {
     let mut with_events = 0;
-    for case in prepared_systems(|_| true) {
+    for case in probed_systems(|_| true) {
         let name = &case.case.name;
         let restart = scored(&case, AS_EXACT, exactly);
         let Restart { units, time_units, runs, undecided, .. } = &restart;
@@ -95,8 +99,8 @@ fn failures_and_missed_events_are_counted() {
 /// Restarts pass at least two instants with events, and their truth has all of these.
 #[test]
 fn a_restart_passes_two_instants_with_events() {
-    for case in prepared_systems(|name| name.starts_with("ball-") || name.starts_with("cradle")) {
-        for run in &case.restart.runs {
+    for case in probed_systems(|name| name.starts_with("ball-") || name.starts_with("cradle")) {
+        for run in &test(&case).runs {
             assert!(run.truth.events.len() >= 2, "{}", case.case.name);
             let last = run.truth.events.last().expect("an event").elapsed.value();
             assert!(last < run.task.span, "{}", case.case.name);

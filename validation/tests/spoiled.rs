@@ -72,7 +72,7 @@ fn no_spoiled_answer_passes() {
     let library = Library::embedded().expect("the tables are read");
     let cases = embedded().expect("the cases are read").into_iter();
     let chosen = cases.filter(|case| case.name == "impact-into-progression").collect();
-    let cases = prepare(chosen, &library, Suite::Quick).expect("the case is made ready");
+    let cases = prepare(chosen, &library, Some(Suite::Quick)).expect("the case is made ready");
     let defaults = defaults().expect("the bounds are read");
     let verdict = |engine: &'static Spoiled| {
         let runs: Vec<&dyn CaseRun> = cases.iter().map(|it| it as _).collect();

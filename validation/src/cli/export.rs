@@ -1,9 +1,9 @@
 //! `export`: what cases ask, as files for readers of any language.
 
 use super::compact;
-use super::judged::{CaseFlags, PreparedCases};
+use super::judged::CaseFlags;
 use super::output::{Destination, make_folder, write_whole};
-use crate::suite::{CaseRun, Suite};
+use crate::suite::CaseRun;
 use anyhow::{Context, Result};
 use clap::Args;
 use percuss_programs::files::CaseFile;
@@ -21,8 +21,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: &Arguments) -> Result<()> {
-    let cases: PreparedCases = arguments.chosen.prepare(None, Suite::Quick)?;
+    let cases = arguments.chosen.open(None)?;
     make_folder(&arguments.out)?;
+    let cases = cases.prepare(None)?;
     let mut lines = Vec::new();
     for case in cases.all() {
         lines.push(write(case, &arguments.out)?);

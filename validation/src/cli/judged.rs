@@ -99,15 +99,27 @@ impl CaseFlags {
         })
     }
 
-    /// The chosen cases with their truth, made ready for a suite.
-    pub(super) fn prepare(&self, reference: Option<&Path>, suite: Suite) -> Result<PreparedCases> {
-        let cases = self.read()?;
-        let library = self.library(reference)?;
+    /// The chosen cases with their reference data.
+    pub(super) fn open(&self, reference: Option<&Path>) -> Result<OpenedCases> {
+        Ok(OpenedCases { cases: self.read()?, library: self.library(reference)? })
+    }
+}
+
+/// Cases whose truth is still to be read.
+pub(super) struct OpenedCases {
+    cases: Cases,
+    library: Library,
+}
+
+impl OpenedCases {
+    /// The cases with their truth, and with the probes of a suite if one is given.
+    pub(super) fn prepare(self, probes: Option<Suite>) -> Result<PreparedCases> {
+        let Self { cases, library } = self;
         let replayed: Vec<String> =
             cases.names().filter(|name| library.is_replayed(name)).map(str::to_owned).collect();
         let prepared = PreparedCases {
-            oscillator: suite::prepare(cases.oscillator, &library, suite)?,
-            systems: suite::prepare_systems(cases.systems, &library, suite)?,
+            oscillator: suite::prepare(cases.oscillator, &library, probes)?,
+            systems: suite::prepare_systems(cases.systems, &library, probes)?,
         };
         for name in replayed {
             note(&format!(
@@ -151,9 +163,10 @@ impl JudgedFlags {
         self.baseline.as_deref().map(read_baseline).transpose()
     }
 
-    /// The chosen cases with their truth, and the folder of the report.
-    pub(super) fn prepare(&self, suite: Suite) -> Result<PreparedCases> {
-        let cases = self.chosen.prepare(self.reference.as_deref(), suite)?;
+    /// The chosen cases with their reference data, once the folder of the report is made: to make
+    /// them ready may take long.
+    pub(super) fn open(&self) -> Result<OpenedCases> {
+        let cases = self.chosen.open(self.reference.as_deref())?;
         self.out.as_deref().map(make_folder).transpose()?;
         Ok(cases)
     }

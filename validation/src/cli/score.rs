@@ -65,16 +65,19 @@ fn tolerance(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| "accepted is a number, 1e-16 to 0.1".to_owned())
 }
 
-/// How much of a case is looked at: its run, without the probes that need an engine to be there.
+/// The suite whose budgets and limits apply.
 const SUITE: Suite = Suite::Quick;
 
 pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let judged = &arguments.judged;
     judged.check()?;
     let baseline = judged.baseline()?;
-    let cases = judged.prepare(SUITE)?;
+    let cases = judged.open()?;
+    let answered = answered(&arguments.answers)?;
+    // What probes ask needs an engine that is there.
+    let cases = cases.prepare(None)?;
     let all = cases.all();
-    check_names(arguments, &all, &answered(&arguments.answers)?)?;
+    check_names(arguments, &all, &answered)?;
     let defaults = judged.defaults()?;
     let pool = work::pool(threads)?;
     let bar = work::bar(all.len() as u64, "cases");

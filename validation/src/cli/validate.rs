@@ -39,7 +39,9 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let baseline = judged.baseline()?;
     let _programs = arguments.programs.start()?;
     let engines = chosen_engines(&arguments.engine)?;
-    let cases = judged.prepare(arguments.suite)?;
+    let wrong = WrongEngines::of(arguments);
+    let probed = wrong.count() > 0 || suite::probes_any(&engines, &scope);
+    let cases = judged.open()?.prepare(probed.then_some(arguments.suite))?;
     let all = cases.all();
     let mut defaults = judged.defaults()?;
     if judged.chosen.cases.is_none() {
@@ -47,7 +49,6 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     }
     hush_contained_panics();
     let pool = work::pool(threads)?;
-    let wrong = WrongEngines::of(arguments);
     let steps = suite::size(all.len(), &engines, &scope) + wrong.count();
     let bar = work::bar(steps as u64, "rows");
     // Together, so that no thread waits for the last of the rows.

@@ -27,12 +27,21 @@ pub fn case(name: &str) -> Case {
     cases.into_iter().find(|case| case.name == name).expect("the case is there")
 }
 
-/// The embedded cases of systems whose names are accepted, made ready for the quick suite.
+/// The embedded cases of systems whose names are accepted, without restarts.
 pub fn prepared_systems(accepts: impl Fn(&str) -> bool) -> Vec<PreparedSystem> {
+    systems(accepts, None)
+}
+
+/// The embedded cases of systems whose names are accepted, with the restarts of the quick suite.
+pub fn probed_systems(accepts: impl Fn(&str) -> bool) -> Vec<PreparedSystem> {
+    systems(accepts, Some(Suite::Quick))
+}
+
+fn systems(accepts: impl Fn(&str) -> bool, probes: Option<Suite>) -> Vec<PreparedSystem> {
     let library = Library::embedded().expect("the tables are read");
     let cases = Cases::embedded().expect("the cases are read").systems.into_iter();
     let chosen = cases.filter(|case| accepts(&case.name)).collect();
-    prepare_systems(chosen, &library, Suite::Quick).expect("the cases are made ready")
+    prepare_systems(chosen, &library, probes).expect("the cases are made ready")
 }
 
 /// A case's model at its start.

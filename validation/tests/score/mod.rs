@@ -102,8 +102,8 @@ fn answers(engine: &str, accuracy: Accuracy, pattern: &str, folder: &Path) -> Ve
     let mut cases = Cases::embedded().expect("read");
     cases.retain(|name| pattern.is_match(name));
     let library = Library::embedded().expect("read");
-    let oscillator = prepare(cases.oscillator, &library, Suite::Quick).expect("made ready");
-    let systems = prepare_systems(cases.systems, &library, Suite::Quick).expect("made ready");
+    let oscillator = prepare(cases.oscillator, &library, None).expect("made ready");
+    let systems = prepare_systems(cases.systems, &library, None).expect("made ready");
     let oscillator = oscillator.iter().map(|it| it as &dyn CaseRun);
     let defaults = defaults().expect("read");
     let mut answered = Vec::new();

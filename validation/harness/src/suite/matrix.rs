@@ -1,6 +1,6 @@
 //! The whole matrix: every engine on every case at every tolerance, in parallel and in order.
 
-use super::probes::{Extent, Probes};
+use super::probes::{Extent, Probes, may_probe};
 use super::scope::{Suite, SuiteScope};
 use crate::case::{Bound, Case, Defaults, FileError, Shortcoming};
 use crate::engine::{
@@ -181,23 +181,23 @@ pub struct Scored {
     pub judgement: RowJudgement,
 }
 
-/// Reads truth and growth of every case.
+/// Reads truth and growth of every case, and makes the probes of a suite ready if one is given.
 ///
 /// # Errors
 /// [`FileError`] for reference data that are missing, altered or of another case.
 pub fn prepare(
     cases: Vec<Case>,
     library: &Library,
-    suite: Suite,
+    probes: Option<Suite>,
 ) -> Result<Vec<Prepared>, FileError> {
     let limits = calibrated()?;
-    cases.into_par_iter().map(|case| prepare_one(case, library, suite, &limits)).collect()
+    cases.into_par_iter().map(|case| prepare_one(case, library, probes, &limits)).collect()
 }
 
 fn prepare_one(
     case: Case,
     library: &Library,
-    suite: Suite,
+    probes: Option<Suite>,
     limits: &[Calibrated],
 ) -> Result<Prepared, FileError> {
     let truth = library.truth(&case)?;
@@ -208,7 +208,8 @@ fn prepare_one(
     let task = Task::of(&case, problem, grid);
     let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
     let grazes = grazes(&task, &truth, &growth);
-    let probes = Probes::new(&case, &problem, suite, limits)?;
+    let probes = probes.map(|suite| Probes::new(&case, &problem, suite, limits)).transpose()?;
+    let probes = probes.unwrap_or_default();
     let occurrences = occurrences(&truth.events);
     Ok(Prepared { case, truth, growth, grazes, occurrences, task, probes })
 }
@@ -311,6 +312,15 @@ pub fn run<'a>(
     };
     // Heavy rows lie side by side: handed out one by one they do not pile up on one thread.
     jobs.into_par_iter().with_max_len(1).map(row).collect()
+}
+
+/// Whether probes are asked of one of these engines.
+#[must_use]
+pub fn probes_any(engines: &[&'static dyn Engine], scope: &SuiteScope) -> bool {
+    engines.iter().any(|engine| {
+        let role = engine.declaration().role;
+        accuracies(*engine, scope).into_iter().any(|it| may_probe(scope.suite(), role, it))
+    })
 }
 
 /// How many rows [`run`] makes.

@@ -5,7 +5,9 @@ mod probes;
 mod scope;
 mod system;
 
-pub use matrix::{Answered, CaseRun, Measured, Prepared, Scored, Status, one, prepare, run, size};
+pub use matrix::{
+    Answered, CaseRun, Measured, Prepared, Scored, Status, one, prepare, probes_any, run, size,
+};
 pub use probes::{Extent, is_shown};
 pub use scope::{Suite, SuiteScope};
 pub use system::{ELSEWHERE, PreparedSystem, prepare_systems};

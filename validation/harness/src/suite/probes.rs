@@ -23,12 +23,26 @@ pub fn is_shown(role: Role, accuracy: Accuracy) -> bool {
 /// oscillator: one engine a library, and the exact solver.
 #[must_use]
 pub fn restarts_on_systems(suite: Suite, role: Role, accuracy: Accuracy) -> bool {
-    let tolerances = match suite {
-        Suite::Quick => &[TOLERANCE][..],
-        Suite::Full => &TOLERANCES,
-    };
-    let asked = accuracy.tolerance().is_some_and(|it| tolerances.contains(&it));
+    let asked = accuracy.tolerance().is_some_and(|it| suite.probed_tolerances().contains(&it));
     accuracy == Accuracy::Exact || (asked && role == Role::Representative)
+}
+
+/// Whether a suite may probe an engine at this accuracy on some case.
+#[must_use]
+pub fn may_probe(suite: Suite, role: Role, accuracy: Accuracy) -> bool {
+    let asked = accuracy.tolerance().is_some_and(|it| suite.probed_tolerances().contains(&it));
+    let whoever = suite == Suite::Full || role == Role::Representative;
+    accuracy == Accuracy::Exact || (asked && whoever)
+}
+
+impl Suite {
+    /// The tolerances at which integrators are probed.
+    fn probed_tolerances(self) -> &'static [f64] {
+        match self {
+            Self::Quick => &[TOLERANCE],
+            Self::Full => &TOLERANCES,
+        }
+    }
 }
 
 /// The probes of one case, made ready once and shared by all engines.
@@ -110,22 +124,15 @@ impl Probes {
         };
         let lasting = self.horizons.as_ref().is_some_and(|it| it.length(unit) as f64 <= budget);
         let horizons = if lasting && role == Role::Representative { HORIZONS } else { 0 };
-        let listed = case.probed.integrators;
-        match (suite, accuracy) {
-            (_, Accuracy::Exact) => {
-                Extent { restarts: restarts(suite), horizons: HORIZONS, attractor: true }
-            }
-            (Suite::Quick, Accuracy::Tolerance(it))
-                if listed && it == TOLERANCE && role == Role::Representative =>
-            {
-                affordable
-            }
-            (Suite::Full, Accuracy::Tolerance(it)) if TOLERANCES.contains(&it) => {
-                let probed = if listed { affordable } else { Extent::default() };
-                Extent { horizons, ..probed }
-            }
-            _ => Extent::default(),
+        if !may_probe(suite, role, accuracy) {
+            return Extent::default();
         }
+        if accuracy == Accuracy::Exact {
+            return Extent { restarts: restarts(suite), horizons: HORIZONS, attractor: true };
+        }
+        let probed = if case.probed.integrators { affordable } else { Extent::default() };
+        let horizons = if suite == Suite::Full { horizons } else { 0 };
+        Extent { horizons, ..probed }
     }
 }
 

@@ -29,13 +29,14 @@ pub struct PreparedSystem {
     pub grazes: Vec<Graze>,
     /// The events whose successors hang by little.
     pub decisions: Vec<Decision>,
-    /// Restarts from states along the true run.
-    pub restart: SystemRestartTest,
+    /// Restarts from states along the true run, where the case is probed.
+    pub restart: Option<SystemRestartTest>,
     names: EventNames,
     occurrences: Vec<Occurrence>,
 }
 
-/// Reads the truth of every case of a system.
+/// Reads the truth of every case of a system, and makes the restarts of a suite ready if one is
+/// given.
 ///
 /// # Errors
 /// [`FileError`] for reference data that are missing, altered or of another case, and for a system
@@ -43,13 +44,13 @@ pub struct PreparedSystem {
 pub fn prepare_systems(
     cases: Vec<SystemCase>,
     library: &Library,
-    suite: Suite,
+    probes: Option<Suite>,
 ) -> Result<Vec<PreparedSystem>, FileError> {
-    cases.into_par_iter().map(|case| PreparedSystem::new(case, library, suite)).collect()
+    cases.into_par_iter().map(|case| PreparedSystem::new(case, library, probes)).collect()
 }
 
 impl PreparedSystem {
-    fn new(case: SystemCase, library: &Library, suite: Suite) -> Result<Self, FileError> {
+    fn new(case: SystemCase, library: &Library, probes: Option<Suite>) -> Result<Self, FileError> {
         let truth = library.system_truth(&case)?;
         let problem = Arc::new(case.problem()?);
         let refused = |failure: Failure| FileError::of(&case.file, failure);
@@ -58,8 +59,9 @@ impl PreparedSystem {
         let occurrences = names.of_truth(&truth);
         let grazes = system_grazes(&problem, &truth, &names);
         let decisions = decisions(&problem, &truth);
-        let restart = SystemRestartTest::new(&case, &problem, &truth, restarts(suite))
-            .map_err(|what| FileError::of(&case.file, what))?;
+        let restarts = |suite| SystemRestartTest::new(&case, &problem, &truth, restarts(suite));
+        let restart = probes.map(restarts).transpose();
+        let restart = restart.map_err(|what| FileError::of(&case.file, what))?;
         Ok(Self { case, truth, task, grazes, decisions, restart, names, occurrences })
     }
 
@@ -81,15 +83,12 @@ impl PreparedSystem {
         Ok(Measured { measures, answered: Answered::System(outcome), wall })
     }
 
-    /// How many restarts a suite asks of an engine whose run of the case took so many right-hand
-    /// sides.
-    fn restarts(&self, suite: Suite, engine: &dyn Engine, accuracy: Accuracy, work: u64) -> usize {
-        if !restarts_on_systems(suite, engine.declaration().role, accuracy) {
-            return 0;
-        }
-        let work = work as f64 / self.task.span * self.restart.span();
+    /// How many restarts of a test a suite asks of an engine whose run of the case took so many
+    /// right-hand sides.
+    fn restarts(&self, test: &SystemRestartTest, suite: Suite, work: u64) -> usize {
+        let work = work as f64 / self.task.span * test.span();
         let share = suite.budget() / work.max(1.0);
-        (self.restart.runs.len() as f64 * share.min(1.0)) as usize
+        (test.runs.len() as f64 * share.min(1.0)) as usize
     }
 
     /// Right-hand sides that a run takes at the least because an engine keeps its steps short.
@@ -167,11 +166,13 @@ impl CaseRun for PreparedSystem {
         suite: Suite,
     ) -> Result<Measured, Failure> {
         let mut measured = self.measured(engine, (accuracy, unit), limits)?;
-        let most = self.restarts(suite, engine, accuracy, measured.answered.work().rhs_evaluations);
-        if most > 0 {
+        let work = measured.answered.work().rhs_evaluations;
+        let asked = restarts_on_systems(suite, engine.declaration().role, accuracy);
+        if let Some(test) = self.restart.as_ref().filter(|_| asked) {
+            let most = self.restarts(test, suite, work);
             let run = |task: &SystemTask| answer_system(engine, task, accuracy, limits);
-            let restart = self.restart.score_first(most, (accuracy, unit), run);
-            measured.measures.probed.restart = Some(restart);
+            let restart = (most > 0).then(|| test.score_first(most, (accuracy, unit), run));
+            measured.measures.probed.restart = restart;
         }
         Ok(measured)
     }
