@@ -23,8 +23,8 @@ pub fn is_shown(role: Role, accuracy: Accuracy) -> bool {
 /// oscillator: one engine a library, and the exact solver.
 #[must_use]
 pub fn restarts_on_systems(suite: Suite, role: Role, accuracy: Accuracy) -> bool {
-    let asked = accuracy.tolerance().is_some_and(|it| suite.probed_tolerances().contains(&it));
-    accuracy == Accuracy::Exact || (asked && role == Role::Representative)
+    let chosen = accuracy == Accuracy::Exact || role == Role::Representative;
+    chosen && may_probe(suite, role, accuracy)
 }
 
 /// Whether a suite may probe an engine at this accuracy on some case.
@@ -116,22 +116,22 @@ impl Probes {
         (accuracy, unit): (Accuracy, f64),
         work_a_period: f64,
     ) -> Extent {
-        let budget = suite.budget() / work_a_period.max(1.0);
-        let affordable = Extent {
-            restarts: restarts(suite).min((budget / PERIODS_A_RESTART) as usize).max(FEWEST),
-            horizons: 0,
-            attractor: self.long_run() <= budget,
-        };
-        let lasting = self.horizons.as_ref().is_some_and(|it| it.length(unit) as f64 <= budget);
-        let horizons = if lasting && role == Role::Representative { HORIZONS } else { 0 };
         if !may_probe(suite, role, accuracy) {
             return Extent::default();
         }
         if accuracy == Accuracy::Exact {
             return Extent { restarts: restarts(suite), horizons: HORIZONS, attractor: true };
         }
+        let budget = suite.budget() / work_a_period.max(1.0);
+        let affordable = Extent {
+            restarts: restarts(suite).min((budget / PERIODS_A_RESTART) as usize).max(FEWEST),
+            horizons: 0,
+            attractor: self.long_run() <= budget,
+        };
         let probed = if case.probed.integrators { affordable } else { Extent::default() };
-        let horizons = if suite == Suite::Full { horizons } else { 0 };
+        let lasting = self.horizons.as_ref().is_some_and(|it| it.length(unit) as f64 <= budget);
+        let followed = suite == Suite::Full && role == Role::Representative && lasting;
+        let horizons = if followed { HORIZONS } else { 0 };
         Extent { horizons, ..probed }
     }
 }
