@@ -63,6 +63,14 @@ impl<T: Number> Clock<T> {
         Self { omega: Time::of(&forcing.omega), phi: Time::of(&forcing.phi) }
     }
 
+    /// How far the arithmetic may have theta from the truth at a time: omega, times and their sums
+    /// are rounded to 106 bits, whether those are one number or two.
+    #[inline]
+    pub fn rounding(&self, time: &Time<T>) -> f64 {
+        const UNIT: f64 = f64::EPSILON * f64::EPSILON;
+        UNIT * ((self.omega.high * time.high).to_f64().abs() + self.phi.high.to_f64().abs())
+    }
+
     /// Sine and cosine of theta at a time.
     #[inline]
     pub fn sin_cos(&self, time: &Time<T>) -> (T, T) {

@@ -131,16 +131,21 @@ impl<T: Number> Segment<'_, T> {
     #[inline]
     fn root(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> (T, f64) {
         let first = outward(&at.orders[n], track);
-        let outward = T::exact(track.outward);
         let mut all = [T::zero(); TERMS];
         let last = terms(&self.rows[n]);
+        let orders: [T; TERMS] = match last > 4 {
+            true => {
+                let next = outward(&self.rows[n].orders_from(4, &at.y), track);
+                std::array::from_fn(|k| if k < 4 { first[k] } else { next[k - 4] })
+            }
+            false => std::array::from_fn(|k| if k < 4 { first[k] } else { T::zero() }),
+        };
         for (k, term) in all[..last].iter_mut().enumerate() {
-            let order = if k < 4 { first[k] } else { self.rows[n].order(k, &at.y).0 * outward };
-            if !order.to_f64().is_finite() {
+            if !orders[k].to_f64().is_finite() {
                 // It is a first guess, which fewer terms give as well.
                 break;
             }
-            *term = order * T::inverse_factorial(k);
+            *term = orders[k] * T::inverse_factorial(k);
         }
         let (mut step, mut change) = (T::exact(reverted(&first)), f64::INFINITY);
         for _ in 0..2 {

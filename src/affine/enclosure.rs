@@ -71,9 +71,14 @@ impl Enclosure {
         self.sum(|column| dot(&row, &flow.modal_rounded(&column.state), flow.dimension))
     }
 
-    /// A bound of the error of a row at any time after the entry, but for growing blocks.
-    pub fn along<T: Number>(&self, flow: &Flow<T>, row: &ModalRow<T>) -> f64 {
-        self.sum(|column| flow.bound(row, 0, &flow.modal_rounded(&column.state), 0.0))
+    /// Bounds of the norms of the errors of each block's modal co-ordinates.
+    pub fn of_blocks<T: Number>(&self, flow: &Flow<T>) -> Vector<f64> {
+        let mut sums = [0.0; LARGEST_DIMENSION];
+        for column in &self.columns {
+            let norms = flow.norms(&flow.modal_rounded(&column.state));
+            sums.iter_mut().zip(norms).for_each(|(sum, norm)| *sum += norm * OUTWARD);
+        }
+        sums
     }
 
     fn sum(&self, entry: impl Fn(&ErrorColumn) -> f64) -> f64 {

@@ -28,8 +28,6 @@ pub(super) struct FlowBlock<T> {
     pub at: usize,
     pub size: usize,
     motion: BlockMotion<T>,
-    /// A bound of the rate at which a vector of it grows, not negative.
-    growth: f64,
     /// What is known of it at all later times.
     pub later: Later,
 }
@@ -53,8 +51,8 @@ pub(super) struct ModalRow<T> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct RowColumn<T> {
     pub at: usize,
-    /// The part of each order: of the value and of three derivatives.
-    pub orders: [T; 4],
+    /// The part of each order: of the value and of its derivatives.
+    pub orders: [T; ORDERS],
     /// The size of the part of the value.
     size: f64,
 }
@@ -200,6 +198,12 @@ impl<T: Number> Flow<T> {
         norms
     }
 
+    /// What underflow may do to each block's modal co-ordinates at most: to zeros nothing.
+    pub fn underflow(&self, y: &Vector<T>) -> Vector<f64> {
+        let lost = |norm: f64| if norm > 0.0 { 4.0 * UNDERFLOW * (1.0 + norm) } else { 0.0 };
+        self.norms(y).map(lost)
+    }
+
     /// The modal co-ordinates of an error, in f64.
     pub fn modal_rounded(&self, z: &Vector<f64>) -> Vector<f64> {
         times(&self.to_modal_rounded, z)
@@ -242,12 +246,6 @@ impl<T: Number> Flow<T> {
         }
         sum * (1.0 + 1e-12)
     }
-
-    /// The largest growth rate of a block.
-    #[inline]
-    pub fn fastest_growth(&self) -> f64 {
-        self.blocks.iter().fold(0.0, |most: f64, block| most.max(block.growth))
-    }
 }
 
 impl RowPart {
@@ -265,8 +263,8 @@ impl<T: Number> ModalRow<T> {
     fn add_part(&mut self, n: usize, block: &FlowBlock<T>, norms: [f64; ORDERS]) {
         let first = self.columns.len();
         for at in block.at..block.at + block.size {
-            let orders = [0, 1, 2, 3].map(|k: usize| self.orders[k][at]);
-            let used = self.orders.iter().any(|order| order[at] != T::zero());
+            let orders: [T; ORDERS] = std::array::from_fn(|k| self.orders[k][at]);
+            let used = orders.iter().any(|it| *it != T::zero());
             if used {
                 self.columns.push(RowColumn { at, orders, size: orders[0].to_f64().abs() });
             }
@@ -293,6 +291,17 @@ impl<T: Number> ModalRow<T> {
         sums
     }
 
+    /// So many orders from one on.
+    #[inline]
+    pub fn orders_from<const N: usize>(&self, first: usize, y: &Vector<T>) -> [T; N] {
+        let mut sums = [T::zero(); N];
+        for column in &self.columns {
+            let entry = y[column.at];
+            add_product(&mut sums, &column.orders[first..first + N], entry);
+        }
+        sums
+    }
+
     /// Value and three derivatives, and the sum of the sizes of what the value is summed from.
     #[inline]
     pub fn sized_orders(&self, y: &Vector<T>) -> ([T; 4], f64) {
@@ -309,14 +318,6 @@ impl<T: Number> ModalRow<T> {
     #[inline]
     pub fn size<U: Number>(&self, y: &Vector<U>) -> f64 {
         self.columns.iter().map(|it| it.size * y[it.at].to_f64().abs()).sum()
-    }
-
-    /// What underflow may do to the row at most, at any time after the modal co-ordinates are
-    /// these.
-    pub fn underflow(&self, y: &Vector<T>) -> f64 {
-        let moving = self.columns.iter().filter(|it| y[it.at] != T::zero());
-        let terms = moving.map(|it| (UNDERFLOW * (1.0 + y[it.at].to_f64().abs())) * it.size);
-        terms.map(|it| it.max(UNDERFLOW)).sum()
     }
 
     /// A derivative, and the sum of the sizes of what it is summed from.
@@ -336,8 +337,7 @@ impl<T: Number> ModalRow<T> {
 impl<T: Number> FlowBlock<T> {
     fn of(block: &modal::Block, at: usize) -> Self {
         let motion = BlockMotion::of(block);
-        let (growth, later) = (bound::growth(block), Later::of(block));
-        Self { at, size: block.matrix.len(), motion, growth, later }
+        Self { at, size: block.matrix.len(), motion, later: Later::of(block) }
     }
 }
 

@@ -4,7 +4,7 @@ use super::bound::ORDERS;
 use super::flow::{Flow, ModalRow};
 use super::system::LARGEST_DIMENSION;
 use super::track::{SearchWork, Track};
-use super::vector::{Vector, unit};
+use super::vector::{UNDERFLOW, Vector, unit};
 use crate::number::Number;
 use smallvec::SmallVec;
 use std::cell::OnceCell;
@@ -21,10 +21,10 @@ pub(super) struct Segment<'a, T> {
     pub flow: &'a Flow<T>,
     pub rows: &'a [ModalRow<T>],
     pub entry: Vector<T>,
-    /// What errors made before the segment may do to each guard; empty where they are not followed.
-    pub inherited: Vec<f64>,
-    /// What underflow may do to each guard; empty as well.
-    lost: Vec<f64>,
+    /// The errors of each block at entry, where they are followed.
+    inherited: Option<Vector<f64>>,
+    /// What underflow may do to each block.
+    lost: Vector<f64>,
     /// The time up to which the Taylor series at entry are good of guards that begin with a
     /// structural zero, which they keep; negative where none does.
     pub early: f64,
@@ -61,7 +61,7 @@ impl<'a, T: Number> Segment<'a, T> {
         rows: &'a [ModalRow<T>],
         entry: Vector<T>,
         tracks: &[Track],
-        inherited: Vec<f64>,
+        inherited: Option<Vector<f64>>,
     ) -> Self {
         let (mut blocks, mut zeros, mut early) = (0, PerGuard::new(), false);
         for (n, track) in tracks.iter().enumerate() {
@@ -71,8 +71,7 @@ impl<'a, T: Number> Segment<'a, T> {
                 early |= track.zeros > 0;
             }
         }
-        let lost = if inherited.is_empty() { &[] } else { rows };
-        let lost = lost.iter().map(|row| row.underflow(&entry)).collect();
+        let lost = inherited.map_or([0.0; LARGEST_DIMENSION], |_| flow.underflow(&entry));
         let series = OnceCell::new();
         let mut segment =
             Self { flow, rows, entry, inherited, lost, early: -1.0, series, zeros, blocks };
@@ -102,12 +101,13 @@ impl<'a, T: Number> Segment<'a, T> {
     fn series(&self) -> &[[T; ORDERS]] {
         self.series.get_or_init(|| {
             let guard = |(row, zeros): (&ModalRow<T>, &usize)| -> [T; ORDERS] {
-                let mut coefficients = [T::zero(); ORDERS];
-                if *zeros > 0 {
-                    let orders = coefficients[..row.last].iter_mut().enumerate().skip(*zeros);
-                    for (k, coefficient) in orders {
-                        *coefficient = row.order(k, &self.entry).0 * T::inverse_factorial(k);
-                    }
+                if *zeros == 0 {
+                    return [T::zero(); ORDERS];
+                }
+                let mut coefficients = row.orders_from::<ORDERS>(0, &self.entry);
+                coefficients[..*zeros].fill(T::zero());
+                for (k, coefficient) in coefficients.iter_mut().enumerate().skip(*zeros) {
+                    *coefficient = *coefficient * T::inverse_factorial(k);
                 }
                 coefficients
             };
@@ -223,18 +223,32 @@ impl<'a, T: Number> Segment<'a, T> {
         point: &mut GuardedPoint<T>,
         is_by_series: impl Fn(usize) -> bool,
     ) {
-        if self.inherited.is_empty() {
+        if !self.follows_errors() {
             return;
         }
         let sizes = self.flow.sizes_later(&self.entry, point.time);
-        let growth = libm::exp(self.flow.fastest_growth() * point.time.to_f64().abs());
         for n in guards {
             let slack = &mut point.slack[n];
             if !is_by_series(n) {
                 *slack = slack.max(self.margin() * self.rows[n].size(&sizes));
             }
-            *slack += (self.inherited[n] + self.lost[n]) * growth;
+            let lost = self.flow.bound_by(&self.rows[n], 0, &self.lost, point.time.to_f64());
+            let rest = LARGEST_DIMENSION as f64 * UNDERFLOW;
+            *slack += self.inherited_by(n, point.time) + lost + rest;
         }
+    }
+
+    /// Whether the run follows its errors.
+    #[inline]
+    pub fn follows_errors(&self) -> bool {
+        self.inherited.is_some()
+    }
+
+    /// What errors made before the segment may do to a guard up to a time.
+    #[inline]
+    pub fn inherited_by(&self, n: usize, time: T) -> f64 {
+        let bound = |errors| self.flow.bound_by(&self.rows[n], 0, errors, time.to_f64());
+        self.inherited.as_ref().map_or(0.0, bound)
     }
 }
 

@@ -56,7 +56,7 @@ impl<T: Number> Segment<'_, T> {
             if ends.left.time >= limit {
                 return Found::Nothing;
             }
-            if work.undecidable > 0 && !self.inherited.is_empty() {
+            if work.undecidable > 0 && self.follows_errors() {
                 return Found::Lost;
             }
             self.measure(&mut ends.left);

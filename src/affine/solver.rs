@@ -157,6 +157,16 @@ impl<T: Number> Solver<T> {
             state[states + 1] = sin;
         }
     }
+
+    /// What the rounding of time does to cos theta and sin theta, as errors of z.
+    pub(super) fn phase_roundings(&self, time: &Time<T>) -> [f64; LARGEST_DIMENSION] {
+        let mut errors = [0.0; LARGEST_DIMENSION];
+        if let Some(clock) = &self.clock {
+            let states = self.system.states.len();
+            errors[states..states + 2].fill(clock.rounding(time));
+        }
+        errors
+    }
 }
 
 /// A row in the arithmetic.

@@ -2,6 +2,7 @@
 
 mod attack;
 mod brute;
+mod enclosed;
 mod endings;
 mod files;
 mod hostile;

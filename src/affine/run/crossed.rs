@@ -17,7 +17,7 @@ impl<T: Number> Run<'_, T> {
         let (time, state) = self.here();
         let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
         self.work.undecidable += u64::from(guards & !tied != 0);
-        let errors = self.errors_at(mode, guards, &state);
+        let errors = self.errors_at(mode, guards, &time, &state);
         for n in bits(guards & !low_bits(until)) {
             self.watched(mode, n, until, time, &state, errors.as_ref());
             self.tracks[n].outward = -self.tracks[n].outward;
@@ -45,13 +45,18 @@ impl<T: Number> Run<'_, T> {
     }
 
     /// The errors at a crossing, where they are followed.
-    fn errors_at(&self, mode: usize, guards: u64, state: &Vector<T>) -> Option<Enclosure> {
+    fn errors_at(
+        &self,
+        mode: usize,
+        guards: u64,
+        time: &Time<T>,
+        state: &Vector<T>,
+    ) -> Option<Enclosure> {
         let (enclosure, segment) = (self.enclosure.as_ref()?, self.segment.as_ref()?);
         let point = &self.ends.left;
         let solver_mode = &self.solver.modes[mode];
         let first = guards.trailing_zeros() as usize;
-        let inherited = segment.inherited[first]
-            * libm::exp(solver_mode.flow.fastest_growth() * point.time.to_f64());
+        let inherited = segment.inherited_by(first, point.time);
         let mut errors = enclosure.at_crossing(&EnclosedCrossing {
             flow: &solver_mode.flow,
             matrix: &solver_mode.matrix,
@@ -66,6 +71,7 @@ impl<T: Number> Run<'_, T> {
             unit: unit::<T>(),
         });
         errors.add_box(&roundings(&solver_mode.flow, &segment.entry, point.time));
+        errors.add_box(&self.solver.phase_roundings(time));
         Some(errors)
     }
 

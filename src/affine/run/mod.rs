@@ -118,9 +118,7 @@ impl<T: Number> Run<'_, T> {
         if let Some(errors) = &mut self.enclosure {
             errors.add_entry(flow, &self.state, unit::<T>());
         }
-        let inherited = self.enclosure.as_ref().map_or_else(Vec::new, |errors| {
-            solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect()
-        });
+        let inherited = self.enclosure.as_ref().map(|errors| errors.of_blocks(flow));
         let segment = Segment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
         segment.begin(&mut self.ends.left);
         self.ends.passed = Passed::none();
@@ -197,6 +195,7 @@ impl<T: Number> Run<'_, T> {
             let rounded = 4.0 * unit::<T>() * limit.to_f64().abs();
             let mut errors = errors.at_given_time(flow, matrix, &self.state, rounded);
             errors.add_box(&roundings(flow, &self.modal, limit));
+            errors.add_box(&self.solver.phase_roundings(&self.entered));
             self.enclosure = Some(errors);
         }
         self.end(Ending::Horizon);

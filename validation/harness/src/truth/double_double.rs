@@ -18,9 +18,9 @@ pub struct DoubleDouble(Df64);
 /// 2^-106, half the distance from one to the next number: the unit of this arithmetic.
 pub const UNIT: f64 = f64::EPSILON * f64::EPSILON / 4.0;
 
-/// The largest argument of sine and cosine: beyond it the turns that are taken off no longer leave
-/// 106 bits, the argument itself carries fewer than 79 bits behind the point, and both are NaN.
-pub const LARGEST_ANGLE: f64 = 134_217_728.0; // 2^27
+/// The largest argument of sine and cosine, 2^50: beyond it the number of quarter turns in it is no
+/// longer exact, and both are NaN.
+pub const LARGEST_ANGLE: f64 = 1_125_899_906_842_624.0;
 
 impl DoubleDouble {
     /// The sum of two words in any order.
@@ -149,9 +149,13 @@ impl Number for DoubleDouble {
     }
 }
 
-/// pi/2 in three words: 2^-162 of it is missing.
-const HALF_PI: [f64; 3] =
-    [std::f64::consts::FRAC_PI_2, 6.123_233_995_736_766e-17, -1.497_384_904_859_169_8e-33];
+/// pi/2 in four words: 2^-217 of it is missing.
+const HALF_PI: [f64; 4] = [
+    std::f64::consts::FRAC_PI_2,
+    6.123_233_995_736_766e-17,
+    -1.497_384_904_859_169_8e-33,
+    5.562_271_104_316_826e-50,
+];
 
 fn sin_cos(x: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
     let (quadrant, rest) = first_quadrant(x.0);

@@ -1,0 +1,124 @@
+//! Runs that follow their errors: how far they go, and that their bounds hold at large times.
+
+use super::{names, system};
+use crate::double_double::DoubleDouble;
+use percuss::affine::{Event, Solver};
+use percuss::number::Number;
+
+/// Motions that are polynomials of the time, whose couplings are large: an error grows with a power
+/// of the time, not with an exponential of the coupling.
+const RAMP: &str = "
+schema = 1
+name = \"ramp\"
+states = [\"x\"]
+[[mode]]
+name = \"rising\"
+equations = [\"x' = 7\"]
+[[mode.until]]
+name = \"top\"
+guard = \"x > 1000\"
+reset = [\"x = 0\"]
+[start]
+mode = \"rising\"
+x = 0
+";
+
+/// In millimetres and seconds, from a kilometre: the impact is after 14.3 seconds.
+const FALL: &str = "
+schema = 1
+name = \"fall\"
+states = [\"x\", \"v\"]
+[[mode]]
+name = \"flight\"
+equations = [\"x' = v\", \"v' = -9810\"]
+[[mode.until]]
+name = \"impact\"
+guard = \"x < 0\"
+reset = [\"x = 0\", \"v = -v/2\"]
+[start]
+mode = \"flight\"
+x = 1000000
+v = 0
+";
+
+/// A triple eigenvalue that decays, behind couplings of 50.
+const CASCADE: &str = "
+schema = 1
+name = \"cascade\"
+states = [\"a\", \"b\", \"c\"]
+[[mode]]
+name = \"filling\"
+equations = [\"a' = 50*b - a\", \"b' = 50*c - b\", \"c' = 1 - c\"]
+[[mode.watch]]
+name = \"half\"
+guard = \"2*a > 2500\"
+[[mode.until]]
+name = \"never\"
+guard = \"c > 2\"
+[start]
+mode = \"filling\"
+a = 0
+b = 0
+c = 0
+";
+
+/// A forced oscillator that is watched far from time 0, from START on.
+const FORCED: &str = "
+schema = 1
+name = \"forced\"
+states = [\"x\", \"v\"]
+forcing = { omega = \"11/10\", phi = 0 }
+[[mode]]
+name = \"free\"
+equations = [\"x' = v\", \"v' = -x/9 + cos\"]
+[[mode.watch]]
+name = \"half\"
+guard = \"cos > 1/2\"
+[start]
+mode = \"free\"
+t = \"START\"
+x = 0
+v = 0
+";
+
+fn enclosed<T: Number>(text: &str, until: f64) -> (Vec<String>, Vec<Event<T>>) {
+    let system = system(text);
+    let solver = Solver::<T>::new(&system).unwrap();
+    let start = system.start.as_ref().unwrap();
+    let events: Vec<_> = solver.run_enclosed(start, T::exact(until)).unwrap().collect();
+    (names(&system, &events), events)
+}
+
+#[test]
+fn errors_of_polynomial_motions_grow_with_powers_of_the_time() {
+    for (text, until, expected, time) in [
+        (RAMP, 300.0, &["top", "top", "end"][..], 1000.0 / 7.0),
+        (FALL, 20.0, &["impact", "end"], (2.0 * 1e6 / 9810.0_f64).sqrt()),
+        (CASCADE, 20.0, &["half", "end"], 2.674_060_313_723_560_3),
+    ] {
+        let (found, events) = enclosed::<DoubleDouble>(text, until);
+        assert_eq!(found, expected);
+        assert!((events[0].time.value().to_f64() / time - 1.0).abs() < 1e-15);
+        let error = events[0].errors.as_ref().unwrap().time;
+        assert!(0.0 < error && error < 1e-26 * time, "{error:e}");
+        let (found, _) = enclosed::<f64>(text, until);
+        assert_eq!(found, expected);
+    }
+}
+
+/// The second crossing after three starts, with both words of its rate, computed with mpmath at 80
+/// digits: the phase is known to 1.1e8 or 1.1e12 times 2^-106.
+#[test]
+fn bounds_hold_far_from_time_zero() {
+    for (start, until, rate) in [
+        ("330000001/3", 110_000_015.0, (0.020_433_771_650_834_535, -1.178_316_619_858_692_5e-18)),
+        ("3000000000001/3", 1e12 + 15.0, (-0.070_732_609_434_886_74, -5.246_931_103_250_777e-18)),
+    ] {
+        let (names, events) = enclosed::<DoubleDouble>(&FORCED.replace("START", start), until);
+        assert_eq!(names[..2], ["half", "half"], "{start}");
+        let found = events[1].state[1] - DoubleDouble::new(rate.0, rate.1);
+        let (error, bound) = (found.to_f64().abs(), events[1].errors.as_ref().unwrap().state[1]);
+        // Beyond the bound the expected value is rounded to 106 bits.
+        assert!(error <= bound + 1e-33, "{start}: {error:e} beyond {bound:e}");
+    }
+}
