@@ -1,7 +1,7 @@
 //! The closest competitor of the exact solver on a case, at its most accurate and at equal
 //! accuracy.
 
-use super::equal_accuracy::{Basis, LOOSE, TIGHT};
+use super::equal_accuracy::{Basis, COMPARABLE, LOOSE, TIGHT};
 use super::report::{Bench, BenchRow};
 use crate::engine::REFERENCE;
 use crate::number::{brief, shortest};
@@ -32,6 +32,7 @@ impl ClosestCompetitor<'_> {
             Basis::MostAccurate => {
                 format!("least: {}", self.row.state_error_max.map(brief).unwrap_or_default())
             }
+            Basis::Comparable => format!("<= {} * exact", shortest(COMPARABLE)),
             Basis::Tight => format!("<= {}", shortest(TIGHT)),
             Basis::Loose => format!("<= {}", shortest(LOOSE)),
         }
@@ -85,11 +86,13 @@ mod tests {
             state_error_max: Some(error),
             event_time_error_max: Some(error),
             ratio_to_exact: Some(ratio),
+            ratio_at_comparable_error: None,
             ratio_at_1e_6: Some(0.5 * ratio),
             ratio_at_1e_9: None,
             harness_share: Some(0.25),
             rhs_per_period: Some(400.0),
             most_accurate: true,
+            comparable: engine == "exact",
             adaptive: engine != "exact",
             why: None,
         }
@@ -151,11 +154,21 @@ mod tests {
         assert_eq!(at(Basis::MostAccurate), Some(("quick", 20.0, "least: 1.0e-8".to_owned())));
         assert_eq!(at(Basis::Loose), Some(("quick", 0.5, "<= 1e-6".to_owned())));
         assert_eq!(at(Basis::Tight), None);
+        // Nobody errs as little as the exact solver until one does.
+        assert_eq!(at(Basis::Comparable), None);
         let reached =
             closest_competitor(&bench, CASE, Basis::Loose).and_then(|it| it.row.ns_per_period);
         assert_eq!(reached, Some(6400.0));
         assert!(errs_least(&bench, CASE));
-        bench.results.push(row("lucky", 1e9, 1e6, 1e-16));
+        let lucky = row("lucky", 1e9, 1e6, 1e-16);
+        bench.results.push(BenchRow {
+            comparable: true,
+            ratio_at_comparable_error: Some(30.0),
+            ..lucky
+        });
         assert!(!errs_least(&bench, CASE));
+        let comparable = closest_competitor(&bench, CASE, Basis::Comparable);
+        let said = comparable.map(|it| (it.row.engine.as_str(), it.ratio, it.accuracy()));
+        assert_eq!(said, Some(("lucky", 30.0, "<= 10 * exact".to_owned())));
     }
 }

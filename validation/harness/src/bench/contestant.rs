@@ -163,10 +163,12 @@ impl TimedRun for EngineHeat<'_> {
 }
 
 /// What a contestant is asked for: every decade of tolerance from where events are first found
-/// right down to where rounding rules, or halved steps.
+/// right down to the unit of rounding, or halved steps. Methods of high order err as little as the
+/// exact solver only at tolerances below 1e-13.
 #[must_use]
 pub fn settings(stepping: Stepping) -> Vec<Accuracy> {
-    const TOLERANCES: [f64; 10] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13];
+    const TOLERANCES: [f64; 12] =
+        [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15];
     match stepping {
         Stepping::Exact => vec![Accuracy::Exact],
         Stepping::Fixed { .. } => (2..=6).map(|k| Accuracy::Step(0.5_f64.powi(k))).collect(),

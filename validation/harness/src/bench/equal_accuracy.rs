@@ -11,19 +11,25 @@
 pub enum Basis {
     /// Each engine at its most accurate setting.
     MostAccurate,
+    /// Each engine where its work-precision curve has errors of at most [`COMPARABLE`] times the
+    /// exact solver's on the same case.
+    Comparable,
     /// Each engine where its work-precision curve has errors of at most [`TIGHT`].
     Tight,
     /// Each engine where its work-precision curve has errors of at most [`LOOSE`].
     Loose,
 }
 
+/// How many times as large as the exact solver's an error of comparable accuracy is at most: one
+/// digit less.
+pub const COMPARABLE: f64 = 10.0;
 /// The smaller error at which engines are compared.
 pub const TIGHT: f64 = 1e-9;
 /// The larger error at which engines are compared.
 pub const LOOSE: f64 = 1e-6;
 
 /// Every basis, in the order of tables.
-pub const BASES: [Basis; 3] = [Basis::MostAccurate, Basis::Tight, Basis::Loose];
+pub const BASES: [Basis; 4] = [Basis::MostAccurate, Basis::Comparable, Basis::Tight, Basis::Loose];
 
 /// What a right answer errs, and its time in any unit.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,7 +2,7 @@
 
 use super::contest::{Finisher, exact, most_accurate};
 use super::damping::DampingPoint;
-use super::equal_accuracy::{AccuracyPoint, Basis, LOOSE, TIGHT, time_at};
+use super::equal_accuracy::{AccuracyPoint, Basis, COMPARABLE, LOOSE, TIGHT, time_at};
 use super::floor::Floors;
 use super::length::Length;
 pub use super::timed_case::CaseEntry;
@@ -45,6 +45,8 @@ pub struct BenchRow {
     pub state_error_max: Option<f64>,
     pub event_time_error_max: Option<f64>,
     pub ratio_to_exact: Option<f64>,
+    /// Ratio of times at errors of at most [`COMPARABLE`] times the exact solver's on this case.
+    pub ratio_at_comparable_error: Option<f64>,
     /// Ratio of times at errors of at most 1e-6, read off this engine's work-precision curve on
     /// this case.
     #[serde(rename = "ratio_at_1e-6")]
@@ -57,6 +59,8 @@ pub struct BenchRow {
     pub rhs_per_period: Option<f64>,
     /// Whether this is the setting at which this engine errs least here.
     pub most_accurate: bool,
+    /// Whether it errs at most [`COMPARABLE`] times as much as the exact solver here.
+    pub comparable: bool,
     /// Whether its steps are chosen by a tolerance.
     pub adaptive: bool,
     /// Why there is no time.
@@ -79,6 +83,7 @@ impl BenchRow {
     pub fn ratio(&self, basis: Basis) -> Option<f64> {
         match basis {
             Basis::MostAccurate => self.ratio_to_exact,
+            Basis::Comparable => self.ratio_at_comparable_error,
             Basis::Tight => self.ratio_at_1e_9,
             Basis::Loose => self.ratio_at_1e_6,
         }
@@ -90,6 +95,7 @@ impl BenchRow {
         let errs_at_most = |most| self.state_error_max.is_some_and(|error| error <= most);
         match basis {
             Basis::MostAccurate => self.most_accurate,
+            Basis::Comparable => self.comparable,
             Basis::Tight => errs_at_most(TIGHT),
             Basis::Loose => errs_at_most(LOOSE),
         }
@@ -188,6 +194,7 @@ impl Bench {
 
 fn rows(case: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
     let unit = exact(finishers).map(|it| it.series.clone()).unwrap_or_default();
+    let comparable = exact(finishers).map_or(0.0, |it| COMPARABLE * it.score.state_error);
     let row = |it: &Finisher| {
         let timed = it.result.as_ref().ok();
         let best = most_accurate(finishers, it.name).is_some_and(|best| std::ptr::eq(best, it));
@@ -200,6 +207,7 @@ fn rows(case: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
             state_error_max: timed.map(|it| it.score.state_error),
             event_time_error_max: timed.map(|it| it.score.event_time_error),
             ratio_to_exact: timed.map(|it| it.series.ratio_to(&unit)).filter(|it| it.is_finite()),
+            ratio_at_comparable_error: None,
             ratio_at_1e_6: None,
             ratio_at_1e_9: None,
             harness_share: timed.and_then(|it| it.harness_share),
@@ -208,22 +216,25 @@ fn rows(case: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
                 .filter(|it| *it > 0)
                 .map(|it| it as f64 / case.periods),
             most_accurate: best,
+            comparable: timed.is_some_and(|it| it.score.state_error <= comparable),
             adaptive: !matches!(it.stepping, Stepping::Exact | Stepping::Fixed { .. }),
             why: it.result.as_ref().err().map(ToString::to_string),
         }
     };
-    at_equal_accuracy(finishers.iter().map(row).collect())
+    at_equal_accuracy(finishers.iter().map(row).collect(), comparable)
 }
 
-/// Reads each engine's work-precision curve at [`LOOSE`] and [`TIGHT`]. Its times are ratios to the
-/// exact solver's, so that what the machine did otherwise in a round is out of them already.
-fn at_equal_accuracy(mut rows: Vec<BenchRow>) -> Vec<BenchRow> {
+/// Reads each engine's work-precision curve at [`LOOSE`], at [`TIGHT`] and at errors comparable to
+/// the exact solver's. Its times are ratios to the exact solver's, so that what the machine did
+/// otherwise in a round is out of them already.
+fn at_equal_accuracy(mut rows: Vec<BenchRow>, comparable: f64) -> Vec<BenchRow> {
     for own in rows.chunk_by_mut(|a, b| a.engine == b.engine) {
         let corner = |row: &BenchRow| {
             Some(AccuracyPoint { error: row.state_error_max?, time: row.ratio_to_exact? })
         };
         let curve: Vec<_> = own.iter().map(corner).collect();
         for row in own {
+            row.ratio_at_comparable_error = time_at(&curve, comparable);
             row.ratio_at_1e_6 = time_at(&curve, LOOSE);
             row.ratio_at_1e_9 = time_at(&curve, TIGHT);
         }

@@ -21,7 +21,8 @@ pub fn summary(bench: &Bench) -> String {
     text.push('\n');
     text.push_str(&competitors(bench));
     text.push_str(
-        "times exact: at an error <= 1e-9 and <= 1e-6 interpolated on the work-precision curve;\n\
+        "times exact: at an error of at most ten times the exact solver's, 1e-9 and 1e-6\n\
+         interpolated on the work-precision curve;\n\
          harness: share of the engine's time that is the harness's own\n",
     );
     text.push_str(&least_error(bench));
