@@ -5,6 +5,7 @@
 //! what an event adds in second order, and each new rounding, is a column of its own. When there
 //! are too many, the smallest are replaced by a box. So errors that cancel do so here.
 
+use super::bound::{Later, ORDERS};
 use super::flow::{Flow, ModalRow};
 use super::system::LARGEST_DIMENSION;
 use super::vector::{UNDERFLOW, Vector, dot, unit};
@@ -15,6 +16,9 @@ const MOST_COLUMNS: usize = 160;
 
 /// How many of the largest stay columns then.
 const KEPT: usize = 80;
+
+/// What is lost where the last word of a number underflows.
+pub(super) const LAST_WORD: f64 = 1e-280;
 
 /// Bounds that rounding in f64 does not weaken.
 const OUTWARD: f64 = 1.0 + 1e-9;
@@ -47,6 +51,25 @@ pub(super) struct EnclosedCrossing<'a, T> {
     pub unit: f64,
 }
 
+/// What the errors at the entry of a segment do to a row along it.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct InheritedError {
+    /// Bounds of value and derivatives at entry, of the blocks that are polynomials of the time: so
+    /// an error of a rate is none of the value before time has passed.
+    orders: [f64; ORDERS],
+    /// Bounds of the norms of the other blocks' co-ordinates at entry.
+    norms: Vector<f64>,
+}
+
+impl InheritedError {
+    /// A bound of it up to a time, which is not negative.
+    pub fn by<T: Number>(&self, flow: &Flow<T>, row: &ModalRow<T>, time: f64) -> f64 {
+        let polynomial =
+            (1..ORDERS).rev().fold(0.0, |sum, k| (sum + self.orders[k]) * time / k as f64);
+        (self.orders[0] + polynomial) * OUTWARD + flow.bound_by(row, 0, &self.norms, time)
+    }
+}
+
 impl Enclosure {
     /// Errors of each entry of a state by themselves.
     pub fn of(errors: &[f64]) -> Self {
@@ -71,12 +94,24 @@ impl Enclosure {
         self.sum(|column| dot(&row, &flow.modal_rounded(&column.state), flow.dimension))
     }
 
-    /// Bounds of the norms of the errors of each block's modal co-ordinates.
-    pub fn of_blocks<T: Number>(&self, flow: &Flow<T>) -> Vector<f64> {
-        let mut sums = [0.0; LARGEST_DIMENSION];
+    /// What the errors do to a row at any time after the entry.
+    pub fn along<T: Number>(&self, flow: &Flow<T>, row: &ModalRow<T>) -> InheritedError {
+        let mut sums = InheritedError::default();
         for column in &self.columns {
-            let norms = flow.norms(&flow.modal_rounded(&column.state));
-            sums.iter_mut().zip(norms).for_each(|(sum, norm)| *sum += norm * OUTWARD);
+            let own = flow.modal_rounded(&column.state);
+            let (norms, mut orders) = (flow.norms(&own), [0.0; ORDERS]);
+            for part in &row.parts {
+                if part.later != Later::Polynomial {
+                    sums.norms[part.block] += norms[part.block] * OUTWARD;
+                    continue;
+                }
+                for it in &row.columns[part.columns.0..part.columns.1] {
+                    let terms = it.orders.iter().map(|order| order.to_f64() * own[it.at]);
+                    orders.iter_mut().zip(terms).for_each(|(order, term)| *order += term);
+                }
+            }
+            let all = sums.orders.iter_mut().zip(orders);
+            all.for_each(|(sum, order)| *sum += order.abs() * OUTWARD);
         }
         sums
     }
@@ -224,8 +259,6 @@ pub(super) fn roundings<T: Number>(
     entry: &Vector<T>,
     elapsed: T,
 ) -> [f64; LARGEST_DIMENSION] {
-    /// What is lost where the last word of a number underflows.
-    const LAST_WORD: f64 = 1e-280;
     // One of them for the rest of the way to a crossing.
     let margin = (flow.dimension + 7) as f64 * unit::<T>();
     let now = flow.sizes(&flow.sizes_later(entry, elapsed));

@@ -1,6 +1,7 @@
 //! A segment's guards at an instant, evaluated from the entry's modal co-ordinates.
 
 use super::bound::ORDERS;
+use super::enclosure::InheritedError;
 use super::flow::{Flow, ModalRow};
 use super::system::LARGEST_DIMENSION;
 use super::track::{SearchWork, Track};
@@ -21,8 +22,8 @@ pub(super) struct Segment<'a, T> {
     pub flow: &'a Flow<T>,
     pub rows: &'a [ModalRow<T>],
     pub entry: Vector<T>,
-    /// The errors of each block at entry, where they are followed.
-    inherited: Option<Vector<f64>>,
+    /// What errors made before the segment do to each guard, where they are followed.
+    inherited: Option<Vec<InheritedError>>,
     /// What underflow may do to each block.
     lost: Vector<f64>,
     /// The time up to which the Taylor series at entry are good of guards that begin with a
@@ -61,7 +62,7 @@ impl<'a, T: Number> Segment<'a, T> {
         rows: &'a [ModalRow<T>],
         entry: Vector<T>,
         tracks: &[Track],
-        inherited: Option<Vector<f64>>,
+        inherited: Option<Vec<InheritedError>>,
     ) -> Self {
         let (mut blocks, mut zeros, mut early) = (0, PerGuard::new(), false);
         for (n, track) in tracks.iter().enumerate() {
@@ -71,7 +72,10 @@ impl<'a, T: Number> Segment<'a, T> {
                 early |= track.zeros > 0;
             }
         }
-        let lost = inherited.map_or([0.0; LARGEST_DIMENSION], |_| flow.underflow(&entry));
+        let lost = match inherited {
+            Some(_) => flow.underflow(&entry),
+            None => [0.0; LARGEST_DIMENSION],
+        };
         let series = OnceCell::new();
         let mut segment =
             Self { flow, rows, entry, inherited, lost, early: -1.0, series, zeros, blocks };
@@ -247,8 +251,8 @@ impl<'a, T: Number> Segment<'a, T> {
     /// What errors made before the segment may do to a guard up to a time.
     #[inline]
     pub fn inherited_by(&self, n: usize, time: T) -> f64 {
-        let bound = |errors| self.flow.bound_by(&self.rows[n], 0, errors, time.to_f64());
-        self.inherited.as_ref().map_or(0.0, bound)
+        let by = |all: &Vec<InheritedError>| all[n].by(self.flow, &self.rows[n], time.to_f64());
+        self.inherited.as_ref().map_or(0.0, by)
     }
 }
 

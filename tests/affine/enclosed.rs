@@ -2,7 +2,7 @@
 
 use super::{names, system};
 use crate::double_double::DoubleDouble;
-use percuss::affine::{Event, Solver};
+use percuss::affine::{Ending, Event, Solver, What};
 use percuss::number::Number;
 
 /// Motions that are polynomials of the time, whose couplings are large: an error grows with a power
@@ -39,6 +39,25 @@ reset = [\"x = 0\", \"v = -v/2\"]
 mode = \"flight\"
 x = 1000000
 v = 0
+";
+
+const BALL: &str = "
+schema = 1
+name = \"ball\"
+states = [\"x\", \"v\"]
+[parameters]
+e = 0.99
+[[mode]]
+name = \"flight\"
+equations = [\"x' = v\", \"v' = -2\"]
+[[mode.until]]
+name = \"impact\"
+guard = \"x < 0\"
+reset = [\"x = 0\", \"v = -e*v\"]
+[start]
+mode = \"flight\"
+x = 0
+v = 1
 ";
 
 /// A triple eigenvalue that decays, behind couplings of 50.
@@ -106,7 +125,23 @@ fn errors_of_polynomial_motions_grow_with_powers_of_the_time() {
     }
 }
 
-/// The second crossing after three starts, with both words of its rate, computed with mpmath at 80
+/// Two thousand impacts, until their rate is 1e-11: its error is no error of the height, which is
+/// zero there.
+#[test]
+fn errors_of_a_rate_do_not_hide_small_flights() {
+    let (names, events) = enclosed::<DoubleDouble>(BALL, 1000.0);
+    assert_eq!(names.last().map(String::as_str), Some("accumulation"));
+    let ending = &events[events.len() - 1];
+    let What::End(Ending::Accumulation(from, to)) = ending.what else { panic!("{ending:?}") };
+    let error = DoubleDouble::exact(ending.errors.as_ref().unwrap().time);
+    let (from, to) = (ending.time.value() + (from - error), ending.time.value() + (to + error));
+    // The times of the flights are 1, e, e^2 and so on; 1 - e is exact in f64.
+    let limit = DoubleDouble::one() / DoubleDouble::exact(1.0 - 0.99);
+    assert!(from <= limit && limit <= to, "{from:?} {limit:?} {to:?}");
+    assert!((to - from).to_f64() < 1e-20, "{from:?} {to:?}");
+}
+
+/// The second crossing after two starts, with both words of its rate, computed with mpmath at 80
 /// digits: the phase is known to 1.1e8 or 1.1e12 times 2^-106.
 #[test]
 fn bounds_hold_far_from_time_zero() {

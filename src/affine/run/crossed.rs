@@ -2,7 +2,7 @@
 
 use super::Run;
 use crate::affine::clock::Time;
-use crate::affine::enclosure::{EnclosedCrossing, Enclosure, roundings};
+use crate::affine::enclosure::{EnclosedCrossing, Enclosure, LAST_WORD, roundings};
 use crate::affine::event::{Ending, What};
 use crate::affine::structure::Firing;
 use crate::affine::system::Direction;
@@ -67,7 +67,7 @@ impl<T: Number> Run<'_, T> {
             // The guard is off zero by what was computed, and by what rounding did to that.
             slack: (point.slack[first] - inherited).max(0.0)
                 + point.orders[first][0].to_f64().abs()
-                + 1e-3 * unit::<T>(),
+                + LAST_WORD,
             unit: unit::<T>(),
         });
         errors.add_box(&roundings(&solver_mode.flow, &segment.entry, point.time));

@@ -118,7 +118,10 @@ impl<T: Number> Run<'_, T> {
         if let Some(errors) = &mut self.enclosure {
             errors.add_entry(flow, &self.state, unit::<T>());
         }
-        let inherited = self.enclosure.as_ref().map(|errors| errors.of_blocks(flow));
+        let inherited = self
+            .enclosure
+            .as_ref()
+            .map(|errors| solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect());
         let segment = Segment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
         segment.begin(&mut self.ends.left);
         self.ends.passed = Passed::none();
