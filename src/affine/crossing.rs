@@ -133,13 +133,11 @@ impl<T: Number> Segment<'_, T> {
         let first = outward(&at.orders[n], track);
         let mut all = [T::zero(); TERMS];
         let last = terms(&self.rows[n]);
-        let orders: [T; TERMS] = match last > 4 {
-            true => {
-                let next = outward(&self.rows[n].orders_from(4, &at.y), track);
-                std::array::from_fn(|k| if k < 4 { first[k] } else { next[k - 4] })
-            }
-            false => std::array::from_fn(|k| if k < 4 { first[k] } else { T::zero() }),
-        };
+        let mut orders = [T::zero(); TERMS];
+        orders[..4].copy_from_slice(&first);
+        if last > 4 {
+            orders[4..].copy_from_slice(&outward(&self.rows[n].orders_from(4, &at.y), track));
+        }
         for (k, term) in all[..last].iter_mut().enumerate() {
             if !orders[k].to_f64().is_finite() {
                 // It is a first guess, which fewer terms give as well.

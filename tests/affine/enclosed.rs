@@ -2,7 +2,7 @@
 
 use super::{names, system};
 use crate::double_double::DoubleDouble;
-use percuss::affine::{Ending, Event, Solver, What};
+use percuss::affine::{Ending, Event, What};
 use percuss::number::Number;
 
 /// Motions that are polynomials of the time, whose couplings are large: an error grows with a power
@@ -100,11 +100,10 @@ x = 0
 v = 0
 ";
 
-fn enclosed<T: Number>(text: &str, until: f64) -> (Vec<String>, Vec<Event<T>>) {
+/// The names of a run's events, with the events.
+fn named<T: Number>(text: &str, until: f64) -> (Vec<String>, Vec<Event<T>>) {
     let system = system(text);
-    let solver = Solver::<T>::new(&system).unwrap();
-    let start = system.start.as_ref().unwrap();
-    let events: Vec<_> = solver.run_enclosed(start, T::exact(until)).unwrap().collect();
+    let events = super::enclosed(&system, until);
     (names(&system, &events), events)
 }
 
@@ -115,12 +114,12 @@ fn errors_of_polynomial_motions_grow_with_powers_of_the_time() {
         (FALL, 20.0, &["impact", "end"], (2.0 * 1e6 / 9810.0_f64).sqrt()),
         (CASCADE, 20.0, &["half", "end"], 2.674_060_313_723_560_3),
     ] {
-        let (found, events) = enclosed::<DoubleDouble>(text, until);
+        let (found, events) = named::<DoubleDouble>(text, until);
         assert_eq!(found, expected);
         assert!((events[0].time.value().to_f64() / time - 1.0).abs() < 1e-15);
         let error = events[0].errors.as_ref().unwrap().time;
         assert!(0.0 < error && error < 1e-26 * time, "{error:e}");
-        let (found, _) = enclosed::<f64>(text, until);
+        let (found, _) = named::<f64>(text, until);
         assert_eq!(found, expected);
     }
 }
@@ -129,7 +128,7 @@ fn errors_of_polynomial_motions_grow_with_powers_of_the_time() {
 /// zero there.
 #[test]
 fn errors_of_a_rate_do_not_hide_small_flights() {
-    let (names, events) = enclosed::<DoubleDouble>(BALL, 1000.0);
+    let (names, events) = named::<DoubleDouble>(BALL, 1000.0);
     assert_eq!(names.last().map(String::as_str), Some("accumulation"));
     let ending = &events[events.len() - 1];
     let What::End(Ending::Accumulation(from, to)) = ending.what else { panic!("{ending:?}") };
@@ -149,7 +148,7 @@ fn bounds_hold_far_from_time_zero() {
         ("330000001/3", 110_000_015.0, (0.020_433_771_650_834_535, -1.178_316_619_858_692_5e-18)),
         ("3000000000001/3", 1e12 + 15.0, (-0.070_732_609_434_886_74, -5.246_931_103_250_777e-18)),
     ] {
-        let (names, events) = enclosed::<DoubleDouble>(&FORCED.replace("START", start), until);
+        let (names, events) = named::<DoubleDouble>(&FORCED.replace("START", start), until);
         assert_eq!(names[..2], ["half", "half"], "{start}");
         let found = events[1].state[1] - DoubleDouble::new(rate.0, rate.1);
         let (error, bound) = (found.to_f64().abs(), events[1].errors.as_ref().unwrap().state[1]);

@@ -1,8 +1,8 @@
 //! Where the endings are that have no instant of their own.
 
-use super::{events, names, system};
+use super::{enclosed, events, names, system};
 use crate::double_double::DoubleDouble;
-use percuss::affine::{Event, Solver, System, What};
+use percuss::affine::{Event, Solver, What};
 use percuss::number::Number;
 
 /// The level of 1/2 is passed upward, and then the amplitude of 1 is met and not passed.
@@ -74,11 +74,6 @@ x = 0
 y = 1
 ";
 
-fn enclosed<T: Number>(system: &System) -> Vec<Event<T>> {
-    let solver = Solver::<T>::new(system).unwrap();
-    solver.run_enclosed(system.start.as_ref().unwrap(), T::exact(10.0)).unwrap().collect()
-}
-
 /// The last event before the ending, and the ending.
 fn last_two<T>(all: &[Event<T>]) -> [&Event<T>; 2] {
     let [.., before, ending] = all else { panic!("a run of too few events") };
@@ -94,12 +89,12 @@ fn assert_at<T: Number + std::fmt::Debug>([before, ending]: [&Event<T>; 2]) {
 #[test]
 fn an_undecided_ending_is_at_the_last_event_even_a_watched_one() {
     let touch = system(TOUCH);
-    let all = enclosed::<f64>(&touch);
+    let all = enclosed::<f64>(&touch, 10.0);
     assert_eq!(names(&touch, &all), ["half", "undecided"]);
     assert_at(last_two(&all));
     assert!((all[1].time.value() - std::f64::consts::FRAC_PI_6).abs() < 1e-15);
     assert!(all[1].errors.as_ref().is_some_and(|it| it.time > 0.0));
-    let all = enclosed::<DoubleDouble>(&touch);
+    let all = enclosed::<DoubleDouble>(&touch, 10.0);
     assert_eq!(names(&touch, &all), ["half", "undecided"]);
     assert_at(last_two(&all));
     // A run that does not follow its errors has no more digits where numbers overflow.
@@ -112,12 +107,12 @@ fn an_undecided_ending_is_at_the_last_event_even_a_watched_one() {
 #[test]
 fn an_ending_in_place_of_an_event_is_at_the_event_before_it() {
     let root = system(ROOT);
-    let all = enclosed::<f64>(&root);
+    let all = enclosed::<f64>(&root, 10.0);
     assert_eq!(names(&root, &all), ["quarter", "undecided"]);
     assert_at(last_two(&all));
     assert_eq!(root.modes[all[1].mode].name, "rising");
     // 106 bits decide it.
-    let all = enclosed::<DoubleDouble>(&root);
+    let all = enclosed::<DoubleDouble>(&root, 10.0);
     assert_eq!(names(&root, &all)[..3], ["quarter", "half", "root"]);
 }
 

@@ -34,6 +34,13 @@ fn events<T: Number>(system: &System, until: f64) -> Vec<Event<T>> {
     solver.run(start, T::exact(until)).unwrap().collect()
 }
 
+/// All events of a run that follows its errors, the ending included.
+fn enclosed<T: Number>(system: &System, until: f64) -> Vec<Event<T>> {
+    let solver = Solver::<T>::new(system).unwrap();
+    let start = system.start.as_ref().unwrap();
+    solver.run_enclosed(start, T::exact(until)).unwrap().collect()
+}
+
 /// The name of an event.
 fn name<T>(system: &System, event: &Event<T>) -> String {
     match &event.what {
