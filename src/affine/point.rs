@@ -22,10 +22,8 @@ pub(super) struct Segment<'a, T> {
     pub flow: &'a Flow<T>,
     pub rows: &'a [ModalRow<T>],
     pub entry: Vector<T>,
-    /// What errors made before the segment do to each guard, where they are followed.
-    inherited: Option<Vec<InheritedError>>,
-    /// What underflow may do to each block.
-    lost: Vector<f64>,
+    /// What errors do along the segment, where they are followed.
+    followed: Option<Box<FollowedErrors>>,
     /// The time up to which the Taylor series at entry are good of guards that begin with a
     /// structural zero, which they keep; negative where none does.
     pub early: f64,
@@ -35,6 +33,14 @@ pub(super) struct Segment<'a, T> {
     zeros: PerGuard<usize>,
     /// The blocks that a guard which can cross is made of.
     blocks: u16,
+}
+
+/// What errors do to the guards along a segment; boxed, because most runs do not follow them.
+struct FollowedErrors {
+    /// What errors made before the segment do to each guard.
+    inherited: Vec<InheritedError>,
+    /// What underflow may do to each block.
+    lost: Vector<f64>,
 }
 
 /// The guards at an instant.
@@ -72,13 +78,10 @@ impl<'a, T: Number> Segment<'a, T> {
                 early |= track.zeros > 0;
             }
         }
-        let lost = match inherited {
-            Some(_) => flow.underflow(&entry),
-            None => [0.0; LARGEST_DIMENSION],
-        };
+        let lost = || flow.underflow(&entry);
+        let followed = inherited.map(|it| Box::new(FollowedErrors { inherited: it, lost: lost() }));
         let series = OnceCell::new();
-        let mut segment =
-            Self { flow, rows, entry, inherited, lost, early: -1.0, series, zeros, blocks };
+        let mut segment = Self { flow, rows, entry, followed, early: -1.0, series, zeros, blocks };
         if early {
             segment.early = segment.series_limit();
         }
@@ -227,16 +230,14 @@ impl<'a, T: Number> Segment<'a, T> {
         point: &mut GuardedPoint<T>,
         is_by_series: impl Fn(usize) -> bool,
     ) {
-        if !self.follows_errors() {
-            return;
-        }
+        let Some(followed) = &self.followed else { return };
         let sizes = self.flow.sizes_later(&self.entry, point.time);
         for n in guards {
             let slack = &mut point.slack[n];
             if !is_by_series(n) {
                 *slack = slack.max(self.margin() * self.rows[n].size(&sizes));
             }
-            let lost = self.flow.bound_by(&self.rows[n], 0, &self.lost, point.time.to_f64());
+            let lost = self.flow.bound_by(&self.rows[n], 0, &followed.lost, point.time.to_f64());
             let rest = LARGEST_DIMENSION as f64 * UNDERFLOW;
             *slack += self.inherited_by(n, point.time) + lost + rest;
         }
@@ -245,14 +246,15 @@ impl<'a, T: Number> Segment<'a, T> {
     /// Whether the run follows its errors.
     #[inline]
     pub fn follows_errors(&self) -> bool {
-        self.inherited.is_some()
+        self.followed.is_some()
     }
 
     /// What errors made before the segment may do to a guard up to a time.
     #[inline]
     pub fn inherited_by(&self, n: usize, time: T) -> f64 {
-        let by = |all: &Vec<InheritedError>| all[n].by(self.flow, &self.rows[n], time.to_f64());
-        self.inherited.as_ref().map_or(0.0, by)
+        self.followed.as_ref().map_or(0.0, |followed| {
+            followed.inherited[n].by(self.flow, &self.rows[n], time.to_f64())
+        })
     }
 }
 
