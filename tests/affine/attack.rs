@@ -149,8 +149,8 @@ proptest! {
         let margin = 1e-11 * (1e-2 + guard.size());
         prop_assume!(at > 1e-9 && at < 0.999 * UNTIL);
         prop_assume!(guard.value(0.0) < value - 2.0 * margin);
-        // Rounding decides at a crest that is as near to the level as a hundred times what it may do
-        // to the guard, and there are several hundred crests.
+        // Rounding decides at a crest that is as near to the level as a hundred times what it may
+        // do to the guard, and there are several hundred crests.
         let room = 1e-13 * (1.0 + guard.size());
         prop_assume!(crests.iter().all(|it| (it.1 - (value - margin)).abs() > room));
         let (missed, time) = first(&guard.system(value + margin), UNTIL);

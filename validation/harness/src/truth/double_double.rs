@@ -18,8 +18,8 @@ pub struct DoubleDouble(Df64);
 /// 2^-106, half the distance from one to the next number: the unit of this arithmetic.
 pub const UNIT: f64 = f64::EPSILON * f64::EPSILON / 4.0;
 
-/// The largest argument of sine and cosine, 2^50: up to it a quotient by a quarter turn is good to an
-/// eighth of one. Beyond it both are NaN.
+/// The largest argument of sine and cosine, 2^50: up to it a quotient by a quarter turn is good to
+/// an eighth of one. Beyond it both are NaN.
 pub const LARGEST_ANGLE: f64 = 1_125_899_906_842_624.0;
 
 impl DoubleDouble {
