@@ -13,6 +13,9 @@ use crate::number::Number;
 /// The number of Taylor terms that are summed to guess at a crossing, at most.
 const TERMS: usize = 8;
 
+/// The share of a slope by which it may change on the rest of the way to a root that is told by it.
+const SHORT: f64 = 1e-6;
+
 /// A crossing that is proved to be the only one shortly after a point.
 struct Rising<T> {
     /// The number of the guard.
@@ -32,9 +35,9 @@ struct Rising<T> {
 /// The first crossing of all guards.
 pub(super) struct FirstCrossing<T> {
     /// When it is, by Taylor polynomials.
-    time: T,
+    pub time: T,
     /// Between which times its first guard is proved to cross.
-    between: [T; 2],
+    pub between: [T; 2],
     /// The guards that cross within what rounding may do, as bits.
     pub guards: u64,
 }
@@ -160,7 +163,7 @@ impl<T: Number> Segment<'_, T> {
 
     /// A bound of a guard over a short time after a point.
     #[inline]
-    fn excess(&self, n: usize, track: &Track, at: &GuardedPoint<T>, within: f64) -> f64 {
+    pub fn excess(&self, n: usize, track: &Track, at: &GuardedPoint<T>, within: f64) -> f64 {
         let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::to_f64);
         let fourth = self.flow.bound_by(&self.rows[n], 4, &at.norms, within);
         let rest = 0.5 * bend.abs() + within * (third.abs() / 6.0 + within * fourth / 24.0);
@@ -185,6 +188,10 @@ impl<T: Number> Segment<'_, T> {
         work: &mut SearchWork,
     ) -> bool {
         const ROUNDS: usize = 128;
+        /// The share of a point's time beyond which a cubic does not tell the rest to the last digit.
+        const FAR: f64 = 1e-4;
+        // A crossing exactly at the limit counts.
+        let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
         let n = crossing.guards.trailing_zeros() as usize;
         let [mut low, mut high] = crossing.between;
         let inside = low <= crossing.time && crossing.time <= high;
@@ -201,7 +208,14 @@ impl<T: Number> Segment<'_, T> {
                 break;
             }
             *(if value < 0.0 { &mut low } else { &mut high }) = point.time;
-            let step = newton(&orders);
+            let mut step = newton(&orders);
+            if self.is_last(&orders, step) {
+                point.later = step;
+                return point.time + step <= limit + room;
+            }
+            if step.to_f64().abs() > FAR * point.time.to_f64() {
+                step = self.root(n, &tracks[n], point).0;
+            }
             let (mut better, mut size) = (point.time + step, step.to_f64().abs());
             if size <= unit::<T>() * point.time.to_f64().abs() {
                 break;
@@ -222,9 +236,19 @@ impl<T: Number> Segment<'_, T> {
             self.evaluate_guard(n, point, better, work);
         }
         point.later = remaining(&point.orders[n]);
-        // A crossing exactly at the limit counts.
-        let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
         point.time <= limit + room
+    }
+
+    /// Whether a step to a crossing is so short that a product with the slopes of all co-ordinates
+    /// does what another evaluation would do: what their second derivatives add is less than
+    /// rounding. Errors are followed from one evaluation to the next.
+    #[inline]
+    fn is_last(&self, orders: &[T; 4], step: T) -> bool {
+        let size = step.to_f64().abs();
+        let turn = self.flow.speed * size;
+        let [slope, bend] = [orders[1].to_f64(), orders[2].to_f64()];
+        let is_straight = turn * turn <= 0.25 * unit::<T>() && size * bend.abs() <= SHORT * slope;
+        is_straight && !self.follows_errors()
     }
 }
 
@@ -238,7 +262,6 @@ fn terms<T>(row: &ModalRow<T>) -> usize {
 /// product with it does what another evaluation would do.
 #[inline]
 fn remaining<T: Number>(orders: &[T; 4]) -> T {
-    const SHORT: f64 = 1e-6;
     let step = -orders[0] / orders[1];
     let [slope, bend] = [orders[1].to_f64(), orders[2].to_f64()];
     if (step.to_f64() * bend).abs() <= SHORT * slope.abs() { step } else { T::zero() }

@@ -14,6 +14,8 @@ pub(super) struct Flow<T> {
     pub blocks: Vec<FlowBlock<T>>,
     /// How long a bound may be asked for: a growing block grows by at most e.
     pub longest: f64,
+    /// How fast a block's co-ordinates move at most, beside their sizes.
+    pub speed: f64,
     /// The matrix W of all blocks, by columns.
     to_modal: Vec<Vector<T>>,
     /// The matrix W of all blocks, rounded to f64, by columns.
@@ -35,6 +37,8 @@ pub(super) struct FlowBlock<T> {
 /// A row of z with its derivatives, in modal co-ordinates.
 #[derive(Clone, Debug)]
 pub(super) struct ModalRow<T> {
+    /// The number of the first guard of its mode that is the same row.
+    pub twin: usize,
     /// The row's derivatives.
     pub orders: Vec<Vector<T>>,
     /// How many of them there are up to the last that is not zero.
@@ -79,6 +83,7 @@ impl<T: Number> Flow<T> {
             dimension,
             blocks: Vec::new(),
             longest: f64::INFINITY,
+            speed: blocks.iter().map(|it| modal::norm(&it.matrix)).fold(0.0, f64::max),
             to_modal: Vec::new(),
             to_modal_rounded: Vec::new(),
             from_modal: Vec::new(),
@@ -111,7 +116,7 @@ impl<T: Number> Flow<T> {
         let is_there = |order: &Vector<T>| order.iter().any(|it| *it != T::zero());
         let last = orders.iter().rposition(is_there).map_or(0, |it| it + 1);
         let mut modal =
-            ModalRow { orders, last, columns: Vec::new(), parts: Vec::new(), blocks: 0 };
+            ModalRow { twin: 0, orders, last, columns: Vec::new(), parts: Vec::new(), blocks: 0 };
         for (n, (block, part)) in blocks.iter().zip(&parts).enumerate() {
             let norms = bound::norms(block, part);
             if norms.iter().any(|it| *it > 0.0) {
@@ -312,6 +317,21 @@ impl<T: Number> ModalRow<T> {
             size += column.size * entry.to_f64().abs();
         }
         (sums, size)
+    }
+
+    /// The first orders, and the sums of the sizes of what they are summed from, in f64.
+    #[inline]
+    pub fn orders_and_sizes<const N: usize>(&self, y: &Vector<T>) -> [[f64; N]; 2] {
+        let [mut orders, mut sizes] = [[0.0; N]; 2];
+        for column in &self.columns {
+            let entry = y[column.at].to_f64();
+            for k in 0..N {
+                let term = column.orders[k].to_f64() * entry;
+                orders[k] += term;
+                sizes[k] += term.abs();
+            }
+        }
+        [orders, sizes]
     }
 
     /// The sum of the sizes of what the row's value is summed from.

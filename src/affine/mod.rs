@@ -17,6 +17,7 @@ mod known;
 mod modal;
 mod motion;
 mod point;
+mod quotient;
 mod reach;
 mod residue;
 mod run;
@@ -26,6 +27,7 @@ mod starts;
 mod structural;
 mod structure;
 mod system;
+mod taylor;
 mod track;
 mod vector;
 

@@ -161,6 +161,17 @@ impl<'a, T: Number> Segment<'a, T> {
         self.inherit(n..n + 1, point, |_| by_series);
     }
 
+    /// Evaluates all guards of a point at the crossing of one of them.
+    #[inline]
+    pub fn at_crossing(&self, point: &mut GuardedPoint<T>, work: &mut SearchWork) {
+        let time = point.time + point.later;
+        if time == point.time {
+            self.fill_all(point);
+        } else {
+            self.evaluate(point, time, work);
+        }
+    }
+
     #[inline]
     fn go_to(&self, point: &mut GuardedPoint<T>, time: T, work: &mut SearchWork) {
         work.evaluations += 1;

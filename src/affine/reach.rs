@@ -110,10 +110,18 @@ fn enclose<T: Number>(
             Later::Steady => part.norms[0] * left.norms[part.block] - own,
             Later::Polynomial | Later::Growing(_) => break,
         };
+        let rest = if k + 1 < row.parts.len() { rests[k + 1] } else { 0.0 };
         if value > LEFT * begin {
+            if part.later == Later::Fading && rest < MUCH * best {
+                let from = row.first_column(k + 1);
+                let slope = track.outward * row.first_orders(&left.y, from)[1].to_f64();
+                let length = held_back(-own, part.norms[1] / part.norms[0], value, slope);
+                if length > reach.length {
+                    (reach.cut, reach.length) = (k + 1, length.min(longest));
+                }
+            }
             break;
         }
-        let rest = if k + 1 < row.parts.len() { rests[k + 1] } else { 0.0 };
         if rest < MUCH * best {
             let length = root(REMAINDER * MIDDLE * -value / rest, 8).min(longest);
             if length > reach.length {
@@ -122,6 +130,15 @@ fn enclose<T: Number>(
             }
         }
     }
+}
+
+/// How long a decay at a rate keeps a guard below zero that is `value` and rises without it: until
+/// it is twice as large as the rest has become. The next piece is short beside the decay.
+#[inline]
+fn held_back(decay: f64, rate: f64, value: f64, slope: f64) -> f64 {
+    let until = |rest: f64| libm::log(decay / (2.0 * rest)) / rate;
+    let length = until(value.abs());
+    if length > 0.0 { until(value.abs() + length * slope.abs()) } else { 0.0 }
 }
 
 /// Bounds of the eighth derivative of all blocks from each on.

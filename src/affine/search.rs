@@ -9,9 +9,11 @@
 //! optimising across them; so what runs at every event is marked to be inlined, here and in the
 //! modules that this one uses.
 
+use super::crossing::FirstCrossing;
 use super::hull::{Judged, Lengths};
 use super::point::{Ends, GuardedPoint, Passed, PerGuard, Segment};
 use super::reach::Reach;
+use super::taylor::Misses;
 use super::track::{SearchWork, Track, live};
 use super::vector::unit;
 use crate::number::Number;
@@ -44,6 +46,7 @@ impl<T: Number> Segment<'_, T> {
         tracks: &mut [Track],
         ends: &mut Ends<T>,
         limit: T,
+        misses: &mut Misses,
         work: &mut SearchWork,
     ) -> Found {
         let mut most = f64::INFINITY;
@@ -60,6 +63,9 @@ impl<T: Number> Segment<'_, T> {
                 return Found::Lost;
             }
             self.measure(&mut ends.left);
+            if let Some(crossing) = self.first_by_taylor(tracks, &ends.left, misses, work) {
+                return self.settled_by(&crossing, tracks, ends, limit, work);
+            }
             let known = if is_ahead { ends.passed.guards } else { 0 };
             let reaches = self.reaches(tracks, &ends.left, known);
             if !is_ahead && !self.look_ahead(tracks, ends, &reaches, limit, most, work) {
@@ -96,14 +102,27 @@ impl<T: Number> Segment<'_, T> {
             }
             self.measure(&mut ends.left);
             if let Some(crossing) = self.rising(tracks, &ends.left, &ends.passed, work) {
-                return match self.settled(tracks, &mut ends.left, &crossing, limit, work) {
-                    true => Found::Crossing(crossing.guards),
-                    false => Found::Nothing,
-                };
+                return self.settled_by(&crossing, tracks, ends, limit, work);
             }
             most = 0.25 * length;
         }
         Found::Lost
+    }
+
+    /// Brings the left end to a crossing that is proved, if that is not after `limit`.
+    #[inline]
+    fn settled_by(
+        &self,
+        crossing: &FirstCrossing<T>,
+        tracks: &[Track],
+        ends: &mut Ends<T>,
+        limit: T,
+        work: &mut SearchWork,
+    ) -> Found {
+        match self.settled(tracks, &mut ends.left, crossing, limit, work) {
+            true => Found::Crossing(crossing.guards),
+            false => Found::Nothing,
+        }
     }
 
     /// How far each guard is looked at from a point, but for those of which all is known.

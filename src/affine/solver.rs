@@ -86,7 +86,11 @@ impl<T: Number> Solver<T> {
         let row = |row: &Row, mode: usize| flows[mode].row(row, &blocks[mode]);
         let mode = |(n, mode): (usize, &Mode)| {
             let until = mode.until.iter().map(|it| &it.guard);
-            let guards = until.chain(mode.watch.iter().map(|it| &it.guard));
+            let guards: Vec<_> = until.chain(mode.watch.iter().map(|it| &it.guard)).collect();
+            let guard = |guard: &&Row| {
+                let twin = guards.iter().position(|it| it == guard).unwrap_or_default();
+                ModalRow { twin, ..row(guard, n) }
+            };
             let conditions = mode.until.iter().map(|until| {
                 let condition =
                     |it: &super::system::Successor| it.when.as_ref().map(|when| row(when, it.mode));
@@ -96,7 +100,7 @@ impl<T: Number> Solver<T> {
             SolverMode {
                 flow: flows[n].clone(),
                 matrix: mode.matrix.iter().map(numbers).collect(),
-                guards: guards.map(|guard| row(guard, n)).collect(),
+                guards: guards.iter().map(guard).collect(),
                 resets: resets.collect(),
                 changes: mode.until.iter().map(|it| changes(&it.reset)).collect(),
                 conditions: conditions.collect(),

@@ -193,12 +193,16 @@ fn time_errors(system: &System, table: &Table) -> Vec<f64> {
     events.zip(&table.rows[1..table.rows.len() - 1]).map(off).collect()
 }
 
-/// The mean is 1.4 and the worst 15. They were 1.8 and 19 when each entry of a nilpotent matrix was
-/// added to its co-ordinate by itself, 2.3 and 23 when all powers of the time were, and 2.5 and 27
-/// without the rest of the way to a crossing, by the value of its guard.
+/// The mean is 1.2 and the worst 15. Each of three changes for the worse raised it by a third to
+/// four fifths: to add each entry of a nilpotent matrix to its co-ordinate by itself, to do so with
+/// all powers of the time, and to leave out the rest of the way to a crossing, by the value of its
+/// guard. Left out is relay-chatter-fine, whose errors are one walk of 179 steps in a direction
+/// without restoring force: where it ends is chance. Over a thousand starts beside its own, 0.0001
+/// apart, its mean is 430 roundings, or 409 where crossings are not told by Taylor polynomials.
 #[test]
 fn times_are_good_to_two_roundings() {
-    let errors = cases().into_iter().flat_map(|(case, system)| {
+    let all = cases().into_iter().filter(|(case, _)| case != "relay-chatter-fine");
+    let errors = all.flat_map(|(case, system)| {
         let table = table(&case, system.states.len());
         time_errors(&system, &table)
     });
@@ -206,7 +210,7 @@ fn times_are_good_to_two_roundings() {
     let mean = errors.iter().sum::<f64>() / errors.len() as f64;
     let worst = errors.iter().fold(0.0, |most: f64, it| most.max(*it));
     println!("{} events: {mean:.3} roundings in the mean, {worst:.1} at most", errors.len());
-    assert!(errors.len() > 2000 && mean < 2.0 && worst < 24.0, "{mean} {worst}");
+    assert!(errors.len() > 2000 && mean < 1.6 && worst < 24.0, "{mean} {worst}");
 }
 
 /// Every case of a system, with its parameters and start.

@@ -8,6 +8,7 @@ use crate::affine::modal::BigReal;
 use crate::affine::point::Ends;
 use crate::affine::solver::Solver;
 use crate::affine::system::{LARGEST_DIMENSION, StartPoint};
+use crate::affine::taylor::Misses;
 use crate::affine::track::SearchWork;
 use crate::affine::vector::{Vector, rounded, unit};
 use crate::number::Number;
@@ -67,6 +68,7 @@ impl<T: Number> Solver<T> {
             tracks: Vec::new(),
             ends: Ends::default(),
             segment: None,
+            misses: vec![Misses::default(); self.modes.len()],
             modal: [T::zero(); LARGEST_DIMENSION],
             restitution: None,
             at_entry: 0,

@@ -25,7 +25,7 @@ impl<T: Number> Run<'_, T> {
         let ending = guards & low_bits(until);
         if ending == 0 {
             if let Some(segment) = &self.segment {
-                segment.fill_all(&mut self.ends.left);
+                segment.at_crossing(&mut self.ends.left, &mut self.work);
             }
             self.tracks.iter_mut().for_each(|track| track.zeros = 0);
             for n in bits(guards) {

@@ -12,6 +12,7 @@ use crate::affine::point::{Ends, Passed, Segment};
 use crate::affine::search::Found;
 use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::structure::Firing;
+use crate::affine::taylor::Misses;
 use crate::affine::track::{SearchWork, Track};
 use crate::affine::vector::{Vector, dot, unit};
 use crate::number::Number;
@@ -31,6 +32,8 @@ pub struct Run<'a, T> {
     tracks: Vec<Track>,
     ends: Ends<T>,
     segment: Option<Segment<'a, T>>,
+    /// How the search by Taylor polynomials fares in each mode.
+    misses: Vec<Misses>,
     pub(in crate::affine) modal: Vector<T>,
     /// The coefficient of restitution of an impact, from its fastest occurrence.
     pub(in crate::affine) restitution: Option<Restitution<T>>,
@@ -169,8 +172,8 @@ impl<T: Number> Run<'_, T> {
         let mode = self.structure.node(self.node).mode;
         let limit = self.limit();
         let Some(segment) = &self.segment else { return self.end(Ending::Undecided) };
-        let ends = &mut self.ends;
-        match segment.first(&mut self.tracks, ends, limit, &mut self.work) {
+        let (ends, misses) = (&mut self.ends, &mut self.misses[mode]);
+        match segment.first(&mut self.tracks, ends, limit, misses, &mut self.work) {
             Found::Lost => self.end(Ending::Undecided),
             Found::Nothing => {
                 let limit = if limit > T::zero() { limit } else { T::zero() };

@@ -1,0 +1,258 @@
+//! A guard's Taylor polynomial, and what it proves.
+//!
+//! A guard that begins with z zeros is s^z q, and q has its sign for s > 0. With the polynomial of
+//! q, a bound of what is left of its series, and a bound of what rounding does:
+//! - q is negative up to a time if all Bernstein coefficients of the polynomial, raised by the two
+//!   bounds, are.
+//! - q crosses zero once in a window about the root of the polynomial if it rises there by at least
+//!   half of the polynomial's slope at the root, and by more than twice what the bounds leave open.
+
+use super::bound::ORDERS;
+use crate::number::Number;
+use crate::numeric::real::Real;
+
+/// On both sides of a root, as a share of its time, a quotient has to rise steadily, at most.
+pub(super) const WINDOW: f64 = 1.0 / 16.0;
+
+/// By how many roundings of f64 a sum of powers, or a Bernstein coefficient, is off at most, in
+/// sizes of what it is summed from: 2N additions and products, twice.
+const ROUNDINGS: f64 = 4.0 * ORDERS as f64 * f64::EPSILON;
+
+/// Room for the rounding of a remainder.
+const OUTWARD: f64 = 1.0 + 1e-12;
+
+/// A guard after a point, divided by the power of the time with which it begins; N is the number of
+/// derivatives that are looked at, the value and the one that is bounded included.
+pub(super) struct Quotient<const N: usize> {
+    /// The exponent of that power, at most two.
+    zeros: usize,
+    /// The coefficients of its polynomial. The last is zero: its place is that of the remainder.
+    coefficients: [f64; N],
+    /// The sizes of what they are summed from.
+    sizes: [f64; N],
+    /// What rounding does to a coefficient, beside its size.
+    margin: f64,
+    /// What rounding did to the guard's value, where that is not zero.
+    slack: f64,
+}
+
+impl<const N: usize> Quotient<N> {
+    /// What a sum of powers is at the end of the largest window, beside its value at the root, at
+    /// most.
+    const WIDER: f64 = power(1.0 + WINDOW, N - 1);
+
+    /// The inverses of the binomial coefficients.
+    const SHARES: [f64; N] = inverse_binomials();
+
+    /// The quotient of a guard with these orders, positive outside, and the sizes of what they are
+    /// summed from; `margin` is what rounding does to them beside these sizes, and `slack` what it
+    /// did to the value.
+    #[inline]
+    pub fn of(orders: &[f64; N], sizes: &[f64; N], zeros: usize, margin: f64, slack: f64) -> Self {
+        let [mut coefficients, mut divided] = [[0.0; N]; 2];
+        for k in zeros..N - 1 {
+            let factor = f64::inverse_factorial(k);
+            coefficients[k - zeros] = orders[k] * factor;
+            divided[k - zeros] = sizes[k] * factor;
+        }
+        let slack = if zeros == 0 { slack } else { 0.0 };
+        Self { zeros, coefficients, sizes: divided, margin: margin + ROUNDINGS, slack }
+    }
+
+    /// The rest of the quotient's Taylor series at a time, by a bound of the guard's last
+    /// derivative.
+    #[inline]
+    fn remainder(&self, last: f64, time: f64) -> f64 {
+        let factor = last * (OUTWARD * f64::inverse_factorial(N - 1));
+        (self.zeros..N - 1).fold(factor, |rest, _| rest * time)
+    }
+
+    /// The root of the polynomial, from a rough one; none where it does not rise from there.
+    #[inline]
+    pub fn root(&self, rough: f64) -> Option<f64> {
+        const STEPS: usize = 8;
+        const SHORT: f64 = 1e-5;
+        let mut root = rough;
+        for _ in 0..STEPS {
+            let (mut value, mut slope) = (0.0, 0.0);
+            for coefficient in self.coefficients[..N - 1].iter().rev() {
+                slope = slope * root + value;
+                value = value * root + coefficient;
+            }
+            let (step, most) = (value / slope, 0.5 * root);
+            let rises = slope > 0.0 && step < most;
+            if !rises {
+                return None;
+            }
+            root -= step.larger(-most);
+            if step.abs() <= SHORT * root {
+                return Some(root);
+            }
+        }
+        None
+    }
+
+    /// Where the quotient is negative at first and crosses zero once near the root of its
+    /// polynomial: how near, as a share of the root.
+    #[inline]
+    pub fn crosses(&self, root: f64, last: f64) -> Option<f64> {
+        let scaled = self.scaled(root);
+        let [mut value, mut slope, mut bend, mut third] = [0.0; 4];
+        for (k, coefficient) in scaled.iter().enumerate() {
+            let [first, second, next] = [0.0, 1.0, 2.0].map(|less| k as f64 - less);
+            value += coefficient;
+            slope += first * coefficient;
+            bend += first * second * coefficient;
+            third += first * second * next * coefficient.abs();
+        }
+        let remainder = Self::WIDER * self.remainder(last, root);
+        let rounding = Self::WIDER * self.rounding(root);
+        let room = 2.0 * (value.abs() + remainder + rounding) / slope + 8.0 * f64::EPSILON;
+        let window = 2.0 * room;
+        // The remainder is r/s^z with |r'| <= (N - 1) |r|/s, and each power has at most N - 2 times
+        // its error in its slope.
+        let change = window * (bend.abs() + 0.5 * window * Self::WIDER * third)
+            + (N + self.zeros) as f64 * remainder
+            + N as f64 * rounding;
+        let proved = change < 0.5 * slope
+            && window < WINDOW
+            && self.is_negative((1.0 - window) * root, last);
+        proved.then_some(room)
+    }
+
+    /// Whether the quotient stays negative up to a time, by a bound of the guard's last derivative.
+    #[inline]
+    pub fn is_negative(&self, time: f64, last: f64) -> bool {
+        let mut hull = self.scaled(time);
+        hull[N - 1 - self.zeros] += self.remainder(last, time);
+        for (entry, share) in hull.iter_mut().zip(&Self::SHARES) {
+            *entry *= share;
+        }
+        // Sums of powers with binomial weights are Bernstein coefficients.
+        for order in (1..N).rev() {
+            for n in order..N {
+                hull[n] += hull[n - 1];
+            }
+        }
+        let highest = -self.rounding(time);
+        // What is no number is not less.
+        hull.iter().all(|it| *it < highest)
+    }
+
+    /// The coefficients for a unit of time.
+    #[inline]
+    fn scaled(&self, unit: f64) -> [f64; N] {
+        let mut scaled = self.coefficients;
+        let mut power = 1.0;
+        for entry in &mut scaled {
+            *entry *= power;
+            power *= unit;
+        }
+        scaled
+    }
+
+    /// What rounding does to the polynomial up to a time.
+    #[inline]
+    fn rounding(&self, time: f64) -> f64 {
+        let size = self.sizes.iter().rev().fold(0.0, |sum, size| sum * time + size);
+        self.slack + self.margin * size
+    }
+}
+
+const fn power(base: f64, exponent: usize) -> f64 {
+    if exponent == 0 { 1.0 } else { base * power(base, exponent - 1) }
+}
+
+/// The inverses of the binomial coefficients of the highest order.
+const fn inverse_binomials<const N: usize>() -> [f64; N] {
+    let mut shares = [1.0; N];
+    let mut n = 1;
+    while n < N {
+        shares[n] = shares[n - 1] * n as f64 / (N - n) as f64;
+        n += 1;
+    }
+    shares
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// 8!
+    const FACTORIAL: f64 = 40_320.0;
+
+    /// The value of a polynomial in powers.
+    fn value(powers: &[f64], time: f64) -> f64 {
+        powers.iter().rev().fold(0.0, |sum, it| sum * time + it)
+    }
+
+    /// A guard that is a polynomial of degree eight, of which the quotient has all but the last.
+    fn quotient(powers: &[f64; 9], zeros: usize) -> Quotient<9> {
+        let mut orders = [0.0; 9];
+        let mut factorial = 1.0;
+        for k in 0..8 {
+            orders[k] = powers[k] * factorial;
+            factorial *= (k + 1) as f64;
+        }
+        Quotient::of(&orders, &orders.map(f64::abs), zeros, f64::EPSILON, 0.0)
+    }
+
+    /// Coefficients of guards that begin with some zeros, below zero, and how far the root of the
+    /// polynomial is looked for.
+    fn guard() -> impl Strategy<Value = ([f64; 9], usize, f64)> {
+        let size = prop_oneof![Just(1e-3), Just(0.1), Just(1.0), Just(5.0)];
+        let coefficient = (size, -1.0..1.0_f64).prop_map(|(size, it)| size * it);
+        let coefficients = prop::collection::vec(coefficient, 9);
+        (coefficients, 0..3_usize, 1e-6..1.0_f64, 0.01..3.0_f64).prop_map(
+            |(coefficients, zeros, begin, rough)| {
+                let mut powers = [0.0; 9];
+                powers.copy_from_slice(&coefficients);
+                powers[..zeros].fill(0.0);
+                powers[zeros] = -begin;
+                (powers, zeros, rough)
+            },
+        )
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(20_000))]
+
+        /// Whatever the last coefficient's sign, a crossing that is told is the only one up to it.
+        #[test]
+        fn a_crossing_that_is_told_is_the_first((powers, zeros, rough) in guard()) {
+            let quotient = quotient(&powers, zeros);
+            let Some(root) = quotient.root(rough) else { return Ok(()) };
+            let last = powers[8].abs() * FACTORIAL;
+            let Some(room) = quotient.crosses(root, last) else { return Ok(()) };
+            let (low, high) = ((1.0 - room) * root, (1.0 + room) * root);
+            prop_assert!(value(&powers[zeros..], high) > 0.0);
+            for n in 1..=1000 {
+                let time = low * f64::from(n) / 1000.0;
+                prop_assert!(value(&powers[zeros..], time) < 0.0, "{time} of {root}");
+            }
+        }
+
+        /// What is told to stay negative is so.
+        #[test]
+        fn what_is_told_to_stay_negative_is_so((powers, zeros, time) in guard()) {
+            if quotient(&powers, zeros).is_negative(time, powers[8].abs() * FACTORIAL) {
+                for n in 0..=1000 {
+                    let time = time * f64::from(n) / 1000.0;
+                    prop_assert!(value(&powers[zeros..], time) < 0.0, "{time}");
+                }
+            }
+        }
+    }
+
+    /// Without a bound of the rest nothing is told.
+    #[test]
+    fn what_overflows_tells_nothing() {
+        let quotient = quotient(&[-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0);
+        assert!(quotient.crosses(1.0, 0.0).is_some() && quotient.is_negative(0.9, 0.0));
+        for last in [f64::INFINITY, f64::NAN] {
+            assert!(quotient.crosses(1.0, last).is_none());
+            assert!(!quotient.is_negative(0.9, last));
+        }
+    }
+}

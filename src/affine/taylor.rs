@@ -1,0 +1,191 @@
+//! The first crossing after a point, proved by the Taylor polynomials of the guards there.
+//!
+//! Most segments are short beside the times in which things move. There the polynomial of degree 7
+//! or 15 at the entry and a bound of the next derivative prove which guard crosses first and
+//! between which times (`quotient.rs`), and the closed form is evaluated at the crossing alone.
+//! What is not proved so is left to `search.rs`.
+
+use super::bound::ORDERS;
+use super::crossing::FirstCrossing;
+use super::point::{GuardedPoint, Segment, root};
+use super::quotient::{Quotient, WINDOW};
+use super::track::{SearchWork, Track, live, outward};
+use crate::number::Number;
+
+/// The numbers of derivatives that are looked at, the value and the one that is bounded included.
+const FEW: usize = 9;
+const ALL: usize = ORDERS;
+
+/// Where what the first of them leave is less than this share of what the guard begins with, they
+/// give the root to some digits.
+const LITTLE: f64 = 1e-3;
+
+/// Where they leave more than this, all of them prove nothing.
+const MUCH: f64 = 10.0;
+
+/// How often the polynomials were looked at in a mode since they last proved a crossing. Whether
+/// they do is mostly the same at each entry of a mode, and a vain attempt costs as much as an
+/// evaluation or two.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Misses(u8);
+
+impl Misses {
+    const MOST: u8 = 3;
+    const PAUSE: u8 = 16;
+
+    /// Whether to look at them: at first, and after a pause once more.
+    #[inline]
+    fn are_few(&mut self) -> bool {
+        self.0 += 1;
+        if self.0 > Self::MOST + Self::PAUSE {
+            self.0 = Self::MOST;
+        }
+        self.0 <= Self::MOST
+    }
+}
+
+impl<T: Number> Segment<'_, T> {
+    /// The first crossing after a point, if the polynomials there prove it. Runs that follow their
+    /// errors are left to the search, which counts what errors leave open.
+    #[inline]
+    pub fn first_by_taylor(
+        &self,
+        tracks: &[Track],
+        at: &GuardedPoint<T>,
+        misses: &mut Misses,
+        work: &mut SearchWork,
+    ) -> Option<FirstCrossing<T>> {
+        if self.follows_errors() || !misses.are_few() {
+            return None;
+        }
+        let (n, rough) = nearest(tracks, at)?;
+        let zeros = tracks[n].zeros;
+        let power = |sum: f64, last: usize| (1..=last).fold(sum, |sum, k| sum * rough / k as f64);
+        let lead = power(at.orders[n][zeros].to_f64().abs(), zeros);
+        let rest = power(self.flow.bound_by(&self.rows[n], FEW - 1, &at.norms, rough), FEW - 1);
+        let crossing = if rest <= LITTLE * lead {
+            self.proved::<FEW>(n, tracks, at, rough)?
+        } else if rest <= MUCH * lead {
+            self.proved::<ALL>(n, tracks, at, rough)?
+        } else {
+            return None;
+        };
+        *misses = Misses::default();
+        work.pieces += 1;
+        Some(crossing)
+    }
+
+    /// A guard's crossing near a rough root, if so many derivatives prove that it is the first.
+    #[inline]
+    fn proved<const N: usize>(
+        &self,
+        n: usize,
+        tracks: &[Track],
+        at: &GuardedPoint<T>,
+        rough: f64,
+    ) -> Option<FirstCrossing<T>> {
+        let guard = self.quotient::<N>(n, &tracks[n], at);
+        let after = guard.root(rough)?;
+        let last = self.flow.bound_by(&self.rows[n], N - 1, &at.norms, (1.0 + WINDOW) * after);
+        let room = guard.crosses(after, last)?;
+        let end = (1.0 + room) * after;
+        let mut guards = 1 << n;
+        for (other, track) in live(tracks).filter(|(other, _)| *other != n) {
+            if self.rows[other].twin == self.rows[n].twin && track.outward == tracks[n].outward {
+                guards |= 1 << other;
+            } else if !self.stays_negative::<N>(other, track, at, end) {
+                return None;
+            }
+        }
+        let time = |share: f64| at.time + T::exact(share * after);
+        let between = [time(1.0 - room), time(1.0 + room)];
+        Some(FirstCrossing { time: time(1.0), between, guards })
+    }
+
+    /// Whether a guard is proved to stay negative from a point on.
+    #[inline]
+    fn stays_negative<const N: usize>(
+        &self,
+        n: usize,
+        track: &Track,
+        at: &GuardedPoint<T>,
+        length: f64,
+    ) -> bool {
+        if self.excess(n, track, at, length) < -4.0 * at.slack[n] {
+            return true;
+        }
+        if track.zeros > 2 {
+            return false;
+        }
+        let last = self.flow.bound_by(&self.rows[n], N - 1, &at.norms, length);
+        self.quotient::<N>(n, track, at).is_negative(length, last)
+    }
+
+    /// A guard that begins with at most two zeros.
+    #[inline]
+    fn quotient<const N: usize>(
+        &self,
+        n: usize,
+        track: &Track,
+        at: &GuardedPoint<T>,
+    ) -> Quotient<N> {
+        let [mut orders, sizes] = self.rows[n].orders_and_sizes::<N>(&at.y);
+        orders[..4].copy_from_slice(&at.orders[n].map(Number::to_f64));
+        orders.iter_mut().for_each(|order| *order *= track.outward);
+        Quotient::of(&orders, &sizes, track.zeros, self.margin(), at.slack[n])
+    }
+}
+
+/// The guard whose first terms suggest the earliest root after a point, and that root.
+#[inline]
+fn nearest<T: Number>(tracks: &[Track], at: &GuardedPoint<T>) -> Option<(usize, f64)> {
+    let mut nearest = (usize::MAX, f64::INFINITY);
+    for (n, track) in live(tracks) {
+        let root = rough_root(track, &at.orders[n]);
+        if root < nearest.1 {
+            nearest = (n, root);
+        }
+    }
+    (nearest.1 < f64::INFINITY).then_some(nearest)
+}
+
+/// A root that a guard's first terms suggest; infinite, or no number, where there is none.
+#[inline]
+fn rough_root<T: Number>(track: &Track, orders: &[T; 4]) -> f64 {
+    let [value, slope, bend, third] = outward(orders, track).map(Number::to_f64);
+    let (bend, third) = (0.5 * bend, third / 6.0);
+    match track.zeros {
+        0 => positive_root([value, slope, bend, third]),
+        1 => positive_root([slope, bend, third, 0.0]),
+        2 => positive_root([bend, third, 0.0, 0.0]),
+        _ => f64::INFINITY,
+    }
+}
+
+/// Where a cubic that is negative at zero has about become positive: by its quadratic, or where
+/// that stays negative, its last root. Infinite, or no number, where there is none.
+#[inline]
+fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
+    const STEPS: usize = 8;
+    let is_below = value < 0.0;
+    if !is_below {
+        return f64::INFINITY;
+    }
+    // In the form that does not cancel for a rise.
+    let divisor = slope + (slope * slope - 4.0 * value * bend).sqrt();
+    if divisor > 0.0 {
+        return -2.0 * value / divisor;
+    }
+    let rises = third > 0.0;
+    if !rises {
+        return f64::INFINITY;
+    }
+    // From above all roots Newton's method falls to the last one.
+    let share = |of: f64| (-of).max(0.0) / third;
+    let mut at = 1.1 * (root(share(value), 3) + root(share(slope), 2) + share(bend));
+    for _ in 0..STEPS {
+        let cubic = value + at * (slope + at * (bend + at * third));
+        at -= cubic / (slope + at * (2.0 * bend + 3.0 * at * third));
+    }
+    if at > 0.0 { at } else { f64::INFINITY }
+}
