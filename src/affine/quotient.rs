@@ -41,6 +41,12 @@ impl<const N: usize> Quotient<N> {
     /// most.
     const WIDER: f64 = power(1.0 + WINDOW, N - 1);
 
+    /// What the terms count in the slope, the second and the third derivative, times powers of the
+    /// time.
+    const SLOPE: [f64; N] = falling(1);
+    const BEND: [f64; N] = falling(2);
+    const THIRD: [f64; N] = falling(3);
+
     /// The inverses of the binomial coefficients.
     const SHARES: [f64; N] = inverse_binomials();
 
@@ -59,33 +65,25 @@ impl<const N: usize> Quotient<N> {
         Self { zeros, coefficients, sizes: divided, margin: margin + ROUNDINGS, slack }
     }
 
-    /// The rest of the quotient's Taylor series at a time, by a bound of the guard's last
-    /// derivative.
-    #[inline]
-    fn remainder(&self, last: f64, time: f64) -> f64 {
-        let factor = last * (OUTWARD * f64::inverse_factorial(N - 1));
-        (self.zeros..N - 1).fold(factor, |rest, _| rest * time)
-    }
-
-    /// The root of the polynomial, from a rough one; none where it does not rise from there.
+    /// The root of the polynomial, from a rough one, by Halley's method, which about triples the
+    /// digits; none where the polynomial does not rise from there.
     #[inline]
     pub fn root(&self, rough: f64) -> Option<f64> {
         const STEPS: usize = 8;
-        const SHORT: f64 = 1e-5;
+        const SHORT: f64 = 1e-3;
         let mut root = rough;
         for _ in 0..STEPS {
-            let (mut value, mut slope) = (0.0, 0.0);
-            for coefficient in self.coefficients[..N - 1].iter().rev() {
-                slope = slope * root + value;
-                value = value * root + coefficient;
-            }
-            let (step, most) = (value / slope, 0.5 * root);
-            let rises = slope > 0.0 && step < most;
+            let terms = self.terms(&powers(root));
+            let (value, slope) = (sum(&terms), sum(&weighted(&terms, &Self::SLOPE)));
+            let bend = 0.5 * sum(&weighted(&terms, &Self::BEND));
+            // As a share of the root.
+            let step = value * slope / (slope * slope - value * bend);
+            let rises = slope > 0.0 && step < 0.5;
             if !rises {
                 return None;
             }
-            root -= step.larger(-most);
-            if step.abs() <= SHORT * root {
+            root *= 1.0 - step.larger(-0.5);
+            if step.abs() <= SHORT {
                 return Some(root);
             }
         }
@@ -96,17 +94,13 @@ impl<const N: usize> Quotient<N> {
     /// polynomial: how near, as a share of the root.
     #[inline]
     pub fn crosses(&self, root: f64, last: f64) -> Option<f64> {
-        let scaled = self.scaled(root);
-        let [mut value, mut slope, mut bend, mut third] = [0.0; 4];
-        for (k, coefficient) in scaled.iter().enumerate() {
-            let [first, second, next] = [0.0, 1.0, 2.0].map(|less| k as f64 - less);
-            value += coefficient;
-            slope += first * coefficient;
-            bend += first * second * coefficient;
-            third += first * second * next * coefficient.abs();
-        }
-        let remainder = Self::WIDER * self.remainder(last, root);
-        let rounding = Self::WIDER * self.rounding(root);
+        let powers = powers(root);
+        let terms = self.terms(&powers);
+        let (value, slope) = (sum(&terms), sum(&weighted(&terms, &Self::SLOPE)));
+        let bend = sum(&weighted(&terms, &Self::BEND));
+        let third = sum(&weighted(&terms.map(f64::abs), &Self::THIRD));
+        let remainder = Self::WIDER * self.remainder(last, &powers);
+        let rounding = Self::WIDER * self.rounding(&powers);
         let room = 2.0 * (value.abs() + remainder + rounding) / slope + 8.0 * f64::EPSILON;
         let window = 2.0 * room;
         // The remainder is r/s^z with |r'| <= (N - 1) |r|/s, and each power has at most N - 2 times
@@ -123,40 +117,83 @@ impl<const N: usize> Quotient<N> {
     /// Whether the quotient stays negative up to a time, by a bound of the guard's last derivative.
     #[inline]
     pub fn is_negative(&self, time: f64, last: f64) -> bool {
-        let mut hull = self.scaled(time);
-        hull[N - 1 - self.zeros] += self.remainder(last, time);
-        for (entry, share) in hull.iter_mut().zip(&Self::SHARES) {
-            *entry *= share;
-        }
+        let powers = powers(time);
+        let mut hull = self.terms(&powers);
+        hull[N - 1 - self.zeros] += self.remainder(last, &powers);
+        hull = weighted(&hull, &Self::SHARES);
         // Sums of powers with binomial weights are Bernstein coefficients.
         for order in (1..N).rev() {
             for n in order..N {
                 hull[n] += hull[n - 1];
             }
         }
-        let highest = -self.rounding(time);
+        let highest = -self.rounding(&powers);
         // What is no number is not less.
         hull.iter().all(|it| *it < highest)
     }
 
-    /// The coefficients for a unit of time.
+    /// The terms of the polynomial at a time, whose powers are given.
     #[inline]
-    fn scaled(&self, unit: f64) -> [f64; N] {
-        let mut scaled = self.coefficients;
-        let mut power = 1.0;
-        for entry in &mut scaled {
-            *entry *= power;
-            power *= unit;
-        }
-        scaled
+    fn terms(&self, powers: &[f64; N]) -> [f64; N] {
+        weighted(&self.coefficients, powers)
+    }
+
+    /// The rest of the quotient's Taylor series at a time, by a bound of the guard's last
+    /// derivative.
+    #[inline]
+    fn remainder(&self, last: f64, powers: &[f64; N]) -> f64 {
+        let factor = OUTWARD * f64::inverse_factorial(N - 1);
+        factor * last * powers[N - 1 - self.zeros]
     }
 
     /// What rounding does to the polynomial up to a time.
     #[inline]
-    fn rounding(&self, time: f64) -> f64 {
-        let size = self.sizes.iter().rev().fold(0.0, |sum, size| sum * time + size);
-        self.slack + self.margin * size
+    fn rounding(&self, powers: &[f64; N]) -> f64 {
+        self.slack + self.margin * sum(&weighted(&self.sizes, powers))
     }
+}
+
+/// The powers of a number, in four chains that do not wait for one another.
+#[inline]
+fn powers<const N: usize>(base: f64) -> [f64; N] {
+    let square = base * base;
+    let (first, fourth) = ([1.0, base, square, square * base], square * square);
+    let mut powers = [1.0; N];
+    powers[..4].copy_from_slice(&first);
+    for n in 4..N {
+        powers[n] = powers[n - 4] * fourth;
+    }
+    powers
+}
+
+#[inline]
+fn weighted<const N: usize>(terms: &[f64; N], weights: &[f64; N]) -> [f64; N] {
+    std::array::from_fn(|n| terms[n] * weights[n])
+}
+
+/// A sum as four that do not wait for one another.
+#[inline]
+fn sum<const N: usize>(terms: &[f64; N]) -> f64 {
+    let mut sums = [0.0; 4];
+    for (n, term) in terms.iter().enumerate() {
+        sums[n % 4] += term;
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+/// The factors k, k (k - 1), ... of so many derivatives of the powers.
+const fn falling<const N: usize>(order: usize) -> [f64; N] {
+    let mut factors = [1.0; N];
+    let mut n = 0;
+    while n < N {
+        let mut less = 0;
+        while less < order {
+            factors[n] *= n as f64 - less as f64;
+            less += 1;
+        }
+        n += 1;
+    }
+    factors
 }
 
 const fn power(base: f64, exponent: usize) -> f64 {

@@ -23,24 +23,25 @@ const LITTLE: f64 = 1e-3;
 /// Where they leave more than this, all of them prove nothing.
 const MUCH: f64 = 10.0;
 
-/// How often the polynomials were looked at in a mode since they last proved a crossing. Whether
-/// they do is mostly the same at each entry of a mode, and a vain attempt costs as much as an
-/// evaluation or two.
+/// How often the polynomials were looked at in a mode since they last proved a crossing: at its
+/// entry, and later. Whether they do is mostly the same at each entry, and a vain attempt costs as
+/// much as an evaluation or two.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Misses(u8);
+pub(super) struct Misses([u8; 2]);
 
 impl Misses {
-    const MOST: u8 = 3;
+    const MOST: u8 = 2;
     const PAUSE: u8 = 16;
 
     /// Whether to look at them: at first, and after a pause once more.
     #[inline]
-    fn are_few(&mut self) -> bool {
-        self.0 += 1;
-        if self.0 > Self::MOST + Self::PAUSE {
-            self.0 = Self::MOST;
+    fn are_few(&mut self, is_later: bool) -> bool {
+        let count = &mut self.0[usize::from(is_later)];
+        *count += 1;
+        if *count > Self::MOST + Self::PAUSE {
+            *count = Self::MOST;
         }
-        self.0 <= Self::MOST
+        *count <= Self::MOST
     }
 }
 
@@ -55,7 +56,8 @@ impl<T: Number> Segment<'_, T> {
         misses: &mut Misses,
         work: &mut SearchWork,
     ) -> Option<FirstCrossing<T>> {
-        if self.follows_errors() || !misses.are_few() {
+        let is_later = at.time > T::zero();
+        if self.follows_errors() || !misses.are_few(is_later) {
             return None;
         }
         let (n, rough) = nearest(tracks, at)?;
@@ -70,7 +72,7 @@ impl<T: Number> Segment<'_, T> {
         } else {
             return None;
         };
-        *misses = Misses::default();
+        misses.0[usize::from(is_later)] = 0;
         work.pieces += 1;
         Some(crossing)
     }
@@ -166,7 +168,7 @@ fn rough_root<T: Number>(track: &Track, orders: &[T; 4]) -> f64 {
 /// that stays negative, its last root. Infinite, or no number, where there is none.
 #[inline]
 fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
-    const STEPS: usize = 8;
+    const STEPS: usize = 4;
     let is_below = value < 0.0;
     if !is_below {
         return f64::INFINITY;
