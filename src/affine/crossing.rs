@@ -188,7 +188,7 @@ impl<T: Number> Segment<'_, T> {
         work: &mut SearchWork,
     ) -> bool {
         const ROUNDS: usize = 128;
-        /// The share of a point's time beyond which a cubic does not tell the rest to the last digit.
+        /// Beyond this share of a point's time a cubic does not tell the rest to the last digit.
         const FAR: f64 = 1e-4;
         // A crossing exactly at the limit counts.
         let room = T::exact(4.0 * unit::<T>() * limit.to_f64());

@@ -53,7 +53,10 @@ impl Source<'_> {
     fn explained(&self, message: &str, span: &Range<usize>) -> String {
         let message = match message.strip_prefix("missing field `") {
             Some(key) => format!("{} is missing here", key.trim_end_matches('`')),
-            None => message.replace("invalid type: ", "not accepted: "),
+            None => {
+                let message = message.replace("invalid type: ", "not accepted: ");
+                message.replace("expected a sequence", "accepted is an array")
+            }
         };
         let start = self.text.get(..span.start).map_or(0, |it| it.rfind('\n').map_or(0, |n| n + 1));
         let line = self.text.get(start..).and_then(|it| it.lines().next()).unwrap_or_default();

@@ -1,9 +1,10 @@
 //! The first crossing of a mode's guards.
 //!
-//! A segment is passed in pieces. On each the Bernstein coefficients of a polynomial that lies
-//! above the guard show that it stays negative, or up to where it does. There a crossing is
-//! searched (`crossing.rs`). What shows neither is looked at in shorter pieces. See the page
-//! docs/ROUNDING.md for what rounding may take.
+//! Where Taylor polynomials prove the first crossing from a point on (`taylor.rs`), nothing else is
+//! looked at. Otherwise a segment is passed in pieces. On each the Bernstein coefficients of a
+//! polynomial that lies above the guard show that it stays negative, or up to where it does. There
+//! a crossing is searched (`crossing.rs`). What shows neither is looked at in shorter pieces. See
+//! the page docs/ROUNDING.md for what rounding may take.
 //!
 //! What is generic is compiled by the crate that uses it, which may do so in many units without
 //! optimising across them; so what runs at every event is marked to be inlined, here and in the

@@ -175,10 +175,7 @@ impl Scope for Names<'_> {
         }
         let file = self.file;
         let Some(text) = file.tables.lets.get(name) else {
-            return Err(format!(
-                "{name} is not known: accepted are states, parameters, names of [let], and where \
-                 the system is forced cos, sin, omega and phi"
-            ));
+            return Err(format!("{name} is not known: accepted are {}", self.known().join(", ")));
         };
         if self.open.iter().any(|it| it == name) {
             return Err(format!("{name} is defined by itself"));
@@ -195,5 +192,16 @@ impl Scope for Names<'_> {
 
     fn states(&self) -> usize {
         self.states.len()
+    }
+}
+
+impl Names<'_> {
+    /// All names that an expression may hold here.
+    fn known(&self) -> Vec<&str> {
+        let states = self.states.iter().filter(|_| self.with_states);
+        let forced: &[_] = if self.forced { &["cos", "sin", "omega", "phi"] } else { &[] };
+        let names = self.file.parameters.keys().chain(self.file.tables.lets.keys());
+        let all = states.chain(names).map(String::as_str);
+        all.chain(forced.iter().copied()).collect()
     }
 }

@@ -38,12 +38,13 @@ impl<T: Number> Solver<T> {
         for (size, entry) in sizes.iter_mut().zip(&run.state) {
             *size = error(*entry);
         }
-        let turned = self.clock.as_ref().map_or(0.0, |clock| clock.rounding(&run.entered));
+        let phase = self.phase_roundings(&run.entered);
+        // Of cos theta; where nothing is forced it is zero.
+        let turned = phase[start.state.len()];
         for (size, terms) in sizes.iter_mut().zip(&start.state) {
             let [cos, sin, one] = [0, 1, 2].map(|n| terms[n].to_f64().value().abs());
             *size += error(T::exact(cos + sin + one)) + turned * (cos + sin);
         }
-        let phase = self.phase_roundings(&run.entered);
         sizes.iter_mut().zip(phase).for_each(|(size, turned)| *size += turned);
         sizes[self.system.dimension() - 1] = 0.0;
         run.begin(Some(Enclosure::of(&sizes)));

@@ -22,7 +22,13 @@ pub(super) fn proved(value: DoubleDouble, error: f64, digits: usize) -> String {
         let last = leading - i32::try_from(count).unwrap_or(0) + 1;
         let (a, b) = (rounded(&least, last), rounded(&most, last));
         if a == b && a != "0" {
-            return decimal(&a, last);
+            // Rounded up to a power of ten it has a digit more than asked for, a zero.
+            return match a.strip_suffix('0') {
+                Some(fewer) if fewer.trim_start_matches('-').len() == digits => {
+                    decimal(fewer, last + 1)
+                }
+                _ => decimal(&a, last),
+            };
         }
     }
     let bound = if absolute(&least) > absolute(&most) { absolute(&least) } else { absolute(&most) };
@@ -103,6 +109,9 @@ mod tests {
         assert_eq!(shown(0.0, 0.0, 17), "0");
         assert_eq!(shown(1e-30, 1e-28, 17), "0e-27");
         assert_eq!(shown(0.9999, 0.01, 17), "1.0");
+        assert_eq!(shown(-0.9999, 0.0, 3), "-1.00");
+        assert_eq!(shown(999.96, 0.0, 4), "1000");
+        assert_eq!(shown(999.96, 0.0, 3), "1.00e3");
         assert!(!has_digits(&shown(1e-30, 1e-28, 17)) && has_digits("0"));
     }
 
