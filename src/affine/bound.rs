@@ -8,7 +8,7 @@
 
 use super::modal::{self, BigReal, Kind};
 use super::motion::nilpotent;
-use super::vector::euclidean;
+use super::vector::{UNDERFLOW, euclidean};
 
 /// How many derivatives of a row are held, its value included.
 pub(super) const ORDERS: usize = 17;
@@ -110,21 +110,23 @@ pub(super) fn derivatives(row: &[BigReal], block: &modal::Block) -> Vec<Vec<BigR
 /// The norms of a row's derivatives in a block, raised to what they are at most later where a
 /// nilpotent block decays.
 pub(super) fn norms(block: &modal::Block, parts: &[Vec<BigReal>]) -> [f64; ORDERS] {
-    let plain = |part: &Vec<BigReal>| norm(part) * OUTWARD;
-    match &block.kind {
+    let decay = match &block.kind {
         Kind::Nilpotent(rate) if *rate < BigReal::zero() => {
             let (matrix, index) = nilpotent(block, rate);
-            let rate = -rate.to_f64();
-            let sum = |part: &Vec<BigReal>| {
-                let next = |last: &Vec<BigReal>| Some(modal::row_times(last, &matrix));
-                let powers = std::iter::successors(Some(part.clone()), next).take(index);
-                powers.enumerate().map(|(j, row)| norm(&row) * summit(j, rate)).sum::<f64>()
-                    * OUTWARD
-            };
-            std::array::from_fn(|k| sum(&parts[k]))
+            Some((matrix, index, -rate.to_f64()))
         }
-        _ => std::array::from_fn(|k| plain(&parts[k])),
-    }
+        _ => None,
+    };
+    let bound = |part: &Vec<BigReal>| {
+        let Some((matrix, index, rate)) = &decay else { return norm(part) };
+        let next = |last: &Vec<BigReal>| Some(modal::row_times(last, matrix));
+        let powers = std::iter::successors(Some(part.clone()), next).take(*index);
+        powers.enumerate().map(|(j, row)| norm(&row) * summit(j, *rate)).sum::<f64>()
+    };
+    std::array::from_fn(|k| {
+        let is_zero = parts[k].iter().all(BigReal::is_zero);
+        if is_zero { 0.0 } else { (bound(&parts[k]) * OUTWARD).max(UNDERFLOW) }
+    })
 }
 
 /// The maximum of s^j exp(-rate s)/j!.

@@ -209,7 +209,8 @@ impl<T: Number> Segment<'_, T> {
             }
             *(if value < 0.0 { &mut low } else { &mut high }) = point.time;
             let mut step = newton(&orders);
-            if self.is_last(&orders, step) {
+            let inside = low <= point.time + step && point.time + step <= high;
+            if inside && self.is_last(&orders, step) {
                 point.later = step;
                 return point.time + step <= limit + room;
             }

@@ -259,8 +259,10 @@ impl RowPart {
     #[inline]
     pub fn bound(&self, order: usize, length: f64, sizes: &Vector<f64>) -> f64 {
         let size = sizes[self.block];
-        // Nothing comes of zeros, even where a factor of theirs overflows.
-        if size == 0.0 { 0.0 } else { self.later.bound(&self.norms, order, length) * size }
+        let norm = if size == 0.0 { 0.0 } else { self.later.bound(&self.norms, order, length) };
+        // Nothing comes of zeros, even where a factor of theirs overflows; what is not zero does
+        // not vanish, because a derivative without a bound would be taken for a polynomial's.
+        if norm == 0.0 { 0.0 } else { (norm * size).max(UNDERFLOW) }
     }
 }
 

@@ -34,6 +34,8 @@ pub(super) struct Quotient<const N: usize> {
     margin: f64,
     /// What rounding did to the guard's value, where that is not zero.
     slack: f64,
+    /// What underflow takes from a coefficient at most.
+    lost: f64,
 }
 
 impl<const N: usize> Quotient<N> {
@@ -51,10 +53,15 @@ impl<const N: usize> Quotient<N> {
     const SHARES: [f64; N] = inverse_binomials();
 
     /// The quotient of a guard with these orders, positive outside, and the sizes of what they are
-    /// summed from; `margin` is what rounding does to them beside these sizes, and `slack` what it
-    /// did to the value.
+    /// summed from; `margin` is what rounding does to them beside these sizes, `slack` what it did to
+    /// the value, and `lost` what underflow takes from them.
     #[inline]
-    pub fn of(orders: &[f64; N], sizes: &[f64; N], zeros: usize, margin: f64, slack: f64) -> Self {
+    pub fn of(
+        [orders, sizes]: [&[f64; N]; 2],
+        zeros: usize,
+        margin: f64,
+        [slack, lost]: [f64; 2],
+    ) -> Self {
         let [mut coefficients, mut divided] = [[0.0; N]; 2];
         for k in zeros..N - 1 {
             let factor = f64::inverse_factorial(k);
@@ -62,7 +69,8 @@ impl<const N: usize> Quotient<N> {
             divided[k - zeros] = sizes[k] * factor;
         }
         let slack = if zeros == 0 { slack } else { 0.0 };
-        Self { zeros, coefficients, sizes: divided, margin: margin + ROUNDINGS, slack }
+        let margin = margin + ROUNDINGS;
+        Self { zeros, coefficients, sizes: divided, margin, slack, lost }
     }
 
     /// The root of the polynomial, from a rough one, by Halley's method, which about triples the
@@ -108,7 +116,8 @@ impl<const N: usize> Quotient<N> {
         let change = window * (bend.abs() + 0.5 * window * Self::WIDER * third)
             + (N + self.zeros) as f64 * remainder
             + N as f64 * rounding;
-        let proved = change < 0.5 * slope
+        let proved = slope > 0.0
+            && change < 0.5 * slope
             && window < WINDOW
             && self.is_negative((1.0 - window) * root, last);
         proved.then_some(room)
@@ -149,7 +158,8 @@ impl<const N: usize> Quotient<N> {
     /// What rounding does to the polynomial up to a time.
     #[inline]
     fn rounding(&self, powers: &[f64; N]) -> f64 {
-        self.slack + self.margin * sum(&weighted(&self.sizes, powers))
+        let lost = self.lost * N as f64 * powers[N - 1].larger(1.0);
+        self.slack + self.margin * sum(&weighted(&self.sizes, powers)) + lost
     }
 }
 
@@ -232,7 +242,7 @@ mod tests {
             orders[k] = powers[k] * factorial;
             factorial *= (k + 1) as f64;
         }
-        Quotient::of(&orders, &orders.map(f64::abs), zeros, f64::EPSILON, 0.0)
+        Quotient::of([&orders, &orders.map(f64::abs)], zeros, f64::EPSILON, [0.0; 2])
     }
 
     /// Coefficients of guards that begin with some zeros, below zero, and how far the root of the

@@ -10,6 +10,7 @@ use super::crossing::FirstCrossing;
 use super::point::{GuardedPoint, Segment, root};
 use super::quotient::{Quotient, WINDOW};
 use super::track::{SearchWork, Track, live, outward};
+use super::vector::UNDERFLOW;
 use crate::number::Number;
 
 /// The numbers of derivatives that are looked at, the value and the one that is bounded included.
@@ -134,7 +135,9 @@ impl<T: Number> Segment<'_, T> {
         let [mut orders, sizes] = self.rows[n].orders_and_sizes::<N>(&at.y);
         orders[..4].copy_from_slice(&at.orders[n].map(Number::to_f64));
         orders.iter_mut().for_each(|order| *order *= track.outward);
-        Quotient::of(&orders, &sizes, track.zeros, self.margin(), at.slack[n])
+        let lost = UNDERFLOW * (1.0 + at.norms.iter().sum::<f64>());
+        let errors = [at.slack[n], lost];
+        Quotient::of([&orders, &sizes], track.zeros, self.margin(), errors)
     }
 }
 

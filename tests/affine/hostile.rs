@@ -30,6 +30,35 @@ fn run<T: Number>(system: &System, until: f64, enclosed: bool) -> (Vec<Event<T>>
     (all, run.work())
 }
 
+/// Powers of slow rates underflow. What they bound is not zero for that: an event is where it is,
+/// within what an enclosed run says, or undecided.
+#[test]
+fn rates_whose_powers_underflow_make_no_polynomial() {
+    for exponent in (0..100).chain([120, 150]) {
+        let rate: f64 = format!("1e-{exponent}").parse().unwrap();
+        let parameters = format!("rate = {rate:?}\nhalf = 0.5");
+        let equations = "\"x' = rate*y\", \"y' = -rate*x\"";
+        let (third, half) = (std::f64::consts::FRAC_PI_3, std::f64::consts::PI);
+        for (guard, start, expected) in
+            [("x > half", "x = -1\ny = 0", 2.0 * third), ("x < 0", "x = 0\ny = 1", half)]
+        {
+            let system = in_form(&parameters, equations, guard, "x = x", start);
+            for enclosed in [false, true] {
+                let (all, work) = run::<f64>(&system, 10.0 / rate, enclosed);
+                let is_there = name(&system, &all[0]) == "reached";
+                let off = (all[0].time.value() * rate - expected).abs();
+                assert!(
+                    is_there && off < 1e-14 || name(&system, &all[0]) == "undecided",
+                    "{rate:e} {guard} {enclosed}: off by {off:e}, {work:?}"
+                );
+                if let (true, Some(errors)) = (is_there, &all[0].errors) {
+                    assert!(off <= errors.time * rate + 1e-15, "{rate:e} {guard}: {off:e}");
+                }
+            }
+        }
+    }
+}
+
 /// An oscillation that meets half of its amplitude, at a sixth of a half turn.
 fn large(amplitude: &str, factor: &str) -> System {
     in_form(

@@ -27,6 +27,7 @@ impl<T: Number> Run<'_, T> {
             if let Some(segment) = &self.segment {
                 segment.at_crossing(&mut self.ends.left, &mut self.work);
             }
+            self.ends.passed.guards &= !guards;
             self.tracks.iter_mut().for_each(|track| track.zeros = 0);
             for n in bits(guards) {
                 self.tracks[n].zeros = 1;
