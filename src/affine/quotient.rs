@@ -53,8 +53,8 @@ impl<const N: usize> Quotient<N> {
     const SHARES: [f64; N] = inverse_binomials();
 
     /// The quotient of a guard with these orders, positive outside, and the sizes of what they are
-    /// summed from; `margin` is what rounding does to them beside these sizes, `slack` what it did to
-    /// the value, and `lost` what underflow takes from them.
+    /// summed from; `margin` is what rounding does to them beside these sizes, `slack` what it did
+    /// to the value, and `lost` what underflow takes from them.
     #[inline]
     pub fn of(
         [orders, sizes]: [&[f64; N]; 2],
