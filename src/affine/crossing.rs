@@ -13,9 +13,6 @@ use crate::number::Number;
 /// The number of Taylor terms that are summed to guess at a crossing, at most.
 const TERMS: usize = 8;
 
-/// The share of a slope by which it may change on the rest of the way to a root that is told by it.
-const SHORT: f64 = 1e-6;
-
 /// A crossing that is proved to be the only one shortly after a point.
 struct Rising<T> {
     /// The number of the guard.
@@ -245,11 +242,10 @@ impl<T: Number> Segment<'_, T> {
     /// rounding. Errors are followed from one evaluation to the next.
     #[inline]
     fn is_last(&self, orders: &[T; 4], step: T) -> bool {
-        let size = step.to_f64().abs();
-        let turn = self.flow.speed * size;
-        let [slope, bend] = [orders[1].to_f64(), orders[2].to_f64()];
-        let is_straight = turn * turn <= 0.25 * unit::<T>() && size * bend.abs() <= SHORT * slope;
-        is_straight && !self.follows_errors()
+        let turn = self.flow.speed * step.to_f64();
+        let is_small = turn * turn <= 0.25 * unit::<T>();
+        let rises = orders[1].to_f64() > 0.0;
+        rises && is_small && is_straight(orders, step) && !self.follows_errors()
     }
 }
 
@@ -264,8 +260,16 @@ fn terms<T>(row: &ModalRow<T>) -> usize {
 #[inline]
 fn remaining<T: Number>(orders: &[T; 4]) -> T {
     let step = -orders[0] / orders[1];
+    if is_straight(orders, step) { step } else { T::zero() }
+}
+
+/// Whether a guard's slope does not change on a step.
+#[inline]
+fn is_straight<T: Number>(orders: &[T; 4], step: T) -> bool {
+    /// The share by which it may.
+    const SHORT: f64 = 1e-6;
     let [slope, bend] = [orders[1].to_f64(), orders[2].to_f64()];
-    if (step.to_f64() * bend).abs() <= SHORT * slope.abs() { step } else { T::zero() }
+    (step.to_f64() * bend).abs() <= SHORT * slope.abs()
 }
 
 /// The step to the root of a cubic that is near zero, by the series of its inverse to the third

@@ -181,7 +181,7 @@ impl<'a, T: Number> Segment<'a, T> {
 
     /// All guards of a point whose co-ordinates are there.
     #[inline]
-    pub fn fill_all(&self, point: &mut GuardedPoint<T>) {
+    fn fill_all(&self, point: &mut GuardedPoint<T>) {
         let time = point.time;
         let is_by_series = |n: usize| self.is_by_series(n, time.to_f64());
         point.make_room(self.rows.len());

@@ -225,15 +225,19 @@ fn polynomial_reach(orders: &[f64; 4], zeros: usize, slack: f64) -> f64 {
     if zeros > 0 || size == 0.0 {
         return f64::INFINITY;
     }
-    // value + slope s + bend s^2/2 = 0, in the form that does not cancel for a rise.
-    let square = slope * slope - 2.0 * value * bend;
-    let divisor = slope + square.max(0.0).sqrt();
-    let rises = value < -slack && divisor > 0.0 && square >= 0.0;
-    let rise = if rises { -2.0 * value / divisor } else { f64::INFINITY };
+    let rise = if value < -slack { rise([value, slope, 0.5 * bend]) } else { f64::INFINITY };
     let by_slope = GROWTH * size / slope.abs();
     let by_bend = root(GROWTH * size / bend.abs(), 2);
     let by_third = root(GROWTH * size / third.abs(), 3);
     (1.25 * rise).min(by_slope).min(by_bend).min(by_third)
+}
+
+/// Where a parabola that is negative at zero rises through zero; infinite where it does not.
+#[inline]
+pub(super) fn rise([value, slope, bend]: [f64; 3]) -> f64 {
+    // In the form that does not cancel.
+    let divisor = slope + (slope * slope - 4.0 * value * bend).sqrt();
+    if divisor > 0.0 { -2.0 * value / divisor } else { f64::INFINITY }
 }
 
 /// A length on which the remainder stays small beside what a guard becomes by one of its first

@@ -9,6 +9,7 @@ use super::bound::ORDERS;
 use super::crossing::FirstCrossing;
 use super::point::{GuardedPoint, Segment, root};
 use super::quotient::{Quotient, WINDOW};
+use super::reach::rise;
 use super::track::{SearchWork, Track, live, outward};
 use super::vector::UNDERFLOW;
 use crate::number::Number;
@@ -135,7 +136,7 @@ impl<T: Number> Segment<'_, T> {
         let [mut orders, sizes] = self.rows[n].orders_and_sizes::<N>(&at.y);
         orders[..4].copy_from_slice(&at.orders[n].map(Number::to_f64));
         orders.iter_mut().for_each(|order| *order *= track.outward);
-        let lost = UNDERFLOW * (1.0 + at.norms.iter().sum::<f64>());
+        let lost = UNDERFLOW * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
         let errors = [at.slack[n], lost];
         Quotient::of([&orders, &sizes], track.zeros, self.margin(), errors)
     }
@@ -176,14 +177,10 @@ fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
     if !is_below {
         return f64::INFINITY;
     }
-    // In the form that does not cancel for a rise.
-    let divisor = slope + (slope * slope - 4.0 * value * bend).sqrt();
-    if divisor > 0.0 {
-        return -2.0 * value / divisor;
-    }
-    let rises = third > 0.0;
-    if !rises {
-        return f64::INFINITY;
+    let first = rise([value, slope, bend]);
+    let comes_back = third > 0.0;
+    if first < f64::INFINITY || !comes_back {
+        return first;
     }
     // From above all roots Newton's method falls to the last one.
     let share = |of: f64| (-of).max(0.0) / third;

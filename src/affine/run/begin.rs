@@ -39,7 +39,7 @@ impl<T: Number> Solver<T> {
             *size = error(*entry);
         }
         let phase = self.phase_roundings(&run.entered);
-        // Of cos theta; where nothing is forced it is zero.
+        // The error of cos theta follows the states; without forcing it is zero.
         let turned = phase[start.state.len()];
         for (size, terms) in sizes.iter_mut().zip(&start.state) {
             let [cos, sin, one] = [0, 1, 2].map(|n| terms[n].to_f64().value().abs());
