@@ -6,7 +6,7 @@
 //! for all states that the motion can reach in that time: along the flow, and by jumps that are
 //! proportional to the rates of the impacts.
 
-use super::flow::ModalRow;
+use super::row::ModalRow;
 use super::run::{Restitution, Run};
 use super::structure::Firing;
 use super::vector::{Vector, dot, unit};
@@ -44,7 +44,8 @@ impl<T: Number> Run<'_, T> {
         // How much the derivative of a row can change along the flow and by all jumps.
         let change = |row: &ModalRow<T>, order: usize| {
             let jump = (at(&row.orders[order], after) - at(&row.orders[order], before)).to_f64();
-            2.0 * (flow.bound(row, order + 1, after, guess) * guess + jump.abs() / (1.0 - e_f64))
+            2.0 * (row.bound(order + 1, &flow.norms(after), guess) * guess
+                + jump.abs() / (1.0 - e_f64))
         };
         let room = T::exact(change(gap, 2));
         let (a1, a2) = (bend - room, bend + room);

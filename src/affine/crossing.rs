@@ -4,8 +4,8 @@
 //! between two times. A Taylor polynomial guesses at the time, and Newton's method on the closed
 //! form settles it inside of the proved bracket.
 
-use super::flow::ModalRow;
-use super::point::{GuardedPoint, Passed, PerGuard, Segment};
+use super::point::{GuardedPoint, GuardedSegment, Passed, PerGuard};
+use super::row::ModalRow;
 use super::track::{SearchWork, Track, live, outward};
 use super::vector::unit;
 use crate::number::Number;
@@ -39,7 +39,7 @@ pub(super) struct FirstCrossing<T> {
     pub guards: u64,
 }
 
-impl<T: Number> Segment<'_, T> {
+impl<T: Number> GuardedSegment<'_, T> {
     /// The first crossing shortly after a point, if it is proved to be one. Guards that have
     /// passed are not looked at before their time.
     #[inline]
@@ -99,7 +99,7 @@ impl<T: Number> Segment<'_, T> {
     fn truncation(&self, at: &GuardedPoint<T>, it: &Rising<T>) -> f64 {
         let row = &self.rows[it.guard];
         let terms = terms(row);
-        let next = self.flow.bound_by(row, terms, &at.norms, it.within);
+        let next = row.bound(terms, &at.norms, it.within);
         let rest = (1..=terms).fold(next, |rest, k| rest * it.within / k as f64);
         it.change + 2.0 * rest / it.slope
     }
@@ -115,7 +115,7 @@ impl<T: Number> Segment<'_, T> {
             return None;
         }
         let within = (2.0 * value.abs() + 8.0 * slack) / slope;
-        let fourth = self.flow.bound_by(&self.rows[n], 4, &at.norms, within);
+        let fourth = self.rows[n].bound(4, &at.norms, within);
         let change = within * (bend.abs() + within * (0.5 * third.abs() + within * fourth / 6.0));
         let steadily = change < 0.5 * slope;
         if !steadily {
@@ -162,7 +162,7 @@ impl<T: Number> Segment<'_, T> {
     #[inline]
     pub fn excess(&self, n: usize, track: &Track, at: &GuardedPoint<T>, within: f64) -> f64 {
         let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::to_f64);
-        let fourth = self.flow.bound_by(&self.rows[n], 4, &at.norms, within);
+        let fourth = self.rows[n].bound(4, &at.norms, within);
         let rest = 0.5 * bend.abs() + within * (third.abs() / 6.0 + within * fourth / 24.0);
         match track.zeros {
             0 => value + within * (slope.max(0.0) + within * rest),

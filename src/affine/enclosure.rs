@@ -6,7 +6,8 @@
 //! are too many, the smallest are replaced by a box. So errors that cancel do so here.
 
 use super::bound::{Later, ORDERS};
-use super::flow::{Flow, ModalRow};
+use super::flow::ModeFlow;
+use super::row::ModalRow;
 use super::system::LARGEST_DIMENSION;
 use super::vector::{UNDERFLOW, Vector, dot, unit};
 use crate::number::Number;
@@ -38,7 +39,7 @@ pub(super) struct Enclosure {
 
 /// What the errors at an event follow from.
 pub(super) struct EnclosedCrossing<'a, T> {
-    pub flow: &'a Flow<T>,
+    pub flow: &'a ModeFlow<T>,
     pub matrix: &'a [Vector<T>],
     pub guard: &'a ModalRow<T>,
     /// The modal co-ordinates at the crossing, and the time since the entry.
@@ -63,10 +64,10 @@ pub(super) struct InheritedError {
 
 impl InheritedError {
     /// A bound of it up to a time, which is not negative.
-    pub fn by<T: Number>(&self, flow: &Flow<T>, row: &ModalRow<T>, time: f64) -> f64 {
+    pub fn by<T: Number>(&self, row: &ModalRow<T>, time: f64) -> f64 {
         let polynomial =
             (1..ORDERS).rev().fold(0.0, |sum, k| (sum + self.orders[k]) * time / k as f64);
-        (self.orders[0] + polynomial) * OUTWARD + flow.bound_by(row, 0, &self.norms, time)
+        (self.orders[0] + polynomial) * OUTWARD + row.bound(0, &self.norms, time)
     }
 }
 
@@ -89,13 +90,13 @@ impl Enclosure {
     }
 
     /// A bound of the error of a derivative of a row, just after the entry of a segment.
-    pub fn of_row<T: Number>(&self, flow: &Flow<T>, row: &ModalRow<T>, order: usize) -> f64 {
+    pub fn of_row<T: Number>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>, order: usize) -> f64 {
         let row = row.orders[order].map(Number::to_f64);
         self.sum(|column| dot(&row, &flow.modal_rounded(&column.state), flow.dimension))
     }
 
     /// What the errors do to a row at any time after the entry.
-    pub fn along<T: Number>(&self, flow: &Flow<T>, row: &ModalRow<T>) -> InheritedError {
+    pub fn along<T: Number>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>) -> InheritedError {
         let mut sums = InheritedError::default();
         for column in &self.columns {
             let own = flow.modal_rounded(&column.state);
@@ -121,7 +122,7 @@ impl Enclosure {
     }
 
     /// The errors at a fixed time after the entry.
-    pub fn later<T: Number>(&self, flow: &Flow<T>, elapsed: T) -> Self {
+    pub fn later<T: Number>(&self, flow: &ModeFlow<T>, elapsed: T) -> Self {
         let transition = flow.transition(elapsed);
         let later = |column: &ErrorColumn| {
             let mut state = [0.0; LARGEST_DIMENSION];
@@ -137,7 +138,7 @@ impl Enclosure {
     /// are made up for along the flow. The time since the entry is rounded by up to `rounded`.
     pub fn at_given_time<T: Number>(
         mut self,
-        flow: &Flow<T>,
+        flow: &ModeFlow<T>,
         matrix: &[Vector<T>],
         state: &Vector<T>,
         rounded: f64,
@@ -198,7 +199,7 @@ impl Enclosure {
     }
 
     /// Adds what rounding does where a segment is entered.
-    pub fn add_entry<T: Number>(&mut self, flow: &Flow<T>, state: &Vector<T>, unit: f64) {
+    pub fn add_entry<T: Number>(&mut self, flow: &ModeFlow<T>, state: &Vector<T>, unit: f64) {
         let roundings = flow.entry_roundings(state, unit).into_iter();
         let there = roundings.filter(|state| state.iter().any(|it| *it != 0.0));
         self.columns.extend(there.map(|state| ErrorColumn { state, time: 0.0 }));
@@ -229,7 +230,7 @@ impl Enclosure {
 }
 
 /// M z in f64.
-fn rates<T: Number>(flow: &Flow<T>, matrix: &[Vector<T>], state: &Vector<T>) -> Vec<f64> {
+fn rates<T: Number>(flow: &ModeFlow<T>, matrix: &[Vector<T>], state: &Vector<T>) -> Vec<f64> {
     matrix.iter().map(|row| dot(row, state, flow.dimension).to_f64()).collect()
 }
 
@@ -255,7 +256,7 @@ impl ErrorColumn {
 /// What rounding may have done to each entry of a state that is evaluated a time after its
 /// segment's entry.
 pub(super) fn roundings<T: Number>(
-    flow: &Flow<T>,
+    flow: &ModeFlow<T>,
     entry: &Vector<T>,
     elapsed: T,
 ) -> [f64; LARGEST_DIMENSION] {

@@ -119,6 +119,9 @@ impl Reader<'_> {
         if !name.is_empty() {
             return self.scope.value(&name);
         }
+        if self.has_exponent() {
+            return Err(DECIMAL.to_owned());
+        }
         let digits = self.digits();
         let states = self.scope.states();
         match digits.parse::<u64>() {
@@ -126,6 +129,16 @@ impl Reader<'_> {
             _ if digits.is_empty() => Err(self.nothing()),
             _ => Err(format!("{digits} is too large: integers up to 2^63 are accepted")),
         }
+    }
+
+    /// Whether an integer with a decimal exponent stands here, as in `5e-3`.
+    fn has_exponent(&self) -> bool {
+        let after = self.rest.trim_start_matches(|c: char| c.is_ascii_digit());
+        let exponent = after.strip_prefix(['e', 'E']);
+        after.len() < self.rest.len()
+            && exponent.is_some_and(|it| {
+                it.strip_prefix(['+', '-']).unwrap_or(it).starts_with(|c: char| c.is_ascii_digit())
+            })
     }
 
     fn nothing(&self) -> String {

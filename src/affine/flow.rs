@@ -1,15 +1,15 @@
 //! The closed form of a mode: z(t) = exp(M t) z, block by block.
 
-use super::bound::{self, Later, ORDERS};
+use super::bound::Later;
 use super::modal::{self, BigReal};
 use super::motion::BlockMotion;
-use super::system::{LARGEST_DIMENSION, Row};
-use super::vector::{UNDERFLOW, Vector, euclidean, vector};
+use super::system::LARGEST_DIMENSION;
+use super::vector::{UNDERFLOW, Vector, add_product, euclidean, vector};
 use crate::number::Number;
 
 /// A mode's closed form.
 #[derive(Clone, Debug)]
-pub(super) struct Flow<T> {
+pub(super) struct ModeFlow<T> {
     pub dimension: usize,
     pub blocks: Vec<FlowBlock<T>>,
     /// How long a bound may be asked for: a growing block grows by at most e.
@@ -34,48 +34,7 @@ pub(super) struct FlowBlock<T> {
     pub later: Later,
 }
 
-/// A row of z with its derivatives, in modal co-ordinates.
-#[derive(Clone, Debug)]
-pub(super) struct ModalRow<T> {
-    /// The number of the first guard of its mode that is the same row.
-    pub twin: usize,
-    /// The row's derivatives.
-    pub orders: Vec<Vector<T>>,
-    /// How many of them there are up to the last that is not zero.
-    pub last: usize,
-    /// The co-ordinates that it is made of, in their order.
-    pub columns: Vec<RowColumn<T>>,
-    /// The blocks that it is made of, in their order.
-    pub parts: Vec<RowPart>,
-    /// The blocks of `parts`, a bit each.
-    pub blocks: u16,
-}
-
-/// A co-ordinate's factors in a row.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct RowColumn<T> {
-    pub at: usize,
-    /// The part of each order: of the value and of its derivatives.
-    pub orders: [T; ORDERS],
-    /// The size of the part of the value.
-    size: f64,
-}
-
-/// A block's part in a row.
-#[derive(Clone, Debug)]
-pub(super) struct RowPart {
-    /// The block's index.
-    pub block: usize,
-    /// The first column of the block and the one after its last, among those of the row.
-    pub columns: (usize, usize),
-    /// What is known of the block at all later times.
-    pub later: Later,
-    /// The norms of the derivatives' parts, and of what they become where the block's co-ordinates
-    /// only turn and decay.
-    pub norms: [f64; ORDERS],
-}
-
-impl<T: Number> Flow<T> {
+impl<T: Number> ModeFlow<T> {
     /// A mode's closed form from its blocks.
     pub fn of(blocks: &[modal::Block]) -> Self {
         let dimension = blocks.iter().map(|it| it.matrix.len()).sum();
@@ -102,28 +61,6 @@ impl<T: Number> Flow<T> {
         let rounded = |row: &Vector<T>| row.map(Number::to_f64);
         flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
         flow
-    }
-
-    /// A row of z in modal co-ordinates.
-    pub fn row(&self, row: &Row, blocks: &[modal::Block]) -> ModalRow<T> {
-        let row: Vec<BigReal> = row.iter().map(BigReal::of).collect();
-        let parts: Vec<_> = blocks.iter().map(|block| bound::derivatives(&row, block)).collect();
-        let order = |k: usize| {
-            let entries: Vec<_> = parts.iter().flat_map(|part| part[k].iter().cloned()).collect();
-            vector(&entries)
-        };
-        let orders: Vec<Vector<T>> = (0..ORDERS).map(order).collect();
-        let is_there = |order: &Vector<T>| order.iter().any(|it| *it != T::zero());
-        let last = orders.iter().rposition(is_there).map_or(0, |it| it + 1);
-        let mut modal =
-            ModalRow { twin: 0, orders, last, columns: Vec::new(), parts: Vec::new(), blocks: 0 };
-        for (n, (block, part)) in blocks.iter().zip(&parts).enumerate() {
-            let norms = bound::norms(block, part);
-            if norms.iter().any(|it| *it > 0.0) {
-                modal.add_part(n, &self.blocks[n], norms);
-            }
-        }
-        modal
     }
 
     /// The modal co-ordinates of a state.
@@ -223,137 +160,6 @@ impl<T: Number> Flow<T> {
         };
         (0..self.dimension).map(column).collect()
     }
-
-    /// A bound of a row's derivative of an order over `length` after a state.
-    #[inline]
-    pub fn bound<U: Number>(
-        &self,
-        row: &ModalRow<T>,
-        order: usize,
-        y: &Vector<U>,
-        length: f64,
-    ) -> f64 {
-        self.bound_by(row, order, &self.norms(y), length)
-    }
-
-    /// The bound as [`Self::bound`] has it, from the norms of the blocks' co-ordinates.
-    #[inline]
-    pub fn bound_by(
-        &self,
-        row: &ModalRow<T>,
-        order: usize,
-        sizes: &Vector<f64>,
-        length: f64,
-    ) -> f64 {
-        let mut sum = 0.0;
-        for part in &row.parts {
-            sum += part.bound(order, length, sizes);
-        }
-        sum * (1.0 + 1e-12)
-    }
-}
-
-impl RowPart {
-    /// A bound of the part in a derivative over `length`, from the norms of the blocks'
-    /// co-ordinates.
-    #[inline]
-    pub fn bound(&self, order: usize, length: f64, sizes: &Vector<f64>) -> f64 {
-        let size = sizes[self.block];
-        let norm = if size == 0.0 { 0.0 } else { self.later.bound(&self.norms, order, length) };
-        // Nothing comes of zeros, even where a factor of theirs overflows; what is not zero does
-        // not vanish, because a derivative without a bound would be taken for a polynomial's.
-        if norm == 0.0 { 0.0 } else { (norm * size).max(UNDERFLOW) }
-    }
-}
-
-impl<T: Number> ModalRow<T> {
-    fn add_part(&mut self, n: usize, block: &FlowBlock<T>, norms: [f64; ORDERS]) {
-        let first = self.columns.len();
-        for at in block.at..block.at + block.size {
-            let orders: [T; ORDERS] = std::array::from_fn(|k| self.orders[k][at]);
-            let used = orders.iter().any(|it| *it != T::zero());
-            if used {
-                self.columns.push(RowColumn { at, orders, size: orders[0].to_f64().abs() });
-            }
-        }
-        let columns = (first, self.columns.len());
-        self.parts.push(RowPart { block: n, columns, later: block.later, norms });
-        self.blocks |= 1 << n;
-    }
-
-    /// The first column of a part, or the end of them.
-    #[inline]
-    pub fn first_column(&self, part: usize) -> usize {
-        self.parts.get(part).map_or(self.columns.len(), |it| it.columns.0)
-    }
-
-    /// The value and three derivatives, from a column on.
-    #[inline]
-    pub fn first_orders(&self, y: &Vector<T>, from: usize) -> [T; 4] {
-        let mut sums = [T::zero(); 4];
-        for column in &self.columns[from..] {
-            let entry = y[column.at];
-            add_product(&mut sums, &column.orders, entry);
-        }
-        sums
-    }
-
-    /// So many orders from one on.
-    #[inline]
-    pub fn orders_from<const N: usize>(&self, first: usize, y: &Vector<T>) -> [T; N] {
-        let mut sums = [T::zero(); N];
-        for column in &self.columns {
-            let entry = y[column.at];
-            add_product(&mut sums, &column.orders[first..first + N], entry);
-        }
-        sums
-    }
-
-    /// Value and three derivatives, and the sum of the sizes of what the value is summed from.
-    #[inline]
-    pub fn sized_orders(&self, y: &Vector<T>) -> ([T; 4], f64) {
-        let (mut sums, mut size) = ([T::zero(); 4], 0.0);
-        for column in &self.columns {
-            let entry = y[column.at];
-            add_product(&mut sums, &column.orders, entry);
-            size += column.size * entry.to_f64().abs();
-        }
-        (sums, size)
-    }
-
-    /// The first orders, and the sums of the sizes of what they are summed from, in f64.
-    #[inline]
-    pub fn orders_and_sizes<const N: usize>(&self, y: &Vector<T>) -> [[f64; N]; 2] {
-        let [mut orders, mut sizes] = [[0.0; N]; 2];
-        for column in &self.columns {
-            let entry = y[column.at].to_f64();
-            for k in 0..N {
-                let term = column.orders[k].to_f64() * entry;
-                orders[k] += term;
-                sizes[k] += term.abs();
-            }
-        }
-        [orders, sizes]
-    }
-
-    /// The sum of the sizes of what the row's value is summed from.
-    #[inline]
-    pub fn size<U: Number>(&self, y: &Vector<U>) -> f64 {
-        self.columns.iter().map(|it| it.size * y[it.at].to_f64().abs()).sum()
-    }
-
-    /// A derivative, and the sum of the sizes of what it is summed from.
-    #[inline]
-    pub fn order(&self, order: usize, y: &Vector<T>) -> (T, f64) {
-        let row = &self.orders[order];
-        let (mut sum, mut size) = (T::zero(), 0.0);
-        for RowColumn { at, .. } in &self.columns {
-            let term = row[*at] * y[*at];
-            sum = sum + term;
-            size += term.to_f64().abs();
-        }
-        (sum, size)
-    }
 }
 
 impl<T: Number> FlowBlock<T> {
@@ -384,17 +190,6 @@ fn times_in<T: Number, const ROWS: usize>(columns: &[Vector<T>], vector: &Vector
     let mut product = [T::zero(); LARGEST_DIMENSION];
     product[..ROWS].copy_from_slice(&sums);
     product
-}
-
-/// Adds a multiple of a vector. Indices are what every unit of a crate inlines; iterators that are
-/// joined are called.
-#[allow(clippy::needless_range_loop, reason = "an iterator costs a call")]
-#[inline(always)]
-fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: &[T], factor: T) {
-    let vector = &vector[..N];
-    for k in 0..N {
-        sums[k] = sums[k] + vector[k] * factor;
-    }
 }
 
 fn transposed<T: Number>(matrix: &[Vec<BigReal>]) -> Vec<Vector<T>> {

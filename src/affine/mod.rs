@@ -20,6 +20,7 @@ mod point;
 mod quotient;
 mod reach;
 mod residue;
+mod row;
 mod run;
 mod search;
 mod solver;

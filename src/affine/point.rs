@@ -2,7 +2,8 @@
 
 use super::bound::ORDERS;
 use super::enclosure::InheritedError;
-use super::flow::{Flow, ModalRow};
+use super::flow::ModeFlow;
+use super::row::ModalRow;
 use super::system::LARGEST_DIMENSION;
 use super::track::{SearchWork, Track};
 use super::vector::{UNDERFLOW, Vector, unit};
@@ -18,8 +19,8 @@ const INLINE: usize = 4;
 pub(super) type PerGuard<T> = SmallVec<[T; INLINE]>;
 
 /// A segment, with all that its guards have at its entry.
-pub(super) struct Segment<'a, T> {
-    pub flow: &'a Flow<T>,
+pub(super) struct GuardedSegment<'a, T> {
+    pub flow: &'a ModeFlow<T>,
     pub rows: &'a [ModalRow<T>],
     pub entry: Vector<T>,
     /// What errors do along the segment, where they are followed.
@@ -52,7 +53,7 @@ pub(super) struct GuardedPoint<T> {
     pub later: T,
     /// The modal co-ordinates; those of blocks that no guard is made of are the entry's.
     pub y: Vector<T>,
-    /// The norms of each block's co-ordinates, once [`Segment::measure`] was asked for them.
+    /// The norms of each block's co-ordinates, once [`GuardedSegment::measure`] was asked for them.
     pub norms: Vector<f64>,
     /// The value and three derivatives of each guard.
     pub orders: PerGuard<[T; 4]>,
@@ -60,11 +61,11 @@ pub(super) struct GuardedPoint<T> {
     pub slack: PerGuard<f64>,
 }
 
-impl<'a, T: Number> Segment<'a, T> {
+impl<'a, T: Number> GuardedSegment<'a, T> {
     /// The segment that begins with these co-ordinates.
     #[inline]
     pub fn new(
-        flow: &'a Flow<T>,
+        flow: &'a ModeFlow<T>,
         rows: &'a [ModalRow<T>],
         entry: Vector<T>,
         tracks: &[Track],
@@ -96,7 +97,7 @@ impl<'a, T: Number> Segment<'a, T> {
         let mut limit = longest;
         let is_by_series = |zeros: usize| 0 < zeros && zeros < ORDERS;
         for (row, zeros) in self.rows.iter().zip(&self.zeros).filter(|it| is_by_series(*it.1)) {
-            let last = self.flow.bound_by(row, ORDERS - 1, &norms, longest.min(1e300));
+            let last = row.bound(ORDERS - 1, &norms, longest.min(1e300));
             let lead = row.order(*zeros, &self.entry).0.to_f64().abs();
             limit = limit.min(series_limit::<T>(lead, *zeros, last));
         }
@@ -248,7 +249,7 @@ impl<'a, T: Number> Segment<'a, T> {
             if !is_by_series(n) {
                 *slack = slack.max(self.margin() * self.rows[n].size(&sizes));
             }
-            let lost = self.flow.bound_by(&self.rows[n], 0, &followed.lost, point.time.to_f64());
+            let lost = self.rows[n].bound(0, &followed.lost, point.time.to_f64());
             let rest = LARGEST_DIMENSION as f64 * UNDERFLOW;
             *slack += self.inherited_by(n, point.time) + lost + rest;
         }
@@ -263,9 +264,9 @@ impl<'a, T: Number> Segment<'a, T> {
     /// What errors made before the segment may do to a guard up to a time.
     #[inline]
     pub fn inherited_by(&self, n: usize, time: T) -> f64 {
-        self.followed.as_ref().map_or(0.0, |followed| {
-            followed.inherited[n].by(self.flow, &self.rows[n], time.to_f64())
-        })
+        self.followed
+            .as_ref()
+            .map_or(0.0, |followed| followed.inherited[n].by(&self.rows[n], time.to_f64()))
     }
 }
 

@@ -7,9 +7,9 @@
 //! only a constant, the piece has no end.
 
 use super::bound::Later;
-use super::flow::{ModalRow, RowPart};
 use super::hull::{self, Judged, Lengths};
-use super::point::{Ends, GuardedPoint, Segment, root};
+use super::point::{Ends, GuardedPoint, GuardedSegment, root};
+use super::row::{ModalRow, RowPart};
 use super::system::LARGEST_DIMENSION;
 use super::track::{Track, outward};
 use super::vector::Vector;
@@ -39,7 +39,7 @@ pub(super) struct Reach {
     whole: f64,
 }
 
-impl<T: Number> Segment<'_, T> {
+impl<T: Number> GuardedSegment<'_, T> {
     /// How far a guard is looked at from a point.
     #[inline]
     pub fn reach(&self, n: usize, track: &Track, left: &GuardedPoint<T>, longest: f64) -> Reach {

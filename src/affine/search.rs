@@ -12,7 +12,7 @@
 
 use super::crossing::FirstCrossing;
 use super::hull::{Judged, Lengths};
-use super::point::{Ends, GuardedPoint, Passed, PerGuard, Segment};
+use super::point::{Ends, GuardedPoint, GuardedSegment, Passed, PerGuard};
 use super::reach::Reach;
 use super::taylor::Misses;
 use super::track::{SearchWork, Track, live};
@@ -39,7 +39,7 @@ pub(super) enum Found {
     Lost,
 }
 
-impl<T: Number> Segment<'_, T> {
+impl<T: Number> GuardedSegment<'_, T> {
     /// The first crossing after the left end and not after `limit`.
     #[inline]
     pub fn first(

@@ -3,9 +3,10 @@
 use super::bound;
 use super::clock::{Clock, Time};
 use super::event::Event;
-use super::flow::{Flow, ModalRow};
+use super::flow::ModeFlow;
 use super::known::Known;
 use super::modal::{self, BigReal};
+use super::row::ModalRow;
 use super::structure::Structure;
 use super::system::{LARGEST_DIMENSION, Mode, Row, System};
 use super::vector::{Vector, rounded};
@@ -24,7 +25,7 @@ pub struct Solver<T> {
 /// One of its modes.
 #[derive(Clone, Debug)]
 pub(super) struct SolverMode<T> {
-    pub flow: Flow<T>,
+    pub flow: ModeFlow<T>,
     /// The mode's matrix M.
     pub matrix: Vec<Vector<T>>,
     /// The guards of `until`, then those of `watch`.
@@ -82,8 +83,8 @@ impl<T: Number> Solver<T> {
         }
         let structure = Structure::of(&system);
         let structure = structure.ok_or_else(|| Unprepared { mode: system.name.clone() })?;
-        let flows: Vec<Flow<T>> = blocks.iter().map(|it| Flow::of(it)).collect();
-        let row = |row: &Row, mode: usize| flows[mode].row(row, &blocks[mode]);
+        let flows: Vec<ModeFlow<T>> = blocks.iter().map(|it| ModeFlow::of(it)).collect();
+        let row = |row: &Row, mode: usize| ModalRow::of(row, &flows[mode].blocks, &blocks[mode]);
         let mode = |(n, mode): (usize, &Mode)| {
             let until = mode.until.iter().map(|it| &it.guard);
             let guards: Vec<_> = until.chain(mode.watch.iter().map(|it| &it.guard)).collect();

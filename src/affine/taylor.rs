@@ -7,7 +7,7 @@
 
 use super::bound::ORDERS;
 use super::crossing::FirstCrossing;
-use super::point::{GuardedPoint, Segment, root};
+use super::point::{GuardedPoint, GuardedSegment, root};
 use super::quotient::{Quotient, WINDOW};
 use super::reach::rise;
 use super::track::{SearchWork, Track, live, outward};
@@ -47,7 +47,7 @@ impl Misses {
     }
 }
 
-impl<T: Number> Segment<'_, T> {
+impl<T: Number> GuardedSegment<'_, T> {
     /// The first crossing after a point, if the polynomials there prove it. Runs that follow their
     /// errors are left to the search, which counts what errors leave open.
     #[inline]
@@ -66,7 +66,7 @@ impl<T: Number> Segment<'_, T> {
         let zeros = tracks[n].zeros;
         let power = |sum: f64, last: usize| (1..=last).fold(sum, |sum, k| sum * rough / k as f64);
         let lead = power(at.orders[n][zeros].to_f64().abs(), zeros);
-        let rest = power(self.flow.bound_by(&self.rows[n], FEW - 1, &at.norms, rough), FEW - 1);
+        let rest = power(self.rows[n].bound(FEW - 1, &at.norms, rough), FEW - 1);
         let crossing = if rest <= LITTLE * lead {
             self.proved::<FEW>(n, tracks, at, rough)?
         } else if rest <= MUCH * lead {
@@ -90,7 +90,7 @@ impl<T: Number> Segment<'_, T> {
     ) -> Option<FirstCrossing<T>> {
         let guard = self.quotient::<N>(n, &tracks[n], at);
         let after = guard.root(rough)?;
-        let last = self.flow.bound_by(&self.rows[n], N - 1, &at.norms, (1.0 + WINDOW) * after);
+        let last = self.rows[n].bound(N - 1, &at.norms, (1.0 + WINDOW) * after);
         let room = guard.crosses(after, last)?;
         let end = (1.0 + room) * after;
         let mut guards = 1 << n;
@@ -121,7 +121,7 @@ impl<T: Number> Segment<'_, T> {
         if track.zeros > 2 {
             return false;
         }
-        let last = self.flow.bound_by(&self.rows[n], N - 1, &at.norms, length);
+        let last = self.rows[n].bound(N - 1, &at.norms, length);
         self.quotient::<N>(n, track, at).is_negative(length, last)
     }
 

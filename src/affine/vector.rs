@@ -29,6 +29,17 @@ pub(super) fn dot<T: Number>(a: &[T], b: &[T], dimension: usize) -> T {
     sum
 }
 
+/// Adds a multiple of a vector. Indices are what every unit of a crate inlines; iterators that are
+/// joined are called.
+#[allow(clippy::needless_range_loop, reason = "an iterator costs a call")]
+#[inline(always)]
+pub(super) fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: &[T], factor: T) {
+    let vector = &vector[..N];
+    for k in 0..N {
+        sums[k] = sums[k] + vector[k] * factor;
+    }
+}
+
 /// The Euclidean norm of some entries, which overflows or vanishes only where it has to.
 #[inline]
 pub(super) fn euclidean(entries: impl Iterator<Item = f64> + Clone) -> f64 {

@@ -1,11 +1,12 @@
 //! The first crossing of a guard: guessed, evaluated, certified.
 //!
 //! Most switches take one evaluation: next to the guess, from where the guard's own [`series`]
-//! leads to the root and the state there.
+//! leads to the root and the state there ([`candidate`]).
 //!
 //! # Why no crossing is ever passed
 //!
-//! [`search`] walks from the start of the phase in pieces. A piece is passed if a [`certificate`]
+//! Where a candidate is not confirmed at once, [`search`] walks from the start of the phase in
+//! pieces. A piece is passed if a [`certificate`]
 //! proves that the guard stays inside its corridor there, if a bound on the whole future proves the
 //! same ([`slow_envelope`]), or, counted as undecidable, if rounding hides whether it does. A root
 //! is accepted only as the right end of such a piece. Guesses propose where pieces end; a bad guess
@@ -31,18 +32,18 @@
 pub mod allowances;
 #[cfg(test)]
 mod bounds_tests;
+mod bracket;
+pub mod candidate;
 pub mod certificate;
 pub mod contact;
 mod contact_ahead;
 pub mod contact_parts;
 mod crest;
 pub mod guarded;
-pub mod higher_orders;
 pub mod limit;
 pub mod no_contact;
 pub mod piecewise;
 pub mod progression;
-pub mod root;
 pub mod search;
 pub mod series;
 pub mod slow_envelope;

@@ -2,9 +2,8 @@
 
 use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
-use crate::crossing::higher_orders::PushedOrders;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
-use crate::crossing::series::{Push, Series, short_decay};
+use crate::crossing::series::{Push, PushedOrders, Series, short_decay};
 use crate::crossing::slow_envelope::{EnvelopePlace, SlowEnvelope, first_root};
 use crate::crossing::tangents::stays_below;
 use crate::flow::constants::Constants;

@@ -1,11 +1,13 @@
-//! The first crossing: pieces proposed by guesses, accepted by certificates.
+//! The first crossing where a candidate is not confirmed: pieces proposed by guesses, accepted by
+//! certificates.
 
 use std::ops::ControlFlow;
 
+use crate::crossing::bracket::{bracketed, middle};
+use crate::crossing::candidate::{Candidate, CandidateSearch, evaluate_again, follow};
 use crate::crossing::certificate::{Proof, ThresholdEnds};
 use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::limit::Limit;
-use crate::crossing::root::{bracketed, evaluate_again, follow, middle};
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::Point;
 use crate::flow::steps::Steps;
@@ -46,65 +48,8 @@ pub fn first_crossing<G: Guarded>(
     Search::new((phase, steps), (left, hint, None), horizon, counters).run(counters)
 }
 
-/// A search in two parts, so that what follows an event can begin between them: it waits for the
-/// candidate's root but not for its certificate, and the processor works on both.
-pub struct CandidateSearch {
-    left: Point<f64>,
-    hint: SearchHint,
-}
-
-/// What a guess leads to: a root, which is mostly the phase's end, or the point at which it is
-/// given up.
-pub type Candidate = Result<Root, Point<f64>>;
-
 impl CandidateSearch {
-    /// The search of a phase whose end is guessed; without a guess the phase gives a hint.
-    #[inline(always)]
-    pub fn new<G: Guarded>((phase, steps): (&G, &Steps), guess: Option<f64>, horizon: f64) -> Self {
-        let left = phase.entry();
-        let hint = match guess {
-            Some(time) => SearchHint::Root(time),
-            None => phase.hint(steps, &left, horizon),
-        };
-        Self { left, hint }
-    }
-
-    /// The guess, if there is one before the horizon.
-    #[inline(always)]
-    pub fn guess(&self, horizon: f64) -> Option<f64> {
-        match self.hint {
-            SearchHint::Root(time) if time > 0.0 && time < horizon => Some(time),
-            _ => None,
-        }
-    }
-
-    /// The first part: where the guess leads.
-    #[inline(always)]
-    pub fn candidate<G: Guarded>(
-        phase: &G,
-        guess: f64,
-        horizon: f64,
-        counters: &mut Counters,
-    ) -> Candidate {
-        follow(phase, 0.0, guess, horizon, counters)
-    }
-
-    /// The second part, as it mostly ends: one certificate says that the candidate's root is the
-    /// first crossing.
-    #[inline(always)]
-    pub fn confirm<G: Guarded>(
-        &self,
-        (phase, steps): (&G, &Steps),
-        root: &Root,
-        horizon: f64,
-    ) -> bool {
-        let ends = ThresholdEnds { right: true, ..phase.imposed() };
-        root.elapsed().high <= horizon
-            && phase.certify(steps, &self.left, &root.point, ends) == Proof::Inside
-    }
-
-    /// The second part where that is not confirmed: the whole search, which takes the candidate
-    /// for the end of its first piece.
+    /// The whole search, which takes the candidate for the end of its first piece.
     #[cold]
     pub fn search<G: Guarded>(
         self,

@@ -8,9 +8,9 @@
 //! has to be searched each time the bound becomes positive.
 
 use crate::crossing::allowances::SHORT_LIVED;
+use crate::crossing::candidate::EXACT_SQUARE;
 use crate::crossing::contact_parts::meeting;
 use crate::crossing::guarded::SearchHint;
-use crate::crossing::root::EXACT_SQUARE;
 use crate::crossing::stepping::safe_step;
 use crate::flow::steps::{FreeStep, Steps};
 use crate::numeric::remainders::decay;

@@ -7,9 +7,9 @@
 //! shares with that search the closed forms, the corridor and the rounding slack, but no guess, no
 //! root finder and no certificate.
 
+use crate::crossing::candidate::evaluate;
 use crate::crossing::certificate::Corridor;
 use crate::crossing::guarded::{Guarded, slack};
-use crate::crossing::root::evaluate;
 use crate::crossing::{Counters, Crossing, Root, Side};
 use crate::flow::Point;
 use crate::flow::constants::Constants;

@@ -4,8 +4,8 @@
 //! to wait where a call has written words that are read back in pairs, and such calls cost a sixth
 //! of a switch's time. What few switches take is kept out of the way.
 
+use crate::crossing::candidate::CandidateSearch;
 use crate::crossing::guarded::{Guarded, SearchHint};
-use crate::crossing::search::CandidateSearch;
 use crate::crossing::{Counters, Crossing, Root};
 use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
@@ -47,7 +47,7 @@ pub(crate) enum End {
 
 /// A phase that may have come to its end.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Passed {
+pub(crate) struct PhaseEnd {
     /// How it ends.
     pub end: End,
     /// How long it lasts; up to the horizon if that cuts it, infinite if it is endless, as far as
@@ -110,7 +110,7 @@ pub(crate) fn pass(
     next: &mut Begun,
     horizon: Option<&Instant>,
     counters: &mut Counters,
-) -> Passed {
+) -> PhaseEnd {
     match Motion::new(model.constants(), &begun.entry, begun.angle) {
         Motion::NoContact(flight) => pass_by(&flight, model, (begun, next), horizon, counters),
         Motion::Contact(contact) => pass_by(&contact, model, (begun, next), horizon, counters),
@@ -125,7 +125,7 @@ fn pass_by<P: Landing>(
     (begun, next): (&Begun, &mut Begun),
     horizon: Option<&Instant>,
     counters: &mut Counters,
-) -> Passed {
+) -> PhaseEnd {
     let omega = model.parameters().omega;
     let instant = &begun.entry.instant;
     // The horizon in two words is computed only where it matters. It is looked beyond by more than
@@ -138,7 +138,7 @@ fn pass_by<P: Landing>(
     match found(phase, model, (begun, next), limit, counters) {
         SearchEnd::At(elapsed) if elapsed.high <= certain => {
             counters.switches += 1;
-            Passed { end: End::Switch, duration: elapsed }
+            PhaseEnd { end: End::Switch, duration: elapsed }
         }
         found => pass_late(phase, model, (begun, next), (horizon, limit, found), counters),
     }
@@ -188,10 +188,10 @@ fn pass_late<P: Landing>(
     (begun, next): (&Begun, &mut Begun),
     (horizon, limit, found): (Option<&Instant>, f64, SearchEnd),
     counters: &mut Counters,
-) -> Passed {
+) -> PhaseEnd {
     let (omega, instant) = (model.parameters().omega, &begun.entry.instant);
     let left = || horizon.map_or(FURTHEST / omega, |h| h.since(instant, omega).value());
-    let ended = |end, duration| Passed { end, duration: TwoWord::new(duration) };
+    let ended = |end, duration| PhaseEnd { end, duration: TwoWord::new(duration) };
     let found = match found {
         SearchEnd::Stage(from) => phase.in_stages(model, (begun, next), (from, limit), counters),
         found => found,
@@ -206,7 +206,7 @@ fn pass_late<P: Landing>(
                 return ended(End::Horizon, left());
             }
             counters.switches += 1;
-            Passed { end: End::Switch, duration: elapsed }
+            PhaseEnd { end: End::Switch, duration: elapsed }
         }
         SearchEnd::Never if left() > 0.0 => ended(End::Endless(P::NONE), f64::INFINITY),
         SearchEnd::Undecided(elapsed) if elapsed < left() => ended(End::Undecidable, elapsed),

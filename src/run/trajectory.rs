@@ -18,7 +18,7 @@ use crate::numeric::two_word::TwoWord;
 use crate::parameters::within;
 use crate::phase::Phase;
 use crate::run::exit::Exit;
-use crate::run::switch::{Begun, End, Passed, pass};
+use crate::run::switch::{Begun, End, PhaseEnd, pass};
 use crate::state::State;
 use std::iter::FusedIterator;
 
@@ -128,7 +128,7 @@ impl Trajectory {
 
     /// Goes on to the next phase, if a switch leads to one.
     #[inline]
-    fn pass(&mut self) -> Option<Passed> {
+    fn pass(&mut self) -> Option<PhaseEnd> {
         if self.over {
             return None;
         }
@@ -204,7 +204,7 @@ impl Segment {
 
     /// The phase that has been passed so, and how the next one begins if a switch has ended it.
     #[inline]
-    pub(crate) fn passed(model: &Model, begun: &Begun, passed: &Passed, next: &Entry) -> Self {
+    pub(crate) fn passed(model: &Model, begun: &Begun, passed: &PhaseEnd, next: &Entry) -> Self {
         let Begun { entry, angle, .. } = *begun;
         let exit = match passed.end {
             End::Switch => Exit::Switch(*next),

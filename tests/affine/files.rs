@@ -22,6 +22,7 @@ fn each_mistake_is_named_with_its_line() {
         ("g = 2.0", "g = nan", "a parameter is a finite number"),
         ("v' = -g", "v = -g", "`x' = ...` with a state x is accepted"),
         ("v' = -g", "v' = -9.81", "a decimal is not accepted here"),
+        ("v' = -g", "v' = -2e-3", "a decimal is not accepted here"),
         ("v' = -g", "v' = -h", "h is not known"),
         ("v' = -g", "v' = -x*v", "expressions are affine"),
         ("v' = -g", "v' = -g/v", "expressions are affine"),

@@ -8,7 +8,7 @@ use crate::affine::clock::Time;
 use crate::affine::enclosure::{Enclosure, roundings};
 use crate::affine::event::{Ending, Errors, Event, What};
 use crate::affine::known::Loan;
-use crate::affine::point::{Ends, Passed, Segment};
+use crate::affine::point::{Ends, GuardedSegment, Passed};
 use crate::affine::search::Found;
 use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::structure::Firing;
@@ -31,7 +31,7 @@ pub struct Run<'a, T> {
     /// Each guard, with the place from which its search goes on.
     tracks: Vec<Track>,
     ends: Ends<T>,
-    segment: Option<Segment<'a, T>>,
+    segment: Option<GuardedSegment<'a, T>>,
     /// How the search by Taylor polynomials fares in each mode.
     misses: Vec<Misses>,
     pub(in crate::affine) modal: Vector<T>,
@@ -70,6 +70,14 @@ impl<T: Number> Run<'_, T> {
     #[must_use]
     pub fn work(&self) -> SearchWork {
         self.work
+    }
+
+    /// The time that the search has come to: no event lies between the last one and it but those
+    /// given out.
+    #[must_use]
+    pub fn searched(&self) -> Time<T> {
+        let point = &self.ends.left;
+        self.entered.after(if self.solver.backward { -point.time } else { point.time })
     }
 
     pub(in crate::affine) fn tracks_live(&self, guard: usize) -> bool {
@@ -125,7 +133,8 @@ impl<T: Number> Run<'_, T> {
             .enclosure
             .as_ref()
             .map(|errors| solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect());
-        let segment = Segment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
+        let segment =
+            GuardedSegment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
         segment.begin(&mut self.ends.left);
         self.ends.passed = Passed::none();
         self.segment = Some(segment);

@@ -2,7 +2,7 @@
 
 use super::output::{Destination, reader_left};
 use super::{DONE, OUT_OF_BOUNDS, work};
-use crate::bench::compare::binaries::{Common, LIVES, Pair, Quotient, common, quotients};
+use crate::bench::compare::binaries::{Common, LIVES, Pair, TimeQuotient, common, quotients};
 use crate::bench::compare::recorded::changes;
 use crate::bench::compare::verdict::{WorkloadVerdict, is_doubtful};
 use crate::bench::history::{self, History, HistoryRecord};
@@ -91,7 +91,7 @@ fn against(arguments: &Arguments, old: &Path, new: &Path) -> Result<Said> {
     let mut lines = vec![format!("old {}", versions[0]), format!("new {}", versions[1])];
     let mut verdicts = Vec::new();
     lines.push("bench,quotient,lives_apart,again,verdict".to_owned());
-    for Quotient { bench, value, spread } in first {
+    for TimeQuotient { bench, value, spread } in first {
         let again = second.iter().find(|it| it.bench == bench).map(|it| it.value);
         let values: Vec<f64> = std::iter::once(value).chain(again).collect();
         let verdict = WorkloadVerdict::of(&values);

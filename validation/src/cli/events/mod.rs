@@ -99,7 +99,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
         Some(until) if ahead(until.value) >= 0.0 && until.value.is_finite() => until.value,
         Some(until) => {
             let side = if arguments.backward { "before" } else { "after" };
-            bail!("--until {until} is not accepted: a time at or {side} the start at {time} is");
+            bail!(
+                "--until {until} is not accepted: a finite time at or {side} the start at {time} is"
+            );
         }
         None => time + direction * LONGEST * system.time_scale,
     };

@@ -48,11 +48,13 @@ impl Rows<'_> {
     pub(super) fn each(&self, until: f64, take: Taker<'_>) -> Result<RunEnd> {
         let start = self.system.start.as_ref();
         let run = start.and_then(|it| self.solver.run_enclosed(it, DoubleDouble::exact(until)));
-        let Some(run) = run else { bail!("{}: its start is not decided", self.system.name) };
+        let Some(mut run) = run else { bail!("{}: its start is not decided", self.system.name) };
         let mut end = RunEnd::default();
         let begin = run.start();
+        let mut lost = false;
         let most = self.most.map_or(usize::MAX, |most| most + 1);
-        for (n, event) in std::iter::once(begin).chain(run).take(most).enumerate() {
+        for (n, event) in std::iter::once(begin).chain(run.by_ref()).take(most).enumerate() {
+            lost |= event.what == What::End(Ending::Undecided);
             let name = self.name(&event, &mut end);
             let row = self.row(n, &event, name)?;
             if !has_digits(&row.time) {
@@ -63,6 +65,10 @@ impl Rows<'_> {
                 break;
             }
             take(row, event)?;
+        }
+        if lost {
+            let searched = run.searched().value().to_f64();
+            end.notes.push(format!("its search for the next event came to {searched}"));
         }
         Ok(end)
     }

@@ -33,7 +33,7 @@ const BATCH: f64 = 3e5;
 
 /// The quotient of a workload.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Quotient {
+pub struct TimeQuotient {
     /// The workload.
     pub bench: String,
     /// The time of the new side over that of the old one.
@@ -72,7 +72,7 @@ pub fn quotients(
     pair: &Pair<'_>,
     benches: &[String],
     done: &dyn Fn(),
-) -> Result<Vec<Quotient>, Failure> {
+) -> Result<Vec<TimeQuotient>, Failure> {
     let mut rounds: Vec<Vec<f64>> = vec![Vec::new(); benches.len()];
     let mut lives: Vec<Vec<f64>> = rounds.clone();
     for life in 0..LIVES {
@@ -87,7 +87,7 @@ pub fn quotients(
     let quotient = |(i, bench): (usize, &String)| {
         let least = lives[i].iter().copied().fold(f64::INFINITY, f64::min);
         let most = lives[i].iter().copied().fold(0.0, f64::max);
-        Quotient {
+        TimeQuotient {
             bench: bench.clone(),
             value: Spread::of(rounds[i].clone()).median,
             spread: most - least,

@@ -1,15 +1,77 @@
-//! From a guess or a bracket to a root, with a closed-form evaluation a step and a series at the
-//! end.
+//! How almost every event is found: a guess leads to a candidate, with a closed-form evaluation a
+//! step and a series at the end, and one certificate says that it is the first crossing.
 
 use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL, SLACK};
-use crate::crossing::guarded::{Guarded, slack};
+use crate::crossing::certificate::{Proof, ThresholdEnds};
+use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::series::{SHORT_TERMS, Series, TERMS};
 use crate::crossing::{Counters, Root, Side};
 use crate::flow::Point;
+use crate::flow::steps::Steps;
 use crate::numeric::two_word::TwoWord;
 
 /// Squares below this have lost digits to underflow.
 pub const EXACT_SQUARE: f64 = 1e-290;
+
+/// A search in two parts, so that what follows an event can begin between them: it waits for the
+/// candidate's root but not for its certificate, and the processor works on both.
+pub struct CandidateSearch {
+    /// The start of the phase.
+    pub(super) left: Point<f64>,
+    /// The guess, or what the phase says about its end without one.
+    pub(super) hint: SearchHint,
+}
+
+/// What a guess leads to: a root, which is mostly the phase's end, or the point at which it is
+/// given up.
+pub type Candidate = Result<Root, Point<f64>>;
+
+impl CandidateSearch {
+    /// The search of a phase whose end is guessed; without a guess the phase gives a hint.
+    #[inline(always)]
+    pub fn new<G: Guarded>((phase, steps): (&G, &Steps), guess: Option<f64>, horizon: f64) -> Self {
+        let left = phase.entry();
+        let hint = match guess {
+            Some(time) => SearchHint::Root(time),
+            None => phase.hint(steps, &left, horizon),
+        };
+        Self { left, hint }
+    }
+
+    /// The guess, if there is one before the horizon.
+    #[inline(always)]
+    pub fn guess(&self, horizon: f64) -> Option<f64> {
+        match self.hint {
+            SearchHint::Root(time) if time > 0.0 && time < horizon => Some(time),
+            _ => None,
+        }
+    }
+
+    /// The first part: where the guess leads.
+    #[inline(always)]
+    pub fn candidate<G: Guarded>(
+        phase: &G,
+        guess: f64,
+        horizon: f64,
+        counters: &mut Counters,
+    ) -> Candidate {
+        follow(phase, 0.0, guess, horizon, counters)
+    }
+
+    /// The second part, as it mostly ends: one certificate says that the candidate's root is the
+    /// first crossing.
+    #[inline(always)]
+    pub fn confirm<G: Guarded>(
+        &self,
+        (phase, steps): (&G, &Steps),
+        root: &Root,
+        horizon: f64,
+    ) -> bool {
+        let ends = ThresholdEnds { right: true, ..phase.imposed() };
+        root.elapsed().high <= horizon
+            && phase.certify(steps, &self.left, &root.point, ends) == Proof::Inside
+    }
+}
 
 /// Evaluates with counting.
 #[inline(always)]
@@ -26,7 +88,7 @@ pub fn evaluate_again<G: Guarded>(phase: &G, elapsed: f64, counters: &mut Counte
 }
 
 /// The step from a point to where its cubic meets the nearer threshold, and that threshold's side.
-fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> CubicStep {
+pub(super) fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> CubicStep {
     let corridor = phase.corridor();
     let [value, slope, bend, third] = point.guard.orders;
     let (above, below) = (value - corridor.high, value - corridor.low);
@@ -86,10 +148,11 @@ impl ExcessCubic {
 }
 
 /// The step from a point to where its cubic meets a threshold.
-struct CubicStep {
-    step: f64,
+pub(super) struct CubicStep {
+    /// The step.
+    pub step: f64,
     /// Whether that is the upper threshold.
-    rises: bool,
+    pub rises: bool,
     /// Whether it does meet it there. Next to a crest that misses, Newton wanders.
     settled: bool,
 }
@@ -97,7 +160,7 @@ struct CubicStep {
 impl CubicStep {
     /// Whether the series reaches the root with all its digits, and the root is not so much closer
     /// to `left` than the point is that the point's rounding would show.
-    fn is_short(&self, point: &Point<f64>, left: f64, reach: f64) -> bool {
+    pub fn is_short(&self, point: &Point<f64>, left: f64, reach: f64) -> bool {
         let root = point.elapsed + self.step;
         self.settled && self.step.abs() <= reach && self.step.abs() <= LONGEST_STEP * (root - left)
     }
@@ -106,7 +169,11 @@ impl CubicStep {
 /// The root that the guard's series has next to a point's cubic step; none where that is no
 /// crossing outwards.
 #[inline(always)]
-fn polished<G: Guarded>(phase: &G, point: &Point<f64>, cubic: &CubicStep) -> Option<Root> {
+pub(super) fn polished<G: Guarded>(
+    phase: &G,
+    point: &Point<f64>,
+    cubic: &CubicStep,
+) -> Option<Root> {
     let [few_terms, _] = phase.reaches();
     if cubic.step.abs() <= few_terms {
         polished_by(phase, point, cubic, &phase.series::<SHORT_TERMS>(point))
@@ -155,7 +222,7 @@ fn polished_by<G: Guarded, const N: usize>(
     None
 }
 
-fn leaves(point: &Point<f64>, rises: bool) -> bool {
+pub(super) fn leaves(point: &Point<f64>, rises: bool) -> bool {
     let slope = point.guard.orders[1];
     if rises { slope > 0.0 } else { slope < 0.0 }
 }
@@ -210,71 +277,6 @@ pub fn follow<G: Guarded>(
         point = evaluate_again(phase, next, counters);
     }
     Err(point)
-}
-
-/// The root between `left` (inside) and `right` (outside), by Newton's method with bisection as a
-/// safeguard, so that it always terminates.
-#[cold]
-pub fn bracketed<G: Guarded>(
-    phase: &G,
-    left: &Point<f64>,
-    right: &Point<f64>,
-    counters: &mut Counters,
-) -> Root {
-    let corridor = phase.corridor();
-    let [_, reach] = phase.reaches();
-    let mut rises = right.guard.orders[0] >= corridor.high;
-    let (mut inside, mut outside) = (left.elapsed, right.elapsed);
-    let mut point = *right;
-    let mut halvings = 0_usize;
-    loop {
-        let cubic = cubic_step(phase, &point);
-        let root = point.elapsed + cubic.step;
-        let within =
-            root >= inside && root <= outside && cubic.rises == rises && leaves(&point, rises);
-        if within
-            && cubic.is_short(&point, left.elapsed, reach)
-            && let Some(root) = polished(phase, &point, &cubic)
-        {
-            return root;
-        }
-        halvings += 1;
-        let middle = middle(inside, outside, halvings);
-        if middle <= inside || middle >= outside {
-            return Root { point, low: 0.0, side: Side::high(rises) };
-        }
-        let interior = root > inside && root < outside;
-        // Newton's steps may creep, where a bracket holds many oscillations.
-        let creeps = halvings > PLAIN && halvings.is_multiple_of(2);
-        let next = if within && interior && !creeps { root } else { middle };
-        point = evaluate_again(phase, next, counters);
-        let excess = corridor.excess(point.guard.orders[0]);
-        let high = point.guard.orders[0] >= corridor.high;
-        // Next to an imposed zero the guard may underflow to a zero that it does not leave through.
-        if excess > 0.0 || excess == 0.0 && leaves(&point, high) {
-            outside = next;
-            // An earlier excursion may be through the other threshold.
-            rises = high;
-        } else {
-            inside = next;
-        }
-    }
-}
-
-/// Steps towards a root after which it counts as hidden: Newton's method, or halving, has not found
-/// it.
-const PLAIN: usize = 8;
-
-/// The time between two times at which the search looks next. A root that some halvings have not
-/// found may be smaller by orders of magnitude: then it is the exponent that is halved, so that
-/// 1e-300 is no further than 1e-3.
-pub fn middle(inside: f64, outside: f64, halvings: usize) -> f64 {
-    let smallest = inside.max(f64::MIN_POSITIVE);
-    if halvings > PLAIN && outside > 4.0 * smallest {
-        (smallest.sqrt() * outside.sqrt()).max(inside)
-    } else {
-        0.5 * (inside + outside)
-    }
 }
 
 #[cfg(test)]
