@@ -19,7 +19,7 @@ struct Rising<T> {
     guard: usize,
     /// When it is, after the point, by a Taylor polynomial.
     after: T,
-    /// By what the last step towards the polynomial's root was.
+    /// The size of the last step towards the polynomial's root.
     change: f64,
     /// How long after the point it is at most.
     within: f64,
@@ -172,7 +172,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         }
     }
 
-    /// Brings a point to the crossing, to the last digit; whether that is before `limit`. Of the
+    /// Brings a point to the crossing, to the last digit; whether that is not after `limit`. Of the
     /// guards only the first that crosses is evaluated there. Newton's steps are taken while they
     /// shrink and stay where the crossing is proved to be; elsewhere that is halved.
     #[inline]

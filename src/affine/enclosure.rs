@@ -21,7 +21,7 @@ const KEPT: usize = 80;
 /// What is lost where the last word of a number underflows.
 pub(super) const LAST_WORD: f64 = 1e-280;
 
-/// Bounds that rounding in f64 does not weaken.
+/// The factor by which bounds are raised against rounding in f64.
 const OUTWARD: f64 = 1.0 + 1e-9;
 
 /// An error of z and of the time.
@@ -183,7 +183,7 @@ impl Enclosure {
         later
     }
 
-    /// The errors after a reset, whose rows have the sizes given by the errors of their roundings.
+    /// The errors after a reset; `roundings` bounds the rounding of each entry.
     pub fn after_reset<T: Number>(&self, reset: &[Vector<T>], roundings: &[f64]) -> Self {
         let after = |column: &ErrorColumn| {
             let mut state = [0.0; LARGEST_DIMENSION];

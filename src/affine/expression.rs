@@ -4,7 +4,7 @@
 use super::form::Form;
 use dashu_ratio::RBig;
 
-/// The deepest nesting of parentheses, signs and exponents that is read.
+/// The deepest nesting of parentheses and signs that is read.
 const DEEPEST: usize = 64;
 
 /// The largest exponent.

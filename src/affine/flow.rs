@@ -14,7 +14,7 @@ pub(super) struct ModeFlow<T> {
     pub blocks: Vec<FlowBlock<T>>,
     /// How long a bound may be asked for: a growing block grows by at most e.
     pub longest: f64,
-    /// How fast a block's co-ordinates move at most, beside their sizes.
+    /// How fast a block's co-ordinates move at most, relative to their sizes.
     pub speed: f64,
     /// The matrix W of all blocks, by columns.
     to_modal: Vec<Vector<T>>,

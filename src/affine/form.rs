@@ -7,7 +7,7 @@ use dashu_ratio::RBig;
 /// The largest number of bits of a coefficient's numerator or denominator.
 const LARGEST_BITS: usize = 16_384;
 
-/// The largest power of two that a coefficient, or one over it, has about: beyond, f64 holds none.
+/// Coefficients lie between about 2^-1000 and 2^1000: f64 holds few others.
 const LARGEST_POWER: usize = 1000;
 
 /// The coefficients of the states, then of cos theta, sin theta and 1.

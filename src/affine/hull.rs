@@ -13,7 +13,8 @@ type Hull<T> = [T; 9];
 /// The narrowest part of a piece that is looked at without an evaluation.
 const NARROWEST: f64 = 1.0 / 65_536.0;
 
-/// How near to a root a place before it is, as a share of it: Newton's method does the rest.
+/// The distance to a root at which the search of a place before it ends, relative to the root:
+/// Newton's method does the rest.
 const NEAR: f64 = 1e-2;
 
 /// What is known of a guard on a piece.
@@ -127,8 +128,9 @@ fn next_to_an_end<T: Number>(orders: &[T; 4], [seventh, sixth, fifth]: [T; 3]) -
     [value, value + first, value + two * first + second, value + three * (first + second) + third]
 }
 
-/// With zeros at the left end the coefficients that belong to it are exact but for their own
-/// roundings, however small they are beside the others' slack.
+/// Whether all coefficients are negative by more than rounding. With zeros at the left end those
+/// that belong to it are exact but for their own roundings, however small they are relative to the
+/// others' slack.
 #[inline]
 fn is_clear<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> bool {
     if zeros == 0 {

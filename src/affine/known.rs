@@ -12,7 +12,7 @@ use std::sync::{Arc, Mutex};
 /// How many graphs are kept: one for each thread that runs the system.
 const MOST: usize = 64;
 
-/// What no run uses now.
+/// What runs have learned and no run uses at present.
 #[derive(Clone, Debug)]
 pub(super) struct Known<T> {
     /// The graph that nothing has been learned of.

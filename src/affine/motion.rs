@@ -5,7 +5,7 @@ use super::system::LARGEST_DIMENSION;
 use super::vector::{Vector, dot, rounded, unit, vector};
 use crate::number::Number;
 
-/// What is left of a zero after the products of a nilpotent matrix, beside its norm: 2^-300.
+/// What is left of a zero after the products of a nilpotent matrix, relative to its norm: 2^-300.
 const NOTHING: f64 = 4.909093465297727e-91;
 
 /// A number in two words of an arithmetic.
@@ -245,8 +245,8 @@ impl<T: Number> Powers<T> {
         libm::floor(time / self.step).max(0.0)
     }
 
-    /// The co-ordinates a time later; called, because its vectors would take other motions' places
-    /// in registers.
+    /// The co-ordinates a time later; not inlined, because its vectors would take other motions'
+    /// places in registers.
     #[inline(never)]
     fn advance(&self, y: &mut [T], time: T) {
         let size = y.len();

@@ -12,7 +12,7 @@ use smallvec::SmallVec;
 use std::cell::OnceCell;
 use std::ops::Range;
 
-/// Guards of this number take no memory of their own.
+/// Up to this many guards need no heap memory.
 const INLINE: usize = 4;
 
 /// One thing for each guard.
@@ -25,8 +25,8 @@ pub(super) struct GuardedSegment<'a, T> {
     pub entry: Vector<T>,
     /// What errors do along the segment, where they are followed.
     followed: Option<Box<FollowedErrors>>,
-    /// The time up to which the Taylor series at entry are good of guards that begin with a
-    /// structural zero, which they keep; negative where none does.
+    /// Up to this time guards that begin with a structural zero are evaluated by their Taylor
+    /// series at entry; negative where none does.
     pub early: f64,
     /// The series, once they are asked for.
     series: OnceCell<Vec<[T; ORDERS]>>,
@@ -271,7 +271,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
 }
 
 impl<T: Number> GuardedPoint<T> {
-    /// Has orders and slacks of so many guards.
+    /// Resizes orders and slacks to this number of guards.
     #[inline]
     fn make_room(&mut self, count: usize) {
         if self.orders.len() != count {

@@ -30,7 +30,7 @@ pub(super) struct Quotient<const N: usize> {
     coefficients: [f64; N],
     /// The sizes of what they are summed from.
     sizes: [f64; N],
-    /// What rounding does to a coefficient, beside its size.
+    /// What rounding does to a coefficient, relative to its size.
     margin: f64,
     /// What rounding did to the guard's value, where that is not zero.
     slack: f64,
@@ -39,8 +39,8 @@ pub(super) struct Quotient<const N: usize> {
 }
 
 impl<const N: usize> Quotient<N> {
-    /// What a sum of powers is at the end of the largest window, beside its value at the root, at
-    /// most.
+    /// What a sum of powers is at the end of the largest window, relative to its value at the root,
+    /// at most.
     const WIDER: f64 = power(1.0 + WINDOW, N - 1);
 
     /// What the terms count in the slope, the second and the third derivative, times powers of the
@@ -53,8 +53,8 @@ impl<const N: usize> Quotient<N> {
     const SHARES: [f64; N] = inverse_binomials();
 
     /// The quotient of a guard with these orders, positive outside, and the sizes of what they are
-    /// summed from; `margin` is what rounding does to them beside these sizes, `slack` what it did
-    /// to the value, and `lost` what underflow takes from them.
+    /// summed from; `margin` is what rounding does to them relative to these sizes, `slack` what it
+    /// did to the value, and `lost` what underflow takes from them.
     #[inline]
     pub fn of(
         [orders, sizes]: [&[f64; N]; 2],

@@ -1,10 +1,10 @@
 //! How far a guard is looked at in one piece, and what of it is only enclosed there.
 //!
 //! A piece is as long as the eighth derivative allows (`hull.rs`). Of blocks that move much faster
-//! than the rest only that they turn and decay is used where their sizes are small beside the
-//! guard: a part exp(-r s) c is below its chord if c > 0, and below its right end if c < 0; any
-//! other part is below its norm. What is left is slow, and pieces of it are long. Where that leaves
-//! only a constant, the piece has no end.
+//! than the rest and are small relative to the guard, only bounds are used: a part exp(-r s) c is
+//! below its chord if c > 0, and below its right end if c < 0; any other part is below its norm.
+//! What is left is slow, and pieces of it are long. Where that leaves only a constant, the piece
+//! has no end.
 
 use super::bound::Later;
 use super::hull::{self, Judged, Lengths};
@@ -133,7 +133,7 @@ fn enclose<T: Number>(
 }
 
 /// How long a decay at a rate keeps a guard below zero that is `value` and rises without it: until
-/// it is twice as large as the rest has become. The next piece is short beside the decay.
+/// it is twice as large as the rest has become. The next piece is short relative to the decay time.
 #[inline]
 fn held_back(decay: f64, rate: f64, value: f64, slope: f64) -> f64 {
     let until = |rest: f64| libm::log(decay / (2.0 * rest)) / rate;
@@ -240,7 +240,7 @@ pub(super) fn rise([value, slope, bend]: [f64; 3]) -> f64 {
     if divisor > 0.0 { -2.0 * value / divisor } else { f64::INFINITY }
 }
 
-/// A length on which the remainder stays small beside what a guard becomes by one of its first
+/// A length on which the remainder stays small relative to what a guard becomes by one of its first
 /// derivatives that are not zero.
 #[inline]
 fn length(orders: &[f64; 4], eighth: f64, zeros: usize, size: impl Fn() -> f64) -> f64 {

@@ -1,5 +1,5 @@
-//! A row of z, as guards and conditions are, in modal co-ordinates: its derivatives, their sizes and
-//! their bounds.
+//! A row of z, as guards and conditions are, in modal co-ordinates: its derivatives, with their
+//! sizes and bounds.
 
 use super::bound::{self, Later, ORDERS};
 use super::flow::FlowBlock;
@@ -104,7 +104,7 @@ impl<T: Number> ModalRow<T> {
         sums
     }
 
-    /// So many orders from one on.
+    /// N orders, beginning with `first`.
     #[inline]
     pub fn orders_from<const N: usize>(&self, first: usize, y: &Vector<T>) -> [T; N] {
         let mut sums = [T::zero(); N];

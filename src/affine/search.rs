@@ -24,7 +24,7 @@ use crate::number::Number;
 const MOST_PIECES: u64 = 1 << 18;
 const FEWEST_PIECES: u64 = 1 << 14;
 
-/// As how many pieces more one counts that is not passed whole, because it is divided.
+/// A piece that has to be divided counts as this many more.
 const OPEN: u64 = 8;
 
 /// How a search ends.
@@ -88,17 +88,8 @@ impl<T: Number> GuardedSegment<'_, T> {
                 // Where numbers overflow, nothing is told.
                 return Found::Lost;
             }
-            let from = ends.left.time;
-            let to = from + (ends.right.time - from) * T::exact(share);
-            if to > from {
-                self.evaluate(&mut ends.left, to, work);
-                clear_zeros(tracks);
-            } else if length <= 8.0 * unit::<T>() * ends.right.time.to_f64() {
-                // No shorter piece has two ends: what happens within rounding is a touch.
-                work.undecidable += 1;
-                ends.step();
+            if !self.shortened(tracks, ends, share, work) {
                 most = 64.0 * length;
-                clear_zeros(tracks);
                 continue;
             }
             self.measure(&mut ends.left);
@@ -108,6 +99,32 @@ impl<T: Number> GuardedSegment<'_, T> {
             most = 0.25 * length;
         }
         Found::Lost
+    }
+
+    /// Brings the left end on by the clear share of a piece, if any. A piece of which nothing is
+    /// clear and that has no shorter one, because its ends are next to each other, is stepped over:
+    /// the answer is then no.
+    #[inline]
+    fn shortened(
+        &self,
+        tracks: &mut [Track],
+        ends: &mut Ends<T>,
+        share: f64,
+        work: &mut SearchWork,
+    ) -> bool {
+        let (from, end) = (ends.left.time, ends.right.time);
+        let to = from + (end - from) * T::exact(share);
+        if to > from {
+            self.evaluate(&mut ends.left, to, work);
+            clear_zeros(tracks);
+        } else if (end - from).to_f64() <= 8.0 * unit::<T>() * end.to_f64() {
+            // What happens within rounding is a touch.
+            work.undecidable += 1;
+            ends.step();
+            clear_zeros(tracks);
+            return false;
+        }
+        true
     }
 
     /// Brings the left end to a crossing that is proved, if that is not after `limit`.

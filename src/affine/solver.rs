@@ -44,20 +44,21 @@ pub(super) type Change<T> = (usize, Vec<(usize, T)>);
 /// Why a system cannot be made ready.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unprepared {
-    /// The mode whose matrix was not taken apart, or nothing.
+    /// The mode whose matrix could not be decomposed; the system, where its structural zeros could
+    /// not be told.
     pub mode: String,
 }
 
 impl std::fmt::Display for Unprepared {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "the matrix of mode {} cannot be taken apart to the digits needed", self.mode)
+        write!(f, "the matrix of {} cannot be decomposed to the digits needed", self.mode)
     }
 }
 
 impl std::error::Error for Unprepared {}
 
 impl<T: Number> Solver<T> {
-    /// Takes the modes of a system apart.
+    /// Decomposes the matrix of each mode.
     ///
     /// # Errors
     /// A mode whose eigenvalues are not found.
@@ -66,7 +67,7 @@ impl<T: Number> Solver<T> {
     }
 
     /// A solver that runs back in time: its times decrease, only watched guards are events, and it
-    /// ends where a mode was entered.
+    /// ends where the guard of an `until` would become positive.
     ///
     /// # Errors
     /// A mode whose eigenvalues are not found.

@@ -10,7 +10,7 @@ use super::system::{Mode, Row, Successor, System, Until};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// More nodes than this are forgotten: a system that counts its own events has a new one at each.
+/// At this many nodes all are forgotten: a system that counts its own events has a new one at each.
 const MOST_NODES: usize = 4096;
 
 /// A mode's rows modulo primes.
@@ -54,7 +54,8 @@ pub(super) struct Arrival {
     /// For each successor: the order of its condition's first derivative that is not a structural
     /// zero; none if there is none, or no condition.
     pub orders: Arc<[Option<usize>]>,
-    /// Whether the event reverses the rate of its guard by a factor and leaves it at zero.
+    /// Whether the event multiplies the rate of its guard by a negative factor and leaves it at
+    /// zero.
     pub impact: bool,
     after: Zeros,
     nodes: Vec<Option<usize>>,

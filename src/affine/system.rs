@@ -80,7 +80,8 @@ pub struct Until {
 /// A mode that may follow an event.
 #[derive(Clone, Debug)]
 pub struct Successor {
-    /// The condition: that this row's first derivative that is not zero is positive.
+    /// The condition: that the first of this row's value and derivatives that is not zero is
+    /// positive.
     pub when: Option<Row>,
     /// The index of the mode.
     pub mode: usize,

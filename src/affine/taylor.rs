@@ -1,9 +1,9 @@
 //! The first crossing after a point, proved by the Taylor polynomials of the guards there.
 //!
-//! Most segments are short beside the times in which things move. There the polynomial of degree 7
-//! or 15 at the entry and a bound of the next derivative prove which guard crosses first and
-//! between which times (`quotient.rs`), and the closed form is evaluated at the crossing alone.
-//! What is not proved so is left to `search.rs`.
+//! Most segments are short relative to the times in which the motion changes. There the polynomial
+//! of degree 7 or 15 at the entry and a bound of the next derivative prove which guard crosses
+//! first and between which times (`quotient.rs`), and the closed form is evaluated at the crossing
+//! alone. What is not proved so is left to `search.rs`.
 
 use super::bound::ORDERS;
 use super::crossing::FirstCrossing;
@@ -18,11 +18,11 @@ use crate::number::Number;
 const FEW: usize = 9;
 const ALL: usize = ORDERS;
 
-/// Where what the first of them leave is less than this share of what the guard begins with, they
-/// give the root to some digits.
+/// If the remainder after the first of them is less than this share of what the guard begins with,
+/// they give the root to some digits.
 const LITTLE: f64 = 1e-3;
 
-/// Where they leave more than this, all of them prove nothing.
+/// If it is more than this, all of them prove nothing.
 const MUCH: f64 = 10.0;
 
 /// How often the polynomials were looked at in a mode since they last proved a crossing: at its

@@ -11,7 +11,7 @@ pub(super) const UNDERFLOW: f64 = f64::from_bits(64);
 /// The entries of z, or of the modal co-ordinates; those beyond the dimension are zero.
 pub(super) type Vector<T> = [T; LARGEST_DIMENSION];
 
-/// The distance from 1 to the next smaller number of an arithmetic.
+/// The unit roundoff of an arithmetic.
 #[inline]
 pub(super) fn unit<T: Number>() -> f64 {
     const HALF: f64 = 0.5 * f64::EPSILON;
@@ -29,8 +29,7 @@ pub(super) fn dot<T: Number>(a: &[T], b: &[T], dimension: usize) -> T {
     sum
 }
 
-/// Adds a multiple of a vector. Indices are what every unit of a crate inlines; iterators that are
-/// joined are called.
+/// Adds a multiple of a vector. It is indexed because zipped iterators are not always inlined.
 #[allow(clippy::needless_range_loop, reason = "an iterator costs a call")]
 #[inline(always)]
 pub(super) fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: &[T], factor: T) {

@@ -3,8 +3,8 @@
 //! The limits of work are in [`crate::crossing::limit`]; a bound that one certificate uses alone
 //! stands in its module.
 //!
-//! Where lanes are stricter their row stands beside the solver's, with its reason: what no lane
-//! proves is left to the scalar solver, so that a stricter row costs time and no event.
+//! Where lanes are stricter their constant stands beside the solver's, with its reason: what no
+//! lane proves is left to the scalar solver, so that a stricter constant costs time and no event.
 
 /// Rounding room of a guard, in its largest term: three roundings in the guard, one in the
 /// coefficients of its certificate.

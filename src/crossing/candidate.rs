@@ -73,7 +73,7 @@ impl CandidateSearch {
     }
 }
 
-/// Evaluates with counting.
+/// Evaluates a phase and counts it.
 #[inline(always)]
 pub fn evaluate<G: Guarded>(phase: &G, elapsed: f64, counters: &mut Counters) -> Point<f64> {
     counters.evaluations += 1;

@@ -1,8 +1,8 @@
 //! How much work the search of one phase may take before the phase counts as undecidable.
 //!
 //! A phase whose end is decided far from its thresholds takes a few evaluations. Bisection to the
-//! last digit takes at most 1100 (from the smallest number to the largest), a near graze divided
-//! down to that size as many on both sides of each of two thresholds: these are granted at once. A
+//! last digit takes at most 1100 (from 1 to the smallest number), and a near graze divided down to
+//! that size as many on either side: four thousand are granted at once. A
 //! phase without an event costs up to a few evaluations a period of the forcing and of the free
 //! oscillation: so much is granted for the time that is proved to be clear. A search that spends
 //! more than that makes no progress, and is ended.

@@ -1,6 +1,6 @@
 //! The first crossing of a guard: guessed, evaluated, certified.
 //!
-//! Most switches take one evaluation: next to the guess, from where the guard's own [`series`]
+//! Most switches take one evaluation, near the guess; from there the guard's Taylor [`series`]
 //! leads to the root and the state there ([`candidate`]).
 //!
 //! # Why no crossing is ever passed

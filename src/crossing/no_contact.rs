@@ -56,7 +56,8 @@ impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
         }
     }
 
-    /// Just after separation h = h2 d^2/2 + h3 d^3/6 + h4 d^4/24.
+    /// The guessed time of the next impact just after separation, by h = h2 d^2/2 + h3 d^3/6 + h4
+    /// d^4/24.
     #[inline(always)]
     fn short_hop(&self, entry: &Point<f64>) -> Option<f64> {
         let [.., h2, h3] = entry.guard.orders;

@@ -6,10 +6,10 @@
 //! between there is mostly nothing to prove: the parabola lies below minus the harmonic's
 //! amplitude.
 //!
-//! An exponential that lasts longer than a piece stays in the interpolant. Of a shorter one the
-//! first piece takes the life, or, after a separation under a strong spring, an inequality its
-//! beginning; what is left is replaced by a line above it: by its tangent at the right end where it
-//! pulls inwards (it is concave then), else by its chord.
+//! An exponential that lasts longer than a piece stays in the interpolant. A shorter one is covered
+//! while it lasts by the first piece or, after a separation under a strong spring, by an
+//! inequality. What is left of it is replaced by a line above it: by its tangent at the right end
+//! where it pulls inwards (it is concave then), else by its chord.
 
 use crate::crossing::allowances::REST;
 use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
@@ -121,11 +121,11 @@ impl Chord {
     }
 }
 
-/// A stretch of the guard between two evaluations.
+/// The certificate of a long stretch of the guard, in steps of fixed length.
 pub struct PiecewiseCertificate<'a> {
     shape: &'a FreeShape,
     steps: &'a Steps,
-    /// Once the exponential has lived.
+    /// The line above the exponential, once that has died out.
     line: Option<Chord>,
 }
 
@@ -205,9 +205,9 @@ impl<'a> PiecewiseCertificate<'a> {
         (first.max(rest), room.max(last_room))
     }
 
-    /// Whether a flight that begins with value and slope zero stays inside until z =
-    /// [`SEPARATION_INTERVAL`]: its guard is at most the largest force times d^2/2 less q0 (exp(-z)
-    /// - 1 + z).
+    /// Whether a flight that begins with value and slope zero stays inside until z has the value
+    /// [`SEPARATION_INTERVAL`](crate::flow::steps::SEPARATION_INTERVAL): its guard is at most the
+    /// largest force times d^2/2, less q0 (exp(-z) - 1 + z).
     fn parts_for_certain(&self, left: &FreeParts) -> bool {
         let FreeShape { curvature, strength, rate, .. } = *self.shape;
         -left.lasting * (rate * rate) * GRIP > (strength + curvature.max(0.0)) * SINKING

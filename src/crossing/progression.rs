@@ -35,7 +35,8 @@ impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
         }
     }
 
-    /// Just after a switch from contact w = w1 d + w2 d^2/2 + w3 d^3/6.
+    /// The guessed time at which a progression ends that has just begun, by its drift velocity w =
+    /// w1 d + w2 d^2/2 + w3 d^3/6.
     #[inline(always)]
     fn short_slip(&self, entry: &Point<f64>) -> Option<f64> {
         let [_, w1, w2, w3] = entry.guard.orders;

@@ -208,8 +208,8 @@ const FIRST_STEP: f64 = 0.1;
 /// from settling: it is followed in steps.
 const CREEPING: f64 = 1e-3;
 
-/// A hint that gets on. A guess that falls on `left` is no guess; that, or an advice to go on
-/// by less than the least step, is replaced by that step, which doubles each time.
+/// A hint that makes progress. A guess that falls on `left` is no guess; that, or an advice to go
+/// on by less than the least step, is replaced by that step, which doubles each time.
 fn onwards(hint: SearchHint, left: f64, least_step: &mut f64) -> SearchHint {
     let resolution = 8.0 * f64::EPSILON * left;
     let nearest = match hint {

@@ -103,7 +103,7 @@ impl<T: Real, const N: usize> Series<T, N> {
 }
 
 /// The orders of a guard that a harmonic force and an exponential make: the gap of a flight, and
-/// the slider's velocity in a progression.
+/// the drift velocity in a progression.
 pub struct PushedOrders<T> {
     omega2: T,
     rate: T,

@@ -1,11 +1,12 @@
-//! The slow part of a guard without its harmonic: what decides about long phases, and for ever.
+//! The slow part of a guard, without its harmonic, which decides about long phases and whole
+//! futures.
 //!
 //! Without contact and in progression the guard, counted so that it rises to zero, is
 //! G(d) = c + s d + k d^2/2 - K cos(omega d + angle) - e exp(-rate d). With e >= 0 it never exceeds
 //! the parabola plus K; with e < 0 it never exceeds that plus what is left of the exponential.
 //! While that bound is negative nothing can happen, however many forcing cycles pass; and where the
-//! harmonic is at its crest the bound is attained, so that of a crossing no more than one period
-//! has to be searched each time the bound becomes positive.
+//! harmonic is at its crest the bound is attained, so that at most one period has to be
+//! searched each time the bound becomes positive.
 
 use crate::crossing::allowances::SHORT_LIVED;
 use crate::crossing::candidate::EXACT_SQUARE;

@@ -4,7 +4,7 @@ use super::real::BigReal;
 
 pub type BigMatrix = Vec<Vec<BigReal>>;
 
-/// What is left of a zero after elimination, beside what was there: 2^-320.
+/// What is left of a zero after elimination, relative to what was there: 2^-320.
 const NOTHING: isize = -320;
 
 pub fn identity(size: usize) -> BigMatrix {

@@ -25,8 +25,9 @@ const CLOSE: f64 = 0.125;
 /// over such a time their exponentials are nearly alike.
 const SLOW: f64 = 0.05;
 
-/// What rounding leaves of a zero of a block, beside the largest entry of its mode: 2^-500. It is
-/// far above the last of the bits, and far below any quotient of two entries in f64 that matters.
+/// What rounding leaves of a zero of a block, relative to the largest entry of its mode: 2^-500. It
+/// is far above the last of the bits, and far below any quotient of two entries in f64 that
+/// matters.
 const NOTHING: isize = -500;
 
 /// How a block moves.

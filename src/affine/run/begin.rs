@@ -17,8 +17,7 @@ use std::collections::VecDeque;
 impl<T: Number> Solver<T> {
     /// A run from a start up to a time.
     ///
-    /// # Errors
-    /// A start whose structural zeros cannot be told.
+    /// It is none for a start whose structural zeros cannot be told.
     pub fn run(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
         let mut run = self.at_start(start, until)?;
         run.begin(None);
@@ -28,8 +27,7 @@ impl<T: Number> Solver<T> {
     /// A run that follows its own errors: each event has bounds of them, and what they leave open
     /// ends the run as undecided.
     ///
-    /// # Errors
-    /// A start whose structural zeros cannot be told.
+    /// It is none for a start whose structural zeros cannot be told.
     pub fn run_enclosed(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
         let mut run = self.at_start(start, until)?;
         // Three products and two sums an entry; sine and cosine are good to two units.

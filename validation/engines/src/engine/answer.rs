@@ -1,4 +1,5 @@
-//! An engine's answer, checked for completeness before anything is measured of it.
+//! An engine's answer, checked for completeness before anything is measured of it, and the work
+//! that it takes at the least.
 
 use super::{Accuracy, Engine, Failure, Limits, Outcome, SystemOutcome, SystemTask, Task, contain};
 
@@ -30,6 +31,26 @@ pub fn answer_system(
     let outcome = contain(|| engine.run_system(task, accuracy, limits))?;
     complete(&outcome, task.samples.len())?;
     Ok(outcome)
+}
+
+/// Right-hand sides that a run of any system takes at the least, as far as that is known
+/// beforehand, where it goes on to its horizon.
+#[must_use]
+pub fn least_work_of_system(engine: &dyn Engine, task: &SystemTask, accuracy: Accuracy) -> f64 {
+    // No explicit method here is stable over a step of as many of the fastest decay's times as it
+    // has stages: a longer run takes more than a right-hand side for each of these times.
+    let stiff = if engine.is_explicit() { task.span * task.system.decay() } else { 0.0 };
+    let short = least_work_of_short_steps(engine, task);
+    engine.least_work_on(task, accuracy).max(stiff).max(short)
+}
+
+/// Right-hand sides that a run takes at the least because an engine keeps its steps short.
+fn least_work_of_short_steps(engine: &dyn Engine, task: &SystemTask) -> f64 {
+    let Some(longest) = engine.longest_step_on(task) else { return 0.0 };
+    // A method of order p has p stages or more if it is explicit, and else at least half as many.
+    let order = engine.declaration().order.unwrap_or(1);
+    let stages = if engine.is_explicit() { order } else { order.div_ceil(2) };
+    f64::from(stages) * task.span / longest
 }
 
 /// Checks that there is a sample for each instant asked for, and that events follow each other.

@@ -37,7 +37,7 @@ mod watching;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
-pub use answer::{answer, answer_system};
+pub use answer::{answer, answer_system, least_work_of_system};
 pub use declaration::{Colours, Declaration, Location, REFERENCE, Role};
 pub(crate) use equations::NO_GUARD;
 pub use equations::{Entered, Equations, Numbers};

@@ -12,6 +12,7 @@ use super::timed_case::{Score, TimedCase};
 use super::timed_system_case::TimedSystemCase;
 use crate::engine::{
     Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, Work, contain,
+    least_work_of_system,
 };
 use crate::number::brief;
 
@@ -99,7 +100,7 @@ impl Contestant for EnteredEngine {
         setting: Accuracy,
     ) -> Result<ContestEntry<'a>, Failure> {
         self.0.available().map_err(Failure::new)?;
-        within_budget(self.0.least_work_on(&case.task, setting))?;
+        within_budget(least_work_of_system(self.0, &case.task, setting))?;
         system_entry(self.0, case, setting, limits())
     }
 }

@@ -4,7 +4,9 @@ use super::matrix::{Answered, CaseRun, Measured};
 use super::probes::restarts_on_systems;
 use super::scope::Suite;
 use crate::case::{Bound, Defaults, FileError, Shortcoming, SystemCase};
-use crate::engine::{Accuracy, Engine, Failure, Limits, SystemTask, answer_system};
+use crate::engine::{
+    Accuracy, Engine, Failure, Limits, SystemTask, answer_system, least_work_of_system,
+};
 use crate::score::{
     Decision, EventNames, Graze, Measures, Occurrence, ScoredRun, SystemRestartTest, SystemScale,
     WINDOW, decisions, measure_system, system_grazes,
@@ -91,16 +93,6 @@ impl PreparedSystem {
         (test.runs.len() as f64 * share.min(1.0)) as usize
     }
 
-    /// Right-hand sides that a run takes at the least because an engine keeps its steps short.
-    fn least_work_of_short_steps(&self, engine: &dyn Engine) -> f64 {
-        let Some(longest) = engine.longest_step_on(&self.task) else { return 0.0 };
-        // A method of order p has p stages or more if it is explicit, and else at least half as
-        // many.
-        let order = engine.declaration().order.unwrap_or(1);
-        let stages = if engine.is_explicit() { order } else { order.div_ceil(2) };
-        f64::from(stages) * self.task.span / longest
-    }
-
     /// The time that stands for a forcing period.
     #[must_use]
     pub fn period(&self) -> f64 {
@@ -148,12 +140,7 @@ impl CaseRun for PreparedSystem {
     }
 
     fn least_work(&self, engine: &dyn Engine, accuracy: Accuracy) -> f64 {
-        // No explicit method here is stable over a step of as many of the fastest decay's times as
-        // it has stages: a longer run takes more than a right-hand side for each of these times.
-        let stiff =
-            if engine.is_explicit() { self.task.span * self.task.system.decay() } else { 0.0 };
-        let short = self.least_work_of_short_steps(engine);
-        let whole = engine.least_work_on(&self.task, accuracy).max(stiff).max(short);
+        let whole = least_work_of_system(engine, &self.task, accuracy);
         // A run may end before its horizon.
         whole * (self.truth.end.elapsed.value() / self.task.span).min(1.0)
     }

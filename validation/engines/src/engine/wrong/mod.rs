@@ -4,7 +4,7 @@
 //! faults of [`wrong_on_systems`] and [`faulty_on_systems`] each show in one [`Way`] of running a
 //! case of a system, and nowhere else.
 //!
-//! They never run beside the others; the power test runs them and asks which bounds notice. Three
+//! They never run beside the others; the power test runs them and asks which bounds notice. Four
 //! are the exact solver on something slightly different; the others are a plain solver that walks
 //! along the closed forms ([`walk`]), which without a fault stays within the bounds it is held to.
 
