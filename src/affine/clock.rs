@@ -2,7 +2,7 @@
 
 use super::modal::BigReal;
 use super::system::Forcing;
-use super::vector::unit;
+use super::vector::{turned, unit};
 use crate::number::Number;
 use dashu_ratio::RBig;
 
@@ -79,7 +79,6 @@ impl<T: Number> Clock<T> {
             + (self.omega.high * time.low + self.omega.low * time.high);
         let Time { high, low } = sum(product, self.phi.high);
         let low = low + (rest + self.phi.low);
-        let (sin, cos) = high.sin_cos();
-        (sin + low * cos, cos - low * sin)
+        turned(high.sin_cos(), low)
     }
 }

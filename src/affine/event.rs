@@ -78,3 +78,10 @@ pub struct Errors {
     /// The error of each state.
     pub state: Vec<f64>,
 }
+
+impl Errors {
+    /// Whether all of them are bounds.
+    pub(super) fn are_finite(&self) -> bool {
+        self.time.is_finite() && self.state.iter().all(|it| it.is_finite())
+    }
+}

@@ -2,7 +2,7 @@
 
 use super::modal::{self, BigReal, Kind};
 use super::system::LARGEST_DIMENSION;
-use super::vector::{Vector, dot, rounded, unit, vector};
+use super::vector::{Vector, dot, rounded, turned, unit, vector};
 use crate::number::Number;
 
 /// What is left of a zero after the products of a nilpotent matrix, relative to its norm: 2^-300.
@@ -115,14 +115,18 @@ impl<T: Number> BlockMotion<T> {
     /// The sizes of what [`Self::advance`] sums each co-ordinate from, in units of which it rounds
     /// by a few: terms may cancel, so the co-ordinate itself can be much smaller.
     pub fn sizes(&self, y: &mut [f64], time: f64) {
-        let decay = |rate: &SplitNumber<T>| libm::exp(rate.high.to_f64() * time);
+        let decay = |rate: &SplitNumber<T>| {
+            let factor = libm::exp(rate.high.to_f64() * time);
+            factor * (1.0 + exponent_roundings(rate, time))
+        };
         y.iter_mut().for_each(|entry| *entry = entry.abs());
         match self {
             Self::Still => {}
             Self::Real { rate } => y[0] *= decay(rate),
-            Self::Pair { rate, .. } => {
+            Self::Pair { rate, frequency } => {
+                let phase = 1.0 + exponent_roundings(frequency, time);
                 let norm = libm::hypot(y[0], y[1]) * rate.as_ref().map_or(1.0, decay);
-                y.fill(norm);
+                y.fill(norm * phase);
             }
             Self::Nilpotent { rate, matrix, powers } => {
                 let sizes = matrix.iter().map(|row| row.map(|it| it.to_f64().abs()));
@@ -200,13 +204,22 @@ fn exponential<T: Number>(rate: SplitNumber<T>, time: T) -> T {
 #[inline]
 fn circular<T: Number>(frequency: SplitNumber<T>, time: T) -> (T, T) {
     let (high, low) = product(frequency, time);
-    let (sin, cos) = high.sin_cos();
-    (sin + low * cos, cos - low * sin)
+    turned(high.sin_cos(), low)
+}
+
+/// By how much rounding may have turned a phase, in units of it: a frequency in two words of f64,
+/// its product with a time and the sum of their rests.
+const PHASE: f64 = 8.0 * f64::EPSILON * f64::EPSILON;
+
+/// By how many times the unit of an arithmetic the rounding of an exponent changes its exponential.
+fn exponent_roundings<T: Number>(rate: &SplitNumber<T>, time: f64) -> f64 {
+    PHASE / unit::<T>() * (rate.high.to_f64() * time).abs()
 }
 
 impl<T: Number> Powers<T> {
-    /// Tables up to 16^12 steps, beyond any horizon.
-    const LEVELS: usize = 12;
+    /// Tables up to 16^13 steps: f64 holds each smaller number of them.
+    const LEVELS: usize = 13;
+    const MOST_STEPS: f64 = (1_u64 << (4 * Self::LEVELS)) as f64;
 
     fn of(matrix: &[Vec<BigReal>]) -> Self {
         let size = modal::norm(matrix);
@@ -251,6 +264,10 @@ impl<T: Number> Powers<T> {
     fn advance(&self, y: &mut [T], time: T) {
         let size = y.len();
         let steps = self.steps(time.to_f64());
+        if steps >= Self::MOST_STEPS {
+            // Nothing is told of so long a time.
+            return y.fill(T::exact(f64::NAN));
+        }
         let rest = time - T::exact(steps * self.step);
         for matrix in self.factors(steps) {
             let last: Vector<T> = copied(y);

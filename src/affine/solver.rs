@@ -44,14 +44,13 @@ pub(super) type Change<T> = (usize, Vec<(usize, T)>);
 /// Why a system cannot be made ready.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unprepared {
-    /// The mode whose matrix could not be decomposed; the system, where its structural zeros could
-    /// not be told.
-    pub mode: String,
+    /// The name of the system, whose structural zeros cannot be told.
+    pub system: String,
 }
 
 impl std::fmt::Display for Unprepared {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "the matrix of {} cannot be decomposed to the digits needed", self.mode)
+        write!(f, "the structural zeros of {} cannot be told", self.system)
     }
 }
 
@@ -61,7 +60,7 @@ impl<T: Number> Solver<T> {
     /// Decomposes the matrix of each mode.
     ///
     /// # Errors
-    /// A mode whose eigenvalues are not found.
+    /// A system whose structural zeros cannot be told.
     pub fn new(system: &System) -> Result<Self, Unprepared> {
         Self::prepared(system.clone(), false)
     }
@@ -70,7 +69,7 @@ impl<T: Number> Solver<T> {
     /// ends where the guard of an `until` would become positive.
     ///
     /// # Errors
-    /// A mode whose eigenvalues are not found.
+    /// A system whose structural zeros cannot be told.
     pub fn backward(system: &System) -> Result<Self, Unprepared> {
         Self::prepared(system.reversed(), true)
     }
@@ -79,11 +78,10 @@ impl<T: Number> Solver<T> {
         let mut blocks = Vec::new();
         for mode in &system.modes {
             let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale);
-            let unprepared = || Unprepared { mode: mode.name.clone() };
-            blocks.push(bound::ordered(blocks_of_mode.ok_or_else(unprepared)?));
+            blocks.push(bound::ordered(blocks_of_mode));
         }
         let structure = Structure::of(&system);
-        let structure = structure.ok_or_else(|| Unprepared { mode: system.name.clone() })?;
+        let structure = structure.ok_or_else(|| Unprepared { system: system.name.clone() })?;
         let flows: Vec<ModeFlow<T>> = blocks.iter().map(|it| ModeFlow::of(it)).collect();
         let row = |row: &Row, mode: usize| ModalRow::of(row, &flows[mode].blocks, &blocks[mode]);
         let mode = |(n, mode): (usize, &Mode)| {

@@ -19,6 +19,20 @@ pub(super) fn unit<T: Number>() -> f64 {
     if T::TERMS <= <f64 as Number>::TERMS { HALF } else { HALF * HALF * 4.0 }
 }
 
+/// Sine and cosine of an angle to which `low` is added, from those of the angle.
+#[inline]
+pub(super) fn turned<T: Number>((sin, cos): (T, T), low: T) -> (T, T) {
+    /// Up to here the square of what is added is below rounding.
+    const LITTLE: f64 = 1e-17;
+    let size = low.to_f64().abs();
+    // Of an arithmetic of two words the rest never has an effect of second order.
+    if size * size <= LITTLE || unit::<T>() < 1e-20 {
+        return (sin + low * cos, cos - low * sin);
+    }
+    let (sin_low, cos_low) = low.sin_cos();
+    (sin * cos_low + cos * sin_low, cos * cos_low - sin * sin_low)
+}
+
 /// The sum of products of the first entries.
 #[inline]
 pub(super) fn dot<T: Number>(a: &[T], b: &[T], dimension: usize) -> T {
@@ -37,6 +51,12 @@ pub(super) fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: 
     for k in 0..N {
         sums[k] = sums[k] + vector[k] * factor;
     }
+}
+
+/// Whether all entries are numbers: nothing is told by what has overflowed.
+#[inline]
+pub(super) fn is_told<T: Number>(entries: &[T]) -> bool {
+    entries.iter().all(|it| it.to_f64().is_finite())
 }
 
 /// The Euclidean norm of some entries, which overflows or vanishes only where it has to.

@@ -7,6 +7,7 @@ mod endings;
 mod files;
 mod hostile;
 mod known;
+mod limits;
 mod oscillator;
 mod random;
 mod spectra;

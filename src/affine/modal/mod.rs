@@ -16,6 +16,7 @@ use self::matrix::{
 use self::polynomial::{Eigenvalue, eigenvalues};
 pub(super) use self::real::BigReal;
 use super::system::Row;
+use dashu_ratio::RBig;
 
 /// Eigenvalues stay together if their distance is below this share of the larger one: the
 /// projectors of others are then at most some tens in size.
@@ -25,10 +26,15 @@ const CLOSE: f64 = 0.125;
 /// over such a time their exponentials are nearly alike.
 const SLOW: f64 = 0.05;
 
-/// What rounding leaves of a zero of a block, relative to the largest entry of its mode: 2^-500. It
-/// is far above the last of the bits, and far below any quotient of two entries in f64 that
-/// matters.
+/// What rounding leaves of a zero of a block, relative to what its largest entry is summed from:
+/// 2^-500. It is far above the last of the bits.
 const NOTHING: isize = -500;
+
+/// Room for the growth of what is left where a block's columns and rows are off: 2^40.
+const ROOM: isize = 40;
+
+/// Entries of a mode whose sizes differ by less than this power of two are left as they are.
+const ALIKE: isize = 100;
 
 /// How a block moves.
 #[derive(Clone, Debug)]
@@ -56,12 +62,19 @@ pub(super) struct Block {
     pub matrix: BigMatrix,
 }
 
-/// The blocks of a matrix; none if it cannot be taken apart at this precision.
-pub(super) fn blocks(exact: &[Row], time_scale: f64) -> Option<Vec<Block>> {
-    let matrix: BigMatrix = exact.iter().map(|row| row.iter().map(BigReal::of).collect()).collect();
-    let clusters = clusters(eigenvalues(exact)?, time_scale);
-    let blocks: Option<Vec<_>> = clusters.iter().map(|it| block(&matrix, it)).collect();
-    Some(blocks.unwrap_or_else(|| vec![whole(&matrix)]))
+/// The blocks of a matrix: it stays whole if it cannot be taken apart at this precision.
+pub(super) fn blocks(exact: &[Row], time_scale: f64) -> Vec<Block> {
+    let scales = scales(exact);
+    let scaled = |(i, row): (usize, &Row)| -> Vec<BigReal> {
+        let entries = row.iter().zip(&scales);
+        entries.map(|(it, scale)| BigReal::of(it).scaled(scale - scales[i])).collect()
+    };
+    let matrix: BigMatrix = exact.iter().enumerate().map(scaled).collect();
+    let taken_apart = |roots: Vec<Eigenvalue>| -> Option<Vec<_>> {
+        clusters(roots, time_scale).iter().map(|it| block(&matrix, it)).collect()
+    };
+    let blocks = eigenvalues(exact).and_then(taken_apart).unwrap_or_else(|| vec![whole(&matrix)]);
+    blocks.into_iter().map(|it| unscaled(it, &scales)).collect()
 }
 
 /// `row * columns * matrix^k` of a block for k from 0 to `count` - 1: a row's derivatives.
@@ -69,6 +82,17 @@ pub(super) fn derivatives(row: &[BigReal], block: &Block, count: usize) -> Vec<V
     let first = row_times(row, &block.columns);
     let next = |last: &Vec<BigReal>| Some(row_times(last, &block.matrix));
     std::iter::successors(Some(first), next).take(count).collect()
+}
+
+/// A block of the scaled matrix as one of the matrix itself.
+fn unscaled(mut block: Block, scales: &[isize]) -> Block {
+    for (row, scale) in block.columns.iter_mut().zip(scales) {
+        row.iter_mut().for_each(|it| *it = it.scaled(*scale));
+    }
+    for row in &mut block.rows {
+        row.iter_mut().zip(scales).for_each(|(it, scale)| *it = it.scaled(-scale));
+    }
+    block
 }
 
 fn whole(matrix: &BigMatrix) -> Block {
@@ -110,7 +134,7 @@ fn block(matrix: &BigMatrix, cluster: &[Eigenvalue]) -> Option<Block> {
     let left = transposed(&null_space(&transposed(&annihilator), dimensions)?);
     let rows = product(&inverse(&product(&left, &columns))?, &left);
     let mut inner = product(&product(&rows, matrix), &columns);
-    let nothing = largest(matrix).scaled(NOTHING);
+    let nothing = noise(matrix, [&columns, &rows], &inner);
     inner
         .iter_mut()
         .flatten()
@@ -118,6 +142,57 @@ fn block(matrix: &BigMatrix, cluster: &[Eigenvalue]) -> Option<Block> {
         .for_each(|it| *it = BigReal::zero());
     let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner };
     Some(named(block, cluster))
+}
+
+/// What rounding may have made of a zero of a block's matrix W M X at most, from how far W M is off
+/// that matrix times W.
+fn noise(matrix: &BigMatrix, [columns, rows]: [&BigMatrix; 2], inner: &BigMatrix) -> BigReal {
+    let sizes = |it: &BigMatrix| -> BigMatrix {
+        it.iter().map(|row| row.iter().map(BigReal::abs).collect()).collect()
+    };
+    let (moved, taken) = (product(rows, matrix), product(inner, rows));
+    let off: BigMatrix = moved
+        .iter()
+        .zip(&taken)
+        .map(|(a, b)| a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect())
+        .collect();
+    let terms = product(&product(&sizes(rows), &sizes(matrix)), &sizes(columns));
+    let left = product(&off, &sizes(columns));
+    &largest(&terms).scaled(NOTHING) + &largest(&left).scaled(ROOM)
+}
+
+/// Powers of two, one for each entry of z, by which a matrix is scaled so that its entries become
+/// more alike: entry i is measured in 2 to the power i. Without them a small coupling would look
+/// like the rounding of a large one. Nothing is scaled where all sizes are alike.
+fn scales(exact: &[Row]) -> Vec<isize> {
+    const ROUNDS: usize = 64;
+    let power = |number: &RBig| -> Option<isize> {
+        let exponent = libm::frexp(number.to_f64().value()).1;
+        (!number.is_zero()).then_some(exponent as isize)
+    };
+    let powers: Vec<Vec<Option<isize>>> =
+        exact.iter().map(|row| row.iter().map(power).collect()).collect();
+    let all = || powers.iter().flatten().flatten();
+    let mut scales = vec![0; exact.len()];
+    let (Some(least), Some(most)) = (all().min(), all().max()) else { return scales };
+    if most - least < ALIKE {
+        return scales;
+    }
+    for _ in 0..ROUNDS {
+        let before = scales.clone();
+        for n in 0..exact.len() {
+            let others = || (0..exact.len()).filter(|k| *k != n);
+            let row = others().filter_map(|k| Some(powers[n][k]? + scales[k] - scales[n])).max();
+            let column = others().filter_map(|k| Some(powers[k][n]? + scales[n] - scales[k])).max();
+            if let (Some(row), Some(column)) = (row, column) {
+                scales[n] += (row - column) / 2;
+            }
+        }
+        if scales == before {
+            break;
+        }
+    }
+    scales
 }
 
 /// The factor (M - root) of a real root, or (M - root)(M - conjugate) of a pair.

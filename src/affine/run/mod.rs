@@ -14,7 +14,7 @@ use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::structure::Firing;
 use crate::affine::taylor::Misses;
 use crate::affine::track::{SearchWork, Track};
-use crate::affine::vector::{Vector, dot, unit};
+use crate::affine::vector::{Vector, dot, is_told, unit};
 use crate::number::Number;
 use std::collections::VecDeque;
 
@@ -94,6 +94,9 @@ impl<T: Number> Run<'_, T> {
         let flow = &solver_mode.flow;
         let until = solver.system.modes[mode].until.len();
         self.modal = flow.modal(&self.state);
+        if !is_told(&self.state) || !is_told(&self.modal) {
+            return self.end(Ending::Undecided);
+        }
         self.tracks.clear();
         self.at_entry = 0;
         let mut ending = None;
@@ -199,7 +202,11 @@ impl<T: Number> Run<'_, T> {
 
     /// The run ends a time after the entry.
     fn at_horizon(&mut self, mode: usize, limit: T) {
-        (self.entered, self.state) = self.here();
+        let (time, state) = self.here();
+        if !is_told(&state) {
+            return self.end(Ending::Undecided);
+        }
+        (self.entered, self.state) = (time, state);
         if limit > T::zero() {
             // The time since an entry long before is rounded; the horizon is not.
             self.entered = Time { high: self.horizon, low: T::zero() };
@@ -259,8 +266,11 @@ impl<T: Number> Iterator for Run<'_, T> {
                 return None;
             }
             self.advance();
-            // What errors may have decided is no event of an enclosed run.
-            if self.enclosure.is_some() && self.work.undecidable > 0 {
+            // What errors may have decided is no event of an enclosed run, nor is one whose errors
+            // have no bounds.
+            let is_bounded = |it: &Event<T>| it.errors.as_ref().is_none_or(Errors::are_finite);
+            let is_open = self.work.undecidable > 0 || !self.queue.iter().all(is_bounded);
+            if self.enclosure.is_some() && is_open {
                 self.queue.clear();
                 self.ended = false;
                 self.end(Ending::Undecided);

@@ -8,9 +8,13 @@ const LARGEST: i32 = 400;
 
 /// A value with a bound of its error, to at most `digits` significant digits: as many as all
 /// numbers within the error round to alike. Where that is none it is a zero with an exponent, such
-/// as `0e-28`: the value is less than that power of ten in size.
+/// as `0e-28`: the value is less than that power of ten in size, which is larger than any number of
+/// f64 where nothing is known of it.
 pub(super) fn proved(value: DoubleDouble, error: f64, digits: usize) -> String {
     let (high, low) = value.words();
+    if !(high.is_finite() && error.is_finite()) {
+        return format!("0e{LARGEST}");
+    }
     let exact = |it: f64| Rational::try_from(it).unwrap_or_default();
     let (value, error) = (exact(high) + exact(low), exact(error.abs()));
     let (least, most) = (&value - &error, &value + &error);
@@ -107,6 +111,8 @@ mod tests {
         assert_eq!(shown(1.5e-9, 1e-12, 17), "1.50e-9");
         assert_eq!(shown(2.5e25, 1e22, 17), "2.50e25");
         assert_eq!(shown(0.0, 0.0, 17), "0");
+        assert_eq!(shown(f64::NAN, 0.0, 17), "0e400");
+        assert_eq!(shown(1.0, f64::INFINITY, 17), "0e400");
         assert_eq!(shown(1e-30, 1e-28, 17), "0e-27");
         assert_eq!(shown(0.9999, 0.01, 17), "1.0");
         assert_eq!(shown(-0.9999, 0.0, 3), "-1.00");

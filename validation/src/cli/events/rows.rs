@@ -67,7 +67,7 @@ impl Rows<'_> {
             take(row, event)?;
         }
         if lost {
-            let searched = run.searched().value().to_f64();
+            let searched = shortest(run.searched().value().to_f64());
             end.notes.push(format!("its search for the next event came to {searched}"));
         }
         Ok(end)
@@ -123,10 +123,16 @@ impl Rows<'_> {
                 ("undecided", "what comes next is not decided by 106 bits".to_owned(), false)
             }
         };
-        end.notes.push(format!("the run ends at {}: {note}", time.to_f64()));
+        end.notes.push(format!("the run ends at {}: {note}", shortest(time.to_f64())));
         end.undecided = !decided;
         name.to_owned()
     }
+}
+
+/// The fewest digits that tell a number from its neighbours, with an exponent where it is large.
+fn shortest(number: f64) -> String {
+    let text = format!("{number:?}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
 fn in_order<S: serde::Serializer>(
