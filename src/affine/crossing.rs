@@ -172,16 +172,17 @@ impl<T: Number> GuardedSegment<'_, T> {
         }
     }
 
-    /// Brings a point to the crossing, to the last digit; whether that is not after `limit`. Of the
-    /// guards only the first that crosses is evaluated there. Newton's steps are taken while they
-    /// shrink and stay where the crossing is proved to be; elsewhere that is halved.
+    /// Brings a point to the crossing, to the last digit; whether that is not after `limit`. It is
+    /// not before `from`. Of the guards only the first that crosses is evaluated there. Newton's
+    /// steps are taken while they shrink and stay where the crossing is proved to be; elsewhere
+    /// that is halved.
     #[inline]
     pub fn settled(
         &self,
         tracks: &[Track],
         point: &mut GuardedPoint<T>,
         crossing: &FirstCrossing<T>,
-        limit: T,
+        [from, limit]: [T; 2],
         work: &mut SearchWork,
     ) -> bool {
         const ROUNDS: usize = 128;
@@ -191,6 +192,9 @@ impl<T: Number> GuardedSegment<'_, T> {
         let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
         let n = crossing.guards.trailing_zeros() as usize;
         let [mut low, mut high] = crossing.between;
+        if low < from {
+            low = from;
+        }
         let inside = low <= crossing.time && crossing.time <= high;
         let half = T::exact(0.5);
         let guess = if inside { crossing.time } else { (low + high) * half };
@@ -234,6 +238,9 @@ impl<T: Number> GuardedSegment<'_, T> {
             self.evaluate_guard(n, point, better, work);
         }
         point.later = remaining(&point.orders[n]);
+        if point.time + point.later < from {
+            point.later = from - point.time;
+        }
         point.time <= limit + room
     }
 

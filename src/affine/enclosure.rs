@@ -50,6 +50,8 @@ pub(super) struct EnclosedCrossing<'a, T> {
     /// What rounding may have done to the guard.
     pub slack: f64,
     pub unit: f64,
+    /// How many of the guard's orders at entry were taken for the zeros that they are by the model.
+    pub zeros: usize,
 }
 
 /// What the errors at the entry of a segment do to a row along it.
@@ -60,6 +62,18 @@ pub(super) struct InheritedError {
     orders: [f64; ORDERS],
     /// Bounds of the norms of the other blocks' co-ordinates at entry.
     norms: Vector<f64>,
+}
+
+impl<T: Number> EnclosedCrossing<'_, T> {
+    /// The part of an error at entry in the guard that does not move the crossing, because the
+    /// guard's first orders were not summed but taken for zeros.
+    fn kept(&self, error: &Vector<f64>) -> f64 {
+        let elapsed = self.elapsed.to_f64();
+        let modal = self.flow.modal_rounded(error);
+        let order =
+            |k: usize| dot(&self.guard.orders[k].map(Number::to_f64), &modal, self.flow.dimension);
+        (0..self.zeros).rev().fold(0.0, |sum, k| order(k) + sum * elapsed / (k + 1) as f64)
+    }
 }
 
 impl InheritedError {
@@ -164,9 +178,10 @@ impl Enclosure {
         let mut later = self.later(flow, crossing.elapsed);
         let rates = rates(flow, crossing.matrix, &crossing.state);
         let (mut shift, mut slope_error) = (0.0, 0.0);
-        for column in &mut later.columns {
+        for (column, entry) in later.columns.iter_mut().zip(&self.columns) {
             let own = flow.modal_rounded(&column.state);
-            let delay = -dot(&value_row, &own, flow.dimension) / slope;
+            let apart = dot(&value_row, &own, flow.dimension) - crossing.kept(&entry.state);
+            let delay = -apart / slope;
             slope_error += dot(&slope_row, &own, flow.dimension).abs();
             shift += delay.abs();
             column.delayed(delay, &rates);
@@ -262,11 +277,12 @@ pub(super) fn roundings<T: Number>(
 ) -> [f64; LARGEST_DIMENSION] {
     // One of them for the rest of the way to a crossing.
     let margin = (flow.dimension + 7) as f64 * unit::<T>();
-    let now = flow.sizes(&flow.sizes_later(entry, elapsed));
+    let later = flow.sizes_later(entry, elapsed);
+    let (now, off) = (flow.sizes(&later), flow.state_off(&later));
     let before = flow.sizes(&entry.map(Number::to_f64));
     std::array::from_fn(|n| {
         // What is made of zeros stays zero.
         let lost = if before[n] > 0.0 || now[n] > 0.0 { LAST_WORD } else { 0.0 };
-        margin * now[n] + lost + UNDERFLOW * before[n]
+        margin * now[n] + off[n] + lost + UNDERFLOW * before[n]
     })
 }

@@ -22,6 +22,8 @@ pub(super) struct ModeFlow<T> {
     to_modal_rounded: Vec<Vector<f64>>,
     /// The matrix X of all blocks, by columns.
     from_modal: Vec<Vector<T>>,
+    /// How far the entries of W and of X may be off, by columns.
+    off: [Vec<Vector<f64>>; 2],
 }
 
 /// A block of modal co-ordinates that move by themselves.
@@ -46,18 +48,23 @@ impl<T: Number> ModeFlow<T> {
             to_modal: Vec::new(),
             to_modal_rounded: Vec::new(),
             from_modal: Vec::new(),
+            off: [Vec::new(), Vec::new()],
         };
-        let mut to_modal = Vec::new();
+        let (mut to_modal, mut off) = (Vec::new(), Vec::new());
         for block in blocks {
             flow.from_modal.extend(transposed(&block.columns));
             let at = to_modal.len();
             to_modal.extend(block.rows.iter().cloned());
+            let [columns, rows] = &block.off;
+            flow.off[1].extend(by_columns(columns));
+            off.extend(rows.iter().cloned());
             flow.blocks.push(FlowBlock::of(block, at));
         }
         let rate =
             |block: &FlowBlock<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
         flow.longest = 1.0 / flow.blocks.iter().map(rate).fold(0.0, f64::max);
         flow.to_modal = transposed(&to_modal);
+        flow.off[0] = by_columns(&off);
         let rounded = |row: &Vector<T>| row.map(Number::to_f64);
         flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
         flow
@@ -86,6 +93,12 @@ impl<T: Number> ModeFlow<T> {
         sizes
     }
 
+    /// How far each entry of the state may be off because the matrix X is, where the modal
+    /// co-ordinates have sizes.
+    pub fn state_off(&self, y: &Vector<f64>) -> Vector<f64> {
+        times(&self.off[1], y)
+    }
+
     /// What rounding may do to a state where it is taken to modal co-ordinates: the states that
     /// belong to the error of each of them.
     pub fn entry_roundings(&self, z: &Vector<T>, unit: f64) -> Vec<Vector<f64>> {
@@ -93,7 +106,9 @@ impl<T: Number> ModeFlow<T> {
         let error = |(n, column): (usize, &Vector<T>)| {
             let terms = self.to_modal.iter().zip(z).map(|(it, z)| (it[n].to_f64(), z.to_f64()));
             let size: f64 = terms.map(|(factor, entry)| (factor * entry).abs()).sum();
-            column.map(|entry| margin * size * entry.to_f64())
+            let off = self.off[0].iter().zip(z).map(|(it, z)| it[n] * z.to_f64().abs());
+            let error = margin * size + off.sum::<f64>();
+            column.map(|entry| error * entry.to_f64())
         };
         self.from_modal.iter().enumerate().map(error).collect()
     }
@@ -190,6 +205,16 @@ fn times_in<T: Number, const ROWS: usize>(columns: &[Vector<T>], vector: &Vector
     let mut product = [T::zero(); LARGEST_DIMENSION];
     product[..ROWS].copy_from_slice(&sums);
     product
+}
+
+/// A matrix of f64 by columns.
+fn by_columns(matrix: &[Vec<f64>]) -> Vec<Vector<f64>> {
+    let columns = matrix.first().map_or(0, Vec::len);
+    let mut all = vec![[0.0; LARGEST_DIMENSION]; columns];
+    for (n, row) in matrix.iter().enumerate() {
+        all.iter_mut().zip(row).for_each(|(column, entry)| column[n] = *entry);
+    }
+    all
 }
 
 fn transposed<T: Number>(matrix: &[Vec<BigReal>]) -> Vec<Vector<T>> {

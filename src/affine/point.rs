@@ -200,6 +200,12 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         self.zeros[n] > 0 && time <= self.early
     }
 
+    /// How many orders of a guard at entry are left out of its value at a time, because they are
+    /// zeros by the model.
+    pub fn zeros_by_series(&self, n: usize, time: f64) -> usize {
+        if self.is_by_series(n, time) { self.zeros[n] } else { 0 }
+    }
+
     /// What rounding does to a row, in sizes of what it is summed from.
     #[inline]
     pub fn margin(&self) -> f64 {
@@ -251,7 +257,8 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
             }
             let lost = self.rows[n].bound(0, &followed.lost, point.time.to_f64());
             let rest = LARGEST_DIMENSION as f64 * UNDERFLOW;
-            *slack += self.inherited_by(n, point.time) + lost + rest;
+            let off = self.rows[n].off(&sizes);
+            *slack += self.inherited_by(n, point.time) + lost + rest + off;
         }
     }
 

@@ -33,6 +33,8 @@ pub(super) struct RowColumn<T> {
     pub orders: [T; ORDERS],
     /// The size of the part of the value.
     size: f64,
+    /// How far that part may be off.
+    off: f64,
 }
 
 /// A block's part in a row.
@@ -67,19 +69,27 @@ impl<T: Number> ModalRow<T> {
         for (n, (block, part)) in blocks.iter().zip(&parts).enumerate() {
             let norms = bound::norms(block, part);
             if norms.iter().any(|it| *it > 0.0) {
-                modal.add_part(n, &flow[n], norms);
+                modal.add_part(n, &flow[n], norms, |j| off(&row, block, j));
             }
         }
         modal
     }
 
-    fn add_part(&mut self, n: usize, block: &FlowBlock<T>, norms: [f64; ORDERS]) {
+    /// Adds the part of a block, whose co-ordinates' factors may be off by so much.
+    fn add_part(
+        &mut self,
+        n: usize,
+        block: &FlowBlock<T>,
+        norms: [f64; ORDERS],
+        off: impl Fn(usize) -> f64,
+    ) {
         let first = self.columns.len();
         for at in block.at..block.at + block.size {
             let orders: [T; ORDERS] = std::array::from_fn(|k| self.orders[k][at]);
             let used = orders.iter().any(|it| *it != T::zero());
             if used {
-                self.columns.push(RowColumn { at, orders, size: orders[0].to_f64().abs() });
+                let (size, off) = (orders[0].to_f64().abs(), off(at - block.at));
+                self.columns.push(RowColumn { at, orders, size, off });
             }
         }
         let columns = (first, self.columns.len());
@@ -159,6 +169,12 @@ impl<T: Number> ModalRow<T> {
         self.columns.iter().map(|it| it.size * y[it.at].to_f64().abs()).sum()
     }
 
+    /// How far the row's value may be off because its factors are, where the co-ordinates have
+    /// sizes.
+    pub fn off(&self, y: &Vector<f64>) -> f64 {
+        self.columns.iter().map(|it| it.off * y[it.at]).sum()
+    }
+
     /// A derivative, and the sum of the sizes of what it is summed from.
     #[inline]
     pub fn order(&self, order: usize, y: &Vector<T>) -> (T, f64) {
@@ -184,4 +200,9 @@ impl RowPart {
         // not vanish, because a derivative without a bound would be taken for a polynomial's.
         if norm == 0.0 { 0.0 } else { (norm * size).max(UNDERFLOW) }
     }
+}
+
+/// How far a row's factor of a block's co-ordinate may be off.
+fn off(row: &[BigReal], block: &modal::Block, j: usize) -> f64 {
+    row.iter().zip(&block.off[0]).map(|(it, off)| it.to_f64().abs() * off[j]).sum()
 }

@@ -51,6 +51,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         work: &mut SearchWork,
     ) -> Found {
         let mut most = f64::INFINITY;
+        let span = [ends.left.time, limit];
         // After a crossing that is only watched the piece that it is in goes on.
         let mut is_ahead = ends.left.time < ends.passed.until;
         let guards = live(tracks).count().max(1) as u64;
@@ -65,7 +66,7 @@ impl<T: Number> GuardedSegment<'_, T> {
             }
             self.measure(&mut ends.left);
             if let Some(crossing) = self.first_by_taylor(tracks, &ends.left, misses, work) {
-                return self.settled_by(&crossing, tracks, ends, limit, work);
+                return self.settled_by(&crossing, tracks, ends, span, work);
             }
             let known = if is_ahead { ends.passed.guards } else { 0 };
             let reaches = self.reaches(tracks, &ends.left, known);
@@ -94,7 +95,7 @@ impl<T: Number> GuardedSegment<'_, T> {
             }
             self.measure(&mut ends.left);
             if let Some(crossing) = self.rising(tracks, &ends.left, &ends.passed, work) {
-                return self.settled_by(&crossing, tracks, ends, limit, work);
+                return self.settled_by(&crossing, tracks, ends, span, work);
             }
             most = 0.25 * length;
         }
@@ -127,17 +128,18 @@ impl<T: Number> GuardedSegment<'_, T> {
         true
     }
 
-    /// Brings the left end to a crossing that is proved, if that is not after `limit`.
+    /// Brings the left end to a crossing that is proved, if that is not after the span's end. It is
+    /// not before the span's begin, the event before it, whatever rounding says.
     #[inline]
     fn settled_by(
         &self,
         crossing: &FirstCrossing<T>,
         tracks: &[Track],
         ends: &mut Ends<T>,
-        limit: T,
+        span: [T; 2],
         work: &mut SearchWork,
     ) -> Found {
-        match self.settled(tracks, &mut ends.left, crossing, limit, work) {
+        match self.settled(tracks, &mut ends.left, crossing, span, work) {
             true => Found::Crossing(crossing.guards),
             false => Found::Nothing,
         }

@@ -53,10 +53,14 @@ pub(super) fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: 
     }
 }
 
-/// Whether all entries are numbers: nothing is told by what has overflowed.
+/// Whether all entries are numbers, and their sum is: nothing is told by what has overflowed.
 #[inline]
 pub(super) fn is_told<T: Number>(entries: &[T]) -> bool {
-    entries.iter().all(|it| it.to_f64().is_finite())
+    let mut sum = 0.0;
+    for entry in entries {
+        sum += entry.to_f64();
+    }
+    sum.is_finite()
 }
 
 /// The Euclidean norm of some entries, which overflows or vanishes only where it has to.

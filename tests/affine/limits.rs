@@ -96,8 +96,9 @@ fn a_cluster_is_right_after_ten_to_the_fifteen_radians() {
     }
 }
 
-/// A sum of two turns crests 3e-26 above its threshold, or below it, after 10^11 units of time: less
-/// than what rounding does to their phases, so that neither events nor their absence are proved.
+/// A sum of two turns crests 3e-26 above its threshold, or below it, after 10^11 units of time:
+/// less than what rounding does to their phases, so that neither events nor their absence are
+/// proved.
 #[test]
 fn a_phase_is_rounded_by_its_size() {
     for (a, b, c, until) in [
@@ -170,4 +171,49 @@ fn eigenvalues_that_nearly_coincide_are_no_reason_to_refuse() {
     assert_eq!(names(&system, &all), ["reached", "reached", "end"]);
     let time = all[0].time.value().words().0;
     assert!((time * (-0.5 * time).exp() - 0.7).abs() < 1e-11, "{time}");
+}
+
+/// A fast decay in a system of eight states: at the event only what is off in the numbers of
+/// several hundred bits is left of it in a run, and that is no digit.
+#[test]
+fn what_is_left_of_a_fast_decay_is_within_its_bound() {
+    let system = system(include_str!("coupled.system.toml"));
+    let all = enclosed::<DoubleDouble>(&system, 20.0);
+    assert_eq!(name(&system, &all[0]), "reached");
+    // Its true size is exp(-1.2e5)/4.
+    let (value, error) = (all[0].state[2].words().0, all[0].errors.as_ref().unwrap().state[2]);
+    assert!(value.abs() <= error && error < 1e-150, "{value:e} {error:e}");
+}
+
+/// A state of 1e-199 beside guards that are nearly zero at the start: what crosses there within
+/// rounding does so at the start, not before it.
+#[test]
+fn times_do_not_decrease_next_to_guards_that_are_nearly_zero() {
+    let system = system(include_str!("near_guards.system.toml"));
+    let all = events::<f64>(&system, 8.0);
+    let mut last = 0.0;
+    for event in &all {
+        let time = event.time.value();
+        assert!(time >= last, "{} at {time:e} after {last:e}", name(&system, event));
+        last = time;
+    }
+    assert!(all.len() > 5, "{:?}", names(&system, &all));
+}
+
+/// A ball whose impacts leave its height as rounding has made it: that error of the height does not
+/// shrink with its flights, although the impacts are those of a ball at height zero.
+#[test]
+fn an_error_of_a_height_is_kept_over_impacts() {
+    let system = system(
+        "schema = 1\nname = \"ball\"\nstates = [\"x\", \"v\"]\n[parameters]\ng = 1.443733356863027
+[[mode]]\nname = \"free\"\nequations = [\"x' = v\", \"v' = -g\"]
+[[mode.until]]\nname = \"reached\"\nguard = \"-x > 0\"\nreset = [\"v = -v/2\"]
+[start]\nmode = \"free\"\nx = 1.3589779585384858\nv = -0.08378768292928207\n",
+    );
+    let all = enclosed::<f64>(&system, 12.0);
+    for (n, event) in all.iter().enumerate() {
+        let (x, error) = (event.state[0], event.errors.as_ref().unwrap().state[0]);
+        assert!(x.abs() <= error || name(&system, event) == "end", "{n}: {x:e} {error:e}");
+    }
+    assert!(all.len() > 5, "{:?}", names(&system, &all));
 }

@@ -60,6 +60,8 @@ pub(super) struct Block {
     pub rows: BigMatrix,
     /// The matrix B.
     pub matrix: BigMatrix,
+    /// How far the entries of X and of W may be off.
+    pub off: [Vec<Vec<f64>>; 2],
 }
 
 /// The blocks of a matrix: it stays whole if it cannot be taken apart at this precision.
@@ -74,7 +76,8 @@ pub(super) fn blocks(exact: &[Row], time_scale: f64) -> Vec<Block> {
         clusters(roots, time_scale).iter().map(|it| block(&matrix, it)).collect()
     };
     let blocks = eigenvalues(exact).and_then(taken_apart).unwrap_or_else(|| vec![whole(&matrix)]);
-    blocks.into_iter().map(|it| unscaled(it, &scales)).collect()
+    let finished = |it| unscaled(measured(it, &matrix, time_scale), &scales);
+    blocks.into_iter().map(finished).collect()
 }
 
 /// `row * columns * matrix^k` of a block for k from 0 to `count` - 1: a row's derivatives.
@@ -92,12 +95,36 @@ fn unscaled(mut block: Block, scales: &[isize]) -> Block {
     for row in &mut block.rows {
         row.iter_mut().zip(scales).for_each(|(it, scale)| *it = it.scaled(-scale));
     }
+    let [columns, rows] = &mut block.off;
+    for (row, scale) in columns.iter_mut().zip(scales) {
+        row.iter_mut().for_each(|it| *it = libm::scalbn(*it, *scale as i32));
+    }
+    for row in rows {
+        row.iter_mut().zip(scales).for_each(|(it, scale)| *it = libm::scalbn(*it, -*scale as i32));
+    }
+    block
+}
+
+/// A block with how far its columns and rows may be off: what is left of M X - X B and of W M - B W
+/// comes from parts in other blocks, divided by the distance of their eigenvalues.
+fn measured(mut block: Block, matrix: &BigMatrix, time_scale: f64) -> Block {
+    let Block { columns, rows, matrix: inner, .. } = &block;
+    let nearest = (CLOSE * norm(inner)).max(SLOW / time_scale);
+    let factor = libm::exp2(ROOM as f64) / nearest;
+    let difference = |a: BigMatrix, b: BigMatrix| -> Vec<Vec<f64>> {
+        let size = |(a, b): (&BigReal, &BigReal)| (a - b).to_f64().abs() * factor;
+        a.iter().zip(&b).map(|(a, b)| a.iter().zip(b).map(size).collect()).collect()
+    };
+    let left = difference(product(matrix, columns), product(columns, inner));
+    let right = difference(product(rows, matrix), product(inner, rows));
+    block.off = [left, right];
     block
 }
 
 fn whole(matrix: &BigMatrix) -> Block {
     let unit = identity(matrix.len());
-    Block { kind: Kind::Cluster, columns: unit.clone(), rows: unit, matrix: matrix.clone() }
+    let off = [Vec::new(), Vec::new()];
+    Block { kind: Kind::Cluster, columns: unit.clone(), rows: unit, matrix: matrix.clone(), off }
 }
 
 /// Eigenvalues that are chained by small distances.
@@ -140,7 +167,8 @@ fn block(matrix: &BigMatrix, cluster: &[Eigenvalue]) -> Option<Block> {
         .flatten()
         .filter(|it| it.abs() <= nothing)
         .for_each(|it| *it = BigReal::zero());
-    let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner };
+    let off = [Vec::new(), Vec::new()];
+    let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner, off };
     Some(named(block, cluster))
 }
 
@@ -233,7 +261,9 @@ fn rotating(block: &Block, root: &Eigenvalue) -> Option<Block> {
     let columns = product(&block.columns, &turned);
     let rows = product(&inverse(&turned)?, &block.rows);
     let matrix = vec![vec![rate.clone(), frequency.clone()], vec![-frequency, rate.clone()]];
-    Some(Block { kind: Kind::Pair(rate.clone(), frequency.clone()), columns, rows, matrix })
+    let kind = Kind::Pair(rate.clone(), frequency.clone());
+    let off = [Vec::new(), Vec::new()];
+    Some(Block { kind, columns, rows, matrix, off })
 }
 
 /// The largest row sum of a matrix.

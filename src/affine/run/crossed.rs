@@ -15,7 +15,7 @@ impl<T: Number> Run<'_, T> {
         let mode = self.structure.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
         let (time, state) = self.here();
-        if !is_told(&state) {
+        if !is_told(&state[..self.solver.system.states.len()]) {
             return self.end(Ending::Undecided);
         }
         let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
@@ -73,6 +73,7 @@ impl<T: Number> Run<'_, T> {
                 + point.orders[first][0].to_f64().abs()
                 + LAST_WORD,
             unit: unit::<T>(),
+            zeros: segment.zeros_by_series(first, point.time.to_f64()),
         });
         errors.add_box(&roundings(&solver_mode.flow, &segment.entry, point.time));
         errors.add_box(&self.solver.phase_roundings(time));

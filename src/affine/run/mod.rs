@@ -94,7 +94,8 @@ impl<T: Number> Run<'_, T> {
         let flow = &solver_mode.flow;
         let until = solver.system.modes[mode].until.len();
         self.modal = flow.modal(&self.state);
-        if !is_told(&self.state) || !is_told(&self.modal) {
+        // An entry of the state that is none makes all of them none.
+        if !is_told(&self.modal[..flow.dimension]) {
             return self.end(Ending::Undecided);
         }
         self.tracks.clear();
@@ -203,7 +204,7 @@ impl<T: Number> Run<'_, T> {
     /// The run ends a time after the entry.
     fn at_horizon(&mut self, mode: usize, limit: T) {
         let (time, state) = self.here();
-        if !is_told(&state) {
+        if !is_told(&state[..self.solver.system.states.len()]) {
             return self.end(Ending::Undecided);
         }
         (self.entered, self.state) = (time, state);
@@ -269,8 +270,8 @@ impl<T: Number> Iterator for Run<'_, T> {
             // What errors may have decided is no event of an enclosed run, nor is one whose errors
             // have no bounds.
             let is_bounded = |it: &Event<T>| it.errors.as_ref().is_none_or(Errors::are_finite);
-            let is_open = self.work.undecidable > 0 || !self.queue.iter().all(is_bounded);
-            if self.enclosure.is_some() && is_open {
+            let is_open = || self.work.undecidable > 0 || !self.queue.iter().all(is_bounded);
+            if self.enclosure.is_some() && is_open() {
                 self.queue.clear();
                 self.ended = false;
                 self.end(Ending::Undecided);
