@@ -207,9 +207,10 @@ fn circular<T: Number>(frequency: SplitNumber<T>, time: T) -> (T, T) {
     turned(high.sin_cos(), low)
 }
 
-/// By how much rounding may have turned a phase, in units of it: a frequency in two words of f64,
-/// its product with a time and the sum of their rests.
-const PHASE: f64 = 8.0 * f64::EPSILON * f64::EPSILON;
+/// A sixth, rounded up, of how far rounding may have a phase off in units of it: a frequency is
+/// rounded to 2^-106, its product with a time by four times that. Sizes are counted in at least six
+/// roundings where they are used.
+const PHASE: f64 = 0.25 * f64::EPSILON * f64::EPSILON;
 
 /// By how many times the unit of an arithmetic the rounding of an exponent changes its exponential.
 fn exponent_roundings<T: Number>(rate: &SplitNumber<T>, time: f64) -> f64 {
