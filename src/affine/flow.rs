@@ -22,7 +22,7 @@ pub(super) struct ModeFlow<T> {
     to_modal_rounded: Vec<Vector<f64>>,
     /// The matrix X of all blocks, by columns.
     from_modal: Vec<Vector<T>>,
-    /// How far the entries of W and of X may be off, by columns.
+    /// How far the entries of X and of W may be off, by columns.
     off: [Vec<Vector<f64>>; 2],
 }
 
@@ -56,7 +56,7 @@ impl<T: Number> ModeFlow<T> {
             let at = to_modal.len();
             to_modal.extend(block.rows.iter().cloned());
             let [columns, rows] = &block.off;
-            flow.off[1].extend(by_columns(columns));
+            flow.off[0].extend(by_columns(columns));
             off.extend(rows.iter().cloned());
             flow.blocks.push(FlowBlock::of(block, at));
         }
@@ -64,7 +64,7 @@ impl<T: Number> ModeFlow<T> {
             |block: &FlowBlock<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
         flow.longest = 1.0 / flow.blocks.iter().map(rate).fold(0.0, f64::max);
         flow.to_modal = transposed(&to_modal);
-        flow.off[0] = by_columns(&off);
+        flow.off[1] = by_columns(&off);
         let rounded = |row: &Vector<T>| row.map(Number::to_f64);
         flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
         flow
@@ -96,7 +96,7 @@ impl<T: Number> ModeFlow<T> {
     /// How far each entry of the state may be off because the matrix X is, where the modal
     /// co-ordinates have sizes.
     pub fn state_off(&self, y: &Vector<f64>) -> Vector<f64> {
-        times(&self.off[1], y)
+        times(&self.off[0], y)
     }
 
     /// What rounding may do to a state where it is taken to modal co-ordinates: the states that
@@ -106,7 +106,7 @@ impl<T: Number> ModeFlow<T> {
         let error = |(n, column): (usize, &Vector<T>)| {
             let terms = self.to_modal.iter().zip(z).map(|(it, z)| (it[n].to_f64(), z.to_f64()));
             let size: f64 = terms.map(|(factor, entry)| (factor * entry).abs()).sum();
-            let off = self.off[0].iter().zip(z).map(|(it, z)| it[n] * z.to_f64().abs());
+            let off = self.off[1].iter().zip(z).map(|(it, z)| it[n] * z.to_f64().abs());
             let error = margin * size + off.sum::<f64>();
             column.map(|entry| error * entry.to_f64())
         };

@@ -25,7 +25,7 @@ pub(super) fn turned<T: Number>((sin, cos): (T, T), low: T) -> (T, T) {
     /// Up to here the square of what is added is below rounding.
     const LITTLE: f64 = 1e-17;
     let size = low.to_f64().abs();
-    // Of an arithmetic of two words the rest never has an effect of second order.
+    // In an arithmetic of two words `low` is a rounding, whose square is below every digit.
     if size * size <= LITTLE || unit::<T>() < 1e-20 {
         return (sin + low * cos, cos - low * sin);
     }

@@ -6,7 +6,7 @@ use crate::affine::enclosure::{EnclosedCrossing, Enclosure, LAST_WORD, roundings
 use crate::affine::event::{Ending, What};
 use crate::affine::structure::Firing;
 use crate::affine::system::Direction;
-use crate::affine::vector::{Vector, is_told, unit};
+use crate::affine::vector::{Vector, unit};
 use crate::number::Number;
 
 impl<T: Number> Run<'_, T> {
@@ -14,10 +14,7 @@ impl<T: Number> Run<'_, T> {
     pub(super) fn crossed(&mut self, guards: u64) {
         let mode = self.structure.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
-        let (time, state) = self.here();
-        if !is_told(&state[..self.solver.system.states.len()]) {
-            return self.end(Ending::Undecided);
-        }
+        let Some((time, state)) = self.here() else { return self.end(Ending::Undecided) };
         let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
         self.work.undecidable += u64::from(guards & !tied != 0);
         let errors = self.errors_at(mode, guards, &time, &state);

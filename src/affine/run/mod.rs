@@ -75,6 +75,7 @@ impl<T: Number> Run<'_, T> {
     /// The time that the search has come to: no event lies between the last one and it but those
     /// given out.
     #[must_use]
+    #[inline]
     pub fn searched(&self) -> Time<T> {
         let point = &self.ends.left;
         self.entered.after(if self.solver.backward { -point.time } else { point.time })
@@ -203,10 +204,7 @@ impl<T: Number> Run<'_, T> {
 
     /// The run ends a time after the entry.
     fn at_horizon(&mut self, mode: usize, limit: T) {
-        let (time, state) = self.here();
-        if !is_told(&state[..self.solver.system.states.len()]) {
-            return self.end(Ending::Undecided);
-        }
+        let Some((time, state)) = self.here() else { return self.end(Ending::Undecided) };
         (self.entered, self.state) = (time, state);
         if limit > T::zero() {
             // The time since an entry long before is rounded; the horizon is not.
@@ -231,12 +229,11 @@ impl<T: Number> Run<'_, T> {
         if self.solver.backward { -ahead } else { ahead }
     }
 
-    /// Time and state where the search has come to.
+    /// Time and state where the search has come to; none where the state has overflowed.
     #[inline]
-    fn here(&self) -> (Time<T>, Vector<T>) {
+    fn here(&self) -> Option<(Time<T>, Vector<T>)> {
         let point = &self.ends.left;
-        let elapsed = if self.solver.backward { -point.time } else { point.time };
-        let mut time = self.entered.after(elapsed);
+        let mut time = self.searched();
         let mode = self.structure.node(self.node).mode;
         let SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
         let mut state = flow.state(&point.y);
@@ -250,7 +247,7 @@ impl<T: Number> Run<'_, T> {
         }
         let (sin, cos) = self.solver.sin_cos(&time);
         self.solver.append(&mut state, sin, cos);
-        (time, state)
+        is_told(&state[..self.solver.system.states.len()]).then_some((time, state))
     }
 }
 
