@@ -136,7 +136,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let mut orders = [T::zero(); TERMS];
         orders[..4].copy_from_slice(&first);
         if last > 4 {
-            orders[4..].copy_from_slice(&outward(&self.rows[n].orders_from(4, &at.y), track));
+            orders[4..].copy_from_slice(&outward(&self.rows[n].orders_from(4, &at.modal.y), track));
         }
         for (k, term) in all[..last].iter_mut().enumerate() {
             if !orders[k].to_f64().is_finite() {
@@ -202,7 +202,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let mut last = f64::INFINITY;
         for _ in 0..ROUNDS {
             // A value within a few roundings of its terms shows no better time.
-            let noise = 4.0 * unit::<T>() * self.rows[n].size(&point.y);
+            let noise = 4.0 * unit::<T>() * self.rows[n].size(&point.modal.y);
             let orders = outward(&point.orders[n], &tracks[n]);
             let value = orders[0].to_f64();
             if value.abs() <= noise {
@@ -244,15 +244,18 @@ impl<T: Number> GuardedSegment<'_, T> {
         point.time <= limit + room
     }
 
-    /// Whether a step to a crossing is so short that a product with the slopes of all co-ordinates
-    /// does what another evaluation would do: what their second derivatives add is less than
-    /// rounding. Errors are followed from one evaluation to the next.
+    /// Whether a step to a crossing is so short that two derivatives of all co-ordinates do what
+    /// another evaluation would do: what the third adds is less than rounding, and so is what the
+    /// fourth of a guard that nearly touches adds to the step, turn^2 BEND/24 of it. Errors are
+    /// followed from one evaluation to the next.
     #[inline]
     fn is_last(&self, orders: &[T; 4], step: T) -> bool {
-        let turn = self.flow.speed * step.to_f64();
-        let is_small = turn * turn <= 0.25 * unit::<T>();
+        /// The share by which the guard's slope may change.
+        const BEND: f64 = 1e-5;
+        let turn = (self.flow.speed * step.to_f64()).abs();
+        let is_small = turn * turn * turn <= 0.25 * unit::<T>();
         let rises = orders[1].to_f64() > 0.0;
-        rises && is_small && is_straight(orders, step) && !self.follows_errors()
+        rises && is_small && is_straight(orders, step, BEND) && !self.follows_errors()
     }
 }
 
@@ -266,17 +269,17 @@ fn terms<T>(row: &ModalRow<T>) -> usize {
 /// product with it does what another evaluation would do.
 #[inline]
 fn remaining<T: Number>(orders: &[T; 4]) -> T {
+    /// The share by which the slope may change.
+    const SHORT: f64 = 1e-6;
     let step = -orders[0] / orders[1];
-    if is_straight(orders, step) { step } else { T::zero() }
+    if is_straight(orders, step, SHORT) { step } else { T::zero() }
 }
 
-/// Whether a guard's slope does not change on a step.
+/// Whether a guard's slope changes by at most a share on a step.
 #[inline]
-fn is_straight<T: Number>(orders: &[T; 4], step: T) -> bool {
-    /// The share by which it may.
-    const SHORT: f64 = 1e-6;
+fn is_straight<T: Number>(orders: &[T; 4], step: T, share: f64) -> bool {
     let [slope, bend] = [orders[1].to_f64(), orders[2].to_f64()];
-    (step.to_f64() * bend).abs() <= SHORT * slope.abs()
+    (step.to_f64() * bend).abs() <= share * slope.abs()
 }
 
 /// The step to the root of a cubic that is near zero, by the series of its inverse to the third

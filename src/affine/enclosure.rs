@@ -7,9 +7,10 @@
 
 use super::bound::{Later, ORDERS};
 use super::flow::ModeFlow;
+use super::modal_state::ModalState;
 use super::row::ModalRow;
 use super::system::LARGEST_DIMENSION;
-use super::vector::{UNDERFLOW, Vector, dot, unit};
+use super::vector::{UNDERFLOW, Vector, dot, sum_rounding};
 use crate::number::Number;
 
 /// Columns beyond this are made a box.
@@ -272,14 +273,13 @@ impl ErrorColumn {
 /// segment's entry.
 pub(super) fn roundings<T: Number>(
     flow: &ModeFlow<T>,
-    entry: &Vector<T>,
+    entry: &ModalState<T>,
     elapsed: T,
 ) -> [f64; LARGEST_DIMENSION] {
-    // One of them for the rest of the way to a crossing.
-    let margin = (flow.dimension + 7) as f64 * unit::<T>();
-    let later = flow.sizes_later(entry, elapsed);
+    let margin = sum_rounding::<T>(flow.dimension);
+    let later = flow.at(entry, elapsed).sizes;
     let (now, off) = (flow.sizes(&later), flow.state_off(&later));
-    let before = flow.sizes(&entry.map(Number::to_f64));
+    let before = flow.sizes(&entry.sizes);
     std::array::from_fn(|n| {
         // What is made of zeros stays zero.
         let lost = if before[n] > 0.0 || now[n] > 0.0 { LAST_WORD } else { 0.0 };

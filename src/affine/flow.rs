@@ -2,10 +2,12 @@
 
 use super::bound::Later;
 use super::modal::{self, BigReal};
+use super::modal_state::ModalState;
 use super::motion::BlockMotion;
 use super::system::LARGEST_DIMENSION;
-use super::vector::{UNDERFLOW, Vector, add_product, euclidean, vector};
+use super::vector::{UNDERFLOW, Vector, add_product, euclidean, unit, vector};
 use crate::number::Number;
+use std::ops::Range;
 
 /// A mode's closed form.
 #[derive(Clone, Debug)]
@@ -18,8 +20,11 @@ pub(super) struct ModeFlow<T> {
     pub speed: f64,
     /// The matrix W of all blocks, by columns.
     to_modal: Vec<Vector<T>>,
-    /// The matrix W of all blocks, rounded to f64, by columns.
+    /// The matrix W of all blocks, rounded to f64, by columns; and the sizes of its entries.
     to_modal_rounded: Vec<Vector<f64>>,
+    to_modal_sizes: Vec<Vector<f64>>,
+    /// The first co-ordinates of pairs that turn.
+    turning: Vec<usize>,
     /// The matrix X of all blocks, by columns.
     from_modal: Vec<Vector<T>>,
     /// How far the entries of X and of W may be off, by columns.
@@ -31,6 +36,8 @@ pub(super) struct ModeFlow<T> {
 pub(super) struct FlowBlock<T> {
     pub at: usize,
     pub size: usize,
+    /// How fast its co-ordinates move at most, relative to their sizes.
+    speed: f64,
     motion: BlockMotion<T>,
     /// What is known of it at all later times.
     pub later: Later,
@@ -44,9 +51,11 @@ impl<T: Number> ModeFlow<T> {
             dimension,
             blocks: Vec::new(),
             longest: f64::INFINITY,
-            speed: blocks.iter().map(|it| modal::norm(&it.matrix)).fold(0.0, f64::max),
+            speed: 0.0,
             to_modal: Vec::new(),
             to_modal_rounded: Vec::new(),
+            to_modal_sizes: Vec::new(),
+            turning: Vec::new(),
             from_modal: Vec::new(),
             off: [Vec::new(), Vec::new()],
         };
@@ -62,18 +71,77 @@ impl<T: Number> ModeFlow<T> {
         }
         let rate =
             |block: &FlowBlock<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
+        flow.speed = flow.blocks.iter().map(|it| it.speed).fold(0.0, f64::max);
         flow.longest = 1.0 / flow.blocks.iter().map(rate).fold(0.0, f64::max);
         flow.to_modal = transposed(&to_modal);
         flow.off[1] = by_columns(&off);
         let rounded = |row: &Vector<T>| row.map(Number::to_f64);
         flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
+        let sizes = |row: &Vector<f64>| row.map(f64::abs);
+        flow.to_modal_sizes = flow.to_modal_rounded.iter().map(sizes).collect();
+        let turns = |it: &&FlowBlock<T>| matches!(it.motion, BlockMotion::Pair { .. });
+        flow.turning = flow.blocks.iter().filter(turns).map(|it| it.at).collect();
         flow
+    }
+
+    /// The modal co-ordinates of a state alone.
+    #[inline]
+    pub fn co_ordinates(&self, z: &Vector<T>) -> Vector<T> {
+        times(&self.to_modal, z)
     }
 
     /// The modal co-ordinates of a state.
     #[inline]
-    pub fn modal(&self, z: &Vector<T>) -> Vector<T> {
-        times(&self.to_modal, z)
+    pub fn modal(&self, z: &Vector<T>) -> ModalState<T> {
+        let mut modal = ModalState::default();
+        self.take(&mut modal, z);
+        modal
+    }
+
+    /// Makes a place hold the modal co-ordinates of a state.
+    #[inline]
+    pub fn take(&self, modal: &mut ModalState<T>, z: &Vector<T>) {
+        match self.dimension {
+            0..=4 => self.take_in::<4>(modal, z),
+            5..=8 => self.take_in::<8>(modal, z),
+            _ => self.take_in::<LARGEST_DIMENSION>(modal, z),
+        }
+        for at in &self.turning {
+            let norm = modal.sizes[*at] + modal.sizes[at + 1];
+            (modal.sizes[*at], modal.sizes[at + 1]) = (norm, norm);
+        }
+    }
+
+    #[inline(always)]
+    fn take_in<const ROWS: usize>(&self, modal: &mut ModalState<T>, z: &Vector<T>) {
+        let (mut sums, mut sizes) = ([T::zero(); ROWS], [0.0; ROWS]);
+        for ((column, own), entry) in self.to_modal.iter().zip(&self.to_modal_sizes).zip(z) {
+            add_product(&mut sums, column, *entry);
+            add_product(&mut sizes, own, entry.to_f64().abs());
+        }
+        modal.y[..ROWS].copy_from_slice(&sums);
+        modal.sizes[..ROWS].copy_from_slice(&sizes);
+    }
+
+    /// Modal co-ordinates of which no rounding is counted so far.
+    #[inline]
+    pub fn exact(&self, y: &Vector<T>) -> ModalState<T> {
+        let mut modal = ModalState { y: *y, sizes: y.map(|it| it.to_f64().abs()) };
+        for at in &self.turning {
+            let norm = euclidean(modal.sizes[*at..at + 2].iter().copied());
+            modal.sizes[*at..at + 2].fill(norm);
+        }
+        modal
+    }
+
+    /// Modal co-ordinates of which no rounding is counted so far but that of the blocks that are
+    /// polynomials of the time.
+    pub fn polynomial_sizes(&self, modal: &ModalState<T>) -> ModalState<T> {
+        let mut own = self.exact(&modal.y);
+        for block in self.blocks.iter().filter(|it| it.later == Later::Polynomial) {
+            own.sizes[block.range()].copy_from_slice(&modal.sizes[block.range()]);
+        }
+        own
     }
 
     /// The state with these modal co-ordinates.
@@ -115,29 +183,40 @@ impl<T: Number> ModeFlow<T> {
 
     /// The modal co-ordinates a time later.
     #[inline]
-    pub fn at(&self, y: &Vector<T>, time: T) -> Vector<T> {
-        let mut later = *y;
+    pub fn at(&self, modal: &ModalState<T>, time: T) -> ModalState<T> {
+        let mut later = *modal;
         self.advance(&mut later, time, u16::MAX);
         later
     }
 
     /// Advances the co-ordinates of these blocks.
     #[inline]
-    pub fn advance(&self, y: &mut Vector<T>, time: T, blocks: u16) {
+    pub fn advance(&self, ModalState { y, sizes }: &mut ModalState<T>, time: T, blocks: u16) {
         for (n, block) in self.blocks.iter().enumerate() {
             if blocks >> n & 1 == 1 {
-                block.motion.advance(&mut y[block.at..block.at + block.size], time);
+                let own = block.range();
+                block.motion.advance(&mut y[own.clone()], &mut sizes[own], time);
             }
         }
     }
 
-    /// The sizes of what the modal co-ordinates a time later are summed from.
-    pub fn sizes_later(&self, y: &Vector<T>, time: T) -> Vector<f64> {
-        let mut sizes = y.map(Number::to_f64);
+    /// The state a short time after these modal co-ordinates, by one of their derivatives or two.
+    ///
+    /// Blocks that move so fast that more of them count stay as they are: the time is then below
+    /// the rounding of the time at which they are known.
+    #[inline]
+    pub fn state_shortly_after(&self, y: &Vector<T>, time: T) -> Vector<T> {
+        let mut later = *y;
         for block in &self.blocks {
-            block.motion.sizes(&mut sizes[block.at..block.at + block.size], time.to_f64());
+            let turn = (block.speed * time.to_f64()).abs();
+            let derivatives = match [turn * turn, turn * turn * turn] {
+                [square, _] if square <= 0.25 * unit::<T>() => 1,
+                [_, cube] if cube <= 0.25 * unit::<T>() => 2,
+                _ => continue,
+            };
+            block.motion.nudge(&mut later[block.range()], derivatives, time);
         }
-        sizes
+        self.state(&later)
     }
 
     /// The norms of each block's co-ordinates.
@@ -171,16 +250,23 @@ impl<T: Number> ModeFlow<T> {
         let column = |n: usize| {
             let mut unit = [T::zero(); LARGEST_DIMENSION];
             unit[n] = T::one();
-            self.state(&self.at(&self.modal(&unit), time)).map(Number::to_f64)
+            self.state(&self.at(&self.modal(&unit), time).y).map(Number::to_f64)
         };
         (0..self.dimension).map(column).collect()
     }
 }
 
 impl<T: Number> FlowBlock<T> {
+    /// Its co-ordinates.
+    #[inline]
+    pub fn range(&self) -> Range<usize> {
+        self.at..self.at + self.size
+    }
+
     fn of(block: &modal::Block, at: usize) -> Self {
         let motion = BlockMotion::of(block);
-        Self { at, size: block.matrix.len(), motion, later: Later::of(block) }
+        let (size, speed) = (block.matrix.len(), modal::norm(&block.matrix));
+        Self { at, size, speed, motion, later: Later::of(block) }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::modal::{self, BigReal, Kind};
 use super::system::LARGEST_DIMENSION;
-use super::vector::{Vector, dot, rounded, turned, unit, vector};
+use super::vector::{Vector, rounded, turned, unit, vector};
 use crate::number::Number;
 
 /// What is left of a zero after the products of a nilpotent matrix, relative to its norm: 2^-300.
@@ -11,7 +11,7 @@ const NOTHING: f64 = 4.909093465297727e-91;
 /// A number in two words of an arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SplitNumber<T> {
-    high: T,
+    pub high: T,
     low: T,
 }
 
@@ -41,7 +41,7 @@ pub(super) struct Powers<T> {
     step: f64,
     /// exp(B step 16^j d) for d from 1 to 15.
     tables: Vec<Vec<Vec<Vector<T>>>>,
-    matrix: Vec<Vector<T>>,
+    pub matrix: Vec<Vector<T>>,
 }
 
 fn words<T: Number>(value: &BigReal) -> SplitNumber<T> {
@@ -91,86 +91,80 @@ impl<T: Number> BlockMotion<T> {
         }
     }
 
-    /// The co-ordinates a time later.
+    /// The co-ordinates a time later, and the sizes of what each is summed from, in units of which
+    /// it rounds by a few: terms may cancel, so the co-ordinate itself can be much smaller. Both
+    /// sizes of a pair are at least its norm.
     #[inline]
-    pub fn advance(&self, y: &mut [T], time: T) {
+    pub fn advance(&self, y: &mut [T], sizes: &mut [f64], time: T) {
         match self {
             Self::Still => {}
-            Self::Real { rate } => y[0] = y[0] * exponential(*rate, time),
+            Self::Real { rate } => {
+                let factor = exponential(*rate, time);
+                y[0] = y[0] * factor;
+                sizes[0] *= raised(factor, rate, time);
+            }
             Self::Pair { rate, frequency } => {
                 let (sin, cos) = circular(*frequency, time);
                 let (first, second) = (y[0], y[1]);
                 y[0] = cos * first + sin * second;
                 y[1] = cos * second - sin * first;
-                decay(*rate, time, y);
+                let phase = raised(T::one(), frequency, time);
+                sizes.iter_mut().for_each(|size| *size *= phase);
+                decay(*rate, time, y, sizes);
             }
             Self::Nilpotent { rate, matrix, powers } => {
-                taylor(matrix, *powers, y, time);
-                decay(*rate, time, y);
+                taylor(matrix, *powers, y, sizes, time);
+                decay(*rate, time, y, sizes);
             }
-            Self::Cluster(powers) => powers.advance(y, time),
-        }
-    }
-
-    /// The sizes of what [`Self::advance`] sums each co-ordinate from, in units of which it rounds
-    /// by a few: terms may cancel, so the co-ordinate itself can be much smaller.
-    pub fn sizes(&self, y: &mut [f64], time: f64) {
-        let decay = |rate: &SplitNumber<T>| {
-            let factor = libm::exp(rate.high.to_f64() * time);
-            factor * (1.0 + exponent_roundings(rate, time))
-        };
-        y.iter_mut().for_each(|entry| *entry = entry.abs());
-        match self {
-            Self::Still => {}
-            Self::Real { rate } => y[0] *= decay(rate),
-            Self::Pair { rate, frequency } => {
-                let phase = 1.0 + exponent_roundings(frequency, time);
-                let norm = libm::hypot(y[0], y[1]) * rate.as_ref().map_or(1.0, decay);
-                y.fill(norm * phase);
-            }
-            Self::Nilpotent { rate, matrix, powers } => {
-                let sizes = matrix.iter().map(|row| row.map(|it| it.to_f64().abs()));
-                taylor(&sizes.collect::<Vec<_>>(), *powers, y, time);
-                // Five roundings a power are more than those of a sum.
-                let factor = 2.0 * rate.as_ref().map_or(1.0, decay);
-                y.iter_mut().for_each(|entry| *entry *= factor);
-            }
-            Self::Cluster(powers) => powers.sizes(y, time),
+            Self::Cluster(powers) => powers.advance(y, sizes, time),
         }
     }
 }
 
-/// `y = exp(B time) y` by so many terms of the Taylor series, in Horner's scheme.
+/// `y = exp(B time) y` by so many terms of the Taylor series, in Horner's scheme, and the sizes of
+/// what that sums: twice, because five roundings a power are more than those of a sum.
 #[inline]
-fn taylor<T: Number>(matrix: &[Vector<T>], terms: usize, y: &mut [T], time: T) {
+fn taylor<T: Number>(matrix: &[Vector<T>], terms: usize, y: &mut [T], sizes: &mut [f64], time: T) {
     match y.len() {
-        2 => taylor_in::<T, 2>(matrix, terms, y, 2, time),
-        3 => taylor_in::<T, 3>(matrix, terms, y, 3, time),
-        4 => taylor_in::<T, 4>(matrix, terms, y, 4, time),
-        size => taylor_in::<T, LARGEST_DIMENSION>(matrix, terms, y, size, time),
+        2 => taylor_in::<T, 2>(matrix, terms, y, sizes, time),
+        3 => taylor_in::<T, 3>(matrix, terms, y, sizes, time),
+        4 => taylor_in::<T, 4>(matrix, terms, y, sizes, time),
+        _ => taylor_in::<T, LARGEST_DIMENSION>(matrix, terms, y, sizes, time),
     }
 }
 
-/// The sum of [`taylor`] in vectors of a length that the compiler knows, whose entries it keeps in
+/// The sums of [`taylor`] in vectors of a length that the compiler knows, whose entries it keeps in
 /// registers.
 #[inline(always)]
 fn taylor_in<T: Number, const LENGTH: usize>(
     matrix: &[Vector<T>],
     terms: usize,
     y: &mut [T],
-    size: usize,
+    sizes: &mut [f64],
     time: T,
 ) {
-    let mut start = [T::zero(); LENGTH];
-    start[..size].copy_from_slice(y);
-    let mut now = start;
+    let count = y.len();
+    let (mut start, mut sizes_at_start) = ([T::zero(); LENGTH], [0.0; LENGTH]);
+    start[..count].copy_from_slice(y);
+    sizes_at_start[..count].copy_from_slice(sizes);
+    let (mut now, mut sizes_now) = (start, sizes_at_start);
     for k in (1..=terms).rev() {
-        let (last, factor) = (now, if k == 1 { time } else { time / T::exact(k as f64) });
-        for n in 0..size {
-            now[n] = start[n] + factor * dot(&matrix[n], &last, size);
+        let (last, sizes_last) = (now, sizes_now);
+        let factor = if k == 1 { time } else { time / T::exact(k as f64) };
+        let size_of_factor = factor.to_f64().abs();
+        for n in 0..count {
+            let row = &matrix[n];
+            let (mut sum, mut size) = (row[0] * last[0], row[0].to_f64().abs() * sizes_last[0]);
+            for k in 1..count {
+                sum = sum + row[k] * last[k];
+                size += row[k].to_f64().abs() * sizes_last[k];
+            }
+            now[n] = start[n] + factor * sum;
+            sizes_now[n] = sizes_at_start[n] + size_of_factor * size;
         }
     }
-    y.copy_from_slice(&now[..size]);
+    y.copy_from_slice(&now[..count]);
+    sizes.iter_mut().zip(sizes_now).for_each(|(size, now)| *size = 2.0 * now);
 }
 
 #[inline]
@@ -180,11 +174,13 @@ fn copied<T: Number>(y: &[T]) -> Vector<T> {
     copy
 }
 
-#[inline]
-fn decay<T: Number>(rate: Option<SplitNumber<T>>, time: T, y: &mut [T]) {
+#[inline(always)]
+fn decay<T: Number>(rate: Option<SplitNumber<T>>, time: T, y: &mut [T], sizes: &mut [f64]) {
     let Some(rate) = rate else { return };
     let factor = exponential(rate, time);
     y.iter_mut().for_each(|entry| *entry = *entry * factor);
+    let factor = raised(factor, &rate, time);
+    sizes.iter_mut().for_each(|size| *size *= factor);
 }
 
 /// A product with a rate, and what rounding took from it.
@@ -212,9 +208,11 @@ fn circular<T: Number>(frequency: SplitNumber<T>, time: T) -> (T, T) {
 /// roundings where they are used.
 const PHASE: f64 = 0.25 * f64::EPSILON * f64::EPSILON;
 
-/// By how many times the unit of an arithmetic the rounding of an exponent changes its exponential.
-fn exponent_roundings<T: Number>(rate: &SplitNumber<T>, time: f64) -> f64 {
-    PHASE / unit::<T>() * (rate.high.to_f64() * time).abs()
+/// A factor, raised by what the rounding of its exponent or angle, a rate times a time, adds in
+/// units of the arithmetic.
+#[inline]
+fn raised<T: Number>(factor: T, rate: &SplitNumber<T>, time: T) -> f64 {
+    factor.to_f64() * (1.0 + PHASE / unit::<T>() * (rate.high * time).to_f64().abs())
 }
 
 impl<T: Number> Powers<T> {
@@ -259,24 +257,31 @@ impl<T: Number> Powers<T> {
         libm::floor(time / self.step).max(0.0)
     }
 
-    /// The co-ordinates a time later; not inlined, because its vectors would take other motions'
-    /// places in registers.
+    /// The co-ordinates a time later, and the sizes of what they are summed from, once for each
+    /// product; not inlined, because its vectors would take other motions' places in registers.
     #[inline(never)]
-    fn advance(&self, y: &mut [T], time: T) {
-        let size = y.len();
+    fn advance(&self, y: &mut [T], sizes: &mut [f64], time: T) {
         let steps = self.steps(time.to_f64());
         if steps >= Self::MOST_STEPS {
             // Nothing is told of so long a time.
             return y.fill(T::exact(f64::NAN));
         }
         let rest = time - T::exact(steps * self.step);
+        let mut products = 1.0;
         for matrix in self.factors(steps) {
-            let last: Vector<T> = copied(y);
-            for (entry, row) in y.iter_mut().zip(matrix) {
-                *entry = dot(row, &last, size);
+            products += 1.0;
+            let (last, sizes_last): (Vector<T>, Vector<f64>) = (copied(y), copied(sizes));
+            for (n, row) in matrix.iter().enumerate() {
+                let (mut sum, mut size) = (T::zero(), 0.0);
+                for (k, factor) in row[..y.len()].iter().enumerate() {
+                    sum = sum + *factor * last[k];
+                    size += factor.to_f64().abs() * sizes_last[k];
+                }
+                (y[n], sizes[n]) = (sum, size);
             }
         }
-        taylor(&self.matrix, self.terms(rest.to_f64()), y, rest);
+        sizes.iter_mut().for_each(|size| *size *= products);
+        taylor(&self.matrix, self.terms(rest.to_f64()), y, sizes, rest);
     }
 
     /// How many terms of the series exp(B rest) the last digit needs.
@@ -292,22 +297,5 @@ impl<T: Number> Powers<T> {
             next *= size / (terms + 1) as f64;
         }
         terms
-    }
-
-    /// The sizes of what the products are summed from, once for each of them.
-    fn sizes(&self, y: &mut [f64], time: f64) {
-        let size = y.len();
-        let mut products = 1.0;
-        for matrix in self.factors(self.steps(time)) {
-            products += 1.0;
-            let last = copied(y);
-            for (entry, row) in y.iter_mut().zip(matrix) {
-                let terms = row[..size].iter().zip(&last);
-                *entry = terms.map(|(factor, it)| factor.to_f64().abs() * it).sum();
-            }
-        }
-        // The last product is exp(B rest) with |B rest| below 1/2.
-        let most = y.iter().fold(0.0, |most: f64, it| most.max(*it));
-        y.iter_mut().for_each(|entry| *entry = products * (*entry + most));
     }
 }

@@ -3,10 +3,12 @@
 use super::bound::ORDERS;
 use super::enclosure::InheritedError;
 use super::flow::ModeFlow;
+use super::modal_state::ModalState;
 use super::row::ModalRow;
+use super::series::{GuardSeries, SeriesEntry, has_series, series_limit};
 use super::system::LARGEST_DIMENSION;
 use super::track::{SearchWork, Track};
-use super::vector::{UNDERFLOW, Vector, unit};
+use super::vector::{UNDERFLOW, Vector, sum_rounding};
 use crate::number::Number;
 use smallvec::SmallVec;
 use std::cell::OnceCell;
@@ -22,14 +24,16 @@ pub(super) type PerGuard<T> = SmallVec<[T; INLINE]>;
 pub(super) struct GuardedSegment<'a, T> {
     pub flow: &'a ModeFlow<T>,
     pub rows: &'a [ModalRow<T>],
-    pub entry: Vector<T>,
+    pub entry: ModalState<T>,
+    /// What rounding does to a guard, in sizes of what it is summed from.
+    pub margin: f64,
     /// What errors do along the segment, where they are followed.
     followed: Option<Box<FollowedErrors>>,
     /// Up to this time guards that begin with a structural zero are evaluated by their Taylor
     /// series at entry; negative where none does.
     pub early: f64,
     /// The series, once they are asked for.
-    series: OnceCell<Vec<[T; ORDERS]>>,
+    series: OnceCell<Vec<GuardSeries<T>>>,
     /// How many orders of each guard are structural zeros at entry.
     zeros: PerGuard<usize>,
     /// The blocks that a guard which can cross is made of.
@@ -52,7 +56,7 @@ pub(super) struct GuardedPoint<T> {
     /// the values of guards.
     pub later: T,
     /// The modal co-ordinates; those of blocks that no guard is made of are the entry's.
-    pub y: Vector<T>,
+    pub modal: ModalState<T>,
     /// The norms of each block's co-ordinates, once [`GuardedSegment::measure`] was asked for them.
     pub norms: Vector<f64>,
     /// The value and three derivatives of each guard.
@@ -62,41 +66,59 @@ pub(super) struct GuardedPoint<T> {
 }
 
 impl<'a, T: Number> GuardedSegment<'a, T> {
-    /// The segment that begins with these co-ordinates.
+    /// A segment of a mode that is not entered yet.
+    pub fn before(flow: &'a ModeFlow<T>, rows: &'a [ModalRow<T>]) -> Self {
+        Self {
+            flow,
+            rows,
+            entry: ModalState::default(),
+            margin: 0.0,
+            followed: None,
+            early: -1.0,
+            series: OnceCell::new(),
+            zeros: PerGuard::new(),
+            blocks: 0,
+        }
+    }
+
+    /// Enters a mode with the co-ordinates of `entry`. Their own rounding is counted in their
+    /// sizes, or among the errors that are followed.
     #[inline]
-    pub fn new(
+    pub fn enter(
+        &mut self,
         flow: &'a ModeFlow<T>,
         rows: &'a [ModalRow<T>],
-        entry: Vector<T>,
         tracks: &[Track],
         inherited: Option<Vec<InheritedError>>,
-    ) -> Self {
-        let (mut blocks, mut zeros, mut early) = (0, PerGuard::new(), false);
+    ) {
+        (self.flow, self.rows, self.blocks) = (flow, rows, 0);
+        // What is summed twice, at entry and in a guard, is rounded twice.
+        let sums = if inherited.is_some() { 1.0 } else { 2.0 };
+        self.margin = sums * sum_rounding::<T>(flow.dimension);
+        self.followed = inherited.map(|it| {
+            let lost = flow.underflow(&self.entry.y);
+            Box::new(FollowedErrors { inherited: it, lost })
+        });
+        self.series = OnceCell::new();
+        self.zeros.clear();
+        let mut early = false;
         for (n, track) in tracks.iter().enumerate() {
-            zeros.push(if track.live { track.zeros } else { ORDERS });
+            self.zeros.push(if track.live { track.zeros } else { ORDERS });
             if track.live {
-                blocks |= rows[n].blocks;
+                self.blocks |= rows[n].blocks;
                 early |= track.zeros > 0;
             }
         }
-        let lost = || flow.underflow(&entry);
-        let followed = inherited.map(|it| Box::new(FollowedErrors { inherited: it, lost: lost() }));
-        let series = OnceCell::new();
-        let mut segment = Self { flow, rows, entry, followed, early: -1.0, series, zeros, blocks };
-        if early {
-            segment.early = segment.series_limit();
-        }
-        segment
+        self.early = if early { self.series_limit() } else { -1.0 };
     }
 
     /// Up to which time the series of these guards are good without their last order.
     #[inline]
     fn series_limit(&self) -> f64 {
-        let norms = self.flow.norms(&self.entry);
+        let norms = self.flow.norms(&self.entry.y);
         let longest = self.flow.longest;
         let mut limit = longest;
-        let is_by_series = |zeros: usize| 0 < zeros && zeros < ORDERS;
-        for (row, zeros) in self.rows.iter().zip(&self.zeros).filter(|it| is_by_series(*it.1)) {
+        for (row, zeros) in self.rows.iter().zip(&self.zeros).filter(|it| has_series(*it.1)) {
             let last = row.bound(ORDERS - 1, &norms, longest.min(1e300));
             let lead = row.order(*zeros, &self.entry).0.to_f64().abs();
             limit = limit.min(series_limit::<T>(lead, *zeros, last));
@@ -104,39 +126,35 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         limit
     }
 
-    /// The guards' Taylor coefficients at entry.
+    /// The guards' Taylor series at entry.
     #[inline]
-    fn series(&self) -> &[[T; ORDERS]] {
+    fn series(&self) -> &[GuardSeries<T>] {
         self.series.get_or_init(|| {
-            let guard = |(row, zeros): (&ModalRow<T>, &usize)| -> [T; ORDERS] {
-                if *zeros == 0 {
-                    return [T::zero(); ORDERS];
-                }
-                let mut coefficients = row.orders_from::<ORDERS>(0, &self.entry);
-                coefficients[..*zeros].fill(T::zero());
-                for (k, coefficient) in coefficients.iter_mut().enumerate().skip(*zeros) {
-                    *coefficient = *coefficient * T::inverse_factorial(k);
-                }
-                coefficients
+            let entry = SeriesEntry {
+                modal: self.flow.polynomial_sizes(&self.entry),
+                norms: self.flow.norms(&self.entry.sizes),
+                until: self.early,
             };
-            self.rows.iter().zip(&self.zeros).map(guard).collect()
+            let guards = self.rows.iter().zip(&self.zeros);
+            guards.map(|(row, zeros)| GuardSeries::of(row, *zeros, &entry)).collect()
         })
     }
 
     /// The guards at entry, with their structural zeros.
     #[inline]
     pub fn begin(&self, point: &mut GuardedPoint<T>) {
-        (point.time, point.later, point.y) = (T::zero(), T::zero(), self.entry);
+        point.start(self);
         point.make_room(self.rows.len());
-        let GuardedPoint { orders, slack, .. } = point;
         for (n, zeros) in self.zeros.iter().enumerate() {
-            (orders[n], slack[n]) = self.guard(n, &self.entry, None);
+            let evaluated = self.guard(n, point, None);
+            let GuardedPoint { orders, slack, .. } = &mut *point;
+            (orders[n], slack[n]) = evaluated;
             if *zeros > 0 {
                 orders[n].iter_mut().take(*zeros).for_each(|order| *order = T::zero());
                 slack[n] = 0.0;
             }
         }
-        self.inherit(0..self.rows.len(), point, |_| true);
+        self.inherit(0..self.rows.len(), point);
     }
 
     /// Evaluates the closed form, as far as guards need it.
@@ -158,8 +176,8 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         self.go_to(point, time, work);
         let by_series = self.is_by_series(n, time.to_f64());
         let series_at = by_series.then_some(time);
-        (point.orders[n], point.slack[n]) = self.guard(n, &point.y, series_at);
-        self.inherit(n..n + 1, point, |_| by_series);
+        (point.orders[n], point.slack[n]) = self.guard(n, point, series_at);
+        self.inherit(n..n + 1, point);
     }
 
     /// Evaluates all guards of a point at the crossing of one of them.
@@ -176,8 +194,9 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
     #[inline]
     fn go_to(&self, point: &mut GuardedPoint<T>, time: T, work: &mut SearchWork) {
         work.evaluations += 1;
-        (point.time, point.later, point.y) = (time, T::zero(), self.entry);
-        self.flow.advance(&mut point.y, time, self.blocks);
+        point.start(self);
+        point.time = time;
+        self.flow.advance(&mut point.modal, time, self.blocks);
     }
 
     /// All guards of a point whose co-ordinates are there.
@@ -186,11 +205,11 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         let time = point.time;
         let is_by_series = |n: usize| self.is_by_series(n, time.to_f64());
         point.make_room(self.rows.len());
-        let GuardedPoint { y, orders, slack, .. } = point;
-        for (n, (orders, slack)) in orders.iter_mut().zip(slack).enumerate() {
-            (*orders, *slack) = self.guard(n, y, is_by_series(n).then_some(time));
+        for n in 0..self.rows.len() {
+            let evaluated = self.guard(n, point, is_by_series(n).then_some(time));
+            (point.orders[n], point.slack[n]) = evaluated;
         }
-        self.inherit(0..self.rows.len(), point, is_by_series);
+        self.inherit(0..self.rows.len(), point);
     }
 
     /// Whether a guard is summed from its series at a time: where it begins with a structural zero,
@@ -206,59 +225,52 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         if self.is_by_series(n, time) { self.zeros[n] } else { 0 }
     }
 
-    /// What rounding does to a row, in sizes of what it is summed from.
-    #[inline]
-    pub fn margin(&self) -> f64 {
-        (self.flow.dimension + 4) as f64 * unit::<T>()
-    }
-
     /// Works out the norms of a point's blocks.
     #[inline]
     pub fn measure(&self, point: &mut GuardedPoint<T>) {
-        point.norms = self.flow.norms(&point.y);
+        point.norms = self.flow.norms(&point.modal.y);
     }
 
     /// Evaluates the blocks of a point that no guard is made of.
     #[inline]
     pub fn complete(&self, point: &mut GuardedPoint<T>) {
-        self.flow.advance(&mut point.y, point.time, !self.blocks);
+        self.flow.advance(&mut point.modal, point.time, !self.blocks);
     }
 
     /// Value and three derivatives of a guard, and what rounding may have done to the value: from
     /// the co-ordinates, or from its Taylor series at a time.
     #[inline]
-    fn guard(&self, n: usize, y: &Vector<T>, series_at: Option<T>) -> ([T; 4], f64) {
+    fn guard(&self, n: usize, at: &GuardedPoint<T>, series_at: Option<T>) -> ([T; 4], f64) {
         if self.zeros[n] == ORDERS {
             return ([T::zero(); 4], 0.0);
         }
         if let Some(time) = series_at {
-            let (orders, size) = series(&self.series()[n], time);
-            return (orders, 4.0 * unit::<T>() * size);
+            let (orders, size) = self.series()[n].at(time);
+            return (orders, self.margin * size);
         }
-        let (orders, size) = self.rows[n].sized_orders(y);
-        (orders, self.margin() * size)
+        let (orders, size) = self.rows[n].sized_orders(&at.modal);
+        (orders, self.margin * size)
     }
 
-    /// In a run that follows its errors, adds what they do to guards, and what rounding does where
-    /// terms of the closed form have cancelled.
-    #[inline]
-    fn inherit(
+    /// In a run that follows its errors, adds what they do to guards.
+    #[inline(always)]
+    fn inherit(&self, guards: Range<usize>, point: &mut GuardedPoint<T>) {
+        if let Some(followed) = &self.followed {
+            self.add_followed(followed, guards, point);
+        }
+    }
+
+    fn add_followed(
         &self,
+        followed: &FollowedErrors,
         guards: Range<usize>,
         point: &mut GuardedPoint<T>,
-        is_by_series: impl Fn(usize) -> bool,
     ) {
-        let Some(followed) = &self.followed else { return };
-        let sizes = self.flow.sizes_later(&self.entry, point.time);
         for n in guards {
-            let slack = &mut point.slack[n];
-            if !is_by_series(n) {
-                *slack = slack.max(self.margin() * self.rows[n].size(&sizes));
-            }
             let lost = self.rows[n].bound(0, &followed.lost, point.time.to_f64());
             let rest = LARGEST_DIMENSION as f64 * UNDERFLOW;
-            let off = self.rows[n].off(&sizes);
-            *slack += self.inherited_by(n, point.time) + lost + rest + off;
+            let off = self.rows[n].off(&point.modal.sizes);
+            point.slack[n] += self.inherited_by(n, point.time) + lost + rest + off;
         }
     }
 
@@ -278,6 +290,13 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
 }
 
 impl<T: Number> GuardedPoint<T> {
+    /// The co-ordinates of a segment's entry.
+    #[inline]
+    fn start(&mut self, segment: &GuardedSegment<'_, T>) {
+        (self.time, self.later) = (T::zero(), T::zero());
+        self.modal.copy(&segment.entry, segment.flow.dimension);
+    }
+
     /// Resizes orders and slacks to this number of guards.
     #[inline]
     fn make_room(&mut self, count: usize) {
@@ -291,9 +310,14 @@ impl<T: Number> GuardedPoint<T> {
 impl<T: Number> Default for GuardedPoint<T> {
     #[inline]
     fn default() -> Self {
-        let (y, norms) = ([T::zero(); LARGEST_DIMENSION], [0.0; LARGEST_DIMENSION]);
-        let (time, later) = (T::zero(), T::zero());
-        Self { time, later, y, norms, orders: SmallVec::new(), slack: SmallVec::new() }
+        Self {
+            time: T::zero(),
+            later: T::zero(),
+            modal: ModalState::default(),
+            norms: [0.0; LARGEST_DIMENSION],
+            orders: SmallVec::new(),
+            slack: SmallVec::new(),
+        }
     }
 }
 
@@ -342,47 +366,6 @@ impl<T: Number> Default for Ends<T> {
         let (left, right) = (GuardedPoint::default(), GuardedPoint::default());
         Self { left, right, passed: Passed::none() }
     }
-}
-
-/// Value and three derivatives of a Taylor series, and the size of what the value is summed from.
-#[inline]
-fn series<T: Number>(coefficients: &[T; ORDERS], time: T) -> ([T; 4], f64) {
-    let [mut value, mut slope, mut bend, mut third] = [T::zero(); 4];
-    let (mut size, size_of_time) = (0.0, time.to_f64().abs());
-    let is_there = |it: &T| *it != T::zero();
-    let last = coefficients[..ORDERS - 1].iter().rposition(is_there).map_or(0, |it| it + 1);
-    for coefficient in coefficients[..last].iter().rev() {
-        third = third * time + bend;
-        bend = bend * time + slope;
-        slope = slope * time + value;
-        value = value * time + *coefficient;
-        size = size * size_of_time + coefficient.to_f64().abs();
-    }
-    ([value, slope, bend + bend, T::exact(6.0) * third], size)
-}
-
-/// Up to which time a Taylor series without its last order is good to the last digit.
-#[inline]
-fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64 {
-    if last == 0.0 {
-        return f64::INFINITY;
-    }
-    let order = ORDERS - 1;
-    let factorials: f64 = (zeros + 1..=order).map(|k| k as f64).product();
-    let power = unit::<T>() * lead * factorials / last;
-    0.9 * root(power, order - zeros)
-}
-
-/// A root to some per cent: by a division of the logarithm that a number's bits are.
-#[inline]
-pub(super) fn root(value: f64, degree: usize) -> f64 {
-    const ONE: u64 = 1.0_f64.to_bits();
-    if value == 0.0 || value == f64::INFINITY || value.is_nan() {
-        return value;
-    }
-    let bits = value.to_bits();
-    let share = |bits: u64| bits / degree as u64;
-    f64::from_bits(if bits >= ONE { ONE + share(bits - ONE) } else { ONE - share(ONE - bits) })
 }
 
 const _: () = assert!(LARGEST_DIMENSION < ORDERS);

@@ -81,11 +81,7 @@ impl<const N: usize> Quotient<N> {
         const SHORT: f64 = 1e-3;
         let mut root = rough;
         for _ in 0..STEPS {
-            let terms = self.terms(&powers(root));
-            let (value, slope) = (sum(&terms), sum(&weighted(&terms, &Self::SLOPE)));
-            let bend = 0.5 * sum(&weighted(&terms, &Self::BEND));
-            // As a share of the root.
-            let step = value * slope / (slope * slope - value * bend);
+            let (step, slope) = self.step(root);
             let rises = slope > 0.0 && step < 0.5;
             if !rises {
                 return None;
@@ -96,6 +92,15 @@ impl<const N: usize> Quotient<N> {
             }
         }
         None
+    }
+
+    /// A step of Halley's method, as a share of the root, and the slope there times the root.
+    #[inline]
+    pub fn step(&self, root: f64) -> (f64, f64) {
+        let terms = self.terms(&powers(root));
+        let (value, slope) = (sum(&terms), sum(&weighted(&terms, &Self::SLOPE)));
+        let bend = 0.5 * sum(&weighted(&terms, &Self::BEND));
+        (value * slope / (slope * slope - value * bend), slope)
     }
 
     /// Where the quotient is negative at first and crosses zero once near the root of its

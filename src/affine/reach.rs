@@ -8,11 +8,11 @@
 
 use super::bound::Later;
 use super::hull::{self, Judged, Lengths};
-use super::point::{Ends, GuardedPoint, GuardedSegment, root};
+use super::point::{Ends, GuardedPoint, GuardedSegment};
 use super::row::{ModalRow, RowPart};
 use super::system::LARGEST_DIMENSION;
 use super::track::{Track, outward};
-use super::vector::Vector;
+use super::vector::{Vector, root};
 use crate::crossing::certificate::MIDDLE;
 use crate::number::Number;
 
@@ -46,13 +46,14 @@ impl<T: Number> GuardedSegment<'_, T> {
         let row = &self.rows[n];
         let orders = outward(&left.orders[n], track).map(Number::to_f64);
         let rests = eighths(row, left, longest);
-        let whole = length(&orders, rests[0], track.zeros, || row.size(&left.y)).min(longest);
+        let whole = length(&orders, rests[0], track.zeros, || row.size(&left.modal.y)).min(longest);
         let mut reach = Reach { cut: 0, length: whole, whole };
         if track.zeros == 0 && whole < longest {
             enclose(row, track, left, (orders[0], &rests, longest), &mut reach);
         }
         if reach.length == f64::INFINITY {
-            let orders = outward(&row.first_orders(&left.y, row.first_column(reach.cut)), track);
+            let orders =
+                outward(&row.first_orders(&left.modal.y, row.first_column(reach.cut)), track);
             let orders = orders.map(Number::to_f64);
             reach.length = polynomial_reach(&orders, track.zeros, left.slack[n]);
             reach.whole = reach.whole.min(reach.length);
@@ -76,7 +77,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let cut = if length <= reach.whole { 0 } else { reach.cut };
         let mut slack = left.slack[n].max(right.slack[n]);
         if !self.is_by_series(n, right.time.to_f64()) {
-            slack += self.margin() * derivatives(row, left, cut, length);
+            slack += self.margin * self.derivatives(row, left, cut, length);
         }
         if cut == 0 {
             let orders = [outward(&left.orders[n], track), outward(&right.orders[n], track)];
@@ -85,9 +86,26 @@ impl<T: Number> GuardedSegment<'_, T> {
         }
         let raise = raise(row, track, ends, cut);
         let from = row.first_column(cut);
-        let orders = [left, right].map(|it| outward(&row.first_orders(&it.y, from), track));
+        let orders = [left, right].map(|it| outward(&row.first_orders(&it.modal.y, from), track));
         let eighth = eighth(row, track, left, cut, length);
         hull::judge(&orders, lengths, eighth, raise, slack, track.zeros)
+    }
+
+    /// The sizes of what derivatives are summed from, as far as a coefficient of a hull has them:
+    /// the third and fourth have most, 3/7 L, L^2/14 and L^3/210 of the first three.
+    #[inline]
+    fn derivatives(&self, row: &ModalRow<T>, at: &GuardedPoint<T>, cut: usize, length: f64) -> f64 {
+        let size = |part: &RowPart| {
+            // Nothing comes of zeros, even where a factor of theirs overflows.
+            let sizes: f64 = at.modal.sizes[self.flow.blocks[part.block].range()].iter().sum();
+            if sizes == 0.0 {
+                return 0.0;
+            }
+            let norm = |k: usize| sizes * part.later.bound(&part.norms, k, length);
+            let slope = 3.0 / 7.0 * norm(1);
+            (slope + length * (norm(2) / 14.0 + length * norm(3) / 210.0)) * length
+        };
+        row.parts[cut..].iter().map(size).sum()
     }
 }
 
@@ -104,7 +122,7 @@ fn enclose<T: Number>(
     const MUCH: f64 = 0.1;
     let (mut value, mut best) = (begin, rests[0]);
     for (k, part) in row.parts.iter().enumerate() {
-        let own = part_of(row, part, track, &left.y);
+        let own = part_of(row, part, track, &left.modal.y);
         value += match part.later {
             Later::Fading => own.max(0.0) - own,
             Later::Steady => part.norms[0] * left.norms[part.block] - own,
@@ -114,7 +132,7 @@ fn enclose<T: Number>(
         if value > LEFT * begin {
             if part.later == Later::Fading && rest < MUCH * best {
                 let from = row.first_column(k + 1);
-                let slope = track.outward * row.first_orders(&left.y, from)[1].to_f64();
+                let slope = track.outward * row.first_orders(&left.modal.y, from)[1].to_f64();
                 let length = held_back(-own, part.norms[1] / part.norms[0], value, slope);
                 if length > reach.length {
                     (reach.cut, reach.length) = (k + 1, length.min(longest));
@@ -165,29 +183,12 @@ fn eighth<T: Number>(
     let mut sum = 0.0;
     for part in &row.parts[cut..] {
         // An even derivative of a decay has its sign.
-        let falls = part.later == Later::Fading && part_of(row, part, track, &left.y) <= 0.0;
+        let falls = part.later == Later::Fading && part_of(row, part, track, &left.modal.y) <= 0.0;
         if !falls {
             sum += part.bound(8, length, &left.norms);
         }
     }
     sum * OUTWARD
-}
-
-/// The sizes of what derivatives are summed from, as far as a coefficient of a hull has them: the
-/// third and fourth have most, 3/7 L, L^2/14 and L^3/210 of the first three.
-#[inline]
-fn derivatives<T: Number>(
-    row: &ModalRow<T>,
-    left: &GuardedPoint<T>,
-    cut: usize,
-    length: f64,
-) -> f64 {
-    let size = |part: &RowPart| {
-        let norm = |k: usize| part.bound(k, length, &left.norms);
-        let weighted = 3.0 / 7.0 * norm(1) + length * (norm(2) / 14.0 + length * norm(3) / 210.0);
-        weighted * length
-    };
-    row.parts[cut..].iter().map(size).sum()
 }
 
 /// What the first blocks add to a guard on a piece at most, at its ends; between them it is below
@@ -196,7 +197,7 @@ fn derivatives<T: Number>(
 fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize) -> [f64; 2] {
     let mut raise = [0.0; 2];
     for part in &row.parts[..cut] {
-        let [from, to] = [&ends.left, &ends.right].map(|it| part_of(row, part, track, &it.y));
+        let [from, to] = [&ends.left, &ends.right].map(|it| part_of(row, part, track, &it.modal.y));
         let own = match part.later {
             Later::Fading if from > 0.0 => [from * OUTWARD, to * OUTWARD],
             Later::Fading => [to / OUTWARD; 2],

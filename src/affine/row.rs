@@ -4,6 +4,7 @@
 use super::bound::{self, Later, ORDERS};
 use super::flow::FlowBlock;
 use super::modal::{self, BigReal};
+use super::modal_state::ModalState;
 use super::system::Row;
 use super::vector::{UNDERFLOW, Vector, add_product, vector};
 use crate::number::Number;
@@ -125,28 +126,39 @@ impl<T: Number> ModalRow<T> {
         sums
     }
 
+    /// The first orders in f64.
+    #[inline(always)]
+    pub fn rounded_orders<const N: usize>(&self, y: &Vector<T>) -> [f64; N] {
+        let mut sums = [0.0; N];
+        for column in &self.columns {
+            let factors: [f64; N] = std::array::from_fn(|k| column.orders[k].to_f64());
+            add_product(&mut sums, &factors, y[column.at].to_f64());
+        }
+        sums
+    }
+
     /// Value and three derivatives, and the sum of the sizes of what the value is summed from.
     #[inline]
-    pub fn sized_orders(&self, y: &Vector<T>) -> ([T; 4], f64) {
+    pub fn sized_orders(&self, ModalState { y, sizes }: &ModalState<T>) -> ([T; 4], f64) {
         let (mut sums, mut size) = ([T::zero(); 4], 0.0);
         for column in &self.columns {
             let entry = y[column.at];
             add_product(&mut sums, &column.orders, entry);
-            size += column.size * entry.to_f64().abs();
+            size += column.size * sizes[column.at];
         }
         (sums, size)
     }
 
     /// The first orders, and the sums of the sizes of what they are summed from, in f64.
-    #[inline]
-    pub fn orders_and_sizes<const N: usize>(&self, y: &Vector<T>) -> [[f64; N]; 2] {
+    #[inline(always)]
+    pub fn orders_and_sizes<const N: usize>(&self, modal: &ModalState<T>) -> [[f64; N]; 2] {
         let [mut orders, mut sizes] = [[0.0; N]; 2];
         for column in &self.columns {
-            let entry = y[column.at].to_f64();
+            let (entry, size) = (modal.y[column.at].to_f64(), modal.sizes[column.at]);
             for k in 0..N {
-                let term = column.orders[k].to_f64() * entry;
-                orders[k] += term;
-                sizes[k] += term.abs();
+                let factor = column.orders[k].to_f64();
+                orders[k] += factor * entry;
+                sizes[k] += factor.abs() * size;
             }
         }
         [orders, sizes]
@@ -177,13 +189,12 @@ impl<T: Number> ModalRow<T> {
 
     /// A derivative, and the sum of the sizes of what it is summed from.
     #[inline]
-    pub fn order(&self, order: usize, y: &Vector<T>) -> (T, f64) {
+    pub fn order(&self, order: usize, ModalState { y, sizes }: &ModalState<T>) -> (T, f64) {
         let row = &self.orders[order];
         let (mut sum, mut size) = (T::zero(), 0.0);
         for RowColumn { at, .. } in &self.columns {
-            let term = row[*at] * y[*at];
-            sum = sum + term;
-            size += term.to_f64().abs();
+            sum = sum + row[*at] * y[*at];
+            size += row[*at].to_f64().abs() * sizes[*at];
         }
         (sum, size)
     }

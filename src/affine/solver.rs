@@ -118,7 +118,7 @@ impl<T: Number> Solver<T> {
         let elapsed = if self.backward { -ahead } else { ahead };
         let flow = &self.modes[event.mode].flow;
         let modal = flow.modal(&self.complete(&event.state, &event.time));
-        let mut state = flow.state(&flow.at(&modal, elapsed)).to_vec();
+        let mut state = flow.state(&flow.at(&modal, elapsed).y).to_vec();
         state.truncate(self.system.states.len());
         state
     }

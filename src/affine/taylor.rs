@@ -7,11 +7,11 @@
 
 use super::bound::ORDERS;
 use super::crossing::FirstCrossing;
-use super::point::{GuardedPoint, GuardedSegment, root};
+use super::point::{GuardedPoint, GuardedSegment};
 use super::quotient::{Quotient, WINDOW};
 use super::reach::rise;
 use super::track::{SearchWork, Track, live, outward};
-use super::vector::UNDERFLOW;
+use super::vector::{UNDERFLOW, root};
 use crate::number::Number;
 
 /// The numbers of derivatives that are looked at, the value and the one that is bounded included.
@@ -21,6 +21,9 @@ const ALL: usize = ORDERS;
 /// If the remainder after the first of them is less than this share of what the guard begins with,
 /// they give the root to some digits.
 const LITTLE: f64 = 1e-3;
+
+/// If it is more than this, the rest of them give so many more that one evaluation is enough.
+const NOTHING: f64 = 1e-7;
 
 /// If it is more than this, all of them prove nothing.
 const MUCH: f64 = 10.0;
@@ -68,7 +71,11 @@ impl<T: Number> GuardedSegment<'_, T> {
         let lead = power(at.orders[n][zeros].to_f64().abs(), zeros);
         let rest = power(self.rows[n].bound(FEW - 1, &at.norms, rough), FEW - 1);
         let crossing = if rest <= LITTLE * lead {
-            self.proved::<FEW>(n, tracks, at, rough)?
+            let mut crossing = self.proved::<FEW>(n, tracks, at, rough)?;
+            if rest > NOTHING * lead {
+                self.refine(n, at, &mut crossing);
+            }
+            crossing
         } else if rest <= MUCH * lead {
             self.proved::<ALL>(n, tracks, at, rough)?
         } else {
@@ -106,6 +113,20 @@ impl<T: Number> GuardedSegment<'_, T> {
         Some(FirstCrossing { time: time(1.0), between, guards })
     }
 
+    /// Brings the time of a crossing nearer to where all derivatives of its guard have it.
+    #[inline]
+    fn refine(&self, n: usize, at: &GuardedPoint<T>, crossing: &mut FirstCrossing<T>) {
+        let orders = self.rows[n].rounded_orders::<ALL>(&at.modal.y);
+        let after = crossing.time - at.time;
+        let root = after.to_f64();
+        let (step, _) = Quotient::of([&orders, &[0.0; ALL]], 0, 0.0, [0.0; 2]).step(root);
+        let better = crossing.time - T::exact(step * root);
+        let [low, high] = crossing.between;
+        if low < better && better < high {
+            crossing.time = better;
+        }
+    }
+
     /// Whether a guard is proved to stay negative from a point on.
     #[inline]
     fn stays_negative<const N: usize>(
@@ -133,12 +154,12 @@ impl<T: Number> GuardedSegment<'_, T> {
         track: &Track,
         at: &GuardedPoint<T>,
     ) -> Quotient<N> {
-        let [mut orders, sizes] = self.rows[n].orders_and_sizes::<N>(&at.y);
+        let [mut orders, sizes] = self.rows[n].orders_and_sizes::<N>(&at.modal);
         orders[..4].copy_from_slice(&at.orders[n].map(Number::to_f64));
         orders.iter_mut().for_each(|order| *order *= track.outward);
         let lost = UNDERFLOW * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
         let errors = [at.slack[n], lost];
-        Quotient::of([&orders, &sizes], track.zeros, self.margin(), errors)
+        Quotient::of([&orders, &sizes], track.zeros, self.margin, errors)
     }
 }
 

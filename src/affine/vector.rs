@@ -19,6 +19,14 @@ pub(super) fn unit<T: Number>() -> f64 {
     if T::TERMS <= <f64 as Number>::TERMS { HALF } else { HALF * HALF * 4.0 }
 }
 
+/// What rounding does to a sum of as many products as a mode has co-ordinates, in sizes of what it
+/// is summed from: a rounding for each product and sum, one for the factors, five for the closed
+/// form of a co-ordinate, and one for the rest of the way to a crossing.
+#[inline]
+pub(super) fn sum_rounding<T: Number>(dimension: usize) -> f64 {
+    (dimension + 7) as f64 * unit::<T>()
+}
+
 /// Sine and cosine of an angle to which `low` is added, from those of the angle.
 #[inline]
 pub(super) fn turned<T: Number>((sin, cos): (T, T), low: T) -> (T, T) {
@@ -77,6 +85,18 @@ pub(super) fn euclidean(entries: impl Iterator<Item = f64> + Clone) -> f64 {
     }
     let shares = entries.map(|it| it / largest);
     largest * shares.map(|it| it * it).sum::<f64>().sqrt()
+}
+
+/// A root to some per cent: by a division of the logarithm that a number's bits are.
+#[inline]
+pub(super) fn root(value: f64, degree: usize) -> f64 {
+    const ONE: u64 = 1.0_f64.to_bits();
+    if value == 0.0 || value == f64::INFINITY || value.is_nan() {
+        return value;
+    }
+    let bits = value.to_bits();
+    let share = |bits: u64| bits / degree as u64;
+    f64::from_bits(if bits >= ONE { ONE + share(bits - ONE) } else { ONE - share(ONE - bits) })
 }
 
 /// A wide number, rounded to an arithmetic of one or two words.

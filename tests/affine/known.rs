@@ -76,10 +76,13 @@ fn collisions_in_one_instant_follow_the_order_of_the_file() {
     let spheres = system(SPHERES);
     let rows = events::<f64>(&spheres, 3.0);
     assert_eq!(names(&spheres, &rows), ["left", "right", "left", "end"]);
+    // In f64 the sum x1 - x2 + 1 is zero at 1 and at the number before it.
     for row in &rows[..3] {
-        assert_eq!(row.time.value(), 1.0);
+        assert!((row.time.value() - 1.0).abs() <= f64::EPSILON / 2.0);
     }
-    assert_eq!(rows[2].state, [1.0, 2.0, 3.0, -1.0, 0.0, 1.0]);
+    for (own, exact) in rows[2].state.iter().zip([1.0, 2.0, 3.0, -1.0, 0.0, 1.0]) {
+        assert!((own - exact).abs() <= f64::EPSILON / 2.0 * exact.abs());
+    }
     // With losses the order matters: the outer velocities differ, and momentum is kept.
     let soft = with(SPHERES, &[("e", 0.5)]);
     let rows = events::<f64>(&soft, 3.0);

@@ -13,6 +13,7 @@ mod random;
 mod spectra;
 mod tables;
 mod together;
+mod touches;
 
 use crate::double_double::DoubleDouble;
 use percuss::affine::{Ending, Event, Solver, System, What};

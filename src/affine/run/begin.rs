@@ -5,7 +5,7 @@ use crate::affine::clock::Time;
 use crate::affine::enclosure::Enclosure;
 use crate::affine::event::{Event, What};
 use crate::affine::modal::BigReal;
-use crate::affine::point::Ends;
+use crate::affine::point::{Ends, GuardedSegment};
 use crate::affine::solver::Solver;
 use crate::affine::system::{LARGEST_DIMENSION, StartPoint};
 use crate::affine::taylor::Misses;
@@ -66,9 +66,8 @@ impl<T: Number> Solver<T> {
             state: begun.state,
             tracks: Vec::new(),
             ends: Ends::default(),
-            segment: None,
+            segment: GuardedSegment::before(&self.modes[mode].flow, &self.modes[mode].guards),
             misses: vec![Misses::default(); self.modes.len()],
-            modal: [T::zero(); LARGEST_DIMENSION],
             restitution: None,
             at_entry: 0,
             at_once: 0,

@@ -24,9 +24,7 @@ impl<T: Number> Run<'_, T> {
         }
         let ending = guards & low_bits(until);
         if ending == 0 {
-            if let Some(segment) = &self.segment {
-                segment.at_crossing(&mut self.ends.left, &mut self.work);
-            }
+            self.segment.at_crossing(&mut self.ends.left, &mut self.work);
             self.ends.passed.guards &= !guards;
             self.tracks.iter_mut().for_each(|track| track.zeros = 0);
             for n in bits(guards) {
@@ -53,7 +51,7 @@ impl<T: Number> Run<'_, T> {
         time: &Time<T>,
         state: &Vector<T>,
     ) -> Option<Enclosure> {
-        let (enclosure, segment) = (self.enclosure.as_ref()?, self.segment.as_ref()?);
+        let (enclosure, segment) = (self.enclosure.as_ref()?, &self.segment);
         let point = &self.ends.left;
         let solver_mode = &self.solver.modes[mode];
         let first = guards.trailing_zeros() as usize;
@@ -62,7 +60,7 @@ impl<T: Number> Run<'_, T> {
             flow: &solver_mode.flow,
             matrix: &solver_mode.matrix,
             guard: &solver_mode.guards[first],
-            y: point.y,
+            y: point.modal.y,
             elapsed: point.time,
             state: *state,
             // The guard is off zero by what was computed, and by what rounding did to that.

@@ -14,7 +14,7 @@ use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::structure::Firing;
 use crate::affine::taylor::Misses;
 use crate::affine::track::{SearchWork, Track};
-use crate::affine::vector::{Vector, dot, is_told, unit};
+use crate::affine::vector::{Vector, is_told, sum_rounding, unit};
 use crate::number::Number;
 use std::collections::VecDeque;
 
@@ -31,10 +31,9 @@ pub struct Run<'a, T> {
     /// Each guard, with the place from which its search goes on.
     tracks: Vec<Track>,
     ends: Ends<T>,
-    segment: Option<GuardedSegment<'a, T>>,
+    pub(in crate::affine) segment: GuardedSegment<'a, T>,
     /// How the search by Taylor polynomials fares in each mode.
     misses: Vec<Misses>,
-    pub(in crate::affine) modal: Vector<T>,
     /// The coefficient of restitution of an impact, from its fastest occurrence.
     pub(in crate::affine) restitution: Option<Restitution<T>>,
     /// Guards that fire at the instant of entry.
@@ -94,11 +93,12 @@ impl<T: Number> Run<'_, T> {
         let solver_mode = &solver.modes[mode];
         let flow = &solver_mode.flow;
         let until = solver.system.modes[mode].until.len();
-        self.modal = flow.modal(&self.state);
+        flow.take(&mut self.segment.entry, &self.state);
         // An entry of the state that is none makes all of them none.
-        if !is_told(&self.modal[..flow.dimension]) {
+        if !is_told(&self.segment.entry.y[..flow.dimension]) {
             return self.end(Ending::Undecided);
         }
+        let margin = 2.0 * sum_rounding::<T>(flow.dimension);
         self.tracks.clear();
         self.at_entry = 0;
         let mut ending = None;
@@ -109,9 +109,9 @@ impl<T: Number> Run<'_, T> {
                 self.tracks.push(Track { outward: 1.0, zeros: 0, live: false });
                 continue;
             };
-            let (value, size) = row.order(order, &self.modal);
+            let (value, size) = row.order(order, &self.segment.entry);
             let value = value.to_f64();
-            let mut slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
+            let mut slack = margin * size;
             if let Some(errors) = &self.enclosure {
                 slack += errors.of_row(flow, row, order);
             }
@@ -132,17 +132,17 @@ impl<T: Number> Run<'_, T> {
             self.end(ending);
         }
         if let Some(errors) = &mut self.enclosure {
+            // The rounding of the entry is followed from here on.
             errors.add_entry(flow, &self.state, unit::<T>());
+            self.segment.entry = flow.exact(&self.segment.entry.y);
         }
         let inherited = self
             .enclosure
             .as_ref()
             .map(|errors| solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect());
-        let segment =
-            GuardedSegment::new(flow, &solver_mode.guards, self.modal, &self.tracks, inherited);
-        segment.begin(&mut self.ends.left);
+        self.segment.enter(flow, &solver_mode.guards, &self.tracks, inherited);
+        self.segment.begin(&mut self.ends.left);
         self.ends.passed = Passed::none();
-        self.segment = Some(segment);
     }
 
     /// Ends the run: at an instant of its own, which is then the entry, or at that of the last
@@ -185,8 +185,8 @@ impl<T: Number> Run<'_, T> {
         }
         let mode = self.structure.node(self.node).mode;
         let limit = self.limit();
-        let Some(segment) = &self.segment else { return self.end(Ending::Undecided) };
-        let (ends, misses) = (&mut self.ends, &mut self.misses[mode]);
+        let (segment, ends) = (&self.segment, &mut self.ends);
+        let misses = &mut self.misses[mode];
         match segment.first(&mut self.tracks, ends, limit, misses, &mut self.work) {
             Found::Lost => self.end(Ending::Undecided),
             Found::Nothing => {
@@ -215,7 +215,7 @@ impl<T: Number> Run<'_, T> {
             let errors = errors.later(flow, limit);
             let rounded = 4.0 * unit::<T>() * limit.to_f64().abs();
             let mut errors = errors.at_given_time(flow, matrix, &self.state, rounded);
-            errors.add_box(&roundings(flow, &self.modal, limit));
+            errors.add_box(&roundings(flow, &self.segment.entry, limit));
             errors.add_box(&self.solver.phase_roundings(&self.entered));
             self.enclosure = Some(errors);
         }
@@ -235,16 +235,13 @@ impl<T: Number> Run<'_, T> {
         let point = &self.ends.left;
         let mut time = self.searched();
         let mode = self.structure.node(self.node).mode;
-        let SolverMode { flow, matrix, .. } = &self.solver.modes[mode];
-        let mut state = flow.state(&point.y);
-        if point.later != T::zero() {
+        let flow = &self.solver.modes[mode].flow;
+        let mut state = if point.later == T::zero() {
+            flow.state(&point.modal.y)
+        } else {
             time = time.after(if self.solver.backward { -point.later } else { point.later });
-            let before = state;
-            let states = &mut state[..self.solver.system.states.len()];
-            for (entry, row) in states.iter_mut().zip(matrix) {
-                *entry = *entry + dot(row, &before, flow.dimension) * point.later;
-            }
-        }
+            flow.state_shortly_after(&point.modal.y, point.later)
+        };
         let (sin, cos) = self.solver.sin_cos(&time);
         self.solver.append(&mut state, sin, cos);
         is_told(&state[..self.solver.system.states.len()]).then_some((time, state))

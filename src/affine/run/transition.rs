@@ -4,7 +4,7 @@ use super::Run;
 use crate::affine::clock::Time;
 use crate::affine::event::{Ending, What};
 use crate::affine::structure::Firing;
-use crate::affine::vector::{Vector, unit};
+use crate::affine::vector::{Vector, sum_rounding, unit};
 use crate::number::Number;
 
 /// How many events of `until` one instant may have.
@@ -42,7 +42,7 @@ impl<T: Number> Run<'_, T> {
         self.queue.push_back(event);
         self.enter();
         if impact && next == from {
-            let below = solver.modes[mode].flow.modal(&before);
+            let below = solver.modes[mode].flow.co_ordinates(&before);
             if let Some((earliest, latest)) = self.accumulation(mode, firing, &below, successor) {
                 return self.end(Ending::Accumulation(earliest, latest));
             }
@@ -67,10 +67,9 @@ impl<T: Number> Run<'_, T> {
                 continue;
             };
             let flow = &solver.modes[next[n].mode].flow;
-            let modal = flow.modal(state);
-            let (value, size) = condition.order(order, &modal);
+            let (value, size) = condition.order(order, &flow.modal(state));
             let value = value.to_f64();
-            let mut slack = (flow.dimension + 4) as f64 * unit::<T>() * size;
+            let mut slack = 2.0 * sum_rounding::<T>(flow.dimension) * size;
             if let Some(errors) = &self.enclosure {
                 // The errors before the reset bound those after it for all that follows here.
                 let reset = &solver.modes[mode].resets[firing.until];
