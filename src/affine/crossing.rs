@@ -1,13 +1,12 @@
-//! The first crossing shortly after a point: its proof, its candidate, its time to the last digit.
+//! The first crossing shortly after a point: its proof and its candidate.
 //!
 //! Where a guard rises steadily through zero, bounds of its derivatives prove that it does so once,
-//! between two times. A Taylor polynomial guesses at the time, and Newton's method on the closed
-//! form settles it inside of the proved bracket.
+//! between two times. A Taylor polynomial guesses at the time, which `settle.rs` brings to the last
+//! digit.
 
 use super::point::{GuardedPoint, GuardedSegment, Passed, PerGuard};
 use super::row::ModalRow;
 use super::track::{SearchWork, Track, live, outward};
-use super::vector::unit;
 use crate::number::Number;
 
 /// The number of Taylor terms that are summed to guess at a crossing, at most.
@@ -69,7 +68,9 @@ impl<T: Number> GuardedSegment<'_, T> {
             if !below {
                 return None;
             }
-            work.undecidable += u64::from(excess >= -at.slack[n]);
+            if excess >= -at.slack[n] {
+                work.doubt(n);
+            }
         }
         let lowest = all.iter().find(|it| guards & (1 << it.guard) != 0)?;
         let earliest = at.time - T::exact(4.0 * lowest.error);
@@ -129,7 +130,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// The time to a root of a guard's Taylor polynomial that is near a point, and the last step
     /// towards it. Where the polynomial is not the guard's, it may be far from a crossing.
     #[inline]
-    fn root(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> (T, f64) {
+    pub fn root(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> (T, f64) {
         let first = outward(&at.orders[n], track);
         let mut all = [T::zero(); TERMS];
         let last = terms(&self.rows[n]);
@@ -171,115 +172,12 @@ impl<T: Number> GuardedSegment<'_, T> {
             _ => f64::INFINITY,
         }
     }
-
-    /// Brings a point to the crossing, to the last digit; whether that is not after `limit`. It is
-    /// not before `from`. Of the guards only the first that crosses is evaluated there. Newton's
-    /// steps are taken while they shrink and stay where the crossing is proved to be; elsewhere
-    /// that is halved.
-    #[inline]
-    pub fn settled(
-        &self,
-        tracks: &[Track],
-        point: &mut GuardedPoint<T>,
-        crossing: &FirstCrossing<T>,
-        [from, limit]: [T; 2],
-        work: &mut SearchWork,
-    ) -> bool {
-        const ROUNDS: usize = 128;
-        /// Beyond this share of a point's time a cubic does not tell the rest to the last digit.
-        const FAR: f64 = 1e-4;
-        // A crossing exactly at the limit counts.
-        let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
-        let n = crossing.guards.trailing_zeros() as usize;
-        let [mut low, mut high] = crossing.between;
-        if low < from {
-            low = from;
-        }
-        let inside = low <= crossing.time && crossing.time <= high;
-        let half = T::exact(0.5);
-        let guess = if inside { crossing.time } else { (low + high) * half };
-        self.evaluate_guard(n, point, guess, work);
-        let mut last = f64::INFINITY;
-        for _ in 0..ROUNDS {
-            // A value within a few roundings of its terms shows no better time.
-            let noise = 4.0 * unit::<T>() * self.rows[n].size(&point.modal.y);
-            let orders = outward(&point.orders[n], &tracks[n]);
-            let value = orders[0].to_f64();
-            if value.abs() <= noise {
-                break;
-            }
-            *(if value < 0.0 { &mut low } else { &mut high }) = point.time;
-            let mut step = newton(&orders);
-            let inside = low <= point.time + step && point.time + step <= high;
-            if inside && self.is_last(&orders, step) {
-                point.later = step;
-                return point.time + step <= limit + room;
-            }
-            if step.to_f64().abs() > FAR * point.time.to_f64() {
-                step = self.root(n, &tracks[n], point).0;
-            }
-            let (mut better, mut size) = (point.time + step, step.to_f64().abs());
-            if size <= unit::<T>() * point.time.to_f64().abs() {
-                break;
-            }
-            if !(size < 0.25 * last && low < better && better < high) {
-                // Steps that do not shrink are rounding, where that can be what the value is.
-                better = (low + high) * half;
-                let known = low < better && better < high;
-                if value.abs() <= 4.0 * point.slack[n] || !known {
-                    break;
-                }
-                size = (better - point.time).to_f64().abs();
-            }
-            if better <= T::zero() {
-                break;
-            }
-            last = size;
-            self.evaluate_guard(n, point, better, work);
-        }
-        point.later = remaining(&point.orders[n]);
-        if point.time + point.later < from {
-            point.later = from - point.time;
-        }
-        point.time <= limit + room
-    }
-
-    /// Whether a step to a crossing is so short that two derivatives of all co-ordinates do what
-    /// another evaluation would do: what the third adds is less than rounding, and so is what the
-    /// fourth of a guard that nearly touches adds to the step, turn^2 BEND/24 of it. Errors are
-    /// followed from one evaluation to the next.
-    #[inline]
-    fn is_last(&self, orders: &[T; 4], step: T) -> bool {
-        /// The share by which the guard's slope may change.
-        const BEND: f64 = 1e-5;
-        let turn = (self.flow.speed * step.to_f64()).abs();
-        let is_small = turn * turn * turn <= 0.25 * unit::<T>();
-        let rises = orders[1].to_f64() > 0.0;
-        rises && is_small && is_straight(orders, step, BEND) && !self.follows_errors()
-    }
 }
 
 /// The number of a guard's Taylor terms that are summed to guess at a crossing.
 #[inline]
 fn terms<T>(row: &ModalRow<T>) -> usize {
     row.last.clamp(4, TERMS)
-}
-
-/// The rest of the way to a root, where that is so short that the slope does not change: then a
-/// product with it does what another evaluation would do.
-#[inline]
-fn remaining<T: Number>(orders: &[T; 4]) -> T {
-    /// The share by which the slope may change.
-    const SHORT: f64 = 1e-6;
-    let step = -orders[0] / orders[1];
-    if is_straight(orders, step, SHORT) { step } else { T::zero() }
-}
-
-/// Whether a guard's slope changes by at most a share on a step.
-#[inline]
-fn is_straight<T: Number>(orders: &[T; 4], step: T, share: f64) -> bool {
-    let [slope, bend] = [orders[1].to_f64(), orders[2].to_f64()];
-    (step.to_f64() * bend).abs() <= share * slope.abs()
 }
 
 /// The step to the root of a cubic that is near zero, by the series of its inverse to the third
@@ -293,18 +191,4 @@ fn reverted<T: Number>(orders: &[T; 4]) -> f64 {
     let (second, third) = (0.5 * bend * share, third / 6.0 * step * share);
     let square = second * second;
     step + step * (5.0 * second * (third - square) + (2.0 * square - third) - second)
-}
-
-/// The step to the root of a cubic that is near zero, by Newton's method.
-#[inline]
-fn newton<T: Number>(orders: &[T; 4]) -> T {
-    let [value, slope, bend, third] = *orders;
-    let (half, sixth) = (bend * T::exact(0.5), third / T::exact(6.0));
-    let mut step = -value / slope;
-    for _ in 0..3 {
-        let cubic = value + step * (slope + step * (half + step * sixth));
-        let tangent = slope + step * (bend + step * third * T::exact(0.5));
-        step = step - cubic / tangent;
-    }
-    step
 }

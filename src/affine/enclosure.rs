@@ -78,11 +78,13 @@ impl<T: Number> EnclosedCrossing<'_, T> {
 }
 
 impl InheritedError {
-    /// A bound of it up to a time, which is not negative.
-    pub fn by<T: Number>(&self, row: &ModalRow<T>, time: f64) -> f64 {
+    /// A bound of it at a time, which is not negative. Between two times it is at most the larger
+    /// of theirs, because decays and polynomials of positive terms are convex.
+    pub fn by<T: Number>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>, time: f64) -> f64 {
         let polynomial =
             (1..ORDERS).rev().fold(0.0, |sum, k| (sum + self.orders[k]) * time / k as f64);
-        (self.orders[0] + polynomial) * OUTWARD + row.bound(0, &self.norms, time)
+        let norms = flow.decayed(&self.norms, time);
+        (self.orders[0] + polynomial) * OUTWARD + row.bound(0, &norms, time)
     }
 }
 

@@ -234,6 +234,16 @@ impl<T: Number> ModeFlow<T> {
         norms
     }
 
+    /// Norms of errors of each block's co-ordinates, a time later at most, but for what
+    /// [`ModalRow::bound`](super::row::ModalRow::bound) adds.
+    pub fn decayed(&self, norms: &Vector<f64>, time: f64) -> Vector<f64> {
+        let mut later = *norms;
+        for (norm, block) in later.iter_mut().zip(&self.blocks) {
+            *norm *= block.motion.decay(time);
+        }
+        later
+    }
+
     /// What underflow may do to each block's modal co-ordinates at most: to zeros nothing.
     pub fn underflow(&self, y: &Vector<T>) -> Vector<f64> {
         let lost = |norm: f64| if norm > 0.0 { 4.0 * UNDERFLOW * (1.0 + norm) } else { 0.0 };

@@ -26,6 +26,7 @@ mod row;
 mod run;
 mod search;
 mod series;
+mod settle;
 mod solver;
 mod starts;
 mod structural;

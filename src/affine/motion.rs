@@ -91,6 +91,21 @@ impl<T: Number> BlockMotion<T> {
         }
     }
 
+    /// By what co-ordinates that decay, and only turn beside that, have become smaller a time later
+    /// at least; 1 for others.
+    pub fn decay(&self, time: f64) -> f64 {
+        /// Room for the rounding of the exponential and of its exponent.
+        const OUTWARD: f64 = 1.0 + 1e-9;
+        match self {
+            Self::Real { rate } | Self::Pair { rate: Some(rate), .. } => {
+                let exponent = rate.high.to_f64() * time;
+                let rounded = exponent * (1.0 - 1e-12);
+                if exponent < 0.0 { libm::exp(rounded) * OUTWARD } else { 1.0 }
+            }
+            _ => 1.0,
+        }
+    }
+
     /// The co-ordinates a time later, and the sizes of what each is summed from, in units of which
     /// it rounds by a few: terms may cancel, so the co-ordinate itself can be much smaller. Both
     /// sizes of a pair are at least its norm.

@@ -280,12 +280,12 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         self.followed.is_some()
     }
 
-    /// What errors made before the segment may do to a guard up to a time.
+    /// What errors made before the segment may do to a guard at a time.
     #[inline]
     pub fn inherited_by(&self, n: usize, time: T) -> f64 {
-        self.followed
-            .as_ref()
-            .map_or(0.0, |followed| followed.inherited[n].by(&self.rows[n], time.to_f64()))
+        self.followed.as_ref().map_or(0.0, |followed| {
+            followed.inherited[n].by(self.flow, &self.rows[n], time.to_f64())
+        })
     }
 }
 

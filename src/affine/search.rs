@@ -228,7 +228,7 @@ impl<T: Number> GuardedSegment<'_, T> {
             }
             match self.judge(n, track, &reaches[n], ends, &lengths) {
                 Judged::Clear => guards |= 1 << n,
-                Judged::Touch => work.undecidable += 1,
+                Judged::Touch => work.doubt(n),
                 Judged::Open(open) => share = Some(share.map_or(open, |it| it.min(open))),
             }
         }

@@ -22,6 +22,18 @@ pub struct SearchWork {
     pub pieces: u64,
     /// Touches, entries, conditions and ties that rounding does not decide.
     pub undecidable: u64,
+    /// The first guard that rounding left open by itself, as its number among those of its mode:
+    /// the events that end it come first, then the watched ones.
+    pub doubtful: Option<usize>,
+}
+
+impl SearchWork {
+    /// Counts a guard that rounding leaves open.
+    #[inline]
+    pub(super) fn doubt(&mut self, guard: usize) {
+        self.undecidable += 1;
+        self.doubtful = self.doubtful.or(Some(guard));
+    }
 }
 
 /// Value and derivatives of a guard, positive outside.

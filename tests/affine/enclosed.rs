@@ -156,3 +156,20 @@ fn bounds_hold_far_from_time_zero() {
         assert!(error <= bound + 1e-33, "{start}: {error:e} beyond {bound:e}");
     }
 }
+
+/// A damped oscillation crosses zero until it underflows: its errors decay as it does.
+#[test]
+fn errors_decay_with_a_motion_that_is_watched() {
+    let text = "schema = 1\nname = \"damped\"\nstates = [\"x\", \"v\"]\n[parameters]\nc = 0.2
+[[mode]]\nname = \"free\"\nequations = [\"x' = v\", \"v' = -x - c*v\"]
+[[mode.watch]]\nname = \"zero\"\nguard = \"x > 0\"\ndirection = \"both\"
+[start]\nmode = \"free\"\nx = 1\nv = 0\n";
+    let (names, all) = named::<DoubleDouble>(text, 2000.0);
+    // A quarter turn and half turns of the frequency sqrt(0.99).
+    let frequency = 0.99_f64.sqrt();
+    let crossings = ((2000.0 * frequency - frequency.atan2(-0.1)) / std::f64::consts::PI) as usize;
+    assert_eq!((names.len(), names.last().map(String::as_str)), (crossings + 2, Some("end")));
+    let (state, errors) = (&all[crossings].state, all[crossings].errors.as_ref().unwrap());
+    let rate = state[1].words().0.abs();
+    assert!(rate < 1e-85 && errors.state[1] < 1e-24 * rate, "{rate:e} {:e}", errors.state[1]);
+}

@@ -80,6 +80,18 @@ impl<T: Number> Run<'_, T> {
         self.entered.after(if self.solver.backward { -point.time } else { point.time })
     }
 
+    /// The event of the present mode whose guard rounding left open, in a run that ended so.
+    #[must_use]
+    pub fn doubtful(&self) -> Option<What<T>> {
+        let guard = self.work.doubtful.filter(|_| self.enclosure.is_some())?;
+        let mode = self.structure.node(self.node).mode;
+        let until = self.solver.system.modes[mode].until.len();
+        Some(match guard.checked_sub(until) {
+            Some(watch) => What::Watch(mode, watch),
+            None => What::Until(mode, guard),
+        })
+    }
+
     pub(in crate::affine) fn tracks_live(&self, guard: usize) -> bool {
         self.tracks[guard].live
     }
@@ -116,7 +128,9 @@ impl<T: Number> Run<'_, T> {
                 slack += errors.of_row(flow, row, order);
             }
             let doubtful = value.abs() <= slack;
-            self.work.undecidable += u64::from(doubtful);
+            if doubtful {
+                self.work.doubt(n);
+            }
             let outward = if n >= until && value > 0.0 { -1.0 } else { 1.0 };
             self.tracks.push(Track { outward, zeros: order, live: true });
             if n < until && value > 0.0 {

@@ -3,7 +3,7 @@
 use super::digits::{has_digits, proved};
 use crate::truth::DoubleDouble;
 use anyhow::{Result, bail};
-use percuss::affine::{Ending, Event, Solver, System, What};
+use percuss::affine::{Ending, Event, Run, Solver, System, What};
 use percuss::number::Number;
 use serde::Serialize;
 
@@ -67,10 +67,28 @@ impl Rows<'_> {
             take(row, event)?;
         }
         if lost {
-            let searched = shortest(run.searched().value().to_f64());
-            end.notes.push(format!("its search for the next event came to {searched}"));
+            end.notes.push(self.search_note(&run));
         }
         Ok(end)
+    }
+
+    /// How far the search for the next event of an undecided run came, and what it left open.
+    fn search_note(&self, run: &Run<'_, DoubleDouble>) -> String {
+        let searched = shortest(run.searched().value().to_f64());
+        let open = run.doubtful().and_then(|it| self.event_name(&it).map(str::to_owned));
+        let open = open.map_or(String::new(), |name| {
+            format!(", where rounding leaves open whether the guard of \"{name}\" crosses")
+        });
+        format!("its search for the next event came to {searched}{open}")
+    }
+
+    /// The name of an event, if it is none of a start or an ending.
+    fn event_name(&self, what: &What<DoubleDouble>) -> Option<&str> {
+        match what {
+            What::Until(mode, index) => Some(&self.system.modes[*mode].until[*index].name),
+            What::Watch(mode, index) => Some(&self.system.modes[*mode].watch[*index].name),
+            What::Start | What::End(_) => None,
+        }
     }
 
     fn row(&self, n: usize, event: &Event<DoubleDouble>, name: String) -> Result<EventRow> {
@@ -88,11 +106,8 @@ impl Rows<'_> {
 
     /// The event's name, or that of the ending, which leaves a note.
     fn name(&self, event: &Event<DoubleDouble>, end: &mut RunEnd) -> String {
-        let ending = match &event.what {
-            What::Until(mode, index) => return self.system.modes[*mode].until[*index].name.clone(),
-            What::Watch(mode, index) => return self.system.modes[*mode].watch[*index].name.clone(),
-            What::Start => return String::new(),
-            What::End(ending) => ending,
+        let What::End(ending) = &event.what else {
+            return self.event_name(&event.what).unwrap_or_default().to_owned();
         };
         let time = event.time.value();
         let (name, note, decided) = match ending {
