@@ -42,6 +42,13 @@ impl<T: Number> Time<T> {
         sum(high, low + self.low)
     }
 
+    /// How much later this time is than another: rounded, and what rounding left.
+    #[must_use]
+    #[inline]
+    pub(super) fn since(&self, other: &Self) -> Self {
+        self.after(-other.high).after(-other.low)
+    }
+
     /// The time, rounded to one number.
     #[must_use]
     #[inline]

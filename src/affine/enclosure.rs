@@ -169,6 +169,7 @@ impl Enclosure {
         own.delayed(rounded, &rates);
         self.columns.push(ErrorColumn { time: 0.0, ..own });
         self.add_box(&bends(matrix, &rates, whole));
+        self.add_box(&rate_roundings(matrix, state, whole));
         self
     }
 
@@ -180,7 +181,8 @@ impl Enclosure {
         let [value_row, slope_row] = [0, 1].map(|k| guard.orders[k].map(Number::to_f64));
         let mut later = self.later(flow, crossing.elapsed);
         let rates = rates(flow, crossing.matrix, &crossing.state);
-        let (mut shift, mut slope_error) = (0.0, 0.0);
+        let margin = sum_rounding::<T>(flow.dimension);
+        let (mut shift, mut slope_error) = (0.0, margin * product_size(&guard.orders[1], y));
         for (column, entry) in later.columns.iter_mut().zip(&self.columns) {
             let own = flow.modal_rounded(&column.state);
             let apart = dot(&value_row, &own, flow.dimension) - crossing.kept(&entry.state);
@@ -198,6 +200,7 @@ impl Enclosure {
         own.delayed((rounded + second) * OUTWARD, &rates);
         later.columns.push(own);
         later.add_box(&bends(crossing.matrix, &rates, whole));
+        later.add_box(&rate_roundings(crossing.matrix, &crossing.state, whole));
         later
     }
 
@@ -250,6 +253,18 @@ impl Enclosure {
 /// M z in f64.
 fn rates<T: Number>(flow: &ModeFlow<T>, matrix: &[Vector<T>], state: &Vector<T>) -> Vec<f64> {
     matrix.iter().map(|row| dot(row, state, flow.dimension).to_f64()).collect()
+}
+
+/// What rounding does to states that move at M z for a time: terms of a rate may cancel.
+fn rate_roundings<T: Number>(matrix: &[Vector<T>], state: &Vector<T>, time: f64) -> Vec<f64> {
+    let margin = sum_rounding::<T>(matrix.len()) + f64::EPSILON * f64::EPSILON;
+    let moved = |row: &Vector<T>| margin * product_size(row, state) * time;
+    matrix.iter().map(moved).collect()
+}
+
+/// The sum of the sizes of products.
+fn product_size<T: Number>(row: &Vector<T>, state: &Vector<T>) -> f64 {
+    row.iter().zip(state).map(|(a, b)| (a.to_f64() * b.to_f64()).abs()).sum()
 }
 
 /// What the flow's second derivative does over a time.

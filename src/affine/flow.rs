@@ -200,23 +200,28 @@ impl<T: Number> ModeFlow<T> {
         }
     }
 
-    /// The state a short time after these modal co-ordinates, by one of their derivatives or two.
+    /// The state a short time after these modal co-ordinates, by one of their derivatives or two
+    /// where the third is less than rounding.
     ///
-    /// Blocks that move so fast that more of them count stay as they are: the time is then below
+    /// Blocks that move so fast that they are others by then stay as they are: the time is below
     /// the rounding of the time at which they are known.
     #[inline]
-    pub fn state_shortly_after(&self, y: &Vector<T>, time: T) -> Vector<T> {
-        let mut later = *y;
-        for block in &self.blocks {
+    pub fn state_shortly_after(&self, modal: &ModalState<T>, time: T) -> Vector<T> {
+        let mut later = *modal;
+        for (n, block) in self.blocks.iter().enumerate() {
             let turn = (block.speed * time.to_f64()).abs();
             let derivatives = match [turn * turn, turn * turn * turn] {
                 [square, _] if square <= 0.25 * unit::<T>() => 1,
                 [_, cube] if cube <= 0.25 * unit::<T>() => 2,
+                _ if turn <= 1.0 => {
+                    self.advance(&mut later, time, 1 << n);
+                    continue;
+                }
                 _ => continue,
             };
-            block.motion.nudge(&mut later[block.range()], derivatives, time);
+            block.motion.nudge(&mut later.y[block.range()], derivatives, time);
         }
-        self.state(&later)
+        self.state(&later.y)
     }
 
     /// The norms of each block's co-ordinates.

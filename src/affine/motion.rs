@@ -45,10 +45,13 @@ pub(super) struct Powers<T> {
 }
 
 fn words<T: Number>(value: &BigReal) -> SplitNumber<T> {
-    let high: T = rounded(value);
+    if unit::<T>() > 1e-20 {
+        // Not the rounded sum of the two, which may be the next number: a half ulp is a tie.
+        let (high, low) = value.words();
+        return SplitNumber { high: T::exact(high), low: T::exact(low) };
+    }
     // What is left beyond an arithmetic of two words is not resolved by it either.
-    let rest = if unit::<T>() > 1e-20 { value.words().1 } else { 0.0 };
-    SplitNumber { high, low: T::exact(rest) }
+    SplitNumber { high: rounded(value), low: T::zero() }
 }
 
 fn nonzero<T: Number>(value: &BigReal) -> Option<SplitNumber<T>> {
@@ -299,10 +302,12 @@ impl<T: Number> Powers<T> {
         taylor(&self.matrix, self.terms(rest.to_f64()), y, sizes, rest);
     }
 
-    /// How many terms of the series exp(B rest) the last digit needs.
+    /// How many terms of the series exp(B rest) the last digit needs: a co-ordinate that is much
+    /// smaller than the others is moved by each of them after at most as many products as there are
+    /// others, and what follows is relative to that.
     #[inline]
     fn terms(&self, rest: f64) -> usize {
-        /// Co-ordinates that are much smaller than the largest have digits of their own.
+        /// Couplings of different sizes.
         const BELOW: f64 = 1.0 / 4096.0;
         // |B rest| is at most 1/2 where the rest is a step.
         let size = 0.5 * (rest / self.step).abs();
@@ -311,6 +316,6 @@ impl<T: Number> Powers<T> {
             terms += 1;
             next *= size / (terms + 1) as f64;
         }
-        terms
+        terms + self.matrix.len() - 1
     }
 }

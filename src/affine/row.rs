@@ -115,6 +115,17 @@ impl<T: Number> ModalRow<T> {
         sums
     }
 
+    /// The sums of the sizes of what the first orders are summed from.
+    #[inline]
+    pub fn order_sizes<const N: usize>(&self, sizes: &Vector<f64>) -> [f64; N] {
+        let mut sums = [0.0; N];
+        for column in &self.columns {
+            let factors: [f64; N] = std::array::from_fn(|k| column.orders[k].to_f64().abs());
+            add_product(&mut sums, &factors, sizes[column.at]);
+        }
+        sums
+    }
+
     /// N orders, beginning with `first`.
     #[inline]
     pub fn orders_from<const N: usize>(&self, first: usize, y: &Vector<T>) -> [T; N] {

@@ -139,13 +139,12 @@ impl<T: Number> GuardedSegment<'_, T> {
     }
 }
 
-/// The rest of the way to a root, where that is so short that the slope does not change: then a
-/// product with it does what another evaluation would do.
+/// The rest of the way to a root, where that is so short that a cubic tells it.
 #[inline]
 fn remaining<T: Number>(orders: &[T; 4]) -> T {
     /// The share by which the slope may change.
-    const SHORT: f64 = 1e-6;
-    let step = -orders[0] / orders[1];
+    const SHORT: f64 = 1e-2;
+    let step = newton(orders);
     if is_straight(orders, step, SHORT) { step } else { T::zero() }
 }
 

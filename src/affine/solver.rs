@@ -114,11 +114,11 @@ impl<T: Number> Solver<T> {
     /// The state at a time in the segment that an event of a run of this solver begins.
     #[must_use]
     pub fn state_at(&self, event: &Event<T>, time: &Time<T>) -> Vec<T> {
-        let ahead = (time.high - event.time.high) + (time.low - event.time.low);
-        let elapsed = if self.backward { -ahead } else { ahead };
+        let Time { high, low } = time.since(&event.time);
+        let [elapsed, rest] = if self.backward { [-high, -low] } else { [high, low] };
         let flow = &self.modes[event.mode].flow;
         let modal = flow.modal(&self.complete(&event.state, &event.time));
-        let mut state = flow.state(&flow.at(&modal, elapsed).y).to_vec();
+        let mut state = flow.state_shortly_after(&flow.at(&modal, elapsed), rest).to_vec();
         state.truncate(self.system.states.len());
         state
     }

@@ -10,6 +10,7 @@ mod known;
 mod limits;
 mod oscillator;
 mod random;
+mod sizes;
 mod spectra;
 mod tables;
 mod together;

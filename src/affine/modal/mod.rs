@@ -212,9 +212,13 @@ fn scales(exact: &[Row]) -> Vec<isize> {
             let others = || (0..exact.len()).filter(|k| *k != n);
             let row = others().filter_map(|k| Some(powers[n][k]? + scales[k] - scales[n])).max();
             let column = others().filter_map(|k| Some(powers[k][n]? + scales[n] - scales[k])).max();
-            if let (Some(row), Some(column)) = (row, column) {
-                scales[n] += (row - column) / 2;
-            }
+            // An entry that nothing moves, as 1, or that moves nothing has one side alone.
+            scales[n] += match (row, column) {
+                (Some(row), Some(column)) => (row - column) / 2,
+                (Some(row), None) => row,
+                (None, Some(column)) => -column,
+                (None, None) => 0,
+            };
         }
         if scales == before {
             break;

@@ -198,15 +198,17 @@ impl<T: Number> Run<'_, T> {
             return;
         }
         let mode = self.structure.node(self.node).mode;
-        let limit = self.limit();
+        let Time { high: limit, low: rest } = self.ahead();
         let (segment, ends) = (&self.segment, &mut self.ends);
         let misses = &mut self.misses[mode];
         match segment.first(&mut self.tracks, ends, limit, misses, &mut self.work) {
             Found::Lost => self.end(Ending::Undecided),
             Found::Nothing => {
-                let limit = if limit > T::zero() { limit } else { T::zero() };
+                let is_ahead = limit > T::zero();
+                let [limit, rest] = if is_ahead { [limit, rest] } else { [T::zero(); 2] };
                 segment.evaluate(&mut ends.left, limit, &mut self.work);
                 segment.complete(&mut ends.left);
+                ends.left.later = rest;
                 self.at_horizon(mode, limit);
             }
             Found::Crossing(guards) => {
@@ -236,11 +238,11 @@ impl<T: Number> Run<'_, T> {
         self.end(Ending::Horizon);
     }
 
-    /// Time that is left until the horizon.
+    /// Time that is left until the horizon: rounded, and what rounding left.
     #[inline]
-    fn limit(&self) -> T {
-        let ahead = (self.horizon - self.entered.high) - self.entered.low;
-        if self.solver.backward { -ahead } else { ahead }
+    fn ahead(&self) -> Time<T> {
+        let Time { high, low } = Time { high: self.horizon, low: T::zero() }.since(&self.entered);
+        if self.solver.backward { Time { high: -high, low: -low } } else { Time { high, low } }
     }
 
     /// Time and state where the search has come to; none where the state has overflowed.
@@ -254,7 +256,7 @@ impl<T: Number> Run<'_, T> {
             flow.state(&point.modal.y)
         } else {
             time = time.after(if self.solver.backward { -point.later } else { point.later });
-            flow.state_shortly_after(&point.modal.y, point.later)
+            flow.state_shortly_after(&point.modal, point.later)
         };
         let (sin, cos) = self.solver.sin_cos(&time);
         self.solver.append(&mut state, sin, cos);
