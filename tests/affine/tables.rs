@@ -26,12 +26,12 @@ struct Row {
     growth: Vec<f64>,
 }
 
-fn repository(path: &str) -> PathBuf {
+pub(super) fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
 /// A decimal of up to 30 digits in two words: integer arithmetic of its digits in 106 bits.
-fn decimal(text: &str) -> DoubleDouble {
+pub(super) fn decimal(text: &str) -> DoubleDouble {
     let (negative, digits) = match text.strip_prefix('-') {
         Some(rest) => (true, rest),
         None => (false, text),
