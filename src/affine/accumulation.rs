@@ -71,22 +71,16 @@ impl<T: Number> Run<'_, T> {
         let one = T::one();
         let earliest = twice / (a2 * (one - e * (a1 / a2).sqrt()));
         let latest = twice / (a1 * (one - q));
-        let (earliest, latest) = self.widened([earliest, latest], gap, after, u);
+        let (earliest, latest) = self.widened(earliest, latest, gap, u);
         let proved = a1 > T::zero() && q < one && latest.to_f64() <= LEFT * scale;
         proved.then_some((earliest, latest))
     }
 
     /// The bounds with what errors, followed or not, may do to the rate of departure.
-    fn widened(
-        &self,
-        [earliest, latest]: [T; 2],
-        gap: &ModalRow<T>,
-        departed: &Vector<T>,
-        rate: f64,
-    ) -> (T, T) {
+    fn widened(&self, earliest: T, latest: T, gap: &ModalRow<T>, rate: f64) -> (T, T) {
         let flow = &self.solver.modes[self.structure.node(self.node).mode].flow;
         let inherited = self.enclosure.as_ref().map_or(0.0, |it| it.of_row(flow, gap, 1));
-        let (_, size) = gap.order(1, &flow.exact(departed));
+        let (_, size) = gap.order(1, &self.segment.entry);
         let share = 4.0 * (inherited + 32.0 * unit::<T>() * size) / rate;
         let room = latest * T::exact(if self.enclosure.is_some() { share } else { 0.0 });
         (earliest - room, latest + room)

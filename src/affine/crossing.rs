@@ -117,19 +117,16 @@ impl<T: Number> GuardedSegment<'_, T> {
         }
         let within = (2.0 * value.abs() + 8.0 * slack) / slope;
         let fourth = self.rows[n].bound(4, &at.norms, within);
-        let [_, own @ ..] = self.order_roundings(n, at);
-        let change = own[0]
-            + within
-                * (bend.abs()
-                    + own[1]
-                    + within * (0.5 * (third.abs() + own[2]) + within * fourth / 6.0));
+        let [_, slope_off, bend_off, third_off] = self.order_roundings(n, at);
+        let (bend, third) = (bend.abs() + bend_off, third.abs() + third_off);
+        let change = slope_off + within * (bend + within * (0.5 * third + within * fourth / 6.0));
         let steadily = change < 0.5 * slope;
         if !steadily {
             return None;
         }
         let (after, change) = self.root(n, track, at);
         // Where terms of the slope cancel, their rounding is more than that of the value.
-        let moved = within * (own[0] + within * (0.5 * own[1] + within * own[2] / 6.0));
+        let moved = within * (slope_off + within * (0.5 * bend_off + within * third_off / 6.0));
         let (is_told, error) = (after.to_f64().is_finite(), 2.0 * (slack + moved) / slope);
         is_told.then_some(Rising { guard: n, after, change, within, slope, error })
     }
@@ -177,10 +174,10 @@ impl<T: Number> GuardedSegment<'_, T> {
     pub fn excess(&self, n: usize, track: &Track, at: &GuardedPoint<T>, within: f64) -> f64 {
         let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::to_f64);
         let fourth = self.rows[n].bound(4, &at.norms, within);
+        let [_, slope_off, bend_off, third_off] = self.order_roundings(n, at);
+        let slope = slope + slope_off;
         let rest = 0.5 * bend.abs() + within * (third.abs() / 6.0 + within * fourth / 24.0);
-        let [_, own @ ..] = self.order_roundings(n, at);
-        let slope = slope + own[0];
-        let rest = rest + 0.5 * own[1] + within * own[2] / 6.0;
+        let rest = rest + 0.5 * bend_off + within * third_off / 6.0;
         match track.zeros {
             0 => value + within * (slope.max(0.0) + within * rest),
             // It has left zero for the inside, and does not come back so soon.

@@ -8,7 +8,7 @@ use super::row::ModalRow;
 use super::series::{GuardSeries, SeriesEntry, has_series, series_limit};
 use super::system::LARGEST_DIMENSION;
 use super::track::{SearchWork, Track};
-use super::vector::{UNDERFLOW, Vector, sum_rounding};
+use super::vector::{UNDERFLOW, Vector, sum_rounding, twice_summed};
 use crate::number::Number;
 use smallvec::SmallVec;
 use std::cell::OnceCell;
@@ -92,9 +92,8 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         inherited: Option<Vec<InheritedError>>,
     ) {
         (self.flow, self.rows, self.blocks) = (flow, rows, 0);
-        // What is summed twice, at entry and in a guard, is rounded twice.
-        let sums = if inherited.is_some() { 1.0 } else { 2.0 };
-        self.margin = sums * sum_rounding::<T>(flow.dimension);
+        let margin = if inherited.is_some() { sum_rounding::<T> } else { twice_summed::<T> };
+        self.margin = margin(flow.dimension);
         self.followed = inherited.map(|it| {
             let lost = flow.underflow(&self.entry.y);
             Box::new(FollowedErrors { inherited: it, lost })

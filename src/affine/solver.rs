@@ -115,7 +115,7 @@ impl<T: Number> Solver<T> {
     #[must_use]
     pub fn state_at(&self, event: &Event<T>, time: &Time<T>) -> Vec<T> {
         let Time { high, low } = time.since(&event.time);
-        let [elapsed, rest] = if self.backward { [-high, -low] } else { [high, low] };
+        let [elapsed, rest] = [high, low].map(|it| self.directed(it));
         let flow = &self.modes[event.mode].flow;
         let modal = flow.modal(&self.complete(&event.state, &event.time));
         let mut state = flow.state_shortly_after(&flow.at(&modal, elapsed), rest).to_vec();
@@ -127,6 +127,13 @@ impl<T: Number> Solver<T> {
     #[must_use]
     pub fn system(&self) -> &System {
         &self.system
+    }
+
+    /// A difference of times as the time that a run takes for it, or the other way round: they
+    /// have different signs where runs go back.
+    #[inline]
+    pub(super) fn directed(&self, time: T) -> T {
+        if self.backward { -time } else { time }
     }
 
     /// The states at a time with cos theta, sin theta and 1 appended.

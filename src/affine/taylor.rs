@@ -18,14 +18,15 @@ use crate::number::Number;
 const FEW: usize = 9;
 const ALL: usize = ORDERS;
 
-/// If the remainder after the first of them is less than this share of what the guard begins with,
-/// they give the root to some digits.
+/// Up to this share of what a guard begins with, the remainder after [`FEW`] derivatives leaves
+/// some digits of the root.
 const LITTLE: f64 = 1e-3;
 
-/// If it is more than this, the rest of them give so many more that one evaluation is enough.
+/// Beyond this share the derivatives after [`FEW`] give so many more digits of the root that one
+/// evaluation is enough.
 const NOTHING: f64 = 1e-7;
 
-/// If it is more than this, all of them prove nothing.
+/// Beyond this share even [`ALL`] derivatives prove nothing.
 const MUCH: f64 = 10.0;
 
 /// How often the polynomials were looked at in a mode since they last proved a crossing: at its

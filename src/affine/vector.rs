@@ -27,6 +27,12 @@ pub(super) fn sum_rounding<T: Number>(dimension: usize) -> f64 {
     (dimension + 7) as f64 * unit::<T>()
 }
 
+/// What rounding does to a sum of co-ordinates that were sums themselves, at an entry.
+#[inline]
+pub(super) fn twice_summed<T: Number>(dimension: usize) -> f64 {
+    2.0 * sum_rounding::<T>(dimension)
+}
+
 /// Sine and cosine of an angle to which `low` is added, from those of the angle.
 #[inline]
 pub(super) fn turned<T: Number>((sin, cos): (T, T), low: T) -> (T, T) {

@@ -1,11 +1,11 @@
 //! The oscillator of this crate, written down as a piecewise-affine system.
 
-use super::tables::{decimal, repository};
+use super::tables::printed;
 use super::{enclosed, events};
 use crate::double_double::DoubleDouble;
+use crate::support::reference::{self, Row, Table};
 use percuss::affine::{Event, Rational, System, SystemFile, What};
-use percuss::{Model, Parameters, Start};
-use std::collections::BTreeMap;
+use percuss::{Model, Parameters, Phase, Start};
 use std::fmt::Write as _;
 
 const TEXT: &str = include_str!("../../validation/systems/percussive-oscillator.system.toml");
@@ -41,81 +41,50 @@ fn the_oscillator_as_a_system_has_the_events_of_its_own_solver() {
     }
 }
 
-/// A proved table of the oscillator: what its header says, and its rows of phases.
-struct Phases {
-    header: BTreeMap<String, String>,
-    rows: Vec<Vec<String>>,
+/// The oscillator with a table's parameters and start, as a system: a mass that starts in contact
+/// is where the slider says, as in the table.
+fn system_of(table: &Table) -> System {
+    let Table { parameters: Parameters { a, b, xi, omega, g, phi }, start: begun, .. } = table;
+    let mut file = SystemFile::read("percussive-oscillator.system.toml", TEXT).unwrap();
+    let parameters = format!(
+        "[parameters]\na = {a:?}\nb = {b:?}\nxi = {xi:?}\ng = {g:?}\nfrequency = {omega:?}\n\
+         phase = {phi:?}\n"
+    );
+    file.replace_from("table", &parameters, false).unwrap();
+    let mut system = file.system().unwrap();
+    let exact = |it: f64| Rational::try_from(it).unwrap();
+    let phase = table.rows[0].phase().unwrap();
+    let mode = system.modes.iter().position(|it| it.name == phase.to_string()).unwrap();
+    let mut states = [begun.p, begun.y, begun.q.unwrap(), begun.v].map(exact);
+    if phase != Phase::NoContact {
+        states[0] = &states[2] + exact(*g);
+    }
+    let start = system.start.as_mut().unwrap();
+    (start.mode, start.time) = (mode, exact(begun.tau));
+    start.state = states.map(|it| [Rational::ZERO, Rational::ZERO, it]).to_vec();
+    system
 }
 
-impl Phases {
-    /// The table in a file, if it is one of the oscillator.
-    fn read(text: &str) -> Option<Self> {
-        let (header, rows): (Vec<_>, Vec<_>) = text.lines().partition(|it| it.starts_with('#'));
-        let header = header.iter().filter_map(|line| line[1..].split_once('='));
-        let header: BTreeMap<_, _> =
-            header.map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned())).collect();
-        let cells = |row: &&str| row.split(',').map(str::to_owned).collect();
-        let rows = rows[1..].iter().map(cells).collect();
-        (header.get("rows")? == "phases").then_some(Self { header, rows })
-    }
+/// The end of a table.
+fn horizon(table: &Table) -> f64 {
+    let period = std::f64::consts::TAU / table.parameters.omega;
+    table.horizon().map_or_else(|until| until, |count| table.start.tau + count as f64 * period)
+}
 
-    fn number(&self, key: &str) -> f64 {
-        self.header[key].parse().unwrap()
-    }
-
-    /// The horizon, of which the last row has passed its phase's begin.
-    fn until(&self) -> f64 {
-        match self.header.get("horizon.until") {
-            Some(until) => until.parse().unwrap(),
-            None => {
-                let period = std::f64::consts::TAU / self.number("omega");
-                self.number("start.tau") + self.number("horizon.periods") * period
-            }
-        }
-    }
-
-    /// The oscillator with the table's parameters and start, as a system: a mass that starts in
-    /// contact is where the slider says, as in the table.
-    fn system(&self) -> System {
-        let mut file = SystemFile::read("percussive-oscillator.system.toml", TEXT).unwrap();
-        let mut parameters = "[parameters]\n".to_owned();
-        for (name, key) in [("frequency", "omega"), ("phase", "phi")] {
-            writeln!(parameters, "{name} = {:?}", self.number(key)).unwrap();
-        }
-        for name in ["a", "b", "xi", "g"] {
-            writeln!(parameters, "{name} = {:?}", self.number(name)).unwrap();
-        }
-        file.replace_from("table", &parameters, false).unwrap();
-        let mut system = file.system().unwrap();
-        let exact = |key: &str| Rational::try_from(self.number(key)).unwrap();
-        let mode = system.modes.iter().position(|it| it.name == self.rows[0][1]).unwrap();
-        let mut states = ["p", "y", "q", "v"].map(|it| exact(&format!("start.{it}")));
-        if self.rows[0][1] != "no-contact" {
-            states[0] = &states[2] + exact("g");
-        }
-        let start = system.start.as_mut().unwrap();
-        start.mode = mode;
-        start.time = exact("start.tau");
-        start.state = states.map(|it| [Rational::ZERO, Rational::ZERO, it]).to_vec();
-        system
-    }
-
-    /// Whether an event of a run is that of a row, within its enclosed errors and half a unit of
-    /// the row's last digit.
-    fn holds(&self, row: &[String], system: &System, event: &Event<DoubleDouble>) -> bool {
-        let errors = event.errors.as_ref().unwrap();
-        let begin = DoubleDouble::new(self.number("start.tau"), 0.0);
-        let time = (event.time.high + event.time.low - begin, errors.time);
-        let states = event.state.iter().copied().zip(errors.state.iter().copied());
-        let cells = std::iter::once(&row[2]).chain(&row[4..]);
-        let mut pairs = std::iter::once(time).chain(states).zip(cells);
-        system.modes[event.mode].name == row[1]
-            && pairs.all(|((own, error), cell)| {
-                let exact = decimal(cell);
-                let printed = 5.1e-25 * exact.words().0.abs() + 1e-40;
-                (own - exact).words().0.abs() <= error + printed
-            })
-    }
+/// Whether an event of a run is that of a row, within its enclosed errors and half a unit of the
+/// row's last digit.
+fn holds(table: &Table, row: &Row, system: &System, event: &Event<DoubleDouble>) -> bool {
+    let errors = event.errors.as_ref().unwrap();
+    let begin = DoubleDouble::new(table.start.tau, 0.0);
+    let time = (event.time.high + event.time.low - begin, errors.time);
+    let states = event.state.iter().copied().zip(errors.state.iter().copied());
+    let [p, y, q] = row.state;
+    let mut pairs = std::iter::once(time).chain(states).zip([row.elapsed, p, y, q, row.v]);
+    system.modes[event.mode].name == row.token
+        && pairs.all(|((own, error), cell)| {
+            let exact = DoubleDouble::from(cell);
+            (own - exact).words().0.abs() <= error + printed(exact)
+        })
 }
 
 /// Whether an event in f64 is that in 106 bits, within the errors of the first.
@@ -134,24 +103,22 @@ fn is_within(own: &Event<f64>, wide: &Event<DoubleDouble>) -> bool {
 #[test]
 fn the_oscillators_own_tables_are_reproduced_to_every_digit() {
     let (mut tables, mut events, mut narrow, mut largest) = (0, 0, 0, 0.0);
-    for entry in std::fs::read_dir(repository("reference_data/events")).unwrap() {
-        let path = entry.unwrap().path();
-        let Some(phases) = Phases::read(&std::fs::read_to_string(&path).unwrap()) else { continue };
-        let system = phases.system();
-        let run = enclosed::<DoubleDouble>(&system, phases.until());
+    for table in reference::tables("events") {
+        let (system, until, name) = (system_of(&table), horizon(&table), &table.name);
+        let run = enclosed::<DoubleDouble>(&system, until);
         // The first row is the start, the last the horizon.
-        let [_, rows @ .., _] = &phases.rows[..] else { panic!("{path:?}") };
+        let [_, rows @ .., _] = &table.rows[..] else { panic!("{name}") };
         let crossings: Vec<_> =
             run.iter().take_while(|it| matches!(it.what, What::Until(..))).collect();
-        assert_eq!(crossings.len(), rows.len(), "{path:?}");
+        assert_eq!(crossings.len(), rows.len(), "{name}");
         for (event, row) in crossings.iter().zip(rows) {
-            assert!(phases.holds(row, &system, event), "{path:?} {row:?} {event:?}");
+            assert!(holds(&table, row, &system, event), "{name} {row:?} {event:?}");
             largest = f64::max(largest, event.errors.as_ref().unwrap().time);
         }
-        let in_f64 = enclosed::<f64>(&system, phases.until());
+        let in_f64 = enclosed::<f64>(&system, until);
         let decided = in_f64.iter().take_while(|it| matches!(it.what, What::Until(..)));
         for (own, event) in decided.zip(&crossings) {
-            assert!(is_within(own, event), "{path:?} {own:?} {event:?}");
+            assert!(is_within(own, event), "{name} {own:?} {event:?}");
             narrow += 1;
         }
         tables += 1;

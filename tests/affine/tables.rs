@@ -26,12 +26,12 @@ struct Row {
     growth: Vec<f64>,
 }
 
-pub(super) fn repository(path: &str) -> PathBuf {
+fn repository(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
 /// A decimal of up to 30 digits in two words: integer arithmetic of its digits in 106 bits.
-pub(super) fn decimal(text: &str) -> DoubleDouble {
+fn decimal(text: &str) -> DoubleDouble {
     let (negative, digits) = match text.strip_prefix('-') {
         Some(rest) => (true, rest),
         None => (false, text),
@@ -106,6 +106,11 @@ fn worst<T: Number>(
     worst
 }
 
+/// Half a unit of the last of 25 digits.
+pub(super) fn printed(value: DoubleDouble) -> f64 {
+    5.1e-25 * value.to_f64().abs() + 1e-40
+}
+
 /// The events of a run that follows its errors, each of which is smaller than said; how many there
 /// are, and the largest error of a time.
 fn enclosed<T: Number>(
@@ -127,8 +132,6 @@ fn enclosed<T: Number>(
         }
         assert_eq!(name(system, &event), row.event, "{case}, row {}", count + 1);
         let errors = event.errors.unwrap();
-        // Half a unit of the last of 25 digits.
-        let printed = |it: DoubleDouble| 5.1e-25 * it.to_f64().abs() + 1e-40;
         let off = (wide(event.time.high) + wide(event.time.low) - row.time).abs().to_f64();
         assert!(off <= errors.time + printed(row.time), "{case} {count}: {off:e} {errors:?}");
         for ((state, exact), error) in event.state.iter().zip(&row.state).zip(&errors.state) {

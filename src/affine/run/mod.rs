@@ -14,7 +14,7 @@ use crate::affine::solver::{Solver, SolverMode};
 use crate::affine::structure::Firing;
 use crate::affine::taylor::Misses;
 use crate::affine::track::{SearchWork, Track};
-use crate::affine::vector::{Vector, is_told, sum_rounding, unit};
+use crate::affine::vector::{Vector, is_told, twice_summed, unit};
 use crate::number::Number;
 use std::collections::VecDeque;
 
@@ -76,8 +76,7 @@ impl<T: Number> Run<'_, T> {
     #[must_use]
     #[inline]
     pub fn searched(&self) -> Time<T> {
-        let point = &self.ends.left;
-        self.entered.after(if self.solver.backward { -point.time } else { point.time })
+        self.entered.after(self.solver.directed(self.ends.left.time))
     }
 
     /// The event of the present mode whose guard rounding left open, in a run that ended so.
@@ -110,7 +109,7 @@ impl<T: Number> Run<'_, T> {
         if !is_told(&self.segment.entry.y[..flow.dimension]) {
             return self.end(Ending::Undecided);
         }
-        let margin = 2.0 * sum_rounding::<T>(flow.dimension);
+        let margin = twice_summed::<T>(flow.dimension);
         self.tracks.clear();
         self.at_entry = 0;
         let mut ending = None;
@@ -242,7 +241,7 @@ impl<T: Number> Run<'_, T> {
     #[inline]
     fn ahead(&self) -> Time<T> {
         let Time { high, low } = Time { high: self.horizon, low: T::zero() }.since(&self.entered);
-        if self.solver.backward { Time { high: -high, low: -low } } else { Time { high, low } }
+        Time { high: self.solver.directed(high), low: self.solver.directed(low) }
     }
 
     /// Time and state where the search has come to; none where the state has overflowed.
@@ -255,7 +254,7 @@ impl<T: Number> Run<'_, T> {
         let mut state = if point.later == T::zero() {
             flow.state(&point.modal.y)
         } else {
-            time = time.after(if self.solver.backward { -point.later } else { point.later });
+            time = time.after(self.solver.directed(point.later));
             flow.state_shortly_after(&point.modal, point.later)
         };
         let (sin, cos) = self.solver.sin_cos(&time);

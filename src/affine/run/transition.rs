@@ -4,7 +4,7 @@ use super::Run;
 use crate::affine::clock::Time;
 use crate::affine::event::{Ending, What};
 use crate::affine::structure::Firing;
-use crate::affine::vector::{Vector, sum_rounding, unit};
+use crate::affine::vector::{Vector, twice_summed, unit};
 use crate::number::Number;
 
 /// How many events of `until` one instant may have.
@@ -69,7 +69,7 @@ impl<T: Number> Run<'_, T> {
             let flow = &solver.modes[next[n].mode].flow;
             let (value, size) = condition.order(order, &flow.modal(state));
             let value = value.to_f64();
-            let mut slack = 2.0 * sum_rounding::<T>(flow.dimension) * size;
+            let mut slack = twice_summed::<T>(flow.dimension) * size;
             if let Some(errors) = &self.enclosure {
                 // The errors before the reset bound those after it for all that follows here.
                 let reset = &solver.modes[mode].resets[firing.until];
