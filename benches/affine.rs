@@ -22,10 +22,11 @@ const EVENTS: usize = 2_000;
 
 const ROUNDS: usize = 15;
 
-/// a, b, xi, omega: chaos with progression, long phases of period two, light and moderate damping,
-/// critical and over-damped contact.
-const REGIMES: [(f64, f64, f64, f64); 6] = [
+/// a, b, xi, omega: chaos with progression, progression for most of the time, long phases of period
+/// two, light and moderate damping, critical and over-damped contact.
+const REGIMES: [(f64, f64, f64, f64); 7] = [
     (0.3, 0.1, 0.01, 1.4),
+    (0.3, 0.1, 0.25, 0.15),
     (0.3, 0.1, 0.01, 0.1),
     (0.3, 0.12, 0.1, 0.7),
     (0.8, 0.2, 0.5, 2.3),

@@ -24,8 +24,8 @@ def number(value) -> fmpq:
         if value - value != 0:
             raise Refused(f"{value} is not finite")
         return fmpq(*value.as_integer_ratio())
-    if abs(value) > LARGEST_INTEGER:
-        raise Refused(f"{value} is beyond 2^63 in size")
+    if not -LARGEST_INTEGER <= value < LARGEST_INTEGER:
+        raise Refused(f"{value} is not an integer of 64 bits")
     return fmpq(value)
 
 
@@ -110,6 +110,8 @@ class Reader:
         if not self.take("^"):
             return base
         kind, characters = self.next_token()
+        if kind == "integer" and int(characters) == 1:
+            return base
         if kind != "integer" or int(characters) > LARGEST_EXPONENT or not constant(base):
             self.refuse("an exponent is an integer from 0 to 64, and its base has no state in it")
         return self.limited([*base[:-1], base[-1] ** int(characters)])

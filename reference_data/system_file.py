@@ -15,6 +15,7 @@ from affine_expression import Reader, Refused, constant, number
 
 LARGEST_SIZE = 12
 LARGEST_COUNT = 64
+LARGEST_POWER = 1000
 NAME = re.compile(r"[a-z0-9]+(-[a-z0-9]+)*")
 SYMBOL = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
 RESERVED = ("cos", "sin", "omega", "phi")
@@ -111,12 +112,20 @@ def check_trouble(table: dict, what: str) -> None:
         raise Refused(f"{what}: trouble {unknown[0]!r} is not one of {', '.join(TROUBLE)}")
 
 
+def in_range(row: list) -> list:
+    """The row, whose coefficients other than 0 have sizes that f64 holds."""
+    for c in row:
+        if c != 0 and abs(abs(c.p).bit_length() - c.q.bit_length()) > LARGEST_POWER:
+            raise Refused(f"a coefficient is beyond 2^-{LARGEST_POWER} to 2^{LARGEST_POWER}")
+    return row
+
+
 class Builder:
     """Turns the tables of a system file into a `System`."""
 
     def __init__(self, table: dict, overriding: dict, start: dict | None):
         only(table, FILE_KEYS, "the file")
-        if table.get("schema") != 1:
+        if type(table.get("schema")) is not int or table["schema"] != 1:
             raise Refused("schema is 1")
         check_trouble(table, "the file")
         self.table, self.forced = table, "forcing" in table
@@ -135,16 +144,16 @@ class Builder:
         self.phi = self.amount(forcing.get("phi", 0)) if self.forced else fmpq(0)
         if self.forced and not self.omega > 0:
             raise Refused("omega is positive")
-        self.at_start = dict(self.known)
-        if self.forced:
-            self.at_start |= {"omega": self.constant(self.omega), "phi": self.constant(self.phi)}
-            self.at_start |= {"cos": self.unit(-3), "sin": self.unit(-2)}
         units = {name: self.unit(index) for index, name in enumerate(self.states)}
-        self.known = self.at_start | units
+        self.known = {key: self.known[key] for key in self.parameters} | units
+        if self.forced:
+            self.known |= {"omega": self.constant(self.omega), "phi": self.constant(self.phi)}
+            self.known |= {"cos": self.unit(-3), "sin": self.unit(-2)}
 
     def check_names(self) -> None:
         names = [*self.states, *self.parameters, *self.lets]
         wrong = [n for n in names if not SYMBOL.fullmatch(n) or n in RESERVED or names.count(n) > 1]
+        wrong += [n for n in self.states if n in ("t", "mode")]
         if wrong:
             raise Refused(f"{wrong[0]!r} is reserved, used twice, or not letters, digits and _")
         if not 1 <= len(self.states) or self.size > LARGEST_SIZE:
@@ -162,17 +171,13 @@ class Builder:
         """A number, or an expression of parameters."""
         if not isinstance(value, str):
             return number(value)
-        return Reader(value, lambda name: self.look_up(name, self.known), self.size).whole()[-1]
-
-    def look_up(self, name: str, values: dict) -> list:
-        if name not in values:
-            raise Refused(f"{name!r} means nothing here")
-        return values[name]
+        row = Reader(value, self.value_of, self.size).whole()
+        return row[-1] if constant(row) else self.refuse(f"{value!r} is no constant")
 
     def value_of(self, name: str, within: tuple = ()) -> list:
         """The coefficients of a state, a parameter, a reserved word or a `let`."""
         if name not in self.lets:
-            return self.look_up(name, self.known)
+            return self.known[name] if name in self.known else self.unknown(name)
         if name in within:
             raise Refused(f"{name!r} is defined by itself")
         if name not in self.known:
@@ -181,16 +186,17 @@ class Builder:
         return self.known[name]
 
     def row(self, text: str) -> list:
-        return Reader(text, self.value_of, self.size).whole()
+        return in_range(Reader(text, self.value_of, self.size).whole())
 
     def guard(self, text: str) -> fmpq_mat:
-        return fmpq_mat(1, self.size, Reader(text, self.value_of, self.size).condition())
+        row = in_range(Reader(text, self.value_of, self.size).condition())
+        return fmpq_mat(1, self.size, row)
 
     def assignments(self, texts: list, pattern: str, what: str) -> dict:
         """{index of a state: coefficients} of texts such as `x' = v`."""
         found = {}
         for text in texts:
-            match = re.fullmatch(rf"\s*([A-Za-z]\w*){pattern}\s*=(.*)", text, re.DOTALL)
+            match = re.fullmatch(rf"\s*([A-Za-z]\w*)\s*{pattern}\s*=(.*)", text, re.DOTALL)
             if not match or match[1] not in self.states:
                 raise Refused(f"{what} {text!r}: it is `state{pattern} = expression`")
             index = self.states.index(match[1])
@@ -264,20 +270,27 @@ class Builder:
     def refuse(self, why: str):
         raise Refused(why)
 
+    def unknown(self, name: str):
+        raise Refused(f"{name!r} means nothing here")
+
     def start_values(self, modes: dict) -> dict:
         """{mode, t, state}: the mode's name, the clock, a row of coefficients for each state."""
         only(self.start, " ".join(["mode", "t", *self.states]), "start")
         if self.start.get("mode") not in modes:
             raise Refused(f"start: {self.start.get('mode')!r} is not a mode")
-        constants = {name: value for name, value in self.at_start.items() if constant(value)}
-        time = self.start_row(self.start.get("t", 0), constants)[-1]
-        state = [self.start_row(self.start[name], self.at_start) for name in self.states]
-        return {"mode": self.start["mode"], "t": time, "state": state}
+        time = self.start_row(self.start.get("t", 0))
+        if not constant(time):
+            raise Refused("start: t is an expression of parameters")
+        state = [self.start_row(self.start[name]) for name in self.states]
+        return {"mode": self.start["mode"], "t": time[-1], "state": state}
 
-    def start_row(self, value, names: dict) -> list:
+    def start_row(self, value) -> list:
         if not isinstance(value, str):
             return self.constant(number(value))
-        return Reader(value, lambda name: self.look_up(name, names), self.size).whole()
+        row = self.row(value)
+        if any(row[: len(self.states)]):
+            raise Refused(f"start: {value!r} has a state in it")
+        return row
 
     def system(self) -> System:
         modes = [self.mode(table) for table in self.table["mode"]]

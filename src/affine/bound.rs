@@ -81,18 +81,12 @@ fn polynomial(norms: &[f64], length: f64) -> f64 {
     sum
 }
 
-/// A bound of a block's logarithmic norm, not negative: by the rows of its symmetric part.
+/// A bound of a block's logarithmic norm, not negative.
 pub(super) fn growth(block: &modal::Block) -> f64 {
     if let Kind::Real(rate) | Kind::Pair(rate, _) = &block.kind {
         return rate.to_f64().max(0.0);
     }
-    let entry = |i: usize, j: usize| block.matrix[i][j].to_f64();
-    let size = block.matrix.len();
-    let row = |i: usize| {
-        let others = (0..size).filter(|j| *j != i);
-        entry(i, i) + others.map(|j| 0.5 * (entry(i, j) + entry(j, i)).abs()).sum::<f64>()
-    };
-    (0..size).map(row).fold(0.0, f64::max) * OUTWARD
+    modal::logarithmic_norm(&block.matrix).max(0.0) * OUTWARD
 }
 
 /// A row's derivatives in a block, those that are zero exactly so.

@@ -44,6 +44,7 @@ pub use file::SystemFile;
 pub use run::Run;
 pub use solver::{Solver, Unprepared};
 pub use system::{
-    Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, Until, Watch,
+    Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, TROUBLE,
+    Until, Watch,
 };
 pub use track::SearchWork;

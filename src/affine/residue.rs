@@ -25,14 +25,15 @@ impl Residue {
     pub const ZERO: Self = Self([0; 2]);
     pub const ONE: Self = Self([1; 2]);
 
-    /// The residues of a number; none if its denominator is a multiple of a prime.
+    /// The residues of a number; none if its denominator, or its numerator but for 0, is a multiple
+    /// of a prime.
     pub fn of(number: &RBig) -> Option<Self> {
         let (above, below) = (number.numerator(), number.denominator());
         let mut residues = [0; 2];
         for (residue, prime) in residues.iter_mut().zip(PRIMES) {
             let above = signed_remainder(above, prime);
             let below = remainder(below, prime);
-            if below == 0 {
+            if below == 0 || above == 0 && !number.is_zero() {
                 return None;
             }
             // Most numbers are integers.

@@ -15,6 +15,29 @@ pub const LARGEST_DIMENSION: usize = 12;
 /// The largest number of modes, of events in a mode and of successors of an event.
 pub(super) const LARGEST_COUNT: usize = 64;
 
+/// The kinds of trouble that a system or a case may be said to make.
+pub const TROUBLE: [&str; 19] = [
+    "jump",
+    "accumulation",
+    "simultaneous",
+    "sliding",
+    "chatter",
+    "clock",
+    "start-on-guard",
+    "many-guards",
+    "stiffness",
+    "graze",
+    "double-crossing",
+    "multiple-zero",
+    "restart-on-zero",
+    "side-of-root",
+    "output-at-events",
+    "backward",
+    "direction",
+    "hysteresis",
+    "chaos",
+];
+
 /// A piecewise-affine hybrid system.
 #[derive(Clone, Debug)]
 pub struct System {

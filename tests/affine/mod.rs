@@ -2,6 +2,7 @@
 
 mod attack;
 mod brute;
+mod close_rates;
 mod enclosed;
 mod endings;
 mod files;

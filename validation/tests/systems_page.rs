@@ -28,7 +28,8 @@ fn every_system_has_a_section() {
         let section = text.split(&format!("\n## `{name}`\n")).nth(1).expect("its section");
         let section = section.split("\n## ").next().unwrap_or_default();
         let file = format!("](../validation/systems/{name}.system.toml)");
-        let wanted = [&file, "**For.**", "**Source.**", "**Known.**", "](systems/"];
+        let wanted =
+            [&file, "**What it is for.**", "**Source.**", "**What is known.**", "](systems/"];
         for wanted in wanted {
             assert!(section.contains(wanted), "{name}: {wanted} is not there");
         }

@@ -75,7 +75,7 @@ fn a_bound_that_is_passed_is_exit_1() {
     let (code, table) = validate_with(bound);
     assert_eq!(code, Some(1), "{table}");
     assert!(
-        table.contains("fail: small-b exact -: state error") && table.contains("1 fail"),
+        table.contains("fail: small-b exact -: largest state error") && table.contains("1 fail"),
         "{table}"
     );
 }

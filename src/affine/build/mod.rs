@@ -5,11 +5,12 @@ mod names;
 
 use crate::affine::error::SystemError;
 use crate::affine::file::{GivenParameter, Scalar, StartTable, SystemFile};
-use crate::affine::system::{LARGEST_COUNT, LARGEST_DIMENSION, StartPoint, System};
+use crate::affine::system::{LARGEST_COUNT, LARGEST_DIMENSION, StartPoint, System, TROUBLE};
 use dashu_ratio::RBig;
 use mode::ModeReader;
-use names::Names;
+use names::{Accepts, Names};
 use std::collections::BTreeMap;
+use toml::Spanned;
 
 impl SystemFile {
     /// The system that the file describes.
@@ -21,6 +22,15 @@ impl SystemFile {
     }
 }
 
+/// A word for a kind of trouble.
+fn trouble(file: &SystemFile, kind: &Spanned<String>) -> Result<String, SystemError> {
+    if TROUBLE.contains(&kind.get_ref().as_str()) {
+        return Ok(kind.get_ref().clone());
+    }
+    let what = format!("{:?} is not accepted: any of {}", kind.get_ref(), TROUBLE.join(", "));
+    Err(file.error(&kind.span(), &format!("trouble {what}")))
+}
+
 fn system(file: &SystemFile) -> Result<System, SystemError> {
     let mut names = Names::of(file)?;
     let forcing = names.forcing()?;
@@ -29,7 +39,7 @@ fn system(file: &SystemFile) -> Result<System, SystemError> {
     let mut system = System {
         name: file.kebab(&tables.name)?,
         why: tables.why.clone(),
-        trouble: tables.trouble.iter().map(|it| file.kebab(it)).collect::<Result<_, _>>()?,
+        trouble: tables.trouble.iter().map(|it| trouble(file, it)).collect::<Result<_, _>>()?,
         source: tables.source.clone(),
         parameters: file.parameters.iter().filter_map(parameter).collect(),
         states: names.states.clone(),
@@ -99,11 +109,9 @@ fn start_point(
         }
         _ => return Err(refuse(&format!("mode is accepted as one of {}", known.join(", ")))),
     };
-    names.with_states = false;
+    names.accepts = Accepts::Forcing;
     let time = match table.entries.get("t") {
-        Some(GivenParameter { value, place }) if !names.states.iter().any(|it| it == "t") => {
-            names.constant_at("t", value, place)?
-        }
+        Some(GivenParameter { value, place }) => names.constant_at("t", value, place)?,
         _ => RBig::ZERO,
     };
     let states = names.states.clone();

@@ -12,6 +12,9 @@ use toml::Spanned;
 /// Names that expressions cannot give to anything else.
 const RESERVED: [&str; 4] = ["cos", "sin", "omega", "phi"];
 
+/// Keys of a start beside the states.
+const OF_A_START: [&str; 2] = ["t", "mode"];
+
 /// What the names of a file's expressions mean.
 pub(super) struct Names<'a> {
     file: &'a SystemFile,
@@ -20,8 +23,19 @@ pub(super) struct Names<'a> {
     values: BTreeMap<String, Form>,
     /// The `[let]`s that are being read, to see a circle.
     open: Vec<String>,
-    /// Whether states are accepted, as they are not at a start.
-    pub(super) with_states: bool,
+    /// What an expression may be of here.
+    pub(super) accepts: Accepts,
+}
+
+/// What an expression may be of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Accepts {
+    /// States, cos, sin and what is constant.
+    States,
+    /// Cos, sin and what is constant, as at a start.
+    Forcing,
+    /// What is constant alone.
+    Constants,
 }
 
 impl<'a> Names<'a> {
@@ -36,7 +50,8 @@ impl<'a> Names<'a> {
             return Err(file.error(&tables.states.span(), "at least one state is accepted"));
         }
         let (forced, values) = (tables.forcing.is_some(), BTreeMap::new());
-        let mut names = Self { file, states, forced, values, open: Vec::new(), with_states: true };
+        let open = Vec::new();
+        let mut names = Self { file, states, forced, values, open, accepts: Accepts::States };
         names.check_names()?;
         for (name, GivenParameter { value, place }) in &file.parameters {
             let number = value.number().ok_or_else(|| {
@@ -56,7 +71,10 @@ impl<'a> Names<'a> {
         let lets = tables.lets.iter().map(|(name, it)| (name, place(it.span())));
         let mut seen = BTreeSet::new();
         for (name, place) in states.chain(parameters).chain(lets) {
-            let what = if RESERVED.contains(&name.as_str()) {
+            let is_state = self.states.contains(name);
+            let what = if is_state && OF_A_START.contains(&name.as_str()) {
+                format!("{name} is no name of a state: a start holds a {name} beside the states")
+            } else if RESERVED.contains(&name.as_str()) {
                 format!("{name} is reserved for theta = omega t + phi")
             } else if !is_name(name) {
                 format!("{name:?} is no name: a letter, then letters, digits and underscores are")
@@ -133,8 +151,10 @@ impl<'a> Names<'a> {
         scalar: &Scalar,
         place: &str,
     ) -> Result<RBig, SystemError> {
-        let form =
-            self.affine(scalar).map_err(|it| SystemError::at(place, &format!("{key}: {it}")))?;
+        let before = std::mem::replace(&mut self.accepts, Accepts::Constants);
+        let form = self.affine(scalar);
+        self.accepts = before;
+        let form = form.map_err(|it| SystemError::at(place, &format!("{key}: {it}")))?;
         form.constant().cloned().ok_or_else(|| {
             SystemError::at(place, &format!("{key}: a number or an expression of parameters"))
         })
@@ -160,14 +180,20 @@ impl Scope for Names<'_> {
             return Ok(form.clone());
         }
         if let Some(index) = self.states.iter().position(|it| it == name) {
-            return if self.with_states {
-                Ok(Form::unit(states, index))
-            } else {
-                Err(format!("{name} is a state: a start is an expression of parameters, cos, sin"))
+            return match self.accepts {
+                Accepts::States => Ok(Form::unit(states, index)),
+                Accepts::Forcing => Err(format!(
+                    "{name} is a state: a start is an expression of parameters, cos, sin"
+                )),
+                Accepts::Constants => {
+                    Err(format!("{name} is a state: an expression of parameters is accepted"))
+                }
             };
         }
         if let Some(index) = ["cos", "sin"].iter().position(|it| *it == name) {
-            return if self.forced {
+            return if self.accepts == Accepts::Constants {
+                Err(format!("{name} changes with time: an expression of parameters is accepted"))
+            } else if self.forced {
                 Ok(Form::unit(states, states + index))
             } else {
                 Err(format!("{name} means nothing without forcing"))
@@ -175,15 +201,21 @@ impl Scope for Names<'_> {
         }
         let file = self.file;
         let Some(text) = file.tables.lets.get(name) else {
-            return Err(format!("{name} is not known: accepted are {}", self.known().join(", ")));
+            let known = self.known();
+            let accepted = if known.is_empty() {
+                "a number, as there are no parameters".to_owned()
+            } else {
+                known.join(", ")
+            };
+            return Err(format!("{name} is not known: accepted are {accepted}"));
         };
         if self.open.iter().any(|it| it == name) {
             return Err(format!("{name} is defined by itself"));
         }
         self.open.push(name.to_owned());
-        let with_states = std::mem::replace(&mut self.with_states, true);
+        let before = std::mem::replace(&mut self.accepts, Accepts::States);
         let form = expression(text.get_ref(), self);
-        self.with_states = with_states;
+        self.accepts = before;
         self.open.pop();
         let form = form?;
         self.values.insert(name.to_owned(), form.clone());
@@ -198,10 +230,12 @@ impl Scope for Names<'_> {
 impl Names<'_> {
     /// All names that an expression may hold here.
     fn known(&self) -> Vec<&str> {
-        let states = self.states.iter().filter(|_| self.with_states);
-        let forced: &[_] = if self.forced { &["cos", "sin", "omega", "phi"] } else { &[] };
+        let states = self.states.iter().filter(|_| self.accepts == Accepts::States);
+        let turns = self.forced && self.accepts != Accepts::Constants;
+        let turning: &[_] = if turns { &["cos", "sin"] } else { &[] };
+        let given = ["omega", "phi"].into_iter().filter(|it| self.values.contains_key(*it));
         let names = self.file.parameters.keys().chain(self.file.tables.lets.keys());
         let all = states.chain(names).map(String::as_str);
-        all.chain(forced.iter().copied()).collect()
+        all.chain(turning.iter().copied()).chain(given).collect()
     }
 }

@@ -5,6 +5,7 @@
 //! eigenvectors nearly coincide stay together in one block. This is done once a mode, in numbers of
 //! several hundred bits.
 
+mod flag;
 mod matrix;
 mod polynomial;
 mod real;
@@ -73,10 +74,12 @@ pub(super) fn blocks(exact: &[Row], time_scale: f64) -> Vec<Block> {
     };
     let matrix: BigMatrix = exact.iter().enumerate().map(scaled).collect();
     let taken_apart = |roots: Vec<Eigenvalue>| -> Option<Vec<_>> {
-        clusters(roots, time_scale).iter().map(|it| block(&matrix, it)).collect()
+        let clusters = clusters(roots, time_scale);
+        clusters.iter().map(|it| block(&matrix, it, time_scale)).collect()
     };
     let blocks = eigenvalues(exact).and_then(taken_apart).unwrap_or_else(|| vec![whole(&matrix)]);
-    let finished = |it| unscaled(measured(it, &matrix, time_scale), &scales);
+    let spread = spread(&blocks);
+    let finished = |it| unscaled(measured(it, &matrix, time_scale, &spread), &scales);
     blocks.into_iter().map(finished).collect()
 }
 
@@ -105,9 +108,35 @@ fn unscaled(mut block: Block, scales: &[isize]) -> Block {
     block
 }
 
+/// The sum over all blocks of the sizes of X W: to which entries what is off in one of them leads.
+fn spread(blocks: &[Block]) -> Vec<Vec<f64>> {
+    let sizes = |it: &BigMatrix| -> Vec<Vec<f64>> {
+        it.iter().map(|row| row.iter().map(|it| it.to_f64().abs()).collect()).collect()
+    };
+    let parts: Vec<_> = blocks.iter().map(|it| (sizes(&it.columns), sizes(&it.rows))).collect();
+    let width = parts.first().map_or(0, |(columns, _)| columns.len());
+    let mut spread = vec![vec![0.0; width]; width];
+    for (columns, rows) in &parts {
+        for (sums, row) in spread.iter_mut().zip(spread_by(columns, rows)) {
+            sums.iter_mut().zip(row).for_each(|(sum, term): (&mut f64, f64)| *sum += term);
+        }
+    }
+    spread
+}
+
+/// A product of matrices that are not negative, in which nothing comes of zeros.
+fn spread_by(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
+    let width = b.first().map_or(0, Vec::len);
+    let entry = |row: &Vec<f64>, j: usize| {
+        let terms = row.iter().zip(b).map(|(a, b)| (*a, b[j]));
+        terms.filter(|(a, b)| *a != 0.0 && *b != 0.0).map(|(a, b)| a * b).sum()
+    };
+    a.iter().map(|row| (0..width).map(|j| entry(row, j)).collect()).collect()
+}
+
 /// A block with how far its columns and rows may be off: what is left of M X - X B and of W M - B W
 /// comes from parts in other blocks, divided by the distance of their eigenvalues.
-fn measured(mut block: Block, matrix: &BigMatrix, time_scale: f64) -> Block {
+fn measured(mut block: Block, matrix: &BigMatrix, time_scale: f64, spread: &[Vec<f64>]) -> Block {
     let Block { columns, rows, matrix: inner, .. } = &block;
     let nearest = (CLOSE * norm(inner)).max(SLOW / time_scale);
     let factor = libm::exp2(ROOM as f64) / nearest;
@@ -117,7 +146,7 @@ fn measured(mut block: Block, matrix: &BigMatrix, time_scale: f64) -> Block {
     };
     let left = difference(product(matrix, columns), product(columns, inner));
     let right = difference(product(rows, matrix), product(inner, rows));
-    block.off = [left, right];
+    block.off = [spread_by(spread, &left), spread_by(&right, spread)];
     block
 }
 
@@ -151,7 +180,7 @@ fn is_close(gap: f64, a: &Eigenvalue, b: &Eigenvalue, time_scale: f64) -> bool {
     gap < CLOSE * larger || gap * time_scale < SLOW
 }
 
-fn block(matrix: &BigMatrix, cluster: &[Eigenvalue]) -> Option<Block> {
+fn block(matrix: &BigMatrix, cluster: &[Eigenvalue], time_scale: f64) -> Option<Block> {
     let dimensions = cluster.iter().map(Eigenvalue::dimensions).sum();
     let annihilator = cluster.iter().fold(identity(matrix.len()), |product_so_far, root| {
         let factor = factor(matrix, root);
@@ -169,7 +198,9 @@ fn block(matrix: &BigMatrix, cluster: &[Eigenvalue]) -> Option<Block> {
         .for_each(|it| *it = BigReal::zero());
     let off = [Vec::new(), Vec::new()];
     let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner, off };
-    Some(named(block, cluster))
+    let block = named(block, cluster);
+    let of_several = matches!(block.kind, Kind::Cluster).then_some(&block);
+    Some(of_several.and_then(|it| flag::triangular(it, cluster, time_scale)).unwrap_or(block))
 }
 
 /// What rounding may have made of a zero of a block's matrix W M X at most, from how far W M is off
@@ -251,17 +282,22 @@ fn named(mut block: Block, cluster: &[Eigenvalue]) -> Block {
     rotating(&block, root).unwrap_or(block)
 }
 
-/// Co-ordinates in which a pair's matrix is ((rate, frequency), (-frequency, rate)): the real and
+/// Columns on which the matrix of a pair is ((rate, frequency), (-frequency, rate)): the real and
 /// the imaginary part of an eigenvector.
-fn rotating(block: &Block, root: &Eigenvalue) -> Option<Block> {
+fn rotation([[p, q], [r, s]]: [[&BigReal; 2]; 2], root: &Eigenvalue) -> BigMatrix {
     let (rate, frequency) = (&root.value.re, &root.value.im);
-    let [[p, q], [r, s]] = [0, 1].map(|i| [0, 1].map(|j| &block.matrix[i][j]));
     let zero = BigReal::zero();
-    let turned: BigMatrix = if q.abs() >= r.abs() {
+    if q.abs() >= r.abs() {
         vec![vec![q.clone(), zero], vec![rate - p, frequency.clone()]]
     } else {
         vec![vec![rate - s, frequency.clone()], vec![r.clone(), zero]]
-    };
+    }
+}
+
+/// A pair's block in the co-ordinates of its rotation.
+fn rotating(block: &Block, root: &Eigenvalue) -> Option<Block> {
+    let (rate, frequency) = (&root.value.re, &root.value.im);
+    let turned = rotation([0, 1].map(|i| [0, 1].map(|j| &block.matrix[i][j])), root);
     let columns = product(&block.columns, &turned);
     let rows = product(&inverse(&turned)?, &block.rows);
     let matrix = vec![vec![rate.clone(), frequency.clone()], vec![-frequency, rate.clone()]];
@@ -274,6 +310,16 @@ fn rotating(block: &Block, root: &Eigenvalue) -> Option<Block> {
 pub(super) fn norm(matrix: &[Vec<BigReal>]) -> f64 {
     let sums = matrix.iter().map(|row| row.iter().map(|it| it.to_f64().abs()).sum());
     sums.fold(0.0, f64::max)
+}
+
+/// A bound of a matrix's logarithmic norm, by the rows of its symmetric part.
+pub(super) fn logarithmic_norm(matrix: &[Vec<BigReal>]) -> f64 {
+    let entry = |i: usize, j: usize| matrix[i][j].to_f64();
+    let row = |i: usize| {
+        let others = (0..matrix.len()).filter(|j| *j != i);
+        entry(i, i) + others.map(|j| 0.5 * (entry(i, j) + entry(j, i)).abs()).sum::<f64>()
+    };
+    (0..matrix.len()).map(row).fold(f64::NEG_INFINITY, f64::max)
 }
 
 /// exp(B 2^exponent), where |B 2^exponent| is at most 1/2: a Taylor series to the last bit.

@@ -72,6 +72,7 @@ impl<T: Number> Solver<T> {
             at_entry: 0,
             at_once: 0,
             queue: VecDeque::new(),
+            decided: 0,
             ended: false,
             enclosure: None,
             start: first.clone(),

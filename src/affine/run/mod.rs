@@ -40,6 +40,8 @@ pub struct Run<'a, T> {
     at_entry: u64,
     at_once: u32,
     queue: VecDeque<Event<T>>,
+    /// How many of them came before anything that rounding left open.
+    decided: usize,
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
     pub(in crate::affine) enclosure: Option<Enclosure>,
@@ -83,12 +85,42 @@ impl<T: Number> Run<'_, T> {
     #[must_use]
     pub fn doubtful(&self) -> Option<What<T>> {
         let guard = self.work.doubtful.filter(|_| self.enclosure.is_some())?;
-        let mode = self.structure.node(self.node).mode;
-        let until = self.solver.system.modes[mode].until.len();
-        Some(match guard.checked_sub(until) {
+        Some(self.what(self.structure.node(self.node).mode, guard))
+    }
+
+    /// How the run has ended, when it has.
+    #[must_use]
+    pub fn ending(&self) -> Option<&Ending<T>> {
+        match &self.queue.back().unwrap_or(&self.last).what {
+            What::End(ending) if self.ended => Some(ending),
+            _ => None,
+        }
+    }
+
+    /// Whether the run has ended because its state is too large for the number type.
+    #[must_use]
+    pub fn overflows(&self) -> bool {
+        self.ended && self.here().is_none()
+    }
+
+    /// The event of the present mode whose guard was positive at its entry, in a run that ended so.
+    #[must_use]
+    pub fn beyond(&self) -> Option<What<T>> {
+        let node = self.structure.node(self.node);
+        let is_beyond = |n: &usize| {
+            self.at_entry >> n & 1 == 1 && node.multiplicities.get(*n) == Some(&Some(0))
+        };
+        let is_so = self.ending() == Some(&Ending::BeyondGuard);
+        let guard = (0..u64::BITS as usize).find(is_beyond).filter(|_| is_so);
+        guard.map(|guard| self.what(node.mode, guard))
+    }
+
+    /// The event of a mode that a guard makes.
+    fn what(&self, mode: usize, guard: usize) -> What<T> {
+        match guard.checked_sub(self.solver.system.modes[mode].until.len()) {
             Some(watch) => What::Watch(mode, watch),
             None => What::Until(mode, guard),
-        })
+        }
     }
 
     pub(in crate::affine) fn tracks_live(&self, guard: usize) -> bool {
@@ -275,13 +307,15 @@ impl<T: Number> Iterator for Run<'_, T> {
             if self.ended {
                 return None;
             }
+            self.decided = 0;
             self.advance();
             // What errors may have decided is no event of an enclosed run, nor is one whose errors
             // have no bounds.
             let is_bounded = |it: &Event<T>| it.errors.as_ref().is_none_or(Errors::are_finite);
-            let is_open = || self.work.undecidable > 0 || !self.queue.iter().all(is_bounded);
-            if self.enclosure.is_some() && is_open() {
-                self.queue.clear();
+            let unbounded = self.queue.iter().position(|it| !is_bounded(it));
+            let is_open = self.work.undecidable > 0 || unbounded.is_some();
+            if self.enclosure.is_some() && is_open {
+                self.queue.truncate(unbounded.map_or(self.decided, |it| it.min(self.decided)));
                 self.ended = false;
                 self.end(Ending::Undecided);
             }

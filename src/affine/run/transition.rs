@@ -40,6 +40,9 @@ impl<T: Number> Run<'_, T> {
             self.enclosure = Some(errors);
         }
         self.queue.push_back(event);
+        if self.work.undecidable == 0 {
+            self.decided = self.queue.len();
+        }
         self.enter();
         if impact && next == from {
             let below = solver.modes[mode].flow.co_ordinates(&before);

@@ -101,7 +101,8 @@ impl CaseFlags {
 
     /// The chosen cases with their reference data.
     pub(super) fn open(&self, reference: Option<&Path>) -> Result<OpenedCases> {
-        Ok(OpenedCases { cases: self.read()?, library: self.library(reference)? })
+        let (cases, library) = (self.read()?, self.library(reference)?);
+        Ok(OpenedCases { cases, library, are_users: self.cases.is_some() })
     }
 }
 
@@ -109,24 +110,49 @@ impl CaseFlags {
 pub(super) struct OpenedCases {
     cases: Cases,
     library: Library,
+    /// Whether they come from a folder, not from inside the binary.
+    are_users: bool,
 }
 
 impl OpenedCases {
     /// The cases with their truth, and with the probes of a suite if one is given.
     pub(super) fn prepare(self, probes: Option<Suite>) -> Result<PreparedCases> {
-        let Self { cases, library } = self;
+        let Self { cases, library, are_users } = self;
         let replayed: Vec<String> =
             cases.names().filter(|name| library.is_replayed(name)).map(str::to_owned).collect();
         let prepared = PreparedCases {
             oscillator: suite::prepare(cases.oscillator, &library, probes)?,
             systems: suite::prepare_systems(cases.systems, &library, probes)?,
         };
+        if are_users {
+            prepared.systems.iter().for_each(note_faint_states);
+        }
         for name in replayed {
             note(&format!(
                 "{name}: without tables: its truth is the exact solver's run made again in 106 bits"
             ));
         }
         Ok(prepared)
+    }
+}
+
+/// Says which states of a case are too small beside the others for their errors to be seen.
+fn note_faint_states(prepared: &PreparedSystem) {
+    let system = &prepared.case.system;
+    let faint = prepared.truth.faint_states(&system.scales);
+    let names: Vec<&str> = faint.iter().map(|n| system.states[*n].as_str()).collect();
+    if !names.is_empty() {
+        note(&format!(
+            "{}: {} so small beside 1 and the largest state that errors are hardly seen: \
+             give {} `scales` in its file",
+            prepared.case.name,
+            if names.len() == 1 {
+                format!("{} stays", names[0])
+            } else {
+                format!("{} stay", names.join(", "))
+            },
+            system.name
+        ));
     }
 }
 

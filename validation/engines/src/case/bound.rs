@@ -21,19 +21,21 @@ pub enum Quantity {
     StateError,
     /// |dv| at the scored horizon, units of displacement.
     DriftError,
-    /// Largest error of an event's time or state over unit x (1 + |value|) x growth x number of
-    /// events.
+    /// Largest error of an event's time or state over unit x (1 + size) x growth x number of
+    /// events, where the size is that of the value, or of the largest state so far in a
+    /// piecewise-affine system.
     EventConstant,
-    /// Largest error of the sample's states over unit x (1 + |value|) x growth x number of
-    /// events.
+    /// Largest error of the sample's states over unit x (1 + size) x growth x number of events,
+    /// where the size is that of the value, or of the largest state so far in a piecewise-affine
+    /// system.
     StateConstant,
     /// Forcing periods until the state's error passes 1e-3 (a lower limit).
     ValidPeriods,
     /// Forcing periods by which valid horizons in chaos are longer than the truth's growth predicts
     /// (a lower limit).
     ValidGain,
-    /// Error after one passage through contact from states on the attractor, over
-    /// unit x (1 + |value|) x growth.
+    /// Error after one passage through the next events from states of the run, over
+    /// unit x (1 + size) x growth, sizes as above.
     RestartError,
     /// Restarts that gave no result.
     RestartsFailed,
@@ -63,6 +65,23 @@ impl Quantity {
             Self::RunsFailed => "runs failed",
             Self::AttractorDistance => "attractor distance",
         }
+    }
+
+    /// A statistic of the quantity in words, as reasons name it.
+    #[must_use]
+    pub fn words_of(self, statistic: Statistic) -> String {
+        let words = self.words();
+        match statistic {
+            Statistic::Median => format!("median {words}"),
+            Statistic::Q99 => format!("99 % quantile of the {words}"),
+            Statistic::Max if self.has_a_median() => format!("largest {words}"),
+            Statistic::Max | Statistic::Value => words.to_owned(),
+        }
+    }
+
+    /// Whether other statistics than the largest are measured.
+    const fn has_a_median(self) -> bool {
+        matches!(self, Self::EventTimeError | Self::StateError | Self::RestartError)
     }
 
     /// Whether a bound on it is a lower limit.

@@ -20,10 +20,11 @@ pub use library::{
     Cases, defaults, defaults_of_own_cases, embedded, from_directory, shortcomings_of,
 };
 pub use located::{FileError, Origins};
+pub use percuss::affine::TROUBLE;
 pub use probed::ProbedCase;
 pub use problem::{Given, Problem};
 pub use regime::Regime;
-pub use system::{SystemCase, TROUBLE, parse_system_case};
+pub use system::{SystemCase, parse_system_case};
 pub use wire::{parse_case, parse_problem, read_problem};
 
 use percuss::{Parameters, Start};

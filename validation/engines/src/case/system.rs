@@ -5,7 +5,7 @@ use super::located::{FileError, FileText};
 use super::systems::named;
 use super::{Bound, Shortcoming};
 use crate::system::SystemProblem;
-use percuss::affine::{System, SystemFile};
+use percuss::affine::{System, SystemFile, TROUBLE};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use std::path::Path;
@@ -14,29 +14,6 @@ use toml::Spanned;
 /// At how many instants a state is tabulated where a case does not say it, and at most.
 const SAMPLES: i64 = 100;
 const MOST_SAMPLES: i64 = 100_000;
-
-/// The kinds of trouble that a case may be said to make.
-pub const TROUBLE: [&str; 19] = [
-    "jump",
-    "accumulation",
-    "simultaneous",
-    "sliding",
-    "chatter",
-    "clock",
-    "start-on-guard",
-    "many-guards",
-    "stiffness",
-    "graze",
-    "double-crossing",
-    "multiple-zero",
-    "restart-on-zero",
-    "side-of-root",
-    "output-at-events",
-    "backward",
-    "direction",
-    "hysteresis",
-    "chaos",
-];
 
 /// A case of a piecewise-affine system, as `docs/SYSTEM_FORMAT.md` has it.
 #[derive(Clone, Debug)]

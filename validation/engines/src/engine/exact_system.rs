@@ -19,7 +19,7 @@ pub(super) fn run(task: &SystemTask, limits: &Limits) -> Result<SystemOutcome, F
     for event in run.by_ref() {
         record.sample(&segment, record.elapsed(&event.time));
         if let What::End(ending) = event.what {
-            record.end(&event, ending)?;
+            record.end(&segment, &event, ending)?;
             break;
         }
         record.push(&event);
@@ -61,12 +61,16 @@ impl Record<'_> {
     /// The states asked for in the segment that `segment` begins, those at its end left out.
     fn sample(&mut self, segment: &affine::Event<f64>, end: f64) {
         let asked = &self.task.samples[self.outcome.samples.len()..];
-        let (problem, begin) = (self.problem, self.begin);
         for elapsed in asked.iter().take_while(|elapsed| **elapsed < end) {
-            let time = begin.after(if problem.backward { -elapsed } else { *elapsed });
-            let state = problem.solver.state_at(segment, &time);
+            let state = self.state_at(segment, *elapsed);
             self.outcome.samples.push(Values::of(&state));
         }
+    }
+
+    /// The state a time after the start, in the segment that `segment` begins.
+    fn state_at(&self, segment: &affine::Event<f64>, elapsed: f64) -> Vec<f64> {
+        let ahead = if self.problem.backward { -elapsed } else { elapsed };
+        self.problem.solver.state_at(segment, &self.begin.after(ahead))
     }
 
     fn push(&mut self, event: &affine::Event<f64>) {
@@ -84,7 +88,13 @@ impl Record<'_> {
         });
     }
 
-    fn end(&mut self, event: &affine::Event<f64>, ending: Ending<f64>) -> Result<(), Failure> {
+    /// Takes the ending of the segment that `segment` begins.
+    fn end(
+        &mut self,
+        segment: &affine::Event<f64>,
+        event: &affine::Event<f64>,
+        ending: Ending<f64>,
+    ) -> Result<(), Failure> {
         self.outcome.ended = match ending {
             Ending::Horizon => Ended::Horizon,
             Ending::Accumulation(..) => Ended::Accumulation,
@@ -94,7 +104,11 @@ impl Record<'_> {
             Ending::Undecided => return Err(Failure::new("rounding hides how a mode ends")),
         };
         self.outcome.ended_at = self.elapsed(&event.time);
-        self.outcome.end = Values::of(&event.state);
+        self.outcome.end = match ending {
+            // The run's horizon is the clock's time there, which is rounded.
+            Ending::Horizon => Values::of(&self.state_at(segment, self.task.span)),
+            _ => Values::of(&event.state),
+        };
         // A run that ends early stays where it is, and one at its horizon has a sample there.
         self.outcome.samples.resize(self.task.samples.len(), self.outcome.end);
         Ok(())

@@ -133,7 +133,8 @@ impl<M: Copy> Meter<M> {
             Ok(())
         } else {
             Err(Failure::beyond_limits(format!(
-                "gave up before {calls:e} calls, of {}",
+                "gave up after {} right-hand sides: {calls:.0} more would pass the limit of {}",
+                self.calls.get(),
                 self.limits.calls
             )))
         }

@@ -1,7 +1,8 @@
 //! The figures of one run of a piecewise-affine system.
 //!
 //! States are divided by their scales and times by the time scale; errors are then counted in units
-//! of error x (1 + |value|) x growth x number of events, as the oscillator's are.
+//! of error x (1 + size) x growth x number of events, where the size is that of the largest state
+//! so far: an error of one state grows into the others.
 
 use super::SCORED_ERROR;
 use super::decisions::Decision;
@@ -173,7 +174,8 @@ impl SystemRun<'_> {
         // An ending has no growth of its own.
         let growth = self.truth.events.get(n).or(self.truth.events.last());
         let growth = growth.map_or(1.0, |row| row.growth_time);
-        let size = 1.0 + truth.abs() / scale;
+        let of_states = self.truth.events.get(n).map_or(self.truth.end.size, |row| row.size);
+        let size = 1.0 + of_states.max(truth.abs() / scale);
         (truth - own).abs() / scale / size / growth / (self.unit * (n + 1) as f64)
     }
 
@@ -199,11 +201,10 @@ impl SystemRun<'_> {
     /// The largest error of a state, in units.
     pub(super) fn units(&self, row: &SystemTruthRow, state: &[f64], events: usize) -> f64 {
         let states = row.state.iter().zip(state).zip(&row.growth).zip(self.scales());
-        let relative = states.map(|(((truth, own), growth), scale)| {
-            let size = 1.0 + truth.value().abs() / scale;
-            off(*truth, *own) / scale / size / growth.max(row.growth_time)
+        let grown = states.map(|(((truth, own), growth), scale)| {
+            off(*truth, *own) / scale / growth.max(row.growth_time)
         });
-        worst(relative) / (self.unit * events.max(1) as f64)
+        worst(grown) / (self.unit * (1.0 + row.size) * events.max(1) as f64)
     }
 
     fn state_constant(&self, scored: usize) -> f64 {

@@ -93,7 +93,7 @@ impl Checked {
     /// The figure beside its limit, and why that is the limit.
     pub(super) fn reason(&self) -> String {
         let against = if self.quantity.is_to_be_large() { "at least" } else { "at most" };
-        let quantity = self.quantity.words();
+        let quantity = self.quantity.words_of(self.statistic);
         format!("{quantity} {} ({against} {}: {})", brief(self.value), brief(self.limit), self.why)
     }
 }

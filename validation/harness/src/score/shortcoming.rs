@@ -25,7 +25,7 @@ pub(super) fn answer(
 ) -> Answer {
     let value = run.decidable(known.quantity, known.statistic, excused);
     let stated = format!("{} to {}", brief(known.at_least), brief(known.at_most));
-    let words = known.quantity.words();
+    let words = known.quantity.words_of(known.statistic);
     let out_of_date = |what: &str| {
         Answer::OutOfDate(format!(
             "the data are out of date: {words} {} {what} (stated: {stated}): {}",

@@ -107,18 +107,19 @@ impl SystemScan<'_> {
     }
 
     /// What one unit of error in the states may have become in a guard.
-    fn growth(&self, row: &[f64], state: &[f64], elapsed: f64) -> f64 {
+    fn growth(&self, guard: &[f64], elapsed: f64) -> f64 {
         let passed = |it: &&SystemTruthRow| it.elapsed.value() <= elapsed;
         let sample = self.truth.samples.iter().take_while(passed).last();
-        let ones = vec![1.0; state.len()];
-        guard_growth(row, state, sample.map_or(&ones, |it| &it.growth), &self.system.scales)
+        guard_growth(guard, sample.unwrap_or(&self.truth.start), &self.system.scales)
     }
 }
 
-/// The largest of the contributions of the states' errors to that of a row's value.
-pub(super) fn guard_growth(row: &[f64], state: &[f64], growth: &[f64], scales: &[f64]) -> f64 {
-    let part = |i: usize| row[i].abs() * (scales[i] + state[i].abs()) * growth[i];
-    (0..state.len()).map(part).fold(0.0, f64::max)
+/// The largest of the contributions of the states' errors, as they are in a row of the truth, to
+/// that of a guard's value.
+pub(super) fn guard_growth(guard: &[f64], row: &SystemTruthRow, scales: &[f64]) -> f64 {
+    let parts = guard.iter().zip(&row.growth).zip(scales);
+    let parts = parts.map(|((factor, growth), scale)| factor.abs() * scale * growth);
+    (1.0 + row.size) * parts.fold(0.0, f64::max)
 }
 
 impl SystemSegment<'_> {
@@ -220,9 +221,8 @@ impl SystemSegment<'_> {
             return None;
         }
         let scan = self.scan;
-        let state = &self.point(at)[..scan.system.states.len()];
         let elapsed = self.began + at;
-        let growth = scan.growth(guard.row, state, elapsed) * n.max(1) as f64;
+        let growth = scan.growth(guard.row, elapsed) * n.max(1) as f64;
         let makes = scan.makes(self.mode, guard);
         let crossed =
             if margin < 0.0 { None } else { self.crossed(n, guard, makes, (at, maximum)) };

@@ -1,11 +1,14 @@
 //! The truth of a case of a piecewise-affine system: its tables, or its run made again.
 
-use super::decimal;
+use super::{decimal, system_growth};
 use crate::case::{FileError, SystemCase};
 use crate::engine::Ended;
 use percuss::TwoWord;
 use percuss::affine::System;
 use std::collections::BTreeMap;
+
+/// A state that stays below this part of the largest is called faint.
+const FAINT: f64 = 1e-3;
 
 /// A row of a table.
 #[derive(Clone, Debug)]
@@ -22,6 +25,9 @@ pub struct SystemTruthRow {
     pub growth_time: f64,
     /// How much errors have grown in each state.
     pub growth: Vec<f64>,
+    /// The largest state of the run so far, over its scale: what rounds in one state grows into the
+    /// others.
+    pub size: f64,
 }
 
 /// What is true of a case of a system.
@@ -69,6 +75,12 @@ impl SystemTruth {
         let (start, events_between) =
             rest.split_first().ok_or_else(|| refused("holds no start"))?;
         let ended = ending(&last.0).ok_or_else(|| refused("its last row names no ending"))?;
+        if ended == Ended::BeyondGuard {
+            return Err(refused(
+                "the run ends where a mode is entered beyond one of its guards; accepted is a case \
+                 whose horizon is before that",
+            ));
+        }
         let mut mode = start.1.mode;
         let mut rows = Vec::new();
         for (name, row) in events_between {
@@ -80,7 +92,7 @@ impl SystemTruth {
         }
         let earliest = table.heading.get("accumulation.earliest");
         let earliest = earliest.and_then(|it| decimal::parse(it)).map(TwoWord::value);
-        Ok(Self {
+        let mut truth = Self {
             start: start.1.clone(),
             events: rows,
             end: last.1.clone(),
@@ -88,7 +100,39 @@ impl SystemTruth {
             span: earliest.unwrap_or_else(|| case.span()),
             samples: sampled.rows.into_iter().map(|(_, row)| row).collect(),
             ordered: table.heading.contains_key("order_matters"),
-        })
+        };
+        system_growth::round_instants(&mut truth, case);
+        Ok(truth.with_sizes(&case.system.scales))
+    }
+
+    /// The truth with the largest state so far in each row.
+    #[must_use]
+    pub(super) fn with_sizes(mut self, scales: &[f64]) -> Self {
+        let rows = [&mut self.start, &mut self.end];
+        let mut rows: Vec<_> =
+            rows.into_iter().chain(&mut self.events).chain(&mut self.samples).collect();
+        rows.sort_by(|a, b| a.elapsed.value().total_cmp(&b.elapsed.value()));
+        let mut largest = 0.0_f64;
+        for row in rows {
+            let sizes =
+                row.state.iter().zip(scales).map(|(state, scale)| state.value().abs() / scale);
+            largest = sizes.fold(largest, f64::max);
+            row.size = largest;
+        }
+        self
+    }
+
+    /// The numbers of the states that move, but stay below a thousandth of the size beside which
+    /// their errors are judged: a wrong value of them is hardly seen.
+    #[must_use]
+    pub fn faint_states(&self, scales: &[f64]) -> Vec<usize> {
+        let rows = || self.events.iter().chain(&self.samples).chain([&self.start, &self.end]);
+        let largest = rows().fold(1.0, |most: f64, row| most.max(row.size));
+        let extent = |n: usize| {
+            rows().fold(0.0, |most: f64, row| most.max(row.state[n].value().abs() / scales[n]))
+        };
+        let is_faint = |n: &usize| (f64::MIN_POSITIVE..FAINT * largest).contains(&extent(*n));
+        (0..scales.len()).filter(is_faint).collect()
     }
 
     /// The times since the start at which the state is known.
@@ -179,6 +223,7 @@ fn read_row(
         state: state.clone().map(number).collect::<Option<_>>()?,
         growth_time: if of_events { growth(state.end)? } else { 1.0 },
         growth: (state.end + at..state.end + at + states).map(growth).collect::<Option<_>>()?,
+        size: 0.0,
     };
     Some((if of_events { record.get(1)?.to_owned() } else { String::new() }, row))
 }

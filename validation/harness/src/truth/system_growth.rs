@@ -10,6 +10,7 @@
 use super::{SystemTruth, SystemTruthRow};
 use crate::case::SystemCase;
 use nalgebra::{DMatrix, DVector, RowDVector};
+use percuss::TwoWord;
 use percuss::affine::{Row, System};
 
 /// A rate that is smaller than this part of what it is summed from is none: the event comes with
@@ -58,6 +59,23 @@ pub(super) fn fill(truth: &mut SystemTruth, case: &SystemCase) {
         };
         motion.pass(&mut sources, &begin, row);
         begin = row.clone();
+    }
+}
+
+/// Takes a table's samples from its exact instants, k/n of the run, to the f64 next to each: these
+/// are the times at which engines are asked for the state.
+pub(super) fn round_instants(truth: &mut SystemTruth, case: &SystemCase) {
+    let motion = SystemMatrices::of(case);
+    for row in &mut truth.samples {
+        let asked = TwoWord::new(row.elapsed.value());
+        let ahead = asked.minus(row.elapsed).value();
+        let matrix = motion.matrix(&motion.system.modes[row.mode].matrix);
+        let rates = matrix * motion.point(&rounded(row), asked.value());
+        // The time is a rounding, so that second derivatives change nothing.
+        for (state, rate) in row.state.iter_mut().zip(rates.iter()) {
+            *state = state.plus(TwoWord::new(rate * ahead));
+        }
+        row.elapsed = asked;
     }
 }
 

@@ -44,7 +44,7 @@ impl SystemTruth {
         let replay = SystemReplay { case, solver, begin: Time::of(&start.time) };
         let events = replay.events(start)?;
         replay.refuse_close_instants(&events)?;
-        let mut truth = replay.truth(&events)?;
+        let mut truth = replay.truth(&events)?.with_sizes(&case.system.scales);
         system_growth::fill(&mut truth, case);
         Ok(truth)
     }
@@ -81,13 +81,28 @@ impl SystemReplay<'_> {
     fn events(&self, start: &StartPoint) -> Result<Vec<Event<DoubleDouble>>, String> {
         let past = if self.case.backward { -self.nearest() } else { self.nearest() };
         let run = self.solver.run_enclosed(start, DoubleDouble::exact(self.case.until + past));
-        let run = run.ok_or("its start is not decided in 106 bits")?;
+        let mut run = run.ok_or("its start is not decided in 106 bits")?;
         let mut events = vec![run.start()];
-        for event in run {
+        for event in run.by_ref() {
             events.push(event);
             if events.len() > MOST_EVENTS {
                 return Err(format!("has more than {MOST_EVENTS} events; it needs tables"));
             }
+        }
+        if let Some(What::Until(mode, until)) = run.beyond() {
+            let mode = &self.case.system.modes[mode];
+            let ended = self.elapsed(&events[events.len() - 1].time).value();
+            return Err(format!(
+                "its run ends {ended:?} after the start, where mode {:?} is entered beyond its guard of {:?}; \
+                 accepted are a start inside its mode and a horizon before that",
+                mode.name, mode.until[until].name
+            ));
+        }
+        if run.overflows() {
+            return Err(
+                "its state becomes larger than a number can be; accepted is an earlier horizon"
+                    .into(),
+            );
         }
         Ok(events)
     }
@@ -139,9 +154,8 @@ impl SystemReplay<'_> {
             Ending::Horizon => (Ended::Horizon, self.case.span()),
             Ending::LeavesDomain => (Ended::LeavesDomain, self.case.span()),
             Ending::NoProgress => (Ended::NoProgress, self.case.span()),
-            Ending::BeyondGuard => (Ended::BeyondGuard, self.case.span()),
             Ending::Accumulation(earliest, _) => (Ended::Accumulation, end + earliest.to_f64()),
-            Ending::Undecided => {
+            Ending::BeyondGuard | Ending::Undecided => {
                 return Err(format!(
                     "is not decided in 106 bits {end:e} after the start; it needs tables"
                 ));
@@ -230,6 +244,6 @@ impl SystemReplay<'_> {
         state: Vec<TwoWord>,
     ) -> SystemTruthRow {
         let growth = vec![1.0; state.len()];
-        SystemTruthRow { event, mode, elapsed, state, growth_time: 1.0, growth }
+        SystemTruthRow { event, mode, elapsed, state, growth_time: 1.0, growth, size: 0.0 }
     }
 }

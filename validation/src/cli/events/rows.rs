@@ -51,13 +51,11 @@ impl Rows<'_> {
         let Some(mut run) = run else { bail!("{}: its start is not decided", self.system.name) };
         let mut end = RunEnd::default();
         let begin = run.start();
-        let mut lost = false;
         let most = self.most.map_or(usize::MAX, |most| most + 1);
         for (n, event) in std::iter::once(begin).chain(run.by_ref()).take(most).enumerate() {
-            lost |= event.what == What::End(Ending::Undecided);
             let name = self.name(&event, &mut end);
             let row = self.row(n, &event, name)?;
-            if !has_digits(&row.time) {
+            if !has_digits(&row.time) && self.is_lost(&event) {
                 end.notes.push(format!(
                     "after {} events no digit of the time is left: the run ends there",
                     n.saturating_sub(1)
@@ -66,20 +64,40 @@ impl Rows<'_> {
             }
             take(row, event)?;
         }
-        if lost {
-            end.notes.push(self.search_note(&run));
-        }
+        end.notes.extend(self.cause(&run));
         Ok(end)
+    }
+
+    /// Whether the error of an event's time, of which no digit is left, is more than a rounding of
+    /// the system's unit of time: a time next to zero has no digit either.
+    fn is_lost(&self, event: &Event<DoubleDouble>) -> bool {
+        let error = event.errors.as_ref().map_or(f64::INFINITY, |it| it.time);
+        error.is_nan() || error > f64::EPSILON * self.system.time_scale
+    }
+
+    /// What a run that had to end where it did says of it.
+    fn cause(&self, run: &Run<'_, DoubleDouble>) -> Option<String> {
+        match run.ending()? {
+            Ending::Undecided => Some(self.search_note(run)),
+            Ending::BeyondGuard => {
+                let guard = self.event_name(&run.beyond()?)?.to_owned();
+                Some(format!("the guard of \"{guard}\" is positive there"))
+            }
+            _ => None,
+        }
     }
 
     /// How far the search for the next event of an undecided run came, and what it left open.
     fn search_note(&self, run: &Run<'_, DoubleDouble>) -> String {
-        let searched = shortest(run.searched().value().to_f64());
+        let searched = about(run.searched().value().to_f64());
+        if run.overflows() {
+            return format!("its state at about {searched} is larger than a number can be");
+        }
         let open = run.doubtful().and_then(|it| self.event_name(&it).map(str::to_owned));
         let open = open.map_or(String::new(), |name| {
             format!(", where rounding leaves open whether the guard of \"{name}\" crosses")
         });
-        format!("its search for the next event came to {searched}{open}")
+        format!("its search for the next event came to about {searched}{open}")
     }
 
     /// The name of an event, if it is none of a start or an ending.
@@ -138,15 +156,17 @@ impl Rows<'_> {
                 ("undecided", "what comes next is not decided by 106 bits".to_owned(), false)
             }
         };
-        end.notes.push(format!("the run ends at {}: {note}", shortest(time.to_f64())));
+        let error = event.errors.as_ref().map_or(0.0, |it| it.time);
+        end.notes.push(format!("the run ends at {}: {note}", proved(time, error, self.digits)));
         end.undecided = !decided;
         name.to_owned()
     }
 }
 
-/// The fewest digits that tell a number from its neighbours, with an exponent where it is large.
-fn shortest(number: f64) -> String {
-    let text = format!("{number:?}");
+/// A number to six digits, with an exponent where it is large.
+fn about(number: f64) -> String {
+    let rounded = format!("{number:.5e}").parse().unwrap_or(number);
+    let text = format!("{rounded:?}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 

@@ -1,0 +1,101 @@
+//! Eigenvalues that are close to each other, with couplings that are large beside their distance.
+
+use super::{enclosed, events, names, system};
+use crate::double_double::DoubleDouble;
+use percuss::affine::System;
+
+fn watched(states: &str, forcing: &str, equations: &str, guard: &str, start: &str) -> System {
+    system(&format!(
+        "schema = 1\nname = \"close\"\nstates = [{states}]\n{forcing}\n[parameters]\nr = 1.1\n\
+         [[mode]]\nname = \"free\"\nequations = [{equations}]\n[[mode.watch]]\nname = \"m\"\n\
+         guard = \"{guard}\"\n[start]\nmode = \"free\"\n{start}\n",
+    ))
+}
+
+/// a = exp(-t), d = 1e4 (exp(-t) - exp(-1.1 t)), which is 350 at most.
+#[test]
+fn two_tanks_in_a_row() {
+    let tanks = |level: &str| {
+        let equations = "\"a' = -a\", \"d' = 1000*a - r*d\"";
+        watched("\"a\", \"d\"", "", equations, &format!("d > {level}"), "a = 1\nd = 0")
+    };
+    assert_eq!(names(&tanks("90000"), &enclosed::<DoubleDouble>(&tanks("90000"), 50.0)), ["end"]);
+    let high = tanks("300");
+    let all = enclosed::<DoubleDouble>(&high, 0.9);
+    assert_eq!(names(&high, &all), ["m", "end"]);
+    let own = events::<f64>(&high, 0.9);
+    let times = [all[0].time.value().words().0, own[0].time.high + own[0].time.low];
+    for t in times {
+        let level = 1e4 * ((-t).exp() - (-1.1 * t).exp());
+        assert!((level - 300.0).abs() < 1e-10, "{t:e}: {level:e}");
+        assert!((t - 0.515_286_064_623_728_3).abs() < 1e-15, "{t:e}");
+    }
+}
+
+/// Forced next to its frequency or at it, an oscillator beats: errors grow no faster than it.
+#[test]
+fn forcing_near_resonance() {
+    for (damping, omega) in [("1/50", 1.05), ("1/1000", 1.0001), ("0", 1.01), ("0", 1.0)] {
+        let forcing = format!("forcing = {{ omega = {omega:?}, phi = 0 }}");
+        let equations = format!("\"x' = v\", \"v' = cos - x - {damping}*v\"");
+        let far = watched("\"x\", \"v\"", &forcing, &equations, "x > 10000", "x = 0\nv = 0");
+        assert_eq!(names(&far, &enclosed::<DoubleDouble>(&far, 1000.0)), ["end"], "{omega}");
+        assert_eq!(names(&far, &enclosed::<f64>(&far, 30.0)), ["end"], "{omega}");
+    }
+    // x = t sin(t)/2 at resonance: it passes 3 near t = 7.1.
+    let near = watched(
+        "\"x\", \"v\"",
+        "forcing = { omega = 1.0, phi = 0 }",
+        "\"x' = v\", \"v' = cos - x\"",
+        "x > 3",
+        "x = 0\nv = 0",
+    );
+    for t in [
+        enclosed::<DoubleDouble>(&near, 8.0)[0].time.value().words().0,
+        events::<f64>(&near, 8.0)[0].time.high,
+    ] {
+        assert!((0.5 * t * t.sin() - 3.0).abs() < 1e-14, "{t:e}");
+    }
+}
+
+/// Two oscillators that do not act on each other, with frequencies that are close.
+#[test]
+fn oscillators_side_by_side() {
+    let states = "\"a\", \"b\", \"d\", \"e\"";
+    let equations = "\"a' = b\", \"b' = -a\", \"d' = e\", \"e' = -r*d\"";
+    let start = "a = 0.1\nb = 0.1\nd = 0.1\ne = 0";
+    let far = watched(states, "", equations, "a + d > 1", start);
+    assert_eq!(names(&far, &enclosed::<DoubleDouble>(&far, 3000.0)), ["end"]);
+}
+
+/// Pairs that hardly turn, and equal pairs, beside couplings of any size.
+#[test]
+fn pairs_that_hardly_turn_and_equal_ones() {
+    for coupling in ["1", "1000"] {
+        let equations = format!("\"a' = {coupling}*b - a\", \"b' = -b - a/{coupling}^2/10000\"");
+        let level = format!("a > 10*{coupling}");
+        let far = watched("\"a\", \"b\"", "", &equations, &level, "a = 1\nb = 1");
+        assert_eq!(names(&far, &enclosed::<DoubleDouble>(&far, 100.0)), ["end"], "{coupling}");
+        let states = "\"a\", \"b\", \"d\", \"e\"";
+        let equations = format!(
+            "\"a' = b - a\", \"b' = -a - b\", \"d' = e - d\", \"e' = {coupling}*a - d - e\""
+        );
+        let level = format!("d > 10*{coupling}");
+        let far = watched(states, "", &equations, &level, "a = 1\nb = 1\nd = 1\ne = 1");
+        assert_eq!(names(&far, &enclosed::<DoubleDouble>(&far, 100.0)), ["end"], "{coupling}");
+    }
+}
+
+/// x is zero for ever, and stays below any digit of a motion that would grow.
+#[test]
+fn what_is_zero_does_not_grow() {
+    for (rate, coupling) in [("r", "10"), ("r", "7"), ("13/10", "10"), ("-r", "10")] {
+        let equations = format!("\"x' = {rate}*x\", \"y' = {coupling}*x - 2*y + 1\"");
+        let at_rest = watched("\"x\", \"y\"", "", &equations, "x + 1/1000 < 0", "x = 0\ny = 0");
+        let all = enclosed::<DoubleDouble>(&at_rest, 300.0);
+        let end = &all[all.len() - 1];
+        assert_eq!(names(&at_rest, &all), ["end"], "{rate}");
+        let (x, off) = (end.state[0].words().0.abs(), end.errors.as_ref().unwrap().state[0]);
+        assert!(x <= off, "{rate}: {x:e} is off by more than {off:e}");
+    }
+}
