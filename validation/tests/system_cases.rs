@@ -114,9 +114,57 @@ fn a_run_in_106_bits_is_the_table() {
             assert!(off <= 1e-20 * proved.growth_time * case.span(), "{}: {off:e}", case.name);
         }
         assert_eq!(own.samples.len(), proved.samples.len(), "{}", case.name);
+        for (own, proved) in own.samples.iter().zip(&proved.samples) {
+            let apart = own.elapsed.minus(proved.elapsed).value().abs();
+            assert!(apart <= f64::EPSILON * case.span(), "{}: {apart:e}", case.name);
+            // The f64 of an instant is that of a quotient in a table, of a rounded one here.
+            for (n, (a, b)) in
+                own.state.iter().zip(&proved.state).enumerate().filter(|_| apart == 0.0)
+            {
+                let off = a.minus(*b).value().abs() / case.system.scales[n];
+                let most = 1e-19 * (1.0 + proved.size) * proved.growth[n];
+                assert!(off <= most, "{} at {:e}: {off:e}", case.name, own.elapsed.value());
+            }
+        }
         let ends = own.span - proved.span;
         assert!(ends.abs() <= 1e-8 * case.span(), "{}: {ends:e}", case.name);
     }
+}
+
+/// In metres a height is rounded by more than a small velocity, and the next impact hands it on.
+#[test]
+fn a_ball_from_high_up_is_judged_beside_its_height() {
+    let folder = tempfile::tempdir().expect("a folder");
+    for height in [1.0, 50.0, 100.0, 1e4] {
+        let text = format!(
+            "[case]\nname = \"from-{height}\"\nsystem = \"bouncing-ball\"\nwhy = \"High.\"\ntrouble = \
+             [\"jump\"]\n[parameters]\ng = 9.81\ne = 0.8\n[start]\nmode = \"flight\"\nx = {height:?}\nv = 0\n\
+             [horizon]\nuntil = 30.0\n"
+        );
+        fs::write(folder.path().join(format!("{height}.toml")), text).expect("written");
+    }
+    let output = run(&["validate", "--cases", &name(folder.path()), "-e", "^(exact|.*rkv655e)$"]);
+    let (table, said) = (text(&output.stdout), text(&output.stderr));
+    assert_eq!(output.status.code(), Some(0), "{table}{said}");
+    assert!(table.contains(" 0 fail, 0 error"), "{table}");
+    assert!(!said.contains("so small"), "{said}");
+    // What stays far below the others is said to be seen hardly.
+    let faint = "[case]\nname = \"faint\"\nsystem = \"bouncing-ball\"\nwhy = \"Low.\"\ntrouble = [\"jump\"]\n\
+                 [start]\nmode = \"flight\"\nx = 1e-5\nv = 0\n[horizon]\nuntil = 0.0015\n";
+    let low = tempfile::tempdir().expect("a folder");
+    fs::write(low.path().join("faint.toml"), faint).expect("written");
+    let said = text(&run(&["validate", "--cases", &name(low.path()), "-e", "exact"]).stderr);
+    assert!(said.contains("faint: x stays so small"), "{said}");
+}
+
+#[test]
+fn a_run_beyond_a_guard_is_refused() {
+    let below = "[case]\nname = \"below\"\nsystem = \"bouncing-ball\"\nwhy = \"Below.\"\ntrouble = \
+                 [\"jump\"]\n[start]\nmode = \"flight\"\nx = -1\nv = 0\n[horizon]\nuntil = 1.0\n";
+    let folder = tempfile::tempdir().expect("a folder");
+    fs::write(folder.path().join("below.toml"), below).expect("written");
+    let wanted = ["below.toml", "beyond its guard of \"impact\"", "accepted"];
+    refused(&["validate", "--cases", &name(folder.path())], &wanted);
 }
 
 #[test]

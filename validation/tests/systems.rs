@@ -117,7 +117,45 @@ fn endings_have_their_exit_codes() {
     let rows = rows(&text(&output.stdout));
     assert_eq!(rows[rows.len() - 2][2], "up");
     assert_eq!(rows[rows.len() - 1][1], rows[rows.len() - 2][1]);
-    assert!(text(&output.stderr).contains("ends at 0.25:"), "{}", text(&output.stderr));
+    assert!(
+        text(&output.stderr).contains("ends at 0.25000000000000000:"),
+        "{}",
+        text(&output.stderr)
+    );
+}
+
+/// Its time has no digit, and is known all the same.
+#[test]
+fn an_event_at_time_zero_does_not_end_the_run() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let start = folder.path().join("before.toml");
+    let text = "[start]\nmode = \"flight\"\nt = -1.5\nx = 0\nv = 1.5\n";
+    std::fs::write(&start, text).expect("written");
+    let start = start.to_str().expect("UTF-8");
+    let csv = stdout(&["events", "bouncing-ball", "--until", "1.2", "--start", start]);
+    let rows = rows(&csv);
+    let named: Vec<&str> = rows.iter().map(|row| row[2].as_str()).collect();
+    assert_eq!(named, ["", "impact", "impact", "impact", "end"], "{csv}");
+    assert_eq!(rows[2][1], "0.75000000000000000");
+}
+
+#[test]
+fn what_ends_a_run_is_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let below = folder.path().join("below.toml");
+    std::fs::write(&below, "[start]\nmode = \"flight\"\nx = -1\nv = 0\n").expect("written");
+    let below = below.to_str().expect("UTF-8");
+    let output = run(&["events", "bouncing-ball", "--until", "1", "--start", below]);
+    let said = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said.contains("the guard of \"impact\" is positive there"), "{said}");
+    let file = folder.path().join("grown.system.toml");
+    let grown = "schema = 1\nname = \"grown\"\nstates = [\"x\"]\n[[mode]]\nname = \"free\"\n\
+                 equations = [\"x' = 1000*x\"]\n[start]\nmode = \"free\"\nx = 1\n";
+    std::fs::write(&file, grown).expect("written");
+    let output = run(&["events", file.to_str().expect("UTF-8"), "--until", "2"]);
+    let said = text(&output.stderr);
+    assert!(said.contains("is too large for its bounds to be numbers"), "{said}");
 }
 
 #[test]

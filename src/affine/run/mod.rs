@@ -97,10 +97,15 @@ impl<T: Number> Run<'_, T> {
         }
     }
 
-    /// Whether the run has ended because its state is too large for the number type.
+    /// Whether the run has ended as undecided where its state, or a bound of it, is too large for
+    /// the number type.
     #[must_use]
     pub fn overflows(&self) -> bool {
-        self.ended && self.here().is_none()
+        /// Room for the bounds of derivatives.
+        const LARGEST: f64 = 1e280;
+        let within = |it: &T| it.to_f64().abs() <= LARGEST;
+        let is_large = || self.here().is_none_or(|(_, state)| !state.iter().all(within));
+        self.ending() == Some(&Ending::Undecided) && is_large()
     }
 
     /// The event of the present mode whose guard was positive at its entry, in a run that ended so.

@@ -100,7 +100,7 @@ impl SystemReplay<'_> {
         }
         if run.overflows() {
             return Err(
-                "its state becomes larger than a number can be; accepted is an earlier horizon"
+                "its state becomes too large for bounds of it to be numbers; accepted is an earlier horizon"
                     .into(),
             );
         }

@@ -91,7 +91,9 @@ impl Rows<'_> {
     fn search_note(&self, run: &Run<'_, DoubleDouble>) -> String {
         let searched = about(run.searched().value().to_f64());
         if run.overflows() {
-            return format!("its state at about {searched} is larger than a number can be");
+            return format!(
+                "its state at about {searched} is too large for its bounds to be numbers"
+            );
         }
         let open = run.doubtful().and_then(|it| self.event_name(&it).map(str::to_owned));
         let open = open.map_or(String::new(), |name| {
