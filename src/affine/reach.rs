@@ -22,7 +22,7 @@ const REMAINDER: f64 = 3e-2;
 /// The share of a guard's size that has to be left when its fastest blocks are enclosed.
 const LEFT: f64 = 0.25;
 
-/// The same where what is left has no eighth derivative: rounding is far below it.
+/// The same where a constant is all that is left: nothing of it changes, and rounding is far below.
 const CLOSE: f64 = 1e-3;
 
 /// The share of its largest part that a guard near zero is taken to have.
@@ -132,8 +132,8 @@ fn enclose<T: Number>(
             Later::Polynomial | Later::Growing(_) => break,
         };
         let rest = if k + 1 < row.parts.len() { rests[k + 1] } else { 0.0 };
-        // Where nothing but polynomials is left, a piece has no remainder that has to be small.
-        let share = if rest == 0.0 { CLOSE } else { LEFT };
+        let is_constant = || row.parts[k + 1..].iter().all(|it| it.norms[1] == 0.0);
+        let share = if rest == 0.0 && is_constant() { CLOSE } else { LEFT };
         if value > share * begin {
             if part.later == Later::Fading && rest < MUCH * best {
                 let from = row.first_column(k + 1);
