@@ -177,7 +177,8 @@ class Builder:
     def value_of(self, name: str, within: tuple = ()) -> list:
         """The coefficients of a state, a parameter, a reserved word or a `let`."""
         if name not in self.lets:
-            return self.known[name] if name in self.known else self.unknown(name)
+            known = name in self.known
+            return self.known[name] if known else self.refuse(f"{name!r} means nothing here")
         if name in within:
             raise Refused(f"{name!r} is defined by itself")
         if name not in self.known:
@@ -269,9 +270,6 @@ class Builder:
 
     def refuse(self, why: str):
         raise Refused(why)
-
-    def unknown(self, name: str):
-        raise Refused(f"{name!r} means nothing here")
 
     def start_values(self, modes: dict) -> dict:
         """{mode, t, state}: the mode's name, the clock, a row of coefficients for each state."""

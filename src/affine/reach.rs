@@ -22,7 +22,8 @@ const REMAINDER: f64 = 3e-2;
 /// The share of a guard's size that has to be left when its fastest blocks are enclosed.
 const LEFT: f64 = 0.25;
 
-/// The same where a constant is all that is left: nothing of it changes, and rounding is far below.
+/// The share of a guard's size that has to be left where all but a constant is enclosed: rounding
+/// is far below it.
 const CLOSE: f64 = 1e-3;
 
 /// The share of its largest part that a guard near zero is taken to have.

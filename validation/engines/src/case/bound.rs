@@ -35,7 +35,8 @@ pub enum Quantity {
     /// (a lower limit).
     ValidGain,
     /// Error after one passage through the next events from states of the run, over
-    /// unit x (1 + size) x growth, sizes as above.
+    /// unit x (1 + size) x growth, where the size is that of the value, or of the largest state so
+    /// far in a piecewise-affine system.
     RestartError,
     /// Restarts that gave no result.
     RestartsFailed,

@@ -43,7 +43,7 @@ fn by_value(problem: &SystemProblem, truth: &SystemTruth) -> Vec<Decision> {
             problem.checked.decisions((mode, row.event), elapsed, &after)
         {
             let by_state = guard_growth(&deciding, row, &system.scales);
-            let size = 1.0 + row.size.max(elapsed / system.time_scale);
+            let size = row.size_of_time(system.time_scale);
             let by_time = rate.abs() * system.time_scale * size * row.growth_time;
             let growth = by_state.max(by_time) * (n + 1) as f64;
             found.push(Decision { elapsed, margin: value.abs(), growth });

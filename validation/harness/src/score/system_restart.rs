@@ -166,7 +166,7 @@ impl SystemRestartRun {
         let scale = self.task.system.system().time_scale;
         self.truth.events.windows(2).all(|pair| {
             let apart = pair[1].elapsed.minus(pair[0].elapsed).value();
-            let size = 1.0 + pair[1].size.max(pair[1].elapsed.value() / scale);
+            let size = pair[1].size_of_time(scale);
             apart == 0.0 || apart > MOST_UNITS * unit * scale * size * pair[1].growth_time
         })
     }

@@ -30,6 +30,15 @@ pub struct SystemTruthRow {
     pub size: f64,
 }
 
+impl SystemTruthRow {
+    /// What an error of a time is judged beside, over the time scale: one, and the time or the
+    /// largest state so far, whichever is larger.
+    #[must_use]
+    pub fn size_of_time(&self, time_scale: f64) -> f64 {
+        1.0 + self.size.max(self.elapsed.value().abs() / time_scale)
+    }
+}
+
 /// What is true of a case of a system.
 #[derive(Clone, Debug)]
 pub struct SystemTruth {
