@@ -1,13 +1,13 @@
 //! Heun's method with fixed steps: an engine in a crate of its own, scored and reported by the
-//! whole program.
+//! whole program, on the oscillator and on every other system alike.
 //!
 //! `cargo run --release -p percuss-validation --example engine -- validate -e '^(exact|heun)$'`
 
-use percuss::Phase;
 use percuss_validation::engine::{
-    Accuracy, Colours, Declaration, Engine, Equations, Event, Failure, Limits, Location,
-    Oscillator, Outcome, Role, Stepping, Task, Work, shortest_time,
+    Accuracy, Colours, Declaration, Engine, Equations, Failure, Limits, Location, Numbers, Role,
+    Stepping, SystemEvent, SystemOutcome, SystemTask, Work,
 };
+use percuss_validation::system::{Affine, Values};
 use std::process::ExitCode;
 
 /// Heun's method: a step of Euler, then one by the trapezoidal rule.
@@ -29,83 +29,106 @@ impl Engine for Heun {
         }
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+    fn takes(&self, task: &SystemTask) -> Result<(), &'static str> {
+        let watches = task.system.system().modes.iter().any(|mode| !mode.watch.is_empty());
+        match task.system.is_backward() {
+            true => Err("it does not run back in time"),
+            false if watches => Err("it reports no events that end no mode"),
+            false => Ok(()),
+        }
+    }
+
+    fn run(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        self.takes(task).map_err(Failure::new)?;
         let step = accuracy.step().ok_or_else(|| Failure::new("needs a step"))?;
-        let step = step * shortest_time(&task.parameters);
-        let mut walk = HeunRun {
-            equations: Oscillator::of(&task.parameters, task.forcing_angle),
-            work: Work::default(),
-        };
-        let times = task.sample_times();
-        let mut outcome = Outcome { samples: vec![task.state], ..Outcome::default() };
-        let (mut t, mut phase, mut state) = (0.0, task.phase, task.state);
-        while t < task.span {
-            if walk.work.rhs_evaluations > limits.calls {
-                return Err(Failure::new("gave up"));
+        let step = step * task.shortest_time();
+        let equations = Affine::of(&task.system);
+        let mut walk = HeunRun { equations, work: Work::default() };
+        let mut outcome = SystemOutcome::default();
+        let (mut t, mut mode, mut state) = (0.0, task.mode, task.state);
+        let mut entered = equations.enter(None, mode, t, &state);
+        while t < task.span || entered.fires.is_some() {
+            if walk.work.rhs_evaluations > limits.calls || outcome.events.len() > limits.events {
+                return Err(Failure::beyond_limits(format!("gave up at {t}")));
             }
             let whole = step.min(task.span - t);
-            let found = walk.guard_that_rises(phase, t, &state, whole);
-            let length = found.map_or(whole, |guard| walk.locate(phase, t, &state, whole, guard));
-            while let Some(time) = times.get(outcome.samples.len()).filter(|it| **it <= t + length)
-            {
-                outcome.samples.push(walk.step(phase, t, &state, time - t));
+            let found = entered.fires.map(|guard| (guard, 0.0));
+            let found = found.or_else(|| walk.first_rise(mode, t, &state, whole));
+            let length = found.map_or(whole, |(_, length)| length);
+            let due = |time: &&f64| **time <= t + length;
+            while let Some(time) = task.samples.get(outcome.samples.len()).filter(due) {
+                outcome.samples.push(walk.step(mode, t, &state, time - t));
             }
-            state = walk.step(phase, t, &state, length);
+            state = walk.step(mode, t, &state, length);
             t = if length < task.span - t { t + length } else { task.span };
             walk.work.steps += 1;
-            if let Some(guard) = found {
-                (phase, state) = walk.equations.switch(phase, guard, t, &state);
-                outcome.events.push(Event { event: guard, mode: phase, elapsed: t, state });
+            if let Some((guard, _)) = found {
+                let before = mode;
+                (mode, state) = equations.switch(before, guard, t, &state);
+                entered = equations.enter(Some((before, guard)), mode, t, &state);
+                outcome.events.push(SystemEvent { event: guard, mode, elapsed: t, state });
             }
         }
-        (outcome.end, outcome.work) = (state, walk.work);
+        (outcome.end, outcome.ended_at, outcome.work) = (state, t, walk.work);
+        outcome.samples.resize(task.samples.len(), state);
         Ok(outcome)
     }
 }
 
 /// The equations, and what was counted.
-struct HeunRun {
-    equations: Oscillator,
+struct HeunRun<'a> {
+    equations: Affine<'a>,
     work: Work,
 }
 
-impl HeunRun {
-    fn step(&mut self, phase: Phase, t: f64, state: &[f64; 4], length: f64) -> [f64; 4] {
-        let (mut here, mut there) = ([0.0; 4], [0.0; 4]);
-        self.equations.derivatives(phase, t, state, &mut here);
-        let euler: [f64; 4] = std::array::from_fn(|k| state[k] + length * here[k]);
-        self.equations.derivatives(phase, t + length, &euler, &mut there);
+impl HeunRun<'_> {
+    fn step(&mut self, mode: usize, t: f64, state: &Values, length: f64) -> Values {
+        let rates = Values::all(state.len(), 0.0);
+        let (mut here, mut there, mut euler) = (rates, rates, *state);
+        self.equations.derivatives(mode, t, state, &mut here);
+        euler.iter_mut().zip(&*here).for_each(|(value, rate)| *value += length * rate);
+        self.equations.derivatives(mode, t + length, &euler, &mut there);
         self.work.rhs_evaluations += 2;
-        std::array::from_fn(|k| state[k] + 0.5 * length * (here[k] + there[k]))
+        let mut after = *state;
+        for (value, (here, there)) in after.iter_mut().zip(here.iter().zip(&*there)) {
+            *value += 0.5 * length * (here + there);
+        }
+        after
     }
 
-    /// A guard that is positive after a step, and not on its way back: separation begins with a
-    /// double zero of the gap, which rounding turns into a crossing in either direction.
-    fn guard_that_rises(
+    /// A guard that is positive after a step, and not on its way back: a mode may begin where one
+    /// of its guards is zero, which rounding turns into a crossing in either direction.
+    fn rising(&mut self, mode: usize, t: f64, state: &Values, length: f64) -> Option<usize> {
+        let after = self.step(mode, t, state, length);
+        let guards = self.equations.guards(mode, t + length, &after);
+        let rates = self.equations.rates(mode, t + length, &after);
+        guards.iter().zip(&*rates).position(|(guard, rate)| *guard > 0.0 && *rate > 0.0)
+    }
+
+    /// The guard that rises in a step, with the length of the step that ends where it is zero, by
+    /// bisection.
+    fn first_rise(
         &mut self,
-        phase: Phase,
+        mode: usize,
         t: f64,
-        state: &[f64; 4],
-        length: f64,
-    ) -> Option<usize> {
-        let after = self.step(phase, t, state, length);
-        let guards = self.equations.guards(phase, t + length, &after);
-        let rates = self.equations.rates(phase, t + length, &after);
-        (0..guards.len()).find(|k| guards[*k] > 0.0 && rates[*k] > 0.0)
-    }
-
-    /// The length of the step that ends where the guard is zero, by bisection.
-    fn locate(&mut self, phase: Phase, t: f64, state: &[f64; 4], whole: f64, guard: usize) -> f64 {
+        state: &Values,
+        whole: f64,
+    ) -> Option<(usize, f64)> {
+        let mut found = self.rising(mode, t, state, whole)?;
         let (mut inside, mut outside) = (0.0, whole);
         for _ in 0..52 {
             let middle = 0.5 * (inside + outside);
-            if self.guard_that_rises(phase, t, state, middle) == Some(guard) {
-                outside = middle;
-            } else {
-                inside = middle;
+            match self.rising(mode, t, state, middle) {
+                Some(guard) => (found, outside) = (guard, middle),
+                None => inside = middle,
             }
         }
-        outside
+        Some((found, outside))
     }
 }
 

@@ -12,7 +12,7 @@ use percuss_validation::bench::timed_case::TimedCase;
 use percuss_validation::bench::timed_system_case::TimedSystemCase;
 use percuss_validation::case::Cases;
 use percuss_validation::engine::{
-    Accuracy, CONTROL, Engine, Limits, Location, Script, SystemOutcome, all, wrong,
+    Accuracy, CONTROL, Engine, Limits, Location, Script, SystemOutcome, all, run_oscillator, wrong,
 };
 use percuss_validation::truth::Library;
 use std::path::{Path, PathBuf};
@@ -93,7 +93,7 @@ fn the_exact_solver_is_right_on_every_system() {
 #[test]
 fn a_wrong_answer_of_a_system_has_no_score() {
     for case in system_cases() {
-        let run = || exact_solver().run_system(&case.task, Accuracy::Exact, &Limits::default());
+        let run = || exact_solver().run(&case.task, Accuracy::Exact, &Limits::default());
         let right = run().expect("a run");
         assert!(case.score(&right).is_ok());
         let refused = |change: &dyn Fn(&mut SystemOutcome)| {
@@ -137,7 +137,7 @@ fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
     let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
     for engine in integrators {
         let accuracy = settings(engine.declaration().stepping)[2];
-        let found = none.follow(|| engine.run(&case.task, accuracy, &limits));
+        let found = none.follow(|| run_oscillator(*engine, &case.task, accuracy, &limits));
         let (name, by) = (engine.declaration().name, engine.declaration().events);
         let found = found.map(|it| it.events.len()).unwrap_or_default();
         assert_eq!(found == 0, by == Location::Harness, "{name}: {found} events");

@@ -3,7 +3,8 @@
 use percuss::Phase;
 use percuss_validation::case::{defaults, embedded};
 use percuss_validation::engine::{
-    Accuracy, Declaration, Engine, Event, Failure, Limits, Outcome, Task, exact,
+    Accuracy, Declaration, Engine, Event, Failure, Limits, Outcome, SystemOutcome, SystemTask,
+    exact,
 };
 use percuss_validation::score::Verdict;
 use percuss_validation::suite::{CaseRun, Suite, prepare, run};
@@ -21,10 +22,15 @@ impl Engine for Spoiled {
         Declaration { name: self.name, ..exact().declaration() }
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let mut outcome = exact().run(task, accuracy, limits)?;
+    fn run(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        let mut outcome = Outcome::of_system(exact().run(task, accuracy, limits)?)?;
         (self.change)(&mut outcome);
-        Ok(outcome)
+        Ok(outcome.into())
     }
 }
 

@@ -4,8 +4,8 @@ use crate::answer::checked;
 use crate::pool::Pool;
 use crate::wire::{Capabilities, EventsBy, RunAsk, SetUp, SteppedBy};
 use percuss_engines::engine::{
-    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role, Stepping,
-    SystemOutcome, SystemTask, Task,
+    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Role, Stepping,
+    SystemOutcome, SystemTask,
 };
 use std::sync::Arc;
 
@@ -122,12 +122,7 @@ impl Engine for ProgramEngine {
         }
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let task = SystemTask::of_oscillator(task)?;
-        Outcome::of_system(&self.run_system(&task, accuracy, limits)?)
-    }
-
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         accuracy: Accuracy,

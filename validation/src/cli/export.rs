@@ -39,8 +39,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
 
 /// Writes the files of a case, and says what it asks.
 fn write(case: &dyn CaseRun, folder: &Path) -> Result<(String, String)> {
-    let (name, task) = (case.name(), case.system_task()?);
-    let asked = CaseFile::new(name, &task, case.parameters());
+    let (name, task) = (case.name(), case.asked());
+    let asked = CaseFile::new(name, task, case.parameters());
     write_whole(&folder.join(format!("{name}.json")), |out| {
         compact::write(&asked, &mut *out).map_err(io::Error::from)?;
         Ok(writeln!(out)?)

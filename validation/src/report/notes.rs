@@ -3,9 +3,8 @@
 
 use super::table::wrapped;
 use super::{Order, Report, ReportEvidence, ReportRow, orders};
-use crate::engine::REFERENCE;
+use crate::engine::{ELSEWHERE, REFERENCE};
 use crate::score::Verdict;
-use crate::suite::ELSEWHERE;
 use std::collections::BTreeMap;
 
 /// The notes, and an empty line where there are any.

@@ -2,7 +2,9 @@
 
 use percuss::lanes::Instructions;
 use percuss_validation::case::{Case, Cases, Given, Problem, embedded};
-use percuss_validation::engine::{Accuracy, Engine, Failure, Limits, Outcome, Task, all};
+use percuss_validation::engine::{
+    Accuracy, Engine, Failure, Limits, Outcome, Task, all, run_oscillator,
+};
 use percuss_validation::suite::{PreparedSystem, Suite, prepare_systems};
 use percuss_validation::truth::Library;
 
@@ -13,7 +15,7 @@ fn engine() -> &'static dyn Engine {
 
 /// Runs a task.
 pub fn run(task: &Task) -> Result<Outcome, Failure> {
-    engine().run(task, Accuracy::Exact, &Limits::default())
+    run_oscillator(engine(), task, Accuracy::Exact, &Limits::default())
 }
 
 /// Runs a task by these instructions.

@@ -110,8 +110,7 @@ fn answers(engine: &str, accuracy: Accuracy, pattern: &str, folder: &Path) -> Ve
     for case in oscillator.chain(systems.iter().map(|it| it as &dyn CaseRun)) {
         let row = one(case, *engine, accuracy, Suite::Quick, &defaults);
         let Status::Ok(_, run) = row.status else { continue };
-        let task = case.system_task().expect("a task");
-        Files::of(&run, &task).write(folder, case.name());
+        Files::of(&run, case.asked()).write(folder, case.name());
         answered.push(case.name().to_owned());
     }
     answered

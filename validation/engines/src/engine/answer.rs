@@ -1,9 +1,12 @@
 //! An engine's answer, checked for completeness before anything is measured of it, and the work
 //! that it takes at the least.
 
-use super::{Accuracy, Engine, Failure, Limits, Outcome, SystemOutcome, SystemTask, Task, contain};
+use super::{
+    Accuracy, Engine, Failure, Limits, Outcome, SystemOutcome, SystemTask, Task, contain,
+    run_oscillator,
+};
 
-/// Runs an engine, contains its panics and checks that its answer is complete.
+/// Runs an engine on the oscillator, contains its panics and checks that its answer is complete.
 ///
 /// # Errors
 /// The run's failure, or what its answer lacks.
@@ -13,12 +16,12 @@ pub fn answer(
     accuracy: Accuracy,
     limits: &Limits,
 ) -> Result<Outcome, Failure> {
-    let outcome = contain(|| engine.run(task, accuracy, limits))?;
+    let outcome = contain(|| run_oscillator(engine, task, accuracy, limits))?;
     complete(&outcome, task.grid.count)?;
     Ok(outcome)
 }
 
-/// As [`answer`], of any system.
+/// Runs an engine on any system, contains its panics and checks that its answer is complete.
 ///
 /// # Errors
 /// The run's failure, or what its answer lacks.
@@ -28,20 +31,20 @@ pub fn answer_system(
     accuracy: Accuracy,
     limits: &Limits,
 ) -> Result<SystemOutcome, Failure> {
-    let outcome = contain(|| engine.run_system(task, accuracy, limits))?;
+    let outcome = contain(|| engine.run(task, accuracy, limits))?;
     complete(&outcome, task.samples.len())?;
     Ok(outcome)
 }
 
-/// Right-hand sides that a run of any system takes at the least, as far as that is known
+/// Right-hand sides that a run takes at the least, as far as that is known
 /// beforehand, where it goes on to its horizon.
 #[must_use]
-pub fn least_work_of_system(engine: &dyn Engine, task: &SystemTask, accuracy: Accuracy) -> f64 {
+pub fn least_work(engine: &dyn Engine, task: &SystemTask, accuracy: Accuracy) -> f64 {
     // No explicit method here is stable over a step of as many of the fastest decay's times as it
     // has stages: a longer run takes more than a right-hand side for each of these times.
     let stiff = if engine.is_explicit() { task.span * task.system.decay() } else { 0.0 };
     let short = least_work_of_short_steps(engine, task);
-    engine.least_work_on(task, accuracy).max(stiff).max(short)
+    engine.least_work(task, accuracy).max(stiff).max(short)
 }
 
 /// Right-hand sides that a run takes at the least because an engine keeps its steps short.

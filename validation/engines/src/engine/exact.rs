@@ -2,8 +2,12 @@
 
 use super::field::event_between;
 use super::meter::{Failure, Limits};
-use super::{Accuracy, Colours, Declaration, Engine, Event, Location, Outcome, Role, Stepping};
-use super::{REFERENCE, SystemOutcome, SystemTask, Task, Work, pins};
+use super::percussive::place;
+use super::{
+    Accuracy, Colours, Declaration, Engine, Location, Numbers, REFERENCE, Role, Stepping,
+    SystemEvent, SystemOutcome, SystemTask, Task, Work, pins,
+};
+use crate::system::Values;
 use percuss::TwoWord;
 use percuss::{Entry, Exit, Phase, Sample, Segment, Step, Trajectory};
 
@@ -26,49 +30,52 @@ impl Engine for Exact {
         }
     }
 
-    fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let mut outcome = Outcome { events: Vec::with_capacity(USUAL), ..Outcome::default() };
-        let mut run = task.problem.model.trajectory(task.problem.entry).until(task.horizon);
-        let mut elapsed = TwoWord::ZERO;
-        let mut before = task.phase;
-        loop {
-            let (duration, phase, state) = match passed(task, &mut run, &mut outcome.samples) {
-                Some(PassedPhase::Switch { duration, phase, state }) => (duration, phase, state),
-                Some(PassedPhase::Last(segment)) => {
-                    if segment.is_undecided_at(&task.horizon) {
-                        return Err(Failure::new("rounding hides how a phase ends"));
-                    }
-                    outcome.end = state_of(&segment.at_instant(&task.horizon));
-                    break;
-                }
-                None => break,
-            };
-            elapsed = elapsed.plus(duration);
-            let event = event_between(before, phase);
-            outcome.events.push(Event { event, mode: phase, elapsed: elapsed.value(), state });
-            before = phase;
-            if outcome.events.len() > limits.events {
-                return Err(Failure::new(format!("gave up after {} events", limits.events)));
-            }
-        }
-        let counters = run.counters();
-        outcome.work = Work {
-            rhs_evaluations: counters.evaluations,
-            steps: outcome.events.len() as u64 + 1,
-            ..Work::default()
-        };
-        outcome.ended_at = task.span;
-        Ok(outcome)
-    }
-
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         _: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
-        super::exact_system::run(task, limits)
+        match &task.oscillator {
+            Some(own) => run(own, limits),
+            None => super::exact_system::run(task, limits),
+        }
     }
+}
+
+/// Runs a task of the oscillator by the oscillator's own closed forms.
+fn run(task: &Task, limits: &Limits) -> Result<SystemOutcome, Failure> {
+    let events = Vec::with_capacity(USUAL);
+    let mut outcome = SystemOutcome { events, ended_at: task.span, ..SystemOutcome::default() };
+    let mut run = task.problem.model.trajectory(task.problem.entry).until(task.horizon);
+    let mut elapsed = TwoWord::ZERO;
+    let mut before = task.phase;
+    loop {
+        let (duration, phase, state) = match passed(task, &mut run, &mut outcome.samples) {
+            Some(PassedPhase::Switch { duration, phase, state }) => (duration, phase, state),
+            Some(PassedPhase::Last(segment)) => {
+                if segment.is_undecided_at(&task.horizon) {
+                    return Err(Failure::new("rounding hides how a phase ends"));
+                }
+                outcome.end = state_of(&segment.at_instant(&task.horizon));
+                break;
+            }
+            None => break,
+        };
+        elapsed = elapsed.plus(duration);
+        let (event, mode) = (event_between(before, phase), place(phase));
+        outcome.events.push(SystemEvent { event, mode, elapsed: elapsed.value(), state });
+        before = phase;
+        if outcome.events.len() > limits.events {
+            return Err(Failure::new(format!("gave up after {} events", limits.events)));
+        }
+    }
+    outcome.work = Work {
+        rhs_evaluations: run.counters().evaluations,
+        steps: outcome.events.len() as u64 + 1,
+        ..Work::default()
+    };
+    Ok(outcome)
 }
 
 /// How many events a run has room for at first.
@@ -77,20 +84,20 @@ const USUAL: usize = 128;
 /// A phase, passed.
 enum PassedPhase {
     /// It lasts so long; then this phase begins, in this state.
-    Switch { duration: TwoWord, phase: Phase, state: [f64; 4] },
+    Switch { duration: TwoWord, phase: Phase, state: Values },
     /// It is the run's last.
     Last(Box<Segment>),
 }
 
 impl PassedPhase {
     fn by_switch(duration: TwoWord, next: &Entry) -> Self {
-        let state = [next.state.p, next.state.y, next.state.q, next.v()];
+        let state = Values::of(&[next.state.p, next.state.y, next.state.q, next.v()]);
         Self::Switch { duration, phase: next.phase(), state }
     }
 }
 
 /// The run's next phase, sampled as long as samples are asked for.
-fn passed(task: &Task, run: &mut Trajectory, samples: &mut Vec<[f64; 4]>) -> Option<PassedPhase> {
+fn passed(task: &Task, run: &mut Trajectory, samples: &mut Vec<Values>) -> Option<PassedPhase> {
     if samples.len() == task.grid.count {
         return Some(match run.step()? {
             Step::Switch { duration, next } => PassedPhase::by_switch(duration, next),
@@ -106,7 +113,7 @@ fn passed(task: &Task, run: &mut Trajectory, samples: &mut Vec<[f64; 4]>) -> Opt
 }
 
 /// The grid's instants that lie in this phase.
-fn sample(task: &Task, segment: &Segment, samples: &mut Vec<[f64; 4]>) {
+fn sample(task: &Task, segment: &Segment, samples: &mut Vec<Values>) {
     let start = task.problem.entry.instant;
     while samples.len() < task.grid.count {
         let instant = start.after_periods(samples.len() as u64, u64::from(task.grid.per_period));
@@ -117,6 +124,6 @@ fn sample(task: &Task, segment: &Segment, samples: &mut Vec<[f64; 4]>) {
     }
 }
 
-fn state_of(sample: &Sample) -> [f64; 4] {
-    [sample.state.p, sample.state.y, sample.state.q, sample.v]
+fn state_of(sample: &Sample) -> Values {
+    Values::of(&[sample.state.p, sample.state.y, sample.state.q, sample.v])
 }

@@ -7,6 +7,7 @@
 //! defines (p = q + g, and q = 0 or 1 - 2 xi y where the trial force is known), always by moving q
 //! and p, because y = (1 - q)/(2 xi) would multiply what is left of the error by 1/(2 xi).
 
+use super::SystemTask;
 use super::equations::{Entered, Equations, NO_GUARD};
 use percuss::{Parameters, Phase};
 
@@ -20,9 +21,14 @@ const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 pub(super) trait Coordinates:
     Equations<Mode = Phase, State = [f64; 4], Guards = [f64; GUARDS]>
 {
-    /// Whether these are the paper's bounded co-ordinates, in which the model is one system of
-    /// many.
-    const BOUNDED: bool;
+    /// Whether a task's system has these co-ordinates: the paper's bounded ones are a system's own
+    /// states, others are defined for the oscillator alone.
+    ///
+    /// # Errors
+    /// Why it does not.
+    fn describe(_task: &SystemTask) -> Result<(), &'static str> {
+        Ok(())
+    }
 
     /// The model's equations; `angle` is omega tau + phi at the start.
     fn of(parameters: &Parameters, angle: f64) -> Self;
@@ -92,8 +98,6 @@ impl Oscillator {
 }
 
 impl Coordinates for Oscillator {
-    const BOUNDED: bool = true;
-
     fn of(parameters: &Parameters, angle: f64) -> Self {
         Self::of(parameters, angle)
     }

@@ -34,7 +34,12 @@ pub(super) struct Integration<'a, E: Equations> {
 
 impl<'a, E: Coordinates> Integration<'a, E> {
     /// The integration of the oscillator that a task asks for.
-    pub(super) fn of(task: &'a Task, equations: E) -> Self {
+    pub(super) fn of(task: &'a Task) -> Self {
+        Self::by(task, E::of(&task.parameters, task.forcing_angle))
+    }
+
+    /// The integration of a task by these equations.
+    pub(super) fn by(task: &'a Task, equations: E) -> Self {
         let period = task.problem.model.period();
         Self {
             equations,

@@ -1,4 +1,4 @@
-//! Engines: anything that can run a problem and say when its phases begin.
+//! Engines: anything that can run a piecewise-affine system and say when its modes begin.
 //!
 //! Add one by implementing [`Engine`] in a file of its own and naming it in `registry.rs`. An
 //! engine takes plain f64 slices, because the libraries disagree about their linear algebra, and is
@@ -37,7 +37,7 @@ mod watching;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
-pub use answer::{answer, answer_system, least_work_of_system};
+pub use answer::{answer, answer_system, least_work};
 pub use declaration::{Colours, Declaration, Location, REFERENCE, Role};
 pub(crate) use equations::NO_GUARD;
 pub use equations::{Entered, Equations, Numbers};
@@ -45,7 +45,8 @@ pub use exact_system::end_of_exact_run;
 pub use field::{GUARDS, Oscillator, event_between};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
-pub use percussive::percussive;
+pub use original::ELSEWHERE;
+pub use percussive::{percussive, run_oscillator};
 pub use registry::{add, all, exact, select};
 pub use script::Script;
 pub use system_task::{SystemEvent, SystemOutcome, SystemTask};
@@ -179,7 +180,7 @@ impl<M, S: Default> Default for Outcome<M, S> {
     }
 }
 
-/// Something that can run a task.
+/// Something that can run a system with modes from a start to a horizon.
 pub trait Engine: Sync {
     /// What it is.
     fn declaration(&self) -> Declaration;
@@ -197,14 +198,12 @@ pub trait Engine: Sync {
         Ok(())
     }
 
-    /// Right-hand sides that a run takes at the least, as far as that is known beforehand.
-    fn least_work(&self, _task: &Task, _accuracy: Accuracy) -> f64 {
-        0.0
-    }
-
-    /// Whether it runs other systems than the oscillator.
-    fn runs_systems(&self) -> bool {
-        true
+    /// Whether it runs this system.
+    ///
+    /// # Errors
+    /// Why it does not, as a row without a result says it.
+    fn takes(&self, _task: &SystemTask) -> Result<(), &'static str> {
+        Ok(())
     }
 
     /// Whether it is an explicit method, whose steps are no longer than stiffness lets them be.
@@ -212,35 +211,27 @@ pub trait Engine: Sync {
         false
     }
 
-    /// The longest step of a run of any other system, where the engine does not leave that to its
-    /// library.
+    /// The longest step of a run, where the engine does not leave that to its library.
     fn longest_step_on(&self, _task: &SystemTask) -> Option<f64> {
         None
     }
 
-    /// [`Engine::least_work`] of a run of any other system.
-    fn least_work_on(&self, _task: &SystemTask, _accuracy: Accuracy) -> f64 {
+    /// Right-hand sides that a run takes at the least, as far as that is known beforehand and does
+    /// not follow from [`Engine::is_explicit`] and [`Engine::longest_step_on`].
+    fn least_work(&self, _task: &SystemTask, _accuracy: Accuracy) -> f64 {
         0.0
     }
 
-    /// Runs a task of the oscillator as accurately as asked; what can be asked is its [`Stepping`].
-    ///
-    /// # Errors
-    /// [`Failure`] with the library's reason, or the limit that was passed.
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure>;
-
-    /// Runs a task of any other system, which the oscillator is the special case of.
+    /// Runs a task as accurately as asked; what can be asked is its [`Stepping`].
     ///
     /// # Errors
     /// [`Failure`] with the library's reason, the limit that was passed, or why the engine cannot.
-    fn run_system(
+    fn run(
         &self,
-        _task: &SystemTask,
-        _accuracy: Accuracy,
-        _limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
-        Err(Failure::new("runs the oscillator alone"))
-    }
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure>;
 }
 
 impl Task {

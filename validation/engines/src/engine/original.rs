@@ -5,9 +5,13 @@
 //! and the same drift come out is the paper's decoupling, tested. At a switch x and z move onto the
 //! surface and v stays, as in the bounded co-ordinates.
 
+use super::SystemTask;
 use super::equations::{Entered, Equations, NO_GUARD};
 use super::field::{Coordinates, GUARDS, count, settle, successor};
 use percuss::{Parameters, Phase};
+
+/// Why an engine with the oscillator's own co-ordinates does not run another system.
+pub const ELSEWHERE: &str = "its co-ordinates are the oscillator's";
 
 /// The model in the original co-ordinates.
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +36,10 @@ impl OriginalOscillator {
 }
 
 impl Coordinates for OriginalOscillator {
-    const BOUNDED: bool = false;
+    fn describe(task: &SystemTask) -> Result<(), &'static str> {
+        let is_oscillator = task.oscillator.is_some();
+        if is_oscillator { Ok(()) } else { Err(ELSEWHERE) }
+    }
 
     fn of(parameters: &Parameters, angle: f64) -> Self {
         let Parameters { a, b, xi, omega, g, .. } = *parameters;

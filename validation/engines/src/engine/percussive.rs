@@ -1,7 +1,10 @@
-//! The oscillator written down as any other system is, for engines that run systems alone.
+//! The oscillator written down as any other system is, which is how engines are asked to run it.
 
-use super::{Ended, Event, Failure, Outcome, SystemEvent, SystemOutcome, SystemTask, Task};
-use crate::system::{CheckedSystem, Mode, Row, System, Until};
+use super::{
+    Accuracy, Ended, Engine, Event, Failure, GuardSample, Limits, Numbers, Outcome, SystemEvent,
+    SystemOutcome, SystemTask, Task, Trace,
+};
+use crate::system::{CheckedSystem, Mode, Row, System, Until, Values};
 use percuss::{Parameters, Phase};
 use std::sync::Arc;
 
@@ -106,7 +109,7 @@ fn until(
 }
 
 /// The place of a phase among the oscillator's modes.
-fn place(phase: Phase) -> usize {
+pub(super) fn place(phase: Phase) -> usize {
     MODES.iter().position(|mode| *mode == phase).unwrap_or_default()
 }
 
@@ -120,38 +123,96 @@ impl SystemTask {
         let system = Arc::new(system);
         let samples = task.sample_times();
         let run = Self::new(system, place(task.phase), &task.state, task.span, samples)?;
-        Ok(Self { watched: task.watched.clone(), ..run })
+        let oscillator = Some(Arc::new(task.clone()));
+        Ok(Self { watched: task.watched.clone(), oscillator, ..run })
     }
 }
 
-impl Outcome {
-    /// What came of the oscillator's run as that of a system.
-    ///
-    /// # Errors
-    /// A mode or a state that the oscillator does not have, or an end before the horizon.
-    pub fn of_system(run: &SystemOutcome) -> Result<Self, Failure> {
-        if run.ended != Ended::Horizon {
-            return Err(Failure::new(format!("the run ended early: {:?}", run.ended)));
-        }
-        let own = |state: &[f64]| {
-            let four = state.try_into();
-            four.map_err(|_| Failure::new(format!("{} states, not {STATES}", state.len())))
+/// Runs an engine on the oscillator, with the answer in the oscillator's words.
+///
+/// # Errors
+/// A start or a horizon that no system has, the engine's failure, or an answer that is none of the
+/// oscillator's.
+pub fn run_oscillator(
+    engine: &dyn Engine,
+    task: &Task,
+    accuracy: Accuracy,
+    limits: &Limits,
+) -> Result<Outcome, Failure> {
+    Outcome::of_system(engine.run(&SystemTask::of_oscillator(task)?, accuracy, limits)?)
+}
+
+impl From<Outcome> for SystemOutcome {
+    fn from(run: Outcome) -> Self {
+        let event = |it: Event| SystemEvent {
+            event: it.event,
+            mode: place(it.mode),
+            elapsed: it.elapsed,
+            state: Values::of(&it.state),
         };
-        let event = |event: &SystemEvent| -> Result<Event, Failure> {
-            let mode = MODES.get(event.mode).copied();
-            let mode = mode.ok_or_else(|| Failure::new(format!("no phase is {}", event.mode)))?;
-            let &SystemEvent { event: place, elapsed, .. } = event;
-            Ok(Event { event: place, mode, elapsed, state: own(&event.state)? })
+        let look = |it: GuardSample| GuardSample {
+            t: it.t,
+            mode: place(it.mode),
+            guard: it.guard,
+            value: it.value,
         };
-        Ok(Self {
-            events: run.events.iter().map(event).collect::<Result<_, _>>()?,
-            samples: run.samples.iter().map(|it| own(it)).collect::<Result<_, _>>()?,
-            end: own(&run.end)?,
+        let trace =
+            |it: Trace| Trace { steps: it.steps, looks: it.looks.into_iter().map(look).collect() };
+        Self {
+            events: run.events.into_iter().map(event).collect(),
+            samples: run.samples.iter().map(|it| Values::of(it)).collect(),
+            end: Values::of(&run.end),
             ended: run.ended,
             ended_at: run.ended_at,
             work: run.work,
             own_time: run.own_time,
-            trace: None,
+            trace: run.trace.map(trace),
+        }
+    }
+}
+
+impl Outcome {
+    /// What came of a system's run, as that of the oscillator.
+    ///
+    /// # Errors
+    /// A mode or a state that the oscillator does not have, or an end before the horizon.
+    pub fn of_system(run: SystemOutcome) -> Result<Self, Failure> {
+        if run.ended != Ended::Horizon {
+            return Err(Failure::new(format!("the run ended early: {:?}", run.ended)));
+        }
+        let event = |it: &SystemEvent| -> Result<Event, Failure> {
+            let &SystemEvent { event, elapsed, .. } = it;
+            Ok(Event { event, mode: phase(it.mode)?, elapsed, state: four(&it.state)? })
+        };
+        Ok(Self {
+            events: run.events.iter().map(event).collect::<Result<_, _>>()?,
+            samples: run.samples.iter().map(|it| four(it)).collect::<Result<_, _>>()?,
+            end: four(&run.end)?,
+            ended: run.ended,
+            ended_at: run.ended_at,
+            work: run.work,
+            own_time: run.own_time,
+            trace: run.trace.map(phases).transpose()?,
         })
     }
+}
+
+/// The phase that a mode is.
+fn phase(mode: usize) -> Result<Phase, Failure> {
+    MODES.get(mode).copied().ok_or_else(|| Failure::new(format!("no phase is {mode}")))
+}
+
+/// p, y, q and v.
+fn four(state: &[f64]) -> Result<[f64; STATES], Failure> {
+    let four = state.try_into();
+    four.map_err(|_| Failure::new(format!("{} states, not {STATES}", state.len())))
+}
+
+/// A record of guards, with the phases that their modes are.
+fn phases(trace: Trace<usize>) -> Result<Trace, Failure> {
+    let look = |it: GuardSample<usize>| -> Result<GuardSample, Failure> {
+        Ok(GuardSample { t: it.t, mode: phase(it.mode)?, guard: it.guard, value: it.value })
+    };
+    let looks = trace.looks.into_iter().map(look).collect::<Result<_, _>>()?;
+    Ok(Trace { steps: trace.steps, looks })
 }

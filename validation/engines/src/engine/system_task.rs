@@ -1,7 +1,7 @@
 //! A run of any system, and what comes of it.
 
 use super::joining::{Integration, Times};
-use super::{Event, Failure, Numbers, Outcome, Watched};
+use super::{Event, Failure, Numbers, Outcome, Task, Watched, shortest_time};
 use crate::system::{Affine, CheckedSystem, SystemProblem, Values};
 use std::sync::Arc;
 
@@ -28,6 +28,9 @@ pub struct SystemTask {
     pub watched: Option<Watched>,
     /// The system with exact coefficients, which the exact solver wants to have.
     pub exact: Option<Arc<SystemProblem>>,
+    /// The same run in the words of the oscillator, where the system is the oscillator: who has the
+    /// oscillator's equations written by hand may take them instead of the system's matrices.
+    pub oscillator: Option<Arc<Task>>,
 }
 
 impl SystemTask {
@@ -55,7 +58,8 @@ impl SystemTask {
             return Err(Failure::new("a run takes a positive time, with samples in order"));
         }
         let state = Values::of(state);
-        Ok(Self { system, mode, state, span, samples, watched: None, exact: None })
+        let (watched, exact, oscillator) = (None, None, None);
+        Ok(Self { system, mode, state, span, samples, watched, exact, oscillator })
     }
 
     /// The run of a problem over a time.
@@ -66,6 +70,22 @@ impl SystemTask {
         let system = Arc::clone(&problem.checked);
         let task = Self::new(system, problem.start.mode, &problem.state(), span, samples)?;
         Ok(Self { exact: Some(Arc::clone(problem)), ..task })
+    }
+
+    /// The run in the words of the oscillator, for engines that run nothing else.
+    ///
+    /// # Errors
+    /// The system is another one.
+    pub fn of_the_oscillator(&self) -> Result<&Task, Failure> {
+        let own = self.oscillator.as_deref();
+        own.ok_or_else(|| Failure::new("runs the oscillator alone"))
+    }
+
+    /// The unit of an engine's fixed steps: the shortest of the times in which the system changes.
+    #[must_use]
+    pub fn shortest_time(&self) -> f64 {
+        let own = self.oscillator.as_ref().map(|task| shortest_time(&task.parameters));
+        own.unwrap_or_else(|| self.system.shortest_time())
     }
 }
 

@@ -2,10 +2,11 @@
 //! integrator wants to know beforehand computed once.
 
 use super::chain::{AugmentedRow, Chain, ModeMatrix, value};
-use super::spectrum::spectrum;
+use super::spectrum::{Rates, spectrum};
 use super::{Direction, MOST_GUARDS, MOST_STATES, Mode, Row, System, Until};
 use crate::engine::Failure;
 use std::f64::consts::TAU;
+use std::sync::OnceLock;
 
 /// A system with what a run of it wants to know.
 #[derive(Clone, Debug)]
@@ -14,9 +15,9 @@ pub struct CheckedSystem {
     backward: bool,
     pub(super) modes: Vec<CheckedMode>,
     pub(super) most_guards: usize,
-    fastest: f64,
-    turning: f64,
-    decay: f64,
+    /// What the eigenvalues tell, worked out when it is asked for: short runs of one system are
+    /// many, and those of the oscillator never ask.
+    rates: OnceLock<Rates>,
 }
 
 #[derive(Clone, Debug)]
@@ -88,13 +89,20 @@ impl CheckedSystem {
                 "a mode has {most_guards} guards, and at most {MOST_GUARDS} are accepted"
             )));
         }
-        let spectra: Vec<_> = system.modes.iter().map(|mode| spectrum(&mode.a)).collect();
-        let [fastest, turning] = [
-            spectra.iter().fold(0.0, |most: f64, it| most.max(it.fastest)),
-            spectra.iter().fold(0.0, |most: f64, it| most.max(it.turning)),
-        ];
-        let decay = spectra.iter().fold(f64::INFINITY, |least, it| least.min(it.decay));
-        Ok(Self { system, backward: false, modes, most_guards, fastest, turning, decay })
+        Ok(Self { system, backward: false, modes, most_guards, rates: OnceLock::new() })
+    }
+
+    /// The fastest of the modes' rates; of decay that which every mode has.
+    fn rates(&self) -> &Rates {
+        self.rates.get_or_init(|| {
+            let spectra = self.system.modes.iter().map(|mode| spectrum(&mode.a));
+            let all = |one: Rates, other: Rates| Rates {
+                fastest: one.fastest.max(other.fastest),
+                turning: one.turning.max(other.turning),
+                decay: one.decay.min(other.decay),
+            };
+            spectra.reduce(all).unwrap_or_default()
+        })
     }
 
     /// The system with its time reversed.
@@ -154,20 +162,20 @@ impl CheckedSystem {
     /// The shortest turn of a free oscillation; infinite where nothing oscillates.
     #[must_use]
     pub fn turn(&self) -> f64 {
-        TAU / self.turning
+        TAU / self.rates().turning
     }
 
     /// The fastest rate at which every mode decays.
     #[must_use]
     pub fn decay(&self) -> f64 {
-        self.decay
+        self.rates().decay
     }
 
     /// The shortest of the times in which the system changes: its time scale, and those of its
     /// matrices.
     #[must_use]
     pub fn shortest_time(&self) -> f64 {
-        self.system.time_scale.min(1.0 / self.fastest)
+        self.system.time_scale.min(1.0 / self.rates().fastest)
     }
 }
 

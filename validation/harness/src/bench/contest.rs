@@ -64,7 +64,7 @@ pub fn contest_at(
     raced(entered.collect(), case.periods(), rounds, done)
 }
 
-/// Races the contestants that run systems, at all their settings.
+/// Races the contestants that run the case's system, at all their settings.
 pub fn system_contest(
     case: &TimedSystemCase,
     contestants: &[&dyn Contestant],
@@ -72,7 +72,7 @@ pub fn system_contest(
     done: &dyn Fn(),
 ) -> Vec<Finisher> {
     let (able, others): (Vec<&dyn Contestant>, Vec<&dyn Contestant>) =
-        contestants.iter().copied().partition(|it| it.runs_systems());
+        contestants.iter().copied().partition(|it| it.takes(case));
     (0..size(&others, rounds)).for_each(|_| done());
     let settings = |it: &&dyn Contestant| settings_of(it.declaration().stepping);
     let asked = able.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));

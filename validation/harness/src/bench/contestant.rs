@@ -11,8 +11,8 @@ use super::timed::{ContestEntry, TimedRun};
 use super::timed_case::{Score, TimedCase};
 use super::timed_system_case::TimedSystemCase;
 use crate::engine::{
-    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, Work, contain,
-    least_work_of_system,
+    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, SystemOutcome, SystemTask,
+    Work, contain, least_work,
 };
 use crate::number::brief;
 
@@ -47,8 +47,8 @@ pub trait Contestant: Sync {
         Ok(None)
     }
 
-    /// Whether it runs other systems than the oscillator.
-    fn runs_systems(&self) -> bool {
+    /// Whether it runs the system of a case.
+    fn takes(&self, _course: &TimedSystemCase) -> bool {
         false
     }
 
@@ -90,8 +90,8 @@ impl Contestant for EnteredEngine {
         library_part(self.0, case, setting, limits())
     }
 
-    fn runs_systems(&self) -> bool {
-        self.0.runs_systems()
+    fn takes(&self, case: &TimedSystemCase) -> bool {
+        self.0.takes(&case.task).is_ok()
     }
 
     fn enter_system<'a>(
@@ -100,7 +100,7 @@ impl Contestant for EnteredEngine {
         setting: Accuracy,
     ) -> Result<ContestEntry<'a>, Failure> {
         self.0.available().map_err(Failure::new)?;
-        within_budget(least_work_of_system(self.0, &case.task, setting))?;
+        within_budget(least_work(self.0, &case.task, setting))?;
         system_entry(self.0, case, setting, limits())
     }
 }
@@ -119,8 +119,9 @@ pub fn enter<'a>(
     setting: Accuracy,
 ) -> Result<Box<dyn TimedRun + 'a>, Failure> {
     engine.available().map_err(Failure::new)?;
-    within_budget(engine.least_work(&case.task, setting))?;
-    Ok(Box::new(EngineHeat { engine, case, setting, answer: Outcome::default() }))
+    let task = SystemTask::of_oscillator(&case.task)?;
+    within_budget(least_work(engine, &task, setting))?;
+    Ok(Box::new(EngineHeat { engine, case, task, setting, answer: SystemOutcome::default() }))
 }
 
 /// Refuses a run that takes more right-hand sides than it may.
@@ -137,14 +138,15 @@ fn within_budget(least: f64) -> Result<(), Failure> {
 struct EngineHeat<'a> {
     engine: &'a dyn Engine,
     case: &'a TimedCase,
+    task: SystemTask,
     setting: Accuracy,
-    answer: Outcome,
+    answer: SystemOutcome,
 }
 
 impl Benchmark for EngineHeat<'_> {
     fn call(&mut self) -> Result<(), Failure> {
-        let Self { engine, case, setting, .. } = self;
-        self.answer = contain(|| engine.run(&case.task, *setting, &limits()))?;
+        let Self { engine, task, setting, .. } = self;
+        self.answer = contain(|| engine.run(task, *setting, &limits()))?;
         Ok(())
     }
 
@@ -155,7 +157,7 @@ impl Benchmark for EngineHeat<'_> {
 
 impl TimedRun for EngineHeat<'_> {
     fn score(&self) -> Result<Score, Failure> {
-        self.case.score(&self.answer)
+        self.case.score(&Outcome::of_system(self.answer.clone())?)
     }
 
     fn work(&self) -> Work {

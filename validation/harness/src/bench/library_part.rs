@@ -8,7 +8,9 @@
 
 use super::rounds::Benchmark;
 use super::timed_case::TimedCase;
-use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Script, contain, exact};
+use crate::engine::{
+    Accuracy, Engine, Failure, Limits, Outcome, Script, SystemTask, contain, exact,
+};
 use percuss::Step;
 use std::hint::black_box;
 
@@ -26,11 +28,13 @@ pub fn library_part<'a>(
     setting: Accuracy,
     limits: Limits,
 ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
-    let answer = contain(|| engine.run(&case.task, setting, &limits))?;
+    let task = SystemTask::of_oscillator(&case.task)?;
+    let answer = contain(|| engine.run(&task, setting, &limits))?;
     if engine.declaration().name == exact().declaration().name {
-        return Ok(Some(Box::new(ExactSteps { case, end: answer.end, last: answer.end })));
+        let end = Outcome::of_system(answer)?.end;
+        return Ok(Some(Box::new(ExactSteps { case, end, last: end })));
     }
-    told(answer, move || engine.run(&case.task, setting, &limits))
+    told(answer, move || engine.run(&task, setting, &limits))
 }
 
 /// A run that gave this answer, told its events; nothing where nothing is left out then.

@@ -22,7 +22,7 @@ pub fn system_entry<'a>(
     setting: Accuracy,
     limits: Limits,
 ) -> Result<ContestEntry<'a>, Failure> {
-    let run = move || engine.run_system(&case.task, setting, &limits);
+    let run = move || engine.run(&case.task, setting, &limits);
     let answer = contain(run)?;
     let library_part: Option<Box<dyn Benchmark + 'a>> =
         if engine.declaration().name == exact().declaration().name {

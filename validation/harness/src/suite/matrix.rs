@@ -5,7 +5,7 @@ use super::scope::{Suite, SuiteScope};
 use crate::case::{Bound, Case, Defaults, FileError, Shortcoming};
 use crate::engine::{
     Accuracy, Engine, Failure, Limits, Outcome, Role, SampleGrid, SystemOutcome, SystemTask, Task,
-    Work, answer,
+    Work, answer_system, least_work,
 };
 use crate::number::brief;
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
@@ -30,6 +30,7 @@ pub struct Prepared {
     pub grazes: Vec<Graze>,
     occurrences: Vec<Occurrence>,
     task: Task,
+    asked: SystemTask,
     probes: Probes,
 }
 
@@ -41,11 +42,8 @@ pub trait CaseRun: Sync {
     /// The truth's events on the case's horizon, with an ending that an engine has to find.
     fn events(&self) -> usize;
 
-    /// The run that is asked for, as that of a system.
-    ///
-    /// # Errors
-    /// A start or a horizon that no system has.
-    fn system_task(&self) -> Result<SystemTask, Failure>;
+    /// The run that is asked for.
+    fn asked(&self) -> &SystemTask;
 
     /// The parameters of its model.
     fn parameters(&self) -> Vec<(&str, f64)>;
@@ -53,14 +51,6 @@ pub trait CaseRun: Sync {
     /// The kinds of trouble that it makes.
     fn trouble(&self) -> &[String] {
         &[]
-    }
-
-    /// Whether an engine can be run on it at all.
-    ///
-    /// # Errors
-    /// Why it cannot.
-    fn takes(&self, _engine: &dyn Engine) -> Result<(), &'static str> {
-        Ok(())
     }
 
     /// The bounds that come after the case's own.
@@ -72,7 +62,9 @@ pub trait CaseRun: Sync {
     fn expectations(&self) -> (&[Bound], &[Shortcoming]);
 
     /// Right-hand sides that a run takes at the least, as far as that is known beforehand.
-    fn least_work(&self, engine: &dyn Engine, accuracy: Accuracy) -> f64;
+    fn least_work(&self, engine: &dyn Engine, accuracy: Accuracy) -> f64 {
+        least_work(engine, self.asked(), accuracy)
+    }
 
     /// What a run may cost before it is given up.
     fn limits(&self, suite: Suite) -> Limits {
@@ -211,7 +203,8 @@ fn prepare_one(
     let probes = probes.map(|suite| Probes::new(&case, &problem, suite, limits)).transpose()?;
     let probes = probes.unwrap_or_default();
     let occurrences = occurrences(&truth.events);
-    Ok(Prepared { case, truth, growth, grazes, occurrences, task, probes })
+    let asked = SystemTask::of_oscillator(&task).map_err(|it| FileError::of(&case.file, it))?;
+    Ok(Prepared { case, truth, growth, grazes, occurrences, task, asked, probes })
 }
 
 impl Prepared {
@@ -229,8 +222,9 @@ impl Prepared {
         extent: impl FnOnce(f64) -> Extent,
     ) -> Result<(Measures, Outcome, Duration), Failure> {
         let began = Instant::now();
-        let outcome = answer(engine, &self.task, accuracy, limits)?;
+        let outcome = answer_system(engine, &self.asked, accuracy, limits)?;
         let wall = began.elapsed();
+        let outcome = Outcome::of_system(outcome)?;
         let mut measures = measure(&self.task, &self.truth, &self.growth, &outcome, unit);
         let periods = self.task.span / self.task.problem.model.period();
         let extent = extent(outcome.work.rhs_evaluations as f64 / periods.max(1.0));
@@ -254,8 +248,8 @@ impl CaseRun for Prepared {
         self.truth.events.len()
     }
 
-    fn system_task(&self) -> Result<SystemTask, Failure> {
-        SystemTask::of_oscillator(&self.task)
+    fn asked(&self) -> &SystemTask {
+        &self.asked
     }
 
     fn parameters(&self) -> Vec<(&str, f64)> {
@@ -265,10 +259,6 @@ impl CaseRun for Prepared {
 
     fn expectations(&self) -> (&[Bound], &[Shortcoming]) {
         (&self.case.bounds, &self.case.shortcomings)
-    }
-
-    fn least_work(&self, engine: &dyn Engine, accuracy: Accuracy) -> f64 {
-        engine.least_work(&self.task, accuracy)
     }
 
     fn attempt(
@@ -362,7 +352,7 @@ pub fn one(
     if let Err(reason) = engine.available() {
         return without(Status::Unavailable, Verdict::Unavailable, reason);
     }
-    if let Err(reason) = case.takes(engine) {
+    if let Err(reason) = engine.takes(case.asked()) {
         return without(Status::NotRun, Verdict::NotRun, reason.to_owned());
     }
     let (least, budget) = (case.least_work(engine, accuracy), suite.budget());

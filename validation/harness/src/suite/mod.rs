@@ -10,4 +10,4 @@ pub use matrix::{
 };
 pub use probes::{Extent, is_shown};
 pub use scope::{Suite, SuiteScope};
-pub use system::{ELSEWHERE, PreparedSystem, prepare_systems};
+pub use system::{PreparedSystem, prepare_systems};

@@ -4,9 +4,7 @@ use super::matrix::{Answered, CaseRun, Measured};
 use super::probes::restarts_on_systems;
 use super::scope::Suite;
 use crate::case::{Bound, Defaults, FileError, Shortcoming, SystemCase};
-use crate::engine::{
-    Accuracy, Engine, Failure, Limits, SystemTask, answer_system, least_work_of_system,
-};
+use crate::engine::{Accuracy, Engine, Failure, Limits, SystemTask, answer_system, least_work};
 use crate::score::{
     Decision, EventNames, Graze, Measures, Occurrence, ScoredRun, SystemRestartTest, SystemScale,
     WINDOW, decisions, measure_system, system_grazes,
@@ -15,9 +13,6 @@ use crate::truth::{Library, SystemTruth};
 use rayon::prelude::*;
 use std::sync::Arc;
 use std::time::Instant;
-
-/// Why an engine that runs the oscillator alone is not run elsewhere.
-pub const ELSEWHERE: &str = "its co-ordinates are the oscillator's";
 
 /// A case of a system made ready: checked, with its truth.
 pub struct PreparedSystem {
@@ -109,8 +104,8 @@ impl CaseRun for PreparedSystem {
         self.occurrences.len()
     }
 
-    fn system_task(&self) -> Result<SystemTask, Failure> {
-        Ok(self.task.clone())
+    fn asked(&self) -> &SystemTask {
+        &self.task
     }
 
     fn parameters(&self) -> Vec<(&str, f64)> {
@@ -120,11 +115,6 @@ impl CaseRun for PreparedSystem {
 
     fn trouble(&self) -> &[String] {
         &self.case.trouble
-    }
-
-    fn takes(&self, engine: &dyn Engine) -> Result<(), &'static str> {
-        let runs = engine.runs_systems();
-        if runs { Ok(()) } else { Err(ELSEWHERE) }
     }
 
     fn limits(&self, suite: Suite) -> Limits {
@@ -140,7 +130,7 @@ impl CaseRun for PreparedSystem {
     }
 
     fn least_work(&self, engine: &dyn Engine, accuracy: Accuracy) -> f64 {
-        let whole = least_work_of_system(engine, &self.task, accuracy);
+        let whole = least_work(engine, &self.task, accuracy);
         // A run may end before its horizon.
         whole * (self.truth.end.elapsed.value() / self.task.span).min(1.0)
     }

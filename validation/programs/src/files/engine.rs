@@ -3,8 +3,8 @@
 use super::answer::answer;
 use super::table::{EVENTS, SAMPLES};
 use percuss_engines::engine::{
-    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role, Stepping,
-    SystemOutcome, SystemTask, Task,
+    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Role, Stepping,
+    SystemOutcome, SystemTask,
 };
 use std::path::PathBuf;
 
@@ -68,12 +68,7 @@ impl Engine for FileEngine {
         Err(format!("not answered: there is no {events}"))
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let task = SystemTask::of_oscillator(task)?;
-        Outcome::of_system(&self.run_system(&task, accuracy, limits)?)
-    }
-
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         _: Accuracy,

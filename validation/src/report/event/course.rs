@@ -4,7 +4,7 @@ use super::guarded::GuardCurve;
 use super::mismatch::EventMismatch;
 use super::scales::Scales;
 use super::{EventMark, EventPicture, View, ViewCourse};
-use crate::engine::{Engine, Limits, Outcome, Task, Watched, contain};
+use crate::engine::{Engine, Limits, Outcome, Task, Watched, contain, run_oscillator};
 use crate::suite::{Prepared, Scored};
 use crate::truth::Replay;
 use percuss::TwoWord;
@@ -29,7 +29,7 @@ pub(super) fn picture(
     let truth = truth_at(task, it.guarded, &instants)?;
     let watched = Watched { window: scales.window(), instants: instants.clone() };
     let task = Task { watched: Some(watched), ..task.clone() };
-    let outcome = contain(|| engine.run(&task, row.accuracy, limits)).ok()?;
+    let outcome = contain(|| run_oscillator(engine, &task, row.accuracy, limits)).ok()?;
     let trace = outcome.trace.as_ref();
     let looks = trace.map_or(&[][..], |trace| &trace.looks);
     let looks = looks.iter().filter_map(|look| Some([look.t, it.guarded.of_look(look)?]));

@@ -147,7 +147,7 @@ pub(super) fn picture(
     let states = SystemTruth::states(case, &instants)?;
     let watched = Watched { window: scales.window(), instants: instants.clone() };
     let again = SystemTask { watched: Some(watched), ..task.clone() };
-    let outcome = contain(|| engine.run_system(&again, row.accuracy, limits)).ok()?;
+    let outcome = contain(|| engine.run(&again, row.accuracy, limits)).ok()?;
     let of_states = |states: &mut dyn Iterator<Item = &[f64]>| -> Vec<f64> {
         instants.iter().zip(states).map(|(t, state)| guard.value(task, *t, state)).collect()
     };

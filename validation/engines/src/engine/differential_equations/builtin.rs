@@ -19,7 +19,7 @@ use crate::engine::trace::GuardSample;
 use crate::engine::walk::longest_of_period;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
-    Task, pins,
+    pins,
 };
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
@@ -55,18 +55,16 @@ impl Engine for BuiltIn {
         true
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let integration =
-            Integration::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
-        run(&integration, accuracy, limits)
-    }
-
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
+        if let Some(own) = &task.oscillator {
+            let integration = Integration::<Oscillator>::of(own);
+            return run(&integration, accuracy, limits).map(Into::into);
+        }
         let integration = Integration::of_system(task);
         of_size(integration.state.as_ref().len(), || run(&integration, accuracy, limits))
     }

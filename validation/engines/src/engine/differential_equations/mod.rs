@@ -42,7 +42,7 @@ use super::original::OriginalOscillator;
 use super::walk::longest_of_period;
 use super::{
     Accuracy, Colours, Declaration, Engine, Location, Outcome, Role, SystemOutcome, SystemTask,
-    Task, pins,
+    pins,
 };
 use differential_equations::error::Error;
 use differential_equations::linalg::Matrix;
@@ -101,11 +101,6 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
         }
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let integration = Integration::of(task, E::of(&task.parameters, task.forcing_angle));
-        run::<M, E>(&integration, accuracy, limits)
-    }
-
     fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
         (!M::MULTISTEP).then(|| longest_of_period(task.system.period()))
     }
@@ -114,18 +109,20 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
         M::EXPLICIT
     }
 
-    fn runs_systems(&self) -> bool {
-        E::BOUNDED
+    fn takes(&self, task: &SystemTask) -> Result<(), &'static str> {
+        E::describe(task)
     }
 
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
-        if !E::BOUNDED {
-            return Err(Failure::new("its co-ordinates are the oscillator's"));
+        E::describe(task).map_err(Failure::new)?;
+        if let Some(own) = &task.oscillator {
+            let integration = Integration::<E>::of(own);
+            return run::<M, _>(&integration, accuracy, limits).map(Into::into);
         }
         let integration = Integration::of_system(task);
         of_size(integration.state.as_ref().len(), || run::<M, _>(&integration, accuracy, limits))

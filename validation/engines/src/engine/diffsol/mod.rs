@@ -26,8 +26,7 @@ use super::joining::{Integration, join};
 use super::meter::{Failure, Limits, Meter};
 use super::walk::longest_of_period;
 use super::{
-    Accuracy, Colours, Declaration, Engine, Location, Outcome, SystemOutcome, SystemTask, Task,
-    pins,
+    Accuracy, Colours, Declaration, Engine, Location, Outcome, SystemOutcome, SystemTask, pins,
 };
 use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec};
 use fields::{DiffsolEquations, ProblemSettings, problem};
@@ -77,18 +76,16 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
         M::EXPLICIT
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let integration =
-            Integration::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
-        run::<M, _>(&integration, accuracy, limits)
-    }
-
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
+        if let Some(own) = &task.oscillator {
+            let integration = Integration::<Oscillator>::of(own);
+            return run::<M, _>(&integration, accuracy, limits).map(Into::into);
+        }
         run::<M, _>(&Integration::of_system(task), accuracy, limits)
     }
 }

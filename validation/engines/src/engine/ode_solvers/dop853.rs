@@ -20,7 +20,7 @@ use crate::engine::sampler::Sampler;
 use crate::engine::walk::{longest_of_period, longest_step, walk};
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
-    Task, pins,
+    pins,
 };
 use crate::system::Mode;
 use ::ode_solvers::OutputType;
@@ -74,17 +74,11 @@ impl Engine for Dop853 {
         true
     }
 
-    /// At first order the error of a step h is a multiple of a omega h^2, and is held to the
-    /// tolerance. The multiple is the least that was measured over the cases.
-    fn least_work(&self, task: &Task, accuracy: Accuracy) -> f64 {
-        let Some(tolerance) = accuracy.tolerance().filter(|_| !self.clock) else { return 0.0 };
-        let rate = task.parameters.a * task.parameters.omega;
-        STAGES * task.span * (FIRST_ORDER * rate / tolerance).sqrt()
-    }
-
-    /// The work as on the oscillator, by the largest rate at which theta changes a state's rate
-    /// over its scale; a mode in which theta changes nothing costs nothing.
-    fn least_work_on(&self, task: &SystemTask, accuracy: Accuracy) -> f64 {
+    /// At first order the error of a step h is a multiple of r h^2, and is held to the tolerance: r
+    /// is the largest rate at which theta changes a state's rate over its scale, a omega on the
+    /// oscillator. The multiple is the least that was measured over the oscillator's cases. A mode
+    /// in which theta changes nothing costs nothing.
+    fn least_work(&self, task: &SystemTask, accuracy: Accuracy) -> f64 {
         let Some(tolerance) = accuracy.tolerance().filter(|_| !self.clock) else { return 0.0 };
         let system = task.system.system();
         let forcing = |mode: &Mode| {
@@ -95,22 +89,20 @@ impl Engine for Dop853 {
         STAGES * task.span * (FIRST_ORDER * least * system.omega.abs() / tolerance).sqrt()
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let integration =
-            Integration::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
-        if self.clock {
-            run::<_, U5>(&integration, [true, false], accuracy, limits)
-        } else {
-            run::<_, U4>(&integration, [false; 2], accuracy, limits)
-        }
-    }
-
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
+        if let Some(own) = &task.oscillator {
+            let integration = Integration::<Oscillator>::of(own);
+            return if self.clock {
+                run::<_, U5>(&integration, [true, false], accuracy, limits).map(Into::into)
+            } else {
+                run::<_, U4>(&integration, [false; 2], accuracy, limits).map(Into::into)
+            };
+        }
         let integration = Integration::of_system(task);
         let states = task.system.system().states.len() + usize::from(self.clock);
         on_vectors_of!(states, run(&integration, [self.clock, true], accuracy, limits))

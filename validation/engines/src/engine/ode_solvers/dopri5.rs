@@ -14,7 +14,7 @@ use crate::engine::script::GuardRise;
 use crate::engine::walk::longest_of_period;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
-    Task, pins,
+    pins,
 };
 use ::ode_solvers::continuous_output_model::ContinuousOutputModel;
 use ::ode_solvers::{OVector, OutputType};
@@ -51,11 +51,6 @@ impl<E: Coordinates> Engine for Dopri5<E> {
         }
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let integration = Integration::of(task, E::of(&task.parameters, task.forcing_angle));
-        run::<E, U4>(&integration, accuracy, limits)
-    }
-
     fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
         Some(longest_of_period(task.system.period()))
     }
@@ -64,18 +59,20 @@ impl<E: Coordinates> Engine for Dopri5<E> {
         true
     }
 
-    fn runs_systems(&self) -> bool {
-        E::BOUNDED
+    fn takes(&self, task: &SystemTask) -> Result<(), &'static str> {
+        E::describe(task)
     }
 
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
-        if !E::BOUNDED {
-            return Err(Failure::new("its co-ordinates are the oscillator's"));
+        E::describe(task).map_err(Failure::new)?;
+        if let Some(own) = &task.oscillator {
+            let integration = Integration::<E>::of(own);
+            return run::<_, U4>(&integration, accuracy, limits).map(Into::into);
         }
         let integration = Integration::of_system(task);
         let states = task.system.system().states.len();

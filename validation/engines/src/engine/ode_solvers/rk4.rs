@@ -1,11 +1,9 @@
 //! `Rk4`: fixed steps, and between the ends of a step the cubic of Hermite, whose error is of the
 //! method's own order.
 //!
-//! - Steps are h = step x the model's [`shortest_time`], shortened so that a whole number of them
+//! - Steps are h = step x the system's shortest time, shortened so that a whole number of them
 //!   fills a stretch: the library itself would step past the end.
 //! - Each step is one look: guards that peak inside are found by their rates.
-//!
-//! [`shortest_time`]: crate::engine::shortest_time
 
 use super::{COLOURS, LIBRARY, TimedField, on_vectors_of, packed, plain};
 use crate::engine::cubic::Cubic;
@@ -18,7 +16,7 @@ use crate::engine::sampler::Sampler;
 use crate::engine::walk::walk;
 use crate::engine::{
     Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
-    Task, pins, shortest_time,
+    pins,
 };
 use nalgebra::allocator::Allocator;
 use nalgebra::{DefaultAllocator, Dim, U4};
@@ -48,23 +46,21 @@ impl Engine for Rk4 {
         }
     }
 
-    fn least_work(&self, task: &Task, accuracy: Accuracy) -> f64 {
-        let step = |step: f64| step * shortest_time(&task.parameters);
+    fn least_work(&self, task: &SystemTask, accuracy: Accuracy) -> f64 {
+        let step = |step: f64| step * task.shortest_time();
         accuracy.step().map_or(0.0, |it| STAGES * task.span / step(it))
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
-        let integration =
-            Integration::of(task, Oscillator::of(&task.parameters, task.forcing_angle));
-        run::<_, U4>(&integration, accuracy, limits)
-    }
-
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         accuracy: Accuracy,
         limits: &Limits,
     ) -> Result<SystemOutcome, Failure> {
+        if let Some(own) = &task.oscillator {
+            let integration = Integration::<Oscillator>::of(own);
+            return run::<_, U4>(&integration, accuracy, limits).map(Into::into);
+        }
         let integration = Integration::of_system(task);
         let states = task.system.system().states.len();
         on_vectors_of!(states, run(&integration, accuracy, limits))

@@ -4,7 +4,7 @@ use super::{AskedRun, SystemTask, accuracy, every_on};
 use crate::case::Given;
 use crate::engine::{
     Ended, Event, Limits, Numbers, Outcome, SampleGrid, SystemEvent, SystemOutcome, Task, Watched,
-    all, percussive,
+    all, percussive, run_oscillator,
 };
 use crate::system::Values;
 use percuss::{Phase, Start};
@@ -27,13 +27,14 @@ fn place(phase: Phase) -> usize {
 #[test]
 fn both_ways_of_writing_it_down_are_run_alike() {
     let task = task();
-    let Ok(system) = SystemTask::of_oscillator(&task) else { unreachable!("it is a system") };
+    let Ok(by_hand) = SystemTask::of_oscillator(&task) else { unreachable!("it is a system") };
+    let system = SystemTask { oscillator: None, ..by_hand };
     let mut compared = 0;
     for (name, unit, outcome) in every_on(&system) {
         let outcome: SystemOutcome = outcome.unwrap_or_default();
         let Some(engine) = all().iter().find(|it| it.declaration().name == name) else { continue };
         let Some(accuracy) = accuracy(*engine) else { continue };
-        let own: Outcome = engine.run(&task, accuracy, &Limits::default()).unwrap_or_default();
+        let own = run_oscillator(*engine, &task, accuracy, &Limits::default()).unwrap_or_default();
         let word = |it: &Event| (it.event, place(it.mode));
         let words: Vec<_> = own.events.iter().map(word).collect();
         let others: Vec<_> = outcome.events.iter().map(|it| (it.event, it.mode)).collect();
@@ -42,11 +43,12 @@ fn both_ways_of_writing_it_down_are_run_alike() {
             let apart = (one.elapsed - other.elapsed).abs() / (1.0 + one.elapsed);
             assert!(apart <= 20.0 * unit, "{name}: {apart:e} at {}", one.elapsed);
         }
-        let back = Outcome::of_system(&outcome).unwrap_or_default();
+        let (work, end) = (outcome.work, outcome.end);
+        let back = Outcome::of_system(outcome).unwrap_or_default();
         let phases =
             |outcome: &Outcome| -> Vec<_> { outcome.events.iter().map(|it| it.mode).collect() };
         assert_eq!((phases(&back), back.samples.len()), (phases(&own), 17), "{name}");
-        assert_eq!((back.end.as_slice(), back.work), (&*outcome.end, outcome.work), "{name}");
+        assert_eq!((back.end.as_slice(), back.work), (&*end, work), "{name}");
         compared += 1;
     }
     assert_eq!(compared, 15);
@@ -65,7 +67,7 @@ fn a_run_that_is_watched_is_the_same_run() {
     for engine in all() {
         let Some(accuracy) = accuracy(*engine) else { continue };
         let name = engine.declaration().name;
-        let run = |task| engine.run_system(task, accuracy, &Limits::default()).unwrap_or_default();
+        let run = |task| engine.run(task, accuracy, &Limits::default()).unwrap_or_default();
         let (plain, watched) = (run(&plain), run(&watched));
         let before = |outcome: &SystemOutcome| -> Vec<_> {
             outcome.events.iter().copied().filter(|it| it.elapsed <= window[1]).collect()
@@ -80,17 +82,38 @@ fn a_run_that_is_watched_is_the_same_run() {
     }
 }
 
+/// An answer in the oscillator's words says all that it says as a system's, its record too.
+#[test]
+fn an_answer_is_the_same_in_both_words() {
+    let task = task();
+    let window = [0.3 * task.span, 0.6 * task.span];
+    let instants = vec![0.4 * task.span, 0.5 * task.span];
+    let task = Task { watched: Some(Watched { window, instants }), ..task };
+    let Ok(asked) = SystemTask::of_oscillator(&task) else { unreachable!("it is a system") };
+    for engine in all() {
+        let Some(accuracy) = accuracy(*engine) else { continue };
+        let found = engine.run(&asked, accuracy, &Limits::default()).unwrap_or_default();
+        let own = Outcome::of_system(found.clone()).unwrap_or_default();
+        let name = engine.declaration().name;
+        assert!(own.trace.as_ref().is_some_and(|trace| trace.looks.len() > 2), "{name}");
+        let again = SystemOutcome::from(own);
+        assert_eq!((&again.events, &again.samples), (&found.events, &found.samples), "{name}");
+        assert_eq!((&again.trace, again.end), (&found.trace, found.end), "{name}");
+    }
+}
+
 /// The oscillator has three phases, four states and no end but its horizon.
 #[test]
 fn what_is_no_run_of_the_oscillator_is_refused() {
     let state = Values::of(&[0.5; 4]);
     let event = SystemEvent { event: 0, mode: 1, elapsed: 0.5, state };
     let run = SystemOutcome { events: vec![event], end: state, ..SystemOutcome::default() };
-    assert!(Outcome::of_system(&run).is_ok());
+    assert!(Outcome::of_system(run.clone()).is_ok());
     let early = SystemOutcome { ended: Ended::NoProgress, ..run.clone() };
     let mode = SystemOutcome { events: vec![SystemEvent { mode: 3, ..event }], ..run.clone() };
     let size = SystemOutcome { end: Values::of(&[0.5; 3]), ..run };
     for odd in [early, mode, size] {
-        assert!(Outcome::of_system(&odd).is_err(), "{odd:?}");
+        let said = format!("{odd:?}");
+        assert!(Outcome::of_system(odd).is_err(), "{said}");
     }
 }

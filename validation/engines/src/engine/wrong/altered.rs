@@ -1,7 +1,10 @@
 //! The exact solver on a model that is slightly different, or with a drift that is.
 
 use super::super::exact::Exact;
-use super::super::{Accuracy, Declaration, Engine, Failure, Limits, Outcome, Role, Task};
+use super::super::{
+    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Role, SystemOutcome, SystemTask, Task,
+    run_oscillator,
+};
 use crate::case::Problem;
 use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
 
@@ -29,9 +32,15 @@ impl Engine for Altered {
         Declaration { name: self.name, method, role: Role::Rows, ..Exact.declaration() }
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+    fn run(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        let task = task.of_the_oscillator()?;
         if self.change == Alteration::Drift {
-            return drifting(task, limits);
+            return drifting(task, limits).map(Into::into);
         }
         let (parameters, start) = self.altered(task);
         let refused = |error| Failure::new(format!("the altered problem: {error}"));
@@ -43,7 +52,7 @@ impl Engine for Altered {
         // The same number of forcing periods: the sample stays the one that is compared.
         let (whole, part) = periods(task);
         other.horizon = entry.instant.after_periods(whole, 1).after_periods(part, PARTS);
-        Exact.run(&other, accuracy, limits)
+        Exact.run(&SystemTask::of_oscillator(&other)?, accuracy, limits)
     }
 }
 
@@ -82,7 +91,7 @@ fn periods(task: &Task) -> (u64, u64) {
 /// The right motion with the drift of Eq. (20) as printed: at the start of each progression v jumps
 /// by 2 (q0 - 1), of which 2 (q0 - 1) exp(-d/(2 xi)) is left after d.
 fn drifting(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
-    let mut outcome = Exact.run(task, Accuracy::Exact, limits)?;
+    let mut outcome = run_oscillator(&Exact, task, Accuracy::Exact, limits)?;
     let start = task.problem.entry.instant;
     let omega = task.parameters.omega;
     let times = task.sample_times();

@@ -11,7 +11,7 @@ use super::super::meter::{Failure, Limits, Meter};
 use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{self, Dopri5Run};
 use super::super::script::GuardRise;
-use super::super::{Accuracy, Declaration, Engine, Outcome, Role, Task};
+use super::super::{Accuracy, Declaration, Engine, Role, SystemOutcome, SystemTask, Task};
 use nalgebra::U4;
 use percuss::{Parameters, Phase};
 
@@ -59,7 +59,13 @@ impl Engine for Faulty {
         Declaration { name: self.name, method, role: Role::Rows, ..DOPRI5.declaration() }
     }
 
-    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+    fn run(
+        &self,
+        task: &SystemTask,
+        accuracy: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        let task = task.of_the_oscillator()?;
         let tolerance = accuracy.wanted_tolerance()?;
         if let IntegratorFault::GivesUp(every) = self.slip
             && task.events_before % every == every - 1
@@ -68,7 +74,7 @@ impl Engine for Faulty {
         }
         let meter = Meter::new(limits);
         let equations = Oscillator::of(&self.parameters(task), task.forcing_angle);
-        let integration = Integration::of(task, equations);
+        let integration = Integration::by(task, equations);
         let mut run = Dopri5Run::<_, U4>::new(&integration, tolerance, &meter);
         let mut detection = FaultyDetection {
             slip: self.slip,
@@ -78,7 +84,7 @@ impl Engine for Faulty {
             overlooking: false,
             before: None,
         };
-        join(&integration, &meter, |from, sampler| {
+        let outcome = join(&integration, &meter, |from, sampler| {
             run.stale = detection.stale(from);
             let stretch = run.integrate(from)?;
             let sound = run.first_crossing(from, &stretch, sampler)?;
@@ -91,7 +97,8 @@ impl Engine for Faulty {
             detection.before = Some(from.mode);
             let state = detection.state_at(&stretch, from.mode, t)?;
             Ok(StretchEnd::Switch { t, guard, state })
-        })
+        })?;
+        Ok(outcome.into())
     }
 }
 

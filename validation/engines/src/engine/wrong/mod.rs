@@ -17,8 +17,7 @@ mod systems;
 mod ties;
 mod walk;
 
-use super::meter::Failure;
-use super::{Engine, Outcome};
+use super::Engine;
 use altered::{Alteration, Altered};
 pub use closed::Closed;
 use integrator::{Faulty, IntegratorFault};
@@ -291,9 +290,4 @@ static FAULTY_ON_SYSTEMS: [WrongWay; 10] = [
 #[must_use]
 pub fn faulty_on_systems() -> &'static [WrongWay] {
     &FAULTY_ON_SYSTEMS
-}
-
-/// The answer of an engine that runs other systems alone when it is asked to run the oscillator.
-fn other_systems_alone() -> Result<Outcome, Failure> {
-    Err(Failure::new("runs other systems than the oscillator"))
 }

@@ -11,10 +11,9 @@ use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{self, Dopri5Run};
 use super::super::sampler::{CountedCrossing, Sampler};
 use super::super::script::GuardRise;
-use super::super::{Accuracy, Declaration, Engine, Outcome, Role, SystemOutcome, SystemTask, Task};
+use super::super::{Accuracy, Declaration, Engine, Role, SystemOutcome, SystemTask};
 use super::integrator::end_of_step;
 use super::misled::{Memory, Misled, SystemFault};
-use super::other_systems_alone;
 use crate::system::{Affine, CheckedSystem, Direction, System, Values};
 use nalgebra::Dyn;
 use std::sync::Arc;
@@ -35,11 +34,7 @@ impl Engine for FaultyOnSystems {
         Declaration { name: self.name, method, role: Role::Rows, ..DOPRI5.declaration() }
     }
 
-    fn run(&self, _: &Task, _: Accuracy, _: &Limits) -> Result<Outcome, Failure> {
-        other_systems_alone()
-    }
-
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         accuracy: Accuracy,

@@ -2,9 +2,8 @@
 
 use super::super::exact::Exact;
 use super::super::{
-    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Role, SystemOutcome, SystemTask, Task,
+    Accuracy, Declaration, Engine, Failure, Limits, Role, SystemOutcome, SystemTask,
 };
-use super::other_systems_alone;
 use crate::system::SystemProblem;
 use std::sync::Arc;
 
@@ -18,11 +17,7 @@ impl Engine for LastFirst {
         Declaration { name: self.name, method, role: Role::Rows, ..Exact.declaration() }
     }
 
-    fn run(&self, _: &Task, _: Accuracy, _: &Limits) -> Result<Outcome, Failure> {
-        other_systems_alone()
-    }
-
-    fn run_system(
+    fn run(
         &self,
         task: &SystemTask,
         accuracy: Accuracy,
@@ -34,7 +29,7 @@ impl Engine for LastFirst {
         turned.modes.iter_mut().for_each(|mode| mode.until.reverse());
         let turned = Arc::new(SystemProblem::new(turned, problem.backward)?);
         let task = SystemTask { exact: Some(turned), ..task.clone() };
-        let mut outcome = Exact.run_system(&task, accuracy, limits)?;
+        let mut outcome = Exact.run(&task, accuracy, limits)?;
         let mut mode = task.mode;
         for event in &mut outcome.events {
             let ends = problem.exact.modes[mode].until.len();

@@ -9,7 +9,7 @@ use super::super::exact::Exact;
 use super::super::field::{GUARDS, Oscillator};
 use super::super::sampler::Sampler;
 use super::super::{Accuracy, Declaration, Engine, Event, Failure, Limits, Location, Outcome};
-use super::super::{Role, Task, Work};
+use super::super::{Role, SystemOutcome, SystemTask, Task, Work};
 use super::closed::Closed;
 use percuss::Phase;
 
@@ -48,7 +48,13 @@ impl Engine for WrongWalk {
         }
     }
 
-    fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+    fn run(
+        &self,
+        task: &SystemTask,
+        _: Accuracy,
+        limits: &Limits,
+    ) -> Result<SystemOutcome, Failure> {
+        let task = task.of_the_oscillator()?;
         let mut run = WrongRun {
             task,
             fault: self.fault,
@@ -58,7 +64,7 @@ impl Engine for WrongWalk {
             events: task.events_before,
             evaluations: 0,
         };
-        run.all(limits)
+        run.all(limits).map(Into::into)
     }
 }
 
