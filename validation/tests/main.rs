@@ -28,6 +28,7 @@ mod horizon;
 mod interrupted;
 mod junit;
 mod orbits;
+mod own_cases;
 mod power;
 mod project;
 mod replay;

@@ -39,7 +39,7 @@ function workPrecision() {
       });
     }
     const note = data.cases.find((it) => it.name === choice.value);
-    document.getElementById("work-note").textContent = note ? `${note.regime ?? ""}. ${note.why ?? ""}` : "Each point is the median over all cases of a run's largest error, against the median cost of a run; a run without a result counts as infinitely wrong.";
+    document.getElementById("work-note").textContent = note ? `${note.regime ? `${note.regime}. ` : ""}${note.why ?? ""}` : "Each point is the median over all cases of a run's largest error, against the median cost of a run; a run without a result counts as infinitely wrong.";
   };
   data.cases.forEach((it) => choice.append(element("option", { value: it.name }, it.name)));
   [choice, work].forEach((it) => it.addEventListener("input", draw));

@@ -16,7 +16,7 @@ const SHOWN = [
   ["found", "found", "events found, of those that the truth has up to the scored horizon", (i) => (columns.events_matched?.[i] ?? -1) - (columns.events_expected?.[i] ?? 0), (i) => (columns.events_expected?.[i] == null ? "–" : `${columns.events_matched[i]}/${columns.events_expected[i]}`)],
   ["events_spurious", "spurious", "events that the truth does not have", value("events_spurious")],
   ["event_time_error.max", "time error", "largest error of an event's time", value("event_time_error.max")],
-  ["state_error.max", "state error", "largest of |dp|, |dy|, |dq| on the fixed sample", value("state_error.max")],
+  ["state_error.max", "state error", `${data.state_error} on the fixed sample`, value("state_error.max")],
   ["drift_error", "drift error", "|dv| at the end of the case", value("drift_error")],
   ["valid_periods", "valid", "forcing periods until the state's error passes 1e-3", value("valid_periods")],
   ["restart.q99", "restart q99", "99 % quantile of the restart test's errors", value("restart.q99")],
@@ -34,7 +34,8 @@ const FILTERS = ["engine", "case", "verdict", "text"];
 
 function fillChoices() {
   const regimes = new Map();
-  data.cases.forEach((it) => regimes.set(it.regime ?? "cases", [...(regimes.get(it.regime ?? "cases") ?? []), it.name]));
+  const regimeOf = (it) => it.regime || "cases";
+  data.cases.forEach((it) => regimes.set(regimeOf(it), [...(regimes.get(regimeOf(it)) ?? []), it.name]));
   for (const [regime, names] of regimes) field("case").append(element("optgroup", { label: regime }, ...names.map((name) => element("option", { value: name }, name))));
   data.engines.forEach((it) => field("engine").append(element("option", { value: it.name }, it.name)));
 }
@@ -73,7 +74,7 @@ function details(i) {
   const picture = eventPicture(i);
   if (picture) above.push(picture);
   else if (columns.events_missed?.[i] > 0 || columns.events_spurious?.[i] > 0) above.push(element("p", { class: "muted" }, "This page has no picture of this row: the command below with --out DIR draws it."));
-  if (note?.why) parts.push(element("p", { class: "muted" }, `About the case (${note.regime}): ${note.why}`));
+  if (note?.why) parts.push(element("p", { class: "muted" }, `About the case${note.regime ? ` (${note.regime})` : ""}: ${note.why}`));
   if (bounds.length) parts.push(element("div", { class: "wide" }, element("table", { class: "inner" }, element("thead", {}, element("tr", {}, ...["bound on", "measured", "limit", "", "why that limit"].map((it) => element("th", {}, it)))), element("tbody", {}, ...bounds))));
   const figure = (key) => [element("dt", {}, inWords(key)), element("dd", {}, brief(columns[key][i]))];
   parts.push(element("dl", { class: "figures" }, ...rest.flatMap(figure)));
@@ -99,7 +100,7 @@ const WORDS = {
   events_expected: "events of the truth", events_matched: "found", events_missed: "missed", events_spurious: "spurious",
   event_time_error: "error of event times", state_error: "error of the state", drift_error: "error of the drift",
   drift_error_by_event_times: "drift error that event times explain", horizon_periods: "scored horizon (forcing periods)",
-  phase_word_ok: "phases in the right order", valid_periods: "valid (forcing periods)", valid_horizon: "valid horizon",
+  phase_word_ok: "phases or modes in the right order", valid_periods: "valid (forcing periods)", valid_horizon: "valid horizon",
   predicted_median: "predicted median", q01: "1 % quantile", q99: "99 % quantile", max: "largest", with_impact: "with an impact",
   order: "order of convergence", rhs_evaluations: "right-hand sides", jacobian_evaluations: "Jacobians", linear_solves: "linear solves",
   ks_p: "Kolmogorov-Smirnov distance of p", ks_y: "Kolmogorov-Smirnov distance of y", ks_q: "Kolmogorov-Smirnov distance of q",

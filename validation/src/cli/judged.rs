@@ -6,8 +6,8 @@ use super::output::{Destination, make_folder, reader_left};
 use super::{DONE, OUT_OF_BOUNDS, note, parse, reports, say};
 use crate::case::{self, Cases, Defaults};
 use crate::report::{
-    Baseline, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary, ranking_text,
-    screen,
+    Baseline, CASES_FLAG, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary,
+    ranking_text, screen,
 };
 use crate::suite::{self, CaseRun, Prepared, PreparedSystem, Suite};
 use crate::truth::Library;
@@ -121,13 +121,14 @@ impl OpenedCases {
         let replayed: Vec<String> =
             cases.names().filter(|name| library.is_replayed(name)).map(str::to_owned).collect();
         let prepared = PreparedCases {
+            replayed,
             oscillator: suite::prepare(cases.oscillator, &library, probes)?,
             systems: suite::prepare_systems(cases.systems, &library, probes)?,
         };
         if are_users {
             prepared.systems.iter().for_each(note_faint_states);
         }
-        for name in replayed {
+        for name in &prepared.replayed {
             note(&format!(
                 "{name}: without tables: its truth is the exact solver's run made again in 106 bits"
             ));
@@ -163,6 +164,8 @@ pub(super) fn accepts(patterns: &[Regex], name: &str) -> bool {
 
 /// All cases that are asked for, made ready.
 pub(super) struct PreparedCases {
+    /// The names of those without tables.
+    pub(super) replayed: Vec<String>,
     pub(super) oscillator: Vec<Prepared>,
     pub(super) systems: Vec<PreparedSystem>,
 }
@@ -207,7 +210,7 @@ impl JudgedFlags {
 
     /// The folders that data were read from, with their flags.
     pub(super) fn folders(&self) -> Vec<(&'static str, String)> {
-        let given = [("--cases", &self.chosen.cases), ("--reference", &self.reference)];
+        let given = [(CASES_FLAG, &self.chosen.cases), ("--reference", &self.reference)];
         let shown = |(flag, folder): (&'static str, &Option<PathBuf>)| {
             Some((flag, folder.as_ref()?.display().to_string()))
         };

@@ -98,6 +98,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         &[],
         judged.chosen.cases.is_none(),
     );
+    evidence.replayed.clone_from(&cases.replayed);
     evidence.folders = [arguments.flags(), judged.folders()].concat();
     if judged.out.is_some() {
         evidence.events =

@@ -69,7 +69,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         &findings,
         judged.chosen.cases.is_none(),
     );
-    let mut evidence = ReportEvidence { folders: judged.folders(), ..evidence };
+    let (folders, replayed) = (judged.folders(), cases.replayed.clone());
+    let mut evidence = ReportEvidence { folders, replayed, ..evidence };
     if judged.out.is_some() {
         evidence.events = pool.install(|| {
             event_pictures((&cases.oscillator, &cases.systems), &rows, arguments.suite)
@@ -130,7 +131,7 @@ impl WrongEngines {
         defaults: &Defaults,
         done: &(impl Fn() + Sync),
     ) -> Vec<Finding> {
-        let PreparedCases { oscillator, systems } = cases;
+        let PreparedCases { oscillator, systems, .. } = cases;
         let anywhere = self
             .anywhere
             .par_iter()

@@ -9,12 +9,17 @@ use serde::Serialize;
 
 /// The model of the paper, which is no system of a file.
 pub const OSCILLATOR: &str = "oscillator";
+/// The flag of [`ReportEvidence::folders`] that says that the cases are a user's own.
+pub const CASES_FLAG: &str = "--cases";
 
 /// Everything that is shown beside the rows.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct ReportEvidence {
     /// The cases that were run.
     pub cases: Vec<CaseNote>,
+    /// The names of the cases without tables, whose truth is the exact solver's run made again in
+    /// 106 bits.
+    pub replayed: Vec<String>,
     /// Errors along chaotic runs.
     pub growth: Vec<ErrorGrowth>,
     /// Errors of the restart test.
@@ -46,6 +51,8 @@ pub struct CaseNote {
     pub toml: String,
     /// The system whose case it is; `oscillator` for the paper's.
     pub system: String,
+    /// The names of the states whose errors are measured.
+    pub states: Vec<String>,
     /// The regime it stands for, or the kinds of trouble that it makes.
     pub regime: String,
     /// The kinds of trouble that a system's case makes; none of the oscillator's.
@@ -147,6 +154,7 @@ impl CaseNote {
             file: format!("{folder}{}", case.file),
             toml: case.text.clone(),
             system: OSCILLATOR.to_owned(),
+            states: ["p", "y", "q", "v"].map(str::to_owned).to_vec(),
             regime: case.regime.to_string(),
             why: case.why.clone(),
             margin: case.margin,
@@ -163,6 +171,7 @@ impl CaseNote {
             file: format!("{folder}{}", case.file),
             toml: case.text.clone(),
             system: case.system.name.clone(),
+            states: case.system.states.clone(),
             regime: case.trouble.join(", "),
             why: case.why.clone(),
             margin: None,

@@ -30,8 +30,8 @@ pub use annotations::{annotations, under_the_service};
 pub use baseline::{Baseline, Compared, RowPlace};
 pub use event::{EventMark, EventPicture, MismatchKind, View, ViewCourse, event_pictures};
 pub use evidence::{
-    CaseNote, ErrorGrowth, FaultRow, GrazeRow, OSCILLATOR, ReportEvidence, RestartHistogram,
-    SectionPair,
+    CASES_FLAG, CaseNote, ErrorGrowth, FaultRow, GrazeRow, OSCILLATOR, ReportEvidence,
+    RestartHistogram, SectionPair,
 };
 pub use orders::{Order, orders};
 pub use pictures::{PictureFile, pictures};

@@ -309,6 +309,7 @@ pub fn evidence() -> ReportEvidence {
         name,
         toml: "[case]\nname = \"graze\" # </script>\n".to_owned(),
         system: "oscillator".to_owned(),
+        states: Vec::new(),
         regime: "grazing".to_owned(),
         why: NASTY.to_owned(),
         trouble: Vec::new(),
@@ -330,6 +331,7 @@ pub fn evidence() -> ReportEvidence {
     let words = "every hundredth event is dropped, counted over the engine's life";
     ReportEvidence {
         cases: margins().map(note).collect(),
+        replayed: Vec::new(),
         growth: runs().enumerate().map(|(i, (it, t))| growth(it, t, i)).collect(),
         restarts: runs().enumerate().map(|(i, (it, t))| histogram(it, t, i)).collect(),
         grazes: runs().flat_map(|(it, t)| margins().map(move |of| graze(it, t, of))).collect(),

@@ -4,6 +4,7 @@
 use super::super::summary::EngineSummary;
 use super::super::{EventPicture, Report, ReportEvidence, ReportRow};
 use super::command;
+use super::scope::Scope;
 use crate::picture::Look;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -13,8 +14,7 @@ const MOST_POINTS: usize = 6000;
 
 /// The page's data, fit to stand inside a script element.
 pub(super) fn json(
-    report: &Report,
-    evidence: &ReportEvidence,
+    (report, evidence, scope): (&Report, &ReportEvidence, &Scope),
     engines: &[EngineSummary],
     looks: &[Look],
 ) -> String {
@@ -38,6 +38,7 @@ pub(super) fn json(
         "restarts": rounded(json!(evidence.restarts)),
         "sections": evidence.sections.iter().map(section).collect::<Vec<_>>(),
         "events": evidence.events.iter().filter_map(|it| event(report, it)).collect::<Vec<_>>(),
+        "state_error": scope.state_error_briefly,
         "verb": command::verb(&evidence.folders),
         "repeat": command::rest(report.suite, &evidence.folders),
     });
@@ -159,7 +160,7 @@ fn in_words(quantity: &str) -> &str {
     match quantity {
         "events spurious" => "spurious events",
         "events missed" => "missed events",
-        "phase word" => "phases in the wrong order",
+        "phase word" => "phases or modes in the wrong order",
         "event time error" => "error of event times",
         "state error" => "error of the state",
         "drift error" => "error of the drift",

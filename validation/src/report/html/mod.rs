@@ -9,6 +9,7 @@ mod command;
 mod data;
 mod horizons;
 mod ranking;
+mod scope;
 mod view;
 
 use super::{Exporter, Report, ReportEvidence, summary};
@@ -38,7 +39,7 @@ struct Page<'a> {
     failures: Vec<view::FailureView>,
     more_failures: usize,
     ranking: Vec<ranking::RankedLine>,
-    cases: usize,
+    scope: &'a scope::Scope,
     recall_columns: usize,
     grazing: view::GrazingTable,
     trouble: view::TroubleTable,
@@ -64,6 +65,7 @@ impl Exporter for Html {
         let summaries = summary::engines(report);
         let names: Vec<_> = report.engines.iter().map(|it| (it.name, it.library)).collect();
         let looks = looks(&names);
+        let scope = scope::Scope::of(report, evidence);
         let (failures, more_failures) = view::failures(report);
         let page = Page {
             report,
@@ -72,7 +74,7 @@ impl Exporter for Html {
             failures,
             more_failures,
             ranking: ranking::ranked(report, &looks),
-            cases: report.number_of_cases(),
+            scope: &scope,
             recall_columns: summaries.iter().map(|it| it.settings.len()).max().unwrap_or(0),
             grazing: view::grazing(report, evidence),
             trouble: view::trouble(report, evidence),
@@ -81,7 +83,7 @@ impl Exporter for Html {
             colours: view::colours(&looks),
             style: STYLE,
             scripts: SCRIPTS,
-            data: data::json(report, evidence, &summaries, &looks),
+            data: data::json((report, evidence, &scope), &summaries, &looks),
         };
         out.write_all(page.render().map_err(io::Error::other)?.as_bytes())
     }
