@@ -86,6 +86,32 @@ fn sections_without_data_are_left_out() {
     assert!(written("report.html", &nothing, &empty).contains("No engine was run"));
 }
 
+/// The report in which an engine was run at its finest tolerance on the first `ran` cases alone.
+fn with_few_rows(engine: &str, ran: usize) -> Report {
+    let mut report = report();
+    let own = report.results.iter_mut().filter(|row| row.engine == engine);
+    for row in own.filter(|row| row.tolerance == Some(1e-12)).skip(ran) {
+        row.verdict = Verdict::NotRun;
+        row.status = "not-run";
+    }
+    report
+}
+
+#[test]
+fn a_median_over_few_rows_is_marked_and_sorted_last() {
+    let shown = |ran: usize| {
+        let html = written("report.html", &with_few_rows("de-radau5", ran), &evidence());
+        let (_, table) = html.split_once("<table class=\"engines").expect("the table");
+        let (_, line) = table.split_once("data-engine=\"de-radau5\"").expect("the engine");
+        line.split_once("</tr>").expect("an end").0.to_owned()
+    };
+    let few = shown(9);
+    assert!(few.contains("<td class=\"number off\">9 of 26</td>"), "{few}");
+    assert_eq!(few.matches("<td class=\"number partial\" data-sort=\"\u{2013}\"").count(), 3);
+    let most = shown(24);
+    assert!(most.contains(">24 of 26<") && !most.contains("partial"), "{most}");
+}
+
 #[test]
 fn every_format_takes_every_number() {
     for exporter in exporters() {

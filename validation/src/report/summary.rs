@@ -4,6 +4,10 @@ use super::{Report, ReportRow};
 use crate::score::{Spread, Verdict};
 use serde::Serialize;
 
+/// A typical figure stands beside those of other engines if at least nine tenths of its rows were
+/// run: the rest hardly moves a median. What is over fewer is over other cases.
+const MOST_ROWS: (usize, usize) = (9, 10);
+
 /// The figures of one engine over all cases.
 #[derive(Clone, Debug, Default)]
 pub(super) struct EngineSummary {
@@ -19,6 +23,8 @@ pub(super) struct EngineSummary {
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct SettingSummary {
     pub setting: String,
+    /// The number of rows, and of those that were run.
+    pub rows: usize,
     pub runs: usize,
     pub failed: usize,
     pub expected: usize,
@@ -57,6 +63,7 @@ impl SettingSummary {
         };
         Self {
             setting: rows.first().map_or(String::new(), |row| row.setting()),
+            rows: rows.len(),
             runs: ran.len(),
             failed: ran.iter().filter(|row| row.status != "ok").count(),
             expected: sum(|row| row.events_expected),
@@ -68,6 +75,12 @@ impl SettingSummary {
             rhs: work(|row| row.rhs_evaluations),
             ns: work(|row| row.wall_ns),
         }
+    }
+
+    /// Whether the typical figures are over about the same cases as those of other engines.
+    pub fn is_over_most_rows(&self) -> bool {
+        let (most, of) = MOST_ROWS;
+        self.runs * of >= self.rows * most
     }
 
     /// The share of the truth's events that the engine has; NaN where there was none to find.

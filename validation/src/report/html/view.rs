@@ -22,10 +22,13 @@ pub(super) struct EngineLine {
     /// A class and words for it.
     pub verdict: (&'static str, String),
     pub counts: String,
-    pub time_error: String,
-    pub state_error: String,
-    pub rhs: String,
+    /// The typical errors of event times and of the state, and the right-hand sides.
+    pub figures: [String; 3],
     pub finest: String,
+    /// Of how many rows at the finest setting how many were run.
+    pub rows: String,
+    /// Whether these are too few for its figures to stand beside those of others.
+    pub partial: bool,
     pub recall: Vec<RecallCell>,
     /// Events found, checked and all, over all settings.
     pub overall: String,
@@ -62,9 +65,13 @@ pub(super) fn engines(
                 marker: looks.get(place).map_or("", |look| glyph(look.marker)),
                 verdict: verdict(summary),
                 counts: counts(summary),
-                time_error: figure(|it| it.time_error),
-                state_error: figure(|it| it.state_error),
-                rhs: finest.map_or(String::new(), |it| count(it.rhs)),
+                figures: [
+                    figure(|it| it.time_error),
+                    figure(|it| it.state_error),
+                    finest.map_or(String::new(), |it| count(it.rhs)),
+                ],
+                rows: finest.map_or(String::new(), |it| format!("{} of {}", it.runs, it.rows)),
+                partial: finest.is_some_and(|it| !it.is_over_most_rows()),
                 finest: finest.map_or(String::new(), |it| it.setting.clone()),
                 recall: summary.settings.iter().map(recall).collect(),
                 overall: overall(summary),
