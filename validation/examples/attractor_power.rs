@@ -166,6 +166,7 @@ fn picture(power: &[PowerCurve]) -> Curves {
             width: 2.0,
             stroke: if dashed { Stroke::Dashed } else { Stroke::Solid },
             points,
+            apart: Vec::new(),
         };
         curves.push(curve(
             format!("{}, {}", of.changed.name(), of.case),
@@ -175,6 +176,7 @@ fn picture(power: &[PowerCurve]) -> Curves {
         curves.push(curve(String::new(), true, points(|it| it.sampled)));
     }
     Curves {
+        note: String::new(),
         title: "Runs caught by the same-attractor test: solid with the errors of single periods, \
                 dashed without"
             .to_owned(),

@@ -2,7 +2,7 @@
 
 use crate::support;
 use crate::support::synthetic::{NASTY, evidence, report};
-use percuss_validation::report::{Report, ReportEvidence, exporters, pictures};
+use percuss_validation::report::{Report, ReportEvidence, ReportRow, exporters, pictures};
 use percuss_validation::score::Verdict;
 use serde_json::Value;
 use std::path::Path;
@@ -110,6 +110,59 @@ fn a_median_over_few_rows_is_marked_and_sorted_last() {
     assert_eq!(few.matches("<td class=\"number partial\" data-sort=\"\u{2013}\"").count(), 3);
     let most = shown(24);
     assert!(most.contains(">24 of 26<") && !most.contains("partial"), "{most}");
+}
+
+fn picture(report: &Report, wanted: &str) -> String {
+    let all = pictures(report, &evidence()).expect("drawn");
+    let (_, bytes) = all.into_iter().find(|(name, _)| name == wanted).expect("the picture");
+    support::text(&bytes)
+}
+
+#[test]
+fn points_that_score_other_events_are_told_apart() {
+    let few = with_few_rows("de-radau5", 9);
+    let whole = report();
+    let on_one_case = |missed: usize| {
+        let own = whole.results.iter().filter(|row| row.case == "periodic-03");
+        let mut results: Vec<_> = own.cloned().collect();
+        let wanted =
+            |row: &&mut ReportRow| row.engine == "de-radau5" && row.tolerance == Some(1e-9);
+        let row = results.iter_mut().find(wanted).expect("the row");
+        row.events_matched = Some(40 - missed);
+        row.events_missed = Some(missed);
+        Report { results, ..report() }
+    };
+    let one = on_one_case(2);
+    for name in ["work-precision-event-time.svg", "work-precision-state.svg"] {
+        let said = picture(&few, name);
+        assert!(said.contains("Hollow") && said.contains("(9 of 26 rows)"), "{name}");
+        assert!(!picture(&whole, name).contains("Hollow"), "{name}");
+        let said = picture(&one, name);
+        assert!(said.contains("Hollow") && said.contains("(38 of 40 events)"), "{name}");
+        assert!(!picture(&on_one_case(0), name).contains("Hollow"), "{name}");
+    }
+}
+
+#[test]
+fn a_run_with_other_events_counts_as_infinitely_wrong_in_a_median() {
+    let errors = |wrong: usize, verdict: Verdict| {
+        let mut report = report();
+        let own = report.results.iter_mut().filter(|row| row.engine == "de-radau5");
+        for row in own.filter(|row| row.tolerance == Some(1e-9)).take(wrong) {
+            row.events_spurious = Some(1);
+            row.verdict = verdict;
+        }
+        let data = data(&written("report.html", &report, &evidence()));
+        let engines = data["engines"].as_array().expect("a list").clone();
+        let engine = engines.into_iter().find(|it| it["name"] == "de-radau5").expect("the engine");
+        let setting = &engine["settings"][1];
+        assert_eq!(setting["setting"], "1e-9");
+        [&setting["time_error"], &setting["state_error"]].map(Value::is_number)
+    };
+    assert_eq!(errors(5, Verdict::Known), [true, true]);
+    assert_eq!(errors(20, Verdict::Known), [false, true]);
+    // Where either answer is right, no other is.
+    assert_eq!(errors(20, Verdict::Undecidable), [true, true]);
 }
 
 #[test]

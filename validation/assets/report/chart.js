@@ -11,14 +11,23 @@ const MARKERS = {
   plus: "M0,-5V5M-5,0H5",
 };
 
-function markerOf(name, at, color) {
+function markerOf(name, at, color, hollow = false) {
   const open = name === "cross" || name === "plus";
+  if (hollow) return hollowMarker(name, at, color, open);
   return drawn("path", {
     d: MARKERS[name] ?? MARKERS.circle,
     transform: `translate(${at[0].toFixed(1)},${at[1].toFixed(1)})`,
     style: open ? `stroke:${color};fill:none` : `fill:${color};stroke:var(--paper)`,
     "stroke-width": open ? 2.2 : 1,
   });
+}
+
+// Only the outline of a marker; one of lines, which has none, in a ring.
+function hollowMarker(name, at, color, open) {
+  const mark = drawn("g", { transform: `translate(${at[0].toFixed(1)},${at[1].toFixed(1)})` });
+  mark.append(drawn("path", { d: MARKERS[open ? "circle" : name] ?? MARKERS.circle, transform: `scale(${open ? 1.7 : 1.2})`, style: `stroke:${color};fill:var(--paper)`, "stroke-width": 1.5 }));
+  if (open) mark.append(drawn("path", { d: MARKERS[name], transform: "scale(0.8)", style: `stroke:${color};fill:none`, "stroke-width": 2 }));
+  return mark;
 }
 
 // Range and ticks of an axis over finite values; null where there is nothing to show.
@@ -53,7 +62,7 @@ function axisOver(values, { log, low, high }) {
 const tip = element("div", { class: "tip", role: "status", hidden: "" });
 document.body.append(tip);
 
-// series: { name, color, marker, dash, width, line, points: [[x, y, note]] }
+// series: { name, color, marker, dash, width, line, points: [[x, y, note, apart]] }; a point apart is hollow and not joined.
 function chart(host, { x, y, series, height = 380 }) {
   const draw = () => {
     host.replaceChildren();
@@ -86,12 +95,13 @@ function chart(host, { x, y, series, height = 380 }) {
     const near = [];
     for (const s of shown) {
       const pixels = s.points.map(at);
-      if (s.line !== false && pixels.length > 1) {
-        const d = pixels.map((p, i) => `${i ? "L" : "M"}${p[0].toFixed(1)},${p[1].toFixed(1)}`).join("");
+      const joined = pixels.filter((_, i) => !s.points[i][3]);
+      if (s.line !== false && joined.length > 1) {
+        const d = joined.map((p, i) => `${i ? "L" : "M"}${p[0].toFixed(1)},${p[1].toFixed(1)}`).join("");
         svg.append(drawn("path", { d, fill: "none", style: `stroke:${s.color}`, "stroke-width": s.width ?? 1.8, "stroke-dasharray": s.dash ?? "none", "stroke-linejoin": "round" }));
       }
       pixels.forEach((p, i) => {
-        if (s.marker) svg.append(markerOf(s.marker, p, s.color));
+        if (s.marker) svg.append(markerOf(s.marker, p, s.color, s.points[i][3]));
         near.push([p, s, s.points[i]]);
       });
     }

@@ -13,15 +13,30 @@ function legendOf(host, names, redraw) {
   }));
 }
 
+// Whether a row's errors are over all events of the truth, and it has no others.
+const isOfAllEvents = (i) => columns.events_matched?.[i] === columns.events_total?.[i] && !columns.events_spurious?.[i];
+const eventsOf = (i) => `${columns.events_matched?.[i] ?? 0} of ${columns.events_total?.[i]} events${columns.events_spurious?.[i] ? `, ${columns.events_spurious[i]} spurious` : ""}`;
+
+// What the points are over, and which of them are hollow.
+function workNote(note) {
+  if (note) return `${note.regime ? `${note.regime}. ` : ""}${note.why ?? ""} Hollow, not joined: runs that missed or invented events, or that are scored for a part of the truth's events only.`;
+  const apart = data.engines.flatMap((engine) => (engine.settings ?? []).filter((it) => it.runs && !it.is_comparable).map((it) => `${engine.name} ${it.setting} (${it.of})`));
+  const only = data.cases.length === 1;
+  const why = only ? "these runs missed or invented events, or are scored for a part of the truth's events only" : "fewer than nine tenths of their rows were run, so that these medians are over other cases";
+  const hollow = apart.length ? ` Hollow, not joined: ${why}: ${apart.join(", ")}.` : "";
+  const first = only ? "Each point is a run's largest error against its cost." : "Each point is the median over the cases of a run's largest error, against the median cost of a run; a run without a result, and for event times one that missed or invented an event, counts as infinitely wrong.";
+  return first + hollow;
+}
+
 function workPrecision() {
   const choice = document.getElementById("work-case");
   const work = document.getElementById("work-x");
   const hosts = [["work-time", "time", "event_time_error.max", "event-time error"], ["work-state", "state", "state_error.max", "state error"]];
   const points = (engine, chosen, key, kind) => {
-    if (!chosen) return (engine.settings ?? []).map((it) => [work.value === "rhs" ? it.rhs : it.ns / 1e6, it[`${kind}_error`], it.setting]);
+    if (!chosen) return (engine.settings ?? []).map((it) => [work.value === "rhs" ? it.rhs : it.ns / 1e6, it[`${kind}_error`], `${it.setting} (${it.of})`, !it.is_comparable]);
     const rows = [...Array(count).keys()].filter((i) => columns.case[i] === chosen && columns.engine[i] === engine.name);
     rows.sort((a, b) => fineness(b) - fineness(a));
-    return rows.map((i) => [work.value === "rhs" ? columns.rhs_evaluations?.[i] : columns.wall_ns?.[i] / 1e6, columns[key]?.[i], columns.setting[i]]);
+    return rows.map((i) => [work.value === "rhs" ? columns.rhs_evaluations?.[i] : columns.wall_ns?.[i] / 1e6, columns[key]?.[i], `${columns.setting[i]} (${eventsOf(i)})`, !isOfAllEvents(i)]);
   };
   const draw = () => {
     legendOf(document.getElementById("work-legend"), data.engines.map((it) => it.name), draw);
@@ -39,7 +54,7 @@ function workPrecision() {
       });
     }
     const note = data.cases.find((it) => it.name === choice.value);
-    document.getElementById("work-note").textContent = note ? `${note.regime ? `${note.regime}. ` : ""}${note.why ?? ""}` : "Each point is the median over all cases of a run's largest error, against the median cost of a run; a run without a result counts as infinitely wrong.";
+    document.getElementById("work-note").textContent = workNote(note);
   };
   data.cases.forEach((it) => choice.append(element("option", { value: it.name }, it.name)));
   [choice, work].forEach((it) => it.addEventListener("input", draw));

@@ -4,6 +4,7 @@
 function weight(cell) {
   const text = (cell?.dataset.sort ?? cell?.textContent ?? "").trim();
   if (text === "–" || text === "") return null;
+  if (text === "∞") return Infinity;
   const figure = Number(text.replace(/[\u202f\s%]/g, "").replace(/^h/, ""));
   return Number.isNaN(figure) ? text : figure;
 }

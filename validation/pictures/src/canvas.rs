@@ -336,6 +336,17 @@ impl Canvas {
         self.plot(|it| it.draw_circle(place(at), radius, &style(colour, 0.0), true));
     }
 
+    /// A marker of which only the outline shows; one of lines, which has none, in a ring.
+    pub(super) fn hollow(&mut self, marker: Marker, at: At, size: f64, colour: Colour) {
+        if matches!(marker, Marker::Cross | Marker::Plus) {
+            self.disc(at, size + 4.0, colour);
+            self.disc(at, size + 2.0, WHITE);
+            return self.marker(marker, at, size - 1.0, colour);
+        }
+        self.marker(marker, at, size + 2.0, colour);
+        self.marker(marker, at, size - 1.5, WHITE);
+    }
+
     pub(super) fn marker(&mut self, marker: Marker, at: At, size: f64, colour: Colour) {
         let corner = |(x, y): At| (at.0 + size * x, at.1 + size * y);
         let mut shape = |corners: &[At]| {

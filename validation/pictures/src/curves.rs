@@ -8,6 +8,9 @@ use super::{Colour, Drawing, Marker, font, palette};
 
 const SIZE: (u32, u32) = (1500, 900);
 const TEXT: f64 = 20.0;
+/// Text of the note, and the height of its lines.
+const NOTE: f64 = 17.0;
+const NOTE_LINE: f64 = 24.0;
 /// Room for names in the key.
 const KEY_WIDTH: f64 = 306.0;
 
@@ -26,6 +29,8 @@ pub struct Curve {
     pub stroke: Stroke,
     /// The curve's points; those that are not finite are left out.
     pub points: Vec<(f64, f64)>,
+    /// Points that are not to be compared with the others: hollow, and joined by no line.
+    pub apart: Vec<(f64, f64)>,
 }
 
 /// A picture of curves.
@@ -33,6 +38,8 @@ pub struct Curve {
 pub struct Curves {
     /// What it shows.
     pub title: String,
+    /// How to read it, below the title, where that is not plain.
+    pub note: String,
     /// The horizontal axis.
     pub x: Axis,
     /// The vertical axis.
@@ -48,22 +55,28 @@ impl Drawing for Curves {
 
     fn draw(&self, canvas: &mut Canvas) {
         canvas.title(&self.title);
-        let points = || self.curves.iter().flat_map(|curve| &curve.points).filter(|it| finite(it));
+        let points = || self.curves.iter().flat_map(Curve::all).filter(|it| finite(it));
         let x = Ruler::over(self.x.scale, points().map(|point| point.0));
         let y = Ruler::over(self.y.scale, points().map(|point| point.1));
         let (Some(x), Some(y)) = (x, y) else {
             let at = (130.0, 120.0);
             return canvas.text("nothing was measured", at, TEXT, TextSide::Left, palette::INK);
         };
-        let panel = Panel { from: (130.0, 64.0), to: (1110.0, 816.0), x, y };
+        let note = font::wrapped(&self.note, NOTE, f64::from(SIZE.0) - 48.0);
+        for (n, line) in note.iter().enumerate() {
+            let at = (24.0, 62.0 + NOTE_LINE * n as f64);
+            canvas.text(line, at, NOTE, TextSide::Left, palette::INK);
+        }
+        let top = 64.0 + NOTE_LINE * note.len() as f64;
+        let panel = Panel { from: (130.0, top), to: (1110.0, 816.0), x, y };
         panel.draw(canvas, &self.x.label, &self.y.label);
         self.curves.iter().for_each(|curve| curve.draw(canvas, &panel));
         let named = || self.curves.iter().filter(|curve| !curve.name.is_empty());
-        let step = (740.0 / named().count().max(1) as f64).min(30.0);
+        let step = ((804.0 - top) / named().count().max(1) as f64).min(30.0);
         let size = (step - 4.0).min(TEXT - 1.0);
         let widest = named().map(|curve| font::width(&curve.name, size)).fold(KEY_WIDTH, f64::max);
         let size = size * KEY_WIDTH / widest;
-        key(canvas, (1136.0, 80.0), KeyLayout::Column(step), size, named().map(Curve::key));
+        key(canvas, (1136.0, top + 16.0), KeyLayout::Column(step), size, named().map(Curve::key));
     }
 }
 
@@ -73,10 +86,23 @@ fn finite(point: &(f64, f64)) -> bool {
 
 impl Curve {
     fn draw(&self, canvas: &mut Canvas, panel: &Panel) {
-        let places = self.points.iter().filter(|it| finite(it)).filter_map(|it| panel.at(*it));
-        let places: Vec<_> = places.collect();
-        self.line(canvas, &places);
-        self.markers(canvas, &places);
+        let places = |points: &[(f64, f64)]| {
+            let finite = points.iter().filter(|it| finite(it));
+            finite.filter_map(|it| panel.at(*it)).collect::<Vec<_>>()
+        };
+        let joined = places(&self.points);
+        self.line(canvas, &joined);
+        self.markers(canvas, &joined);
+        if let Some(marker) = self.marker {
+            for at in places(&self.apart) {
+                canvas.hollow(marker, at, 6.0, self.colour);
+            }
+        }
+    }
+
+    /// All its points.
+    fn all(&self) -> impl Iterator<Item = &(f64, f64)> {
+        self.points.iter().chain(&self.apart)
     }
 
     fn line(&self, canvas: &mut Canvas, places: &[At]) {
@@ -94,5 +120,39 @@ impl Curve {
             self.line(canvas, &[(x, y), (x + 38.0, y)]);
             self.markers(canvas, &[(x + 19.0, y)]);
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{AxisScale, svg};
+
+    #[test]
+    fn points_apart_are_hollow_and_not_joined() {
+        let axis = || Axis { label: String::new(), scale: AxisScale::Linear };
+        let drawn = |points: Vec<(f64, f64)>, apart: Vec<(f64, f64)>| {
+            let curve = Curve {
+                name: String::new(),
+                colour: Colour(1, 2, 3),
+                marker: Some(Marker::Circle),
+                width: 2.0,
+                stroke: Stroke::Solid,
+                points,
+                apart,
+            };
+            let curves = vec![curve];
+            svg(&Curves { title: String::new(), note: String::new(), x: axis(), y: axis(), curves })
+        };
+        let two = vec![(0.0, 0.0), (1.0, 2.0)];
+        let own = |svg: &str, shape: &str| {
+            svg.lines().filter(|it| it.contains("#010203") && it.contains(shape)).count()
+        };
+        let (joined, apart) = (drawn(two.clone(), Vec::new()), drawn(Vec::new(), two));
+        assert_eq!((own(&joined, "<circle"), own(&apart, "<circle")), (2, 2));
+        assert_eq!((own(&joined, "<poly") + own(&joined, "<path"), own(&apart, "<poly")), (1, 0));
+        // White discs of what is hollow lie on those of its colour.
+        let white = |svg: &str| svg.lines().filter(|it| it.contains("<circle")).count();
+        assert_eq!((white(&joined), white(&apart)), (2, 4));
     }
 }

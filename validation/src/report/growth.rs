@@ -22,6 +22,7 @@ impl Palette {
             width: 1.5,
             stroke: Stroke::Solid,
             points: points(run, &run.truth_growth),
+            apart: Vec::new(),
         };
         let error = |run: &&ErrorGrowth| Curve {
             name: who(&run.engine, &setting(run.tolerance, None)),
@@ -38,6 +39,7 @@ impl Palette {
         curves.extend(runs.iter().map(error));
         curves.extend(exponential(runs));
         Curves {
+            note: String::new(),
             title: format!("Error growth in chaos: {case}"),
             x: Axis { label: "forcing periods".to_owned(), scale: AxisScale::Linear },
             y: Axis { label: "error of the state".to_owned(), scale: AxisScale::Logarithmic },
@@ -75,5 +77,6 @@ fn exponential(runs: &[&ErrorGrowth]) -> Option<Curve> {
         width: 2.0,
         stroke: Stroke::Dotted,
         points: vec![(0.0, floor), (last, floor * (lambda * last).exp())],
+        apart: Vec::new(),
     })
 }

@@ -25,6 +25,7 @@ mod setting;
 mod summary;
 mod table;
 mod trouble;
+mod work_precision;
 
 pub use annotations::{annotations, under_the_service};
 pub use baseline::{Baseline, Compared, RowPlace};

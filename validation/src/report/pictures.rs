@@ -7,8 +7,8 @@ use super::{Report, ReportEvidence, RestartHistogram, SectionPair};
 use crate::number::brief;
 use crate::picture::Colour;
 use crate::picture::{
-    self, Axis, AxisScale, Curve, Curves, DrawError, Drawing, Encounter, Figure, HeatCell, HeatMap,
-    HistogramRow, Histograms, Layer, Look, Marker, Plot, Stroke, Tint, looks, png, svg,
+    self, DrawError, Drawing, Encounter, Figure, HeatCell, HeatMap, HistogramRow, Histograms,
+    Layer, Look, Plot, Tint, looks, png, svg,
 };
 use percuss::Phase;
 use rayon::prelude::*;
@@ -29,14 +29,7 @@ pub type PictureFile = (String, Vec<u8>);
 pub fn pictures(report: &Report, evidence: &ReportEvidence) -> Result<Vec<PictureFile>, DrawError> {
     let palette = Palette::of(report, evidence);
     let summaries = summary::engines(report);
-    let work = |name: &str, label: &str, figure: fn(&SettingSummary) -> f64| {
-        let curves = palette.work_precision(report, &summaries, label, figure);
-        (format!("work-precision-{name}"), curves)
-    };
-    let mut curves = vec![
-        work("event-time", "error of event times", |it| it.time_error),
-        work("state", "error of the state", |it| it.state_error),
-    ];
+    let mut curves = palette.work_precision(report, &summaries);
     curves.extend(
         by_case(&evidence.growth, |it| &it.case)
             .map(|(case, runs)| (format!("error-growth-{case}"), palette.growth(case, &runs))),
@@ -122,44 +115,8 @@ impl Palette {
         self.look(engine).map_or(GREY, |look| look.light)
     }
 
-    fn look(&self, engine: &str) -> Option<&Look> {
+    pub(super) fn look(&self, engine: &str) -> Option<&Look> {
         self.looks.iter().find(|(name, _)| name == engine).map(|(_, look)| look)
-    }
-
-    fn work_precision(
-        &self,
-        report: &Report,
-        summaries: &[EngineSummary],
-        label: &str,
-        figure: fn(&SettingSummary) -> f64,
-    ) -> Curves {
-        let cases = report.results.chunk_by(|a, b| a.case == b.case).count();
-        let of = match report.results.first() {
-            Some(row) if cases == 1 => row.case.clone(),
-            _ => format!("median of {cases} cases"),
-        };
-        let curve = |(engine, summary): (&super::EngineEntry, &EngineSummary)| Curve {
-            name: engine.name.to_owned(),
-            colour: self.colour(engine.name),
-            marker: Some(self.look(engine.name).map_or(Marker::Circle, |look| look.marker)),
-            width: 2.5,
-            stroke: Stroke::Solid,
-            // On a logarithmic axis there is no work of nothing.
-            points: summary
-                .settings
-                .iter()
-                .map(|it| (it.rhs, figure(it)))
-                .filter(|it| it.0 > 0.0)
-                .collect(),
-        };
-        let logarithmic =
-            |label: &str| Axis { label: label.to_owned(), scale: AxisScale::Logarithmic };
-        Curves {
-            title: format!("Work-precision, {label}: {of}"),
-            x: logarithmic("right-hand sides (exact: closed-form evaluations)"),
-            y: logarithmic(label),
-            curves: report.engines.iter().zip(summaries).map(curve).collect(),
-        }
     }
 
     /// A picture a unit: errors in different units share no axis.

@@ -243,6 +243,12 @@ impl ReportRow {
         !matches!(self.verdict, Verdict::Unavailable | Verdict::NotRun)
     }
 
+    /// Whether its errors are over all events of the truth, and it has no others.
+    #[must_use]
+    pub fn is_of_all_events(&self) -> bool {
+        self.events_matched == Some(self.events_total) && self.events_spurious == Some(0)
+    }
+
     fn of(scored: &Scored) -> Self {
         let empty = Self::empty(scored);
         let Status::Ok(measures, answered) = &scored.status else { return empty };

@@ -19,13 +19,19 @@ pub(super) struct EngineSummary {
 
 /// The figures of one engine at one setting over all cases. A typical figure is the median over the
 /// cases of the row's largest error; a run without a result counts as infinitely wrong, so that
-/// failing on hard cases does not look like accuracy.
+/// failing on hard cases does not look like accuracy. So does, for the times of events, one of
+/// several runs that missed or invented an event: what it found are the easier ones.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct SettingSummary {
     pub setting: String,
     /// The number of rows, and of those that were run.
     pub rows: usize,
     pub runs: usize,
+    /// Whether the figures may stand beside those of other engines: over most of the rows, or, of one
+    /// row, over all events of the truth and no others.
+    pub is_comparable: bool,
+    /// What they are over, in words.
+    pub of: String,
     pub failed: usize,
     pub expected: usize,
     /// Events of the truth, scored or not.
@@ -52,9 +58,9 @@ impl SettingSummary {
         let scored = || ran.iter().filter(|row| row.verdict != Verdict::NotScored);
         let sum =
             |count: fn(&ReportRow) -> Option<usize>| scored().filter_map(|row| count(row)).sum();
-        let error = |figure: fn(&ReportRow) -> f64| {
-            let of =
-                |row: &&ReportRow| if row.status == "ok" { figure(row) } else { f64::INFINITY };
+        let error = |figure: fn(&ReportRow) -> f64, is_lost: fn(&ReportRow) -> bool| {
+            let lost = |row: &ReportRow| row.status != "ok" || (rows.len() > 1 && is_lost(row));
+            let of = |row: &&ReportRow| if lost(row) { f64::INFINITY } else { figure(row) };
             Spread::of(ran.iter().map(of).filter(|error| !error.is_nan()).collect()).median
         };
         let work = |figure: fn(&ReportRow) -> Option<u64>| {
@@ -65,13 +71,15 @@ impl SettingSummary {
             setting: rows.first().map_or(String::new(), |row| row.setting()),
             rows: rows.len(),
             runs: ran.len(),
+            is_comparable: is_comparable(rows, ran.len()),
+            of: over(rows, ran.len()),
             failed: ran.iter().filter(|row| row.status != "ok").count(),
             expected: sum(|row| row.events_expected),
             total: rows.iter().map(|row| row.events_total).sum(),
             matched: sum(|row| row.events_matched),
             spurious: sum(|row| row.events_spurious),
-            time_error: error(|row| row.event_time_error.max),
-            state_error: error(|row| row.state_error.max),
+            time_error: error(|row| row.event_time_error.max, has_other_events),
+            state_error: error(|row| row.state_error.max, |_| false),
             rhs: work(|row| row.rhs_evaluations),
             ns: work(|row| row.wall_ns),
         }
@@ -79,14 +87,42 @@ impl SettingSummary {
 
     /// Whether the typical figures are over about the same cases as those of other engines.
     pub fn is_over_most_rows(&self) -> bool {
-        let (most, of) = MOST_ROWS;
-        self.runs * of >= self.rows * most
+        are_most(self.runs, self.rows)
     }
 
     /// The share of the truth's events that the engine has; NaN where there was none to find.
     pub fn recall(&self) -> f64 {
         self.matched as f64 / self.expected as f64
     }
+}
+
+fn are_most(ran: usize, rows: usize) -> bool {
+    let (most, of) = MOST_ROWS;
+    ran * of >= rows * most
+}
+
+/// Whether a run has other events than the truth where only one answer is right.
+fn has_other_events(row: &ReportRow) -> bool {
+    let some = |count: Option<usize>| count.is_some_and(|it| it > 0);
+    row.verdict != Verdict::Undecidable && (some(row.events_missed) || some(row.events_spurious))
+}
+
+fn is_comparable(rows: &[&ReportRow], ran: usize) -> bool {
+    match rows {
+        [row] => row.is_of_all_events(),
+        _ => are_most(ran, rows.len()),
+    }
+}
+
+/// What figures are over: events of one row, or rows.
+fn over(rows: &[&ReportRow], ran: usize) -> String {
+    let [row] = rows else { return format!("{ran} of {} rows", rows.len()) };
+    let found = row.events_matched.unwrap_or_default();
+    let spurious = match row.events_spurious {
+        None | Some(0) => String::new(),
+        Some(count) => format!(", {count} spurious"),
+    };
+    format!("{found} of {} events{spurious}", row.events_total)
 }
 
 /// The engines of a report, in its order.

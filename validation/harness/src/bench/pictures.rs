@@ -8,6 +8,7 @@ use crate::picture::{
     Axis, AxisScale, Curve, Curves, DrawError, INK, Marker, Picture, Stroke, basin_colours, looks,
     png, svg,
 };
+use crate::score::SCORED_ERROR;
 
 /// All pictures that there are data for, each as PNG and SVG.
 ///
@@ -40,17 +41,30 @@ pub(super) fn both(drawn: &[(String, Curves)]) -> Result<Vec<Picture>, DrawError
 fn work_precision(bench: &Bench, case: &str) -> Curves {
     let rows: Vec<&BenchRow> = bench.results.iter().filter(|row| row.case == case).collect();
     let point = |row: &&BenchRow| Some((row.ns_per_period?, row.state_error_max?));
+    let left_out = rows.iter().filter(|row| point(row).is_none()).count();
     let curves = rows.chunk_by(|a, b| a.engine == b.engine);
     let curves =
         curves.filter_map(|own| Some((own.first()?.engine.as_str(), own.iter().filter_map(point))));
     let curves = curves.map(|(engine, points)| curve(engine, points.collect()));
     Curves {
+        note: left_out_note(left_out, rows.len()),
         title: format!("Work-precision: {case}"),
         x: logarithmic("processor time a forcing period, ns"),
         y: logarithmic("largest error of the state"),
         // The exact solver lies on top.
         curves: curves.collect::<Vec<_>>().into_iter().rev().collect(),
     }
+}
+
+/// What a picture does not show: only runs that have every event and no other are timed.
+fn left_out_note(count: usize, of: usize) -> String {
+    if count == 0 {
+        return String::new();
+    }
+    format!(
+        "Left out are {count} of {of} settings, whose runs miss or invent events, err by more than \
+         {SCORED_ERROR:e} or give no result; their reasons are in bench.json."
+    )
 }
 
 fn length(bench: &Bench) -> Curves {
@@ -72,6 +86,7 @@ fn length(bench: &Bench) -> Curves {
         ..curve("in proportion", proportional.into_iter().flatten().collect())
     };
     Curves {
+        note: String::new(),
         title: "Cost against length: exact, on the orbit of period five at omega = 1.6, xi = 0.1"
             .to_owned(),
         x: logarithmic("forcing periods"),
@@ -103,6 +118,7 @@ fn damping(bench: &Bench) -> Curves {
     let tolerance = bench.damping.iter().find_map(|row| row.tolerance);
     let tolerance = tolerance.map(|it| format!(" (engines at {})", crate::number::shortest(it)));
     Curves {
+        note: String::new(),
         title: format!(
             "Cost against xi, from rest at omega = 1.2{}",
             tolerance.unwrap_or_default()
@@ -146,10 +162,12 @@ pub fn history(history: &History) -> Curves {
         width: 2.0,
         stroke: Stroke::Solid,
         points: points(bench),
+        apart: Vec::new(),
     };
     let last = versions.last().map(|it| it.commit.as_deref().unwrap_or(&it.percuss).chars());
     let last: String = last.into_iter().flatten().take(10).collect();
     Curves {
+        note: String::new(),
         title: format!("An event in units of the floor, {} versions up to {last}", versions.len()),
         x: Axis { label: "recorded version, oldest first".to_owned(), scale: AxisScale::Linear },
         y: Axis { label: "sine-cosine-exponentials an event".to_owned(), scale: AxisScale::Linear },
@@ -173,5 +191,6 @@ fn curve(engine: &str, points: Vec<(f64, f64)>) -> Curve {
         width: 2.5,
         stroke: Stroke::Solid,
         points,
+        apart: Vec::new(),
     }
 }

@@ -85,7 +85,7 @@ fn shown(value: f64) -> String {
     if value.is_nan() {
         "\u{2013}".to_owned()
     } else if value.is_infinite() {
-        "no result".to_owned()
+        "\u{221e}".to_owned()
     } else {
         brief(value)
     }
