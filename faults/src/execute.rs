@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 
 /// What became of a test program.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Outcome {
+pub enum OscillatorOutcome {
     /// All its tests passed, after so long.
     Passed(Duration),
     /// This test failed.
@@ -30,20 +30,20 @@ const MEMORY: &str = "16000000";
 
 /// Runs the program with this fault; 0 is none. It may take so many seconds of the processor's
 /// time, which does not depend on what else the machine does.
-pub fn run(program: &Program, fault: u32, limit: Option<u64>) -> Result<Outcome> {
+pub fn run(program: &Program, fault: u32, limit: Option<u64>) -> Result<OscillatorOutcome> {
     let started = Instant::now();
     let mut child = start(program, fault, limit)?;
     let output = child.stdout.take().context("no output")?;
     let mut lines = BufReader::new(output).lines().map_while(Result::ok);
     if let Some(test) = lines.find_map(|line| failed_test(&line)) {
         stop(&mut child)?;
-        return Ok(Outcome::Failed(test));
+        return Ok(OscillatorOutcome::Failed(test));
     }
     let status = child.wait()?;
     Ok(match status.signal() {
-        _ if status.success() => Outcome::Passed(started.elapsed()),
-        Some(KILLED | TIME_IS_UP) => Outcome::TimedOut,
-        _ => Outcome::Crashed,
+        _ if status.success() => OscillatorOutcome::Passed(started.elapsed()),
+        Some(KILLED | TIME_IS_UP) => OscillatorOutcome::TimedOut,
+        _ => OscillatorOutcome::Crashed,
     })
 }
 

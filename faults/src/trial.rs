@@ -1,7 +1,7 @@
 //! Tries one fault after the other.
 
 use crate::compile::{LIBRARIES, Program, SOLVER, VALIDATION, programs};
-use crate::execute::{Outcome, run};
+use crate::execute::{OscillatorOutcome, run};
 use crate::fault::Fault;
 use crate::record::{Table, Verdict};
 use anyhow::{Result, bail};
@@ -60,10 +60,10 @@ fn try_one(fault: &Fault, programs: &[&Timed]) -> Result<Verdict> {
     for Timed { program, limit } in programs {
         let by = |test: &str| format!("{} {test}", program.name).trim_end().to_owned();
         match run(program, fault.number, Some(*limit))? {
-            Outcome::Passed(_) => {}
-            Outcome::Failed(test) => return Ok(Verdict::Caught(by(&test))),
-            Outcome::Crashed => return Ok(Verdict::Crash(by(""))),
-            Outcome::TimedOut => return Ok(Verdict::Timeout(by(""))),
+            OscillatorOutcome::Passed(_) => {}
+            OscillatorOutcome::Failed(test) => return Ok(Verdict::Caught(by(&test))),
+            OscillatorOutcome::Crashed => return Ok(Verdict::Crash(by(""))),
+            OscillatorOutcome::TimedOut => return Ok(Verdict::Timeout(by(""))),
         }
     }
     Ok(Verdict::Survived)
@@ -75,7 +75,7 @@ fn timed(scratch: &Path, packages: &[&str], plan: &Plan) -> Result<Vec<Timed>> {
     let asked = |program: &Program| !plan.skip.contains(&program.name);
     for program in programs(scratch, packages)?.into_iter().filter(asked) {
         match run(&program, 0, None)? {
-            Outcome::Passed(took) => {
+            OscillatorOutcome::Passed(took) => {
                 eprintln!("without a fault: {} {:.2} s", program.name, took.as_secs_f64());
                 timed.push((took, program));
             }

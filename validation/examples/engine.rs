@@ -4,8 +4,8 @@
 //! `cargo run --release -p percuss-validation --example engine -- validate -e '^(exact|heun)$'`
 
 use percuss_validation::engine::{
-    Accuracy, Colours, Declaration, Engine, Equations, Failure, Limits, Location, Numbers, Role,
-    Stepping, SystemEvent, SystemOutcome, SystemTask, Work,
+    Accuracy, Colours, Declaration, Engine, Equations, Event, Failure, Limits, Location, Numbers,
+    Outcome, Role, Stepping, Task, Work,
 };
 use percuss_validation::system::{Affine, Values};
 use std::process::ExitCode;
@@ -29,7 +29,7 @@ impl Engine for Heun {
         }
     }
 
-    fn takes(&self, task: &SystemTask) -> Result<(), &'static str> {
+    fn takes(&self, task: &Task) -> Result<(), &'static str> {
         let watches = task.system.system().modes.iter().any(|mode| !mode.watch.is_empty());
         match task.system.is_backward() {
             true => Err("it does not run back in time"),
@@ -38,18 +38,13 @@ impl Engine for Heun {
         }
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         self.takes(task).map_err(Failure::new)?;
         let step = accuracy.step().ok_or_else(|| Failure::new("needs a step"))?;
         let step = step * task.shortest_time();
         let equations = Affine::of(&task.system);
         let mut walk = HeunRun { equations, work: Work::default() };
-        let mut outcome = SystemOutcome::default();
+        let mut outcome = Outcome::default();
         let (mut t, mut mode, mut state) = (0.0, task.mode, task.state);
         let mut entered = equations.enter(None, mode, t, &state);
         while t < task.span || entered.fires.is_some() {
@@ -71,7 +66,7 @@ impl Engine for Heun {
                 let before = mode;
                 (mode, state) = equations.switch(before, guard, t, &state);
                 entered = equations.enter(Some((before, guard)), mode, t, &state);
-                outcome.events.push(SystemEvent { event: guard, mode, elapsed: t, state });
+                outcome.events.push(Event { event: guard, mode, elapsed: t, state });
             }
         }
         (outcome.end, outcome.ended_at, outcome.work) = (state, t, walk.work);

@@ -12,7 +12,7 @@ use percuss_validation::bench::timed_case::TimedCase;
 use percuss_validation::bench::timed_system_case::TimedSystemCase;
 use percuss_validation::case::Cases;
 use percuss_validation::engine::{
-    Accuracy, CONTROL, Engine, Limits, Location, Script, SystemOutcome, all, run_oscillator, wrong,
+    Accuracy, CONTROL, Engine, Limits, Location, Outcome, Script, all, run_oscillator, wrong,
 };
 use percuss_validation::truth::Library;
 use std::path::{Path, PathBuf};
@@ -96,7 +96,7 @@ fn a_wrong_answer_of_a_system_has_no_score() {
         let run = || exact_solver().run(&case.task, Accuracy::Exact, &Limits::default());
         let right = run().expect("a run");
         assert!(case.score(&right).is_ok());
-        let refused = |change: &dyn Fn(&mut SystemOutcome)| {
+        let refused = |change: &dyn Fn(&mut Outcome)| {
             let mut answer = right.clone();
             change(&mut answer);
             case.score(&answer).is_err_and(|it| it.reason.starts_with("wrong: "))

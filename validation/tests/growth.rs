@@ -9,7 +9,7 @@ use percuss::number::Number;
 use percuss::variation::{ANGLE, IDENTITY, Matrix, P, Q, V, Y, product, times};
 use percuss::{Entry, Exit, GrowthRecorder, Instant, Segment};
 use percuss_validation::case::Case;
-use percuss_validation::engine::{SampleGrid, Task};
+use percuss_validation::engine::{OscillatorTask, SampleGrid};
 use percuss_validation::score::RunGrowth;
 use percuss_validation::truth::{DoubleDouble, Library, Replay, Truth};
 
@@ -36,11 +36,11 @@ const CASES: [&str; 12] = [
     "table1-from-rest",
 ];
 
-fn run(case: &Case) -> (Task, Truth) {
+fn run(case: &Case) -> (OscillatorTask, Truth) {
     let library = Library::embedded().expect("the manifest is read");
     let truth = library.truth(case).expect("the tables are there");
     let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
-    (Task::of(case, exact::problem(case), grid), truth)
+    (OscillatorTask::of(case, exact::problem(case), grid), truth)
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn derivatives(segments: impl Iterator<Item = Segment>) -> Vec<Matrix> {
 fn the_solvers_products_are_what_differences_in_106_bits_say() {
     let case = exact::case("chaos-mid-flight");
     let (task, _) = run(&case);
-    let Task { problem, .. } = task;
+    let OscillatorTask { problem, .. } = task;
     let start = problem.entry;
     let end = start.instant.after_periods(20, 1);
     let found = derivatives(problem.model.trajectory(start).until(end));

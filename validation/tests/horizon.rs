@@ -86,7 +86,7 @@ fn a_coarser_solver_lasts_as_long_as_its_own_unit_lets_it() {
         start.y += UNIT;
         let entry = task.problem.model.start(&start).expect("a start is off by little");
         let problem = Problem { entry, start, ..task.problem };
-        exact::run(&percuss_validation::engine::Task { problem, ..task.clone() })
+        exact::run(&percuss_validation::engine::OscillatorTask { problem, ..task.clone() })
     });
     println!("{:?} {:?} {:?}", coarse.valid, coarse.predicted, coarse.gained);
     assert!(coarse.valid.median < 60.0 && coarse.gained.median.abs() <= 4.0);

@@ -9,7 +9,7 @@
 mod engine;
 
 use percuss_validation::engine::{
-    self as engines, Accuracy, Declaration, Engine, Failure, Limits, SystemOutcome, SystemTask,
+    self as engines, Accuracy, Declaration, Engine, Failure, Limits, Outcome, Task,
 };
 use serde_json::Value;
 use std::path::Path;
@@ -47,7 +47,7 @@ impl Engine for Absent {
         Err("it needs a library that is not installed".to_owned())
     }
 
-    fn run(&self, _: &SystemTask, _: Accuracy, _: &Limits) -> Result<SystemOutcome, Failure> {
+    fn run(&self, _: &Task, _: Accuracy, _: &Limits) -> Result<Outcome, Failure> {
         panic!("an engine that is not there is not run");
     }
 }

@@ -6,7 +6,7 @@ use crate::exact;
 use percuss::Start;
 use percuss::TwoWord;
 use percuss_validation::case::{Case, Given, embedded};
-use percuss_validation::engine::{SampleGrid, Task};
+use percuss_validation::engine::{OscillatorTask, SampleGrid};
 use percuss_validation::score::RunGrowth;
 use percuss_validation::truth::{Library, Truth, TruthRow, UNIT, Undecided};
 
@@ -25,12 +25,12 @@ struct Worst {
     place: String,
 }
 
-fn prepared(case: &Case) -> (Task, Truth) {
+fn prepared(case: &Case) -> (OscillatorTask, Truth) {
     let library = Library::embedded().expect("the manifest is read");
     let truth = library.truth(case).expect("the tables are there");
     let problem = exact::problem(case);
     let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
-    (Task::of(case, problem, grid), truth)
+    (OscillatorTask::of(case, problem, grid), truth)
 }
 
 /// What is left of an error beyond the table's own digits, in units of 2^-106 (1 + |value| + time):

@@ -7,7 +7,7 @@ use crate::exact;
 use percuss::lanes::Instructions;
 use percuss::{Parameters, Phase};
 use percuss_validation::case::{Case, Problem, embedded};
-use percuss_validation::engine::{Failure, Outcome, Task};
+use percuss_validation::engine::{Failure, OscillatorOutcome, OscillatorTask};
 use percuss_validation::score::{Restart, RestartTest};
 
 /// Largest median of the runs with an impact, in eps (1 + |value|) x growth: twice the largest
@@ -20,7 +20,7 @@ const LARGEST: f64 = 10.0;
 const WITHOUT_IMPACT: [&str; 3] = ["never-returns", "never-stops", "rests-for-ever"];
 
 /// How a motion is solved.
-type Run = dyn Fn(&Task) -> Result<Outcome, Failure> + Sync;
+type Run = dyn Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure> + Sync;
 
 fn restarts(case: &Case, count: usize) -> (RestartTest, Restart) {
     let test = RestartTest::new(&exact::problem(case), count);
@@ -29,7 +29,7 @@ fn restarts(case: &Case, count: usize) -> (RestartTest, Restart) {
 }
 
 fn every_case(count: usize) {
-    let lanes = |task: &Task| Ok(exact::run_in_lanes(Instructions::widest(), task));
+    let lanes = |task: &OscillatorTask| Ok(exact::run_in_lanes(Instructions::widest(), task));
     for case in embedded().expect("the cases are read") {
         let test = RestartTest::new(&exact::problem(&case), count);
         holds_its_digits(&case, &test, "alone", &exact::run);
@@ -85,7 +85,7 @@ const FORMS: [(f64, f64); 8] = [
 
 #[test]
 fn lanes_keep_their_digits_in_every_form_of_contact() {
-    let lanes = |task: &Task| Ok(exact::run_in_lanes(Instructions::widest(), task));
+    let lanes = |task: &OscillatorTask| Ok(exact::run_in_lanes(Instructions::widest(), task));
     for (omega, xi) in FORMS {
         let mut case = exact::case("chaos-from-rest");
         case.name = format!("omega {omega} xi {xi}");
@@ -163,7 +163,7 @@ fn an_error_of_the_drift_alone_is_seen() {
     let cases = embedded().expect("the cases are read");
     let case = cases.iter().find(|case| case.name == "table1-from-rest").expect("the case");
     let test = RestartTest::new(&exact::problem(case), 20);
-    let drifted = |task: &Task| {
+    let drifted = |task: &OscillatorTask| {
         let mut outcome = exact::run(task)?;
         outcome.end[3] += OFF;
         Ok(outcome)

@@ -5,7 +5,7 @@
 
 use crate::exact::probed_systems;
 use percuss_validation::engine::{
-    Accuracy, Engine, Failure, Limits, REFERENCE, SystemOutcome, SystemTask, all, answer_system,
+    Accuracy, Engine, Failure, Limits, Outcome, REFERENCE, Task, all, answer,
 };
 use percuss_validation::score::{Restart, SystemRestartTest};
 use percuss_validation::suite::PreparedSystem;
@@ -27,13 +27,13 @@ fn test(case: &PreparedSystem) -> &SystemRestartTest {
 fn scored(
     case: &PreparedSystem,
     (accuracy, unit): (Accuracy, f64),
-    run: impl Fn(&SystemTask) -> Result<SystemOutcome, Failure> + Sync,
+    run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
 ) -> Restart {
     test(case).score_first(usize::MAX, (accuracy, unit), run)
 }
 
-fn exactly(task: &SystemTask) -> Result<SystemOutcome, Failure> {
-    answer_system(named(REFERENCE), task, Accuracy::Exact, &Limits::default())
+fn exactly(task: &Task) -> Result<Outcome, Failure> {
+    answer(named(REFERENCE), task, Accuracy::Exact, &Limits::default())
 }
 
 const AS_EXACT: (Accuracy, f64) = (Accuracy::Exact, f64::EPSILON);
@@ -65,17 +65,15 @@ fn the_exact_solver_keeps_its_digits_on_every_case() {
 #[test]
 fn a_start_that_is_off_is_seen() {
     let case = one("relay-1e-4");
-    let off = |task: &SystemTask| {
+    let off = |task: &Task| {
         let mut task = task.clone();
         task.exact = None;
         task.state[0] += 1e-7;
         let engine = named("ode_solvers-dopri5");
-        answer_system(engine, &task, Accuracy::Tolerance(1e-9), &Limits::default())
+        answer(engine, &task, Accuracy::Tolerance(1e-9), &Limits::default())
     };
     let at = (Accuracy::Tolerance(1e-9), 1e-9);
-    let right = |task: &SystemTask| {
-        answer_system(named("ode_solvers-dopri5"), task, at.0, &Limits::default())
-    };
+    let right = |task: &Task| answer(named("ode_solvers-dopri5"), task, at.0, &Limits::default());
     let (honest, faulty) = (scored(&case, at, right), scored(&case, at, off));
     assert!(honest.units.max < 2.0, "{}", honest.units.max);
     assert!(faulty.units.median > 5.0, "{}", faulty.units.median);

@@ -3,8 +3,7 @@
 use percuss::Phase;
 use percuss_validation::case::{defaults, embedded};
 use percuss_validation::engine::{
-    Accuracy, Declaration, Engine, Event, Failure, Limits, Outcome, SystemOutcome, SystemTask,
-    exact,
+    Accuracy, Declaration, Engine, Event, Failure, Limits, OscillatorOutcome, Outcome, Task, exact,
 };
 use percuss_validation::score::Verdict;
 use percuss_validation::suite::{CaseRun, Suite, prepare, run};
@@ -13,7 +12,7 @@ use percuss_validation::truth::Library;
 /// The exact solver's answer with one change.
 struct Spoiled {
     name: &'static str,
-    change: fn(&mut Outcome),
+    change: fn(&mut OscillatorOutcome),
 }
 
 impl Engine for Spoiled {
@@ -22,24 +21,19 @@ impl Engine for Spoiled {
         Declaration { name: self.name, ..exact().declaration() }
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
-        let mut outcome = Outcome::of_system(exact().run(task, accuracy, limits)?)?;
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
+        let mut outcome = OscillatorOutcome::of_system(exact().run(task, accuracy, limits)?)?;
         (self.change)(&mut outcome);
         Ok(outcome.into())
     }
 }
 
-const fn spoiled(name: &'static str, change: fn(&mut Outcome)) -> Spoiled {
+const fn spoiled(name: &'static str, change: fn(&mut OscillatorOutcome)) -> Spoiled {
     Spoiled { name, change }
 }
 
 /// Two events that are not there, from this time on.
-fn invent(outcome: &mut Outcome, at: usize, elapsed: f64) {
+fn invent(outcome: &mut OscillatorOutcome, at: usize, elapsed: f64) {
     let event = |phase, elapsed| Event { event: 0, mode: phase, elapsed, state: [0.0; 4] };
     let pair = [event(Phase::Contact, elapsed), event(Phase::NoContact, elapsed + 1e-9)];
     outcome.events.splice(at..at, pair);

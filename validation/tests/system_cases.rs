@@ -2,7 +2,7 @@
 
 use crate::support::{refused, run, stdout, text};
 use percuss_validation::case::{Cases, TROUBLE};
-use percuss_validation::engine::{Accuracy, Limits, SystemTask, answer_system, exact};
+use percuss_validation::engine::{Accuracy, Limits, Task, answer, exact};
 use percuss_validation::truth::{Library, SystemTruth};
 use std::collections::BTreeMap;
 use std::fs;
@@ -292,8 +292,8 @@ fn the_exact_solver_is_sampled_between_events() {
         }
         let truth: SystemTruth = library.system_truth(&case).expect("its table");
         let problem = Arc::new(case.problem().expect("it is taken"));
-        let task = SystemTask::of(&problem, truth.span, truth.sample_times()).expect("a task");
-        let run = answer_system(exact(), &task, Accuracy::Exact, &Limits::default());
+        let task = Task::of(&problem, truth.span, truth.sample_times()).expect("a task");
+        let run = answer(exact(), &task, Accuracy::Exact, &Limits::default());
         let outcome = run.expect("it runs");
         for (row, state) in truth.samples.iter().zip(&outcome.samples) {
             for (k, (proved, own)) in row.state.iter().zip(state.iter()).enumerate() {

@@ -2,14 +2,15 @@
 
 use crate::exact;
 use percuss_validation::engine::{
-    Accuracy, Engine, Limits, Outcome, SampleGrid, Stepping, Task, all, answer_system,
+    Accuracy, Engine, Limits, OscillatorOutcome, OscillatorTask, SampleGrid, Stepping, all, answer,
     run_oscillator,
 };
 use percuss_validation::suite::CaseRun;
 
-fn outcome(engine: &dyn Engine) -> Outcome {
+fn outcome(engine: &dyn Engine) -> OscillatorOutcome {
     let case = exact::case("chaos-from-rest");
-    let task = Task::of(&case, exact::problem(&case), SampleGrid { per_period: 4, count: 161 });
+    let task =
+        OscillatorTask::of(&case, exact::problem(&case), SampleGrid { per_period: 4, count: 161 });
     run_oscillator(engine, &task, loose(engine), &Limits::default()).expect("it runs")
 }
 
@@ -34,7 +35,7 @@ fn the_least_work_is_a_lower_bound() {
                 continue;
             }
             let limits = Limits { calls: 3_000_000, ..Limits::default() };
-            let Ok(found) = answer_system(*engine, &case.task, loose(*engine), &limits) else {
+            let Ok(found) = answer(*engine, &case.task, loose(*engine), &limits) else {
                 continue;
             };
             let share = least / found.work.rhs_evaluations as f64;

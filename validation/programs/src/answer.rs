@@ -1,7 +1,7 @@
 //! A run as a program answers it, held against the task before anything is measured of it.
 
 use crate::wire::{EventReply, RunReply};
-use percuss_engines::engine::{Ended, Limits, SystemEvent, SystemOutcome, SystemTask, Work};
+use percuss_engines::engine::{Ended, Event, Limits, Outcome, Task, Work};
 use percuss_engines::system::Mode;
 use std::fmt;
 use std::time::Duration;
@@ -52,10 +52,10 @@ impl fmt::Display for Wrong {
 /// What no run of this task is, and where in the answer.
 pub(crate) fn checked(
     reply: &RunReply,
-    task: &SystemTask,
+    task: &Task,
     (asked, took): (usize, Duration),
     limits: &Limits,
-) -> Result<SystemOutcome, Wrong> {
+) -> Result<Outcome, Wrong> {
     let size = task.state.len();
     let ended = ended(reply, task)?;
     let events = events(&reply.events.0, task, limits)?;
@@ -74,7 +74,7 @@ pub(crate) fn checked(
         let what = format!("gave {} samples where {asked} were asked for", samples.len());
         return Err(Place::Run.wrong(what));
     }
-    Ok(SystemOutcome {
+    Ok(Outcome {
         events,
         samples,
         end: reply.end.0,
@@ -86,7 +86,7 @@ pub(crate) fn checked(
     })
 }
 
-fn ended(reply: &RunReply, task: &SystemTask) -> Result<Ended, Wrong> {
+fn ended(reply: &RunReply, task: &Task) -> Result<Ended, Wrong> {
     let ended = Ended::from(reply.ended);
     if ended == Ended::LeavesDomain && !task.system.is_backward() {
         return Err(Place::Run.wrong("ended with leaves-domain, which only runs back in time do"));
@@ -95,12 +95,7 @@ fn ended(reply: &RunReply, task: &SystemTask) -> Result<Ended, Wrong> {
 }
 
 /// When a run ended: where it does not say so, at the horizon, or with its last event.
-fn ended_at(
-    reply: &RunReply,
-    ended: Ended,
-    events: &[SystemEvent],
-    task: &SystemTask,
-) -> Result<f64, Wrong> {
+fn ended_at(reply: &RunReply, ended: Ended, events: &[Event], task: &Task) -> Result<f64, Wrong> {
     let last = events.last().map_or(0.0, |event| event.elapsed);
     let usual = if ended == Ended::Horizon { task.span } else { last };
     let time = reply.ended_at.unwrap_or(usual);
@@ -119,11 +114,7 @@ fn has_states(given: usize, size: usize, place: Place) -> Result<(), Wrong> {
     Err(place.wrong(format!("has {given} states; accepted are {size}")))
 }
 
-fn events(
-    replies: &[EventReply],
-    task: &SystemTask,
-    limits: &Limits,
-) -> Result<Vec<SystemEvent>, Wrong> {
+fn events(replies: &[EventReply], task: &Task, limits: &Limits) -> Result<Vec<Event>, Wrong> {
     if replies.len() > limits.events {
         let what = format!("gave {} events; accepted are {}", replies.len(), limits.events);
         return Err(Place::Run.wrong(what));
@@ -141,7 +132,7 @@ fn events(
         follows(&task.system.system().modes, (mode, event, next), task).map_err(said)?;
         has_states(reply.state.0.len(), task.state.len(), Place::Event(n))?;
         let elapsed = time.min(task.span);
-        events.push(SystemEvent { event, mode: next, elapsed, state: reply.state.0 });
+        events.push(Event { event, mode: next, elapsed, state: reply.state.0 });
         (mode, before) = (next, time);
     }
     Ok(events)
@@ -155,7 +146,7 @@ fn place(count: u64) -> usize {
 fn follows(
     modes: &[Mode],
     (mode, event, next): (usize, usize, usize),
-    task: &SystemTask,
+    task: &Task,
 ) -> Result<(), String> {
     let from = &modes[mode];
     let most = from.until.len() + from.watch.len();

@@ -4,8 +4,8 @@ use crate::answer::checked;
 use crate::pool::Pool;
 use crate::wire::{Capabilities, EventsBy, RunAsk, SetUp, SteppedBy};
 use percuss_engines::engine::{
-    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Role, Stepping,
-    SystemOutcome, SystemTask,
+    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role, Stepping,
+    Task,
 };
 use std::sync::Arc;
 
@@ -122,12 +122,7 @@ impl Engine for ProgramEngine {
         }
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let (pool, set_up) = match &self.runs {
             Runs::Set { pool, set_up } => (pool, set_up),
             Runs::None(NotStarted::Failed { why, .. } | NotStarted::Unavailable { why, .. }) => {
@@ -143,7 +138,7 @@ impl Engine for ProgramEngine {
 }
 
 /// Refuses what a set-up cannot run, before it is asked.
-fn can_run(set_up: &SetUp, task: &SystemTask, accuracy: Accuracy) -> Result<(), Failure> {
+fn can_run(set_up: &SetUp, task: &Task, accuracy: Accuracy) -> Result<(), Failure> {
     let wanted = match (set_up.stepping, accuracy) {
         (SteppedBy::Fixed, Accuracy::Step(step)) => (step, "step"),
         (SteppedBy::Fixed, _) => (f64::NAN, "step"),

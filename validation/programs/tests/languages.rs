@@ -7,8 +7,8 @@
 use percuss::{Parameters, Start};
 use percuss_engines::case::Given;
 use percuss_engines::engine::{
-    Accuracy, Engine, Limits, Outcome, SampleGrid, Stepping, SystemOutcome, SystemTask, Task,
-    answer, answer_system, exact,
+    Accuracy, Engine, Limits, OscillatorOutcome, OscillatorTask, Outcome, SampleGrid, Stepping,
+    Task, answer, answer_oscillator, exact,
 };
 use percuss_engines::system::{CheckedSystem, Direction, Mode, System, Until, Watch};
 use percuss_programs::ProgramEngine;
@@ -35,7 +35,7 @@ const SPAN: f64 = 3.9;
 const SAMPLES: u32 = 50;
 
 /// A ball with e = 1/2 that is thrown up from the floor; where it is highest is counted.
-fn ball() -> SystemTask {
+fn ball() -> Task {
     let impact = Until {
         name: "impact".to_owned(),
         guard: vec![-1.0, 0.0, 0.0, 0.0, 0.0],
@@ -65,7 +65,7 @@ fn ball() -> SystemTask {
     };
     let system = Arc::new(CheckedSystem::new(system).expect("it is whole"));
     let samples = (0..=SAMPLES).map(|k| SPAN * f64::from(k) / f64::from(SAMPLES)).collect();
-    SystemTask::new(system, 0, &[0.0, 1.0], SPAN, samples).expect("it is whole")
+    Task::new(system, 0, &[0.0, 1.0], SPAN, samples).expect("it is whole")
 }
 
 /// When the ball's flight at a time began, and its speed then.
@@ -78,7 +78,7 @@ fn flight(t: f64) -> (f64, f64) {
     (begin, speed)
 }
 
-fn check_ball(outcome: &SystemOutcome, unit: f64) -> Result<(), String> {
+fn check_ball(outcome: &Outcome, unit: f64) -> Result<(), String> {
     let mut expected = Vec::new();
     let (mut t, mut speed) = (0.0, 1.0);
     while t + 2.0 * speed < SPAN {
@@ -106,16 +106,25 @@ fn check_ball(outcome: &SystemOutcome, unit: f64) -> Result<(), String> {
 }
 
 /// Four forcing periods of the oscillator from rest.
-fn oscillator() -> Task {
+fn oscillator() -> OscillatorTask {
     let given =
         Given { parameters: Parameters::default(), start: Start::default(), ..Given::default() };
     let problem = given.check().expect("the default model is accepted");
     let horizon = problem.entry.instant.after_periods(4, 1);
-    Task::until(given.parameters, problem, horizon, SampleGrid { per_period: 4, count: 17 })
+    OscillatorTask::until(
+        given.parameters,
+        problem,
+        horizon,
+        SampleGrid { per_period: 4, count: 17 },
+    )
 }
 
-fn check_oscillator(outcome: &Outcome, truth: &Outcome, unit: f64) -> Result<(), String> {
-    let word = |outcome: &Outcome| -> Vec<_> {
+fn check_oscillator(
+    outcome: &OscillatorOutcome,
+    truth: &OscillatorOutcome,
+    unit: f64,
+) -> Result<(), String> {
+    let word = |outcome: &OscillatorOutcome| -> Vec<_> {
         outcome.events.iter().map(|it| (it.event, it.mode)).collect()
     };
     if word(outcome) != word(truth) || truth.events.len() < 5 {
@@ -136,19 +145,19 @@ fn check_oscillator(outcome: &Outcome, truth: &Outcome, unit: f64) -> Result<(),
     Ok(())
 }
 
-fn check(engine: &ProgramEngine, truth: &Outcome) -> Result<(), String> {
+fn check(engine: &ProgramEngine, truth: &OscillatorOutcome) -> Result<(), String> {
     let unit = match engine.declaration().stepping {
         Stepping::Fixed { .. } => return Ok(()),
         stepping => stepping.unit(TOLERANCE),
     };
     let limits = Limits::default();
     let failed = |failure: percuss_engines::engine::Failure| failure.reason;
-    let outcome = answer_system(engine, &ball(), TOLERANCE, &limits).map_err(failed)?;
+    let outcome = answer(engine, &ball(), TOLERANCE, &limits).map_err(failed)?;
     check_ball(&outcome, unit).map_err(|why| format!("ball: {why}"))?;
     if outcome.own_time.is_none() || outcome.work.rhs_evaluations == 0 {
         return Err("it counts nothing".to_owned());
     }
-    let outcome = answer(engine, &oscillator(), TOLERANCE, &limits).map_err(failed)?;
+    let outcome = answer_oscillator(engine, &oscillator(), TOLERANCE, &limits).map_err(failed)?;
     check_oscillator(&outcome, truth, unit).map_err(|why| format!("oscillator: {why}"))
 }
 
@@ -157,7 +166,7 @@ fn check(engine: &ProgramEngine, truth: &Outcome) -> Result<(), String> {
 fn programs_that_experts_set_up_are_right() {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("programs.toml");
     let programs = percuss_programs::read(&path).expect("the file is right");
-    let truth = answer(exact(), &oscillator(), Accuracy::Exact, &Limits::default());
+    let truth = answer_oscillator(exact(), &oscillator(), Accuracy::Exact, &Limits::default());
     let truth = truth.expect("the exact solver runs it");
     let is_excused = |name: &str| name.ends_with("-default") || WRONG.contains(&name);
     let (mut wrong, mut right) = (Vec::new(), 0);

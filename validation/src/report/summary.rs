@@ -27,8 +27,8 @@ pub(super) struct SettingSummary {
     /// The number of rows, and of those that were run.
     pub rows: usize,
     pub runs: usize,
-    /// Whether the figures may stand beside those of other engines: over most of the rows, or, of one
-    /// row, over all events of the truth and no others.
+    /// Whether the figures may stand beside those of other engines: over most of the rows, or, of
+    /// one row, over all events of the truth and no others.
     pub is_comparable: bool,
     /// What they are over, in words.
     pub of: String,

@@ -3,7 +3,7 @@
 use percuss::lanes::Instructions;
 use percuss_validation::case::{Case, Cases, Given, Problem, embedded};
 use percuss_validation::engine::{
-    Accuracy, Engine, Failure, Limits, Outcome, Task, all, run_oscillator,
+    Accuracy, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, all, run_oscillator,
 };
 use percuss_validation::suite::{PreparedSystem, Suite, prepare_systems};
 use percuss_validation::truth::Library;
@@ -14,12 +14,12 @@ fn engine() -> &'static dyn Engine {
 }
 
 /// Runs a task.
-pub fn run(task: &Task) -> Result<Outcome, Failure> {
+pub fn run(task: &OscillatorTask) -> Result<OscillatorOutcome, Failure> {
     run_oscillator(engine(), task, Accuracy::Exact, &Limits::default())
 }
 
 /// Runs a task by these instructions.
-pub fn run_in_lanes(by: Instructions, task: &Task) -> Outcome {
+pub fn run_in_lanes(by: Instructions, task: &OscillatorTask) -> OscillatorOutcome {
     percuss_validation::engine::run_in_lanes(by, task, 1).pop().expect("one motion")
 }
 

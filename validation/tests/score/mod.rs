@@ -2,7 +2,7 @@
 
 use crate::support::{refused, run, text};
 use percuss_validation::case::{Cases, defaults};
-use percuss_validation::engine::{Accuracy, Ended, SystemTask, all};
+use percuss_validation::engine::{Accuracy, Ended, Task, all};
 use percuss_validation::number::shortest;
 use percuss_validation::suite::{Answered, CaseRun, Status, Suite, one, prepare, prepare_systems};
 use percuss_validation::truth::Library;
@@ -42,7 +42,7 @@ struct Files {
 }
 
 impl Files {
-    fn of(answered: &Answered, task: &SystemTask) -> Self {
+    fn of(answered: &Answered, task: &Task) -> Self {
         let system = task.system.system();
         let names = system.states.join(",");
         let mut files = Self {

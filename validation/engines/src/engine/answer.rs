@@ -2,11 +2,10 @@
 //! that it takes at the least.
 
 use super::{
-    Accuracy, Engine, Failure, Limits, Outcome, SystemOutcome, SystemTask, Task, contain,
-    run_oscillator,
+    Accuracy, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, Outcome, Task, contain,
 };
 
-/// Runs an engine on the oscillator, contains its panics and checks that its answer is complete.
+/// Runs an engine on a system, contains its panics and checks that its answer is complete.
 ///
 /// # Errors
 /// The run's failure, or what its answer lacks.
@@ -16,30 +15,29 @@ pub fn answer(
     accuracy: Accuracy,
     limits: &Limits,
 ) -> Result<Outcome, Failure> {
-    let outcome = contain(|| run_oscillator(engine, task, accuracy, limits))?;
-    complete(&outcome, task.grid.count)?;
-    Ok(outcome)
-}
-
-/// Runs an engine on any system, contains its panics and checks that its answer is complete.
-///
-/// # Errors
-/// The run's failure, or what its answer lacks.
-pub fn answer_system(
-    engine: &dyn Engine,
-    task: &SystemTask,
-    accuracy: Accuracy,
-    limits: &Limits,
-) -> Result<SystemOutcome, Failure> {
     let outcome = contain(|| engine.run(task, accuracy, limits))?;
     complete(&outcome, task.samples.len())?;
     Ok(outcome)
 }
 
-/// Right-hand sides that a run takes at the least, as far as that is known
-/// beforehand, where it goes on to its horizon.
+/// Runs an engine on the oscillator as [`answer`] does on any system.
+///
+/// # Errors
+/// The run's failure, or what its answer lacks.
+pub fn answer_oscillator(
+    engine: &dyn Engine,
+    task: &OscillatorTask,
+    accuracy: Accuracy,
+    limits: &Limits,
+) -> Result<OscillatorOutcome, Failure> {
+    let outcome = answer(engine, &Task::of_oscillator(task)?, accuracy, limits)?;
+    OscillatorOutcome::of_system(outcome)
+}
+
+/// Right-hand sides that a run takes at the least, as far as that is known beforehand, where it
+/// goes on to its horizon.
 #[must_use]
-pub fn least_work(engine: &dyn Engine, task: &SystemTask, accuracy: Accuracy) -> f64 {
+pub fn least_work(engine: &dyn Engine, task: &Task, accuracy: Accuracy) -> f64 {
     // No explicit method here is stable over a step of as many of the fastest decay's times as it
     // has stages: a longer run takes more than a right-hand side for each of these times.
     let stiff = if engine.is_explicit() { task.span * task.system.decay() } else { 0.0 };
@@ -48,7 +46,7 @@ pub fn least_work(engine: &dyn Engine, task: &SystemTask, accuracy: Accuracy) ->
 }
 
 /// Right-hand sides that a run takes at the least because an engine keeps its steps short.
-fn least_work_of_short_steps(engine: &dyn Engine, task: &SystemTask) -> f64 {
+fn least_work_of_short_steps(engine: &dyn Engine, task: &Task) -> f64 {
     let Some(longest) = engine.longest_step_on(task) else { return 0.0 };
     // A method of order p has p stages or more if it is explicit, and else at least half as many.
     let order = engine.declaration().order.unwrap_or(1);
@@ -84,17 +82,17 @@ mod tests {
 
     const COUNT: usize = 100;
 
-    fn task() -> Task {
+    fn task() -> OscillatorTask {
         let case = embedded().unwrap_or_default().into_iter().find(|it| it.name == "small-b");
         let Some(case) = case else { unreachable!("small-b is embedded") };
         let Case { parameters, start, .. } = case;
         let given = Given { parameters, start, ..Given::default() };
         let Ok(problem) = given.check() else { unreachable!("small-b is checked") };
-        Task::of(&case, problem, SampleGrid { per_period: 8, count: COUNT })
+        OscillatorTask::of(&case, problem, SampleGrid { per_period: 8, count: COUNT })
     }
 
-    fn whole(task: &Task) -> Outcome {
-        let outcome = answer(exact(), task, Accuracy::Exact, &Limits::default());
+    fn whole(task: &OscillatorTask) -> OscillatorOutcome {
+        let outcome = answer_oscillator(exact(), task, Accuracy::Exact, &Limits::default());
         outcome.unwrap_or_default()
     }
 
@@ -104,7 +102,8 @@ mod tests {
         let mut outcome = whole(&task);
         assert_eq!(complete(&outcome, COUNT), Ok(()));
         outcome.samples.push([0.0; 4]);
-        let refused = |outcome: &Outcome| complete(outcome, COUNT).map_err(|it| it.reason);
+        let refused =
+            |outcome: &OscillatorOutcome| complete(outcome, COUNT).map_err(|it| it.reason);
         let said = |count| Err(format!("gave {count} samples where {COUNT} were asked for"));
         assert_eq!(refused(&outcome), said(COUNT + 1));
         outcome.samples.truncate(2);
@@ -119,7 +118,7 @@ mod tests {
         for elapsed in [f64::NAN, f64::INFINITY, 0.5 * late] {
             let event = Event { event: 0, mode: Phase::Contact, elapsed, state: [0.0; 4] };
             let events = [outcome.events.as_slice(), &[event]].concat();
-            let odd = Outcome { events, ..outcome.clone() };
+            let odd = OscillatorOutcome { events, ..outcome.clone() };
             assert!(complete(&odd, COUNT).is_err(), "{elapsed}");
         }
     }

@@ -4,8 +4,8 @@ use super::field::event_between;
 use super::meter::{Failure, Limits};
 use super::percussive::place;
 use super::{
-    Accuracy, Colours, Declaration, Engine, Location, Numbers, REFERENCE, Role, Stepping,
-    SystemEvent, SystemOutcome, SystemTask, Task, Work, pins,
+    Accuracy, Colours, Declaration, Engine, Event, Location, Numbers, OscillatorTask, Outcome,
+    REFERENCE, Role, Stepping, Task, Work, pins,
 };
 use crate::system::Values;
 use percuss::TwoWord;
@@ -30,12 +30,7 @@ impl Engine for Exact {
         }
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        _: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         match &task.oscillator {
             Some(own) => run(own, limits),
             None => super::exact_system::run(task, limits),
@@ -44,9 +39,9 @@ impl Engine for Exact {
 }
 
 /// Runs a task of the oscillator by the oscillator's own closed forms.
-fn run(task: &Task, limits: &Limits) -> Result<SystemOutcome, Failure> {
+fn run(task: &OscillatorTask, limits: &Limits) -> Result<Outcome, Failure> {
     let events = Vec::with_capacity(USUAL);
-    let mut outcome = SystemOutcome { events, ended_at: task.span, ..SystemOutcome::default() };
+    let mut outcome = Outcome { events, ended_at: task.span, ..Outcome::default() };
     let mut run = task.problem.model.trajectory(task.problem.entry).until(task.horizon);
     let mut elapsed = TwoWord::ZERO;
     let mut before = task.phase;
@@ -64,7 +59,7 @@ fn run(task: &Task, limits: &Limits) -> Result<SystemOutcome, Failure> {
         };
         elapsed = elapsed.plus(duration);
         let (event, mode) = (event_between(before, phase), place(phase));
-        outcome.events.push(SystemEvent { event, mode, elapsed: elapsed.value(), state });
+        outcome.events.push(Event { event, mode, elapsed: elapsed.value(), state });
         before = phase;
         if outcome.events.len() > limits.events {
             return Err(Failure::new(format!("gave up after {} events", limits.events)));
@@ -97,7 +92,11 @@ impl PassedPhase {
 }
 
 /// The run's next phase, sampled as long as samples are asked for.
-fn passed(task: &Task, run: &mut Trajectory, samples: &mut Vec<Values>) -> Option<PassedPhase> {
+fn passed(
+    task: &OscillatorTask,
+    run: &mut Trajectory,
+    samples: &mut Vec<Values>,
+) -> Option<PassedPhase> {
     if samples.len() == task.grid.count {
         return Some(match run.step()? {
             Step::Switch { duration, next } => PassedPhase::by_switch(duration, next),
@@ -113,7 +112,7 @@ fn passed(task: &Task, run: &mut Trajectory, samples: &mut Vec<Values>) -> Optio
 }
 
 /// The grid's instants that lie in this phase.
-fn sample(task: &Task, segment: &Segment, samples: &mut Vec<Values>) {
+fn sample(task: &OscillatorTask, segment: &Segment, samples: &mut Vec<Values>) {
     let start = task.problem.entry.instant;
     while samples.len() < task.grid.count {
         let instant = start.after_periods(samples.len() as u64, u64::from(task.grid.per_period));

@@ -1,12 +1,12 @@
 //! The exact solver on any piecewise-affine system.
 
-use super::{Ended, Failure, Limits, Numbers, SystemEvent, SystemOutcome, SystemTask, Work};
+use super::{Ended, Event, Failure, Limits, Numbers, Outcome, Task, Work};
 use crate::system::{SystemProblem, Values};
 use percuss::affine::{self, Ending, Time, What};
 use std::hint::black_box;
 
 /// Runs a task in closed form; the system has to be there with its exact coefficients.
-pub(super) fn run(task: &SystemTask, limits: &Limits) -> Result<SystemOutcome, Failure> {
+pub(super) fn run(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
     let problem = task.exact.as_deref();
     let problem =
         problem.ok_or_else(|| Failure::new("the system's exact coefficients are not there"))?;
@@ -14,7 +14,7 @@ pub(super) fn run(task: &SystemTask, limits: &Limits) -> Result<SystemOutcome, F
     let run = problem.solver.run(&problem.start, horizon);
     let mut run = run.ok_or_else(|| Failure::new("the start is not decided"))?;
     let begin = Time::of(&problem.start.time);
-    let mut record = Record { problem, task, begin, outcome: SystemOutcome::default() };
+    let mut record = Record { problem, task, begin, outcome: Outcome::default() };
     let mut segment = run.start();
     for event in run.by_ref() {
         record.sample(&segment, record.elapsed(&event.time));
@@ -46,10 +46,10 @@ pub fn end_of_exact_run(problem: &SystemProblem, span: f64) -> Option<Values> {
 
 struct Record<'a> {
     problem: &'a SystemProblem,
-    task: &'a SystemTask,
+    task: &'a Task,
     /// The time of the start, which is a quotient of long integers in the problem.
     begin: Time<f64>,
-    outcome: SystemOutcome,
+    outcome: Outcome,
 }
 
 impl Record<'_> {
@@ -80,7 +80,7 @@ impl Record<'_> {
             What::Until(_, until) => until,
             What::Start | What::End(_) => return,
         };
-        self.outcome.events.push(SystemEvent {
+        self.outcome.events.push(Event {
             event: number,
             mode: event.mode,
             elapsed: self.elapsed(&event.time),

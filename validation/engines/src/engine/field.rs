@@ -7,7 +7,7 @@
 //! defines (p = q + g, and q = 0 or 1 - 2 xi y where the trial force is known), always by moving q
 //! and p, because y = (1 - q)/(2 xi) would multiply what is left of the error by 1/(2 xi).
 
-use super::SystemTask;
+use super::Task;
 use super::equations::{Entered, Equations, NO_GUARD};
 use percuss::{Parameters, Phase};
 
@@ -26,7 +26,7 @@ pub(super) trait Coordinates:
     ///
     /// # Errors
     /// Why it does not.
-    fn describe(_task: &SystemTask) -> Result<(), &'static str> {
+    fn describe(_task: &Task) -> Result<(), &'static str> {
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! The exact solver's ensembles, as far as an outcome goes: switches and the end of a run, no
 //! samples.
 
-use super::{Event, Outcome, Task, Work, event_between};
+use super::{Event, OscillatorOutcome, OscillatorTask, Work, event_between};
 use crate::case::Problem;
 use percuss::dynamics::ensemble::{Member, Watcher, follow_by};
 use percuss::lanes::Instructions;
@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 
 /// What a task asks for, of a motion in lanes.
 struct LaneRecord {
-    outcome: Outcome,
+    outcome: OscillatorOutcome,
     start: Instant,
     omega: f64,
     phase: Phase,
@@ -37,11 +37,16 @@ impl Watcher for LaneRecord {
 
 /// Runs a task so many times at once, by these instructions.
 #[must_use]
-pub fn run_in_lanes(by: Instructions, task: &Task, times: usize) -> Vec<Outcome> {
+pub fn run_in_lanes(
+    by: Instructions,
+    task: &OscillatorTask,
+    times: usize,
+) -> Vec<OscillatorOutcome> {
     let Problem { model, entry, .. } = &task.problem;
     let (done, _) = follow_by(by, times, |_| {
         let (start, omega) = (entry.instant, task.parameters.omega);
-        let watcher = LaneRecord { outcome: Outcome::default(), start, omega, phase: task.phase };
+        let watcher =
+            LaneRecord { outcome: OscillatorOutcome::default(), start, omega, phase: task.phase };
         let (first, horizon) = (task.horizon, Some(task.horizon));
         Member { model, entry: *entry, first, horizon, watcher }
     });

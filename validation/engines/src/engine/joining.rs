@@ -5,7 +5,7 @@ use super::field::Coordinates;
 use super::meter::{Failure, Meter};
 use super::sampler::Sampler;
 use super::trace::Watched;
-use super::{Ended, Event, Outcome, Task, shortest_time};
+use super::{Ended, Event, OscillatorTask, Outcome, shortest_time};
 use std::f64::consts::TAU;
 
 /// The times in which a system changes; libraries that have to be told how long a step may be are
@@ -34,12 +34,12 @@ pub(super) struct Integration<'a, E: Equations> {
 
 impl<'a, E: Coordinates> Integration<'a, E> {
     /// The integration of the oscillator that a task asks for.
-    pub(super) fn of(task: &'a Task) -> Self {
+    pub(super) fn of(task: &'a OscillatorTask) -> Self {
         Self::by(task, E::of(&task.parameters, task.forcing_angle))
     }
 
     /// The integration of a task by these equations.
-    pub(super) fn by(task: &'a Task, equations: E) -> Self {
+    pub(super) fn by(task: &'a OscillatorTask, equations: E) -> Self {
         let period = task.problem.model.period();
         Self {
             equations,

@@ -22,14 +22,15 @@ mod meter;
 mod odd_input;
 mod ode_solvers;
 mod original;
+mod oscillator_task;
 mod percussive;
 mod pins;
 mod registry;
 mod sampler;
 mod script;
-mod system_task;
 #[cfg(test)]
 mod systems;
+mod task;
 mod trace;
 mod walk;
 #[cfg(test)]
@@ -37,7 +38,7 @@ mod watching;
 mod wrong;
 
 pub use accuracy::{Accuracy, Stepping, shortest_time};
-pub use answer::{answer, answer_system, least_work};
+pub use answer::{answer, answer_oscillator, least_work};
 pub use declaration::{Colours, Declaration, Location, REFERENCE, Role};
 pub(crate) use equations::NO_GUARD;
 pub use equations::{Entered, Equations, Numbers};
@@ -46,61 +47,25 @@ pub use field::{GUARDS, Oscillator, event_between};
 pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use original::ELSEWHERE;
+pub use oscillator_task::{OscillatorTask, SampleGrid};
 pub use percussive::{percussive, run_oscillator};
 pub use registry::{add, all, exact, select};
 pub use script::Script;
-pub use system_task::{SystemEvent, SystemOutcome, SystemTask};
+pub use task::Task;
 pub use trace::{GuardSample, Trace, Watched};
 pub use wrong::{
     CONTROL, COOLDOWN, Closed, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, SOUND, Way, WrongEngine,
     WrongWay, faulty, faulty_on_systems, wrong, wrong_on_systems,
 };
 
-use crate::case::{Case, Horizon, Problem};
-use percuss::TwoWord;
-use percuss::insides::angle;
-use percuss::{Instant, Parameters, Phase};
+use crate::system::Values;
+use percuss::Phase;
 use std::time::Duration;
 
-/// Instants at which the state is compared: `k / per_period` forcing periods after the start.
-#[derive(Clone, Copy, Debug)]
-pub struct SampleGrid {
-    /// Instants a forcing period.
-    pub per_period: u32,
-    /// How many, the start included.
-    pub count: usize,
-}
-
-/// A run to be made.
-#[derive(Clone, Debug)]
-pub struct Task {
-    /// The model's parameters.
-    pub parameters: Parameters,
-    /// The checked model and start.
-    pub problem: Problem,
-    /// The phase the start is in.
-    pub phase: Phase,
-    /// p, y, q and v at the start.
-    pub state: [f64; 4],
-    /// omega tau + phi at the start, reduced to a few turns: integrators run in the time elapsed
-    /// since the start, so that a late start costs them no digits.
-    pub forcing_angle: f64,
-    /// The instant at which the run ends.
-    pub horizon: Instant,
-    /// Time from start to horizon.
-    pub span: f64,
-    /// When the state is compared.
-    pub grid: SampleGrid,
-    /// Events in the engine's life before this run: a fault may strike every hundredth.
-    pub events_before: u64,
-    /// What is recorded beside the result; such a run ends when that is done.
-    pub watched: Option<Watched>,
-}
-
-/// An event as an engine found it. Modes and states are the oscillator's, or those of any other
-/// system.
+/// An event as an engine found it. A mode is a place among the system's modes, or what a system
+/// written by hand has for it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Event<M = Phase, S = [f64; 4]> {
+pub struct Event<M = usize, S = Values> {
     /// The place of the event among those of its mode: those that end the mode come first, then
     /// those that are only counted, in the order in which the system names them.
     pub event: usize,
@@ -108,7 +73,7 @@ pub struct Event<M = Phase, S = [f64; 4]> {
     pub mode: M,
     /// Time since the start.
     pub elapsed: f64,
-    /// The state as the mode begins; of the oscillator p, y, q and v.
+    /// The state as the mode begins.
     pub state: S,
 }
 
@@ -143,9 +108,9 @@ pub struct Work {
     pub steps: u64,
 }
 
-/// A run that was made, of the oscillator or of any other system.
+/// A run that was made.
 #[derive(Clone, Debug)]
-pub struct Outcome<M = Phase, S = [f64; 4]> {
+pub struct Outcome<M = usize, S = Values> {
     /// The events in the order of their times.
     pub events: Vec<Event<M, S>>,
     /// The states on the grid.
@@ -180,6 +145,12 @@ impl<M, S: Default> Default for Outcome<M, S> {
     }
 }
 
+/// A run of the oscillator that was made, in the oscillator's own words.
+pub type OscillatorOutcome = Outcome<Phase, [f64; 4]>;
+
+/// An event of the oscillator: the phase that begins, with p, y, q and v.
+pub type OscillatorEvent = Event<Phase, [f64; 4]>;
+
 /// Something that can run a system with modes from a start to a horizon.
 pub trait Engine: Sync {
     /// What it is.
@@ -202,7 +173,7 @@ pub trait Engine: Sync {
     ///
     /// # Errors
     /// Why it does not, as a row without a result says it.
-    fn takes(&self, _task: &SystemTask) -> Result<(), &'static str> {
+    fn takes(&self, _task: &Task) -> Result<(), &'static str> {
         Ok(())
     }
 
@@ -212,13 +183,13 @@ pub trait Engine: Sync {
     }
 
     /// The longest step of a run, where the engine does not leave that to its library.
-    fn longest_step_on(&self, _task: &SystemTask) -> Option<f64> {
+    fn longest_step_on(&self, _task: &Task) -> Option<f64> {
         None
     }
 
     /// Right-hand sides that a run takes at the least, as far as that is known beforehand and does
     /// not follow from [`Engine::is_explicit`] and [`Engine::longest_step_on`].
-    fn least_work(&self, _task: &SystemTask, _accuracy: Accuracy) -> f64 {
+    fn least_work(&self, _task: &Task, _accuracy: Accuracy) -> f64 {
         0.0
     }
 
@@ -226,58 +197,5 @@ pub trait Engine: Sync {
     ///
     /// # Errors
     /// [`Failure`] with the library's reason, the limit that was passed, or why the engine cannot.
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure>;
-}
-
-impl Task {
-    /// The run that a case asks for.
-    #[must_use]
-    pub fn of(case: &Case, problem: Problem, grid: SampleGrid) -> Self {
-        let horizon = match case.horizon {
-            Horizon::Periods(periods) => problem.entry.instant.after_periods(u64::from(periods), 1),
-            Horizon::Until(tau) => Instant::at(case.parameters.omega, tau, 0),
-        };
-        Self::until(case.parameters, problem, horizon, grid)
-    }
-
-    /// A run from a start to a horizon.
-    #[must_use]
-    pub fn until(
-        parameters: Parameters,
-        problem: Problem,
-        horizon: Instant,
-        grid: SampleGrid,
-    ) -> Self {
-        let entry = problem.entry;
-        let (_, phi) = angle::reduce(TwoWord::new(parameters.phi));
-        Self {
-            parameters,
-            problem,
-            phase: entry.phase(),
-            state: [entry.state.p, entry.state.y, entry.state.q, entry.v()],
-            forcing_angle: entry.instant.angle_two_word().plus(phi).value(),
-            horizon,
-            span: horizon.since(&entry.instant, parameters.omega).value(),
-            grid,
-            events_before: 0,
-            watched: None,
-        }
-    }
-
-    /// The grid's instants, or those that are watched, as times since the start.
-    #[must_use]
-    pub fn sample_times(&self) -> Vec<f64> {
-        if let Some(watched) = &self.watched {
-            return watched.instants.iter().map(|time| time.min(self.span)).collect();
-        }
-        let start = self.problem.entry.instant;
-        let instant = |k: usize| start.after_periods(k as u64, u64::from(self.grid.per_period));
-        let since = |k: usize| instant(k).since(&start, self.parameters.omega).value();
-        (0..self.grid.count).map(since).map(|time| time.min(self.span)).collect()
-    }
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure>;
 }

@@ -9,12 +9,12 @@ use std::time::Duration;
 const LIMITS: Limits = Limits { calls: 200_000, events: 1_000, wall: Duration::from_secs(60) };
 
 /// Four forcing periods of the default model from rest.
-fn task() -> Option<Task> {
+fn task() -> Option<OscillatorTask> {
     let given = Given { start: Start::default(), ..Given::default() };
     let problem = given.check().ok()?;
     let horizon = problem.entry.instant.after_periods(4, 1);
     let grid = SampleGrid { per_period: 4, count: 17 };
-    Some(Task::until(given.parameters, problem, horizon, grid))
+    Some(OscillatorTask::until(given.parameters, problem, horizon, grid))
 }
 
 /// A usual choice for an engine.
@@ -28,11 +28,14 @@ fn usual(engine: &dyn Engine) -> Accuracy {
 
 /// Runs every integrator on a task that was made odd after it had been checked; the exact solver
 /// has its own checks of input.
-fn each(mut odd: impl FnMut(&mut Task), accuracy: Option<Accuracy>) -> Vec<(String, bool)> {
+fn each(
+    mut odd: impl FnMut(&mut OscillatorTask),
+    accuracy: Option<Accuracy>,
+) -> Vec<(String, bool)> {
     hush_contained_panics();
     let integrators = all().iter().filter(|it| it.declaration().stepping != Stepping::Exact);
     let outcomes = integrators.filter_map(|engine| {
-        let mut task = SystemTask::of_oscillator(&task()?).ok()?;
+        let mut task = Task::of_oscillator(&task()?).ok()?;
         odd(Arc::make_mut(task.oscillator.as_mut()?));
         let accuracy = accuracy.unwrap_or_else(|| usual(*engine));
         let outcome = contain(|| engine.run(&task, accuracy, &LIMITS));

@@ -5,7 +5,7 @@
 //! and the same drift come out is the paper's decoupling, tested. At a switch x and z move onto the
 //! surface and v stays, as in the bounded co-ordinates.
 
-use super::SystemTask;
+use super::Task;
 use super::equations::{Entered, Equations, NO_GUARD};
 use super::field::{Coordinates, GUARDS, count, settle, successor};
 use percuss::{Parameters, Phase};
@@ -36,7 +36,7 @@ impl OriginalOscillator {
 }
 
 impl Coordinates for OriginalOscillator {
-    fn describe(task: &SystemTask) -> Result<(), &'static str> {
+    fn describe(task: &Task) -> Result<(), &'static str> {
         let is_oscillator = task.oscillator.is_some();
         if is_oscillator { Ok(()) } else { Err(ELSEWHERE) }
     }

@@ -1,8 +1,8 @@
 //! The oscillator written down as any other system is, which is how engines are asked to run it.
 
 use super::{
-    Accuracy, Ended, Engine, Event, Failure, GuardSample, Limits, Numbers, Outcome, SystemEvent,
-    SystemOutcome, SystemTask, Task, Trace,
+    Accuracy, Ended, Engine, Event, Failure, GuardSample, Limits, Numbers, OscillatorEvent,
+    OscillatorOutcome, OscillatorTask, Outcome, Task, Trace,
 };
 use crate::system::{CheckedSystem, Mode, Row, System, Until, Values};
 use percuss::{Parameters, Phase};
@@ -113,12 +113,12 @@ pub(super) fn place(phase: Phase) -> usize {
     MODES.iter().position(|mode| *mode == phase).unwrap_or_default()
 }
 
-impl SystemTask {
+impl Task {
     /// A task of the oscillator, as the task of a system.
     ///
     /// # Errors
     /// A start or a horizon that no system has.
-    pub fn of_oscillator(task: &Task) -> Result<Self, Failure> {
+    pub fn of_oscillator(task: &OscillatorTask) -> Result<Self, Failure> {
         let system = CheckedSystem::new(percussive(&task.parameters, task.forcing_angle))?;
         let system = Arc::new(system);
         let samples = task.sample_times();
@@ -135,29 +135,31 @@ impl SystemTask {
 /// oscillator's.
 pub fn run_oscillator(
     engine: &dyn Engine,
-    task: &Task,
+    task: &OscillatorTask,
     accuracy: Accuracy,
     limits: &Limits,
-) -> Result<Outcome, Failure> {
-    Outcome::of_system(engine.run(&SystemTask::of_oscillator(task)?, accuracy, limits)?)
+) -> Result<OscillatorOutcome, Failure> {
+    OscillatorOutcome::of_system(engine.run(&Task::of_oscillator(task)?, accuracy, limits)?)
 }
 
-impl From<Outcome> for SystemOutcome {
-    fn from(run: Outcome) -> Self {
-        let event = |it: Event| SystemEvent {
+impl From<OscillatorOutcome> for Outcome {
+    fn from(run: OscillatorOutcome) -> Self {
+        let event = |it: OscillatorEvent| Event {
             event: it.event,
             mode: place(it.mode),
             elapsed: it.elapsed,
             state: Values::of(&it.state),
         };
-        let look = |it: GuardSample| GuardSample {
+        let look = |it: GuardSample<Phase>| GuardSample {
             t: it.t,
             mode: place(it.mode),
             guard: it.guard,
             value: it.value,
         };
-        let trace =
-            |it: Trace| Trace { steps: it.steps, looks: it.looks.into_iter().map(look).collect() };
+        let trace = |it: Trace<Phase>| Trace {
+            steps: it.steps,
+            looks: it.looks.into_iter().map(look).collect(),
+        };
         Self {
             events: run.events.into_iter().map(event).collect(),
             samples: run.samples.iter().map(|it| Values::of(it)).collect(),
@@ -171,17 +173,17 @@ impl From<Outcome> for SystemOutcome {
     }
 }
 
-impl Outcome {
+impl OscillatorOutcome {
     /// What came of a system's run, as that of the oscillator.
     ///
     /// # Errors
     /// A mode or a state that the oscillator does not have, or an end before the horizon.
-    pub fn of_system(run: SystemOutcome) -> Result<Self, Failure> {
+    pub fn of_system(run: Outcome) -> Result<Self, Failure> {
         if run.ended != Ended::Horizon {
             return Err(Failure::new(format!("the run ended early: {:?}", run.ended)));
         }
-        let event = |it: &SystemEvent| -> Result<Event, Failure> {
-            let &SystemEvent { event, elapsed, .. } = it;
+        let event = |it: &Event| -> Result<OscillatorEvent, Failure> {
+            let &Event { event, elapsed, .. } = it;
             Ok(Event { event, mode: phase(it.mode)?, elapsed, state: four(&it.state)? })
         };
         Ok(Self {
@@ -209,8 +211,8 @@ fn four(state: &[f64]) -> Result<[f64; STATES], Failure> {
 }
 
 /// A record of guards, with the phases that their modes are.
-fn phases(trace: Trace<usize>) -> Result<Trace, Failure> {
-    let look = |it: GuardSample<usize>| -> Result<GuardSample, Failure> {
+fn phases(trace: Trace) -> Result<Trace<Phase>, Failure> {
+    let look = |it: GuardSample| -> Result<GuardSample<Phase>, Failure> {
         Ok(GuardSample { t: it.t, mode: phase(it.mode)?, guard: it.guard, value: it.value })
     };
     let looks = trace.looks.into_iter().map(look).collect::<Result<_, _>>()?;

@@ -3,7 +3,6 @@
 //! Nothing is recorded unless a task asks for it, so that a run which is scored costs nothing more.
 
 use super::Outcome;
-use percuss::Phase;
 use std::cell::RefCell;
 
 /// What a task wants recorded, in times since its start.
@@ -17,7 +16,7 @@ pub struct Watched {
 
 /// A guard as a search for events saw it.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GuardSample<M = Phase> {
+pub struct GuardSample<M = usize> {
     /// Time of the evaluation, since the start.
     pub t: f64,
     /// The mode whose guard it is.
@@ -30,7 +29,7 @@ pub struct GuardSample<M = Phase> {
 
 /// What was recorded.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Trace<M = Phase> {
+pub struct Trace<M = usize> {
     /// Ends of accepted steps, since the start, in ascending order; a step in which a mode ends
     /// has none.
     pub steps: Vec<f64>,
@@ -102,6 +101,7 @@ impl<M> Recorder<M> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use percuss::Phase;
 
     #[test]
     fn only_what_lies_in_the_window_is_kept() {
@@ -109,7 +109,7 @@ mod tests {
         [0.5, 1.0, 2.0, 2.5].into_iter().for_each(|t| recorder.step(t));
         let look = |t, guard| GuardSample { t, mode: Phase::Contact, guard, value: -0.25 };
         [look(0.5, 1), look(1.5, 0), look(3.0, 0)].into_iter().for_each(|it| recorder.look(it));
-        let mut outcome: Outcome = Outcome::default();
+        let mut outcome: Outcome<Phase> = Outcome::default();
         recorder.hand_over(&mut outcome);
         let expected = Trace { steps: vec![1.0, 2.0], looks: vec![look(1.5, 0)] };
         assert_eq!(outcome.trace, Some(expected));

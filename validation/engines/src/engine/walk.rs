@@ -98,17 +98,20 @@ pub(super) fn walk<E: Equations>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Accuracy, Engine, Limits, Outcome, SampleGrid, Task, all, run_oscillator};
+    use super::super::{
+        Accuracy, Engine, Limits, OscillatorOutcome, OscillatorTask, SampleGrid, all,
+        run_oscillator,
+    };
     use crate::case::Given;
     use percuss::Start;
 
     /// Eight forcing periods of the default model from rest: an error of 1e-6 stays below 1e-3.
-    fn run(name: &str, tolerance: f64) -> Option<Outcome> {
+    fn run(name: &str, tolerance: f64) -> Option<OscillatorOutcome> {
         let given = Given { start: Start::default(), ..Given::default() };
         let problem = given.check().ok()?;
         let horizon = problem.entry.instant.after_periods(8, 1);
         let grid = SampleGrid { per_period: 4, count: 33 };
-        let task = Task::until(given.parameters, problem, horizon, grid);
+        let task = OscillatorTask::until(given.parameters, problem, horizon, grid);
         let engine: &dyn Engine = *all().iter().find(|it| it.declaration().name == name)?;
         run_oscillator(engine, &task, Accuracy::Tolerance(tolerance), &Limits::default()).ok()
     }
@@ -123,8 +126,9 @@ mod tests {
         for tolerance in [1e-6, 1e-9, 1e-12] {
             let [one, other] = ["ode_solvers-dop853-time", "differential-equations-dop853"]
                 .map(|name| run(name, tolerance).unwrap_or_default());
-            let phases =
-                |it: &Outcome| it.events.iter().map(|event| event.mode).collect::<Vec<_>>();
+            let phases = |it: &OscillatorOutcome| {
+                it.events.iter().map(|event| event.mode).collect::<Vec<_>>()
+            };
             assert!(one.events.len() >= 6 && phases(&one) == phases(&other));
             let [one, other] = [one, other].map(|it| it.work.rhs_evaluations as f64);
             assert!(one.max(other) <= SAME_WORK * one.min(other), "{tolerance}: {one}, {other}");

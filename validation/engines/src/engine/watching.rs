@@ -5,11 +5,16 @@ use crate::case::Given;
 use percuss::Start;
 
 /// Four forcing periods of the default model from rest.
-fn task() -> Option<Task> {
+fn task() -> Option<OscillatorTask> {
     let given = Given { start: Start::default(), ..Given::default() };
     let problem = given.check().ok()?;
     let horizon = problem.entry.instant.after_periods(4, 1);
-    Some(Task::until(given.parameters, problem, horizon, SampleGrid { per_period: 4, count: 17 }))
+    Some(OscillatorTask::until(
+        given.parameters,
+        problem,
+        horizon,
+        SampleGrid { per_period: 4, count: 17 },
+    ))
 }
 
 fn accuracy(engine: &dyn Engine) -> Option<Accuracy> {
@@ -27,14 +32,14 @@ fn watching_changes_no_event_and_sees_every_integrator_at_work() {
     let instants: Vec<f64> =
         (0..=60).map(|k| window[0] + 0.005 * f64::from(k) * task.span).collect();
     let watched = Watched { window, instants: instants.clone() };
-    let again = Task { watched: Some(watched), ..task.clone() };
+    let again = OscillatorTask { watched: Some(watched), ..task.clone() };
     let mut seen = 0;
     for engine in all() {
         let name = engine.declaration().name;
         let Some(accuracy) = accuracy(*engine) else { continue };
         let run = |task| contain(|| run_oscillator(*engine, task, accuracy, &Limits::default()));
         let (Ok(plain), Ok(watched)) = (run(&task), run(&again)) else { unreachable!("{name}") };
-        let before = |outcome: &Outcome| -> Vec<Event> {
+        let before = |outcome: &OscillatorOutcome| -> Vec<OscillatorEvent> {
             outcome.events.iter().copied().filter(|it| it.elapsed <= window[1]).collect()
         };
         assert_eq!(before(&plain), before(&watched), "{name}");

@@ -11,7 +11,7 @@ use super::timed::{ContestEntry, TimedRun};
 use super::timed_case::{Score, TimedCase};
 use super::timed_system_case::TimedSystemCase;
 use crate::engine::{
-    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Stepping, SystemOutcome, SystemTask,
+    Accuracy, Declaration, Engine, Failure, Limits, OscillatorOutcome, Outcome, Stepping, Task,
     Work, contain, least_work,
 };
 use crate::number::brief;
@@ -119,9 +119,9 @@ pub fn enter<'a>(
     setting: Accuracy,
 ) -> Result<Box<dyn TimedRun + 'a>, Failure> {
     engine.available().map_err(Failure::new)?;
-    let task = SystemTask::of_oscillator(&case.task)?;
+    let task = Task::of_oscillator(&case.task)?;
     within_budget(least_work(engine, &task, setting))?;
-    Ok(Box::new(EngineHeat { engine, case, task, setting, answer: SystemOutcome::default() }))
+    Ok(Box::new(EngineHeat { engine, case, task, setting, answer: Outcome::default() }))
 }
 
 /// Refuses a run that takes more right-hand sides than it may.
@@ -138,9 +138,9 @@ fn within_budget(least: f64) -> Result<(), Failure> {
 struct EngineHeat<'a> {
     engine: &'a dyn Engine,
     case: &'a TimedCase,
-    task: SystemTask,
+    task: Task,
     setting: Accuracy,
-    answer: SystemOutcome,
+    answer: Outcome,
 }
 
 impl Benchmark for EngineHeat<'_> {
@@ -157,7 +157,7 @@ impl Benchmark for EngineHeat<'_> {
 
 impl TimedRun for EngineHeat<'_> {
     fn score(&self) -> Result<Score, Failure> {
-        self.case.score(&Outcome::of_system(self.answer.clone())?)
+        self.case.score(&OscillatorOutcome::of_system(self.answer.clone())?)
     }
 
     fn work(&self) -> Work {

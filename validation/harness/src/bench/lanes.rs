@@ -8,7 +8,7 @@ use super::contestant::Contestant;
 use super::rounds::Benchmark;
 use super::timed::TimedRun;
 use super::timed_case::{Score, TimedCase};
-use crate::engine::{Accuracy, Declaration, Failure, Outcome, Work};
+use crate::engine::{Accuracy, Declaration, Failure, OscillatorOutcome, Work};
 use crate::engine::{contain, exact, run_in_lanes};
 use percuss::lanes::Instructions;
 
@@ -39,7 +39,7 @@ impl Contestant for ExactLanes {
 
 struct Many<'a> {
     case: &'a TimedCase,
-    answers: Vec<Outcome>,
+    answers: Vec<OscillatorOutcome>,
 }
 
 impl Benchmark for Many<'_> {

@@ -9,7 +9,7 @@
 use super::rounds::Benchmark;
 use super::timed_case::TimedCase;
 use crate::engine::{
-    Accuracy, Engine, Failure, Limits, Outcome, Script, SystemTask, contain, exact,
+    Accuracy, Engine, Failure, Limits, OscillatorOutcome, Outcome, Script, Task, contain, exact,
 };
 use percuss::Step;
 use std::hint::black_box;
@@ -28,10 +28,10 @@ pub fn library_part<'a>(
     setting: Accuracy,
     limits: Limits,
 ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
-    let task = SystemTask::of_oscillator(&case.task)?;
+    let task = Task::of_oscillator(&case.task)?;
     let answer = contain(|| engine.run(&task, setting, &limits))?;
     if engine.declaration().name == exact().declaration().name {
-        let end = Outcome::of_system(answer)?.end;
+        let end = OscillatorOutcome::of_system(answer)?.end;
         return Ok(Some(Box::new(ExactSteps { case, end, last: end })));
     }
     told(answer, move || engine.run(&task, setting, &limits))

@@ -6,7 +6,7 @@ use super::timed::{ContestEntry, TimedRun};
 use super::timed_case::Score;
 use super::timed_system_case::TimedSystemCase;
 use crate::engine::{
-    Accuracy, Engine, Failure, Limits, SystemOutcome, Work, contain, end_of_exact_run, exact,
+    Accuracy, Engine, Failure, Limits, Outcome, Work, contain, end_of_exact_run, exact,
 };
 use crate::system::Values;
 use std::hint::black_box;
@@ -37,10 +37,10 @@ pub fn system_entry<'a>(
 struct SystemHeat<'a, F> {
     run: F,
     case: &'a TimedSystemCase,
-    answer: SystemOutcome,
+    answer: Outcome,
 }
 
-impl<F: Fn() -> Result<SystemOutcome, Failure>> Benchmark for SystemHeat<'_, F> {
+impl<F: Fn() -> Result<Outcome, Failure>> Benchmark for SystemHeat<'_, F> {
     fn call(&mut self) -> Result<(), Failure> {
         self.answer = contain(&self.run)?;
         Ok(())
@@ -51,7 +51,7 @@ impl<F: Fn() -> Result<SystemOutcome, Failure>> Benchmark for SystemHeat<'_, F> 
     }
 }
 
-impl<F: Fn() -> Result<SystemOutcome, Failure>> TimedRun for SystemHeat<'_, F> {
+impl<F: Fn() -> Result<Outcome, Failure>> TimedRun for SystemHeat<'_, F> {
     fn score(&self) -> Result<Score, Failure> {
         self.case.score(&self.answer)
     }

@@ -2,7 +2,7 @@
 //! to.
 
 use crate::case::{Case, FileError, Given};
-use crate::engine::{Event, Failure, Outcome, SampleGrid, Task};
+use crate::engine::{Failure, OscillatorEvent, OscillatorOutcome, OscillatorTask, SampleGrid};
 use crate::number::brief;
 use crate::score::{Matching, SCORED_ERROR, WINDOW, occurrences, worst};
 use crate::truth::{Library, Truth, TruthRow};
@@ -35,7 +35,7 @@ pub struct TimedCase {
     /// The regime it stands for.
     pub regime: String,
     /// The run. It asks for no samples: events and the end are the answer.
-    pub task: Task,
+    pub task: OscillatorTask,
     /// The truth.
     pub truth: Truth,
 }
@@ -77,7 +77,7 @@ impl TimedCase {
         Ok(Self {
             name: case.name.clone(),
             regime: case.regime.to_string(),
-            task: Task::of(case, problem, NO_SAMPLES),
+            task: OscillatorTask::of(case, problem, NO_SAMPLES),
             truth: library.truth(case)?,
         })
     }
@@ -94,7 +94,7 @@ impl TimedCase {
         Ok(Self {
             name: format!("omega {}, xi {}", parameters.omega, parameters.xi),
             regime: "from rest".to_owned(),
-            task: Task::until(parameters, problem, horizon, NO_SAMPLES),
+            task: OscillatorTask::until(parameters, problem, horizon, NO_SAMPLES),
             truth: truth.map_err(Failure::new)?,
         })
     }
@@ -121,7 +121,7 @@ impl TimedCase {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn score(&self, answer: &Outcome) -> Result<Score, Failure> {
+    pub fn score(&self, answer: &OscillatorOutcome) -> Result<Score, Failure> {
         let truth = &self.truth.events;
         let window = WINDOW * self.task.problem.model.period();
         let same = truth.len() == answer.events.len()
@@ -153,7 +153,7 @@ impl TimedCase {
     }
 }
 
-fn is_same(row: &TruthRow, event: &Event, window: f64) -> bool {
+fn is_same(row: &TruthRow, event: &OscillatorEvent, window: f64) -> bool {
     row.phase == Some(event.mode) && off(row.elapsed, event.elapsed) <= window
 }
 

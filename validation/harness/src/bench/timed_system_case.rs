@@ -3,7 +3,7 @@
 
 use super::timed_case::{CaseEntry, Score};
 use crate::case::{FileError, SystemCase};
-use crate::engine::{Ended, Failure, SystemOutcome, SystemTask};
+use crate::engine::{Ended, Failure, Outcome, Task};
 use crate::number::brief;
 use crate::score::{EventNames, Matching, Occurrence, SCORED_ERROR, WINDOW, worst};
 use crate::system::SystemProblem;
@@ -19,7 +19,7 @@ pub struct TimedSystemCase {
     /// The trouble that the case makes.
     pub trouble: String,
     /// The run. It asks for no samples: events and the end are the answer.
-    pub task: SystemTask,
+    pub task: Task,
     /// The system at its start, made ready for the exact solver.
     pub problem: Arc<SystemProblem>,
     /// The truth.
@@ -38,7 +38,7 @@ impl TimedSystemCase {
         let truth = library.system_truth(case)?;
         let problem = Arc::new(case.problem()?);
         let refused = |failure: Failure| FileError::of(&case.file, failure);
-        let task = SystemTask::of(&problem, truth.span, Vec::new()).map_err(refused)?;
+        let task = Task::of(&problem, truth.span, Vec::new()).map_err(refused)?;
         let names = EventNames::of(task.system.system());
         let occurrences = names.of_truth(&truth);
         let (name, trouble) = (case.name.clone(), case.trouble.join(" "));
@@ -68,7 +68,7 @@ impl TimedSystemCase {
     ///
     /// # Errors
     /// What is wrong with it.
-    pub fn score(&self, answer: &SystemOutcome) -> Result<Score, Failure> {
+    pub fn score(&self, answer: &Outcome) -> Result<Score, Failure> {
         let found = self.names.of_outcome(&self.task, &self.truth, answer);
         let window = WINDOW * self.task.system.period();
         let pairs = || self.occurrences.iter().zip(&found);
@@ -92,7 +92,7 @@ impl TimedSystemCase {
         }
     }
 
-    fn errors(&self, answer: &SystemOutcome) -> Score {
+    fn errors(&self, answer: &Outcome) -> Score {
         let rows = || self.truth.events.iter().zip(&answer.events);
         // Between events of one instant the state is a matter of their order.
         let placed = rows().zip(&self.occurrences).filter(|(_, it)| it.mode.is_some());

@@ -4,7 +4,7 @@
 //! their names count then, and the mode after the last of them.
 
 use super::occurrence::Occurrence;
-use crate::engine::{Ended, SystemOutcome, SystemTask};
+use crate::engine::{Ended, Outcome, Task};
 use crate::system::System;
 use crate::truth::{SystemTruth, SystemTruthRow};
 
@@ -65,9 +65,9 @@ impl EventNames {
     #[must_use]
     pub fn of_outcome(
         &self,
-        task: &SystemTask,
+        task: &Task,
         truth: &SystemTruth,
-        outcome: &SystemOutcome,
+        outcome: &Outcome,
     ) -> Vec<Occurrence> {
         let mut mode = task.mode;
         let mut found: Vec<Occurrence> = Vec::new();

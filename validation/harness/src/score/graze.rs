@@ -7,7 +7,7 @@
 
 use super::growth::RunGrowth;
 use super::occurrence::{Occurrence, number};
-use crate::engine::{Closed, Equations, GUARDS, Oscillator, Task};
+use crate::engine::{Closed, Equations, GUARDS, Oscillator, OscillatorTask};
 use crate::truth::{Truth, TruthRow};
 use percuss::{Parameters, Phase};
 use std::f64::consts::PI;
@@ -62,7 +62,7 @@ impl Graze {
 
 /// The grazes of a true run, in the order of time.
 #[must_use]
-pub fn grazes(task: &Task, truth: &Truth, growth: &RunGrowth) -> Vec<Graze> {
+pub fn grazes(task: &OscillatorTask, truth: &Truth, growth: &RunGrowth) -> Vec<Graze> {
     let scan = Scan { task, truth, growth };
     let ends = truth.events.iter().chain([&truth.end]);
     let begins = std::iter::once(&truth.start).chain(&truth.events);
@@ -70,7 +70,7 @@ pub fn grazes(task: &Task, truth: &Truth, growth: &RunGrowth) -> Vec<Graze> {
 }
 
 struct Scan<'a> {
-    task: &'a Task,
+    task: &'a OscillatorTask,
     truth: &'a Truth,
     growth: &'a RunGrowth,
 }

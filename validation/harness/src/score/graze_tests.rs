@@ -5,14 +5,14 @@ use crate::truth::Library;
 use percuss::TwoWord;
 
 /// A case with its truth.
-fn followed(name: &str) -> (Task, Truth, RunGrowth) {
+fn followed(name: &str) -> (OscillatorTask, Truth, RunGrowth) {
     let case = embedded().unwrap_or_default().into_iter().find(|it| it.name == name);
     let Some(case) = case else { unreachable!("{name} is embedded") };
     let truth = Library::embedded().and_then(|library| library.truth(&case));
     let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
     let (Ok(truth), Ok(problem)) = (truth, given.check()) else { unreachable!("{name} is valid") };
     let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
-    let task = Task::of(&case, problem, grid);
+    let task = OscillatorTask::of(&case, problem, grid);
     let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
     (task, truth, growth)
 }
@@ -99,8 +99,12 @@ fn looks_follow_the_faster_of_forcing_and_contact() {
             unreachable!("the parameters are in range")
         };
         let horizon = problem.entry.instant.after_periods(1, 1);
-        let task =
-            Task::until(parameters, problem, horizon, SampleGrid { per_period: 8, count: 9 });
+        let task = OscillatorTask::until(
+            parameters,
+            problem,
+            horizon,
+            SampleGrid { per_period: 8, count: 9 },
+        );
         let Ok(truth) = Truth::replayed(&parameters, &problem.entry, horizon, (9, 8)) else {
             unreachable!("106 bits decide it")
         };

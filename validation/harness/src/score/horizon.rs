@@ -11,7 +11,7 @@ use super::restart::task;
 use super::starts::far_apart;
 use super::statistics::Spread;
 use crate::case::Problem;
-use crate::engine::{Failure, Outcome, SampleGrid, Task};
+use crate::engine::{Failure, OscillatorOutcome, OscillatorTask, SampleGrid};
 use crate::truth::{Truth, UNIT};
 use percuss::TwoWord;
 use rayon::prelude::*;
@@ -112,7 +112,7 @@ impl HorizonTest {
     pub fn score(
         &self,
         unit: f64,
-        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
+        run: impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure> + Sync,
     ) -> Horizons {
         self.score_first(usize::MAX, unit, run)
     }
@@ -122,7 +122,7 @@ impl HorizonTest {
         &self,
         most: usize,
         unit: f64,
-        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
+        run: impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure> + Sync,
     ) -> Horizons {
         let asked = &self.runs[..most.min(self.runs.len())];
         let results: Vec<_> = asked.par_iter().map(|it| it.horizon(unit, &run)).collect();
@@ -177,7 +177,7 @@ impl HorizonRun {
     fn horizon(
         &self,
         unit: f64,
-        run: &impl Fn(&Task) -> Result<Outcome, Failure>,
+        run: &impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure>,
     ) -> (ValidHorizon, bool) {
         let predicted = self.grows_to(SCORED_ERROR / unit);
         let usual = self.last(unit);
@@ -194,16 +194,16 @@ impl HorizonRun {
     fn followed(
         &self,
         periods: u32,
-        run: &impl Fn(&Task) -> Result<Outcome, Failure>,
+        run: &impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure>,
     ) -> Result<u32, Failure> {
         let horizon = self.problem.entry.instant.after_periods(u64::from(periods), 1);
         let grid = SampleGrid { per_period: 1, count: periods as usize + 1 };
         let events_before = self.events_before;
-        let outcome = run(&Task { grid, events_before, ..task(self.problem, horizon) })?;
+        let outcome = run(&OscillatorTask { grid, events_before, ..task(self.problem, horizon) })?;
         Ok(self.valid(&outcome, periods))
     }
 
-    fn valid(&self, outcome: &Outcome, last: u32) -> u32 {
+    fn valid(&self, outcome: &OscillatorOutcome, last: u32) -> u32 {
         // Written so that a NaN is off.
         let right = |(truth, found): (&crate::truth::TruthRow, &[f64; 4])| {
             let off = |k: usize| truth.state[k].minus(TwoWord::new(found[k])).value().abs();

@@ -16,10 +16,10 @@ fn run() -> HorizonRun {
 }
 
 /// An answer that is right up to a period and off by `error` in one co-ordinate from there on.
-fn answer(run: &HorizonRun, wrong_from: usize, k: usize, error: f64) -> Outcome {
+fn answer(run: &HorizonRun, wrong_from: usize, k: usize, error: f64) -> OscillatorOutcome {
     let mut samples: Vec<[f64; 4]> = run.truth.samples.iter().map(|row| row.rounded()).collect();
     samples.iter_mut().skip(wrong_from).for_each(|state| state[k] += error);
-    Outcome { samples, ..Outcome::default() }
+    OscillatorOutcome { samples, ..OscillatorOutcome::default() }
 }
 
 #[test]
@@ -61,7 +61,7 @@ fn a_run_that_is_still_right_is_made_again_for_as_long_as_the_truth_lasts() {
     let asked = std::sync::Mutex::new(Vec::new());
     let make = |wrong_from: usize| {
         let (run, asked) = (&run, &asked);
-        move |task: &Task| {
+        move |task: &OscillatorTask| {
             if let Ok(mut asked) = asked.lock() {
                 asked.push(task.grid.count - 1);
             }
@@ -77,7 +77,7 @@ fn a_run_that_is_still_right_is_made_again_for_as_long_as_the_truth_lasts() {
     assert_eq!(taken(), [3, trusted as usize]);
     let (whole, _) = run.horizon(unit, &make(100));
     assert_eq!(whole, ValidHorizon { valid: trusted, predicted: 2, outlasts: true });
-    let none = |_: &Task| Err(Failure::new("on purpose"));
+    let none = |_: &OscillatorTask| Err(Failure::new("on purpose"));
     let (gone, failed) = run.horizon(unit, &none);
     assert_eq!((gone.valid, gone.outlasts, failed), (0, false, true));
 }

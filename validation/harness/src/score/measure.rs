@@ -8,7 +8,7 @@ use super::occurrence::{Occurrence, occurrences};
 use super::probed::ProbeResults;
 use super::statistics::{Spread, worst};
 use crate::case::{Quantity, Statistic};
-use crate::engine::{Event, Outcome, Task};
+use crate::engine::{OscillatorEvent, OscillatorOutcome, OscillatorTask};
 use crate::truth::{Truth, TruthRow};
 use percuss::Phase;
 use percuss::TwoWord;
@@ -128,10 +128,10 @@ impl Measures {
 /// Measures a run; `unit` is the engine's unit of error: its tolerance, or eps.
 #[must_use]
 pub fn measure(
-    task: &Task,
+    task: &OscillatorTask,
     truth: &Truth,
     growth: &RunGrowth,
-    outcome: &Outcome,
+    outcome: &OscillatorOutcome,
     unit: f64,
 ) -> Measures {
     let period = task.problem.model.period();
@@ -188,13 +188,13 @@ fn off(truth: TwoWord, value: f64) -> f64 {
     truth.minus(TwoWord::new(value)).value().abs()
 }
 
-fn time_error(row: &TruthRow, event: &Event) -> f64 {
+fn time_error(row: &TruthRow, event: &OscillatorEvent) -> f64 {
     off(row.elapsed, event.elapsed)
 }
 
 /// max(|dp|, |dy|, |dq|) at each sample of the truth; NaN at one that the engine did not deliver.
 #[must_use]
-pub fn sample_errors(truth: &Truth, outcome: &Outcome) -> Vec<f64> {
+pub fn sample_errors(truth: &Truth, outcome: &OscillatorOutcome) -> Vec<f64> {
     let error = |(k, row): (usize, &TruthRow)| {
         let state = outcome.samples.get(k).copied().unwrap_or([f64::NAN; 4]);
         worst((0..3).map(|i| off(row.state[i], state[i])))
@@ -205,9 +205,9 @@ pub fn sample_errors(truth: &Truth, outcome: &Outcome) -> Vec<f64> {
 /// A progression that begins too late by dt lacks v' dt. v' vanishes where contact turns into
 /// progression and back, so that only impacts straight into progression hand their errors on.
 fn drift_by_times(
-    task: &Task,
+    task: &OscillatorTask,
     rows: &[TruthRow],
-    found: &[Event],
+    found: &[OscillatorEvent],
     pairs: &[(usize, usize)],
 ) -> f64 {
     let lost = |(i, j): &(usize, usize)| {
@@ -219,21 +219,21 @@ fn drift_by_times(
     slips.map(lost).sum::<f64>().abs()
 }
 
-fn valid_periods(task: &Task, truth: &Truth, errors: &[f64], period: f64) -> f64 {
+fn valid_periods(task: &OscillatorTask, truth: &Truth, errors: &[f64], period: f64) -> f64 {
     let lost = errors.iter().position(|error| error.is_nan() || *error > SCORED_ERROR);
     let span = lost.map_or(task.span, |k| truth.samples[k.saturating_sub(1)].elapsed.value());
     span / period
 }
 
 /// The error of an event's time in units of error x (1 + |value|) x growth x events so far.
-fn time_units(row: &TruthRow, event: &Event, growth: f64, unit: f64, n: usize) -> f64 {
+fn time_units(row: &TruthRow, event: &OscillatorEvent, growth: f64, unit: f64, n: usize) -> f64 {
     let scale = (1.0 + row.elapsed.value().abs()) * growth * unit * (n + 1) as f64;
     time_error(row, event) / scale
 }
 
 fn event_constant(
     rows: &[TruthRow],
-    found: &[Event],
+    found: &[OscillatorEvent],
     pairs: &[(usize, usize)],
     growth: &RunGrowth,
     unit: f64,
@@ -253,7 +253,7 @@ fn event_constant(
 
 fn state_constant(
     truth: &Truth,
-    outcome: &Outcome,
+    outcome: &OscillatorOutcome,
     growth: &RunGrowth,
     scored: usize,
     unit: f64,

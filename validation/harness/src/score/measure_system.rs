@@ -14,15 +14,15 @@ use super::mismatch::{Excused, Mismatch};
 use super::occurrence::Occurrence;
 use super::probed::ProbeResults;
 use super::statistics::{Spread, worst};
-use crate::engine::{Accuracy, SystemOutcome, SystemTask};
+use crate::engine::{Accuracy, Outcome, Task};
 use crate::truth::{SystemTruth, SystemTruthRow};
 use percuss::TwoWord;
 
 /// A run to be measured, with what it is measured against.
 pub(super) struct SystemRun<'a> {
-    pub(super) task: &'a SystemTask,
+    pub(super) task: &'a Task,
     pub(super) truth: &'a SystemTruth,
-    pub(super) outcome: &'a SystemOutcome,
+    pub(super) outcome: &'a Outcome,
     pub(super) unit: f64,
 }
 
@@ -58,10 +58,10 @@ impl<'a> SystemScale<'a> {
 /// Measures a run.
 #[must_use]
 pub fn measure_system(
-    task: &SystemTask,
+    task: &Task,
     truth: &SystemTruth,
     names: &EventNames,
-    outcome: &SystemOutcome,
+    outcome: &Outcome,
     scale: SystemScale<'_>,
 ) -> Measures {
     let run = SystemRun { task, truth, outcome, unit: scale.unit };
@@ -110,7 +110,7 @@ pub fn measure_system(
 /// grown, passes the error that is scored or could let an event change places with its neighbour,
 /// or until the errors that are allowed could lead into another mode.
 pub(super) fn scored_horizon(
-    task: &SystemTask,
+    task: &Task,
     truth: &SystemTruth,
     scale: SystemScale<'_>,
 ) -> (f64, bool) {

@@ -20,10 +20,10 @@ fn row(elapsed: f64, phase: Phase, state: [f64; 4]) -> TruthRow {
 
 /// Two forcing periods with three events, and growths that are all different.
 struct Planted {
-    task: Task,
+    task: OscillatorTask,
     truth: Truth,
     growth: RunGrowth,
-    outcome: Outcome,
+    outcome: OscillatorOutcome,
 }
 
 impl Planted {
@@ -31,7 +31,7 @@ impl Planted {
         let problem = problem();
         let horizon = problem.entry.instant.after_periods(2, 1);
         let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: 17 };
-        let task = Task::until(Parameters::default(), problem, horizon, grid);
+        let task = OscillatorTask::until(Parameters::default(), problem, horizon, grid);
         let states = [[0.5, -0.25, 0.5, 0.0], [1.0, 2.0, 0.75, 0.0], [3.0, 0.0, -1.0, 1.5]];
         let phases = [Contact, Progression, NoContact];
         let times = [1.0, 2.0, 8.0];
@@ -49,17 +49,17 @@ impl Planted {
             samples: vec![[1.0, 2.0, 4.0, 8.0]; 17],
             end: [1.0; 4],
         };
-        let event = |row: &TruthRow| Event {
+        let event = |row: &TruthRow| crate::engine::Event {
             event: 0,
             mode: row.phase.unwrap_or(NoContact),
             elapsed: row.elapsed.value(),
             state: row.rounded(),
         };
-        let outcome = Outcome {
+        let outcome = OscillatorOutcome {
             events: truth.events.iter().map(event).collect(),
             samples: truth.samples.iter().map(TruthRow::rounded).collect(),
             end: truth.end.rounded(),
-            ..Outcome::default()
+            ..OscillatorOutcome::default()
         };
         Self { task, truth, growth, outcome }
     }

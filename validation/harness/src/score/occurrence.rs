@@ -1,6 +1,6 @@
 //! Events as matching sees them, of the oscillator and of any other system alike.
 
-use crate::engine::Event;
+use crate::engine::OscillatorEvent;
 use crate::truth::TruthRow;
 use percuss::Phase;
 
@@ -31,8 +31,8 @@ impl From<&TruthRow> for Occurrence {
     }
 }
 
-impl From<&Event> for Occurrence {
-    fn from(event: &Event) -> Self {
+impl From<&OscillatorEvent> for Occurrence {
+    fn from(event: &OscillatorEvent) -> Self {
         Self { elapsed: event.elapsed, event: 0, mode: Some(number(event.mode)) }
     }
 }

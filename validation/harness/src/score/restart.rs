@@ -11,7 +11,7 @@ use super::restart_figures::{Restart, RestartError, RestartResult};
 use super::starts::on_attractor;
 use super::statistics::worst;
 use crate::case::Problem;
-use crate::engine::{Failure, Outcome, SampleGrid, Task};
+use crate::engine::{Failure, OscillatorOutcome, OscillatorTask, SampleGrid};
 use crate::truth::{Truth, TruthRow};
 use percuss::TwoWord;
 use percuss::{Instant, Phase};
@@ -23,7 +23,7 @@ pub const MOST_PERIODS: u64 = 8;
 /// A run with its truth.
 pub struct RestartRun {
     /// What an engine is asked.
-    pub task: Task,
+    pub task: OscillatorTask,
     /// What is true.
     pub truth: Truth,
     /// How errors grow along it.
@@ -60,7 +60,7 @@ impl RestartTest {
     pub fn score(
         &self,
         unit: f64,
-        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
+        run: impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure> + Sync,
     ) -> Restart {
         self.score_first(usize::MAX, unit, run)
     }
@@ -70,7 +70,7 @@ impl RestartTest {
         &self,
         most: usize,
         unit: f64,
-        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
+        run: impl Fn(&OscillatorTask) -> Result<OscillatorOutcome, Failure> + Sync,
     ) -> Restart {
         let runs = &self.runs[..most.min(self.runs.len())];
         let measured = |it: &RestartRun| RestartResult {
@@ -106,7 +106,7 @@ impl RestartRun {
         Some(Self { task, truth, growth, impact })
     }
 
-    fn error(&self, outcome: &Outcome, unit: f64) -> RestartError {
+    fn error(&self, outcome: &OscillatorOutcome, unit: f64) -> RestartError {
         let truth = &self.truth.end.state;
         let off = |k: usize| off(truth[k], outcome.end[k]);
         let units = |k: usize| off(k) / scale(unit, truth[k], self.growth.end[k]);
@@ -124,7 +124,7 @@ impl RestartRun {
         }
     }
 
-    fn same_phases(&self, outcome: &Outcome) -> bool {
+    fn same_phases(&self, outcome: &OscillatorOutcome) -> bool {
         let truth = self.truth.events.iter().map(|event| event.phase);
         truth.eq(outcome.events.iter().map(|event| Some(event.mode)))
     }
@@ -156,9 +156,9 @@ fn passage(truth: &Truth) -> (bool, Option<TruthRow>) {
 }
 
 /// The run from a start to an instant, without samples on the way.
-pub(super) fn task(problem: Problem, horizon: Instant) -> Task {
+pub(super) fn task(problem: Problem, horizon: Instant) -> OscillatorTask {
     let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 };
-    Task::until(*problem.model.parameters(), problem, horizon, grid)
+    OscillatorTask::until(*problem.model.parameters(), problem, horizon, grid)
 }
 
 #[cfg(test)]

@@ -16,17 +16,17 @@ fn run() -> RestartRun {
     run
 }
 
-fn perfect(run: &RestartRun) -> Outcome {
+fn perfect(run: &RestartRun) -> OscillatorOutcome {
     let event = |row: &TruthRow| crate::engine::Event {
         event: 0,
         mode: row.phase.unwrap_or(NoContact),
         elapsed: row.elapsed.value(),
         state: row.rounded(),
     };
-    Outcome {
+    OscillatorOutcome {
         events: run.truth.events.iter().map(event).collect(),
         end: run.truth.end.rounded(),
-        ..Outcome::default()
+        ..OscillatorOutcome::default()
     }
 }
 
@@ -104,9 +104,9 @@ fn runs_that_fail_or_go_another_way_are_counted() {
     let test = RestartTest::new(&problem(), 12);
     let with_impact = test.runs.iter().filter(|run| run.impact).count();
     assert!(with_impact >= 4 && test.runs.len() == 12 && test.undecided == 0);
-    let at = |task: &Task| test.runs.iter().position(|run| run.task.state == task.state);
+    let at = |task: &OscillatorTask| test.runs.iter().position(|run| run.task.state == task.state);
     let impacts: Vec<usize> = (0..12).filter(|k| test.runs[*k].impact).collect();
-    let answer = |task: &Task| {
+    let answer = |task: &OscillatorTask| {
         let number = at(task).unwrap_or(0);
         let mut outcome = perfect(&test.runs[number]);
         if number == impacts[0] {

@@ -13,7 +13,7 @@ use super::restart_figures::{Restart, RestartError, RestartResult};
 use super::statistics::worst;
 use super::system_grazes::system_grazes;
 use crate::case::SystemCase;
-use crate::engine::{Accuracy, Ended, Failure, SystemOutcome, SystemTask};
+use crate::engine::{Accuracy, Ended, Failure, Outcome, Task};
 use crate::system::SystemProblem;
 use crate::truth::{DoubleDouble, SystemTruth, SystemTruthRow, solver};
 use percuss::affine::{Rational, Solver, StartPoint};
@@ -28,7 +28,7 @@ const CLOSE: f64 = 1e-5;
 /// A run with its truth.
 pub struct SystemRestartRun {
     /// What an engine is asked.
-    pub task: SystemTask,
+    pub task: Task,
     /// What is true.
     pub truth: SystemTruth,
     grazes: Vec<Graze>,
@@ -82,7 +82,7 @@ impl SystemRestartTest {
         &self,
         most: usize,
         (accuracy, unit): (Accuracy, f64),
-        run: impl Fn(&SystemTask) -> Result<SystemOutcome, Failure> + Sync,
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
     ) -> Restart {
         let runs = &self.runs[..most.min(self.runs.len())];
         let results: Vec<_> = runs
@@ -146,7 +146,7 @@ impl Restarts<'_> {
             return None;
         }
         let problem = Arc::new(self.problem.from_start(start).ok()?);
-        let task = SystemTask::of(&problem, truth.span, truth.sample_times()).ok()?;
+        let task = Task::of(&problem, truth.span, truth.sample_times()).ok()?;
         let grazes = system_grazes(&problem, &truth, self.names);
         let decisions = decisions(&problem, &truth);
         Some(SystemRestartRun { task, truth, grazes, decisions })
@@ -171,7 +171,7 @@ impl SystemRestartRun {
         })
     }
 
-    fn error(&self, names: &EventNames, outcome: &SystemOutcome, unit: f64) -> RestartError {
+    fn error(&self, names: &EventNames, outcome: &Outcome, unit: f64) -> RestartError {
         let run = SystemRun { task: &self.task, truth: &self.truth, outcome, unit };
         let end = &self.truth.end;
         let (all, own) =

@@ -4,8 +4,8 @@ use super::probes::{Extent, Probes, may_probe};
 use super::scope::{Suite, SuiteScope};
 use crate::case::{Bound, Case, Defaults, FileError, Shortcoming};
 use crate::engine::{
-    Accuracy, Engine, Failure, Limits, Outcome, Role, SampleGrid, SystemOutcome, SystemTask, Task,
-    Work, answer_system, least_work,
+    Accuracy, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, Outcome, Role,
+    SampleGrid, Task, Work, answer, least_work,
 };
 use crate::number::brief;
 use crate::score::attractor::{AttractorTest, Calibrated, calibrated};
@@ -29,8 +29,8 @@ pub struct Prepared {
     /// The places at which the case's guards come close to a threshold.
     pub grazes: Vec<Graze>,
     occurrences: Vec<Occurrence>,
-    task: Task,
-    asked: SystemTask,
+    task: OscillatorTask,
+    asked: Task,
     probes: Probes,
 }
 
@@ -43,7 +43,7 @@ pub trait CaseRun: Sync {
     fn events(&self) -> usize;
 
     /// The run that is asked for.
-    fn asked(&self) -> &SystemTask;
+    fn asked(&self) -> &Task;
 
     /// The parameters of its model.
     fn parameters(&self) -> Vec<(&str, f64)>;
@@ -101,9 +101,9 @@ pub struct Measured {
 #[derive(Clone, Debug)]
 pub enum Answered {
     /// A run of the oscillator.
-    Oscillator(Outcome),
+    Oscillator(OscillatorOutcome),
     /// A run of another system.
-    System(SystemOutcome),
+    System(Outcome),
 }
 
 impl Answered {
@@ -127,7 +127,7 @@ impl Answered {
 
     /// The run of the oscillator, if it is one.
     #[must_use]
-    pub const fn oscillator(&self) -> Option<&Outcome> {
+    pub const fn oscillator(&self) -> Option<&OscillatorOutcome> {
         match self {
             Self::Oscillator(outcome) => Some(outcome),
             Self::System(_) => None,
@@ -197,13 +197,13 @@ fn prepare_one(
         crate::case::Given { parameters: case.parameters, start: case.start, ..Default::default() };
     let problem = given.check().map_err(FileError)?;
     let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: truth.samples.len() };
-    let task = Task::of(&case, problem, grid);
+    let task = OscillatorTask::of(&case, problem, grid);
     let growth = RunGrowth::along(&truth, &case.parameters, task.forcing_angle);
     let grazes = grazes(&task, &truth, &growth);
     let probes = probes.map(|suite| Probes::new(&case, &problem, suite, limits)).transpose()?;
     let probes = probes.unwrap_or_default();
     let occurrences = occurrences(&truth.events);
-    let asked = SystemTask::of_oscillator(&task).map_err(|it| FileError::of(&case.file, it))?;
+    let asked = Task::of_oscillator(&task).map_err(|it| FileError::of(&case.file, it))?;
     Ok(Prepared { case, truth, growth, grazes, occurrences, task, asked, probes })
 }
 
@@ -220,11 +220,11 @@ impl Prepared {
         unit: f64,
         limits: &Limits,
         extent: impl FnOnce(f64) -> Extent,
-    ) -> Result<(Measures, Outcome, Duration), Failure> {
+    ) -> Result<(Measures, OscillatorOutcome, Duration), Failure> {
         let began = Instant::now();
-        let outcome = answer_system(engine, &self.asked, accuracy, limits)?;
+        let outcome = answer(engine, &self.asked, accuracy, limits)?;
         let wall = began.elapsed();
-        let outcome = Outcome::of_system(outcome)?;
+        let outcome = OscillatorOutcome::of_system(outcome)?;
         let mut measures = measure(&self.task, &self.truth, &self.growth, &outcome, unit);
         let periods = self.task.span / self.task.problem.model.period();
         let extent = extent(outcome.work.rhs_evaluations as f64 / periods.max(1.0));
@@ -248,7 +248,7 @@ impl CaseRun for Prepared {
         self.truth.events.len()
     }
 
-    fn asked(&self) -> &SystemTask {
+    fn asked(&self) -> &Task {
         &self.asked
     }
 

@@ -4,7 +4,7 @@ use super::matrix::{Answered, CaseRun, Measured};
 use super::probes::restarts_on_systems;
 use super::scope::Suite;
 use crate::case::{Bound, Defaults, FileError, Shortcoming, SystemCase};
-use crate::engine::{Accuracy, Engine, Failure, Limits, SystemTask, answer_system, least_work};
+use crate::engine::{Accuracy, Engine, Failure, Limits, Task, answer, least_work};
 use crate::score::{
     Decision, EventNames, Graze, Measures, Occurrence, ScoredRun, SystemRestartTest, SystemScale,
     WINDOW, decisions, measure_system, system_grazes,
@@ -21,7 +21,7 @@ pub struct PreparedSystem {
     /// The case's truth, with the growth along it.
     pub truth: SystemTruth,
     /// The run that is asked of engines.
-    pub task: SystemTask,
+    pub task: Task,
     /// The places at which guards come close to a threshold.
     pub grazes: Vec<Graze>,
     /// The events whose successors hang by little.
@@ -51,7 +51,7 @@ impl PreparedSystem {
         let truth = library.system_truth(&case)?;
         let problem = Arc::new(case.problem()?);
         let refused = |failure: Failure| FileError::of(&case.file, failure);
-        let task = SystemTask::of(&problem, truth.span, truth.sample_times()).map_err(refused)?;
+        let task = Task::of(&problem, truth.span, truth.sample_times()).map_err(refused)?;
         let names = EventNames::of(task.system.system());
         let occurrences = names.of_truth(&truth);
         let grazes = system_grazes(&problem, &truth, &names);
@@ -73,7 +73,7 @@ impl PreparedSystem {
         limits: &Limits,
     ) -> Result<Measured, Failure> {
         let began = Instant::now();
-        let outcome = answer_system(engine, &self.task, accuracy, limits)?;
+        let outcome = answer(engine, &self.task, accuracy, limits)?;
         let wall = began.elapsed();
         let scale = SystemScale::of((accuracy, unit), &self.grazes, &self.decisions);
         let measures = measure_system(&self.task, &self.truth, &self.names, &outcome, scale);
@@ -104,7 +104,7 @@ impl CaseRun for PreparedSystem {
         self.occurrences.len()
     }
 
-    fn asked(&self) -> &SystemTask {
+    fn asked(&self) -> &Task {
         &self.task
     }
 
@@ -147,7 +147,7 @@ impl CaseRun for PreparedSystem {
         let asked = restarts_on_systems(suite, engine.declaration().role, accuracy);
         if let Some(test) = self.restart.as_ref().filter(|_| asked) {
             let most = self.restarts(test, suite, work);
-            let run = |task: &SystemTask| answer_system(engine, task, accuracy, limits);
+            let run = |task: &Task| answer(engine, task, accuracy, limits);
             let restart = (most > 0).then(|| test.score_first(most, (accuracy, unit), run));
             measured.measures.probed.restart = restart;
         }

@@ -3,7 +3,7 @@
 use super::replay::{Beginning, Replay, Undecided};
 use super::{DoubleDouble, Truth, TruthRow};
 use crate::case::{Case, FileError, Given};
-use crate::engine::{SampleGrid, Task};
+use crate::engine::{OscillatorTask, SampleGrid};
 use percuss::{Entry, Instant, Parameters};
 
 /// The longest case without tables, in forcing periods: what is longer is not to be had in seconds.
@@ -18,8 +18,11 @@ impl Truth {
         let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
         let problem = given.check().map_err(FileError)?;
         let period = problem.model.period();
-        let task =
-            Task::of(case, problem, SampleGrid { per_period: Self::SAMPLES_PER_PERIOD, count: 0 });
+        let task = OscillatorTask::of(
+            case,
+            problem,
+            SampleGrid { per_period: Self::SAMPLES_PER_PERIOD, count: 0 },
+        );
         if task.span > PERIODS * period {
             let what = "a horizon of more than 1000 forcing periods needs tables (reference_data/)";
             return Err(FileError(format!("{}: {what}", case.file)));

@@ -5,7 +5,7 @@ use super::times::sample_times;
 use crate::answer::{Place, Wrong, checked};
 use crate::text::plain;
 use crate::wire::{BoundedList, Count, EndedBy, EventReply, RunReply, StateReply};
-use percuss_engines::engine::{Limits, Numbers, SystemOutcome, SystemTask};
+use percuss_engines::engine::{Limits, Numbers, Outcome, Task};
 use percuss_engines::number::shortest;
 use percuss_engines::system::{System, Values};
 use std::path::Path;
@@ -21,9 +21,9 @@ const SAME_TIME: f64 = 1e-9;
 pub(super) fn answer(
     folder: &Path,
     case: &str,
-    task: &SystemTask,
+    task: &Task,
     limits: &Limits,
-) -> Result<SystemOutcome, String> {
+) -> Result<Outcome, String> {
     let file = |ending: &str| Table::read(&folder.join(format!("{case}{ending}")));
     let (events, samples) = (file(EVENTS)?, file(SAMPLES)?);
     let told = Told::read(&events, task, limits)?;
@@ -62,7 +62,7 @@ struct Told {
 }
 
 impl Told {
-    fn read(table: &Table, task: &SystemTask, limits: &Limits) -> Result<Self, String> {
+    fn read(table: &Table, task: &Task, limits: &Limits) -> Result<Self, String> {
         let system = task.system.system();
         let states = system.states.iter().map(String::as_str);
         let columns: Vec<&str> = ["time", "event", "mode"].into_iter().chain(states).collect();
@@ -121,7 +121,7 @@ fn event_of(system: &System, mode: usize, name: &str) -> Result<usize, String> {
 /// are.
 fn read_samples(
     table: &Table,
-    task: &SystemTask,
+    task: &Task,
     whole: bool,
 ) -> Result<(Vec<StateReply>, Vec<usize>), String> {
     let system = task.system.system();

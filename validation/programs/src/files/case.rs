@@ -4,7 +4,7 @@ use super::equations::equations;
 use super::rows::{rows, start};
 use super::times::sample_times;
 use crate::wire::{ModeAsk, TimesAsk};
-use percuss_engines::engine::SystemTask;
+use percuss_engines::engine::Task;
 use percuss_engines::number::shortest;
 use percuss_engines::system::System;
 use serde::Serialize;
@@ -30,7 +30,7 @@ pub struct CaseFile<'a> {
     times: TimesAsk,
     modes: Vec<ModeAsk<'a>>,
     #[serde(skip)]
-    task: &'a SystemTask,
+    task: &'a Task,
 }
 
 #[derive(Serialize)]
@@ -45,7 +45,7 @@ impl<'a> CaseFile<'a> {
     #[must_use]
     pub fn new(
         case: &'a str,
-        task: &'a SystemTask,
+        task: &'a Task,
         parameters: impl IntoIterator<Item = (&'a str, f64)>,
     ) -> Self {
         let system: &'a System = task.system.system();

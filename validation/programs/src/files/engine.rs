@@ -3,8 +3,8 @@
 use super::answer::answer;
 use super::table::{EVENTS, SAMPLES};
 use percuss_engines::engine::{
-    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Role, Stepping,
-    SystemOutcome, SystemTask,
+    Accuracy, Colours, Declaration, Engine, Failure, Limits, Location, Outcome, Role, Stepping,
+    Task,
 };
 use std::path::PathBuf;
 
@@ -68,12 +68,7 @@ impl Engine for FileEngine {
         Err(format!("not answered: there is no {events}"))
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        _: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         answer(&self.folder, &self.case, task, limits).map_err(Failure::new)
     }
 }

@@ -1,11 +1,11 @@
 //! A case as equations, for people.
 
-use percuss_engines::engine::SystemTask;
+use percuss_engines::engine::Task;
 use percuss_engines::number::shortest;
 use percuss_engines::system::{Mode, System, Until};
 
 /// The equations, events, start and horizon of a case.
-pub(super) fn equations(case: &str, task: &SystemTask) -> String {
+pub(super) fn equations(case: &str, task: &Task) -> String {
     let system = task.system.system();
     let start = &system.modes[task.mode].name;
     let states = system.states.iter().zip(task.state.iter());
@@ -21,7 +21,7 @@ pub(super) fn equations(case: &str, task: &SystemTask) -> String {
     lines.join("\n") + "\n"
 }
 
-fn backward(task: &SystemTask) -> &'static str {
+fn backward(task: &Task) -> &'static str {
     if !task.system.is_backward() {
         return "";
     }

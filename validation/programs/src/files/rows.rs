@@ -1,6 +1,6 @@
 //! A system in CSV: every line is a row over (z, cos theta, sin theta, 1).
 
-use percuss_engines::engine::SystemTask;
+use percuss_engines::engine::Task;
 use percuss_engines::number::shortest;
 use percuss_engines::system::{Mode, Row, System};
 
@@ -50,7 +50,7 @@ fn events(system: &System, mode: &Mode, lines: &mut Vec<Fields>) {
 }
 
 /// Where a run begins and ends.
-pub(super) fn start(task: &SystemTask) -> String {
+pub(super) fn start(task: &Task) -> String {
     let system = task.system.system();
     let header = ["mode", "horizon", "omega", "phi", "backward"].map(str::to_owned).into_iter();
     let numbers = [task.span, system.omega, system.phi].map(shortest).into_iter();

@@ -2,15 +2,15 @@
 
 use super::CaseFile;
 use percuss::Parameters;
-use percuss_engines::engine::{SystemTask, percussive};
+use percuss_engines::engine::{Task, percussive};
 use percuss_engines::system::CheckedSystem;
 use std::sync::Arc;
 
-fn task() -> SystemTask {
+fn task() -> Task {
     let system = percussive(&Parameters::default(), 0.5);
     let Ok(system) = CheckedSystem::new(system) else { unreachable!("it is whole") };
     let start = [-0.02, 0.0, 0.0, 0.0];
-    let Ok(task) = SystemTask::new(Arc::new(system), 0, &start, 3.0, vec![0.0, 1.5]) else {
+    let Ok(task) = Task::new(Arc::new(system), 0, &start, 3.0, vec![0.0, 1.5]) else {
         unreachable!("it is a run")
     };
     task

@@ -1,7 +1,7 @@
 //! What is written to a program.
 
 use super::PROTOCOL;
-use percuss_engines::engine::{Accuracy, Limits, SystemTask};
+use percuss_engines::engine::{Accuracy, Limits, Task};
 use percuss_engines::system::{CheckedSystem, Direction, Mode, Row, System};
 use serde::Serialize;
 
@@ -120,12 +120,7 @@ struct LimitsAsk {
 
 impl<'a> RunAsk<'a> {
     /// The request for a task, in a set-up of a program.
-    pub(crate) fn new(
-        setup: &'a str,
-        task: &'a SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Self {
+    pub(crate) fn new(setup: &'a str, task: &'a Task, accuracy: Accuracy, limits: &Limits) -> Self {
         let checked = &*task.system;
         let tolerance = |size: f64| Tolerance { relative: size, absolute: size };
         Self {
@@ -165,7 +160,7 @@ impl TimesAsk {
 }
 
 /// When a task wants the state.
-pub(crate) fn samples(task: &SystemTask) -> Vec<f64> {
+pub(crate) fn samples(task: &Task) -> Vec<f64> {
     let times = task.watched.as_ref().map_or(&task.samples, |watched| &watched.instants);
     times.iter().map(|time| time.min(task.span)).collect()
 }

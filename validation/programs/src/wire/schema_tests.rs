@@ -3,7 +3,7 @@
 use super::{Ask, Asked, RunAsk, decode};
 use jsonschema::Validator;
 use percuss::Parameters;
-use percuss_engines::engine::{Accuracy, Limits, SystemTask, percussive};
+use percuss_engines::engine::{Accuracy, Limits, Task, percussive};
 use percuss_engines::system::{CheckedSystem, Direction, System, Watch};
 use serde_json::{Value, json};
 use std::path::Path;
@@ -34,10 +34,10 @@ fn system() -> System {
     system
 }
 
-fn task(system: System) -> SystemTask {
+fn task(system: System) -> Task {
     let Ok(system) = CheckedSystem::new(system) else { unreachable!("it is whole") };
     let state = vec![0.25; system.system().states.len()];
-    match SystemTask::new(Arc::new(system), 0, &state, 3.0, vec![0.0, 1.5, 4.0]) {
+    match Task::new(Arc::new(system), 0, &state, 3.0, vec![0.0, 1.5, 4.0]) {
         Ok(task) => task,
         Err(failure) => unreachable!("{failure}"),
     }

@@ -3,9 +3,7 @@
 use super::kinds::{ExpectedEnd, KINDS};
 use super::left::{left, processes};
 use libtest_mimic::{Arguments, Failed, Trial};
-use percuss_engines::engine::{
-    Accuracy, Engine, Failure, Limits, SystemOutcome, SystemTask, answer_system,
-};
+use percuss_engines::engine::{Accuracy, Engine, Failure, Limits, Outcome, Task, answer};
 use percuss_engines::system::{CheckedSystem, Direction, Mode, System, Until, Watch};
 use percuss_programs::{NotStarted, Program, ProgramEngine};
 use std::path::PathBuf;
@@ -43,7 +41,7 @@ pub fn program(kind: &str, token: &str, timeout: Duration) -> Program {
 }
 
 /// Two modes of uniform motion: the first ends at x = 0.5, the second counts where x rises to 1.
-pub fn task(samples: usize) -> SystemTask {
+pub fn task(samples: usize) -> Task {
     let mode = |name: &str| Mode {
         name: name.to_owned(),
         a: vec![vec![0.0, 1.0], vec![0.0, 0.0]],
@@ -69,13 +67,13 @@ pub fn task(samples: usize) -> SystemTask {
     let system = Arc::new(CheckedSystem::new(system).expect("the system is whole"));
     let last = samples.saturating_sub(1).max(1) as f64;
     let samples = (0..samples).map(|k| 2.0 * k as f64 / last).collect();
-    SystemTask::new(system, 0, &[0.0, 1.0], 2.0, samples).expect("the task is whole")
+    Task::new(system, 0, &[0.0, 1.0], 2.0, samples).expect("the task is whole")
 }
 
 /// What a program makes of the task.
-pub fn run(engine: &ProgramEngine, wall: Duration) -> Result<SystemOutcome, Failure> {
+pub fn run(engine: &ProgramEngine, wall: Duration) -> Result<Outcome, Failure> {
     let limits = Limits { calls: 1000, events: 100, wall };
-    answer_system(engine, &task(3), Accuracy::Tolerance(1e-6), &limits)
+    answer(engine, &task(3), Accuracy::Tolerance(1e-6), &limits)
 }
 
 fn check(kind: &str, expected: ExpectedEnd) -> Result<(), String> {
@@ -163,12 +161,12 @@ fn rows(
 }
 
 /// A request of more bytes than a pipe holds.
-fn run_of_many_samples(odd: &ProgramEngine, wall: Duration) -> Result<SystemOutcome, Failure> {
+fn run_of_many_samples(odd: &ProgramEngine, wall: Duration) -> Result<Outcome, Failure> {
     let limits = Limits { calls: 1000, events: 100, wall };
-    answer_system(odd, &task(50_000), Accuracy::Tolerance(1e-6), &limits)
+    answer(odd, &task(50_000), Accuracy::Tolerance(1e-6), &limits)
 }
 
-fn is_right(outcome: Result<SystemOutcome, Failure>, which: &str) -> Result<(), String> {
+fn is_right(outcome: Result<Outcome, Failure>, which: &str) -> Result<(), String> {
     let outcome = outcome.map_err(|failure| format!("the row {which} fails: {failure}"))?;
     let times: Vec<f64> = outcome.events.iter().map(|event| event.elapsed).collect();
     let samples: Vec<f64> = outcome.samples.iter().map(|sample| sample[0]).collect();

@@ -5,7 +5,7 @@ use super::course::picture;
 use super::mismatch::EventMismatch;
 use super::system;
 use crate::case::{Case, Given};
-use crate::engine::{self, Engine, Limits, SampleGrid, Task};
+use crate::engine::{self, Engine, Limits, OscillatorTask, SampleGrid};
 use crate::score::Verdict;
 use crate::suite::{Answered, Prepared, PreparedSystem, Scored, Status, Suite};
 use crate::truth::Truth;
@@ -98,8 +98,8 @@ fn of_oscillator<'a>(
 }
 
 /// The run of a case, without samples.
-fn task(case: &Case) -> Option<Task> {
+fn task(case: &Case) -> Option<OscillatorTask> {
     let given = Given { parameters: case.parameters, start: case.start, ..Given::default() };
     let grid = SampleGrid { per_period: Truth::SAMPLES_PER_PERIOD, count: 0 };
-    Some(Task::of(case, given.check().ok()?, grid))
+    Some(OscillatorTask::of(case, given.check().ok()?, grid))
 }

@@ -4,7 +4,9 @@ use super::guarded::GuardCurve;
 use super::mismatch::EventMismatch;
 use super::scales::Scales;
 use super::{EventMark, EventPicture, View, ViewCourse};
-use crate::engine::{Engine, Limits, Outcome, Task, Watched, contain, run_oscillator};
+use crate::engine::{
+    Engine, Limits, OscillatorOutcome, OscillatorTask, Watched, contain, run_oscillator,
+};
 use crate::suite::{Prepared, Scored};
 use crate::truth::Replay;
 use percuss::TwoWord;
@@ -18,7 +20,7 @@ const HIDDEN: f64 = 0.6;
 /// Runs a row again and watches it around its first wrong event.
 pub(super) fn picture(
     prepared: &Prepared,
-    task: &Task,
+    task: &OscillatorTask,
     row: &Scored,
     it: &EventMismatch,
     (engine, mean_step, limits): (&dyn Engine, f64, &Limits),
@@ -28,7 +30,7 @@ pub(super) fn picture(
     let instants = scales.all_instants();
     let truth = truth_at(task, it.guarded, &instants)?;
     let watched = Watched { window: scales.window(), instants: instants.clone() };
-    let task = Task { watched: Some(watched), ..task.clone() };
+    let task = OscillatorTask { watched: Some(watched), ..task.clone() };
     let outcome = contain(|| run_oscillator(engine, &task, row.accuracy, limits)).ok()?;
     let trace = outcome.trace.as_ref();
     let looks = trace.map_or(&[][..], |trace| &trace.looks);
@@ -69,15 +71,15 @@ fn truth_events(prepared: &Prepared, it: &EventMismatch) -> Vec<(f64, String, bo
     prepared.truth.events.iter().enumerate().filter_map(mark).collect()
 }
 
-fn engine_events(outcome: &Outcome, it: &EventMismatch) -> Vec<(f64, String, bool)> {
+fn engine_events(outcome: &OscillatorOutcome, it: &EventMismatch) -> Vec<(f64, String, bool)> {
     let is_known = |j: usize| it.pairs.iter().any(|pair| pair.1 == j);
     let events = outcome.events.iter().enumerate();
     events.map(|(j, event)| (event.elapsed, event.mode.as_str().to_owned(), is_known(j))).collect()
 }
 
 /// The true values, by the run made again in 106 bits.
-fn truth_at(task: &Task, guarded: GuardCurve, instants: &[f64]) -> Option<Vec<f64>> {
-    let Task { parameters, problem, horizon, .. } = task;
+fn truth_at(task: &OscillatorTask, guarded: GuardCurve, instants: &[f64]) -> Option<Vec<f64>> {
+    let OscillatorTask { parameters, problem, horizon, .. } = task;
     let start = problem.entry.instant;
     let mut values = Vec::with_capacity(instants.len());
     for passage in Replay::new(parameters, &problem.entry, *horizon) {
@@ -98,7 +100,7 @@ fn truth_at(task: &Task, guarded: GuardCurve, instants: &[f64]) -> Option<Vec<f6
 }
 
 /// The engine's values, where it records.
-fn engine_at(task: &Task, guarded: GuardCurve, outcome: &Outcome) -> Vec<f64> {
+fn engine_at(task: &OscillatorTask, guarded: GuardCurve, outcome: &OscillatorOutcome) -> Vec<f64> {
     let states = outcome.samples.iter().filter(|_| outcome.trace.is_some());
     states.map(|state| guarded.of_state(&task.parameters, state)).collect()
 }

@@ -57,7 +57,7 @@ impl GuardCurve {
     }
 
     /// The guard's value where a search looked at it; `None` where it looked at other guards.
-    pub(super) fn of_look(self, look: &GuardSample) -> Option<f64> {
+    pub(super) fn of_look(self, look: &GuardSample<Phase>) -> Option<f64> {
         match (self, look.mode, look.guard) {
             (Self::Gap, Phase::NoContact, 0) | (Self::SlidingForce, Phase::Contact, 0) => {
                 Some(look.value)

@@ -3,9 +3,7 @@
 use super::course::{Scene, SceneCurve, in_order, telling};
 use super::scales::Scales;
 use super::{EventPicture, MismatchKind, View};
-use crate::engine::{
-    Engine, Equations, GuardSample, Limits, SystemOutcome, SystemTask, Watched, contain,
-};
+use crate::engine::{Engine, Equations, GuardSample, Limits, Outcome, Task, Watched, contain};
 use crate::score::{EventNames, Matching, Measures, Verdict, WINDOW};
 use crate::suite::{PreparedSystem, Scored};
 use crate::system::{Affine, Direction, Row};
@@ -37,7 +35,7 @@ impl SystemMismatch {
     pub(super) fn first(
         prepared: &PreparedSystem,
         measures: &Measures,
-        outcome: &SystemOutcome,
+        outcome: &Outcome,
         row: &Scored,
     ) -> Option<Self> {
         let truth = of_truth(&prepared.truth);
@@ -90,9 +88,9 @@ fn of_truth(truth: &SystemTruth) -> Events {
     truth.events.iter().map(one).collect()
 }
 
-fn of_engine(task: &SystemTask, outcome: &SystemOutcome) -> Events {
+fn of_engine(task: &Task, outcome: &Outcome) -> Events {
     let mut mode = task.mode;
-    let one = |event: &crate::engine::SystemEvent| {
+    let one = |event: &crate::engine::Event| {
         let before = std::mem::replace(&mut mode, event.mode);
         (event.elapsed, (before, event.event))
     };
@@ -100,11 +98,7 @@ fn of_engine(task: &SystemTask, outcome: &SystemOutcome) -> Events {
 }
 
 /// The events of truth and engine that are the same, paired as the scores pair them.
-fn pairs(
-    prepared: &PreparedSystem,
-    measures: &Measures,
-    outcome: &SystemOutcome,
-) -> Vec<(usize, usize)> {
+fn pairs(prepared: &PreparedSystem, measures: &Measures, outcome: &Outcome) -> Vec<(usize, usize)> {
     let PreparedSystem { task, truth, .. } = prepared;
     let names = EventNames::of(task.system.system());
     let window = WINDOW * prepared.period();
@@ -146,7 +140,7 @@ pub(super) fn picture(
     let instants = scales.all_instants();
     let states = SystemTruth::states(case, &instants)?;
     let watched = Watched { window: scales.window(), instants: instants.clone() };
-    let again = SystemTask { watched: Some(watched), ..task.clone() };
+    let again = Task { watched: Some(watched), ..task.clone() };
     let outcome = contain(|| engine.run(&again, row.accuracy, limits)).ok()?;
     let of_states = |states: &mut dyn Iterator<Item = &[f64]>| -> Vec<f64> {
         instants.iter().zip(states).map(|(t, state)| guard.value(task, *t, state)).collect()
@@ -208,7 +202,7 @@ struct Guard {
 }
 
 impl Guard {
-    fn of(task: &SystemTask, (mode, event): (usize, usize)) -> Option<Self> {
+    fn of(task: &Task, (mode, event): (usize, usize)) -> Option<Self> {
         let own = task.system.system().modes.get(mode)?;
         let equations = Affine::of(&task.system);
         let guards = (0..equations.count(mode)).filter(|it| equations.event(mode, *it) == event);
@@ -224,7 +218,7 @@ impl Guard {
         Some(Self { row, mode, looked: guards.zip(signs).collect() })
     }
 
-    fn value(&self, task: &SystemTask, t: f64, state: &[f64]) -> f64 {
+    fn value(&self, task: &Task, t: f64, state: &[f64]) -> f64 {
         let system = task.system.system();
         let (sin, cos) = (system.omega * t + system.phi).sin_cos();
         let z = state.iter().copied().chain([cos, sin, 1.0]);
@@ -232,7 +226,7 @@ impl Guard {
     }
 
     /// When a search looked at the guard, and what it saw; none where it looked at another.
-    fn of_look(&self, look: &GuardSample<usize>) -> Option<[f64; 2]> {
+    fn of_look(&self, look: &GuardSample) -> Option<[f64; 2]> {
         let (_, sign) = self.looked.iter().find(|(guard, _)| *guard == look.guard)?;
         (look.mode == self.mode).then_some([look.t, sign * look.value])
     }

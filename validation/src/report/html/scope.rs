@@ -1,5 +1,5 @@
-//! What a report is about, in words: whose cases, which systems, their states, and where their truth
-//! comes from.
+//! What a report is about, in words: whose cases, which systems, their states, and where their
+//! truth comes from.
 
 use super::super::{CASES_FLAG, CaseNote, OSCILLATOR, Report, ReportEvidence};
 

@@ -17,10 +17,7 @@ use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::{CountedCrossing, Sampler};
 use crate::engine::trace::GuardSample;
 use crate::engine::walk::longest_of_period;
-use crate::engine::{
-    Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
-    pins,
-};
+use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
 use differential_equations::ode::solve_ode;
@@ -47,7 +44,7 @@ impl Engine for BuiltIn {
         }
     }
 
-    fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
+    fn longest_step_on(&self, task: &Task) -> Option<f64> {
         Some(longest_of_period(task.system.period()))
     }
 
@@ -55,12 +52,7 @@ impl Engine for BuiltIn {
         true
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
             let integration = Integration::<Oscillator>::of(own);
             return run(&integration, accuracy, limits).map(Into::into);

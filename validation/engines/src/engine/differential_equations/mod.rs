@@ -40,10 +40,7 @@ use super::joining::{Integration, join};
 use super::meter::{Failure, Limits, Meter};
 use super::original::OriginalOscillator;
 use super::walk::longest_of_period;
-use super::{
-    Accuracy, Colours, Declaration, Engine, Location, Outcome, Role, SystemOutcome, SystemTask,
-    pins,
-};
+use super::{Accuracy, Colours, Declaration, Engine, Location, Outcome, Role, Task, pins};
 use differential_equations::error::Error;
 use differential_equations::linalg::Matrix;
 use differential_equations::ode::{ODE, solve_ode};
@@ -101,7 +98,7 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
         }
     }
 
-    fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
+    fn longest_step_on(&self, task: &Task) -> Option<f64> {
         (!M::MULTISTEP).then(|| longest_of_period(task.system.period()))
     }
 
@@ -109,16 +106,11 @@ impl<M: LibraryMethod, E: Coordinates> Engine for SteppedLibrary<M, E> {
         M::EXPLICIT
     }
 
-    fn takes(&self, task: &SystemTask) -> Result<(), &'static str> {
+    fn takes(&self, task: &Task) -> Result<(), &'static str> {
         E::describe(task)
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         E::describe(task).map_err(Failure::new)?;
         if let Some(own) = &task.oscillator {
             let integration = Integration::<E>::of(own);

@@ -25,9 +25,7 @@ use super::field::Oscillator;
 use super::joining::{Integration, join};
 use super::meter::{Failure, Limits, Meter};
 use super::walk::longest_of_period;
-use super::{
-    Accuracy, Colours, Declaration, Engine, Location, Outcome, SystemOutcome, SystemTask, pins,
-};
+use super::{Accuracy, Colours, Declaration, Engine, Location, Outcome, Task, pins};
 use diffsol::{NalgebraLU, NalgebraMat, NalgebraVec};
 use fields::{DiffsolEquations, ProblemSettings, problem};
 use method::{Bdf, DiffsolMethod, Esdirk34, TrBdf2, Tsit45};
@@ -68,7 +66,7 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
         }
     }
 
-    fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
+    fn longest_step_on(&self, task: &Task) -> Option<f64> {
         M::ONE_STEP.then(|| longest_of_period(task.system.period()))
     }
 
@@ -76,12 +74,7 @@ impl<M: DiffsolMethod> Engine for Diffsol<M> {
         M::EXPLICIT
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
             let integration = Integration::<Oscillator>::of(own);
             return run::<M, _>(&integration, accuracy, limits).map(Into::into);

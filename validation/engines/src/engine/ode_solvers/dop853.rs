@@ -18,10 +18,7 @@ use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::{longest_of_period, longest_step, walk};
-use crate::engine::{
-    Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
-    pins,
-};
+use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
 use crate::system::Mode;
 use ::ode_solvers::OutputType;
 use nalgebra::allocator::Allocator;
@@ -66,7 +63,7 @@ impl Engine for Dop853 {
         }
     }
 
-    fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
+    fn longest_step_on(&self, task: &Task) -> Option<f64> {
         Some(longest_of_period(task.system.period()))
     }
 
@@ -78,7 +75,7 @@ impl Engine for Dop853 {
     /// is the largest rate at which theta changes a state's rate over its scale, a omega on the
     /// oscillator. The multiple is the least that was measured over the oscillator's cases. A mode
     /// in which theta changes nothing costs nothing.
-    fn least_work(&self, task: &SystemTask, accuracy: Accuracy) -> f64 {
+    fn least_work(&self, task: &Task, accuracy: Accuracy) -> f64 {
         let Some(tolerance) = accuracy.tolerance().filter(|_| !self.clock) else { return 0.0 };
         let system = task.system.system();
         let forcing = |mode: &Mode| {
@@ -89,12 +86,7 @@ impl Engine for Dop853 {
         STAGES * task.span * (FIRST_ORDER * least * system.omega.abs() / tolerance).sqrt()
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
             let integration = Integration::<Oscillator>::of(own);
             return if self.clock {

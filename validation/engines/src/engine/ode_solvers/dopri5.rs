@@ -12,10 +12,7 @@ use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::script::GuardRise;
 use crate::engine::walk::longest_of_period;
-use crate::engine::{
-    Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
-    pins,
-};
+use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
 use ::ode_solvers::continuous_output_model::ContinuousOutputModel;
 use ::ode_solvers::{OVector, OutputType};
 use nalgebra::allocator::Allocator;
@@ -51,7 +48,7 @@ impl<E: Coordinates> Engine for Dopri5<E> {
         }
     }
 
-    fn longest_step_on(&self, task: &SystemTask) -> Option<f64> {
+    fn longest_step_on(&self, task: &Task) -> Option<f64> {
         Some(longest_of_period(task.system.period()))
     }
 
@@ -59,16 +56,11 @@ impl<E: Coordinates> Engine for Dopri5<E> {
         true
     }
 
-    fn takes(&self, task: &SystemTask) -> Result<(), &'static str> {
+    fn takes(&self, task: &Task) -> Result<(), &'static str> {
         E::describe(task)
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         E::describe(task).map_err(Failure::new)?;
         if let Some(own) = &task.oscillator {
             let integration = Integration::<E>::of(own);

@@ -14,10 +14,7 @@ use crate::engine::location::GuardSearch;
 use crate::engine::meter::{Failure, Limits, Meter};
 use crate::engine::sampler::Sampler;
 use crate::engine::walk::walk;
-use crate::engine::{
-    Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, SystemOutcome, SystemTask,
-    pins,
-};
+use crate::engine::{Accuracy, Declaration, Engine, Location, Outcome, Role, Stepping, Task, pins};
 use nalgebra::allocator::Allocator;
 use nalgebra::{DefaultAllocator, Dim, U4};
 use std::marker::PhantomData;
@@ -46,17 +43,12 @@ impl Engine for Rk4 {
         }
     }
 
-    fn least_work(&self, task: &SystemTask, accuracy: Accuracy) -> f64 {
+    fn least_work(&self, task: &Task, accuracy: Accuracy) -> f64 {
         let step = |step: f64| step * task.shortest_time();
         accuracy.step().map_or(0.0, |it| STAGES * task.span / step(it))
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         if let Some(own) = &task.oscillator {
             let integration = Integration::<Oscillator>::of(own);
             return run::<_, U4>(&integration, accuracy, limits).map(Into::into);

@@ -6,8 +6,8 @@ mod models;
 mod oscillator;
 mod truth;
 
-use super::{Accuracy, Engine, Failure, Limits, Stepping, SystemOutcome, SystemTask};
-use super::{all, answer_system, hush_contained_panics};
+use super::{Accuracy, Engine, Failure, Limits, Outcome, Stepping, Task};
+use super::{all, answer, hush_contained_panics};
 use crate::system::{CheckedSystem, System};
 use std::sync::Arc;
 
@@ -25,12 +25,12 @@ pub(super) struct AskedRun<'a> {
 }
 
 impl AskedRun<'_> {
-    fn task(&self) -> SystemTask {
+    fn task(&self) -> Task {
         let system = CheckedSystem::new(self.system.clone());
         let Ok(system) = system else { unreachable!("{:?}", system.err()) };
         let samples = (0..=SAMPLES).map(|k| self.span * f64::from(k) / f64::from(SAMPLES));
         let samples = samples.collect();
-        let task = SystemTask::new(Arc::new(system), self.mode, self.state, self.span, samples);
+        let task = Task::new(Arc::new(system), self.mode, self.state, self.span, samples);
         let Ok(task) = task else { unreachable!("{:?}", task.err()) };
         task
     }
@@ -62,15 +62,15 @@ fn accuracy(engine: &dyn Engine) -> Option<Accuracy> {
 }
 
 /// An integrator's name, its unit of error, and its answer.
-type EngineAnswer = (&'static str, f64, Result<SystemOutcome, Failure>);
+type EngineAnswer = (&'static str, f64, Result<Outcome, Failure>);
 
-fn every_on(task: &SystemTask) -> Vec<EngineAnswer> {
+fn every_on(task: &Task) -> Vec<EngineAnswer> {
     hush_contained_panics();
     let one = |engine: &&'static dyn Engine| {
         let declaration = engine.declaration();
         let accuracy = accuracy(*engine)?;
         let limits = Limits { calls: 3_000_000, ..Limits::default() };
-        let outcome = answer_system(*engine, task, accuracy, &limits);
+        let outcome = answer(*engine, task, accuracy, &limits);
         Some((declaration.name, declaration.stepping.unit(accuracy), outcome))
     };
     all().iter().filter_map(one).collect()
@@ -79,7 +79,7 @@ fn every_on(task: &SystemTask) -> Vec<EngineAnswer> {
 /// Where a run differs from the truth: the first event that is another one, or whose time is
 /// further off than `most` units of error times the number of events so far.
 fn departure(
-    outcome: &SystemOutcome,
+    outcome: &Outcome,
     truth: &[truth::TrueEvent],
     (unit, time_scale): (f64, f64),
     most: f64,

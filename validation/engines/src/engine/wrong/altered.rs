@@ -2,8 +2,8 @@
 
 use super::super::exact::Exact;
 use super::super::{
-    Accuracy, Declaration, Engine, Failure, Limits, Outcome, Role, SystemOutcome, SystemTask, Task,
-    run_oscillator,
+    Accuracy, Declaration, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, Outcome,
+    Role, Task, run_oscillator,
 };
 use crate::case::Problem;
 use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
@@ -32,12 +32,7 @@ impl Engine for Altered {
         Declaration { name: self.name, method, role: Role::Rows, ..Exact.declaration() }
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let task = task.of_the_oscillator()?;
         if self.change == Alteration::Drift {
             return drifting(task, limits).map(Into::into);
@@ -52,12 +47,12 @@ impl Engine for Altered {
         // The same number of forcing periods: the sample stays the one that is compared.
         let (whole, part) = periods(task);
         other.horizon = entry.instant.after_periods(whole, 1).after_periods(part, PARTS);
-        Exact.run(&SystemTask::of_oscillator(&other)?, accuracy, limits)
+        Exact.run(&Task::of_oscillator(&other)?, accuracy, limits)
     }
 }
 
 impl Altered {
-    fn altered(&self, task: &Task) -> (Parameters, Start) {
+    fn altered(&self, task: &OscillatorTask) -> (Parameters, Start) {
         let (parameters, start) = (task.parameters, exact_start(task));
         match self.change {
             Alteration::Frequency => {
@@ -75,7 +70,7 @@ impl Altered {
 
 /// The start with the state that the task begins with: on the surface the phase is stated, because
 /// a changed damping changes the trial force.
-fn exact_start(task: &Task) -> Start {
+fn exact_start(task: &OscillatorTask) -> Start {
     let [p, y, q, v] = task.state;
     let phase = (task.phase != Phase::NoContact).then_some(task.phase);
     Start { p, y, q: Some(q), v, phase, ..task.problem.start }
@@ -83,14 +78,14 @@ fn exact_start(task: &Task) -> Start {
 
 const PARTS: u64 = 1 << 32;
 
-fn periods(task: &Task) -> (u64, u64) {
+fn periods(task: &OscillatorTask) -> (u64, u64) {
     let periods = task.span / task.problem.model.period();
     (periods.floor() as u64, (periods.fract() * PARTS as f64).round() as u64)
 }
 
 /// The right motion with the drift of Eq. (20) as printed: at the start of each progression v jumps
 /// by 2 (q0 - 1), of which 2 (q0 - 1) exp(-d/(2 xi)) is left after d.
-fn drifting(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
+fn drifting(task: &OscillatorTask, limits: &Limits) -> Result<OscillatorOutcome, Failure> {
     let mut outcome = run_oscillator(&Exact, task, Accuracy::Exact, limits)?;
     let start = task.problem.entry.instant;
     let omega = task.parameters.omega;
@@ -120,7 +115,7 @@ fn drifting(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-fn left_over(task: &Task, segment: &Segment, elapsed: f64) -> f64 {
+fn left_over(task: &OscillatorTask, segment: &Segment, elapsed: f64) -> f64 {
     if segment.phase() != Phase::Progression {
         return 0.0;
     }

@@ -11,7 +11,7 @@ use super::super::meter::{Failure, Limits, Meter};
 use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{self, Dopri5Run};
 use super::super::script::GuardRise;
-use super::super::{Accuracy, Declaration, Engine, Role, SystemOutcome, SystemTask, Task};
+use super::super::{Accuracy, Declaration, Engine, OscillatorTask, Outcome, Role, Task};
 use nalgebra::U4;
 use percuss::{Parameters, Phase};
 
@@ -59,12 +59,7 @@ impl Engine for Faulty {
         Declaration { name: self.name, method, role: Role::Rows, ..DOPRI5.declaration() }
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let task = task.of_the_oscillator()?;
         let tolerance = accuracy.wanted_tolerance()?;
         if let IntegratorFault::GivesUp(every) = self.slip
@@ -103,7 +98,7 @@ impl Engine for Faulty {
 }
 
 impl Faulty {
-    fn parameters(&self, task: &Task) -> Parameters {
+    fn parameters(&self, task: &OscillatorTask) -> Parameters {
         let Parameters { b, xi, .. } = task.parameters;
         if self.slip != IntegratorFault::Parameters {
             return task.parameters;

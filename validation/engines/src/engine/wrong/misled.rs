@@ -1,7 +1,7 @@
 //! Equations of a system that mislead an integrator at the entry into a mode, and what it keeps in
 //! mind of its run.
 
-use super::super::SystemOutcome;
+use super::super::Outcome;
 use super::super::equations::{Entered, Equations};
 use super::super::joining::Integration;
 use crate::system::{Affine, Values};
@@ -60,7 +60,7 @@ impl Memory {
     /// Gives events that end a mode the states before their resets.
     pub(super) fn put_back(
         &self,
-        outcome: &mut SystemOutcome,
+        outcome: &mut Outcome,
         integration: &Integration<'_, Misled<'_>>,
     ) {
         let mut before = self.before.take().into_iter();

@@ -11,7 +11,7 @@ use super::super::ode_solvers::DOPRI5;
 use super::super::ode_solvers::dopri5::{self, Dopri5Run};
 use super::super::sampler::{CountedCrossing, Sampler};
 use super::super::script::GuardRise;
-use super::super::{Accuracy, Declaration, Engine, Role, SystemOutcome, SystemTask};
+use super::super::{Accuracy, Declaration, Engine, Outcome, Role, Task};
 use super::integrator::end_of_step;
 use super::misled::{Memory, Misled, SystemFault};
 use crate::system::{Affine, CheckedSystem, Direction, System, Values};
@@ -34,15 +34,10 @@ impl Engine for FaultyOnSystems {
         Declaration { name: self.name, method, role: Role::Rows, ..DOPRI5.declaration() }
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let tolerance = accuracy.wanted_tolerance()?;
         let system = Arc::new(self.slip.misread(&task.system)?);
-        let task = SystemTask { system, ..task.clone() };
+        let task = Task { system, ..task.clone() };
         let memory = Memory::default();
         let integration = misled(&task, self.slip, &memory);
         let meter = Meter::new(limits);
@@ -109,7 +104,7 @@ fn turn(system: &mut System, other: impl Fn(Direction) -> Direction) {
 
 /// The integration of a task with equations that are misled.
 fn misled<'a>(
-    task: &'a SystemTask,
+    task: &'a Task,
     slip: SystemFault,
     memory: &'a Memory,
 ) -> Integration<'a, Misled<'a>> {
@@ -123,7 +118,7 @@ fn misled<'a>(
 struct FaultySystemDetection<'a> {
     slip: SystemFault,
     memory: &'a Memory,
-    task: &'a SystemTask,
+    task: &'a Task,
 }
 
 impl FaultySystemDetection<'_> {

@@ -1,9 +1,7 @@
 //! The exact solver with the events of one instant in the wrong order: the file's last comes first.
 
 use super::super::exact::Exact;
-use super::super::{
-    Accuracy, Declaration, Engine, Failure, Limits, Role, SystemOutcome, SystemTask,
-};
+use super::super::{Accuracy, Declaration, Engine, Failure, Limits, Outcome, Role, Task};
 use crate::system::SystemProblem;
 use std::sync::Arc;
 
@@ -17,18 +15,13 @@ impl Engine for LastFirst {
         Declaration { name: self.name, method, role: Role::Rows, ..Exact.declaration() }
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        accuracy: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, accuracy: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let lacking = || Failure::new("the system's exact coefficients are not there");
         let problem = task.exact.as_ref().ok_or_else(lacking)?;
         let mut turned = problem.exact.clone();
         turned.modes.iter_mut().for_each(|mode| mode.until.reverse());
         let turned = Arc::new(SystemProblem::new(turned, problem.backward)?);
-        let task = SystemTask { exact: Some(turned), ..task.clone() };
+        let task = Task { exact: Some(turned), ..task.clone() };
         let mut outcome = Exact.run(&task, accuracy, limits)?;
         let mut mode = task.mode;
         for event in &mut outcome.events {

@@ -8,8 +8,10 @@ use super::super::equations::Equations;
 use super::super::exact::Exact;
 use super::super::field::{GUARDS, Oscillator};
 use super::super::sampler::Sampler;
-use super::super::{Accuracy, Declaration, Engine, Event, Failure, Limits, Location, Outcome};
-use super::super::{Role, SystemOutcome, SystemTask, Task, Work};
+use super::super::{
+    Accuracy, Declaration, Engine, Event, Failure, Limits, Location, OscillatorOutcome,
+};
+use super::super::{OscillatorTask, Outcome, Role, Task, Work};
 use super::closed::Closed;
 use percuss::Phase;
 
@@ -48,12 +50,7 @@ impl Engine for WrongWalk {
         }
     }
 
-    fn run(
-        &self,
-        task: &SystemTask,
-        _: Accuracy,
-        limits: &Limits,
-    ) -> Result<SystemOutcome, Failure> {
+    fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let task = task.of_the_oscillator()?;
         let mut run = WrongRun {
             task,
@@ -69,7 +66,7 @@ impl Engine for WrongWalk {
 }
 
 struct WrongRun<'a> {
-    task: &'a Task,
+    task: &'a OscillatorTask,
     fault: WalkFault,
     oscillator: Oscillator,
     step: f64,
@@ -79,8 +76,8 @@ struct WrongRun<'a> {
 }
 
 impl WrongRun<'_> {
-    fn all(&mut self, limits: &Limits) -> Result<Outcome, Failure> {
-        let mut outcome = Outcome::default();
+    fn all(&mut self, limits: &Limits) -> Result<OscillatorOutcome, Failure> {
+        let mut outcome = OscillatorOutcome::default();
         let mut sampler = Sampler::new(self.task.sample_times());
         let (mut t, mut phase, mut state) = (0.0, self.task.phase, self.task.state);
         loop {

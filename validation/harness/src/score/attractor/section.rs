@@ -2,7 +2,7 @@
 //! its periods are from the exact map's.
 
 use crate::case::{Given, Problem};
-use crate::engine::{Event, Failure, Outcome, SampleGrid, Task};
+use crate::engine::{Failure, OscillatorEvent, OscillatorOutcome, OscillatorTask, SampleGrid};
 use percuss::dynamics::linear::apply;
 use percuss::dynamics::strobe::{Passage, StrobeMap};
 use percuss::{Parameters, Phase, Start};
@@ -30,12 +30,12 @@ pub struct RunSection {
 
 /// The task of a long run: a state at every strobe, nothing in between.
 #[must_use]
-pub fn run_of(parameters: Parameters, start: Start, periods: u32) -> Option<Task> {
+pub fn run_of(parameters: Parameters, start: Start, periods: u32) -> Option<OscillatorTask> {
     let problem = Given { parameters, start, ..Given::default() }.check().ok()?;
     let Problem { entry, .. } = problem;
     let horizon = entry.instant.after_periods(u64::from(periods), 1);
     let grid = SampleGrid { per_period: 1, count: periods as usize + 1 };
-    Some(Task::until(parameters, problem, horizon, grid))
+    Some(OscillatorTask::until(parameters, problem, horizon, grid))
 }
 
 impl RunSection {
@@ -43,15 +43,19 @@ impl RunSection {
     ///
     /// # Errors
     /// A run that lacks samples or holds a number that is not finite.
-    pub fn of(task: &Task, outcome: &Outcome, transient: u32) -> Result<Self, Failure> {
+    pub fn of(
+        task: &OscillatorTask,
+        outcome: &OscillatorOutcome,
+        transient: u32,
+    ) -> Result<Self, Failure> {
         Self::judged(task, outcome, transient, &task.problem)
     }
 
     /// The section as [`RunSection::of`] makes it, with the exact map of another problem: the one
     /// that the run should have solved.
     pub(super) fn judged(
-        task: &Task,
-        outcome: &Outcome,
+        task: &OscillatorTask,
+        outcome: &OscillatorOutcome,
         transient: u32,
         truth: &Problem,
     ) -> Result<Self, Failure> {
@@ -88,7 +92,7 @@ fn series(points: &[[f64; 3]]) -> [Vec<f64>; SERIES] {
 
 /// Shares of the sequences of phases that begin within one period.
 fn phase_sequences(
-    events: &[Event],
+    events: &[OscillatorEvent],
     period: f64,
     transient: u32,
     periods: usize,
@@ -153,7 +157,12 @@ mod tests {
     /// the first sequence, and one before it belongs to none.
     #[test]
     fn sequences_are_spelled_by_the_events_of_each_period() {
-        let event = |elapsed: f64, phase| Event { event: 0, mode: phase, elapsed, state: [0.0; 4] };
+        let event = |elapsed: f64, phase| OscillatorEvent {
+            event: 0,
+            mode: phase,
+            elapsed,
+            state: [0.0; 4],
+        };
         let events = [
             event(3.9, Phase::Progression),
             event(4.0, Phase::Contact),

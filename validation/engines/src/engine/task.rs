@@ -1,19 +1,13 @@
-//! A run of any system, and what comes of it.
+//! A run of a system, as engines are asked for it.
 
 use super::joining::{Integration, Times};
-use super::{Event, Failure, Numbers, Outcome, Task, Watched, shortest_time};
+use super::{Failure, Numbers, OscillatorTask, Watched, shortest_time};
 use crate::system::{Affine, CheckedSystem, SystemProblem, Values};
 use std::sync::Arc;
 
-/// An event of a system; its mode is the place of the mode in the system.
-pub type SystemEvent = Event<usize, Values>;
-
-/// A run of a system that was made.
-pub type SystemOutcome = Outcome<usize, Values>;
-
 /// A run of a system that is to be made.
 #[derive(Clone, Debug)]
-pub struct SystemTask {
+pub struct Task {
     /// The system, checked; its forcing angle is that at the start.
     pub system: Arc<CheckedSystem>,
     /// The mode at the start.
@@ -30,10 +24,10 @@ pub struct SystemTask {
     pub exact: Option<Arc<SystemProblem>>,
     /// The same run in the words of the oscillator, where the system is the oscillator: who has the
     /// oscillator's equations written by hand may take them instead of the system's matrices.
-    pub oscillator: Option<Arc<Task>>,
+    pub oscillator: Option<Arc<OscillatorTask>>,
 }
 
-impl SystemTask {
+impl Task {
     /// A run from a state in a mode over a time, with the state taken at `samples`.
     ///
     /// # Errors
@@ -65,7 +59,7 @@ impl SystemTask {
     /// The run of a problem over a time.
     ///
     /// # Errors
-    /// Fails as [`SystemTask::new`] does.
+    /// Fails as [`Task::new`] does.
     pub fn of(problem: &Arc<SystemProblem>, span: f64, samples: Vec<f64>) -> Result<Self, Failure> {
         let system = Arc::clone(&problem.checked);
         let task = Self::new(system, problem.start.mode, &problem.state(), span, samples)?;
@@ -76,7 +70,7 @@ impl SystemTask {
     ///
     /// # Errors
     /// The system is another one.
-    pub fn of_the_oscillator(&self) -> Result<&Task, Failure> {
+    pub fn of_the_oscillator(&self) -> Result<&OscillatorTask, Failure> {
         let own = self.oscillator.as_deref();
         own.ok_or_else(|| Failure::new("runs the oscillator alone"))
     }
@@ -91,7 +85,7 @@ impl SystemTask {
 
 impl<'a> Integration<'a, Affine<'a>> {
     /// The integration of the system that a task asks for.
-    pub(super) fn of_system(task: &'a SystemTask) -> Self {
+    pub(super) fn of_system(task: &'a Task) -> Self {
         let system = &*task.system;
         let instants = task.watched.as_ref().map_or(&task.samples, |watched| &watched.instants);
         Self {
