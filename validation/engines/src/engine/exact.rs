@@ -59,6 +59,7 @@ fn run(task: &OscillatorTask, limits: &Limits) -> Result<Outcome, Failure> {
         };
         elapsed = elapsed.plus(duration);
         let (event, mode) = (event_between(before, phase), place(phase));
+        let state = Values::of(&state);
         outcome.events.push(Event { event, mode, elapsed: elapsed.value(), state });
         before = phase;
         if outcome.events.len() > limits.events {
@@ -79,14 +80,14 @@ const USUAL: usize = 128;
 /// A phase, passed.
 enum PassedPhase {
     /// It lasts so long; then this phase begins, in this state.
-    Switch { duration: TwoWord, phase: Phase, state: Values },
+    Switch { duration: TwoWord, phase: Phase, state: [f64; 4] },
     /// It is the run's last.
     Last(Box<Segment>),
 }
 
 impl PassedPhase {
     fn by_switch(duration: TwoWord, next: &Entry) -> Self {
-        let state = Values::of(&[next.state.p, next.state.y, next.state.q, next.v()]);
+        let state = [next.state.p, next.state.y, next.state.q, next.v()];
         Self::Switch { duration, phase: next.phase(), state }
     }
 }
