@@ -1,6 +1,6 @@
-//! What `validate` writes of cases of a user's own.
+//! What `validate` and `events` write of a user's own cases and systems.
 
-use crate::support::{run, text};
+use crate::support::{run, stdout, text};
 use std::path::Path;
 
 /// A body between two walls: none of the repository's systems, and no name of the oscillator's.
@@ -74,4 +74,37 @@ fn the_report_of_own_cases_speaks_of_them() {
         assert!(!page.contains(&format!("\"{section}\"")), "{section}");
         assert!(!page.contains(&format!("#{section}\"")), "{section}");
     }
+}
+
+/// A ball that is dropped from a million and a half.
+const HIGH: &str = "schema = 1
+name = \"high\"
+states = [\"height\", \"speed\"]
+[[mode]]
+name = \"air\"
+equations = [\"height' = speed\", \"speed' = -2000000\"]
+[[mode.until]]
+name = \"ground\"
+guard = \"height < 0\"
+reset = [\"speed = -speed\"]
+[start]
+mode = \"air\"
+height = 1500000
+speed = 0
+";
+
+#[test]
+fn labels_of_large_states_share_a_power_of_ten() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let [file, picture] = ["high.system.toml", "high.svg"].map(|it| folder.path().join(it));
+    std::fs::write(&file, HIGH).expect("written");
+    let [file, picture] = [&file, &picture].map(|it| it.to_str().expect("UTF-8"));
+    stdout(&["events", file, "--until", "4", "--output", picture]);
+    let svg = std::fs::read_to_string(picture).expect("written");
+    // Each state names its power beside its own panel and in the plane of both.
+    for (name, count) in [("height, in 10\u{2076}", 2), ("speed, in 10\u{2076}", 2), ("time", 1)] {
+        assert_eq!(svg.lines().filter(|line| *line == name).count(), count, "{name}");
+    }
+    let longest = svg.lines().filter(|it| it.parse::<f64>().is_ok()).map(str::len).max();
+    assert!(longest.is_some_and(|it| it <= 4), "{longest:?}");
 }

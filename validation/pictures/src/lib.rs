@@ -2,6 +2,7 @@
 //! SVG, and resvg renders the PNG from it.
 
 mod axes;
+mod axis_unit;
 mod basin_map;
 mod canvas;
 mod caption;

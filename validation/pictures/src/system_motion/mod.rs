@@ -5,6 +5,7 @@ mod layout;
 mod sampled;
 
 use super::axes::around;
+use super::axis_unit::AxisUnit;
 use super::canvas::{At, Canvas};
 use super::frame::{Panel, Ruler};
 use super::key::{KeyItem, KeyLayout, key};
@@ -43,6 +44,8 @@ pub struct SystemMotion {
     modes: Vec<String>,
     /// The names of the events that occur.
     events: Vec<String>,
+    /// What time and the states are counted in.
+    units: Vec<AxisUnit>,
     pieces: Vec<SampledSegment>,
     marks: Vec<Mark>,
 }
@@ -53,15 +56,34 @@ impl SystemMotion {
     pub fn of<T: Number>(solver: &Solver<T>, run: &[Event<T>], shown: &[usize]) -> Self {
         let system = solver.system();
         let events = event_names(system, run);
-        Self {
+        let motion = Self {
             title: system.name.clone(),
             caption: font::wrapped(&values(system), SMALL, WIDTH - 2.0 * MARGIN),
             states: shown.iter().map(|n| system.states[*n].clone()).collect(),
             modes: system.modes.iter().map(|mode| mode.name.clone()).collect(),
             pieces: pieces(solver, run, shown),
             marks: marks(solver, run, shown, &events),
+            units: vec![AxisUnit::default(); shown.len() + 1],
             events,
+        };
+        motion.in_units()
+    }
+
+    /// The run with all figures in units in which the labels of their axes are short.
+    fn in_units(mut self) -> Self {
+        self.units = (0..self.units.len()).map(|n| AxisUnit::of(self.column(n))).collect();
+        let points = self.pieces.iter_mut().flat_map(|piece| &mut piece.points);
+        let marks = self.marks.iter_mut().flat_map(|mark| [&mut mark.before, &mut mark.after]);
+        for point in points.chain(marks) {
+            let figures = point.iter_mut().zip(&self.units);
+            figures.for_each(|(figure, unit)| *figure = unit.shown(*figure));
         }
+        self
+    }
+
+    /// The name of the axis of time.
+    fn time(&self) -> String {
+        self.units[0].named("time", WIDTH)
     }
 
     fn layout(&self) -> Layout {
@@ -152,8 +174,9 @@ impl SystemMotion {
             }
             let lowest = self.events.is_empty() && n + 1 == self.states.len();
             let panel = if lowest { panel } else { without_labels(panel) };
-            let name = font::shortened(name, TEXT, to.1 - from.1);
-            panel.draw(canvas, if lowest { "time" } else { "" }, &name);
+            let name = self.units[n + 1].named(name, to.1 - from.1);
+            let below = if lowest { self.time() } else { String::new() };
+            panel.draw(canvas, &below, &name);
             self.trace(canvas, &panel, 0, n + 1);
         }
     }
@@ -167,7 +190,7 @@ impl SystemMotion {
         let named = self.events.iter().enumerate();
         y.ticks = named.map(|(n, name)| (count - 0.5 - n as f64, label(name))).collect();
         let panel = Panel { from, to, x: self.times(), y };
-        panel.draw(canvas, "time", "");
+        panel.draw(canvas, &self.time(), "");
         self.ticks(canvas, &panel);
     }
 
@@ -177,7 +200,9 @@ impl SystemMotion {
             return;
         };
         let panel = Panel { from, to, x: self.ruler(1), y: self.ruler(2) };
-        panel.draw(canvas, first, second);
+        let (across, down) = (to.0 - from.0, to.1 - from.1);
+        let below = self.units[1].named(first, across);
+        panel.draw(canvas, &below, &self.units[2].named(second, down));
         self.trace(canvas, &panel, 1, 2);
     }
 
