@@ -1,7 +1,12 @@
 //! docs/FINDINGS.md: its commands choose rows that exist, and its programs are as it describes.
 
+#[allow(dead_code, reason = "its main is another program's")]
+#[path = "../examples/systems_by_engine.rs"]
+mod systems_by_engine;
+
 use percuss_validation::case::Cases;
 use percuss_validation::engine::all;
+use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -91,4 +96,52 @@ fn the_programs_are_of_the_libraries_that_the_engines_use() {
     let (here, there) = (pins("validation/engines/Cargo.toml"), pins("docs/findings/Cargo.toml"));
     assert_eq!(here.len(), LIBRARIES.len());
     assert_eq!(here, there);
+}
+
+/// The cells of each line of the page's table of systems by engines.
+fn by_engine(page: &str) -> Vec<Vec<String>> {
+    let (_, rest) = page.split_once("<!-- begin: systems by engine -->").expect("the table");
+    let (table, _) = rest.split_once("<!-- end: systems by engine -->").expect("an end");
+    let lines = table.lines().filter_map(|it| it.strip_prefix("| ")?.strip_suffix(" |"));
+    lines.map(|line| line.split(" | ").map(str::to_owned).collect()).collect()
+}
+
+#[test]
+fn the_table_of_systems_has_every_engine_and_every_system_with_all_their_rows() {
+    let lines = by_engine(&read("docs/FINDINGS.md"));
+    let [head, _, body @ ..] = lines.as_slice() else { panic!("no table") };
+    let systems = systems_by_engine::systems().expect("read");
+    let named: BTreeSet<_> = systems.values().map(String::as_str).collect();
+    assert_eq!(head[1..].iter().map(String::as_str).collect::<BTreeSet<_>>(), named);
+    let engines: BTreeSet<_> = all().iter().map(|it| it.declaration().name.to_owned()).collect();
+    assert_eq!(body.iter().map(|line| line[0].clone()).collect::<BTreeSet<_>>(), engines);
+    for line in body {
+        for (system, cell) in head.iter().zip(line).skip(1).filter(|it| it.1 != "\u{2013}") {
+            let cases = systems.values().filter(|it| *it == system).count();
+            let (counts, rows) = cell.split_once(" of ").expect("rows");
+            let rows: usize = rows.parse().expect("a number");
+            let counted: usize = counts.split('/').map(|it| it.parse::<usize>().unwrap()).sum();
+            // The quick suite has three settings of an integrator, and the exact solver none.
+            let settings = if line[0] == "exact" { 1 } else { 3 };
+            assert_eq!(rows, settings * cases, "{} on {system}", line[0]);
+            assert!(counted <= rows, "{} on {system}: {cell}", line[0]);
+        }
+    }
+}
+
+#[test]
+fn rows_are_counted_by_system_and_verdict() {
+    let row = |case: &str, verdict: &str| json!({"case": case, "engine": "e", "verdict": verdict});
+    let verdicts = ["pass", "pass", "known", "error", "fail", "undecidable", "not-run"];
+    let mut rows: Vec<_> = verdicts.iter().map(|it| row("chaos-from-rest", it)).collect();
+    rows.push(row("ball-cut-short", "not-run"));
+    let systems = systems_by_engine::systems().expect("read");
+    let report = json!({"percuss": "1", "commit": null, "suite": "quick", "results": rows});
+    let table = systems_by_engine::table(&report, &systems).expect("made");
+    let page = "a<!-- begin: systems by engine -->\nold<!-- end: systems by engine -->b";
+    let lines = by_engine(&systems_by_engine::spliced(page, &table).expect("spliced"));
+    assert_eq!(lines[0], ["engine", "oscillator", "bouncing-ball"]);
+    assert_eq!(lines[2], ["e", "2/1/2 of 7", "\u{2013}"]);
+    let unknown = json!({"results": [row("nosuch", "pass")]});
+    assert!(systems_by_engine::table(&unknown, &systems).is_err());
 }
