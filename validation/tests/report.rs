@@ -1,8 +1,10 @@
 //! `report.html` and the pictures beside it, full, empty, and with numbers that are not finite.
 
 use crate::support;
-use crate::support::synthetic::{NASTY, evidence, report};
-use percuss_validation::report::{Report, ReportEvidence, ReportRow, exporters, pictures};
+use crate::support::synthetic::{NASTY, evidence, report, row};
+use percuss_validation::report::{
+    CaseNote, Report, ReportEvidence, ReportRow, exporters, pictures, screen,
+};
 use percuss_validation::score::Verdict;
 use serde_json::Value;
 use std::path::Path;
@@ -163,6 +165,36 @@ fn a_run_with_other_events_counts_as_infinitely_wrong_in_a_median() {
     assert_eq!(errors(20, Verdict::Known), [false, true]);
     // Where either answer is right, no other is.
     assert_eq!(errors(20, Verdict::Undecidable), [true, true]);
+}
+
+/// Many systems of one case each, on which one engine fails.
+#[test]
+fn a_failing_case_that_is_all_of_its_system_is_named_once() {
+    let names: Vec<String> = (0..60).map(|k| format!("alone-{k:02}")).collect();
+    let note = |name: &String| CaseNote {
+        name: name.clone(),
+        system: if name.ends_with('9') { "together".to_owned() } else { name.clone() },
+        ..CaseNote::default()
+    };
+    let evidence =
+        ReportEvidence { cases: names.iter().map(note).collect(), ..ReportEvidence::default() };
+    let failing = |(k, name): (usize, &String)| {
+        let row = row(name, "de-radau5", Some(1e-9), k);
+        ReportRow { verdict: if k < 55 { Verdict::Fail } else { Verdict::Known }, ..row }
+    };
+    let mut report =
+        Report { results: names.iter().enumerate().map(failing).collect(), ..report() };
+    report.ranking.retain(|it| it.engine == "de-radau5");
+    report.ranking[0].fails_on = names.clone();
+    let said = screen(&report, &evidence, false);
+    let (_, said) = said.split_once("\nfails on").expect("the block");
+    let (said, _) = said.split_once("\n\n").expect("an end");
+    let words: Vec<&str> = said.split_whitespace().map(|it| it.trim_end_matches(',')).collect();
+    let count = |wanted: &str| words.iter().filter(|it| **it == wanted).count();
+    // What nothing excuses is named, and so is not counted; the others are counted.
+    assert_eq!((count("alone-07!"), count("alone-07")), (1, 0), "{said}");
+    assert_eq!((count("alone-58!"), count("alone-58")), (0, 1), "{said}");
+    assert_eq!((count("alone-09!"), count("together")), (1, 1), "{said}");
 }
 
 #[test]

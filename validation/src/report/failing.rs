@@ -43,27 +43,43 @@ pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_name
 /// The names of an engine's failing cases, with a mark where nothing excuses a row.
 fn marked(report: &Report, it: &Ranked) -> Vec<String> {
     let name = |case: &String| {
-        let own = |row: &&ReportRow| row.engine == it.engine && row.case == *case;
-        let unexpected = |row: &ReportRow| matches!(row.verdict, Verdict::Fail | Verdict::Error);
-        let fails = report.results.iter().filter(own).any(unexpected);
-        if fails { format!("{case}!") } else { case.clone() }
+        if is_unexpected(report, it, case) { format!("{case}!") } else { case.clone() }
     };
     it.fails_on.iter().map(name).collect()
 }
 
+/// Whether nothing excuses a row of an engine on a case.
+fn is_unexpected(report: &Report, it: &Ranked, case: &str) -> bool {
+    let own = |row: &&ReportRow| row.engine == it.engine && row.case == case;
+    let unexpected = |row: &ReportRow| matches!(row.verdict, Verdict::Fail | Verdict::Error);
+    report.results.iter().filter(own).any(unexpected)
+}
+
+/// How many cases of a system there are, on how many an engine fails, and on how many unexcused.
+#[derive(Clone, Copy, Default)]
+struct SystemCount {
+    all: usize,
+    failing: usize,
+    unexpected: usize,
+}
+
 /// How many of each system's cases an engine fails on, from the most down.
 fn by_system(report: &Report, evidence: &ReportEvidence, it: &Ranked) -> Vec<String> {
-    let mut systems: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    let mut systems: BTreeMap<&str, SystemCount> = BTreeMap::new();
     for note in &evidence.cases {
         let own = |row: &&ReportRow| row.engine == it.engine && row.case == note.name;
         if report.results.iter().any(|row| own(&row)) {
-            let (failing, all) = systems.entry(&note.system).or_default();
-            *failing += usize::from(it.fails_on.contains(&note.name));
-            *all += 1;
+            let count = systems.entry(&note.system).or_default();
+            count.failing += usize::from(it.fails_on.contains(&note.name));
+            count.unexpected += usize::from(is_unexpected(report, it, &note.name));
+            count.all += 1;
         }
     }
-    let mut systems: Vec<_> = systems.into_iter().filter(|it| it.1.0 > 0).collect();
-    systems.sort_by_key(|it| Reverse(it.1.0));
-    let shown = |(system, (failing, all))| format!("{system} {failing} of {all}");
+    let mut systems: Vec<_> = systems.into_iter().filter(|it| it.1.failing > 0).collect();
+    // The one case of a system that is named already is not counted as well.
+    systems.retain(|(_, it)| it.all > 1 || it.unexpected == 0);
+    systems.sort_by_key(|it| Reverse(it.1.failing));
+    let shown =
+        |(system, it): (&str, SystemCount)| format!("{system} {} of {}", it.failing, it.all);
     systems.into_iter().map(shown).collect()
 }
