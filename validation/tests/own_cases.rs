@@ -1,6 +1,6 @@
 //! What `validate` and `events` write of a user's own cases and systems.
 
-use crate::support::{run, stdout, text};
+use crate::support::{refused, run, stdout, text};
 use std::path::Path;
 
 /// A body between two walls: none of the repository's systems, and no name of the oscillator's.
@@ -107,4 +107,66 @@ fn labels_of_large_states_share_a_power_of_ten() {
     }
     let longest = svg.lines().filter(|it| it.parse::<f64>().is_ok()).map(str::len).max();
     assert!(longest.is_some_and(|it| it <= 4), "{longest:?}");
+}
+
+/// The folder of the shuttle and its case, one of whose files is changed.
+fn spoiled(name: &str, change: impl Fn(Vec<u8>) -> Vec<u8>) -> tempfile::TempDir {
+    let folder = written();
+    let file = folder.path().join("cases").join(name);
+    let bytes = std::fs::read(&file).expect("read");
+    std::fs::write(&file, change(bytes)).expect("written");
+    folder
+}
+
+fn replaced(bytes: &[u8], from: &str, to: &str) -> Vec<u8> {
+    let whole = text(bytes);
+    assert!(whole.contains(from), "{from}");
+    whole.replace(from, to).into_bytes()
+}
+
+#[test]
+fn mistakes_in_cases_name_their_line_and_what_is_accepted() {
+    let case = "there-and-back.toml";
+    let wrong = [
+        ("until = 8.0", "until = 1e400", vec![":6:", "1e400"]),
+        ("until = 8.0", "until = \"8\"", vec![":6: until = \"8\"", "a number"]),
+        ("until = 8.0", "until = 8.0\nsamples = 99999999999999999999", vec![":7:", "99999999999"]),
+        (
+            "until = 8.0",
+            "until = 8.0\nsamples = 2.5",
+            vec![":7: samples = 2.5", "an integer, 1 to"],
+        ),
+        ("[horizon]\nuntil = 8.0\n", "", vec![":4: [horizon] is missing", "[horizon] with"]),
+    ];
+    for (from, to, parts) in wrong {
+        let folder = spoiled(case, |bytes| replaced(&bytes, from, to));
+        let cases = path(folder.path(), "cases");
+        refused(&["validate", "--cases", &cases], &[[case].as_slice(), &parts].concat());
+    }
+}
+
+#[test]
+fn bytes_that_are_no_utf8_have_their_line() {
+    for (name, line) in [("there-and-back.toml", 7), ("shuttle.system.toml", 19)] {
+        let folder = spoiled(name, |bytes| [&bytes[..], b"# \xe9\n"].concat());
+        let cases = path(folder.path(), "cases");
+        let place = format!("{name}:{line}: the byte 0xe9 is not accepted: a text in UTF-8 is");
+        refused(&["validate", "--cases", &cases], &[&place]);
+        let file = path(folder.path(), &format!("cases/{name}"));
+        if name.ends_with(".system.toml") {
+            refused(&["events", &file, "--until", "1"], &[&place]);
+        }
+    }
+}
+
+#[test]
+fn a_missing_start_names_the_last_line_and_what_it_holds() {
+    let start = "[start]\nmode = \"free\"\nplace = 0\nspeed = 1\n";
+    let folder = spoiled("shuttle.system.toml", |bytes| replaced(&bytes, start, ""));
+    let accepted = "[start] is missing: accepted after this line, the last, is one with mode and \
+                    the states place, speed";
+    let cases = path(folder.path(), "cases");
+    refused(&["validate", "--cases", &cases], &["there-and-back.toml:6: ", accepted]);
+    let file = path(folder.path(), "cases/shuttle.system.toml");
+    refused(&["events", &file, "--until", "1"], &["shuttle.system.toml:14: ", accepted, "--start"]);
 }

@@ -1,6 +1,6 @@
 //! The file that names the programs: nothing foreign is started without one.
 
-use percuss_engines::case::{FileError, Shortcoming, shortcomings_of};
+use percuss_engines::case::{FileError, Shortcoming, read_text, shortcomings_of};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -49,8 +49,7 @@ struct OneWire {
 /// # Errors
 /// The first mistake in the file, with its line and what is accepted.
 pub fn read(path: &Path) -> Result<Vec<Program>, FileError> {
-    let text =
-        std::fs::read_to_string(path).map_err(|error| FileError::unreadable(path, &error))?;
+    let text = read_text(path)?;
     let folder = match path.parent() {
         Some(parent) if parent != Path::new("") => parent,
         _ => Path::new("."),
@@ -64,8 +63,7 @@ pub fn read(path: &Path) -> Result<Vec<Program>, FileError> {
 /// # Errors
 /// The first mistake in either file, with its line and what is accepted.
 pub fn shortcomings(path: &Path) -> Result<Vec<Shortcoming>, FileError> {
-    let text =
-        std::fs::read_to_string(path).map_err(|error| FileError::unreadable(path, &error))?;
+    let text = read_text(path)?;
     let wire: Wire = toml::from_str(&text)
         .map_err(|error| FileError::toml(&path.display().to_string(), &text, &error))?;
     let beside = |file: PathBuf| path.parent().unwrap_or(Path::new("")).join(file);

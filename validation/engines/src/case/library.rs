@@ -4,7 +4,7 @@ use super::Case;
 use super::bound::Shortcoming;
 use super::expectations::{Defaults, read_bounds};
 use super::known::read_shortcomings;
-use super::located::FileError;
+use super::located::{FileError, read_text};
 use super::system::{SystemCase, is_of_a_system, parse_system_case};
 use super::wire::parse_case;
 use include_dir::{Dir, include_dir};
@@ -43,8 +43,7 @@ impl Cases {
     pub fn from_directory(folder: &Path) -> Result<Self, FileError> {
         let mut cases = Self::default();
         for path in case_files(folder)? {
-            let text = std::fs::read_to_string(&path)
-                .map_err(|error| FileError::unreadable(&path, &error))?;
+            let text = read_text(&path)?;
             cases.read(&path.display().to_string(), &text, path.parent())?;
         }
         if cases.names().next().is_none() {
@@ -156,8 +155,7 @@ pub fn defaults() -> Result<Defaults, FileError> {
 /// # Errors
 /// [`FileError`] for a file that cannot be read or understood.
 pub fn shortcomings_of(path: &Path) -> Result<Vec<Shortcoming>, FileError> {
-    let text =
-        std::fs::read_to_string(path).map_err(|error| FileError::unreadable(path, &error))?;
+    let text = read_text(path)?;
     read_shortcomings(&path.display().to_string(), &text)
 }
 

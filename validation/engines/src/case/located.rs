@@ -24,6 +24,9 @@ impl FileError {
         let message = one_line(error.message());
         let Some(span) = error.span() else { return Self(format!("{file}: {message}")) };
         let line = line_of(text, span.start);
+        if let Some(table) = missing_table(&message) {
+            return Self(format!("{file}:{}: {table}", last_line(text)));
+        }
         let what = match message.split_once(", expected ") {
             Some((found, expected)) if found.starts_with("invalid type: ") => {
                 wrong_type(text, span, expected)
@@ -36,6 +39,13 @@ impl FileError {
         Self(one_line(&format!("{file}:{line}: {what}")))
     }
 
+    /// A table that a file lacks, with its last line; `accepted` says what the table holds.
+    #[must_use]
+    pub fn lacks(file: &str, text: &str, table: &str, accepted: &str) -> Self {
+        let line = last_line(text);
+        Self::of(&format!("{file}:{line}"), lacking(table, accepted))
+    }
+
     /// The file cannot be read.
     pub fn unreadable(path: &Path, error: &std::io::Error) -> Self {
         Self(format!(
@@ -43,6 +53,21 @@ impl FileError {
             path.display()
         ))
     }
+}
+
+/// The text of a file.
+///
+/// # Errors
+/// [`FileError`] for a file that cannot be read, and with its line for a byte that is no UTF-8.
+pub fn read_text(path: &Path) -> Result<String, FileError> {
+    let bytes = std::fs::read(path).map_err(|error| FileError::unreadable(path, &error))?;
+    String::from_utf8(bytes).map_err(|error| {
+        let (at, bytes) = (error.utf8_error().valid_up_to(), error.as_bytes());
+        let line = 1 + bytes.iter().take(at).filter(|byte| **byte == b'\n').count();
+        let byte = bytes.get(at).copied().unwrap_or_default();
+        let what = format!("the byte 0x{byte:02x} is not accepted: a text in UTF-8 is");
+        FileError(format!("{}:{line}: {what}", path.display()))
+    })
 }
 
 /// A text with its file's name, for errors.
@@ -76,10 +101,29 @@ impl FileText<'_> {
     }
 }
 
+/// A table that the whole file lacks; the reader names its first line, which says nothing.
+fn missing_table(message: &str) -> Option<String> {
+    let key = message.strip_prefix("missing field `")?.trim_end_matches('`');
+    let accepted = match key {
+        "case" => "[case] with name, why, and regime or system",
+        "horizon" => "[horizon] with periods or until",
+        _ => return None,
+    };
+    Some(lacking(key, accepted))
+}
+
+fn lacking(table: &str, accepted: &str) -> String {
+    format!("[{table}] is missing: accepted after this line, the last, is {accepted}")
+}
+
+/// The number of the last line, counted from 1.
+fn last_line(text: &str) -> usize {
+    text.lines().count().max(1)
+}
+
 /// A key that has to be there, with what it takes.
 fn missing(key: &str) -> String {
     let accepted = accepted(key).unwrap_or(match key {
-        "horizon" => "a table, [horizon], with periods or until",
         "rows" => "a list of rows",
         "quantity" | "statistic" => "a string, one of its names",
         _ => "a string",

@@ -19,7 +19,7 @@ pub use expectations::Defaults;
 pub use library::{
     Cases, defaults, defaults_of_own_cases, embedded, from_directory, shortcomings_of,
 };
-pub use located::{FileError, Origins};
+pub use located::{FileError, Origins, read_text};
 pub use percuss::affine::TROUBLE;
 pub use probed::ProbedCase;
 pub use problem::{Given, Problem};

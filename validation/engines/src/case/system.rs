@@ -1,7 +1,7 @@
 //! A case of a piecewise-affine system.
 
 use super::expectations::{BoundTable, ShortcomingTable};
-use super::located::{FileError, FileText};
+use super::located::{FileError, FileText, read_text};
 use super::systems::named;
 use super::{Bound, Shortcoming};
 use crate::system::SystemProblem;
@@ -78,8 +78,11 @@ struct SystemHorizonTable {
 
 /// Whether the text of a case names a system; those of the oscillator do not.
 pub(super) fn is_of_a_system(text: &str) -> bool {
-    let table = text.parse::<toml::Table>().ok();
-    table.is_some_and(|it| it.get("case").and_then(|case| case.get("system")).is_some())
+    // As the text stands: a number that is too large for its type is no reason to take the case for
+    // one of the oscillator.
+    let table = toml::de::DeTable::parse(text).ok();
+    let case = table.as_ref().and_then(|it| it.get_ref().get("case"));
+    case.and_then(|it| it.get_ref().as_table()).is_some_and(|it| it.contains_key("system"))
 }
 
 /// Reads a case; `folder` holds the systems' files that are not inside the binary.
@@ -102,8 +105,10 @@ pub fn parse_system_case(
     read.replace_from(file, text, true).map_err(of_file)?;
     let exact = read.system().map_err(of_file)?;
     let Some(begin) = begin(&exact) else {
-        let what = "the system has no [start]: accepted is one in its file, or in the case";
-        return Err(source.error(&system, what));
+        let states = exact.states.join(", ");
+        let accepted =
+            format!("one with mode and the states {states}, here or in the system's file");
+        return Err(FileError::lacks(file, text, "start", &accepted));
     };
     let (until, backward) = (*wire.horizon.until.get_ref(), wire.horizon.backward);
     let ahead = if backward { begin - until } else { until - begin };
@@ -169,8 +174,7 @@ impl FileText<'_> {
         let beside = folder.map(|folder| folder.join(&file)).filter(|path| path.is_file());
         let of_file = |error: percuss::affine::SystemError| FileError(error.to_string());
         if let Some(path) = beside {
-            let text = std::fs::read_to_string(&path)
-                .map_err(|error| FileError::unreadable(&path, &error))?;
+            let text = read_text(&path)?;
             let read = SystemFile::read(&path.display().to_string(), &text).map_err(of_file)?;
             return named_like_its_file(read, &path, name.get_ref());
         }

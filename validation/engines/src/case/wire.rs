@@ -1,7 +1,7 @@
 //! The files' own shape, turned into checked values.
 
 use super::expectations::{BoundTable, ShortcomingTable};
-use super::located::{FileError, FileText};
+use super::located::{FileError, FileText, read_text};
 use super::probed::ProbesTable;
 use super::problem::Given;
 use super::{Case, Horizon, Regime};
@@ -95,8 +95,7 @@ struct HorizonTable {
 /// # Errors
 /// A [`FileError`] for what cannot be read or understood; ranges are checked by [`Given::check`].
 pub fn read_problem(path: &Path) -> Result<Given, FileError> {
-    let text =
-        std::fs::read_to_string(path).map_err(|error| FileError::unreadable(path, &error))?;
+    let text = read_text(path)?;
     parse_problem(&path.display().to_string(), &text)
 }
 

@@ -9,12 +9,12 @@ mod write;
 use super::format::OutputFlags;
 use super::parse::{self, Typed};
 use super::{DONE, OUT_OF_BOUNDS, names, note};
-use crate::case::parse_system_case;
+use crate::case::{FileError, parse_system_case, read_text};
 use crate::systems::{SYSTEMS, named};
 use crate::truth::DoubleDouble;
 use anyhow::{Context, Result, anyhow, bail};
 use clap::{ArgGroup, Args, ValueEnum};
-use percuss::affine::{Event, Solver, SystemFile};
+use percuss::affine::{Event, Solver, System, SystemFile};
 use rows::{Rows, RunEnd};
 use std::path::{Path, PathBuf};
 
@@ -90,7 +90,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     }
     let system = file.system()?;
     let Some(start) = &system.start else {
-        bail!("{} has no [start]: accepted is one in the file, or --start FILE.toml", system.name);
+        return Err(without_start(&arguments.system, &system));
     };
     let time = start.time.to_f64().value();
     let direction = if arguments.backward { -1.0 } else { 1.0 };
@@ -158,7 +158,7 @@ fn check_effect(arguments: &Arguments, format: Format) -> Result<()> {
 
 /// Takes start and parameters from a file, or from a case of the same system.
 fn start(file: &mut SystemFile, path: &Path) -> Result<()> {
-    let text = text(path)?;
+    let text = read_text(path)?;
     let name = path.display().to_string();
     let is_case = text.parse::<toml::Table>().is_ok_and(|it| it.contains_key("case"));
     if is_case {
@@ -177,7 +177,10 @@ fn read(system: &Path) -> Result<SystemFile> {
     if let Some(text) = named(&name).filter(|_| !system.is_file()) {
         return Ok(SystemFile::read(&name, text)?);
     }
-    let text = text(system).map_err(|error| {
+    let text = read_text(system).map_err(|error| {
+        if system.is_file() {
+            return anyhow!(error);
+        }
         let near = names::nearest(&name, SYSTEMS.iter().map(|(name, _)| *name));
         let near = match near.is_empty() {
             true => String::new(),
@@ -188,8 +191,12 @@ fn read(system: &Path) -> Result<SystemFile> {
     Ok(SystemFile::read(&name, &text)?)
 }
 
-fn text(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path).map_err(|error| {
-        anyhow!("{}: cannot be read ({error}); accepted is a readable file", path.display())
-    })
+/// A system that starts nowhere; those inside the program start somewhere.
+fn without_start(path: &Path, system: &System) -> anyhow::Error {
+    let states = system.states.join(", ");
+    let accepted = format!("one with mode and the states {states}, here or in --start FILE.toml");
+    match read_text(path) {
+        Ok(text) => FileError::lacks(&path.display().to_string(), &text, "start", &accepted).into(),
+        Err(error) => error.into(),
+    }
 }
