@@ -170,3 +170,12 @@ fn a_missing_start_names_the_last_line_and_what_it_holds() {
     let file = path(folder.path(), "cases/shuttle.system.toml");
     refused(&["events", &file, "--until", "1"], &["shuttle.system.toml:14: ", accepted, "--start"]);
 }
+
+#[test]
+fn a_pattern_without_cases_names_those_of_the_folder() {
+    let folder = written();
+    let cases = path(folder.path(), "cases");
+    let held = format!("matches no case: {cases} holds there-and-back");
+    refused(&["validate", "--cases", &cases, "--case", "nosuch"], &["--case nosuch", &held]);
+    refused(&["validate", "--case", "nosuch"], &["percuss cases lists all"]);
+}

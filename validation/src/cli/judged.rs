@@ -1,7 +1,7 @@
 //! What `validate` and `score` have in common: the cases, the report, and what the verdicts come
 //! to.
 
-use super::names::CASES;
+use super::names::{CASES, Selection, held_by};
 use super::output::{Destination, make_folder, reader_left};
 use super::{DONE, OUT_OF_BOUNDS, note, parse, reports, say};
 use crate::case::{self, Cases, Defaults};
@@ -79,7 +79,12 @@ impl CaseFlags {
             Some(folder) => Cases::from_directory(folder).context("--cases")?,
             None => Cases::embedded()?,
         };
-        CASES.check(&self.case, cases.names())?;
+        let names: Vec<&str> = cases.names().collect();
+        let listed = match &self.cases {
+            Some(folder) => held_by(folder, &names),
+            None => CASES.listed.to_owned(),
+        };
+        Selection { listed: &listed, ..CASES }.check(&self.case, names)?;
         cases.retain(|name| self.accepts(name));
         Ok(cases)
     }

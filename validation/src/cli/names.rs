@@ -3,6 +3,7 @@
 use super::note;
 use anyhow::{Result, bail};
 use regex::Regex;
+use std::path::Path;
 use strsim::normalized_damerau_levenshtein;
 
 /// A name less similar than this is no help.
@@ -20,12 +21,26 @@ pub(super) struct Selection<'a> {
     pub(super) listed: &'a str,
 }
 
+/// At most this many names of a user's own are all shown.
+const FEW_OWN: usize = 8;
+
 /// `--case`, of the cases inside the binary.
 pub(super) const CASES: Selection<'_> =
     Selection { flag: "--case", what: "case", listed: "percuss cases lists all" };
 /// `--engine`, of all engines.
 pub(super) const ENGINES: Selection<'_> =
     Selection { flag: "--engine", what: "engine", listed: "percuss engines lists all" };
+
+/// What a folder of a user's own holds: its cases by name where they are few.
+pub(super) fn held_by(folder: &Path, names: &[&str]) -> String {
+    let folder = folder.display();
+    match names {
+        [] => format!("{folder} holds none"),
+        few if few.len() <= FEW_OWN => format!("{folder} holds {}", few.join(", ")),
+        [first, .., last] => format!("{folder} holds {} from {first} to {last}", names.len()),
+        [one] => format!("{folder} holds {one}"),
+    }
+}
 
 impl Selection<'_> {
     /// Refuses patterns that select nothing together; a note says which of several select nothing.

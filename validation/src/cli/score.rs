@@ -1,6 +1,7 @@
 //! `score`: answers in files, judged as the runs of `validate` are.
 
 use super::judged::JudgedFlags;
+use super::names::{CASES, held_by};
 use super::{note, say, work};
 use crate::engine::{self, Accuracy, REFERENCE, Stepping};
 use crate::number::shortest;
@@ -180,10 +181,14 @@ fn check_names(
              CASE{EVENTS} and CASE{SAMPLES}"
         );
     }
+    let listed = match &arguments.judged.chosen.cases {
+        Some(folder) => held_by(folder, &all.iter().map(|it| it.name()).collect::<Vec<_>>()),
+        None => CASES.listed.to_owned(),
+    };
     for name in answered.iter().filter(|name| !asked(name) && arguments.judged.chosen.accepts(name))
     {
         note(&format!(
-            "--answers {}: {name} is no case, its answer is left alone: percuss cases lists all",
+            "--answers {}: {name} is no case, its answer is left alone: {listed}",
             arguments.answers.display()
         ));
     }
