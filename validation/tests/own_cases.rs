@@ -179,3 +179,44 @@ fn a_pattern_without_cases_names_those_of_the_folder() {
     refused(&["validate", "--cases", &cases, "--case", "nosuch"], &["--case nosuch", &held]);
     refused(&["validate", "--case", "nosuch"], &["percuss cases lists all"]);
 }
+
+/// Three guards of which rounding cannot say which is crossed first.
+const TIE: &str = "schema = 1
+name = \"tie\"
+states = [\"x\", \"y\"]
+[[mode]]
+name = \"go\"
+equations = [\"x' = 1\", \"y' = x\"]
+[[mode.until]]
+name = \"first\"
+guard = \"x > 1\"
+reset = [\"x = 0\"]
+[[mode.until]]
+name = \"second\"
+guard = \"y > 1/2\"
+reset = [\"y = 0\"]
+[[mode.watch]]
+name = \"third\"
+guard = \"x + y > 3/2\"
+[start]
+mode = \"go\"
+x = 0
+y = 0
+";
+
+#[test]
+fn guards_that_tie_are_named() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let file = path(folder.path(), "tie.system.toml");
+    std::fs::write(&file, TIE).expect("written");
+    let output = run(&["events", &file, "--until", "5"]);
+    assert_eq!(output.status.code(), Some(1));
+    let said = text(&output.stderr);
+    let open = "came to about 1, where rounding leaves open which of the guards of \"first\", \
+                \"second\" and \"third\" crosses first";
+    assert!(said.contains(open), "{said}");
+    // Without a tie nothing is said of one.
+    let alone = text(TIE.as_bytes()).replace("y > 1/2", "y > 2").replace("3/2", "4");
+    std::fs::write(&file, alone).expect("written");
+    assert!(!stdout(&["events", &file, "--until", "1.5"]).contains("undecided"));
+}

@@ -70,6 +70,7 @@ impl<T: Number> Solver<T> {
             misses: vec![Misses::default(); self.modes.len()],
             restitution: None,
             at_entry: 0,
+            tie: None,
             at_once: 0,
             queue: VecDeque::new(),
             decided: 0,

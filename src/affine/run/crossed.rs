@@ -10,13 +10,26 @@ use crate::affine::vector::{Vector, unit};
 use crate::number::Number;
 
 impl<T: Number> Run<'_, T> {
+    /// The events whose guards cross within what rounding may do, so that it is open which is the
+    /// first, in a run that ended so; none in a run that ended otherwise.
+    #[must_use]
+    pub fn tie(&self) -> Vec<What<T>> {
+        let ended_so = self.ending() == Some(&Ending::Undecided) && self.enclosure.is_some();
+        let tie = self.tie.filter(|_| ended_so);
+        let events = tie.map(|(mode, guards)| bits(guards).map(move |n| self.what(mode, n)));
+        events.into_iter().flatten().collect()
+    }
+
     /// The guards of these bits are crossed.
     pub(super) fn crossed(&mut self, guards: u64) {
         let mode = self.structure.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
         let Some((time, state)) = self.here() else { return self.end(Ending::Undecided) };
         let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
-        self.work.undecidable += u64::from(guards & !tied != 0);
+        if guards & !tied != 0 {
+            self.work.undecidable += 1;
+            self.tie = Some((mode, guards));
+        }
         let errors = self.errors_at(mode, guards, &time, &state);
         for n in bits(guards & !low_bits(until)) {
             self.watched(mode, n, until, time, &state, errors.as_ref());

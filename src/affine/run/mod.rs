@@ -38,6 +38,8 @@ pub struct Run<'a, T> {
     pub(in crate::affine) restitution: Option<Restitution<T>>,
     /// Guards that fire at the instant of entry.
     at_entry: u64,
+    /// The mode and the guards of the last crossing whose order rounding left open.
+    tie: Option<(usize, u64)>,
     at_once: u32,
     queue: VecDeque<Event<T>>,
     /// How many of them came before anything that rounding left open.

@@ -95,11 +95,24 @@ impl Rows<'_> {
                 "its state at about {searched} is too large for its bounds to be numbers"
             );
         }
-        let open = run.doubtful().and_then(|it| self.event_name(&it).map(str::to_owned));
-        let open = open.map_or(String::new(), |name| {
-            format!(", where rounding leaves open whether the guard of \"{name}\" crosses")
-        });
-        format!("its search for the next event came to about {searched}{open}")
+        format!("its search for the next event came to about {searched}{}", self.left_open(run))
+    }
+
+    /// What rounding left open where a search ended: which guard is first, or whether one crosses.
+    fn left_open(&self, run: &Run<'_, DoubleDouble>) -> String {
+        let quoted =
+            |it: &What<DoubleDouble>| self.event_name(it).map(|name| format!("\"{name}\""));
+        let tie: Vec<String> = run.tie().iter().filter_map(quoted).collect();
+        if let [others @ .., last] = &tie[..] {
+            let others = others.join(", ");
+            return format!(
+                ", where rounding leaves open which of the guards of {others} and {last} crosses first"
+            );
+        }
+        let open = run.doubtful().as_ref().and_then(quoted);
+        open.map_or(String::new(), |name| {
+            format!(", where rounding leaves open whether the guard of {name} crosses")
+        })
     }
 
     /// The name of an event, if it is none of a start or an ending.
