@@ -63,7 +63,7 @@ impl AxisUnit {
         let decimals = usize::try_from(-self.origin_power).unwrap_or(0);
         let size = format!("{:.decimals$}", self.origin.abs());
         let from = match self.origin {
-            origin if origin == 0.0 => String::new(),
+            0.0 => String::new(),
             origin if origin < 0.0 => format!(" + {size}"),
             _ => format!(" \u{2212} {size}"),
         };
