@@ -7,7 +7,7 @@
 //! All other blocks grow at most by their logarithmic norm.
 
 use super::modal::{self, BigReal, Kind};
-use super::motion::nilpotent;
+use super::nilpotent::nilpotent;
 use super::vector::{UNDERFLOW, euclidean};
 
 /// How many derivatives of a row are held, its value included.

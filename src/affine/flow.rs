@@ -5,7 +5,7 @@ use super::modal::{self, BigReal};
 use super::modal_state::ModalState;
 use super::motion::BlockMotion;
 use super::system::LARGEST_DIMENSION;
-use super::vector::{UNDERFLOW, Vector, add_product, euclidean, unit, vector};
+use super::vector::{UNDERFLOW, Vector, add_product, euclidean, norm, unit, vector};
 use crate::number::Number;
 use std::ops::Range;
 
@@ -194,8 +194,7 @@ impl<T: Number> ModeFlow<T> {
     pub fn advance(&self, ModalState { y, sizes }: &mut ModalState<T>, time: T, blocks: u16) {
         for (n, block) in self.blocks.iter().enumerate() {
             if blocks >> n & 1 == 1 {
-                let own = block.range();
-                block.motion.advance(&mut y[own.clone()], &mut sizes[own], time);
+                block.motion.advance(block.range(), y, sizes, time);
             }
         }
     }
@@ -229,12 +228,7 @@ impl<T: Number> ModeFlow<T> {
     pub fn norms<U: Number>(&self, y: &Vector<U>) -> Vector<f64> {
         let mut norms = [0.0; LARGEST_DIMENSION];
         for (n, block) in self.blocks.iter().enumerate() {
-            let size = block.size;
-            norms[n] = if size == 1 {
-                y[block.at].to_f64().abs()
-            } else {
-                euclidean(y[block.at..block.at + size].iter().map(|it| it.to_f64()))
-            };
+            norms[n] = norm(&y[block.range()]);
         }
         norms
     }
@@ -279,7 +273,7 @@ impl<T: Number> FlowBlock<T> {
     }
 
     fn of(block: &modal::Block, at: usize) -> Self {
-        let motion = BlockMotion::of(block);
+        let motion = BlockMotion::of(block, at);
         let (size, speed) = (block.matrix.len(), modal::norm(&block.matrix));
         Self { at, size, speed, motion, later: Later::of(block) }
     }

@@ -17,6 +17,7 @@ mod known;
 mod modal;
 mod modal_state;
 mod motion;
+mod nilpotent;
 mod nudge;
 mod point;
 mod quotient;

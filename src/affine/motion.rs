@@ -1,12 +1,11 @@
 //! How the modal co-ordinates of a block move: exp(B t) y.
 
 use super::modal::{self, BigReal, Kind};
+use super::nilpotent::{Chain, nilpotent};
 use super::system::LARGEST_DIMENSION;
 use super::vector::{Vector, rounded, turned, unit, vector};
 use crate::number::Number;
-
-/// What is left of a zero after the products of a nilpotent matrix, relative to its norm: 2^-300.
-const NOTHING: f64 = 4.909093465297727e-91;
+use std::ops::Range;
 
 /// A number in two words of an arithmetic.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +30,8 @@ pub(super) enum BlockMotion<T> {
         rate: Option<SplitNumber<T>>,
         matrix: Vec<Vector<T>>,
         powers: usize,
+        /// The same matrix by its entries that are not zero.
+        chain: Option<Chain<T>>,
     },
     Cluster(Box<Powers<T>>),
 }
@@ -58,24 +59,9 @@ fn nonzero<T: Number>(value: &BigReal) -> Option<SplitNumber<T>> {
     (!value.is_zero()).then(|| words(value))
 }
 
-/// The matrix of a block less its rate, and the least power of it that is zero.
-pub(super) fn nilpotent(block: &modal::Block, rate: &BigReal) -> (Vec<Vec<BigReal>>, usize) {
-    let mut matrix = block.matrix.clone();
-    for (n, row) in matrix.iter_mut().enumerate() {
-        row[n] = &row[n] - rate;
-    }
-    let beside = modal::norm(&block.matrix).max(modal::norm(&matrix));
-    let nothing = |power: &Vec<Vec<BigReal>>, k: usize| {
-        modal::norm(power) <= NOTHING * libm::pow(beside, k as f64)
-    };
-    let powers = modal::multiples(&matrix, matrix.len());
-    let index = powers.iter().enumerate().position(|(k, power)| nothing(power, k + 1));
-    let index = index.map_or(matrix.len(), |it| it + 1);
-    (matrix, index)
-}
-
 impl<T: Number> BlockMotion<T> {
-    pub fn of(block: &modal::Block) -> Self {
+    /// The motion of a block whose co-ordinates begin at a place of the vector.
+    pub fn of(block: &modal::Block, at: usize) -> Self {
         match &block.kind {
             Kind::Real(rate) if rate.is_zero() => Self::Still,
             Kind::Real(rate) => Self::Real { rate: words(rate) },
@@ -87,8 +73,9 @@ impl<T: Number> BlockMotion<T> {
                 if index <= 1 && rate.is_zero() {
                     return Self::Still;
                 }
+                let (rate, chain) = (nonzero(rate), Chain::of(&matrix, at));
                 let matrix = matrix.iter().map(|row| vector(row)).collect();
-                Self::Nilpotent { rate: nonzero(rate), matrix, powers: index - 1 }
+                Self::Nilpotent { rate, matrix, powers: index - 1, chain }
             }
             Kind::Cluster => Self::Cluster(Box::new(Powers::of(&block.matrix))),
         }
@@ -113,34 +100,56 @@ impl<T: Number> BlockMotion<T> {
     /// it rounds by a few: terms may cancel, so the co-ordinate itself can be much smaller. Both
     /// sizes of a pair are at least its norm.
     #[inline]
-    pub fn advance(&self, y: &mut [T], sizes: &mut [f64], time: T) {
+    pub fn advance(&self, own: Range<usize>, y: &mut Vector<T>, sizes: &mut Vector<f64>, time: T) {
         match self {
             Self::Still => {}
             Self::Real { rate } => {
+                let at = own.start;
                 let factor = exponential(*rate, time);
-                y[0] = y[0] * factor;
-                sizes[0] *= raised(factor, rate, time);
+                y[at] = y[at] * factor;
+                sizes[at] *= raised(factor, rate, time);
             }
             Self::Pair { rate, frequency } => {
+                let [at, next] = [own.start, own.start + 1];
                 let (sin, cos) = circular(*frequency, time);
-                let (first, second) = (y[0], y[1]);
-                y[0] = cos * first + sin * second;
-                y[1] = cos * second - sin * first;
+                let (first, second) = (y[at], y[next]);
+                y[at] = cos * first + sin * second;
+                y[next] = cos * second - sin * first;
                 let phase = raised(T::one(), frequency, time);
-                sizes.iter_mut().for_each(|size| *size *= phase);
-                decay(*rate, time, y, sizes);
+                sizes[at] *= phase;
+                sizes[next] *= phase;
+                if let Some(rate) = rate {
+                    let factor = exponential(*rate, time);
+                    (y[at], y[next]) = (y[at] * factor, y[next] * factor);
+                    let factor = raised(factor, rate, time);
+                    sizes[at] *= factor;
+                    sizes[next] *= factor;
+                }
             }
-            Self::Nilpotent { rate, matrix, powers } => {
-                taylor(matrix, *powers, y, sizes, time);
-                decay(*rate, time, y, sizes);
+            Self::Nilpotent { rate, matrix, powers, chain } => {
+                match chain {
+                    Some(chain) => {
+                        chain.advance(*powers, y, sizes, time);
+                        sizes[own.clone()].iter_mut().for_each(|size| *size *= TWICE);
+                    }
+                    None => {
+                        let (y, sizes) = (&mut y[own.clone()], &mut sizes[own.clone()]);
+                        taylor(matrix, *powers, y, sizes, time);
+                    }
+                }
+                decay(*rate, time, &mut y[own.clone()], &mut sizes[own]);
             }
-            Self::Cluster(powers) => powers.advance(y, sizes, time),
+            Self::Cluster(powers) => powers.advance(&mut y[own.clone()], &mut sizes[own], time),
         }
     }
 }
 
+/// By what the sizes of Horner's sums are raised, because five roundings a power are more than
+/// those of a sum.
+const TWICE: f64 = 2.0;
+
 /// `y = exp(B time) y` by so many terms of the Taylor series, in Horner's scheme, and the sizes of
-/// what that sums: twice, because five roundings a power are more than those of a sum.
+/// what that sums, raised.
 #[inline]
 fn taylor<T: Number>(matrix: &[Vector<T>], terms: usize, y: &mut [T], sizes: &mut [f64], time: T) {
     match y.len() {
@@ -182,7 +191,7 @@ fn taylor_in<T: Number, const LENGTH: usize>(
         }
     }
     y.copy_from_slice(&now[..count]);
-    sizes.iter_mut().zip(sizes_now).for_each(|(size, now)| *size = 2.0 * now);
+    sizes.iter_mut().zip(sizes_now).for_each(|(size, now)| *size = TWICE * now);
 }
 
 #[inline]

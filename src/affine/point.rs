@@ -38,6 +38,8 @@ pub(super) struct GuardedSegment<'a, T> {
     zeros: PerGuard<usize>,
     /// The blocks that a guard which can cross is made of.
     blocks: u16,
+    /// The norms of the entry's blocks.
+    norms: Vector<f64>,
 }
 
 /// What errors do to the guards along a segment; boxed, because most runs do not follow them.
@@ -59,6 +61,7 @@ pub(super) struct GuardedPoint<T> {
     pub modal: ModalState<T>,
     /// The norms of each block's co-ordinates, once [`GuardedSegment::measure`] was asked for them.
     pub norms: Vector<f64>,
+    is_measured: bool,
     /// The value and three derivatives of each guard.
     pub orders: PerGuard<[T; 4]>,
     /// What rounding may have done to each value.
@@ -78,6 +81,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
             series: OnceCell::new(),
             zeros: PerGuard::new(),
             blocks: 0,
+            norms: [0.0; LARGEST_DIMENSION],
         }
     }
 
@@ -108,17 +112,17 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
                 early |= track.zeros > 0;
             }
         }
+        self.norms = flow.norms(&self.entry.y);
         self.early = if early { self.series_limit() } else { -1.0 };
     }
 
     /// Up to which time the series of these guards are good without their last order.
     #[inline]
     fn series_limit(&self) -> f64 {
-        let norms = self.flow.norms(&self.entry.y);
         let longest = self.flow.longest;
         let mut limit = longest;
         for (row, zeros) in self.rows.iter().zip(&self.zeros).filter(|it| has_series(*it.1)) {
-            let last = row.bound(ORDERS - 1, &norms, longest.min(1e300));
+            let last = row.bound(ORDERS - 1, &self.norms, longest.min(1e300));
             let lead = row.order(*zeros, &self.entry).0.to_f64().abs();
             limit = limit.min(series_limit::<T>(lead, *zeros, last));
         }
@@ -143,6 +147,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
     #[inline]
     pub fn begin(&self, point: &mut GuardedPoint<T>) {
         point.start(self);
+        (point.norms, point.is_measured) = (self.norms, true);
         point.make_room(self.rows.len());
         for (n, zeros) in self.zeros.iter().enumerate() {
             let evaluated = self.guard(n, point, None);
@@ -227,7 +232,10 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
     /// Works out the norms of a point's blocks.
     #[inline]
     pub fn measure(&self, point: &mut GuardedPoint<T>) {
-        point.norms = self.flow.norms(&point.modal.y);
+        if !point.is_measured {
+            point.norms = self.flow.norms(&point.modal.y);
+            point.is_measured = true;
+        }
     }
 
     /// Evaluates the blocks of a point that no guard is made of.
@@ -292,7 +300,7 @@ impl<T: Number> GuardedPoint<T> {
     /// The co-ordinates of a segment's entry.
     #[inline]
     fn start(&mut self, segment: &GuardedSegment<'_, T>) {
-        (self.time, self.later) = (T::zero(), T::zero());
+        (self.time, self.later, self.is_measured) = (T::zero(), T::zero(), false);
         self.modal.copy(&segment.entry, segment.flow.dimension);
     }
 
@@ -314,6 +322,7 @@ impl<T: Number> Default for GuardedPoint<T> {
             later: T::zero(),
             modal: ModalState::default(),
             norms: [0.0; LARGEST_DIMENSION],
+            is_measured: false,
             orders: SmallVec::new(),
             slack: SmallVec::new(),
         }

@@ -67,6 +67,17 @@ impl<T: Number> GuardSeries<T> {
     }
 }
 
+/// The products of the numbers beyond each up to the last order, which f64 holds exactly.
+const FACTORS: [f64; ORDERS] = {
+    let mut factors = [1.0; ORDERS];
+    let mut n = ORDERS - 1;
+    while n > 0 {
+        factors[n - 1] = factors[n] * n as f64;
+        n -= 1;
+    }
+    factors
+};
+
 /// Up to which time a guard's series without its last order is good to the last digit: `lead` is
 /// the first derivative that is not zero, `last` a bound of the last.
 #[inline]
@@ -75,7 +86,6 @@ pub(super) fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64
         return f64::INFINITY;
     }
     let order = ORDERS - 1;
-    let factorials: f64 = (zeros + 1..=order).map(|k| k as f64).product();
-    let power = unit::<T>() * lead * factorials / last;
+    let power = unit::<T>() * lead * FACTORS[zeros] / last;
     0.9 * root(power, order - zeros)
 }
