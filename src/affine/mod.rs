@@ -1,6 +1,7 @@
 //! Any piecewise-affine hybrid system, solved in closed form between its events.
 
 mod accumulation;
+mod beside;
 mod bound;
 mod build;
 mod clock;
@@ -9,6 +10,7 @@ mod enclosure;
 mod error;
 mod event;
 mod expression;
+mod fading;
 mod file;
 mod flow;
 mod form;

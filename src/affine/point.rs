@@ -38,6 +38,8 @@ pub(super) struct GuardedSegment<'a, T> {
     zeros: PerGuard<usize>,
     /// The blocks that a guard which can cross is made of.
     blocks: u16,
+    /// Whether the fastest block of a guard which can cross is one decay.
+    pub has_decay: bool,
     /// The norms of the entry's blocks.
     norms: Vector<f64>,
 }
@@ -81,6 +83,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
             series: OnceCell::new(),
             zeros: PerGuard::new(),
             blocks: 0,
+            has_decay: false,
             norms: [0.0; LARGEST_DIMENSION],
         }
     }
@@ -104,11 +107,13 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         });
         self.series = OnceCell::new();
         self.zeros.clear();
+        self.has_decay = false;
         let mut early = false;
         for (n, track) in tracks.iter().enumerate() {
             self.zeros.push(if track.live { track.zeros } else { ORDERS });
             if track.live {
                 self.blocks |= rows[n].blocks;
+                self.has_decay |= rows[n].decay.is_some();
                 early |= track.zeros > 0;
             }
         }

@@ -41,13 +41,13 @@ pub(super) struct Quotient<const N: usize> {
 impl<const N: usize> Quotient<N> {
     /// What a sum of powers is at the end of the largest window, relative to its value at the root,
     /// at most.
-    const WIDER: f64 = power(1.0 + WINDOW, N - 1);
+    pub const WIDER: f64 = power(1.0 + WINDOW, N - 1);
 
     /// What the terms count in the slope, the second and the third derivative, times powers of the
     /// time.
-    const SLOPE: [f64; N] = falling(1);
-    const BEND: [f64; N] = falling(2);
-    const THIRD: [f64; N] = falling(3);
+    pub const SLOPE: [f64; N] = falling(1);
+    pub const BEND: [f64; N] = falling(2);
+    pub const THIRD: [f64; N] = falling(3);
 
     /// The inverses of the binomial coefficients.
     const SHARES: [f64; N] = inverse_binomials();
@@ -132,8 +132,18 @@ impl<const N: usize> Quotient<N> {
     #[inline]
     pub fn is_negative(&self, time: f64, last: f64) -> bool {
         let powers = powers(time);
-        let mut hull = self.terms(&powers);
-        hull[N - 1 - self.zeros] += self.remainder(last, &powers);
+        let hull = self.hull(&powers, last);
+        let highest = -self.rounding(&powers);
+        // What is no number is not less.
+        hull.iter().all(|it| *it < highest)
+    }
+
+    /// The Bernstein coefficients of a polynomial that lies above the quotient up to a time, but
+    /// for what rounding does to it.
+    #[inline]
+    pub fn hull(&self, powers: &[f64; N], last: f64) -> [f64; N] {
+        let mut hull = self.terms(powers);
+        hull[N - 1 - self.zeros] += self.remainder(last, powers);
         hull = weighted(&hull, &Self::SHARES);
         // Sums of powers with binomial weights are Bernstein coefficients.
         for order in (1..N).rev() {
@@ -141,28 +151,26 @@ impl<const N: usize> Quotient<N> {
                 hull[n] += hull[n - 1];
             }
         }
-        let highest = -self.rounding(&powers);
-        // What is no number is not less.
-        hull.iter().all(|it| *it < highest)
+        hull
     }
 
     /// The terms of the polynomial at a time, whose powers are given.
     #[inline]
-    fn terms(&self, powers: &[f64; N]) -> [f64; N] {
+    pub fn terms(&self, powers: &[f64; N]) -> [f64; N] {
         weighted(&self.coefficients, powers)
     }
 
     /// The rest of the quotient's Taylor series at a time, by a bound of the guard's last
     /// derivative.
     #[inline]
-    fn remainder(&self, last: f64, powers: &[f64; N]) -> f64 {
+    pub fn remainder(&self, last: f64, powers: &[f64; N]) -> f64 {
         let factor = OUTWARD * f64::inverse_factorial(N - 1);
         factor * last * powers[N - 1 - self.zeros]
     }
 
     /// What rounding does to the polynomial up to a time.
     #[inline]
-    fn rounding(&self, powers: &[f64; N]) -> f64 {
+    pub fn rounding(&self, powers: &[f64; N]) -> f64 {
         let lost = self.lost * N as f64 * powers[N - 1].larger(1.0);
         self.slack + self.margin * sum(&weighted(&self.sizes, powers)) + lost
     }
@@ -170,7 +178,7 @@ impl<const N: usize> Quotient<N> {
 
 /// The powers of a number, in four chains that do not wait for one another.
 #[inline]
-fn powers<const N: usize>(base: f64) -> [f64; N] {
+pub(super) fn powers<const N: usize>(base: f64) -> [f64; N] {
     let square = base * base;
     let (first, fourth) = ([1.0, base, square, square * base], square * square);
     let mut powers = [1.0; N];
@@ -182,13 +190,13 @@ fn powers<const N: usize>(base: f64) -> [f64; N] {
 }
 
 #[inline]
-fn weighted<const N: usize>(terms: &[f64; N], weights: &[f64; N]) -> [f64; N] {
+pub(super) fn weighted<const N: usize>(terms: &[f64; N], weights: &[f64; N]) -> [f64; N] {
     std::array::from_fn(|n| terms[n] * weights[n])
 }
 
 /// A sum as four that do not wait for one another.
 #[inline]
-fn sum<const N: usize>(terms: &[f64; N]) -> f64 {
+pub(super) fn sum<const N: usize>(terms: &[f64; N]) -> f64 {
     let mut sums = [0.0; 4];
     for (n, term) in terms.iter().enumerate() {
         sums[n % 4] += term;

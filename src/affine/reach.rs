@@ -216,7 +216,12 @@ fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize
 
 /// What a block adds to the value of a guard.
 #[inline]
-fn part_of<T: Number>(row: &ModalRow<T>, part: &RowPart, track: &Track, y: &Vector<T>) -> f64 {
+pub(super) fn part_of<T: Number>(
+    row: &ModalRow<T>,
+    part: &RowPart,
+    track: &Track,
+    y: &Vector<T>,
+) -> f64 {
     let columns = &row.columns[part.columns.0..part.columns.1];
     let terms = columns.iter().map(|it| it.orders[0].to_f64() * y[it.at].to_f64());
     track.outward * terms.sum::<f64>()

@@ -24,6 +24,8 @@ pub(super) struct ModalRow<T> {
     pub parts: Vec<RowPart>,
     /// The blocks of `parts`, a bit each.
     pub blocks: u16,
+    /// The rate of the first of `parts`, the fastest, if that is one decay.
+    pub decay: Option<f64>,
 }
 
 /// A co-ordinate's factors in a row.
@@ -65,14 +67,16 @@ impl<T: Number> ModalRow<T> {
         let orders: Vec<Vector<T>> = (0..ORDERS).map(order).collect();
         let is_there = |order: &Vector<T>| order.iter().any(|it| *it != T::zero());
         let last = orders.iter().rposition(is_there).map_or(0, |it| it + 1);
+        let (columns, parts_of_row) = (Vec::new(), Vec::new());
         let mut modal =
-            Self { twin: 0, orders, last, columns: Vec::new(), parts: Vec::new(), blocks: 0 };
+            Self { twin: 0, orders, last, columns, parts: parts_of_row, blocks: 0, decay: None };
         for (n, (block, part)) in blocks.iter().zip(&parts).enumerate() {
             let norms = bound::norms(block, part);
             if norms.iter().any(|it| *it > 0.0) {
                 modal.add_part(n, &flow[n], norms, |j| off(&row, block, j));
             }
         }
+        modal.decay = modal.parts.first().and_then(RowPart::decay);
         modal
     }
 
@@ -137,11 +141,11 @@ impl<T: Number> ModalRow<T> {
         sums
     }
 
-    /// The first orders in f64.
+    /// The first orders in f64, from a column on.
     #[inline(always)]
-    pub fn rounded_orders<const N: usize>(&self, y: &Vector<T>) -> [f64; N] {
+    pub fn rounded_orders<const N: usize>(&self, y: &Vector<T>, from: usize) -> [f64; N] {
         let mut sums = [0.0; N];
-        for column in &self.columns {
+        for column in &self.columns[from..] {
             let factors: [f64; N] = std::array::from_fn(|k| column.orders[k].to_f64());
             add_product(&mut sums, &factors, y[column.at].to_f64());
         }
@@ -160,11 +164,16 @@ impl<T: Number> ModalRow<T> {
         (sums, size)
     }
 
-    /// The first orders, and the sums of the sizes of what they are summed from, in f64.
+    /// The first orders, and the sums of the sizes of what they are summed from, in f64, from a
+    /// column on.
     #[inline(always)]
-    pub fn orders_and_sizes<const N: usize>(&self, modal: &ModalState<T>) -> [[f64; N]; 2] {
+    pub fn orders_and_sizes<const N: usize>(
+        &self,
+        modal: &ModalState<T>,
+        from: usize,
+    ) -> [[f64; N]; 2] {
         let [mut orders, mut sizes] = [[0.0; N]; 2];
-        for column in &self.columns {
+        for column in &self.columns[from..] {
             let (entry, size) = (modal.y[column.at].to_f64(), modal.sizes[column.at]);
             for k in 0..N {
                 let factor = column.orders[k].to_f64();
@@ -212,6 +221,13 @@ impl<T: Number> ModalRow<T> {
 }
 
 impl RowPart {
+    /// The rate of a decay: the quotient of two norms, unless they have lost digits to underflow.
+    fn decay(&self) -> Option<f64> {
+        const SMALLEST: f64 = 1e-250;
+        let is_decay = self.later == Later::Fading && self.norms[0] > SMALLEST;
+        is_decay.then(|| self.norms[1] / self.norms[0])
+    }
+
     /// A bound of the part in a derivative over `length`, from the norms of the blocks'
     /// co-ordinates.
     #[inline]

@@ -1,10 +1,10 @@
 //! The first crossing of a mode's guards.
 //!
-//! Where Taylor polynomials prove the first crossing from a point on (`taylor.rs`), nothing else is
-//! looked at. Otherwise a segment is passed in pieces. On each the Bernstein coefficients of a
-//! polynomial that lies above the guard show that it stays negative, or up to where it does. There
-//! a crossing is searched (`crossing.rs`). What shows neither is looked at in shorter pieces. See
-//! the page docs/ROUNDING.md for what rounding may take.
+//! Where Taylor polynomials prove the first crossing from a point on (`taylor.rs`, `beside.rs`),
+//! nothing else is looked at. Otherwise a segment is passed in pieces. On each the Bernstein
+//! coefficients of a polynomial that lies above the guard show that it stays negative, or up to
+//! where it does. There a crossing is searched (`crossing.rs`). What shows neither is looked at in
+//! shorter pieces. See the page docs/ROUNDING.md for what rounding may take.
 //!
 //! What is generic is compiled by the crate that uses it, which may do so in many units without
 //! optimising across them; so what runs at every event is marked to be inlined, here and in the
@@ -65,7 +65,10 @@ impl<T: Number> GuardedSegment<'_, T> {
                 return Found::Lost;
             }
             self.measure(&mut ends.left);
-            if let Some(crossing) = self.first_by_taylor(tracks, &ends.left, misses, work) {
+            let crossing = self
+                .first_by_taylor(tracks, &ends.left, misses, work)
+                .or_else(|| self.first_beside_a_decay(tracks, &ends.left, misses, work));
+            if let Some(crossing) = crossing {
                 return self.settled_by(&crossing, tracks, ends, span, work);
             }
             let known = if is_ahead { ends.passed.guards } else { 0 };

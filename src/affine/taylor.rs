@@ -15,25 +15,34 @@ use super::vector::{UNDERFLOW, root};
 use crate::number::Number;
 
 /// The numbers of derivatives that are looked at, the value and the one that is bounded included.
-const FEW: usize = 9;
-const ALL: usize = ORDERS;
+pub(super) const FEW: usize = 9;
+pub(super) const ALL: usize = ORDERS;
 
 /// Up to this share of what a guard begins with, the remainder after [`FEW`] derivatives leaves
 /// some digits of the root.
-const LITTLE: f64 = 1e-3;
+pub(super) const LITTLE: f64 = 1e-3;
 
 /// Beyond this share the derivatives after [`FEW`] give so many more digits of the root that one
 /// evaluation is enough.
-const NOTHING: f64 = 1e-7;
+pub(super) const NOTHING: f64 = 1e-7;
 
 /// Beyond this share even [`ALL`] derivatives prove nothing.
-const MUCH: f64 = 10.0;
+pub(super) const MUCH: f64 = 10.0;
 
-/// How often the polynomials were looked at in a mode since they last proved a crossing: at its
-/// entry, and later. Whether they do is mostly the same at each entry, and a vain attempt costs as
-/// much as an evaluation or two.
+/// How often the polynomials were looked at in a mode since they last proved a crossing: of whole
+/// guards at its entry and later, and beside a decay at its entry and later. Whether they do is
+/// mostly the same at each entry, and a vain attempt costs as much as an evaluation or two.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Misses([u8; 2]);
+pub(super) struct Misses([u8; 4]);
+
+/// What is looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Looked {
+    /// The polynomials of whole guards.
+    Whole,
+    /// Those of what is left beside a decay.
+    Beside,
+}
 
 impl Misses {
     const MOST: u8 = 2;
@@ -41,13 +50,24 @@ impl Misses {
 
     /// Whether to look at them: at first, and after a pause once more.
     #[inline]
-    fn are_few(&mut self, is_later: bool) -> bool {
-        let count = &mut self.0[usize::from(is_later)];
+    pub fn are_few(&mut self, looked: Looked, is_later: bool) -> bool {
+        let count = &mut self.0[Self::at(looked, is_later)];
         *count += 1;
         if *count > Self::MOST + Self::PAUSE {
             *count = Self::MOST;
         }
         *count <= Self::MOST
+    }
+
+    /// A crossing is proved.
+    #[inline]
+    pub fn forget(&mut self, looked: Looked, is_later: bool) {
+        self.0[Self::at(looked, is_later)] = 0;
+    }
+
+    #[inline]
+    fn at(looked: Looked, is_later: bool) -> usize {
+        2 * looked as usize + usize::from(is_later)
     }
 }
 
@@ -63,7 +83,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         work: &mut SearchWork,
     ) -> Option<FirstCrossing<T>> {
         let is_later = at.time > T::zero();
-        if self.follows_errors() || !misses.are_few(is_later) {
+        if self.follows_errors() || !misses.are_few(Looked::Whole, is_later) {
             return None;
         }
         let (n, rough) = nearest(tracks, at)?;
@@ -82,7 +102,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         } else {
             return None;
         };
-        misses.0[usize::from(is_later)] = 0;
+        misses.forget(Looked::Whole, is_later);
         work.pieces += 1;
         Some(crossing)
     }
@@ -117,7 +137,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// Brings the time of a crossing nearer to where all derivatives of its guard have it.
     #[inline]
     fn refine(&self, n: usize, at: &GuardedPoint<T>, crossing: &mut FirstCrossing<T>) {
-        let orders = self.rows[n].rounded_orders::<ALL>(&at.modal.y);
+        let orders = self.rows[n].rounded_orders::<ALL>(&at.modal.y, 0);
         let after = crossing.time - at.time;
         let root = after.to_f64();
         let (step, _) = Quotient::of([&orders, &[0.0; ALL]], 0, 0.0, [0.0; 2]).step(root);
@@ -130,7 +150,7 @@ impl<T: Number> GuardedSegment<'_, T> {
 
     /// Whether a guard is proved to stay negative from a point on.
     #[inline]
-    fn stays_negative<const N: usize>(
+    pub fn stays_negative<const N: usize>(
         &self,
         n: usize,
         track: &Track,
@@ -155,7 +175,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         track: &Track,
         at: &GuardedPoint<T>,
     ) -> Quotient<N> {
-        let [mut orders, sizes] = self.rows[n].orders_and_sizes::<N>(&at.modal);
+        let [mut orders, sizes] = self.rows[n].orders_and_sizes::<N>(&at.modal, 0);
         orders[..4].copy_from_slice(&at.orders[n].map(Number::to_f64));
         orders.iter_mut().for_each(|order| *order *= track.outward);
         let lost = UNDERFLOW * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
@@ -179,7 +199,7 @@ fn nearest<T: Number>(tracks: &[Track], at: &GuardedPoint<T>) -> Option<(usize, 
 
 /// A root that a guard's first terms suggest; infinite, or no number, where there is none.
 #[inline]
-fn rough_root<T: Number>(track: &Track, orders: &[T; 4]) -> f64 {
+pub(super) fn rough_root<T: Number>(track: &Track, orders: &[T; 4]) -> f64 {
     let [value, slope, bend, third] = outward(orders, track).map(Number::to_f64);
     let (bend, third) = (0.5 * bend, third / 6.0);
     match track.zeros {
@@ -193,7 +213,7 @@ fn rough_root<T: Number>(track: &Track, orders: &[T; 4]) -> f64 {
 /// Where a cubic that is negative at zero has about become positive: by its quadratic, or where
 /// that stays negative, its last root. Infinite, or no number, where there is none.
 #[inline]
-fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
+pub(super) fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
     const STEPS: usize = 4;
     let is_below = value < 0.0;
     if !is_below {

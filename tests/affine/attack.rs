@@ -115,49 +115,92 @@ fn guard() -> impl Strategy<Value = Guard> {
     })
 }
 
+/// Guards whose fastest part is one decay, which holds them down or lifts them for some time, and
+/// whose rest is so slow that one polynomial follows it.
+fn beside_a_decay() -> impl Strategy<Value = Guard> {
+    let large = |size: f64| prop_oneof![sized(size), -size..size];
+    let decays = (prop_oneof![2.0..8.0_f64, 8.0..60.0_f64], large(3.0), 0.05..0.5_f64, large(1.0));
+    let waves = (0.0..0.3_f64, 0.1..1.0_f64, large(1.0), large(2.0));
+    (decays, waves, sized(0.5), large(1.0)).prop_map(|(decays, waves, e, drift)| {
+        let ((fast, u, slow, w), (rho, omega, p, q)) = (decays, waves);
+        Guard { fast, u, slow, w, rho, omega, p, q, k: 0.3, e: [e, 0.0, 0.0], drift }
+    })
+}
+
 const UNTIL: f64 = 10.0;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(1000))]
+    #![proptest_config(ProptestConfig {
+        max_global_rejects: 8192,
+        ..ProptestConfig::with_cases(1000)
+    })]
 
     /// Up to the event the guard is below its level wherever it is looked at, and most closely just
     /// before it; at the event it is at its level.
     #[test]
-    fn no_crossing_comes_before_the_first_event(
-        guard in guard(), above in prop_oneof![Just(1e-9), Just(1e-6), Just(1e-3), 0.01..2.0_f64],
+    fn no_crossing_comes_before_the_first_event(guard in guard(), above in above()) {
+        none_before_the_first(&guard, above)?;
+    }
+
+    /// A guard whose fastest part is one decay is below its level up to the event as well.
+    #[test]
+    fn no_crossing_beside_a_decay_comes_before_the_first_event(
+        guard in beside_a_decay(), above in above(),
     ) {
-        let room = 1e-13 * (1.0 + guard.size());
-        let level = guard.value(0.0) + above * (1e-3 + guard.size());
-        let (name, time) = first(&guard.system(level), UNTIL);
-        let near = (1..400).map(|n| time - f64::from(n) * 0.02 / guard.omega);
-        let near = near.filter(|it| *it > 0.0);
-        for t in guard.instants(UNTIL).into_iter().filter(|it| *it < time).chain(near) {
-            prop_assert!(guard.value(t) < level + room, "{t} before {time}");
-        }
-        let steepest = guard.fast * guard.u.abs() * (-guard.fast * time).exp()
-            + guard.size() * (guard.omega + 10.0);
-        let room = room + 1e-15 * time * steepest;
-        prop_assert!(name == "end" || (guard.value(time) - level).abs() < room, "{time}");
+        none_before_the_first(&guard, above)?;
     }
 
     /// A crest is crossed where it is 1e-11 above the level, and not where it is that much below.
     #[test]
     fn a_crest_decides_by_its_last_digits(guard in guard()) {
-        let crests = guard.crests(UNTIL);
-        let highest = |best: (f64, f64), it: &(f64, f64)| if it.1 > best.1 { *it } else { best };
-        let (at, value) = crests.iter().fold(crests[crests.len() - 1], highest);
-        let margin = 1e-11 * (1e-2 + guard.size());
-        prop_assume!(at > 1e-9 && at < 0.999 * UNTIL);
-        prop_assume!(guard.value(0.0) < value - 2.0 * margin);
-        // Rounding decides at a crest that is as near to the level as a hundred times what it may
-        // do to the guard, and there are several hundred crests.
-        let room = 1e-13 * (1.0 + guard.size());
-        prop_assume!(crests.iter().all(|it| (it.1 - (value - margin)).abs() > room));
-        let (missed, time) = first(&guard.system(value + margin), UNTIL);
-        prop_assert!(missed == "end", "{missed} at {time}, {at}");
-        let (hit, time) = first(&guard.system(value - margin), UNTIL);
-        prop_assert!(hit == "reached" && time <= at * (1.0 + 1e-9), "{hit} at {time}, {at}");
+        highest_crest_decides(&guard)?;
     }
+
+    /// A crest beside a decay is crossed where it is 1e-11 above the level, and not where it is
+    /// that much below.
+    #[test]
+    fn a_crest_beside_a_decay_decides_by_its_last_digits(guard in beside_a_decay()) {
+        highest_crest_decides(&guard)?;
+    }
+}
+
+/// How far above its beginning a guard's level is, as a share of its size.
+fn above() -> impl Strategy<Value = f64> {
+    prop_oneof![Just(1e-9), Just(1e-6), Just(1e-3), 0.01..2.0_f64]
+}
+
+fn none_before_the_first(guard: &Guard, above: f64) -> Result<(), TestCaseError> {
+    let room = 1e-13 * (1.0 + guard.size());
+    let level = guard.value(0.0) + above * (1e-3 + guard.size());
+    let (name, time) = first(&guard.system(level), UNTIL);
+    let near = (1..400).map(|n| time - f64::from(n) * 0.02 / guard.omega);
+    let near = near.filter(|it| *it > 0.0);
+    for t in guard.instants(UNTIL).into_iter().filter(|it| *it < time).chain(near) {
+        prop_assert!(guard.value(t) < level + room, "{t} before {time}");
+    }
+    let steepest = guard.fast * guard.u.abs() * (-guard.fast * time).exp()
+        + guard.size() * (guard.omega + 10.0);
+    let room = room + 1e-15 * time * steepest;
+    prop_assert!(name == "end" || (guard.value(time) - level).abs() < room, "{time}");
+    Ok(())
+}
+
+fn highest_crest_decides(guard: &Guard) -> Result<(), TestCaseError> {
+    let crests = guard.crests(UNTIL);
+    let highest = |best: (f64, f64), it: &(f64, f64)| if it.1 > best.1 { *it } else { best };
+    let (at, value) = crests.iter().fold(crests[crests.len() - 1], highest);
+    let margin = 1e-11 * (1e-2 + guard.size());
+    prop_assume!(at > 1e-9 && at < 0.999 * UNTIL);
+    prop_assume!(guard.value(0.0) < value - 2.0 * margin);
+    // Rounding decides at a crest that is as near to the level as a hundred times what it may
+    // do to the guard, and there are several hundred crests.
+    let room = 1e-13 * (1.0 + guard.size());
+    prop_assume!(crests.iter().all(|it| (it.1 - (value - margin)).abs() > room));
+    let (missed, time) = first(&guard.system(value + margin), UNTIL);
+    prop_assert!(missed == "end", "{missed} at {time}, {at}");
+    let (hit, time) = first(&guard.system(value - margin), UNTIL);
+    prop_assert!(hit == "reached" && time <= at * (1.0 + 1e-9), "{hit} at {time}, {at}");
+    Ok(())
 }
 
 /// Motions that come to rest without an event, each in its own way, cost a bounded number of
