@@ -93,7 +93,8 @@ pub(crate) fn table(report: &Value, systems: &BTreeMap<String, String>) -> Resul
     };
     let [percuss, commit, suite] = ["percuss", "commit", "suite"].map(|key| text(&report[key]));
     Ok(format!(
-        "{} rows of the suite {suite}; percuss {percuss} at {commit}.\n\n| engine | {} |\n| --- |{}\n{}",
+        "{} rows of the suite {suite}; percuss {percuss} at {commit}.\n\n\
+         | engine | {} |\n| --- |{}\n{}",
         rows.len(),
         names.join(" | "),
         " --: |".repeat(names.len()),

@@ -106,7 +106,8 @@ impl Rows<'_> {
         if let [others @ .., last] = &tie[..] {
             let others = others.join(", ");
             return format!(
-                ", where rounding leaves open which of the guards of {others} and {last} crosses first"
+                ", where rounding leaves open which of the guards of {others} and {last} crosses \
+                 first"
             );
         }
         let open = run.doubtful().as_ref().and_then(quoted);

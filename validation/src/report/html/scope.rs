@@ -83,8 +83,8 @@ fn named(names: &[String], what: &str) -> String {
     if names.len() <= FEW_NAMES { names.join(", ") } else { counted(names.len(), what) }
 }
 
-const TABLES: &str = "Tables of events and states with 25 proved digits, made once in ball arithmetic; no engine \
-     knows them.";
+const TABLES: &str = "Tables of events and states with 25 proved digits, made once in ball \
+                      arithmetic; no engine knows them.";
 const MADE_AGAIN: &str = "the exact solver's run made again in 106 bits, twice as many as the \
                           numbers that engines return";
 
