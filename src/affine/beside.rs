@@ -9,7 +9,7 @@ use super::fading::{Fading, FadingQuotient};
 use super::point::{GuardedPoint, GuardedSegment};
 use super::quotient::{Quotient, WINDOW};
 use super::reach::part_of;
-use super::taylor::{ALL, FEW, LITTLE, Looked, MUCH, Misses, NOTHING, positive_root, rough_root};
+use super::taylor::{ALL, FEW, LITTLE, Looked, Misses, NOTHING, positive_root, rough_root};
 use super::track::{SearchWork, Track, live, outward};
 use super::vector::UNDERFLOW;
 use crate::number::Number;
@@ -28,40 +28,33 @@ impl<T: Number> GuardedSegment<'_, T> {
         if !self.has_decay || self.follows_errors() {
             return None;
         }
-        self.first_beside(tracks, at, misses, work)
-    }
-
-    /// What [`Self::first_beside_a_decay`] finds; not inlined, because modes without a decay would
-    /// pay for it in registers.
-    #[inline(never)]
-    fn first_beside(
-        &self,
-        tracks: &[Track],
-        at: &GuardedPoint<T>,
-        misses: &mut Misses,
-        work: &mut SearchWork,
-    ) -> Option<FirstCrossing<T>> {
         let is_later = at.time > T::zero();
         let begins_below = |(n, track): (usize, &Track)| self.decay(n, track, at).is_some();
         if !live(tracks).any(begins_below) || !misses.are_few(Looked::Beside, is_later) {
             return None;
         }
+        let crossing = self.first_beside(tracks, at)?;
+        misses.forget(Looked::Beside, is_later);
+        work.pieces += 1;
+        Some(crossing)
+    }
+
+    /// What [`Self::first_beside_a_decay`] finds; not inlined, because modes without a decay would
+    /// pay for it in registers.
+    #[inline(never)]
+    fn first_beside(&self, tracks: &[Track], at: &GuardedPoint<T>) -> Option<FirstCrossing<T>> {
         let (n, rough, lead) = self.nearest_beside(tracks, at)?;
         let power = |sum: f64| (1..FEW).fold(sum, |sum, k| sum * rough / k as f64);
         let rest = power(self.rest_bound(n, FEW - 1, at, rough));
-        let crossing = if rest <= LITTLE * lead {
-            let mut crossing = self.proved_beside::<FEW>(n, tracks, at, rough)?;
-            if rest > NOTHING * lead {
-                self.refine_beside(n, &tracks[n], at, &mut crossing);
-            }
-            crossing
-        } else if rest <= MUCH * lead {
-            self.proved_beside::<ALL>(n, tracks, at, rough)?
-        } else {
+        // More derivatives would make longer chains of sums than the evaluation that they save.
+        let is_told = rest <= LITTLE * lead;
+        if !is_told {
             return None;
-        };
-        misses.forget(Looked::Beside, is_later);
-        work.pieces += 1;
+        }
+        let mut crossing = self.proved_beside(n, tracks, at, rough)?;
+        if rest > NOTHING * lead {
+            self.refine_beside(n, &tracks[n], at, &mut crossing);
+        }
         Some(crossing)
     }
 
@@ -100,16 +93,16 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// A guard's crossing near a rough root, if so many derivatives of its rest prove that it is
     /// the first.
     #[inline]
-    fn proved_beside<const N: usize>(
+    fn proved_beside(
         &self,
         n: usize,
         tracks: &[Track],
         at: &GuardedPoint<T>,
         rough: f64,
     ) -> Option<FirstCrossing<T>> {
-        let guard = self.beside::<N>(n, &tracks[n], at)?;
+        let guard = self.beside::<FEW>(n, &tracks[n], at)?;
         let after = guard.root(rough)?;
-        let room = guard.crosses(after, self.rest_bound(n, N - 1, at, (1.0 + WINDOW) * after))?;
+        let room = guard.crosses(after, self.rest_bound(n, FEW - 1, at, (1.0 + WINDOW) * after))?;
         let end = (1.0 + room) * after;
         let mut guards = 1 << n;
         for (other, track) in live(tracks).filter(|(other, _)| *other != n) {
@@ -117,9 +110,9 @@ impl<T: Number> GuardedSegment<'_, T> {
                 guards |= 1 << other;
                 continue;
             }
-            let stays_negative = self.stays_negative::<N>(other, track, at, end)
-                || self.beside::<N>(other, track, at).is_some_and(|guard| {
-                    guard.is_negative(end, self.rest_bound(other, N - 1, at, end))
+            let stays_negative = self.stays_negative::<FEW>(other, track, at, end)
+                || self.beside::<FEW>(other, track, at).is_some_and(|guard| {
+                    guard.is_negative(end, self.rest_bound(other, FEW - 1, at, end))
                 });
             if !stays_negative {
                 return None;

@@ -227,10 +227,16 @@ impl<T: Number> ModeFlow<T> {
     #[inline]
     pub fn norms<U: Number>(&self, y: &Vector<U>) -> Vector<f64> {
         let mut norms = [0.0; LARGEST_DIMENSION];
-        for (n, block) in self.blocks.iter().enumerate() {
-            norms[n] = norm(&y[block.range()]);
-        }
+        self.measure(&mut norms, y);
         norms
+    }
+
+    /// Makes a place hold the norms of each block's co-ordinates; beyond the blocks it stays.
+    #[inline]
+    pub fn measure<U: Number>(&self, norms: &mut Vector<f64>, y: &Vector<U>) {
+        for (place, block) in norms.iter_mut().zip(&self.blocks) {
+            *place = norm(&y[block.range()]);
+        }
     }
 
     /// Norms of errors of each block's co-ordinates, a time later at most, but for what

@@ -137,7 +137,9 @@ impl<T: Number> BlockMotion<T> {
                         taylor(matrix, *powers, y, sizes, time);
                     }
                 }
-                decay(*rate, time, &mut y[own.clone()], &mut sizes[own]);
+                if rate.is_some() {
+                    decay(*rate, time, &mut y[own.clone()], &mut sizes[own]);
+                }
             }
             Self::Cluster(powers) => powers.advance(&mut y[own.clone()], &mut sizes[own], time),
         }

@@ -5,6 +5,7 @@
 //! before it, only the other entries are kept, and the vector is moved in its place.
 
 use super::modal::{self, BigReal};
+use super::system::LARGEST_DIMENSION;
 use super::vector::{Vector, rounded};
 use crate::number::Number;
 
@@ -71,18 +72,21 @@ impl<T: Number> Chain<T> {
     /// A row is moved before those that it is made of, which still are what they were.
     #[inline]
     pub fn advance(&self, terms: usize, y: &mut Vector<T>, sizes: &mut Vector<f64>, time: T) {
-        let (start, sizes_at_start) = (*y, *sizes);
+        if terms == 1 {
+            for row in &self.rows {
+                row.advance((y[row.to], sizes[row.to]), y, sizes, time);
+            }
+            return;
+        }
+        // Entry by entry: a copy of all in wide registers would wait for entries just written.
+        let mut starts = [(T::zero(), 0.0); LARGEST_DIMENSION];
+        for (start, row) in starts.iter_mut().zip(&self.rows) {
+            *start = (y[row.to], sizes[row.to]);
+        }
         for k in (1..=terms).rev() {
             let factor = if k == 1 { time } else { time / T::exact(k as f64) };
-            let size_of_factor = factor.to_f64().abs();
-            for ChainRow { to, entries } in &self.rows {
-                let (mut sum, mut size) = (T::zero(), 0.0);
-                for entry in entries {
-                    sum = sum + entry.factor * y[entry.from];
-                    size += entry.size * sizes[entry.from];
-                }
-                y[*to] = start[*to] + factor * sum;
-                sizes[*to] = sizes_at_start[*to] + size_of_factor * size;
+            for (start, row) in starts.iter().zip(&self.rows) {
+                row.advance(*start, y, sizes, factor);
             }
         }
     }
@@ -97,12 +101,30 @@ impl<T: Number> ChainRow<T> {
         };
         Self { to: at + n, entries: there.map(entry).collect() }
     }
+
+    /// Its entry of the vector becomes what it was at the start and a multiple of the row's
+    /// product.
+    #[inline(always)]
+    fn advance(
+        &self,
+        (start, size_at_start): (T, f64),
+        y: &mut Vector<T>,
+        sizes: &mut Vector<f64>,
+        factor: T,
+    ) {
+        let (mut sum, mut size) = (T::zero(), 0.0);
+        for entry in &self.entries {
+            sum = sum + entry.factor * y[entry.from];
+            size += entry.size * sizes[entry.from];
+        }
+        y[self.to] = start + factor * sum;
+        sizes[self.to] = size_at_start + factor.to_f64().abs() * size;
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::affine::system::LARGEST_DIMENSION;
     use proptest::prelude::*;
 
     /// exp(N t) y by the powers of N.

@@ -117,7 +117,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
                 early |= track.zeros > 0;
             }
         }
-        self.norms = flow.norms(&self.entry.y);
+        flow.measure(&mut self.norms, &self.entry.y);
         self.early = if early { self.series_limit() } else { -1.0 };
     }
 
@@ -152,7 +152,10 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
     #[inline]
     pub fn begin(&self, point: &mut GuardedPoint<T>) {
         point.start(self);
-        (point.norms, point.is_measured) = (self.norms, true);
+        // One by one: wide registers would wait for norms just written.
+        let norms = point.norms.iter_mut().zip(&self.norms).take(self.flow.blocks.len());
+        norms.for_each(|(norm, own)| *norm = *own);
+        point.is_measured = true;
         point.make_room(self.rows.len());
         for (n, zeros) in self.zeros.iter().enumerate() {
             let evaluated = self.guard(n, point, None);
@@ -238,7 +241,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
     #[inline]
     pub fn measure(&self, point: &mut GuardedPoint<T>) {
         if !point.is_measured {
-            point.norms = self.flow.norms(&point.modal.y);
+            self.flow.measure(&mut point.norms, &point.modal.y);
             point.is_measured = true;
         }
     }

@@ -140,7 +140,7 @@ impl<const N: usize> Quotient<N> {
 
     /// The Bernstein coefficients of a polynomial that lies above the quotient up to a time, but
     /// for what rounding does to it.
-    #[inline]
+    #[inline(always)]
     pub fn hull(&self, powers: &[f64; N], last: f64) -> [f64; N] {
         let mut hull = self.terms(powers);
         hull[N - 1 - self.zeros] += self.remainder(last, powers);

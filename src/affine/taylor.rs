@@ -27,7 +27,7 @@ pub(super) const LITTLE: f64 = 1e-3;
 pub(super) const NOTHING: f64 = 1e-7;
 
 /// Beyond this share even [`ALL`] derivatives prove nothing.
-pub(super) const MUCH: f64 = 10.0;
+const MUCH: f64 = 10.0;
 
 /// How often the polynomials were looked at in a mode since they last proved a crossing: of whole
 /// guards at its entry and later, and beside a decay at its entry and later. Whether they do is
@@ -46,14 +46,16 @@ pub(super) enum Looked {
 
 impl Misses {
     const MOST: u8 = 2;
-    const PAUSE: u8 = 16;
+    /// The pauses after so many, of whole guards and beside a decay, which is seldom worth a second
+    /// look where it was not worth one.
+    const PAUSE: [u8; 2] = [16, 64];
 
     /// Whether to look at them: at first, and after a pause once more.
     #[inline]
     pub fn are_few(&mut self, looked: Looked, is_later: bool) -> bool {
         let count = &mut self.0[Self::at(looked, is_later)];
         *count += 1;
-        if *count > Self::MOST + Self::PAUSE {
+        if *count > Self::MOST + Self::PAUSE[looked as usize] {
             *count = Self::MOST;
         }
         *count <= Self::MOST
