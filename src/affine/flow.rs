@@ -16,7 +16,7 @@ pub(super) struct ModeFlow<T> {
     pub blocks: Vec<FlowBlock<T>>,
     /// How long a bound may be asked for: a growing block grows by at most e.
     pub longest: f64,
-    /// How fast a block's co-ordinates move at most, relative to their sizes.
+    /// How fast the co-ordinates of any block move at most ([`modal::Block::speed`]).
     pub speed: f64,
     /// The matrix W of all blocks, by columns.
     to_modal: Vec<Vector<T>>,
@@ -36,7 +36,7 @@ pub(super) struct ModeFlow<T> {
 pub(super) struct FlowBlock<T> {
     pub at: usize,
     pub size: usize,
-    /// How fast its co-ordinates move at most, relative to their sizes.
+    /// How fast its co-ordinates move at most ([`modal::Block::speed`]).
     speed: f64,
     motion: BlockMotion<T>,
     /// What is known of it at all later times.
@@ -280,8 +280,8 @@ impl<T: Number> FlowBlock<T> {
 
     fn of(block: &modal::Block, at: usize) -> Self {
         let motion = BlockMotion::of(block, at);
-        let (size, speed) = (block.matrix.len(), modal::norm(&block.matrix));
-        Self { at, size, speed, motion, later: Later::of(block) }
+        let (size, later) = (block.matrix.len(), Later::of(block));
+        Self { at, size, speed: block.speed(), motion, later }
     }
 }
 

@@ -46,3 +46,22 @@ fn what_is_left_of_a_zero_is_none_of_the_errors() {
     let checked = check(16_466_952_084_925_065_061, &mut Met::default());
     assert!(checked.is_ok(), "{}", checked.unwrap_err());
 }
+
+/// Rates of 0 and 0.001 are kept together in co-ordinates of which one is a thousand times what it
+/// adds to the state: the last step to an event is short beside how that moves the state.
+#[test]
+fn the_last_step_is_short_for_the_state() {
+    for seed in [3_376, 7_345_526_404_384_040_871] {
+        let checked = check(seed, &mut Met::default());
+        assert!(checked.is_ok(), "{}", checked.unwrap_err());
+    }
+}
+
+/// What f64 rounds of a guard whose factors are 1e6 is more than its crest is above zero: the run
+/// says that it leaves this open.
+#[test]
+fn a_crest_within_rounding_is_counted() {
+    let mut met = Met::default();
+    let checked = check(18_212, &mut met);
+    assert!(checked.is_ok() && met.undecided > 0 && met.crests == 0, "{met:?} {checked:?}");
+}

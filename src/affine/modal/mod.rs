@@ -65,6 +65,24 @@ pub(super) struct Block {
     pub off: [Vec<Vec<f64>>; 2],
 }
 
+impl Block {
+    /// How fast the co-ordinates move at most, relative to their sizes as they are and to the
+    /// largest part of a state that each of them makes: where a basis keeps couplings small, some
+    /// co-ordinates are large beside what they add to a state.
+    pub fn speed(&self) -> f64 {
+        let largest = |n: usize| {
+            let entries = self.columns.iter().map(|row| row[n].to_f64().abs());
+            entries.fold(0.0, f64::max)
+        };
+        let parts: Vec<f64> = (0..self.matrix.len()).map(largest).collect();
+        let rate = |(row, own): (&Vec<BigReal>, &f64)| {
+            let moves = row.iter().zip(&parts).filter(|(entry, _)| !entry.is_zero());
+            moves.map(|(entry, part)| entry.to_f64().abs() * (own / part)).sum::<f64>()
+        };
+        self.matrix.iter().zip(&parts).map(rate).fold(norm(&self.matrix), f64::max)
+    }
+}
+
 /// The blocks of a matrix: it stays whole if it cannot be taken apart at this precision.
 pub(super) fn blocks(exact: &[Row], time_scale: f64) -> Vec<Block> {
     let scales = scales(exact);
