@@ -52,7 +52,7 @@ impl Source<'_> {
     /// What the TOML reader says, with the line that it means.
     fn explained(&self, message: &str, span: &Range<usize>) -> String {
         let message = match message.strip_prefix("missing field `") {
-            Some(key) => format!("{} is missing here", key.trim_end_matches('`')),
+            Some(key) => missing(key.trim_end_matches('`')),
             None => {
                 let message = message.replace("invalid type: ", "not accepted: ");
                 message.replace("expected a sequence", "accepted is an array")
@@ -62,4 +62,18 @@ impl Source<'_> {
         let line = self.text.get(start..).and_then(|it| it.lines().next()).unwrap_or_default();
         format!("{message}, in `{}`", line.trim())
     }
+}
+
+/// What to say of a key that is missing.
+fn missing(key: &str) -> String {
+    let accepted = match key {
+        "schema" => "1",
+        "states" => "an array of names, such as [\"x\", \"v\"]",
+        "omega" | "phi" => "a number, or an expression of parameters",
+        "equations" => "an array with an equation of each state, such as [\"x' = v\"]",
+        "guard" => "a comparison, such as \"x > 0\"",
+        "mode" => "the name of a mode",
+        _ => "a string",
+    };
+    format!("{key} is missing here: accepted is {accepted}")
 }

@@ -45,6 +45,11 @@ fn each_mistake_is_named_with_its_line() {
             "mode = \"fly\"",
             "there is no mode \"fly\": accepted is one of flight",
         ),
+        ("mode = \"flight\"\n", "", "mode is missing in [start]: accepted is one of flight"),
+        ("mode = \"flight\"", "mode = 1", "mode is no number: accepted is one of flight"),
+        ("states = [\"x\", \"v\"]\n", "", "states is missing here: accepted is an array of names"),
+        ("guard = \"0 > x\"\n", "", "guard is missing here: accepted is a comparison"),
+        ("name = \"apex\"\n", "", "name is missing here: accepted is a string"),
         ("[start]", "unknown = 1\n[start]", "unknown"),
     ];
     for (old, new, said) in cases {

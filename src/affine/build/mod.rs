@@ -107,7 +107,15 @@ fn start_point(
                 SystemError::at(place, &what)
             })?
         }
-        _ => return Err(refuse(&format!("mode is accepted as one of {}", known.join(", ")))),
+        Some(GivenParameter { place, .. }) => {
+            let what = format!("mode is no number: accepted is one of {}", known.join(", "));
+            return Err(SystemError::at(place, &what));
+        }
+        None => {
+            let what =
+                format!("mode is missing in [start]: accepted is one of {}", known.join(", "));
+            return Err(refuse(&what));
+        }
     };
     names.accepts = Accepts::Forcing;
     let time = match table.entries.get("t") {
