@@ -11,7 +11,7 @@ use super::quotient::{Quotient, WINDOW};
 use super::reach::part_of;
 use super::taylor::{ALL, FEW, LITTLE, Looked, Misses, NOTHING, positive_root, rough_root};
 use super::track::{SearchWork, Track, live, outward};
-use super::vector::UNDERFLOW;
+use super::vector::LOST;
 use crate::number::Number;
 
 impl<T: Number> GuardedSegment<'_, T> {
@@ -153,7 +153,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let value = part_of(row, &row.parts[0], track, &at.modal.y);
         let [mut orders, sizes] = row.orders_and_sizes::<N>(&at.modal, row.first_column(1));
         orders.iter_mut().for_each(|order| *order *= track.outward);
-        let lost = UNDERFLOW * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
+        let lost = LOST * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
         let errors = [at.slack[n], lost];
         let rest = Quotient::of([&orders, &sizes], 0, self.margin, errors);
         Some(FadingQuotient { rest, fading: Fading { value, rate } })

@@ -221,10 +221,12 @@ impl<T: Number> ModalRow<T> {
 }
 
 impl RowPart {
-    /// The rate of a decay: the quotient of two norms, unless they have lost digits to underflow.
+    /// The rate of a decay: the quotient of two norms, unless they have lost digits to underflow or
+    /// have overflown.
     fn decay(&self) -> Option<f64> {
-        const SMALLEST: f64 = 1e-250;
-        let is_decay = self.later == Later::Fading && self.norms[0] > SMALLEST;
+        const RANGE: std::ops::Range<f64> = 1e-250..1e250;
+        let is_told = self.norms[..2].iter().all(|norm| RANGE.contains(norm));
+        let is_decay = self.later == Later::Fading && is_told;
         is_decay.then(|| self.norms[1] / self.norms[0])
     }
 

@@ -11,7 +11,7 @@ use super::point::{GuardedPoint, GuardedSegment};
 use super::quotient::{Quotient, WINDOW};
 use super::reach::rise;
 use super::track::{SearchWork, Track, live, outward};
-use super::vector::{UNDERFLOW, root};
+use super::vector::{LOST, root};
 use crate::number::Number;
 
 /// The numbers of derivatives that are looked at, the value and the one that is bounded included.
@@ -180,7 +180,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let [mut orders, sizes] = self.rows[n].orders_and_sizes::<N>(&at.modal, 0);
         orders[..4].copy_from_slice(&at.orders[n].map(Number::to_f64));
         orders.iter_mut().for_each(|order| *order *= track.outward);
-        let lost = UNDERFLOW * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
+        let lost = LOST * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
         let errors = [at.slack[n], lost];
         Quotient::of([&orders, &sizes], track.zeros, self.margin, errors)
     }

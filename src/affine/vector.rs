@@ -8,6 +8,10 @@ use crate::number::Number;
 /// one 64th of it.
 pub(super) const UNDERFLOW: f64 = f64::from_bits(64);
 
+/// More than [`UNDERFLOW`] where it need not be sharp: sums and products of it are no subnormal
+/// numbers, with which processors are slow.
+pub(super) const LOST: f64 = 1e-300;
+
 /// The entries of z, or of the modal co-ordinates; those beyond the dimension are zero.
 pub(super) type Vector<T> = [T; LARGEST_DIMENSION];
 

@@ -231,3 +231,38 @@ fn what_never_ends_is_passed_in_few_pieces() {
         assert!(run.work().pieces < 100, "{guard:?}: {:?}", run.work());
     }
 }
+
+/// The rate of a decay whose factor in a guard is 1e300 overflows where it is told by two norms: the
+/// other guard crosses later, and must not be told to be the first.
+#[test]
+fn a_rate_that_overflows_is_none() {
+    let text = r#"
+        schema = 1
+        name = "large"
+        states = ["u", "a", "d"]
+        [parameters]
+        r = 1e9
+        c = 1e300
+        s = 1.2
+        level = 1.001
+        other = 2.48
+        fall = 3e8
+        [[mode]]
+        name = "free"
+        equations = ["u' = -r*u", "a' = -fall*a", "d' = r"]
+        [[mode.until]]
+        name = "later"
+        guard = "4*d + a > other"
+        [[mode.until]]
+        name = "first"
+        guard = "c*u + s*d > level"
+        [start]
+        mode = "free"
+        u = 1e-300
+        a = 1
+        d = 0
+    "#;
+    let system = System::parse("large.system.toml", text).unwrap();
+    let (name, time) = first(&system, 1e-7);
+    assert!(name != "later", "{name} at {time:e}");
+}

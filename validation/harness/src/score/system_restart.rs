@@ -11,17 +11,20 @@ use super::graze::Graze;
 use super::measure_system::{MOST_UNITS, SystemRun, SystemScale, off, scored_horizon};
 use super::restart_figures::{Restart, RestartError, RestartResult};
 use super::statistics::worst;
-use super::system_grazes::system_grazes;
+use super::system_grazes::{guard_growth, system_grazes};
 use crate::case::SystemCase;
 use crate::engine::{Accuracy, Ended, Failure, Outcome, Task};
 use crate::system::SystemProblem;
 use crate::truth::{DoubleDouble, SystemTruth, SystemTruthRow, solver};
+use percuss::TwoWord;
 use percuss::affine::{Rational, Solver, StartPoint};
 use rayon::prelude::*;
 use std::sync::Arc;
 
 /// Instants with events through which a run goes.
 const INSTANTS: usize = 2;
+/// A guard that is zero by the model is below this share of its terms in 106 bits.
+const BY_MODEL: f64 = 1e-24;
 /// Events that are closer together than this, over the system's unit of time, are passed as one.
 const CLOSE: f64 = 1e-5;
 
@@ -153,11 +156,47 @@ impl Restarts<'_> {
     }
 }
 
+/// The size of a guard's value in a state, and of the terms that it is summed from; no value where
+/// the guard depends on theta, which is known in f64 alone.
+fn at_entry(guard: &[Rational], state: &[TwoWord]) -> [f64; 2] {
+    let (factors, [cos, sin, one]) = guard.split_at(state.len()) else { return [0.0; 2] };
+    let terms = state.iter().zip(factors).map(|(x, factor)| x.times_two_word(two_words(factor)));
+    let terms: Vec<TwoWord> = terms.chain([two_words(one)]).collect();
+    let size = terms.iter().map(|term| term.value().abs()).sum();
+    let value = terms.into_iter().fold(TwoWord::ZERO, TwoWord::plus).value();
+    let is_told = [cos, sin].iter().all(|factor| **factor == Rational::ZERO);
+    if is_told { [value.abs(), size] } else { [0.0, size] }
+}
+
+/// A rational number, rounded to two words.
+fn two_words(exact: &Rational) -> TwoWord {
+    let high = exact.to_f64().value();
+    let low = Rational::try_from(high).map_or(0.0, |high| (exact - high).to_f64().value());
+    TwoWord::sum(high, low)
+}
+
 impl SystemRestartRun {
     /// Whether errors of this unit leave open nothing that follows.
     fn is_decided(&self, accuracy: Accuracy, unit: f64) -> bool {
         let scale = SystemScale::of((accuracy, unit), &self.grazes, &self.decisions);
-        self.has_an_order(unit) && scored_horizon(&self.task, &self.truth, scale).1
+        self.has_an_order(unit)
+            && self.has_clear_entries(unit)
+            && scored_horizon(&self.task, &self.truth, scale).1
+    }
+
+    /// Whether the errors that a method is allowed leave no guard open where a mode is entered: one
+    /// that is zero there in the case's run may be off by the rounding of this run's start.
+    fn has_clear_entries(&self, unit: f64) -> bool {
+        let Some(problem) = &self.task.exact else { return true };
+        let system = self.task.system.system();
+        self.truth.events.iter().all(|row| {
+            let rounded = system.modes[row.mode].until.iter();
+            problem.exact.modes[row.mode].until.iter().zip(rounded).all(|(exact, rounded)| {
+                let [value, size] = at_entry(&exact.guard, &row.state);
+                let allowed = MOST_UNITS * unit * guard_growth(&rounded.guard, row, &system.scales);
+                value <= BY_MODEL * size || value > allowed
+            })
+        })
     }
 
     /// Whether the errors that a method is allowed leave the order of events that are not of one
