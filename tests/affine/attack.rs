@@ -232,8 +232,8 @@ fn what_never_ends_is_passed_in_few_pieces() {
     }
 }
 
-/// The rate of a decay whose factor in a guard is 1e300 overflows where it is told by two norms: the
-/// other guard crosses later, and must not be told to be the first.
+/// The rate of a decay whose factor in a guard is 1e300 overflows where it is told by two norms.
+/// The other guard crosses later, and must not be told to be the first.
 #[test]
 fn a_rate_that_overflows_is_none() {
     let text = r#"
