@@ -10,9 +10,8 @@
 //!   the end of the time.
 //! - All derivatives of a decay are largest, in size, at the beginning of a window.
 
-use super::quotient::{Quotient, WINDOW, powers, sum, weighted};
+use super::quotient::{Quotient, WINDOW, powers, root_by, sum, weighted};
 use crate::numeric::exponential::exp;
-use crate::numeric::real::Real;
 
 /// By what a decay may be off, relative to itself, because its rate and its exponent are rounded:
 /// beyond the exponent 745 it is zero.
@@ -73,21 +72,7 @@ impl<const N: usize> FadingQuotient<N> {
     /// the sum does not rise from there.
     #[inline]
     pub fn root(&self, rough: f64) -> Option<f64> {
-        const STEPS: usize = 8;
-        const SHORT: f64 = 1e-3;
-        let mut root = rough;
-        for _ in 0..STEPS {
-            let (step, slope) = self.step(root);
-            let rises = slope > 0.0 && step < 0.5;
-            if !rises {
-                return None;
-            }
-            root *= 1.0 - step.larger(-0.5);
-            if step.abs() <= SHORT {
-                return Some(root);
-            }
-        }
-        None
+        root_by(rough, |root| self.step(root))
     }
 
     /// A step of Halley's method, as a share of the root, and the slope there times the root.

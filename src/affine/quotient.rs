@@ -77,21 +77,7 @@ impl<const N: usize> Quotient<N> {
     /// digits; none where the polynomial does not rise from there.
     #[inline]
     pub fn root(&self, rough: f64) -> Option<f64> {
-        const STEPS: usize = 8;
-        const SHORT: f64 = 1e-3;
-        let mut root = rough;
-        for _ in 0..STEPS {
-            let (step, slope) = self.step(root);
-            let rises = slope > 0.0 && step < 0.5;
-            if !rises {
-                return None;
-            }
-            root *= 1.0 - step.larger(-0.5);
-            if step.abs() <= SHORT {
-                return Some(root);
-            }
-        }
-        None
+        root_by(rough, |root| self.step(root))
     }
 
     /// A step of Halley's method, as a share of the root, and the slope there times the root.
@@ -174,6 +160,27 @@ impl<const N: usize> Quotient<N> {
         let lost = self.lost * N as f64 * powers[N - 1].larger(1.0);
         self.slack + self.margin * sum(&weighted(&self.sizes, powers)) + lost
     }
+}
+
+/// A root from a rough one, by steps that are shares of it, each with the slope there; none where
+/// the slope is not positive.
+#[inline(always)]
+pub(super) fn root_by(rough: f64, step: impl Fn(f64) -> (f64, f64)) -> Option<f64> {
+    const STEPS: usize = 8;
+    const SHORT: f64 = 1e-3;
+    let mut root = rough;
+    for _ in 0..STEPS {
+        let (step, slope) = step(root);
+        let rises = slope > 0.0 && step < 0.5;
+        if !rises {
+            return None;
+        }
+        root *= 1.0 - step.larger(-0.5);
+        if step.abs() <= SHORT {
+            return Some(root);
+        }
+    }
+    None
 }
 
 /// The powers of a number, in four chains that do not wait for one another.
