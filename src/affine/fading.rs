@@ -10,7 +10,7 @@
 //!   the end of the time.
 //! - All derivatives of a decay are largest, in size, at the beginning of a window.
 
-use super::quotient::{Quotient, WINDOW, powers, root_by, sum, weighted};
+use super::quotient::{Beside, Quotient, WINDOW, powers, root_by, sum, weighted};
 use crate::numeric::exponential::exp;
 
 /// By what a decay may be off, relative to itself, because its rate and its exponent are rounded:
@@ -90,29 +90,17 @@ impl<const N: usize> FadingQuotient<N> {
     /// of the root. See [`Quotient::crosses`], to which the decay is added.
     #[inline]
     pub fn crosses(&self, root: f64, last: f64) -> Option<f64> {
-        let powers = powers(root);
-        let terms = self.rest.terms(&powers);
         let (decay, turn) = (self.fading.at(root), self.fading.rate * root);
         let most = self.fading.at((1.0 - WINDOW) * root).abs() * (1.0 + OFF);
         let off = OFF * decay.abs();
-        let value = sum(&terms) + decay;
-        let slope = sum(&weighted(&terms, &Quotient::<N>::SLOPE)) - turn * decay;
-        let bend = sum(&weighted(&terms, &Quotient::<N>::BEND));
-        let third = sum(&weighted(&terms.map(f64::abs), &Quotient::<N>::THIRD));
-        let remainder = Quotient::<N>::WIDER * self.rest.remainder(last, &powers);
-        let rounding = Quotient::<N>::WIDER * self.rest.rounding(&powers);
-        let open = value.abs() + remainder + rounding + off;
-        let room = 2.0 * open / slope + 8.0 * f64::EPSILON;
-        let window = 2.0 * room;
-        let change = window * (bend.abs() + 0.5 * window * Quotient::<N>::WIDER * third)
-            + window * turn * turn * most
-            + turn * off
-            + N as f64 * (remainder + rounding);
-        let proved = slope > 0.0
-            && change < 0.5 * slope
-            && window < WINDOW
-            && self.is_negative((1.0 - window) * root, last);
-        proved.then_some(room)
+        let beside = Beside {
+            value: decay,
+            slope: -turn * decay,
+            bend: turn * turn * most,
+            off: [off, turn * off],
+        };
+        let (room, before) = self.rest.rises(root, last, &beside)?;
+        self.is_negative(before, last).then_some(room)
     }
 
     /// Whether the guard stays negative up to a time, by a bound of the last derivative of its

@@ -30,7 +30,7 @@ pub(super) enum BlockMotion<T> {
         rate: Option<SplitNumber<T>>,
         matrix: Vec<Vector<T>>,
         powers: usize,
-        /// The same matrix by its entries that are not zero.
+        /// The entries of the matrix that are not zero, where its rows have an order.
         chain: Option<Chain<T>>,
     },
     Cluster(Box<Powers<T>>),

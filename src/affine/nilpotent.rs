@@ -182,7 +182,7 @@ mod tests {
         }
     }
 
-    /// Of two rows that are each made of both, none can be moved first.
+    /// Rows that are each made of both have no order in which one could be moved first.
     #[test]
     fn a_circle_is_no_chain() {
         let matrix = [[1.0, -1.0], [1.0, -1.0]].map(|row| row.map(BigReal::exact).to_vec());

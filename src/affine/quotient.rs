@@ -38,16 +38,34 @@ pub(super) struct Quotient<const N: usize> {
     lost: f64,
 }
 
+/// What is beside a polynomial near a root.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Beside {
+    /// Its value at the root.
+    pub value: f64,
+    /// Its slope there, times the root.
+    pub slope: f64,
+    /// A bound of its second derivative in the largest window, times the square of the root.
+    pub bend: f64,
+    /// By what rounding has its value and its slope off.
+    pub off: [f64; 2],
+}
+
+impl Beside {
+    /// The polynomial stands alone.
+    pub const NOTHING: Self = Self { value: 0.0, slope: 0.0, bend: 0.0, off: [0.0; 2] };
+}
+
 impl<const N: usize> Quotient<N> {
     /// What a sum of powers is at the end of the largest window, relative to its value at the root,
     /// at most.
-    pub const WIDER: f64 = power(1.0 + WINDOW, N - 1);
+    const WIDER: f64 = power(1.0 + WINDOW, N - 1);
 
     /// What the terms count in the slope, the second and the third derivative, times powers of the
     /// time.
     pub const SLOPE: [f64; N] = falling(1);
     pub const BEND: [f64; N] = falling(2);
-    pub const THIRD: [f64; N] = falling(3);
+    const THIRD: [f64; N] = falling(3);
 
     /// The inverses of the binomial coefficients.
     const SHARES: [f64; N] = inverse_binomials();
@@ -93,25 +111,33 @@ impl<const N: usize> Quotient<N> {
     /// polynomial: how near, as a share of the root.
     #[inline]
     pub fn crosses(&self, root: f64, last: f64) -> Option<f64> {
+        let (room, before) = self.rises(root, last, &Beside::NOTHING)?;
+        self.is_negative(before, last).then_some(room)
+    }
+
+    /// Where the quotient and what is beside it have one zero at most, because their sum rises, and
+    /// cross it if they are negative before: how near a root, as a share of it, and before when.
+    #[inline]
+    pub fn rises(&self, root: f64, last: f64, beside: &Beside) -> Option<(f64, f64)> {
         let powers = powers(root);
         let terms = self.terms(&powers);
-        let (value, slope) = (sum(&terms), sum(&weighted(&terms, &Self::SLOPE)));
+        let value = sum(&terms) + beside.value;
+        let slope = sum(&weighted(&terms, &Self::SLOPE)) + beside.slope;
         let bend = sum(&weighted(&terms, &Self::BEND));
         let third = sum(&weighted(&terms.map(f64::abs), &Self::THIRD));
         let remainder = Self::WIDER * self.remainder(last, &powers);
         let rounding = Self::WIDER * self.rounding(&powers);
-        let room = 2.0 * (value.abs() + remainder + rounding) / slope + 8.0 * f64::EPSILON;
+        let open = value.abs() + remainder + rounding + beside.off[0];
+        let room = 2.0 * open / slope + 8.0 * f64::EPSILON;
         let window = 2.0 * room;
         // The remainder is r/s^z with |r'| <= (N - 1) |r|/s, and each power has at most N - 2 times
         // its error in its slope.
-        let change = window * (bend.abs() + 0.5 * window * Self::WIDER * third)
+        let change = window * (bend.abs() + 0.5 * window * Self::WIDER * third + beside.bend)
+            + beside.off[1]
             + (N + self.zeros) as f64 * remainder
             + N as f64 * rounding;
-        let proved = slope > 0.0
-            && change < 0.5 * slope
-            && window < WINDOW
-            && self.is_negative((1.0 - window) * root, last);
-        proved.then_some(room)
+        let is_proved = slope > 0.0 && change < 0.5 * slope && window < WINDOW;
+        is_proved.then_some((room, (1.0 - window) * root))
     }
 
     /// Whether the quotient stays negative up to a time, by a bound of the guard's last derivative.
@@ -149,7 +175,7 @@ impl<const N: usize> Quotient<N> {
     /// The rest of the quotient's Taylor series at a time, by a bound of the guard's last
     /// derivative.
     #[inline]
-    pub fn remainder(&self, last: f64, powers: &[f64; N]) -> f64 {
+    fn remainder(&self, last: f64, powers: &[f64; N]) -> f64 {
         let factor = OUTWARD * f64::inverse_factorial(N - 1);
         factor * last * powers[N - 1 - self.zeros]
     }

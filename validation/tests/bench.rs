@@ -12,7 +12,7 @@ use percuss_validation::bench::timed_case::TimedCase;
 use percuss_validation::bench::timed_system_case::TimedSystemCase;
 use percuss_validation::case::Cases;
 use percuss_validation::engine::{
-    Accuracy, CONTROL, Engine, Limits, Location, Outcome, Script, all, run_oscillator, wrong,
+    Accuracy, CONTROL, Engine, Limits, Location, Outcome, Script, all, answer_oscillator, wrong,
 };
 use percuss_validation::truth::Library;
 use std::path::{Path, PathBuf};
@@ -137,7 +137,7 @@ fn an_engine_that_is_told_of_no_event_finds_none_unless_its_library_searches() {
     let integrators = all().iter().filter(|it| it.declaration().events != Location::Proved);
     for engine in integrators {
         let accuracy = settings(engine.declaration().stepping)[2];
-        let found = none.follow(|| run_oscillator(*engine, &case.task, accuracy, &limits));
+        let found = none.follow(|| answer_oscillator(*engine, &case.task, accuracy, &limits));
         let (name, by) = (engine.declaration().name, engine.declaration().events);
         let found = found.map(|it| it.events.len()).unwrap_or_default();
         assert_eq!(found == 0, by == Location::Harness, "{name}: {found} events");

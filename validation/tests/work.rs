@@ -3,7 +3,7 @@
 use crate::exact;
 use percuss_validation::engine::{
     Accuracy, Engine, Limits, OscillatorOutcome, OscillatorTask, SampleGrid, Stepping, all, answer,
-    run_oscillator,
+    answer_oscillator,
 };
 use percuss_validation::suite::CaseRun;
 
@@ -11,7 +11,7 @@ fn outcome(engine: &dyn Engine) -> OscillatorOutcome {
     let case = exact::case("chaos-from-rest");
     let task =
         OscillatorTask::of(&case, exact::problem(&case), SampleGrid { per_period: 4, count: 161 });
-    run_oscillator(engine, &task, loose(engine), &Limits::default()).expect("it runs")
+    answer_oscillator(engine, &task, loose(engine), &Limits::default()).expect("it runs")
 }
 
 fn loose(engine: &dyn Engine) -> Accuracy {

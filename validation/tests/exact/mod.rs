@@ -3,7 +3,7 @@
 use percuss::lanes::Instructions;
 use percuss_validation::case::{Case, Cases, Given, Problem, embedded};
 use percuss_validation::engine::{
-    Accuracy, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, all, run_oscillator,
+    Accuracy, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, all, answer_oscillator,
 };
 use percuss_validation::suite::{PreparedSystem, Suite, prepare_systems};
 use percuss_validation::truth::Library;
@@ -15,7 +15,7 @@ fn engine() -> &'static dyn Engine {
 
 /// Runs a task.
 pub fn run(task: &OscillatorTask) -> Result<OscillatorOutcome, Failure> {
-    run_oscillator(engine(), task, Accuracy::Exact, &Limits::default())
+    answer_oscillator(engine(), task, Accuracy::Exact, &Limits::default())
 }
 
 /// Runs a task by these instructions.

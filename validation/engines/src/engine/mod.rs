@@ -48,7 +48,7 @@ pub use in_lanes::run_in_lanes;
 pub use meter::{Failure, Limits, contain, hush_contained_panics};
 pub use original::ELSEWHERE;
 pub use oscillator_task::{OscillatorTask, SampleGrid};
-pub use percussive::{percussive, run_oscillator};
+pub use percussive::percussive;
 pub use registry::{add, all, exact, select};
 pub use script::Script;
 pub use task::Task;

@@ -1,8 +1,8 @@
 //! The oscillator written down as any other system is, which is how engines are asked to run it.
 
 use super::{
-    Accuracy, Ended, Engine, Event, Failure, GuardSample, Limits, Numbers, OscillatorEvent,
-    OscillatorOutcome, OscillatorTask, Outcome, Task, Trace,
+    Ended, Event, Failure, GuardSample, Numbers, OscillatorEvent, OscillatorOutcome,
+    OscillatorTask, Outcome, Task, Trace,
 };
 use crate::system::{CheckedSystem, Mode, Row, System, Until, Values};
 use percuss::{Parameters, Phase};
@@ -126,20 +126,6 @@ impl Task {
         let oscillator = Some(Arc::new(task.clone()));
         Ok(Self { watched: task.watched.clone(), oscillator, ..run })
     }
-}
-
-/// Runs an engine on the oscillator, with the answer in the oscillator's words.
-///
-/// # Errors
-/// A start or a horizon that no system has, the engine's failure, or an answer that is none of the
-/// oscillator's.
-pub fn run_oscillator(
-    engine: &dyn Engine,
-    task: &OscillatorTask,
-    accuracy: Accuracy,
-    limits: &Limits,
-) -> Result<OscillatorOutcome, Failure> {
-    OscillatorOutcome::of_system(engine.run(&Task::of_oscillator(task)?, accuracy, limits)?)
 }
 
 impl From<OscillatorOutcome> for Outcome {

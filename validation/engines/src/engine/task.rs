@@ -22,7 +22,7 @@ pub struct Task {
     pub watched: Option<Watched>,
     /// The system with exact coefficients, which the exact solver wants to have.
     pub exact: Option<Arc<SystemProblem>>,
-    /// The same run in the words of the oscillator, where the system is the oscillator: who has the
+    /// The run in the words of the oscillator, where that is the system: an engine that has the
     /// oscillator's equations written by hand may take them instead of the system's matrices.
     pub oscillator: Option<Arc<OscillatorTask>>,
 }

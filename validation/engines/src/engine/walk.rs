@@ -100,7 +100,7 @@ pub(super) fn walk<E: Equations>(
 mod tests {
     use super::super::{
         Accuracy, Engine, Limits, OscillatorOutcome, OscillatorTask, SampleGrid, all,
-        run_oscillator,
+        answer_oscillator,
     };
     use crate::case::Given;
     use percuss::Start;
@@ -113,7 +113,7 @@ mod tests {
         let grid = SampleGrid { per_period: 4, count: 33 };
         let task = OscillatorTask::until(given.parameters, problem, horizon, grid);
         let engine: &dyn Engine = *all().iter().find(|it| it.declaration().name == name)?;
-        run_oscillator(engine, &task, Accuracy::Tolerance(tolerance), &Limits::default()).ok()
+        answer_oscillator(engine, &task, Accuracy::Tolerance(tolerance), &Limits::default()).ok()
     }
 
     /// Over 47 cases at 1e-6, 1e-9 and 1e-12 one library takes 1.05 to 1.44 times the right-hand

@@ -5,7 +5,7 @@ use super::integrated::{integrator, representatives};
 use super::paper::chaotic_model;
 use super::work::{Findings, ItemWork};
 use crate::case;
-use crate::engine::{self, Accuracy, Engine, Failure, Limits, run_oscillator};
+use crate::engine::{self, Accuracy, Engine, Failure, Limits, answer_oscillator};
 use crate::number::brief;
 use crate::picture::{Figure, INK, Layer, Plot, caption, phase_colour};
 use crate::score::attractor::{AttractorTest, Comparison, RunSection, calibrated, run_of};
@@ -41,7 +41,7 @@ fn section(engine: &dyn Engine, accuracy: Accuracy) -> Result<RunSection, Failur
     let refused = || Failure::new("the start is refused");
     let task = run_of(chaotic_model(), Start::default(), TRANSIENT + POINTS).ok_or_else(refused)?;
     let limits = Limits { calls: 1_000_000_000, events: 1_000_000, ..Limits::default() };
-    RunSection::of(&task, &run_oscillator(engine, &task, accuracy, &limits)?, TRANSIENT)
+    RunSection::of(&task, &answer_oscillator(engine, &task, accuracy, &limits)?, TRANSIENT)
 }
 
 /// Each integrator's section against the reference, in units of the calibrated limits.

@@ -3,7 +3,7 @@
 use super::attractors::start;
 use super::paper::attractors_model;
 use crate::engine::{
-    self, Accuracy, Engine, Failure, Limits, Location, Role, Stepping, run_oscillator,
+    self, Accuracy, Engine, Failure, Limits, Location, Role, Stepping, answer_oscillator,
 };
 use crate::score::attractor::run_of;
 use percuss::dynamics::strobe::StrobePoint;
@@ -38,9 +38,6 @@ pub(super) fn strobes(
     let task = run_of(attractors_model(omega), start(point), periods);
     let task = task.ok_or_else(|| Failure::new("the start is refused"))?;
     let limits = Limits { calls: 1_000_000_000, ..Limits::default() };
-    let outcome = run_oscillator(engine, &task, Accuracy::Tolerance(tolerance), &limits)?;
-    if outcome.samples.len() != task.grid.count {
-        return Err(Failure::new(format!("{name} did not give all strobes")));
-    }
+    let outcome = answer_oscillator(engine, &task, Accuracy::Tolerance(tolerance), &limits)?;
     Ok((format!("{name}, tolerance {tolerance:e}"), outcome.samples))
 }

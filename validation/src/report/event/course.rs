@@ -4,9 +4,7 @@ use super::guarded::GuardCurve;
 use super::mismatch::EventMismatch;
 use super::scales::Scales;
 use super::{EventMark, EventPicture, View, ViewCourse};
-use crate::engine::{
-    Engine, Limits, OscillatorOutcome, OscillatorTask, Watched, contain, run_oscillator,
-};
+use crate::engine::{Engine, Limits, OscillatorOutcome, OscillatorTask, Task, Watched, contain};
 use crate::suite::{Prepared, Scored};
 use crate::truth::Replay;
 use percuss::TwoWord;
@@ -31,7 +29,10 @@ pub(super) fn picture(
     let truth = truth_at(task, it.guarded, &instants)?;
     let watched = Watched { window: scales.window(), instants: instants.clone() };
     let task = OscillatorTask { watched: Some(watched), ..task.clone() };
-    let outcome = contain(|| run_oscillator(engine, &task, row.accuracy, limits)).ok()?;
+    // An engine that records nothing gives no states at the instants, and its events are drawn.
+    let asked = Task::of_oscillator(&task).ok()?;
+    let outcome = contain(|| engine.run(&asked, row.accuracy, limits));
+    let outcome = outcome.and_then(OscillatorOutcome::of_system).ok()?;
     let trace = outcome.trace.as_ref();
     let looks = trace.map_or(&[][..], |trace| &trace.looks);
     let looks = looks.iter().filter_map(|look| Some([look.t, it.guarded.of_look(look)?]));

@@ -20,7 +20,7 @@ pub(super) struct Scope {
     pub truth: String,
     /// What the error of a state is.
     pub state_error: String,
-    /// The same in a few words.
+    /// What an error of a state is, in a few words.
     pub state_error_briefly: String,
 }
 

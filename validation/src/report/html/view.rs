@@ -25,7 +25,7 @@ pub(super) struct EngineLine {
     /// The typical errors of event times and of the state, and the right-hand sides.
     pub figures: [String; 3],
     pub finest: String,
-    /// Of how many rows at the finest setting how many were run.
+    /// How many rows at the finest setting were run, and of how many.
     pub rows: String,
     /// Whether these are too few for its figures to stand beside those of others.
     pub partial: bool,

@@ -4,7 +4,7 @@ use super::{AskedRun, Task, accuracy, every_on};
 use crate::case::Given;
 use crate::engine::{
     Ended, Event, Limits, Numbers, OscillatorEvent, OscillatorOutcome, OscillatorTask, Outcome,
-    SampleGrid, Watched, all, percussive, run_oscillator,
+    SampleGrid, Watched, all, answer_oscillator, percussive,
 };
 use crate::system::Values;
 use percuss::{Phase, Start};
@@ -39,7 +39,8 @@ fn both_ways_of_writing_it_down_are_run_alike() {
         let outcome: Outcome = outcome.unwrap_or_default();
         let Some(engine) = all().iter().find(|it| it.declaration().name == name) else { continue };
         let Some(accuracy) = accuracy(*engine) else { continue };
-        let own = run_oscillator(*engine, &task, accuracy, &Limits::default()).unwrap_or_default();
+        let own =
+            answer_oscillator(*engine, &task, accuracy, &Limits::default()).unwrap_or_default();
         let word = |it: &OscillatorEvent| (it.event, place(it.mode));
         let words: Vec<_> = own.events.iter().map(word).collect();
         let others: Vec<_> = outcome.events.iter().map(|it| (it.event, it.mode)).collect();

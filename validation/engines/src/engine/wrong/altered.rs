@@ -3,7 +3,7 @@
 use super::super::exact::Exact;
 use super::super::{
     Accuracy, Declaration, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, Outcome,
-    Role, Task, run_oscillator,
+    Role, Task, answer_oscillator,
 };
 use crate::case::Problem;
 use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
@@ -86,7 +86,7 @@ fn periods(task: &OscillatorTask) -> (u64, u64) {
 /// The right motion with the drift of Eq. (20) as printed: at the start of each progression v jumps
 /// by 2 (q0 - 1), of which 2 (q0 - 1) exp(-d/(2 xi)) is left after d.
 fn drifting(task: &OscillatorTask, limits: &Limits) -> Result<OscillatorOutcome, Failure> {
-    let mut outcome = run_oscillator(&Exact, task, Accuracy::Exact, limits)?;
+    let mut outcome = answer_oscillator(&Exact, task, Accuracy::Exact, limits)?;
     let start = task.problem.entry.instant;
     let omega = task.parameters.omega;
     let times = task.sample_times();

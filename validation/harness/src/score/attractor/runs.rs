@@ -3,7 +3,7 @@
 use super::limits::ComparisonPlan;
 use super::section::{RunSection, run_of};
 use crate::case::Case;
-use crate::engine::{self, Accuracy, Engine, Failure, Limits, run_oscillator};
+use crate::engine::{self, Accuracy, Engine, Failure, Limits, answer_oscillator};
 use percuss::{Parameters, Start};
 
 /// Which runs of the exact solver: no two kinds share a start.
@@ -69,7 +69,7 @@ fn nth_section(
     let periods = plan.transient + plan.periods;
     let task = run_of(parameters, start, periods).ok_or_else(refused)?;
     let truth = run_of(case.parameters, start, periods).ok_or_else(refused)?;
-    let outcome = run_oscillator(engine::exact(), &task, Accuracy::Exact, &Limits::default())?;
+    let outcome = answer_oscillator(engine::exact(), &task, Accuracy::Exact, &Limits::default())?;
     RunSection::judged(&task, &outcome, plan.transient, &truth.problem)
 }
 
@@ -83,6 +83,6 @@ pub(super) fn section(
 ) -> Result<RunSection, Failure> {
     let task = run_of(case.parameters, case.start, plan.transient + plan.periods)
         .ok_or_else(|| Failure::new("the start is refused"))?;
-    let outcome = run_oscillator(engine, &task, accuracy, limits)?;
+    let outcome = answer_oscillator(engine, &task, accuracy, limits)?;
     RunSection::of(&task, &outcome, plan.transient)
 }
