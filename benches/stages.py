@@ -19,7 +19,7 @@ STAGES = [
     ("certificate", re.compile(r"certif|stays_below|/certificate\.rs|/piecewise\.rs|/tangents\.rs")),
     ("time and angle", re.compile(r"after_with_forcing|instant_after|/instant\.rs")),
     ("guess", re.compile(r"hint|roughly_after|/slow_envelope\.rs|/contact_parts\.rs|/contact_ahead\.rs|guess\S* \S*/switch\.rs")),
-    ("closed form", re.compile(r"evaluate|/flow/|/remainders\.rs")),
+    ("closed form", re.compile(r"evaluate|/flow/|/(remainders|complex)\.rs")),
     ("root", re.compile(r"/root\.rs|/series\.rs")),
 ]
 JOINING = "joining"

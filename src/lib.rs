@@ -61,7 +61,7 @@ pub use state::State;
 #[doc(hidden)]
 pub mod insides {
     pub use crate::flow::constants::Constants;
-    pub use crate::model::Motion;
+    pub use crate::model::entry::Motion;
     pub use crate::numeric::{angle, remainders, two_word};
     pub use crate::run::one_sided::{Effort, OneSidedEnd};
 

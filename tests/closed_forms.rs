@@ -20,7 +20,7 @@ const DRAWS: usize = 40_000;
 const STATE_EPS: f64 = 10.0;
 
 /// Allowed error of a guard, and of the coefficients of its certificates, in eps of its largest
-/// term: what the search sets aside (`crossing::guarded::slack`) for three roundings in the guard
+/// term: what the search sets aside (`crossing::slack`) for three roundings in the guard
 /// and one in the coefficients.
 const SLACK_EPS: f64 = 4.0;
 

@@ -57,7 +57,7 @@ struct Arguments {
 const DEFAULT_TARGETS: [&str; 5] = [
     "src/crossing",
     "src/run/switch.rs",
-    "src/model/surface.rs",
+    "src/model/entry.rs",
     "src/run/variation.rs",
     "validation/harness/src/score",
 ];

@@ -6,7 +6,7 @@ use crate::guard::Guard;
 use crate::proof::{Claim, GRANTED, Verdict, examine};
 use crate::regimes::{Chance, Regime, Run};
 use percuss::insides::Motion;
-use percuss::insides::crossing::guarded::{Guarded, slack};
+use percuss::insides::crossing::{Guarded, slack};
 use percuss::{Exit, Model, Phase, Segment};
 
 /// Examples kept of a regime's switches that were not proved.

@@ -5,7 +5,7 @@
 
 use percuss::TwoWord;
 use percuss::insides::Motion;
-use percuss::insides::crossing::guarded::Guarded;
+use percuss::insides::crossing::Guarded;
 use percuss::{Model, Parameters};
 use percuss_intervals::frame::Frame;
 use percuss_intervals::proof::{Claim, GRANTED, Verdict, examine};

@@ -1,8 +1,7 @@
 //! The root of a guard that is inside its corridor at one time and outside at another.
 
 use crate::crossing::candidate::{cubic_step, evaluate_again, leaves, polished};
-use crate::crossing::guarded::Guarded;
-use crate::crossing::{Counters, Root, Side};
+use crate::crossing::{Counters, Guarded, Root, Side};
 use crate::flow::Point;
 
 /// The root between `left` (inside) and `right` (outside), by Newton's method with bisection as a

@@ -3,9 +3,8 @@
 
 use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL, SLACK};
 use crate::crossing::certificate::{Proof, ThresholdEnds};
-use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::series::{SHORT_TERMS, Series, TERMS};
-use crate::crossing::{Counters, Root, Side};
+use crate::crossing::{Counters, Guarded, Root, SearchHint, Side, slack};
 use crate::flow::Point;
 use crate::flow::steps::Steps;
 use crate::numeric::two_word::TwoWord;

@@ -3,9 +3,9 @@
 use crate::crossing::allowances::STEP_ROUNDINGS;
 use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
 use crate::crossing::contact_parts::{ContactParts, ContactShape};
-use crate::crossing::guarded::{Guarded, SearchHint, slack};
 use crate::crossing::series::{ContactOrders, Push, SHORT_REACH, Series};
 use crate::crossing::slow_envelope::quick_decay;
+use crate::crossing::{Guarded, SearchHint, slack};
 use crate::flow::constants::Constants;
 use crate::flow::contact::{Contact, orders};
 use crate::flow::damped::Damping;

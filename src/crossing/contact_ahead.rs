@@ -1,8 +1,8 @@
 //! Where a contact may end, guessed, or proved to go on.
 
 use crate::crossing::contact::Split;
-use crate::crossing::guarded::{Guarded, SearchHint};
 use crate::crossing::slow_envelope::first_root;
+use crate::crossing::{Guarded, SearchHint};
 use crate::flow::Point;
 use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;

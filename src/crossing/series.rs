@@ -199,7 +199,7 @@ pub fn short_decay<T: Real>(z: T) -> T {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::crossing::guarded::Guarded;
+    use crate::crossing::Guarded;
     use crate::flow::constants::Constants;
     use crate::flow::contact::Contact;
     use crate::flow::forcing::EntryAngle;

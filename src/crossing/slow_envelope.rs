@@ -8,10 +8,10 @@
 //! harmonic is at its crest the bound is attained, so that at most one period has to be
 //! searched each time the bound becomes positive.
 
+use crate::crossing::SearchHint;
 use crate::crossing::allowances::SHORT_LIVED;
 use crate::crossing::candidate::EXACT_SQUARE;
 use crate::crossing::contact_parts::meeting;
-use crate::crossing::guarded::SearchHint;
 use crate::crossing::stepping::safe_step;
 use crate::flow::steps::{FreeStep, Steps};
 use crate::numeric::remainders::decay;

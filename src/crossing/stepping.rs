@@ -9,8 +9,7 @@
 
 use crate::crossing::candidate::evaluate;
 use crate::crossing::certificate::Corridor;
-use crate::crossing::guarded::{Guarded, slack};
-use crate::crossing::{Counters, Crossing, Root, Side};
+use crate::crossing::{Counters, Crossing, Guarded, Root, Side, slack};
 use crate::flow::Point;
 use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;

@@ -14,11 +14,12 @@
 //! the largest force. What neither serves is left to [`crate::crossing::piecewise`].
 
 use crate::crossing::allowances::STRETCHES;
-use crate::crossing::guarded::slack;
+use crate::crossing::slack;
 use crate::flow::Point;
 use crate::flow::constants::Constants;
+use crate::flow::forcing::Turning;
 use crate::flow::no_contact::NoContact;
-use crate::flow::steps::{GRIP, SINKING, Steps, Turning};
+use crate::flow::steps::{GRIP, SINKING, Steps};
 use crate::numeric::real::Real;
 use std::borrow::Borrow;
 use std::f64::consts::TAU;

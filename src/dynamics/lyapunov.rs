@@ -39,9 +39,9 @@
 
 use super::section::Section;
 use super::tangent::{TangentVector, contact_rates};
-use crate::model::entry::Entry;
+use crate::model::Model;
+use crate::model::entry::{Entry, Motion};
 use crate::model::instant::Instant;
-use crate::model::{Model, Motion};
 use crate::phase::Phase;
 use crate::run::exit::{Endless, Exit};
 use crate::run::trajectory::Segment;

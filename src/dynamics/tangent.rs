@@ -6,7 +6,8 @@
 //! [`super::lyapunov`]). Both may shrink by more than an f64 can hold, which is why logarithms are
 //! kept: of a phase on the slider exactly, from its duration.
 
-use crate::model::{Model, Motion};
+use crate::model::Model;
+use crate::model::entry::Motion;
 use crate::run::trajectory::Segment;
 use crate::run::variation::{Matrix, P, Q, Y};
 

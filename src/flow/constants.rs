@@ -1,7 +1,7 @@
 //! What the closed forms need of the parameters, computed once.
 
 use crate::flow::damped::Damping;
-use crate::flow::forced::{Forced, Steady};
+use crate::flow::forcing::{Drive, Forced, Steady};
 use crate::numeric::number::Number;
 use crate::parameters::Parameters;
 
@@ -92,6 +92,13 @@ impl<T: Number> Constants<T> {
             forced_eighth: steady.amplitude * (omega4 * omega4),
             steady,
         }
+    }
+
+    /// What the harmonic force needs.
+    #[inline(always)]
+    pub fn drive(&self) -> Drive<T> {
+        let Self { a, omega, a_over_omega, a_over_omega2, .. } = *self;
+        Drive { a, omega, a_over_omega, a_over_omega2 }
     }
 }
 

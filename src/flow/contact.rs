@@ -1,15 +1,15 @@
 //! Contact without progression, Eqs. (15) to (17), for every damping ratio and through resonance.
 //!
 //! The state at entry and the fundamental solutions C and S ([`crate::flow::damped`]) stand for the
-//! paper's C1, C2, beta and delta; the complex response ([`crate::flow::forced`]) stands for its
+//! paper's C1, C2, beta and delta; the complex response ([`crate::flow::forcing`]) stands for its
 //! alpha and gamma.
 
-use crate::flow::complex::Complex;
 use crate::flow::constants::Constants;
 use crate::flow::damped::{Damping, Free};
-use crate::flow::forced::Response;
 use crate::flow::forcing::EntryAngle;
+use crate::flow::forcing::Response;
 use crate::flow::{Flow, Jet, Point};
+use crate::numeric::complex::Complex;
 use crate::numeric::number::Number;
 use crate::numeric::real::Real;
 use crate::state::State;
@@ -36,7 +36,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Contact<T, C> {
     fn at(&self, d: T) -> Point<T> {
         let Constants { a, b, g, two_xi, damping, forced, .. } = *self.constants.borrow();
         let State { y: y0, q: q0, .. } = self.entry;
-        let harmonic = self.angle.harmonic(self.constants.borrow(), d);
+        let harmonic = self.angle.harmonic(&self.constants.borrow().drive(), d);
         let free = damping.at(d);
         let response = forced.at(d, &harmonic.turn, &free);
 

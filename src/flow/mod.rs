@@ -4,11 +4,9 @@
 //! derivatives from the same sine, cosine and exponential, and imposes at its entry what is known
 //! there: the double zero of the gap at separation, and the threshold at a switch of force.
 
-pub mod complex;
 pub mod constants;
 pub mod contact;
 pub mod damped;
-pub mod forced;
 pub mod forcing;
 pub mod no_contact;
 pub mod progression;

@@ -38,7 +38,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
     fn at(&self, d: T) -> Point<T> {
         let Constants { b, rate, .. } = *self.constants.borrow();
         let State { p: p0, y: y0, q: q0 } = self.entry;
-        let harmonic = self.angle.harmonic(self.constants.borrow(), d);
+        let harmonic = self.angle.harmonic(&self.constants.borrow().drive(), d);
         let decay = decay(rate * d);
 
         let flying = Flying::new([b, rate], [y0, q0], d, &harmonic, &decay);

@@ -32,7 +32,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for Progression<T, C> {
     fn at(&self, d: T) -> Point<T> {
         let Constants { b, g, rate, two_xi, .. } = *self.constants.borrow();
         let Self { entry: State { y: y0, q: q0, .. }, drift_rate: w0, closing, .. } = *self;
-        let harmonic = self.angle.harmonic(self.constants.borrow(), d);
+        let harmonic = self.angle.harmonic(&self.constants.borrow().drive(), d);
         let decay = decay(rate * d);
         let slipping =
             Slipping::new([b, rate, two_xi], [y0, q0, w0, closing], d, &harmonic, &decay);

@@ -3,7 +3,7 @@
 
 use super::contact_constants::Forms;
 use super::contact_steps::{LaneParts, each};
-use super::harmonic::Angle;
+use super::forcing::Angle;
 use super::root::{Fineness, LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;
@@ -12,8 +12,8 @@ use crate::crossing::contact_parts::ContactParts;
 use crate::crossing::series::{ContactOrders, Push, REACH, short_decay};
 use crate::flow::contact::{Pressed, Pressing, orders};
 use crate::flow::damped::Free;
-use crate::flow::forced::Response;
 use crate::flow::forcing::Harmonic;
+use crate::flow::forcing::Response;
 use crate::numeric::real::Real;
 use pulp::Simd;
 

@@ -5,7 +5,7 @@ use super::wide::Wide;
 use crate::crossing::allowances::STEP_ROUNDINGS;
 use crate::flow::constants::Constants;
 use crate::flow::damped::Damping;
-use crate::flow::forced::Forced;
+use crate::flow::forcing::Forced;
 use crate::flow::steps::{ContactStep, PIECE};
 use pulp::Simd;
 

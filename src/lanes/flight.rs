@@ -10,9 +10,9 @@
 //! certifies short flights ([`crate::crossing::no_contact`]).
 
 use super::certificate::LanePiece;
+use super::forcing::Angle;
 use super::functions::shrink;
 use super::guess::LaneEnvelope;
-use super::harmonic::Angle;
 use super::root::{Fineness, LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;

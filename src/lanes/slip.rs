@@ -3,9 +3,9 @@
 //! The certificate is the solver's inequality ([`crate::crossing::progression::stops_once`]); other
 //! progressions are left to the scalar solver.
 
+use super::forcing::Angle;
 use super::functions::shrink;
 use super::guess::LaneEnvelope;
-use super::harmonic::Angle;
 use super::root::{LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;

@@ -4,7 +4,7 @@ use super::batch::{Batch, Begin, LaneTask, PhaseEnds};
 use super::contact::{LaneContact, Release};
 use super::contact_constants::Forms;
 use super::flight::{Flight, Impact};
-use super::harmonic::Angle;
+use super::forcing::Angle;
 use super::root::Fineness;
 use super::shape::Shape;
 use super::slip::{Slip, SlipStrobe, Stop};

@@ -3,16 +3,11 @@
 pub mod entry;
 pub mod instant;
 pub mod start;
-pub mod surface;
 
 use crate::error::InputError;
 use crate::flow::constants::Constants;
-use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
-use crate::flow::no_contact::NoContact;
-use crate::flow::progression::Progression;
 use crate::flow::steps::Steps;
-use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
 use crate::numeric::angle;
 use crate::numeric::two_word::TwoWord;
@@ -25,40 +20,6 @@ pub struct Model {
     constants: Constants<f64>,
     steps: Steps,
     phi: TwoWord,
-}
-
-/// The closed form of one phase, with the constants of its model.
-#[derive(Clone, Copy, Debug)]
-pub enum Motion<'a> {
-    /// The mass flies.
-    NoContact(NoContact<f64, &'a Constants<f64>>),
-    /// The mass moves with the slider's top, and the slider's bottom sticks.
-    Contact(Contact<f64, &'a Constants<f64>>),
-    /// The mass moves with the slider's top, and the slider's bottom slips.
-    Progression(Progression<f64, &'a Constants<f64>>),
-}
-
-impl<'a> Motion<'a> {
-    /// The motion that begins so, at this forcing angle.
-    #[inline]
-    pub(crate) fn new(
-        constants: &'a Constants<f64>,
-        begun: &Entry,
-        angle: EntryAngle<f64>,
-    ) -> Self {
-        let entry = begun.state;
-        let flight = |surface| Self::NoContact(NoContact { constants, entry, angle, surface });
-        match begun.mode {
-            ModeEntry::Apart => flight(None),
-            ModeEntry::Separation { h_rate } => flight(Some(h_rate)),
-            ModeEntry::Contact { offset, reference } => {
-                Self::Contact(Contact { constants, entry, angle, offset, reference })
-            }
-            ModeEntry::Progression { drift_rate, closing } => {
-                Self::Progression(Progression { constants, entry, angle, drift_rate, closing })
-            }
-        }
-    }
 }
 
 impl Model {

@@ -5,7 +5,6 @@ use crate::error::InputError;
 use crate::model::Model;
 use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
-use crate::model::surface;
 use crate::numeric::two_word::TwoWord;
 use crate::parameters::within;
 use crate::phase::Phase;
@@ -71,7 +70,7 @@ impl Model {
         let scale = state.p.abs().max(state.q.abs()).max(g);
         let limit = state.q + g;
         if (state.p - limit).abs() <= FOUR_ULPS * scale {
-            return Ok(surface::mode_entry(
+            return Ok(ModeEntry::on_surface(
                 self.constants(),
                 state,
                 None,
@@ -104,7 +103,7 @@ impl Model {
                 }
                 state.q = -(two_xi * state.y);
                 state.p = state.q + g;
-                surface::on_threshold(self.constants(), &state, 0.0, self.harmonic_force(instant))
+                ModeEntry::on_threshold(self.constants(), &state, 0.0, self.harmonic_force(instant))
             }
             Phase::Contact => {
                 state.p = state.q + g;
@@ -113,7 +112,7 @@ impl Model {
                     state.y = (settled - state.q) / two_xi;
                 }
                 if settled == 0.0 || settled == 1.0 {
-                    surface::on_threshold(
+                    ModeEntry::on_threshold(
                         self.constants(),
                         &state,
                         settled,
@@ -127,14 +126,14 @@ impl Model {
                 state.p = state.q + g;
                 if force <= 1.0 {
                     state.y = (1.0 - state.q) * self.constants().rate;
-                    surface::on_threshold(
+                    ModeEntry::on_threshold(
                         self.constants(),
                         &state,
                         1.0,
                         self.harmonic_force(instant),
                     )
                 } else {
-                    surface::slipping(self.constants(), &state)
+                    ModeEntry::slipping(self.constants(), &state)
                 }
             }
         };

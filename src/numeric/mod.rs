@@ -1,7 +1,9 @@
-//! Arithmetic beyond that of f64: two words, angles, elementary functions and their remainders.
+//! Arithmetic beyond that of f64: two words, angles, complex numbers, elementary functions and
+//! their remainders.
 
 pub mod angle;
 pub mod circle;
+pub mod complex;
 pub mod exponential;
 pub mod number;
 pub mod real;

@@ -71,7 +71,7 @@ impl Contact<f64, &Constants<f64>> {
     /// what is left.
     fn taken_up(&self, d: f64, angle: EntryAngle<f64>) -> Self {
         let Constants { a, b, g, xi, two_xi, damping, forced, .. } = *self.constants;
-        let harmonic = self.angle.harmonic(self.constants, d);
+        let harmonic = self.angle.harmonic(&self.constants.drive(), d);
         let response = forced.at(d, &harmonic.turn, &damping.at(d));
         let EntryAngle { sin, cos, .. } = self.angle;
         let driven = |re: f64, im: f64| a * (cos * re - sin * im);

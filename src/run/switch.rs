@@ -5,21 +5,21 @@
 //! of a switch's time. What few switches take is kept out of the way.
 
 use crate::crossing::candidate::CandidateSearch;
-use crate::crossing::guarded::{Guarded, SearchHint};
-use crate::crossing::{Counters, Crossing, Root};
+use crate::crossing::{Counters, Crossing, Guarded, Root, SearchHint};
+use crate::flow::Point;
 use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
-use crate::model::entry::{Entry, ModeEntry};
+use crate::model::Model;
+use crate::model::entry::{Entry, ModeEntry, Motion};
 use crate::model::instant::Instant;
-use crate::model::surface;
-use crate::model::{Model, Motion};
 use crate::numeric::two_word::TwoWord;
 use crate::run::exit::Endless;
 use crate::run::stages::{Staged, search_in_stages};
 use crate::state::State;
+use std::f64::consts::TAU;
 
 /// How a phase begins.
 #[derive(Clone, Copy, Debug)]
@@ -277,8 +277,26 @@ impl Begun {
         let before = self.entry.drift;
         let drift = if still { before } else { before.plus(TwoWord::new(point.drift)) };
         let entry = Entry { instant, state, drift, mode };
-        let about = self.angle.roughly_after(model.constants(), point.elapsed, &point.force);
+        let about = roughly_after(&self.angle, model.constants(), point);
         Self { entry, angle, guess: guess(model, &entry, about) }
+    }
+}
+
+/// The forcing angle at this point of a phase that began at `angle`, for guesses: a times its sine
+/// and cosine are good to some roundings of the force.
+#[inline]
+fn roughly_after(
+    angle: &EntryAngle<f64>,
+    constants: &Constants<f64>,
+    point: &Point<f64>,
+) -> EntryAngle<f64> {
+    let Constants { omega, per_a, per_omega, .. } = *constants;
+    let radians = angle.radians + omega * point.elapsed;
+    let turns = (radians * (1.0 / TAU)) as i64 as f64;
+    EntryAngle {
+        radians: radians - turns * TAU,
+        sin: -(point.force[1] * (per_a * per_omega)),
+        cos: point.force[0] * per_a,
     }
 }
 
@@ -305,7 +323,8 @@ impl Landing for NoContact<f64, &Constants<f64>> {
     fn land(&self, root: &Root) -> (State, ModeEntry) {
         let Root { point, .. } = root;
         let f = self.constants.two_xi * point.guard.orders[1];
-        let (state, mode) = surface::mode_entry(self.constants, point.state, Some(f), point.force);
+        let (state, mode) =
+            ModeEntry::on_surface(self.constants, point.state, Some(f), point.force);
         match mode {
             // The gap closed, by however little: a contact, which may end at once.
             ModeEntry::Separation { .. } => {

@@ -10,10 +10,9 @@ use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::progression::Progression;
 use crate::flow::{Flow, Point};
-use crate::model::entry::{Entry, ModeEntry};
+use crate::model::Model;
+use crate::model::entry::{Entry, ModeEntry, Motion};
 use crate::model::instant::Instant;
-use crate::model::surface;
-use crate::model::{Model, Motion};
 use crate::numeric::two_word::TwoWord;
 use crate::parameters::within;
 use crate::phase::Phase;
@@ -330,7 +329,7 @@ impl Segment {
                 if state.p < state.q + constants.g {
                     (state, ModeEntry::Apart)
                 } else {
-                    surface::mode_entry(constants, state, None, point.force)
+                    ModeEntry::on_surface(constants, state, None, point.force)
                 }
             }
             Motion::Contact(Contact { constants, reference, .. }) => {
@@ -338,7 +337,7 @@ impl Segment {
                 if f.min(1.0 - f) > FOUR_ULPS {
                     (state, ModeEntry::Contact { offset: guard, reference })
                 } else {
-                    surface::mode_entry(constants, state, Some(f), point.force)
+                    ModeEntry::on_surface(constants, state, Some(f), point.force)
                 }
             }
             Motion::Progression(Progression { constants, .. }) => {
@@ -346,7 +345,7 @@ impl Segment {
                     let closing = point.slider_velocity;
                     (state, ModeEntry::Progression { drift_rate: guard, closing })
                 } else {
-                    surface::mode_entry(constants, state, None, point.force)
+                    ModeEntry::on_surface(constants, state, None, point.force)
                 }
             }
         };

@@ -10,8 +10,7 @@ use crate::flow::contact::Contact;
 use crate::flow::forcing::{EntryAngle, Harmonic};
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
-use crate::model::Motion;
-use crate::model::entry::ModeEntry;
+use crate::model::entry::{ModeEntry, Motion};
 use crate::numeric::remainders::decay;
 use crate::phase::Phase;
 use crate::run::exit::Exit;
@@ -144,7 +143,7 @@ fn by_angle(
     angle: &EntryAngle<f64>,
     d: f64,
 ) -> (f64, f64, Harmonic<f64>) {
-    let harmonic = angle.harmonic(constants, d);
+    let harmonic = angle.harmonic(&constants.drive(), d);
     let turn = harmonic.turn;
     let impulse = constants.a_over_omega * (angle.cos * turn.cos_minus_1 - angle.sin * turn.sin);
     let displacement =

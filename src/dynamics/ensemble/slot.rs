@@ -7,7 +7,6 @@ use crate::lanes::{Begin, LaneTask, LaneValues, PhaseEnds, Shape};
 use crate::model::Model;
 use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
-use crate::model::surface;
 use crate::numeric::two_word::TwoWord;
 use crate::state::State;
 use std::ops::ControlFlow;
@@ -167,7 +166,7 @@ impl<'a, W: Watcher> Slot<'a, W> {
                 let mode = if f < 1.0 {
                     ModeEntry::Contact { offset: f, reference: 0.0 }
                 } else {
-                    surface::slipping(constants, &State { p: q + constants.g, y, q })
+                    ModeEntry::slipping(constants, &State { p: q + constants.g, y, q })
                 };
                 (q, mode, drift)
             }

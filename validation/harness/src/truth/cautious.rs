@@ -7,10 +7,9 @@
 
 use super::forms::TruthMotion;
 use percuss::insides::crossing::certificate::{Corridor, Proof, ThresholdEnds};
-use percuss::insides::crossing::guarded::{Guarded, SearchHint};
 use percuss::insides::crossing::search::first_crossing;
 use percuss::insides::crossing::series::Series;
-use percuss::insides::crossing::{Counters, Crossing};
+use percuss::insides::crossing::{Counters, Crossing, Guarded, SearchHint};
 use percuss::insides::flow::steps::Steps;
 use percuss::insides::flow::{Flow, Point};
 

@@ -1,16 +1,48 @@
-//! Forced oscillation in contact ([`crate::flow::forced`]): divided by P, and near resonance as a
-//! divided difference, each only where some lane needs it.
+//! What the external force does ([`crate::flow::forcing`]): its integrals, and the oscillation that
+//! it drives in contact, divided by P, and near resonance as a divided difference, each only where
+//! some lane needs it.
 
 use super::contact_constants::Forms;
-use super::functions::short_turn;
+use super::functions::{short_turn, sin_cos, turn_of};
 use super::shape::Shape;
 use super::wide::Wide;
-use crate::flow::complex::Complex;
+use super::words::Words;
 use crate::flow::damped::Free;
-use crate::flow::forced::{Differences, Response, Together};
+use crate::flow::forcing::{Differences, Drive, EntryAngle, Harmonic, Response, Together};
+use crate::numeric::complex::Complex;
 use crate::numeric::real::Real;
 use crate::numeric::remainders::Circular;
 use pulp::Simd;
+
+/// The forcing angle when a phase begins.
+pub type Angle<S> = EntryAngle<Wide<S>>;
+
+impl<S: Simd> Angle<S> {
+    /// The forcing angle that follows from omega tau0.
+    #[inline(always)]
+    pub fn new(shape: &Shape<Wide<S>>, angle: Words<S>) -> Self {
+        let (_, angle) = angle.plus(Words { high: shape.phi, low: shape.phi_low }).wrapped();
+        let (sine, cosine) = sin_cos(angle.high);
+        let sin = angle.low.times_plus(cosine, sine);
+        let cos = angle.low.times_from(sine, cosine);
+        Self { radians: angle.high, sin, cos }
+    }
+
+    /// The force less b and its first two derivatives at the beginning.
+    #[inline(always)]
+    pub fn force(&self, shape: &Shape<Wide<S>>) -> [Wide<S>; 3] {
+        let Shape { a, omega, omega2, .. } = *shape;
+        [a * self.cos, -(a * omega * self.sin), -(a * omega2 * self.cos)]
+    }
+
+    /// The force and its integrals after `d`.
+    #[inline(always)]
+    pub fn after(&self, shape: &Shape<Wide<S>>, d: Wide<S>) -> Harmonic<Wide<S>> {
+        let Shape { a, omega, a_over_omega, a_over_omega2, .. } = *shape;
+        let drive = Drive { a, omega, a_over_omega, a_over_omega2 };
+        self.turned(&drive, turn_of(omega, None, d))
+    }
+}
 
 impl<S: Simd> Response<Wide<S>> {
     /// The forced oscillation after `d`; `turn` belongs to `omega d`, `free` to `d`.
