@@ -62,7 +62,9 @@ fn switches(criterion: &mut Criterion) {
         group.bench_function(BenchmarkId::new("stepping", &name), |bencher| {
             bencher.iter(|| {
                 run.iter()
-                    .filter_map(|segment| segment.judged_duration(2.0 * segment.duration(), 1000))
+                    .filter_map(|segment| {
+                        segment.one_sided_duration(2.0 * segment.duration(), 1000)
+                    })
                     .sum::<f64>()
             });
         });

@@ -52,7 +52,8 @@ pub use parameters::{Parameter, Parameters, UnknownParameter};
 pub use phase::{Phase, UnknownPhase};
 pub use run::exit::{Endless, Exit};
 pub use run::growth::{Growth, GrowthRecorder};
-pub use run::trajectory::{Sample, Segment, Step, Trajectory};
+pub use run::sample::Sample;
+pub use run::trajectory::{Segment, Step, Trajectory};
 pub use run::variation;
 pub use state::State;
 

@@ -84,7 +84,7 @@ fn judge(model: &Model, segment: &Segment, undecidable: bool, score: &mut Agreem
         // Not a switch: the judge must not find one either, as far as it can look.
         _ => {
             let horizon = segment.duration().min(20.0 * model.period());
-            match segment.judged_duration(horizon * (1.0 - 1e-9), PATIENCE) {
+            match segment.one_sided_duration(horizon * (1.0 - 1e-9), PATIENCE) {
                 None => score.given_up += 1,
                 Some(time) if time.is_infinite() => {}
                 Some(_) if undecidable => score.undecidable += 1,
@@ -94,7 +94,7 @@ fn judge(model: &Model, segment: &Segment, undecidable: bool, score: &mut Agreem
         }
     };
     score.switches += 1;
-    let Some(judged) = segment.judged_duration(f64::INFINITY, PATIENCE) else {
+    let Some(judged) = segment.one_sided_duration(f64::INFINITY, PATIENCE) else {
         score.given_up += 1;
         return;
     };

@@ -354,7 +354,7 @@ fn switches_are_the_judges() {
                 for pair in diary.phases.windows(2) {
                     let segment = model.trajectory(pair[0]).next().expect("a phase");
                     let found = pair[1].instant.since(&pair[0].instant, omega).value();
-                    let judged = segment.judged_duration(2.0 * found, 100_000).expect("it ends");
+                    let judged = segment.one_sided_duration(2.0 * found, 100_000).expect("it ends");
                     assert!(
                         (judged - found).abs() <= 1e-7 * (1.0 + found),
                         "{judged} {found} {pair:?}"

@@ -5,8 +5,7 @@
 //! refuses.
 
 use percuss::insides::Constants;
-use percuss::insides::crossing::Guarded;
-use percuss::insides::crossing::certificate::{Proof, ThresholdEnds};
+use percuss::insides::crossing::{Guarded, Proof, ThresholdEnds};
 use percuss::insides::flow::forcing::EntryAngle;
 use percuss::insides::flow::no_contact::NoContact;
 use percuss::insides::flow::progression::Progression;

@@ -5,7 +5,7 @@ use crate::ball::Ball;
 use crate::guard::Expansion;
 use crate::hull::Piecewise;
 use crate::proof::{GRANTED, Verdict, Walk};
-use percuss::insides::crossing::certificate::Corridor;
+use percuss::insides::crossing::Corridor;
 
 impl Walk<'_> {
     /// What is true of a reported end that no earlier crossing forestalls.

@@ -12,7 +12,7 @@ use crate::ball::Ball;
 use crate::guard::{Expansion, Guard};
 use crate::hull::{Between, Piecewise, holds};
 use percuss::TwoWord;
-use percuss::insides::crossing::certificate::Corridor;
+use percuss::insides::crossing::Corridor;
 
 /// What is claimed about a phase.
 #[derive(Clone, Copy, Debug)]

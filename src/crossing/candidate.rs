@@ -2,15 +2,12 @@
 //! step and a series at the end, and one certificate says that it is the first crossing.
 
 use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL, SLACK};
-use crate::crossing::certificate::{Proof, ThresholdEnds};
 use crate::crossing::series::{SHORT_TERMS, Series, TERMS};
-use crate::crossing::{Counters, Guarded, Root, SearchHint, Side, slack};
+use crate::crossing::{Counters, Guarded, Proof, Root, SearchHint, Side, ThresholdEnds, slack};
 use crate::flow::Point;
 use crate::flow::steps::Steps;
+use crate::numeric::roots::{Cubic, EXACT_SQUARE};
 use crate::numeric::two_word::TwoWord;
-
-/// Squares below this have lost digits to underflow.
-pub const EXACT_SQUARE: f64 = 1e-290;
 
 /// A search in two parts, so that what follows an event can begin between them: it waits for the
 /// candidate's root but not for its certificate, and the processor works on both.
@@ -93,57 +90,10 @@ pub(super) fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> CubicStep
     let (above, below) = (value - corridor.high, value - corridor.low);
     let rises = above.abs() <= below.abs();
     let over = if rises { above } else { below };
-    let cubic = ExcessCubic { over, slope, bend, third };
+    let cubic = Cubic { value: over, slope, bend, third };
     let step = cubic.near_zero().unwrap_or_else(|| cubic.zero());
     let room = SLACK * point.guard.largest_term + RESIDUAL * over.abs();
     CubicStep { step, rises, settled: cubic.at(step).abs() <= room }
-}
-
-/// A guard's excess around a point.
-struct ExcessCubic {
-    over: f64,
-    slope: f64,
-    bend: f64,
-    third: f64,
-}
-
-impl ExcessCubic {
-    fn at(&self, step: f64) -> f64 {
-        let Self { over, slope, bend, third } = *self;
-        over + step * (slope + step * (0.5 * bend + step * (third * (1.0 / 6.0))))
-    }
-
-    /// The cubic's zero by reversion of the series, with one division, where that zero is so near
-    /// that the guard is almost straight. What is left is the third power of 0.02, and is put right
-    /// with the series' own remainder.
-    fn near_zero(&self) -> Option<f64> {
-        const STRAIGHT: f64 = 0.02;
-        let inverse = 1.0 / self.slope;
-        let newton = -self.over * inverse;
-        let (b, c) = (0.5 * self.bend * inverse, self.third * inverse * (1.0 / 6.0));
-        let (first, second) = (b * newton, c * newton * newton);
-        if !(first.abs() < STRAIGHT && second.abs() < STRAIGHT * STRAIGHT) {
-            return None;
-        }
-        Some(newton * (1.0 - first + 2.0 * first * first - second))
-    }
-
-    /// The cubic's zero by Newton's method: three steps do on a transversal crossing; next to a
-    /// graze it only halves at first.
-    #[cold]
-    fn zero(&self) -> f64 {
-        const STEPS: usize = 40;
-        let Self { over, slope, bend, third } = *self;
-        let mut step = -over / slope;
-        for _ in 0..STEPS {
-            let change = self.at(step) / (slope + step * (bend + step * 0.5 * third));
-            step -= change;
-            if change.abs() <= 1e-6 * step.abs() || change.is_nan() {
-                break;
-            }
-        }
-        step
-    }
 }
 
 /// The step from a point to where its cubic meets a threshold.

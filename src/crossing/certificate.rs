@@ -10,34 +10,12 @@
 //! threshold, they may equal it. With L small the hull is as narrow as the guard itself, so halving
 //! always decides, up to rounding.
 
+use crate::crossing::{Corridor, Proof, ThresholdEnds};
 use crate::numeric::real::Real;
 
 /// 8! C(8, 4): the middle Bernstein coefficient of s^4 (1 - s)^4/8! is its inverse, and all others
 /// are zero.
 pub const MIDDLE: f64 = 2_822_400.0;
-
-/// Between which values a guard stays as long as its phase lasts.
-#[derive(Clone, Copy, Debug)]
-pub struct Corridor {
-    /// The phase ends when the guard falls to this.
-    pub low: f64,
-    /// The phase ends when the guard rises to this.
-    pub high: f64,
-}
-
-impl Corridor {
-    /// How far `value` is outside: negative inside, zero on a threshold.
-    #[inline]
-    pub fn excess(&self, value: f64) -> f64 {
-        (value - self.high).larger(self.low - value)
-    }
-
-    /// Narrower by `margin` on both sides.
-    #[inline]
-    pub fn narrowed(&self, margin: f64) -> Self {
-        Self { low: self.low + margin, high: self.high - margin }
-    }
-}
 
 /// The guard, or something that bounds it, on a piece.
 #[derive(Clone, Copy, Debug)]
@@ -51,33 +29,6 @@ pub struct Piece {
     /// A lower and an upper bound of the eighth derivative inside; zero on a side where the
     /// corridor is open.
     pub eighth: (f64, f64),
-}
-
-/// What a certificate says.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Proof {
-    /// Proved: inside.
-    Inside,
-    /// Inside but for a touch that is smaller than the rounding error.
-    Touches,
-    /// Nothing is proved about the guard between the two ends.
-    Open,
-}
-
-/// The ends of a piece that are known to lie on a threshold.
-#[derive(Clone, Copy, Debug)]
-pub struct ThresholdEnds {
-    /// The left value is a threshold, exactly, by the switch that began the phase.
-    pub left: bool,
-    /// Whether the left slope is exactly zero as well.
-    pub left_double: bool,
-    /// The right end is a root.
-    pub right: bool,
-}
-
-impl ThresholdEnds {
-    /// No end is known to lie on a threshold: for pieces that bound the guard from outside.
-    pub const FREE: Self = Self { left: false, left_double: false, right: false };
 }
 
 impl Piece {

@@ -1,17 +1,17 @@
 //! The guards of a contact: the trial force rises to 1 (progression) or falls to 0 (separation).
 
 use crate::crossing::allowances::STEP_ROUNDINGS;
-use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
+use crate::crossing::certificate::Piece;
 use crate::crossing::contact_parts::{ContactParts, ContactShape};
 use crate::crossing::series::{ContactOrders, Push, SHORT_REACH, Series};
-use crate::crossing::slow_envelope::quick_decay;
-use crate::crossing::{Guarded, SearchHint, slack};
+use crate::crossing::{Corridor, Guarded, Proof, SearchHint, ThresholdEnds, slack};
 use crate::flow::constants::Constants;
 use crate::flow::contact::{Contact, orders};
 use crate::flow::damped::Damping;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::steps::Steps;
 use crate::flow::{Jet, Point};
+use crate::numeric::exponential::rough_decay;
 use crate::state::State;
 use std::borrow::Borrow;
 
@@ -64,7 +64,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         if let Damping::Over { fast, slow, .. } = self.constants.borrow().damping {
             // Eight derivatives of a stiff oscillation are rounding once its fast part has died
             // out.
-            let fast_part = self.fast_amplitude(split) * quick_decay(fast * at.elapsed);
+            let fast_part = self.fast_amplitude(split) * rough_decay(fast * at.elapsed);
             let lasting = split.free[0].abs() + fast_part;
             return by_energy.min(fast_part * fast.powi(8) + lasting * slow.powi(8));
         }

@@ -1,13 +1,13 @@
 //! Where a contact may end, guessed, or proved to go on.
 
 use crate::crossing::contact::Split;
-use crate::crossing::slow_envelope::first_root;
 use crate::crossing::{Guarded, SearchHint};
 use crate::flow::Point;
 use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::damped::Damping;
 use crate::flow::steps::Steps;
+use crate::numeric::roots::first_root;
 use std::borrow::Borrow;
 
 impl<C: Borrow<Constants<f64>>> Contact<f64, C> {

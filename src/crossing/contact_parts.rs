@@ -5,9 +5,11 @@
 //! turns both by known factors, so that places around an evaluation need none of their own.
 
 use crate::crossing::allowances::{PIECES, REST};
-use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
+use crate::crossing::certificate::Piece;
+use crate::crossing::{Corridor, Proof, ThresholdEnds};
 use crate::flow::steps::ContactStep;
 use crate::numeric::real::Real;
+use crate::numeric::roots::zero_between;
 
 /// The trial force in parts, at some place.
 #[derive(Clone, Copy, Debug)]
@@ -102,7 +104,7 @@ impl ContactParts<f64> {
             if corridor.excess(value) >= 0.0 {
                 let threshold = if value >= corridor.high { corridor.high } else { corridor.low };
                 let slopes = (last_rate * step.length, rate * step.length);
-                let share = meeting(last - threshold, value - threshold, slopes);
+                let share = zero_between(last - threshold, value - threshold, slopes);
                 return Ok(here.elapsed + step.length * share);
             }
             (here, last, last_rate) = (next, value, rate);
@@ -145,19 +147,4 @@ impl ContactParts<f64> {
         }
         false
     }
-}
-
-/// The place at which the cubic through two values with these slopes, all in units of the step, is
-/// zero.
-pub fn meeting(left: f64, right: f64, (left_slope, right_slope): (f64, f64)) -> f64 {
-    let rise = right - left;
-    let second = 3.0 * rise - 2.0 * left_slope - right_slope;
-    let third = left_slope + right_slope - 2.0 * rise;
-    // Halley's method from the chord: one step where Newton's takes two, with a division less.
-    let chord = -left / rise;
-    let value = left + chord * (left_slope + chord * (second + chord * third));
-    let slope = left_slope + chord * (2.0 * second + chord * (3.0 * third));
-    let half_bend = second + chord * (3.0 * third);
-    let t = chord - value * slope / (slope * slope - value * half_bend);
-    if t.is_finite() { t.clamp(0.0, 1.0) } else { 0.5 }
 }

@@ -1,6 +1,7 @@
 //! Where a piece is divided that its certificate leaves open.
 
-use super::certificate::{Corridor, Piece, in_order};
+use crate::crossing::Corridor;
+use crate::crossing::certificate::{Piece, in_order};
 
 impl Piece {
     /// The time at which a piece is divided: at the place of the largest excess, so that a near

@@ -51,10 +51,60 @@ pub mod tangents;
 
 use crate::flow::steps::Steps;
 use crate::flow::{Flow, Point};
+use crate::numeric::real::Real;
 use crate::numeric::two_word::TwoWord;
 use allowances::SLACK;
-use certificate::{Corridor, Proof, ThresholdEnds};
 use series::{REACH, SHORT_REACH, Series};
+
+/// Between which values a guard stays as long as its phase lasts.
+#[derive(Clone, Copy, Debug)]
+pub struct Corridor {
+    /// The phase ends when the guard falls to this.
+    pub low: f64,
+    /// The phase ends when the guard rises to this.
+    pub high: f64,
+}
+
+impl Corridor {
+    /// How far `value` is outside: negative inside, zero on a threshold.
+    #[inline]
+    pub fn excess(&self, value: f64) -> f64 {
+        (value - self.high).larger(self.low - value)
+    }
+
+    /// Narrower by `margin` on both sides.
+    #[inline]
+    pub fn narrowed(&self, margin: f64) -> Self {
+        Self { low: self.low + margin, high: self.high - margin }
+    }
+}
+
+/// What a certificate says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Proof {
+    /// Proved: inside.
+    Inside,
+    /// Inside but for a touch that is smaller than the rounding error.
+    Touches,
+    /// Nothing is proved about the guard between the two ends.
+    Open,
+}
+
+/// The ends of a piece that are known to lie on a threshold.
+#[derive(Clone, Copy, Debug)]
+pub struct ThresholdEnds {
+    /// The left value is a threshold, exactly, by the switch that began the phase.
+    pub left: bool,
+    /// Whether the left slope is exactly zero as well.
+    pub left_double: bool,
+    /// The right end is a root.
+    pub right: bool,
+}
+
+impl ThresholdEnds {
+    /// No end is known to lie on a threshold: for pieces that bound the guard from outside.
+    pub const FREE: Self = Self { left: false, left_double: false, right: false };
+}
 
 /// A hint about where the search should look next.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,16 +1,17 @@
 //! The guard of a flight: h rises to zero at the impact.
 
-use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
+use crate::crossing::certificate::Piece;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::series::{Push, PushedOrders, Series, short_decay};
-use crate::crossing::slow_envelope::{EnvelopePlace, SlowEnvelope, first_root};
+use crate::crossing::slow_envelope::{EnvelopePlace, SlowEnvelope};
 use crate::crossing::tangents::stays_below;
-use crate::crossing::{Guarded, SearchHint, slack};
+use crate::crossing::{Corridor, Guarded, Proof, SearchHint, ThresholdEnds, slack};
 use crate::flow::constants::Constants;
 use crate::flow::forcing::{EntryAngle, Turning};
 use crate::flow::no_contact::NoContact;
 use crate::flow::steps::{PULLING, Steps};
 use crate::flow::{Jet, Point};
+use crate::numeric::roots::first_root;
 use crate::state::State;
 use std::borrow::Borrow;
 

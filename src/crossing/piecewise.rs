@@ -12,7 +12,8 @@
 //! where it pulls inwards (it is concave then), else by its chord.
 
 use crate::crossing::allowances::REST;
-use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
+use crate::crossing::certificate::Piece;
+use crate::crossing::{Corridor, Proof, ThresholdEnds};
 use crate::flow::steps::{FreeStep, GRIP, PULLING, PUSHING, SINKING, Steps};
 
 /// A guard's excess in parts, at some place.

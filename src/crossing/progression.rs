@@ -1,10 +1,10 @@
 //! The guard of a progression: the drift velocity w falls to zero when the slider's bottom stops.
 
-use crate::crossing::certificate::{Corridor, Piece, Proof, ThresholdEnds};
+use crate::crossing::certificate::Piece;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::slow_envelope::SlowEnvelope;
-use crate::crossing::{Guarded, SearchHint, slack};
+use crate::crossing::{Corridor, Guarded, Proof, SearchHint, ThresholdEnds, slack};
 use crate::flow::constants::Constants;
 use crate::flow::forcing::EntryAngle;
 use crate::flow::progression::Progression;

@@ -5,9 +5,8 @@ use std::ops::ControlFlow;
 
 use crate::crossing::bracket::{bracketed, middle};
 use crate::crossing::candidate::{Candidate, CandidateSearch, evaluate_again, follow};
-use crate::crossing::certificate::{Proof, ThresholdEnds};
 use crate::crossing::limit::Limit;
-use crate::crossing::{Counters, Crossing, Guarded, Root, SearchHint, slack};
+use crate::crossing::{Counters, Crossing, Guarded, Proof, Root, SearchHint, ThresholdEnds, slack};
 use crate::flow::Point;
 use crate::flow::steps::Steps;
 

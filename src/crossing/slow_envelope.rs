@@ -10,12 +10,11 @@
 
 use crate::crossing::SearchHint;
 use crate::crossing::allowances::SHORT_LIVED;
-use crate::crossing::candidate::EXACT_SQUARE;
-use crate::crossing::contact_parts::meeting;
-use crate::crossing::stepping::safe_step;
 use crate::flow::steps::{FreeStep, Steps};
+use crate::numeric::circle::rough_sin_cos;
+use crate::numeric::exponential::rough_decay;
 use crate::numeric::remainders::decay;
-use crate::numeric::two_word::ROUNDER;
+use crate::numeric::roots::{first_root, last_root, zero_between};
 use std::f64::consts::TAU;
 
 /// The envelope of a slow motion, with the symbols of the module's text.
@@ -208,7 +207,7 @@ impl SlowEnvelope {
                     }
                     let (last, last_rate) = self.value_and_rate(&here);
                     let slopes = (last_rate * look.length, rate * look.length);
-                    return Some(here.elapsed + look.length * meeting(last, value, slopes));
+                    return Some(here.elapsed + look.length * zero_between(last, value, slopes));
                 }
             } else {
                 inside = true;
@@ -231,13 +230,13 @@ impl SlowEnvelope {
 
     /// The place at this time, at which omega d + angle has this sine and cosine.
     pub fn place(&self, elapsed: f64, (sin, cos): (f64, f64)) -> EnvelopePlace {
-        let lasting = self.exponential * quick_decay(self.rate * elapsed);
+        let lasting = self.exponential * rough_decay(self.rate * elapsed);
         EnvelopePlace { elapsed, sin, cos, lasting }
     }
 
     /// Harmonic and exponential to about 1e-7 and a per cent, without a call of a library function.
     pub fn near(&self, elapsed: f64) -> EnvelopePlace {
-        let (sin, cos) = quick_sin_cos(self.omega * elapsed);
+        let (sin, cos) = rough_sin_cos(self.omega * elapsed);
         let turned = (self.sin * cos + self.cos * sin, self.cos * cos - self.sin * sin);
         self.place(elapsed, turned)
     }
@@ -272,64 +271,4 @@ impl EnvelopePlace {
             lasting: self.lasting * decay,
         }
     }
-}
-
-/// The first t > 0 with value + rising t + curvature t^2/2 = 0, for value < 0.
-pub fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
-    let discriminant = rising * rising - 2.0 * curvature * value;
-    if discriminant.abs() < EXACT_SQUARE && curvature > 0.0 {
-        return first_root_without_squares(value, rising, curvature);
-    }
-    if discriminant < 0.0 {
-        return None; // curvature < 0 and the crest stays below zero
-    }
-    let root = discriminant.sqrt();
-    // Of the two forms of the root the one that adds.
-    let time =
-        if rising >= 0.0 { -2.0 * value / (rising + root) } else { (root - rising) / curvature };
-    (time >= 0.0 && time.is_finite()).then_some(time)
-}
-
-/// The first root of a parabola that opens upwards, where the squares in its discriminant
-/// underflow.
-#[cold]
-#[inline(never)]
-fn first_root_without_squares(value: f64, rising: f64, curvature: f64) -> Option<f64> {
-    let time = safe_step(value, rising, curvature);
-    (value < 0.0 && time.is_finite()).then_some(time)
-}
-
-/// The last t >= 0 with value + rising t + curvature t^2/2 = 0, for value >= 0 and a parabola that
-/// opens downwards or a falling line.
-fn last_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
-    let root = (rising * rising - 2.0 * curvature * value).sqrt();
-    let time =
-        if rising < 0.0 { 2.0 * value / (root - rising) } else { (rising + root) / -curvature };
-    time.is_finite().then_some(time)
-}
-
-/// Sine and cosine to about 1e-7, for angles up to 1e9 or so.
-fn quick_sin_cos(x: f64) -> (f64, f64) {
-    let turns = (x * std::f64::consts::FRAC_2_PI + ROUNDER) - ROUNDER;
-    let r = x - turns * std::f64::consts::FRAC_PI_2;
-    let s = r * r;
-    let sin = r * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * (1.0 / 5040.0))));
-    let cos = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s * (1.0 / 720.0 - s * (1.0 / 40320.0))));
-    // Quarters of the turn: which of the two, and with which sign, without a jump that cannot be
-    // foretold.
-    let quarters = turns as i64 as u64;
-    let sign = |quarters: u64| (quarters & 2) << 62;
-    let (s, c) = if quarters & 1 == 0 { (sin, cos) } else { (cos, sin) };
-    (
-        f64::from_bits(s.to_bits() ^ sign(quarters)),
-        f64::from_bits(c.to_bits() ^ sign(quarters.wrapping_add(1))),
-    )
-}
-
-/// exp(-z) to a per cent or so for z < 1, and never less than it.
-pub fn quick_decay(z: f64) -> f64 {
-    let base = 1.0 + z * (1.0 / 16.0 + z * (1.0 / 512.0));
-    let fourth = base * base * (base * base);
-    let eighth = fourth * fourth;
-    1.0 / (eighth * eighth)
 }

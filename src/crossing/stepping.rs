@@ -8,13 +8,13 @@
 //! root finder and no certificate.
 
 use crate::crossing::candidate::evaluate;
-use crate::crossing::certificate::Corridor;
-use crate::crossing::{Counters, Crossing, Guarded, Root, Side, slack};
+use crate::crossing::{Corridor, Counters, Crossing, Guarded, Root, Side, slack};
 use crate::flow::Point;
 use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::no_contact::NoContact;
 use crate::flow::progression::Progression;
+use crate::numeric::roots::safe_step;
 use crate::numeric::two_word::TwoWord;
 use std::borrow::Borrow;
 
@@ -108,17 +108,6 @@ pub fn first_crossing<G: Bending>(
         point = evaluate(phase, next, counters);
     }
     None
-}
-
-/// The smallest r > 0 with excess + slope r + bend r^2/2 = 0, for excess <= 0.
-pub(crate) fn safe_step(excess: f64, slope: f64, bend: f64) -> f64 {
-    if excess == f64::NEG_INFINITY {
-        return f64::INFINITY;
-    }
-    let excess = excess.min(0.0);
-    // The squares of forces of 1e-200 are no numbers.
-    let root = slope.hypot((2.0 * bend).sqrt() * (-excess).sqrt());
-    if slope > 0.0 { -2.0 * excess / (slope + root) } else { (root - slope) / bend }
 }
 
 fn arrival(point: &Point<f64>, corridor: &Corridor) -> Root {

@@ -8,7 +8,7 @@ use super::certificate::LanePiece;
 use super::contact::LaneContact;
 use super::contact_constants::Forms;
 use super::contact_steps::{ContactSteps, LaneParts, each};
-use super::guess::meeting;
+use super::guess::zero_between;
 use super::root::Fineness;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
@@ -58,7 +58,7 @@ impl<S: Simd> LaneContact<'_, S> {
             steps.next();
         }
         let (left, right, left_rate, right_rate, from, threshold, step) = chord;
-        let share = meeting(left, right, (left_rate * step, right_rate * step));
+        let share = zero_between(left, right, (left_rate * step, right_rate * step));
         (share.times_plus(step, from), threshold, found)
     }
 

@@ -82,7 +82,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
             here = next;
         }
         let (left, right, left_rate, right_rate, from) = chord;
-        let share = meeting(left, right, (left_rate * look, right_rate * look));
+        let share = zero_between(left, right, (left_rate * look, right_rate * look));
         (share.times_plus(look, from), found)
     }
 
@@ -144,7 +144,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
 /// The place at which the cubic through two values with these slopes, all in units of the step, is
 /// zero; if it begins with a zero, the one after that.
 #[inline(always)]
-pub fn meeting<S: Simd>(
+pub fn zero_between<S: Simd>(
     left: Wide<S>,
     right: Wide<S>,
     (left_slope, right_slope): (Wide<S>, Wide<S>),

@@ -99,6 +99,25 @@ const fn taylor(x: TwoWord) -> (TwoWord, TwoWord) {
     (x.times_two_word(sin), cos)
 }
 
+/// Sine and cosine to about 1e-7, for angles up to 1e9 or so.
+#[must_use]
+pub fn rough_sin_cos(x: f64) -> (f64, f64) {
+    let turns = (x * std::f64::consts::FRAC_2_PI + ROUNDER) - ROUNDER;
+    let r = x - turns * std::f64::consts::FRAC_PI_2;
+    let s = r * r;
+    let sin = r * (1.0 - s * (1.0 / 6.0 - s * (1.0 / 120.0 - s * (1.0 / 5040.0))));
+    let cos = 1.0 - s * (0.5 - s * (1.0 / 24.0 - s * (1.0 / 720.0 - s * (1.0 / 40320.0))));
+    // Quarters of the turn: which of the two, and with which sign, without a jump that cannot be
+    // foretold.
+    let quarters = turns as i64 as u64;
+    let sign = |quarters: u64| (quarters & 2) << 62;
+    let (s, c) = if quarters & 1 == 0 { (sin, cos) } else { (cos, sin) };
+    (
+        f64::from_bits(s.to_bits() ^ sign(quarters)),
+        f64::from_bits(c.to_bits() ^ sign(quarters.wrapping_add(1))),
+    )
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

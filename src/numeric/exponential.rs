@@ -71,6 +71,15 @@ const fn taylor(x: TwoWord) -> TwoWord {
     sum
 }
 
+/// exp(-z) to a per cent or so for z < 1, and never less than it.
+#[must_use]
+pub fn rough_decay(z: f64) -> f64 {
+    let base = 1.0 + z * (1.0 / 16.0 + z * (1.0 / 512.0));
+    let fourth = base * base * (base * base);
+    let eighth = fourth * fourth;
+    1.0 / (eighth * eighth)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -8,4 +8,5 @@ pub mod exponential;
 pub mod number;
 pub mod real;
 pub mod remainders;
+pub mod roots;
 pub mod two_word;

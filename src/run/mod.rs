@@ -3,6 +3,7 @@
 pub mod exit;
 pub mod growth;
 pub mod one_sided;
+pub mod sample;
 pub mod stages;
 pub mod switch;
 pub mod trajectory;

@@ -4,7 +4,7 @@
 //! of more digits, in which the phase begins with the same f64 values and is decided with its own
 //! rounding room.
 
-use crate::crossing::stepping::safe_step;
+use crate::crossing::{Counters, Crossing, stepping};
 use crate::flow::constants::Constants;
 use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
@@ -14,6 +14,7 @@ use crate::flow::{Flow, Point};
 use crate::model::Model;
 use crate::model::entry::Motion;
 use crate::numeric::number::Number;
+use crate::numeric::roots::safe_step;
 use crate::run::trajectory::Segment;
 use crate::state::State;
 
@@ -59,6 +60,29 @@ struct OneSidedSearch<'a, P, B> {
 }
 
 impl Segment {
+    /// How long the phase lasts by one-sided steps in f64 ([`stepping`]): infinite if it does not
+    /// end within `horizon`, none if that takes more than `evaluations`.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn one_sided_duration(&self, horizon: f64, evaluations: u64) -> Option<f64> {
+        let mut counters = Counters::default();
+        let crossing = match self.motion() {
+            Motion::NoContact(flight) => {
+                stepping::first_crossing(&flight, horizon, evaluations, &mut counters)
+            }
+            Motion::Contact(contact) => {
+                stepping::first_crossing(&contact, horizon, evaluations, &mut counters)
+            }
+            Motion::Progression(slip) => {
+                stepping::first_crossing(&slip, horizon, evaluations, &mut counters)
+            }
+        };
+        crossing.map(|crossing| match crossing {
+            Crossing::At(root) => root.elapsed().value(),
+            _ => f64::INFINITY,
+        })
+    }
+
     /// How the phase ends by one-sided steps in the arithmetic `T`.
     #[doc(hidden)]
     #[must_use]

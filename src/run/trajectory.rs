@@ -1,24 +1,18 @@
 //! The run: phases joined at their switches (the method of Section 3), as an iterator over its
 //! segments. A segment is one phase from its entry to its end, with anything inside it on demand.
 
-use crate::crossing::allowances::FOUR_ULPS;
-use crate::crossing::stepping;
-use crate::crossing::{Counters, Crossing};
+use crate::crossing::Counters;
 use crate::error::InputError;
 use crate::flow::constants::Constants;
-use crate::flow::contact::Contact;
 use crate::flow::forcing::EntryAngle;
-use crate::flow::progression::Progression;
-use crate::flow::{Flow, Point};
 use crate::model::Model;
-use crate::model::entry::{Entry, ModeEntry, Motion};
+use crate::model::entry::{Entry, Motion};
 use crate::model::instant::Instant;
 use crate::numeric::two_word::TwoWord;
 use crate::parameters::within;
 use crate::phase::Phase;
 use crate::run::exit::Exit;
 use crate::run::switch::{Begun, End, PhaseEnd, pass};
-use crate::state::State;
 use std::iter::FusedIterator;
 
 /// An iterator over the phases of a run; memory does not grow with its length.
@@ -167,16 +161,6 @@ impl Iterator for Trajectory {
     }
 }
 
-/// The motion at some instant.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Sample {
-    /// Bounded co-ordinates.
-    pub state: State,
-    /// Drift v.
-    pub v: f64,
-}
-
 /// A segment of a run: one phase from its entry to its end.
 #[derive(Clone, Copy, Debug)]
 pub struct Segment {
@@ -257,122 +241,10 @@ impl Segment {
         self.duration
     }
 
-    /// The motion a time `elapsed` after the phase began, at most [`Self::duration`].
-    #[must_use]
-    pub fn at(&self, elapsed: f64) -> Sample {
-        self.at_two_word(TwoWord::new(elapsed))
-    }
-
-    /// The state as [`Self::at`] gives it; late in a long phase the second word of the time
-    /// matters.
-    fn at_two_word(&self, elapsed: TwoWord) -> Sample {
-        let (_, state, drift) = self.shifted_to(elapsed);
-        Sample { state, v: drift.value() }
-    }
-
-    /// The nearest evaluation, and state and drift shifted by the second word of the time.
-    fn shifted_to(&self, elapsed: TwoWord) -> (Point<f64>, State, TwoWord) {
-        let point = self.point(elapsed.high);
-        let rest = elapsed.low;
-        let [p_rate, y_rate, q_rate, v_rate] = self.field(&point);
-        let State { p, y, q } = point.state;
-        let state = State { p: p + rest * p_rate, y: y + rest * y_rate, q: q + rest * q_rate };
-        let drift = self.entry.drift.plus(TwoWord::sum(point.drift, rest * v_rate));
-        (point, state, drift)
-    }
-
-    /// The right-hand sides of Eqs. (11) to (13): rates of p, y, q and v.
-    pub(crate) fn field(&self, point: &Point<f64>) -> [f64; 4] {
-        let force = self.constants.b + point.force[0];
-        let [guard, ..] = point.guard.orders;
-        let slider = point.slider_velocity;
-        match self.motion() {
-            Motion::NoContact(_) => [point.state.y, force, slider, 0.0],
-            Motion::Contact(contact) => [slider, force - (contact.reference + guard), slider, 0.0],
-            Motion::Progression(_) => [slider, force - 1.0, slider, guard],
-        }
-    }
-
-    pub(crate) fn point(&self, elapsed: f64) -> Point<f64> {
-        match self.motion() {
-            Motion::NoContact(flight) => flight.at(elapsed),
-            Motion::Contact(contact) => contact.at(elapsed),
-            Motion::Progression(progression) => progression.at(elapsed),
-        }
-    }
-
-    /// The motion at an instant inside the phase.
-    #[must_use]
-    pub fn at_instant(&self, instant: &Instant) -> Sample {
-        self.at_two_word(instant.since(&self.entry.instant, self.constants.omega))
-    }
-
     /// Time from the phase's beginning to an instant.
     #[must_use]
     pub fn elapsed_at(&self, instant: &Instant) -> f64 {
         instant.since(&self.entry.instant, self.constants.omega).value()
-    }
-
-    /// The entry at an instant inside the segment: a run that begins there goes on as this one
-    /// does, to within rounding.
-    #[must_use]
-    pub fn entry_at(&self, instant: &Instant) -> Entry {
-        let elapsed = instant.since(&self.entry.instant, self.constants.omega);
-        if elapsed.value() <= 0.0 {
-            return self.entry;
-        }
-        let (point, state, drift) = self.shifted_to(elapsed);
-        let guard = point.guard.orders[0] + elapsed.low * point.guard.orders[1];
-        let (state, mode) = match self.motion() {
-            Motion::NoContact(flight) => {
-                let constants = &flight.constants;
-                if state.p < state.q + constants.g {
-                    (state, ModeEntry::Apart)
-                } else {
-                    ModeEntry::on_surface(constants, state, None, point.force)
-                }
-            }
-            Motion::Contact(Contact { constants, reference, .. }) => {
-                let f = reference + guard;
-                if f.min(1.0 - f) > FOUR_ULPS {
-                    (state, ModeEntry::Contact { offset: guard, reference })
-                } else {
-                    ModeEntry::on_surface(constants, state, Some(f), point.force)
-                }
-            }
-            Motion::Progression(Progression { constants, .. }) => {
-                if guard > FOUR_ULPS * point.guard.largest_term {
-                    let closing = point.slider_velocity;
-                    (state, ModeEntry::Progression { drift_rate: guard, closing })
-                } else {
-                    ModeEntry::on_surface(constants, state, None, point.force)
-                }
-            }
-        };
-        Entry { instant: *instant, state, drift, mode }
-    }
-
-    /// How long the phase lasts by plain one-sided stepping (the reference): infinite if it does
-    /// not end within `horizon`, none if that takes more than `evaluations`.
-    #[doc(hidden)]
-    #[must_use]
-    pub fn judged_duration(&self, horizon: f64, evaluations: u64) -> Option<f64> {
-        let mut counters = Counters::default();
-        let crossing = match self.motion() {
-            Motion::NoContact(flight) => {
-                stepping::first_crossing(&flight, horizon, evaluations, &mut counters)
-            }
-            Motion::Contact(contact) => {
-                stepping::first_crossing(&contact, horizon, evaluations, &mut counters)
-            }
-            Motion::Progression(slip) => {
-                stepping::first_crossing(&slip, horizon, evaluations, &mut counters)
-            }
-        };
-        crossing.map(|crossing| match crossing {
-            Crossing::At(root) => root.elapsed().value(),
-            _ => f64::INFINITY,
-        })
     }
 
     /// Whether the phase is undecidable and the instant lies behind what is proved of it.

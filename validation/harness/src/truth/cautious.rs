@@ -6,10 +6,11 @@
 //! phase in 106 bits too; where one does not, the search counts it, and the run is undecided.
 
 use super::forms::TruthMotion;
-use percuss::insides::crossing::certificate::{Corridor, Proof, ThresholdEnds};
 use percuss::insides::crossing::search::first_crossing;
 use percuss::insides::crossing::series::Series;
-use percuss::insides::crossing::{Counters, Crossing, Guarded, SearchHint};
+use percuss::insides::crossing::{
+    Corridor, Counters, Crossing, Guarded, Proof, SearchHint, ThresholdEnds,
+};
 use percuss::insides::flow::steps::Steps;
 use percuss::insides::flow::{Flow, Point};
 
