@@ -20,10 +20,10 @@ STAGES = [
     ("time and angle", re.compile(r"after_with_forcing|instant_after|/instant\.rs")),
     ("guess", re.compile(r"hint|roughly_after|/slow_envelope\.rs|/contact_parts\.rs|/contact_ahead\.rs|guess\S* \S*/switch\.rs")),
     ("closed form", re.compile(r"evaluate|/flow/|/(remainders|complex)\.rs")),
-    ("root", re.compile(r"/root\.rs|/series\.rs")),
+    ("root", re.compile(r"/root\.rs|/roots\.rs|/series\.rs")),
 ]
 JOINING = "joining"
-SOLVER = re.compile(r"/src/(crossing|flow)/|/src/(run/switch|model/instant)\.rs")
+SOLVER = re.compile(r"/src/(crossing|flow)/|/src/(run/switch|model/instant|numeric/(series|roots))\.rs")
 
 
 def counts(profile, program):

@@ -63,7 +63,7 @@ pub use state::State;
 pub mod insides {
     pub use crate::flow::constants::Constants;
     pub use crate::model::entry::Motion;
-    pub use crate::numeric::{angle, remainders, two_word};
+    pub use crate::numeric::{angle, remainders, series, two_word};
     pub use crate::run::one_sided::{Effort, OneSidedEnd};
 
     pub mod crossing {

@@ -2,11 +2,11 @@
 //! step and a series at the end, and one certificate says that it is the first crossing.
 
 use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL, SLACK};
-use crate::crossing::series::{SHORT_TERMS, Series, TERMS};
 use crate::crossing::{Counters, Guarded, Proof, Root, SearchHint, Side, ThresholdEnds, slack};
 use crate::flow::Point;
 use crate::flow::steps::Steps;
 use crate::numeric::roots::{Cubic, EXACT_SQUARE};
+use crate::numeric::series::{SHORT_TERMS, Series, TERMS};
 use crate::numeric::two_word::TwoWord;
 
 /// A search in two parts, so that what follows an event can begin between them: it waits for the

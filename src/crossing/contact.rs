@@ -3,15 +3,15 @@
 use crate::crossing::allowances::STEP_ROUNDINGS;
 use crate::crossing::certificate::Piece;
 use crate::crossing::contact_parts::{ContactParts, ContactShape};
-use crate::crossing::series::{ContactOrders, Push, SHORT_REACH, Series};
 use crate::crossing::{Corridor, Guarded, Proof, SearchHint, ThresholdEnds, slack};
 use crate::flow::constants::Constants;
-use crate::flow::contact::{Contact, orders};
+use crate::flow::contact::{Contact, ContactOrders, orders};
 use crate::flow::damped::Damping;
-use crate::flow::forcing::EntryAngle;
+use crate::flow::forcing::{EntryAngle, Push};
 use crate::flow::steps::Steps;
 use crate::flow::{Jet, Point};
 use crate::numeric::exponential::rough_decay;
+use crate::numeric::series::{SHORT_REACH, Series};
 use crate::state::State;
 use std::borrow::Borrow;
 

@@ -1,7 +1,7 @@
 //! The first crossing of a guard: guessed, evaluated, certified.
 //!
-//! Most switches take one evaluation, near the guess; from there the guard's Taylor [`series`]
-//! leads to the root and the state there ([`candidate`]).
+//! Most switches take one evaluation, near the guess; from there the guard's Taylor
+//! [`series`](crate::numeric::series) leads to the root and the state there ([`candidate`]).
 //!
 //! # Why no crossing is ever passed
 //!
@@ -44,7 +44,8 @@ pub mod no_contact;
 pub mod piecewise;
 pub mod progression;
 pub mod search;
-pub mod series;
+#[cfg(test)]
+mod series_tests;
 pub mod slow_envelope;
 pub mod stepping;
 pub mod tangents;
@@ -52,9 +53,9 @@ pub mod tangents;
 use crate::flow::steps::Steps;
 use crate::flow::{Flow, Point};
 use crate::numeric::real::Real;
+use crate::numeric::series::{REACH, SHORT_REACH, Series};
 use crate::numeric::two_word::TwoWord;
 use allowances::SLACK;
-use series::{REACH, SHORT_REACH, Series};
 
 /// Between which values a guard stays as long as its phase lasts.
 #[derive(Clone, Copy, Debug)]

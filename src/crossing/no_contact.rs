@@ -2,16 +2,17 @@
 
 use crate::crossing::certificate::Piece;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
-use crate::crossing::series::{Push, PushedOrders, Series, short_decay};
 use crate::crossing::slow_envelope::{EnvelopePlace, SlowEnvelope};
 use crate::crossing::tangents::stays_below;
 use crate::crossing::{Corridor, Guarded, Proof, SearchHint, ThresholdEnds, slack};
 use crate::flow::constants::Constants;
-use crate::flow::forcing::{EntryAngle, Turning};
-use crate::flow::no_contact::NoContact;
-use crate::flow::steps::{PULLING, Steps};
+use crate::flow::forcing::{EntryAngle, Push};
+use crate::flow::no_contact::{NoContact, PushedOrders};
+use crate::flow::steps::{PULLING, Steps, Turning};
 use crate::flow::{Jet, Point};
+use crate::numeric::remainders::short_decay;
 use crate::numeric::roots::first_root;
+use crate::numeric::series::Series;
 use crate::state::State;
 use std::borrow::Borrow;
 

@@ -2,15 +2,16 @@
 
 use crate::crossing::certificate::Piece;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
-use crate::crossing::series::{Push, Series, short_decay};
 use crate::crossing::slow_envelope::SlowEnvelope;
 use crate::crossing::{Corridor, Guarded, Proof, SearchHint, ThresholdEnds, slack};
 use crate::flow::constants::Constants;
-use crate::flow::forcing::EntryAngle;
+use crate::flow::forcing::{EntryAngle, Push};
 use crate::flow::progression::Progression;
 use crate::flow::steps::{PUSHING, Steps};
 use crate::flow::{Jet, Point};
 use crate::numeric::real::Real;
+use crate::numeric::remainders::short_decay;
+use crate::numeric::series::Series;
 use crate::state::State;
 use std::borrow::Borrow;
 

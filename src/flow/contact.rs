@@ -191,3 +191,32 @@ impl<T: Number, C: Borrow<Constants<T>>> Contact<T, C> {
         ]
     }
 }
+
+/// The orders of the trial force in contact: f'' + 2 xi f' + f = F + 2 xi F'.
+pub struct ContactOrders<T> {
+    omega2: T,
+    two_xi: T,
+    drive: T,
+    next: T,
+    before: T,
+    last: T,
+}
+
+impl<T: Real> ContactOrders<T> {
+    /// The derivatives from the force F with its derivative, and f with three.
+    #[inline(always)]
+    pub fn new([omega2, two_xi]: [T; 2], [u, v]: [T; 2], [.., second, third]: [T; 4]) -> Self {
+        let drive = (two_xi * omega2).times_from(u, v);
+        let next = -(omega2 * two_xi.times_plus(v, u));
+        Self { omega2, two_xi, drive, next, before: second, last: third }
+    }
+
+    /// The next order.
+    #[inline(always)]
+    pub fn step(&mut self) -> T {
+        let order = self.two_xi.times_from(self.last, self.next) - self.before;
+        (self.before, self.last) = (self.last, order);
+        (self.drive, self.next) = (self.next, -(self.omega2 * self.drive));
+        order
+    }
+}

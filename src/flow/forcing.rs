@@ -19,10 +19,8 @@
 use crate::flow::damped::{Free, Rotation};
 use crate::numeric::complex::Complex;
 use crate::numeric::number::Number;
-use crate::numeric::real::Real;
+use crate::numeric::real::{Real, polynomial};
 use crate::numeric::remainders::{Circular, circular, circular_of};
-use crate::parameters::Parameters;
-use std::f64::consts::{PI, TAU};
 
 /// The forcing angle `omega tau + phi` when the phase begins.
 #[derive(Clone, Copy, Debug)]
@@ -97,43 +95,32 @@ impl<T: Real> EntryAngle<T> {
     }
 }
 
-/// The forcing angles at which the force changes its sign: it is negative from this forcing angle
-/// to 2 pi less it.
+/// The harmonic force after a short step, and what it has done to the velocity.
 #[derive(Clone, Copy, Debug)]
-pub struct Turning {
-    /// t within `[0, pi]`, cos t = -b/a; pi if the force is never negative, 0 if it is never
-    /// positive.
-    pub angle: f64,
-    /// sin t
-    pub sin: f64,
-    /// cos t
-    pub cos: f64,
-    /// How long the force is negative in a period.
-    pub length: f64,
-    /// The forcing period.
-    pub period: f64,
+pub struct Push<T> {
+    /// The harmonic force with its first two derivatives.
+    pub force: [T; 3],
+    /// The integral of the harmonic force over the step.
+    pub impulse: T,
 }
 
-impl Turning {
-    /// The angles of a force with these parameters.
-    #[must_use]
-    pub fn new(parameters: &Parameters) -> Self {
-        let Parameters { a, b, omega, .. } = *parameters;
-        // Without harmonic the quotient is infinite, or no number where there is no force at all.
-        let cos = (-b / a).clamp(-1.0, 1.0);
-        let cos = if cos.is_nan() { -1.0 } else { cos };
-        let angle = libm::acos(cos);
-        let length = 2.0 * (PI - angle) / omega;
-        Self { angle, sin: libm::sin(angle), cos, length, period: TAU / omega }
-    }
-
-    /// The forcing angle up to which the force is negative from `radians` on, within `[0, 2 pi)`;
-    /// none if it is not negative there.
-    #[inline]
-    #[must_use]
-    pub fn negative_until(&self, radians: f64) -> Option<f64> {
-        let end = TAU - self.angle;
-        (radians >= self.angle && radians < end).then_some(end)
+impl<T: Real> Push<T> {
+    /// The push over a `step` from an evaluation with this harmonic force and its rate.
+    #[inline(always)]
+    pub fn new(omega: T, [u, v]: [T; 2], step: T) -> Self {
+        let x = omega * step;
+        let square = x * x;
+        let sin_over_x = polynomial(square, [1.0, -1.0 / 6.0, 1.0 / 120.0, -1.0 / 5040.0]);
+        let one_less_cos = polynomial(square, [0.5, -1.0 / 24.0, 1.0 / 720.0, -1.0 / 40320.0]);
+        let (time, area) = (step * sin_over_x, step * step * one_less_cos);
+        // u'' = -omega^2 u for the harmonic force u.
+        let omega2 = omega * omega;
+        let harmonic = time.times_plus(v, (omega2 * area).times_from(u, u));
+        let rate = (omega2 * time).times_from(u, (omega2 * area).times_from(v, v));
+        Self {
+            force: [harmonic, rate, -(omega2 * harmonic)],
+            impulse: time.times_plus(u, area * v),
+        }
     }
 }
 

@@ -115,3 +115,30 @@ impl<T: Real> Flying<T> {
         }
     }
 }
+
+/// The orders of a guard that a harmonic force and an exponential make: the gap of a flight, and
+/// the drift velocity in a progression.
+pub struct PushedOrders<T> {
+    omega2: T,
+    rate: T,
+    exponential: T,
+    force: T,
+    next: T,
+}
+
+impl<T: Real> PushedOrders<T> {
+    /// The derivatives from the exponential that is left, whose third derivative is `rate`^3 times
+    /// that, and the force with its derivative.
+    #[inline(always)]
+    pub fn new([omega2, rate]: [T; 2], left: T, [force, next]: [T; 2]) -> Self {
+        Self { omega2, rate, exponential: left * (rate * rate * rate), force, next }
+    }
+
+    /// The next order.
+    #[inline(always)]
+    pub fn step(&mut self) -> T {
+        self.exponential = -(self.exponential * self.rate);
+        (self.force, self.next) = (self.next, -(self.omega2 * self.force));
+        self.next + self.exponential
+    }
+}

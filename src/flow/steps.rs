@@ -4,9 +4,10 @@
 //! for certificates, without a library function.
 
 use crate::flow::damped::Damping;
-use crate::flow::forcing::{Steady, Turning};
+use crate::flow::forcing::Steady;
 use crate::numeric::remainders::{Circular, circular};
 use crate::parameters::Parameters;
+use std::f64::consts::{PI, TAU};
 
 /// A step of fixed length outside contact.
 #[derive(Clone, Copy, Debug)]
@@ -79,6 +80,44 @@ impl ContactStep<f64> {
         let free = damping.at(length);
         let (c, s_rate) = (1.0 + free.c_minus_1, 1.0 + free.s_rate_minus_1);
         Self { length, sin, cos, c, s: free.s, s_rate }
+    }
+}
+
+/// The forcing angles at which the force changes its sign: it is negative from this forcing angle
+/// to 2 pi less it.
+#[derive(Clone, Copy, Debug)]
+pub struct Turning {
+    /// t within `[0, pi]`, cos t = -b/a; pi if the force is never negative, 0 if it is never
+    /// positive.
+    pub angle: f64,
+    /// sin t
+    pub sin: f64,
+    /// cos t
+    pub cos: f64,
+    /// How long the force is negative in a period.
+    pub length: f64,
+    /// The forcing period.
+    pub period: f64,
+}
+
+impl Turning {
+    fn new(parameters: &Parameters) -> Self {
+        let Parameters { a, b, omega, .. } = *parameters;
+        // Without harmonic the quotient is infinite, or no number where there is no force at all.
+        let cos = (-b / a).clamp(-1.0, 1.0);
+        let cos = if cos.is_nan() { -1.0 } else { cos };
+        let angle = libm::acos(cos);
+        let length = 2.0 * (PI - angle) / omega;
+        Self { angle, sin: libm::sin(angle), cos, length, period: TAU / omega }
+    }
+
+    /// The forcing angle up to which the force is negative from `radians` on, within `[0, 2 pi)`;
+    /// none if it is not negative there.
+    #[inline]
+    #[must_use]
+    pub fn negative_until(&self, radians: f64) -> Option<f64> {
+        let end = TAU - self.angle;
+        (radians >= self.angle && radians < end).then_some(end)
     }
 }
 

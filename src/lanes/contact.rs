@@ -9,12 +9,13 @@ use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::contact_parts::ContactParts;
-use crate::crossing::series::{ContactOrders, Push, REACH, short_decay};
-use crate::flow::contact::{Pressed, Pressing, orders};
+use crate::flow::contact::{ContactOrders, Pressed, Pressing, orders};
 use crate::flow::damped::Free;
-use crate::flow::forcing::Harmonic;
 use crate::flow::forcing::Response;
+use crate::flow::forcing::{Harmonic, Push};
 use crate::numeric::real::Real;
+use crate::numeric::remainders::short_decay;
+use crate::numeric::series::REACH;
 use pulp::Simd;
 
 /// Contacts; their guard is the trial force less `reference`.

@@ -18,12 +18,13 @@ use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::allowances::{LANE_SINKING, LANE_TIE, SLACK, STRETCHES};
-use crate::crossing::series::{Push, PushedOrders, REACH, short_decay};
 use crate::crossing::tangents::{EndedFlight, Tangent, TangentBound};
-use crate::flow::forcing::Harmonic;
-use crate::flow::no_contact::Flying;
+use crate::flow::forcing::{Harmonic, Push};
+use crate::flow::no_contact::{Flying, PushedOrders};
 use crate::flow::steps::{GRIP, SEPARATION_INTERVAL};
 use crate::numeric::real::Real;
+use crate::numeric::remainders::short_decay;
+use crate::numeric::series::REACH;
 use pulp::Simd;
 use std::f64::consts::TAU;
 

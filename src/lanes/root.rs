@@ -3,8 +3,8 @@
 use super::series::LATER;
 use super::wide::{Mask, Wide};
 use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL};
-use crate::crossing::series::{Series, TERMS};
 use crate::numeric::real::Real;
+use crate::numeric::series::{Series, TERMS};
 use pulp::Simd;
 
 /// A phase whose guard can be evaluated.

@@ -1,8 +1,8 @@
 //! A guard continued from an evaluation by its own derivatives ([`crate::crossing::series`]).
 
 use super::wide::{Mask, Wide};
-use crate::crossing::series::{Series, TERMS};
 use crate::numeric::real::Real;
+use crate::numeric::series::{Series, TERMS};
 use pulp::Simd;
 
 /// Orders that an evaluation does not give by itself.

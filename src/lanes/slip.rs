@@ -11,9 +11,11 @@ use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
 use crate::crossing::progression::stops_once;
-use crate::crossing::series::{PushedOrders, REACH, short_decay};
+use crate::flow::no_contact::PushedOrders;
 use crate::flow::progression::{Slipped, Slipping};
 use crate::numeric::real::Real;
+use crate::numeric::remainders::short_decay;
+use crate::numeric::series::REACH;
 use pulp::Simd;
 
 /// Progressions.

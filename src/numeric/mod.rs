@@ -9,4 +9,5 @@ pub mod number;
 pub mod real;
 pub mod remainders;
 pub mod roots;
+pub mod series;
 pub mod two_word;

@@ -7,12 +7,12 @@
 
 use super::forms::TruthMotion;
 use percuss::insides::crossing::search::first_crossing;
-use percuss::insides::crossing::series::Series;
 use percuss::insides::crossing::{
     Corridor, Counters, Crossing, Guarded, Proof, SearchHint, ThresholdEnds,
 };
 use percuss::insides::flow::steps::Steps;
 use percuss::insides::flow::{Flow, Point};
+use percuss::insides::series::Series;
 
 /// Rounding an entry to f64 moves the guard by a unit or two of its largest term; its own rounding
 /// is within the four that the search sets aside. Sixteen times those four leaves a factor of ten.
