@@ -111,7 +111,7 @@ fn one_core(ensemble: &Ensemble) {
         let (cost, gain) = (costs(k).median(), costs(0).ratio_to(&costs(k)));
         println!(
             "  {:8} {cost:6.1} ns a switch, {gain:.2} times the scalar throughput",
-            set.name()
+            set.as_str()
         );
     }
 }

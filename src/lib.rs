@@ -39,23 +39,25 @@ mod parameters;
 mod phase;
 mod run;
 mod state;
+mod unknown_name;
 
 pub use crossing::Counters;
-pub use error::{InputError, UnknownName};
+pub use error::InputError;
 pub use model::Model;
 pub use model::entry::Entry;
 pub use model::instant::Instant;
 pub use model::start::Start;
 pub use numeric::number;
 pub use numeric::two_word::TwoWord;
-pub use parameters::{Parameter, Parameters, UnknownParameter};
-pub use phase::{Phase, UnknownPhase};
+pub use parameters::{Parameter, Parameters};
+pub use phase::Phase;
 pub use run::exit::{Endless, Exit};
 pub use run::growth::{Growth, GrowthRecorder};
 pub use run::sample::Sample;
 pub use run::trajectory::{Segment, Step, Trajectory};
 pub use run::variation;
 pub use state::State;
+pub use unknown_name::UnknownName;
 
 /// What the harness needs of the solver's insides. Nothing in here is covered by semantic
 /// versioning.

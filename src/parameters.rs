@@ -1,6 +1,7 @@
 //! The six parameters of the model and their ranges.
 
 use crate::error::InputError;
+use crate::unknown_name::UnknownName;
 use std::fmt;
 use std::str::FromStr;
 
@@ -119,24 +120,11 @@ impl fmt::Display for Parameter {
     }
 }
 
-/// A text that names no parameter.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownParameter(pub String);
-
-impl fmt::Display for UnknownParameter {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?} is no parameter: accepted are a, b, xi, omega, g, phi", self.0)
-    }
-}
-
-impl std::error::Error for UnknownParameter {}
-
 impl FromStr for Parameter {
-    type Err = UnknownParameter;
+    type Err = UnknownName;
 
     fn from_str(name: &str) -> Result<Self, Self::Err> {
-        let named = Self::ALL.into_iter().find(|parameter| parameter.as_str() == name);
-        named.ok_or_else(|| UnknownParameter(name.to_owned()))
+        UnknownName::find("parameter", &Self::ALL, Self::as_str, name)
     }
 }
 

@@ -1,5 +1,6 @@
 //! The three phases of the motion (Section 2 of the paper).
 
+use crate::unknown_name::UnknownName;
 use std::fmt;
 use std::str::FromStr;
 
@@ -37,25 +38,10 @@ impl fmt::Display for Phase {
     }
 }
 
-/// A text that names no phase.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct UnknownPhase(pub String);
-
-impl fmt::Display for UnknownPhase {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{:?} is no phase: accepted are no-contact, contact, progression", self.0)
-    }
-}
-
-impl std::error::Error for UnknownPhase {}
-
 impl FromStr for Phase {
-    type Err = UnknownPhase;
+    type Err = UnknownName;
 
-    fn from_str(token: &str) -> Result<Self, Self::Err> {
-        Self::ALL
-            .into_iter()
-            .find(|phase| phase.as_str() == token)
-            .ok_or_else(|| UnknownPhase(token.to_owned()))
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        UnknownName::find("phase", &Self::ALL, Self::as_str, name)
     }
 }

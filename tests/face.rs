@@ -101,6 +101,10 @@ fn names_are_read_back() {
     for kind in continuation::BifurcationKind::ALL {
         assert_eq!(kind.to_string().parse(), Ok(kind));
     }
+    #[cfg(feature = "lanes")]
+    for set in percuss::lanes::Instructions::available() {
+        assert_eq!(set.to_string().parse(), Ok(set));
+    }
     assert_eq!(attractor::AttractorKind::QuasiPeriodic.as_str(), "quasi-periodic");
     let unknown = "cusp".parse::<continuation::BifurcationKind>().unwrap_err().to_string();
     let accepted = "accepted are fold, flip, neimark-sacker, grazing";
@@ -124,12 +128,18 @@ fn what_is_serialized_is_read_back() {
     comes_back(&Sample { state, v: 2.5 });
     comes_back(&Counters { switches: 3, ..Counters::default() });
     comes_back(&Growth { tau: 1.0, state: [2.0, 3.0, 4.0], v: 5.0 });
-    for phase in Phase::ALL {
-        assert_eq!(serde_json::to_string(&phase).unwrap(), format!("\"{phase}\""));
+    fn are_written_as_named<T: serde::Serialize + std::fmt::Display>(all: &[T]) {
+        for it in all {
+            assert_eq!(serde_json::to_string(it).unwrap(), format!("\"{it}\""));
+        }
     }
-    for parameter in Parameter::ALL {
-        assert_eq!(serde_json::to_string(&parameter).unwrap(), format!("\"{parameter}\""));
-    }
+    are_written_as_named(&Phase::ALL);
+    are_written_as_named(&Parameter::ALL);
+    are_written_as_named(&Endless::ALL);
+    are_written_as_named(&attractor::AttractorKind::ALL);
+    are_written_as_named(&continuation::BifurcationKind::ALL);
+    comes_back(&Endless::NeverReturns);
+    comes_back(&continuation::BifurcationKind::NeimarkSacker);
     let start: Start = serde_json::from_str("{\"p\": 0.5}").unwrap();
     assert_eq!(start, Start { p: 0.5, ..Start::default() });
     let refused = serde_json::from_str::<Parameters>("{\"zeta\": 1}").unwrap_err().to_string();

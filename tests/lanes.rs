@@ -222,7 +222,7 @@ fn lanes_take_nearly_all_of_an_attractor() {
             }
             let alone = tally.alone as f64 - apart as f64;
             let share = alone / (tally.alone + tally.in_lanes) as f64;
-            println!("{omega} {xi} {}: alone {share:.4}, error {largest:.2}", set.name());
+            println!("{omega} {xi} {}: alone {share:.4}, error {largest:.2}", set.as_str());
             assert!(share < 0.05, "{omega} {xi}: {tally:?}");
         }
     }
@@ -385,7 +385,7 @@ fn motions_without_end_are_seen_to_be_so() {
             Member { model: &model, entry, first, horizon: None, watcher: Until(None, 0) }
         });
         for Until(endless, strobes) in seen {
-            assert_eq!((endless, strobes), (Some(Endless::RestsForEver), 50), "{}", set.name());
+            assert_eq!((endless, strobes), (Some(Endless::RestsForEver), 50), "{}", set.as_str());
         }
     }
 }

@@ -5,8 +5,9 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The folders and files of `src/`, each allowed to use those before it.
-const LAYERS: [&str; 12] = [
+const LAYERS: [&str; 13] = [
     "numeric",
+    "unknown_name",
     "phase",
     "error",
     "parameters",

@@ -34,6 +34,13 @@ pub const LANE_FINE_PIECES: usize = 16;
 /// Stretches of negative force in which a flight is certified by tangents.
 pub const STRETCHES: usize = 8;
 
+/// The forcing angle up to which one interpolant is tried for a whole flight or progression.
+pub const LONGEST_ANGLE: f64 = 4.0;
+
+/// Steps in which the end of a contact is guessed. Lanes guess other ends in as many; the solver
+/// goes on there.
+pub const GUESS_STEPS: usize = 24;
+
 /// Evaluations in which a guess has to lead to a root.
 pub const ATTEMPTS: usize = 5;
 

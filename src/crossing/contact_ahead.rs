@@ -1,5 +1,6 @@
 //! Where a contact may end, guessed, or proved to go on.
 
+use crate::crossing::allowances::GUESS_STEPS;
 use crate::crossing::contact::Split;
 use crate::crossing::{Guarded, SearchHint};
 use crate::flow::Point;
@@ -136,7 +137,6 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     #[inline(always)]
     fn exit(&self, steps: &Steps, left: &Point<f64>, split: &Split) -> Result<f64, f64> {
         const QUICK: usize = 16;
-        const STEPS: usize = 24;
         const DEAD: f64 = 40.0; // exp(-40) is below the rounding of what it is added to
         let shape = self.shape(0.0, 0.0);
         let mut parts = self.parts(left, split);
@@ -151,6 +151,6 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
                 }
             }
         }
-        parts.first_exit(&shape, look, STEPS).map_err(|further| further.elapsed)
+        parts.first_exit(&shape, look, GUESS_STEPS).map_err(|further| further.elapsed)
     }
 }

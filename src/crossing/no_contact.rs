@@ -1,5 +1,6 @@
 //! The guard of a flight: h rises to zero at the impact.
 
+use crate::crossing::allowances::LONGEST_ANGLE;
 use crate::crossing::certificate::Piece;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::slow_envelope::{EnvelopePlace, SlowEnvelope};
@@ -15,9 +16,6 @@ use crate::numeric::roots::first_root;
 use crate::numeric::series::Series;
 use crate::state::State;
 use std::borrow::Borrow;
-
-/// The forcing angle up to which one piece may do.
-const SHORT: f64 = 4.0;
 
 impl<C: Borrow<Constants<f64>>> NoContact<f64, C> {
     /// An upper bound of the eighth derivative of h from `at` on. Its lower bound is of no use,
@@ -162,7 +160,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
         let Constants { omega, rate, .. } = *self.constants.borrow();
-        if length * rate <= PULLING && length * omega <= SHORT {
+        if length * rate <= PULLING && length * omega <= LONGEST_ANGLE {
             let piece = Piece {
                 left: left.guard.orders,
                 right: right.guard.orders,
@@ -170,7 +168,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
                 eighth: (0.0, self.eighth_most(left)),
             };
             let verdict = piece.verdict(&self.corridor(), ends, slack);
-            if verdict != Proof::Open || length * omega < 0.5 * SHORT {
+            if verdict != Proof::Open || length * omega < 0.5 * LONGEST_ANGLE {
                 return verdict;
             }
         }

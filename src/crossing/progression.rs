@@ -1,5 +1,6 @@
 //! The guard of a progression: the drift velocity w falls to zero when the slider's bottom stops.
 
+use crate::crossing::allowances::LONGEST_ANGLE;
 use crate::crossing::certificate::Piece;
 use crate::crossing::piecewise::{FreeParts, FreeShape, PieceEnd, PiecewiseCertificate};
 use crate::crossing::slow_envelope::SlowEnvelope;
@@ -14,9 +15,6 @@ use crate::numeric::remainders::short_decay;
 use crate::numeric::series::Series;
 use crate::state::State;
 use std::borrow::Borrow;
-
-/// The forcing angle up to which one piece may do.
-const SHORT: f64 = 4.0;
 
 impl<C: Borrow<Constants<f64>>> Progression<f64, C> {
     /// The envelope of -w, which rises to zero.
@@ -103,7 +101,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         let slack = slack(self, left, right);
         let length = right.elapsed - left.elapsed;
         let Constants { omega, rate, .. } = *self.constants.borrow();
-        if length * rate <= PUSHING && length * omega <= SHORT {
+        if length * rate <= PUSHING && length * omega <= LONGEST_ANGLE {
             let piece = Piece {
                 left: left.guard.orders,
                 right: right.guard.orders,
@@ -111,7 +109,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
                 eighth: (self.eighth_least(left), 0.0),
             };
             let verdict = piece.verdict(&self.corridor(), ends, slack);
-            if verdict != Proof::Open || length * omega < 0.5 * SHORT {
+            if verdict != Proof::Open || length * omega < 0.5 * LONGEST_ANGLE {
                 return verdict;
             }
         }

@@ -12,12 +12,9 @@ use super::guess::zero_between;
 use super::root::Fineness;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
-use crate::crossing::allowances::{LANE_FINE_PIECES, PIECES, REST, SLACK};
+use crate::crossing::allowances::{GUESS_STEPS, LANE_FINE_PIECES, PIECES, REST, SLACK};
 use crate::numeric::real::Real;
 use pulp::Simd;
-
-/// Steps of a guess, after which a lane is left to the scalar solver.
-const STEPS: usize = 24;
 
 impl<S: Simd> LaneContact<'_, S> {
     /// When the force may first leave its corridor, through which threshold, and where that is
@@ -33,7 +30,7 @@ impl<S: Simd> LaneContact<'_, S> {
         let mut found = zero.less(zero);
         let mut open = !found;
         let mut chord = (value, zero, rate, zero, zero, zero, zero);
-        for _ in 0..STEPS {
+        for _ in 0..GUESS_STEPS {
             let step = steps.now.length;
             here = here.after(&steps.now);
             let [next, next_rate, ..] = here.orders(self.shape, self.reference);

@@ -17,11 +17,11 @@ use super::root::{Fineness, LanePhase, LaneRoot, find};
 use super::series::LATER;
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
-use crate::crossing::allowances::{LANE_SINKING, LANE_TIE, SLACK, STRETCHES};
+use crate::crossing::allowances::{LANE_SINKING, LANE_TIE, LONGEST_ANGLE, SLACK, STRETCHES};
 use crate::crossing::tangents::{EndedFlight, Tangent, TangentBound};
 use crate::flow::forcing::{Harmonic, Push};
 use crate::flow::no_contact::{Flying, PushedOrders};
-use crate::flow::steps::{GRIP, SEPARATION_INTERVAL};
+use crate::flow::steps::{GRIP, PULLING, SEPARATION_INTERVAL};
 use crate::numeric::real::Real;
 use crate::numeric::remainders::short_decay;
 use crate::numeric::series::REACH;
@@ -224,9 +224,6 @@ impl<S: Simd> Flight<'_, S> {
     /// which these are h', the slider's velocity, the force and its rate.
     #[inline(always)]
     fn hops(&self, root: Wide<S>, [slope, spring, force, force_rate]: [Wide<S>; 4]) -> Mask<S> {
-        /// Decay times and forcing angle up to which that may do.
-        const LIFE: f64 = 10.0;
-        const ANGLE: f64 = 4.0;
         let Shape { a, b, omega, omega2, rate, .. } = *self.shape;
         let zero = root.same(0.0);
         let orders = |spring: Wide<S>, force: Wide<S>, force_rate: Wide<S>| {
@@ -246,7 +243,7 @@ impl<S: Simd> Flight<'_, S> {
             to_root: everywhere,
         };
         let terms = (a + b.magnitude()) * root * root + self.q * (rate * root + 1.0);
-        let short = (root * rate).below(LIFE) & (root * omega).below(ANGLE);
+        let short = (root * rate).below(PULLING) & (root * omega).below(LONGEST_ANGLE);
         let lowest = zero.same(f64::NEG_INFINITY);
         short & piece.stays_between(lowest, zero, terms * SLACK)
     }

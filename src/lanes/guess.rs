@@ -4,6 +4,7 @@
 use super::functions::{FURTHEST, sin_cos};
 use super::shape::Shape;
 use super::wide::{Mask, Wide};
+use crate::crossing::allowances::GUESS_STEPS;
 use crate::numeric::real::Real;
 use pulp::Simd;
 
@@ -39,9 +40,6 @@ struct LanePlace<S: Simd> {
     rate: Wide<S>,
 }
 
-/// Steps after which a lane is left to the scalar solver.
-const STEPS: usize = 24;
-
 impl<S: Simd> LaneEnvelope<'_, S> {
     /// When the guard may first rise to zero, and in which lanes that is told.
     #[inline(always)]
@@ -55,7 +53,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
         let mut chord = (here.value, zero, here.rate, zero, zero);
         let mut open = !(zero.less(zero));
         let mut found = zero.less(zero);
-        for _ in 0..STEPS {
+        for _ in 0..GUESS_STEPS {
             let closed = open & (self.parabola(here.elapsed) + self.amplitude).less(zero);
             if closed.any() {
                 here = self.skipped(here, closed);

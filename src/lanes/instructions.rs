@@ -2,7 +2,10 @@
 
 use super::batch::{Batch, LaneTask};
 use super::work::BatchWork;
+use crate::unknown_name::UnknownName;
 use pulp::Simd;
+use std::fmt;
+use std::str::FromStr;
 
 /// How many motions are solved at once, and by which instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +20,21 @@ enum Set {
     Avx512,
     #[cfg(target_arch = "aarch64")]
     Neon,
+}
+
+impl fmt::Display for Instructions {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+impl FromStr for Instructions {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        let all = Self::available();
+        UnknownName::find("instruction set of this processor", &all, Self::as_str, name)
+    }
 }
 
 /// The processor's permission to use a set.
@@ -55,7 +73,7 @@ impl Instructions {
 
     /// The usual name of the instruction set.
     #[must_use]
-    pub const fn name(self) -> &'static str {
+    pub const fn as_str(self) -> &'static str {
         match self.0 {
             Set::One => "scalar",
             #[cfg(target_arch = "x86_64")]

@@ -2,6 +2,7 @@
 
 use crate::crossing::allowances::FOUR_ULPS;
 use crate::error::InputError;
+use crate::flow::constants::Constants;
 use crate::model::Model;
 use crate::model::entry::{Entry, ModeEntry};
 use crate::model::instant::Instant;
@@ -90,51 +91,35 @@ impl Model {
         phase: Phase,
         instant: &Instant,
     ) -> Result<(State, ModeEntry), InputError> {
-        let two_xi = self.constants().two_xi;
-        let g = self.parameters().g;
-        let mut state = given;
-        let force = two_xi * state.y + state.q;
-        let mode = match phase {
+        let State { y, q, .. } = given;
+        let Constants { two_xi, rate, g, .. } = *self.constants();
+        let force = two_xi * y + q;
+        let at = |y: f64, q: f64| State { p: q + g, y, q };
+        let on = |threshold: f64, state: State| {
+            let force = self.harmonic_force(instant);
+            (state, ModeEntry::on_threshold(self.constants(), &state, threshold, force))
+        };
+        let (state, mode) = match phase {
             Phase::NoContact => {
-                let near =
-                    (state.p - (state.q + g)).abs() <= PROJECTION && force.abs() <= PROJECTION;
+                let near = (given.p - (q + g)).abs() <= PROJECTION && force.abs() <= PROJECTION;
                 if !near {
-                    return self.apart(state, instant);
+                    return self.apart(given, instant);
                 }
-                state.q = -(two_xi * state.y);
-                state.p = state.q + g;
-                ModeEntry::on_threshold(self.constants(), &state, 0.0, self.harmonic_force(instant))
+                on(0.0, at(y, -(two_xi * y)))
             }
             Phase::Contact => {
-                state.p = state.q + g;
                 let settled = force.clamp(0.0, 1.0);
-                if settled != force {
-                    state.y = (settled - state.q) / two_xi;
-                }
+                let state = at(if settled == force { y } else { (settled - q) / two_xi }, q);
                 if settled == 0.0 || settled == 1.0 {
-                    ModeEntry::on_threshold(
-                        self.constants(),
-                        &state,
-                        settled,
-                        self.harmonic_force(instant),
-                    )
+                    on(settled, state)
                 } else {
-                    ModeEntry::Contact { offset: settled, reference: 0.0 }
+                    (state, ModeEntry::Contact { offset: settled, reference: 0.0 })
                 }
             }
+            Phase::Progression if force <= 1.0 => on(1.0, at((1.0 - q) * rate, q)),
             Phase::Progression => {
-                state.p = state.q + g;
-                if force <= 1.0 {
-                    state.y = (1.0 - state.q) * self.constants().rate;
-                    ModeEntry::on_threshold(
-                        self.constants(),
-                        &state,
-                        1.0,
-                        self.harmonic_force(instant),
-                    )
-                } else {
-                    ModeEntry::slipping(self.constants(), &state)
-                }
+                let state = at(y, q);
+                (state, ModeEntry::slipping(self.constants(), &state))
             }
         };
         near(phase, "p", given.p, state.p)?;

@@ -1,7 +1,7 @@
 //! How a segment ends.
 
-use crate::error::UnknownName;
 use crate::model::entry::Entry;
+use crate::unknown_name::UnknownName;
 use std::fmt;
 use std::str::FromStr;
 
@@ -9,13 +9,17 @@ use std::str::FromStr;
 // A whole word: a switch has other numbers at its place in an `Exit`. Behind a byte those would be
 // copied across the words in which they were written, for which a processor has to wait.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[repr(u64)]
 pub enum Endless {
     /// The mass never returns to the slider (b too small).
+    #[cfg_attr(feature = "serde", serde(rename = "never returns"))]
     NeverReturns,
     /// The slider's bottom never stops (b too large).
+    #[cfg_attr(feature = "serde", serde(rename = "never stops"))]
     NeverStops,
     /// The mass rests on the slider for ever (a small).
+    #[cfg_attr(feature = "serde", serde(rename = "rests for ever"))]
     RestsForEver,
 }
 

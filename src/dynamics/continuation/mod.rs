@@ -42,7 +42,7 @@ mod point;
 
 use super::orbit::{NoOrbit, Orbit, ShootingIterate};
 use super::strobe::StrobePoint;
-use crate::error::UnknownName;
+use crate::unknown_name::UnknownName;
 pub use doubling::{Criticality, Doubling};
 pub use family::Family;
 use follow::BranchWalk;
@@ -72,6 +72,8 @@ pub struct BranchPoint {
 
 /// What can happen to an orbit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum BifurcationKind {
     /// A multiplier passes one: the branch turns in the parameter.
     Fold,

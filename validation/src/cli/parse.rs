@@ -2,7 +2,7 @@
 
 use crate::case::accepted;
 use percuss::dynamics::attractor::Window;
-use percuss::{Parameter, Phase, UnknownParameter};
+use percuss::{Parameter, Phase, UnknownName};
 use regex::Regex;
 use std::fmt;
 
@@ -99,7 +99,7 @@ pub(super) fn pattern(text: &str) -> Result<Regex, String> {
 
 /// A parameter's name.
 pub(super) fn parameter(text: &str) -> Result<Parameter, String> {
-    text.parse().map_err(|_: UnknownParameter| "accepted are a, b, xi, omega, g, phi".to_owned())
+    text.parse().map_err(|_: UnknownName| "accepted are a, b, xi, omega, g, phi".to_owned())
 }
 
 /// NXxNY, cells along p and along y.
