@@ -59,8 +59,7 @@ pub use run::variation;
 pub use state::State;
 pub use unknown_name::UnknownName;
 
-/// What the harness needs of the solver's insides. Nothing in here is covered by semantic
-/// versioning.
+/// The solver's insides, for the harness and the tests. Semantic versioning does not cover them.
 #[doc(hidden)]
 pub mod insides {
     pub use crate::flow::constants::Constants;

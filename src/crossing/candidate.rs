@@ -1,5 +1,5 @@
-//! How almost every event is found: a guess leads to a candidate, with a closed-form evaluation a
-//! step and a series at the end, and one certificate says that it is the first crossing.
+//! Finds almost every event: from a guess, one closed-form evaluation per step and a Taylor series
+//! at the end lead to a candidate, and one certificate proves that it is the first crossing.
 
 use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL, SLACK};
 use crate::crossing::{Counters, Guarded, Proof, Root, SearchHint, Side, ThresholdEnds, slack};
@@ -100,9 +100,10 @@ pub(super) fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> CubicStep
 pub(super) struct CubicStep {
     /// The step.
     pub step: f64,
-    /// Whether that is the upper threshold.
+    /// Whether that threshold is the upper one.
     pub rises: bool,
-    /// Whether it does meet it there. Next to a crest that misses, Newton wanders.
+    /// Whether the cubic meets the threshold there. Next to a crest that misses the threshold
+    /// Newton's method wanders.
     settled: bool,
 }
 

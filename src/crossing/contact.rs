@@ -104,8 +104,9 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         f64::EPSILON * weights * left.guard.largest_term.max(right.guard.largest_term)
     }
 
-    /// A touch in a piece whose room is wide is none yet: the piece is divided first, unless the
-    /// guard is within rounding of its threshold at both ends, where shorter pieces touch as well.
+    /// The verdict, in which a touch counts only where the rounding room of the piece is narrow: a
+    /// piece with a wide room is divided first, unless the guard is within rounding of its threshold
+    /// at both ends, where shorter pieces touch as well.
     #[inline(always)]
     fn near(&self, verdict: Proof, room: f64, ends: [&Point<f64>; 2]) -> Proof {
         if verdict != Proof::Touches || room == 0.0 {
@@ -168,7 +169,7 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
         }
     }
 
-    /// What the parts have in common.
+    /// What all places of the contact have in common.
     pub(super) fn shape(&self, eighth: f64, slack: f64) -> ContactShape {
         let Constants { b, two_xi, omega, .. } = *self.constants.borrow();
         ContactShape {

@@ -61,7 +61,7 @@ impl<T: Real> ContactParts<T> {
     }
 }
 
-/// What the parts have in common at all places.
+/// The constants that all places of a contact have in common.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactShape {
     /// b less the guard's reference.

@@ -60,9 +60,9 @@ use allowances::SLACK;
 /// Between which values a guard stays as long as its phase lasts.
 #[derive(Clone, Copy, Debug)]
 pub struct Corridor {
-    /// The phase ends when the guard falls to this.
+    /// The lower threshold: the phase ends when the guard falls to it.
     pub low: f64,
-    /// The phase ends when the guard rises to this.
+    /// The upper threshold: the phase ends when the guard rises to it.
     pub high: f64,
 }
 
@@ -73,14 +73,14 @@ impl Corridor {
         (value - self.high).larger(self.low - value)
     }
 
-    /// Narrower by `margin` on both sides.
+    /// The corridor that is narrower by `margin` on both sides.
     #[inline]
     pub fn narrowed(&self, margin: f64) -> Self {
         Self { low: self.low + margin, high: self.high - margin }
     }
 }
 
-/// What a certificate says.
+/// The answer of a certificate.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Proof {
     /// Proved: inside.
@@ -114,9 +114,9 @@ pub enum SearchHint {
     Root(f64),
     /// Go on to this elapsed time; nothing is guessed before it.
     Onward(f64),
-    /// No crossing before this elapsed time (proved).
+    /// It is proved that there is no crossing before this elapsed time.
     ClearUntil(f64),
-    /// No crossing from this elapsed time on (proved).
+    /// It is proved that there is no crossing from this elapsed time on.
     ClearFrom(f64),
 }
 
@@ -230,9 +230,9 @@ pub struct Root {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u64)]
 pub enum Side {
-    /// The guard falls through it.
+    /// The lower threshold, through which the guard falls.
     Low,
-    /// The guard rises through it.
+    /// The upper threshold, through which the guard rises.
     High,
 }
 
@@ -258,7 +258,7 @@ impl Root {
     }
 }
 
-/// What the search has cost and met so far.
+/// Counts of the events, evaluations, undecidable touches and divided pieces so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Counters {

@@ -31,11 +31,11 @@ pub struct FreeParts {
     pub quarter: f64,
     /// The exponential.
     pub lasting: f64,
-    /// Rounding room of all that.
+    /// Rounding room of the guard's parts.
     pub room: f64,
 }
 
-/// What the parts have in common at all places.
+/// The constants that all places of a motion without contact have in common.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeShape {
     /// The parabola's second derivative.

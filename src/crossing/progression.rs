@@ -178,9 +178,9 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
     }
 }
 
-/// Whether w, not negative at the start, has no root before one: proved, or not known. It takes a,
-/// b, omega and 1/(2 xi); the velocity of the slider's top and w at the start; and that velocity at
-/// the root.
+/// Tries to prove that the drift velocity w, not negative at the start, has no root before the one
+/// given; false means that nothing is proved. The arguments are a, b, omega and 1/(2 xi); the
+/// velocity of the slider's top and w at the start; and that velocity at the root.
 ///
 /// w' = F - 1 + lag rate, w'' = F' - lag rate^2, and the slider's lag only decays. With c = 1 - a -
 /// b and a omega < c rate, w is concave as long as lag rate >= c and falls from then on; it falls

@@ -72,25 +72,25 @@ struct Search<'a, G> {
     left: Point<f64>,
     /// What is known of the ends of the piece that begins there.
     ends: ThresholdEnds,
-    /// The advice where to go on from there.
+    /// The hint that says where to go on from `left`.
     hint: SearchHint,
-    /// What the advice has led to, if it has been followed already.
+    /// The candidate to which the hint has led, if it has been followed already.
     followed: Option<Candidate>,
-    /// The least step that gets on.
+    /// The smallest step that counts as progress.
     least_step: f64,
-    /// The time after which it is over, and what it ends with there.
+    /// The time at which the search is over, and its answer there.
     horizon: f64,
     over: Crossing,
     limit: Limit,
 }
 
-/// What is to be done next.
+/// The next step of the search.
 enum Proposal {
-    /// Nothing: the search is over.
+    /// The search is over, with this answer.
     Over(Crossing),
-    /// To go on from a point before which the advice itself excludes a crossing.
+    /// The search goes on from this point, because the hint excludes a crossing before it.
     Clear(Point<f64>),
-    /// To certify everything up to here.
+    /// Everything up to here is to be certified.
     Target(Target),
 }
 
@@ -132,7 +132,7 @@ impl<'a, G: Guarded> Search<'a, G> {
         }
     }
 
-    /// What the advice comes to.
+    /// Turns the current hint into the next step.
     fn proposal(&mut self, counters: &mut Counters) -> Proposal {
         let (phase, horizon) = (self.phase, self.horizon);
         match onwards(self.hint, self.left.elapsed, &mut self.least_step) {
@@ -206,7 +206,7 @@ const FIRST_STEP: f64 = 0.1;
 /// from settling: it is followed in steps.
 const CREEPING: f64 = 1e-3;
 
-/// A hint that makes progress. A guess that falls on `left` is no guess; that, or an advice to go
+/// A hint that makes progress. A guess that falls on `left` is no guess; that, or a hint to go
 /// on by less than the least step, is replaced by that step, which doubles each time.
 fn onwards(hint: SearchHint, left: f64, least_step: &mut f64) -> SearchHint {
     let resolution = 8.0 * f64::EPSILON * left;

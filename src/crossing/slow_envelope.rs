@@ -43,11 +43,11 @@ pub struct SlowEnvelope {
 /// What the bound says about the time from some instant on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EnvelopeBound {
-    /// It is positive now, or will be from this elapsed time on at the earliest.
+    /// The bound is negative until this elapsed time and may be positive afterwards.
     OpenFrom(f64),
-    /// It is negative from now on.
+    /// The bound is negative from now on.
     Never,
-    /// It may be positive until this elapsed time, and never is afterwards.
+    /// The bound may be positive until this elapsed time, and is negative afterwards.
     NeverAfter(f64),
 }
 

@@ -31,7 +31,7 @@ pub struct Diagram {
     pub parameters: Parameters,
     /// The start of the first value, and of every value with [`Follow::Reset`].
     pub start: Start,
-    /// What varies.
+    /// The parameter that varies.
     pub parameter: Parameter,
     /// The parameter's first value.
     pub from: f64,
@@ -122,7 +122,7 @@ impl Diagram {
         Instant::at(model.parameters().omega, self.start.tau, self.start.cycle)
     }
 
-    /// Steps that know nothing of each other.
+    /// Computes steps that do not depend on each other.
     fn reset(
         &self,
         steps: &[u32],

@@ -186,7 +186,7 @@ fn quasi_triangular(mut m: Jacobian) -> [ReIm; 3] {
     [[f64::NAN, 0.0]; 3]
 }
 
-/// What has to be mirrored for the lower left entry to vanish.
+/// The vector of the reflection that makes the lower left entry zero.
 fn hessenberg(m: &Jacobian) -> StrobePoint {
     [0.0, m[1][0], m[2][0]]
 }

@@ -101,7 +101,7 @@ pub fn sections(
     kept.into_iter().map(|it| it.strobes).collect()
 }
 
-/// Keeps the first so many strobes.
+/// A watcher that keeps the first strobes of a motion.
 pub(super) struct KeptStrobes<'a> {
     wanted: usize,
     pub strobes: Vec<Entry>,

@@ -37,7 +37,7 @@ pub struct StrobeMap {
     instant: Instant,
 }
 
-/// What some forcing periods do to a point of the section.
+/// The image of a point of the section after some forcing periods, with the map's derivative.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Passage {
     /// The motion after these forcing periods, ready to go on: its drift goes on from where it

@@ -46,7 +46,7 @@ impl TangentVector {
         }
     }
 
-    /// Carries both a time `elapsed` on inside a phase.
+    /// Carries both vectors on by a time `elapsed` inside a phase.
     pub fn flow(&mut self, segment: &Segment, elapsed: f64) {
         match segment.motion() {
             Motion::NoContact(_) => {
@@ -71,7 +71,7 @@ impl TangentVector {
         }
     }
 
-    /// Carries both over the switch that ends a phase.
+    /// Carries both vectors over the event that ends a phase.
     pub fn switch(&mut self, segment: &Segment) {
         if !matches!(segment.motion(), Motion::NoContact(_)) {
             return;

@@ -72,7 +72,7 @@ impl<T: Number, C: Borrow<Constants<T>>> Flow<T> for NoContact<T, C> {
     }
 }
 
-/// What a flight does in a time, however it began.
+/// The change of the motion over a time in flight, however the flight began.
 pub struct Flying<T> {
     /// What the static force lifts the mass by.
     pub lift: T,

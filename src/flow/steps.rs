@@ -12,21 +12,21 @@ use std::f64::consts::{PI, TAU};
 /// A step of fixed length outside contact.
 #[derive(Clone, Copy, Debug)]
 pub struct FreeStep {
-    /// How long it is.
+    /// Length of the step.
     pub length: f64,
-    /// Sine of x = omega times that.
+    /// Sine of x = omega times the length.
     pub sin: f64,
     /// Cosine of x.
     pub cos: f64,
     /// exp(-rate length)
     pub decay: f64,
-    /// sin x/omega: what a harmonic adds to its integral,
+    /// sin x/omega: what a harmonic adds to its integral.
     pub speed: f64,
-    /// (1 - cos x)/omega: what its quadrature adds.
+    /// (1 - cos x)/omega: what the harmonic a quarter period away adds to that integral.
     pub sag: f64,
-    /// (1 - cos x)/omega^2: what a harmonic adds to its second integral,
+    /// (1 - cos x)/omega^2: what a harmonic adds to its second integral.
     pub fall: f64,
-    /// (x - sin x)/omega^2: what its quadrature adds.
+    /// (x - sin x)/omega^2: what the harmonic a quarter period away adds to that integral.
     pub drop: f64,
 }
 
@@ -59,11 +59,11 @@ impl FreeStep {
 /// A step of fixed length in contact.
 #[derive(Clone, Copy, Debug)]
 pub struct ContactStep<T> {
-    /// How long it is.
+    /// Length of the step.
     pub length: T,
-    /// Sine of omega times that.
+    /// Sine of omega times the length.
     pub sin: T,
-    /// Cosine of omega times that.
+    /// Cosine of omega times the length.
     pub cos: T,
     /// C of the free oscillation ([`crate::flow::damped`]).
     pub c: T,

@@ -3,7 +3,7 @@
 use super::shape::Shape;
 use super::wide::LaneValues;
 
-/// What the lanes of a batch have in common.
+/// The task that all lanes of a batch have in common.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(usize)]
 pub enum LaneTask {
@@ -38,7 +38,7 @@ impl LaneTask {
         Self::SlipStrobe,
     ];
 
-    /// Whether it is one of the strobes.
+    /// Whether the task is a strobe.
     pub const fn is_strobe(self) -> bool {
         matches!(self, Self::FlightStrobe | Self::ContactStrobe | Self::SlipStrobe)
     }

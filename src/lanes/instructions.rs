@@ -52,7 +52,7 @@ impl Instructions {
     /// The scalar solver, which follows one motion after the other on every processor.
     pub const ONE: Self = Self(Set::One);
 
-    /// What this processor has, the widest last.
+    /// The instruction sets of this processor, the widest last.
     #[must_use]
     pub fn available() -> Vec<Self> {
         #[cfg(target_arch = "x86_64")]
@@ -65,7 +65,7 @@ impl Instructions {
         all.filter(|it| it.0 == Set::One || it.permit().is_some()).collect()
     }
 
-    /// The widest that this processor has.
+    /// The widest instruction set of this processor.
     #[must_use]
     pub fn widest() -> Self {
         Self::available().pop().unwrap_or(Self::ONE)

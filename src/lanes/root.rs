@@ -9,7 +9,7 @@ use pulp::Simd;
 
 /// A phase whose guard can be evaluated.
 pub trait LanePhase<S: Simd> {
-    /// What an evaluation gives.
+    /// The result of an evaluation.
     type At: Copy;
 
     /// The motion after `d`.
@@ -42,7 +42,7 @@ pub struct LaneRoot<S: Simd, A> {
     pub at: A,
     /// The elapsed time of the evaluation.
     pub elapsed: Wide<S>,
-    /// The guard's excess as a series from there.
+    /// The guard's excess as a series from the evaluation.
     pub series: Series<Wide<S>, TERMS>,
     /// The step from the evaluation to the root.
     pub step: Wide<S>,

@@ -10,7 +10,7 @@ use pulp::Simd;
 pub struct Words<S: Simd> {
     /// The sum rounded to one word.
     pub high: Wide<S>,
-    /// What that rounding left over.
+    /// The remainder of that rounding: the number is `high + low`.
     pub low: Wide<S>,
 }
 

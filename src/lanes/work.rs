@@ -15,7 +15,7 @@ use pulp::{Simd, WithSimd};
 
 /// A batch to be worked off.
 pub struct BatchWork<'a> {
-    /// What it is.
+    /// The task of the batch.
     pub task: LaneTask,
     /// The batch.
     pub batch: &'a mut Batch,

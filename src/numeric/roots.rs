@@ -77,7 +77,7 @@ pub struct Cubic {
 }
 
 impl Cubic {
-    /// The value there.
+    /// The value at a step from zero.
     pub fn at(&self, step: f64) -> f64 {
         let Self { value, slope, bend, third } = *self;
         value + step * (slope + step * (0.5 * bend + step * (third * (1.0 / 6.0))))

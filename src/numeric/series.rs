@@ -14,13 +14,13 @@ use crate::numeric::real::Real;
 /// The longest step against the fastest rate of the motion.
 pub const REACH: f64 = 0.03;
 
-/// Terms kept up to there, that of order zero included.
+/// Terms that are kept for steps up to [`REACH`], that of order zero included.
 pub const TERMS: usize = 11;
 
-/// The longest step for which fewer terms do, in the same unit.
+/// The longest step for which [`SHORT_TERMS`] do, against the fastest rate of the motion.
 pub const SHORT_REACH: f64 = 1e-3;
 
-/// Terms kept up to there.
+/// Terms that are kept for steps up to [`SHORT_REACH`].
 pub const SHORT_TERMS: usize = 6;
 
 /// 1/k!

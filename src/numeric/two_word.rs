@@ -9,7 +9,7 @@
 pub struct TwoWord {
     /// The sum rounded to one word.
     pub high: f64,
-    /// What that rounding left over.
+    /// The remainder of that rounding: the number is `high + low`.
     pub low: f64,
 }
 

@@ -9,7 +9,8 @@
 use crate::run::trajectory::Segment;
 use crate::run::variation::{IDENTITY, Matrix, P, Q, SwitchDerivative, V, Y, product, times};
 
-/// The growth of tau, p, y, q and v at one switch or sample.
+/// How much a unit error made earlier in the run has grown, in tau, p, y, q and v, at one event or
+/// sample.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Growth {
@@ -42,7 +43,7 @@ pub struct GrowthRecorder {
 }
 
 impl GrowthRecorder {
-    /// A run at its start.
+    /// A recorder for a run that has not begun.
     #[must_use]
     pub fn new() -> Self {
         Self { sources: vec![IDENTITY] }

@@ -82,9 +82,9 @@ const BEYOND: f64 = 0.1;
 /// nothing of a horizon as far away, and the work that it takes stays small.
 const FURTHER: f64 = 256.0;
 
-/// What a phase's end leads to.
+/// How the phase that follows begins, by the phase that ends.
 trait Landing: Guarded {
-    /// What it means that it has none.
+    /// What it means for this phase that it has no end.
     const NONE: Endless;
 
     /// State and mode of the next phase, with what is known imposed.

@@ -39,9 +39,9 @@ pub struct Trajectory {
 /// The phase that [`Trajectory::step`] has passed.
 #[derive(Clone, Debug)]
 pub enum Step<'a> {
-    /// It ends by a switch.
+    /// The phase ends by an event.
     Switch {
-        /// How long it lasts.
+        /// How long the phase lasts.
         duration: TwoWord,
         /// How the next phase begins.
         next: &'a Entry,
@@ -100,7 +100,7 @@ impl Trajectory {
         self.until(horizon)
     }
 
-    /// What the run has cost and met so far.
+    /// Counts of the run so far: events, evaluations, undecidable touches and divided pieces.
     #[must_use]
     pub fn counters(&self) -> Counters {
         self.counters
@@ -216,7 +216,7 @@ impl Segment {
         &self.entry
     }
 
-    /// How it ends.
+    /// How the segment ends.
     #[must_use]
     pub fn exit(&self) -> &Exit {
         &self.exit
@@ -247,13 +247,13 @@ impl Segment {
         instant.since(&self.entry.instant, self.constants.omega).value()
     }
 
-    /// Whether the phase is undecidable and the instant lies behind what is proved of it.
+    /// Whether the instant lies later than an undecidable phase is proved to last.
     #[must_use]
     pub fn is_undecided_at(&self, instant: &Instant) -> bool {
         self.exit == Exit::Undecidable && self.elapsed_at(instant) > self.duration()
     }
 
-    /// Whether the phase is over by then.
+    /// Whether an event ends the phase at this instant or before.
     #[must_use]
     pub fn ends_by(&self, instant: &Instant) -> bool {
         matches!(&self.exit, Exit::Switch(next) if next.instant <= *instant)

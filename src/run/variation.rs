@@ -56,12 +56,12 @@ pub fn times(gradient: &Gradient, before: &Matrix) -> Gradient {
     std::array::from_fn(|column| gradient.iter().zip(before).map(|(g, row)| g * row[column]).sum())
 }
 
-/// The derivative of a switch's row: of tau, p, y, q, v where the phase ends.
+/// The derivatives of the event that ends a phase: of its time and of the state there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SwitchDerivative {
-    /// Gradient of the switch time.
+    /// Gradient of the event's time.
     pub time: Gradient,
-    /// Derivative of the state along the switch: flow derivative plus field times that gradient.
+    /// Derivative of the state at the event: flow derivative plus field times that gradient.
     pub state: Matrix,
 }
 

@@ -111,7 +111,7 @@ impl AttractorCatalog {
         }
     }
 
-    /// What a motion settles on.
+    /// The attractor on which a motion settles.
     fn settled(&self, from: Entry) -> Settled {
         let search = AttractorSearch { map: &self.map, known: &self.known };
         let settled = self.extended(from, |recognised| match recognised {

@@ -7,7 +7,7 @@ use std::collections::HashSet;
 /// Cells along the largest extent. An attractor of dimension 1.3 then fills about
 /// [`PER_EXTENT`]^1.3 = 1400 of them, each visited many times by a run of [`REFERENCE`] strobes.
 const PER_EXTENT: f64 = 256.0;
-/// Strobes of the run that fills them.
+/// Strobes of the run that fills the cells.
 pub(super) const REFERENCE: u64 = 1 << 17;
 /// A motion is on the attractor when so many strobes in a row lie in its cells.
 pub(super) const RECURRENCES: u32 = 48;
@@ -31,7 +31,7 @@ fn in_order<S: serde::Serializer>(
 }
 
 impl CellSet {
-    /// The cells that some points lie in.
+    /// The cells in which these points lie.
     pub fn of(points: &[StrobePoint]) -> Self {
         let extent = |i: usize| {
             let (low, high) =
@@ -53,7 +53,7 @@ impl CellSet {
         }
     }
 
-    /// Whether a point lies in one of them.
+    /// Whether a point lies in one of the cells.
     pub fn hold(&self, point: &StrobePoint) -> bool {
         self.visited.contains(&self.cell(point))
     }

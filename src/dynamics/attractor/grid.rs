@@ -19,7 +19,7 @@ pub struct Window {
 /// Starts at the centres of cells.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
-    /// What the cells fill.
+    /// The rectangle of p and y that the cells cover.
     pub window: Window,
     /// Cells along p.
     pub columns: u32,
@@ -88,7 +88,7 @@ impl Grid {
         self.columns as usize * self.rows as usize
     }
 
-    /// Whether there are none.
+    /// Whether there are no starts.
     #[must_use]
     pub const fn is_empty(&self) -> bool {
         self.len() == 0

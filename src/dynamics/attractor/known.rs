@@ -37,7 +37,7 @@ pub(super) struct KnownAttractor {
     pub evidence: Evidence,
 }
 
-/// What a motion is recognised by.
+/// The evidence by which a motion is recognised.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub(super) enum Evidence {

@@ -43,20 +43,20 @@ use std::str::FromStr;
 /// Standard errors by which a positive exponent must differ from zero.
 pub const ERRORS: f64 = 4.0;
 
-/// What an attractor is.
+/// The kinds of attractors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
 pub enum AttractorKind {
-    /// A stable orbit.
+    /// A stable periodic orbit.
     Periodic,
-    /// A positive exponent.
+    /// A set with a positive Lyapunov exponent.
     Chaotic,
-    /// No orbit, a largest exponent of zero, and no contraction. Every contact contracts areas,
-    /// which an invariant curve does not bear: this is what a run cannot tell from one at very
-    /// light damping.
+    /// No periodic orbit, a largest exponent of zero, and no contraction that is measured. Every
+    /// contact contracts areas, so that there is no invariant curve; at very light damping a run
+    /// cannot tell.
     QuasiPeriodic,
-    /// A set to which motions return without it being known as what: its starts are unresolved.
+    /// A set to which motions return and of which no more is known: its starts are unresolved.
     Unidentified,
 }
 
@@ -95,7 +95,7 @@ impl FromStr for AttractorKind {
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Attractor {
-    /// What it is.
+    /// The kind of the attractor.
     pub kind: AttractorKind,
     /// The orbit, where it is one; its strobes begin at the smallest p.
     pub orbit: Option<Orbit>,
@@ -110,7 +110,7 @@ pub struct Attractor {
 }
 
 /// Forcing periods that a motion is solved ahead, at least, so that an escape shows early: it is
-/// proved where the drift away exceeds the swing, which a slow drift takes so long to do.
+/// proved where the drift away exceeds the oscillation, which a slow drift takes so long to do.
 const AHEAD: u64 = 1 << 14;
 
 /// The instant up to which a motion is solved of which so many strobes after `from` are looked at.

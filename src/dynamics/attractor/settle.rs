@@ -32,7 +32,7 @@ const NEUTRAL: f64 = 1e-3;
 /// has its own invariant curve.
 const MOST: usize = 64;
 
-/// What became of a motion.
+/// What a motion has settled on.
 pub(super) enum Settled {
     /// The motion leads to a known attractor or escapes, or it is not known where it leads.
     Label(Label),

@@ -8,7 +8,7 @@ use crate::dynamics::strobe::StrobePoint;
 pub(super) struct Corner {
     /// The last orbit of the piece that is left.
     pub(super) before: ContinuationPoint,
-    /// The first one beyond.
+    /// The first orbit of the piece beyond.
     pub(super) beyond: ContinuationPoint,
     /// How far the parameter's value at the corner may be off.
     pub(super) error: f64,

@@ -22,7 +22,7 @@ pub(super) struct BranchWalk<'a> {
     curve: FamilyCurve,
     /// The value at which the parameter begins.
     from: f64,
-    /// The value to which it is to go.
+    /// The parameter value to which the branch is to go.
     to: f64,
     told: &'a mut dyn FnMut(f64),
     points: Vec<BranchPoint>,

@@ -7,7 +7,7 @@ pub(super) struct Located {
     pub(super) point: ContinuationPoint,
     /// Distance from the point that was searched from.
     pub(super) distance: f64,
-    /// How far along the curve it may be off.
+    /// How far along the curve the located point may be off.
     pub(super) bracket: f64,
 }
 

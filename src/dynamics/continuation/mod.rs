@@ -55,7 +55,7 @@ use std::str::FromStr;
 pub struct Branch {
     /// The branch's orbits in order.
     pub points: Vec<BranchPoint>,
-    /// What was met on the way, in order.
+    /// The bifurcations on the way, in order.
     pub bifurcations: Vec<Bifurcation>,
     /// How and where the branch ends.
     pub ending: BranchEnding,
@@ -70,7 +70,7 @@ pub struct BranchPoint {
     pub orbit: Orbit,
 }
 
-/// What can happen to an orbit.
+/// The kinds of bifurcations of an orbit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "kebab-case"))]
@@ -118,7 +118,7 @@ impl FromStr for BifurcationKind {
 /// A special point of a branch.
 #[derive(Clone, Debug)]
 pub struct Bifurcation {
-    /// What happens.
+    /// The kind of the bifurcation.
     pub kind: BifurcationKind,
     /// The parameter's value.
     pub value: f64,
@@ -204,7 +204,7 @@ impl Branch {
         Ok(BranchWalk::new(curve, from, to, told).branch(first))
     }
 
-    /// Whether it was followed to where it should go.
+    /// Whether the branch was followed to the value that was asked for.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.ending == BranchEnding::Reached

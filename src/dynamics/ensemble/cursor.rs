@@ -10,7 +10,7 @@ use crate::run::switch::Begun;
 use crate::run::trajectory::Segment;
 use std::ops::ControlFlow;
 
-/// A motion and where it is.
+/// A motion of an ensemble and its current phase.
 pub struct Cursor<'a, W> {
     /// The model that is followed.
     pub model: &'a Model,

@@ -22,7 +22,7 @@ use cursor::Cursor;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Sees the strobes of one motion.
+/// An observer of the strobes of one motion.
 pub trait Watcher {
     /// The next strobe, and why the phase that it lies in has no end, where that is proved. A
     /// motion has no end of its own: it is followed until this breaks, or into an undecidable
@@ -42,7 +42,8 @@ pub struct Member<'a, W> {
     pub entry: Entry,
     /// The motion's first strobe, not before its entry; the others follow at whole forcing periods.
     pub first: Instant,
-    /// No switch after this need be found: not before the last strobe that is looked at.
+    /// The instant after which no event need be found; it is not before the last strobe that the
+    /// watcher reads.
     pub horizon: Option<Instant>,
     /// The watcher of its strobes.
     pub watcher: W,
@@ -89,7 +90,7 @@ pub fn follow_alone<W: Watcher>(motion: Member<'_, W>) -> W {
     Cursor::new(motion).watched_alone().0
 }
 
-/// What a thread has done.
+/// The results of one thread.
 struct Done<W> {
     /// Motions by their numbers.
     watchers: Vec<(usize, W)>,

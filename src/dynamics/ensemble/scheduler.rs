@@ -1,8 +1,8 @@
-//! Motions on their way in lanes: those whose phases are of one kind are taken together.
+//! The scheduler of an ensemble: phases of one kind are solved together, one motion in each lane.
 //!
 //! So many motions are under way that some kind always fills a vector, until there are no more to
-//! begin. Which ones share a vector depends on how they happen to meet; what becomes of them does
-//! not.
+//! begin. Which motions share a vector depends on the order in which their phases end; their
+//! results do not.
 
 use super::cursor::Cursor;
 use super::slot::Slot;
@@ -87,7 +87,7 @@ impl<'a, W: Watcher> LaneScheduler<'a, W> {
         }
     }
 
-    /// Takes a vector of one kind one task further. Lanes left over repeat what they had.
+    /// Solves one batch of a task. Lanes without a motion repeat what they had.
     fn work(&mut self, task: LaneTask) {
         let waiting = &mut self.waiting[task as usize];
         let rest = waiting.len().saturating_sub(self.permit.width());

@@ -79,11 +79,11 @@ impl Orbit {
 pub struct NoOrbit {
     /// The least residual that was met; infinite where none was.
     pub residual: f64,
-    /// What kept it from falling further.
+    /// Why the residual did not fall further.
     pub reason: Reason,
 }
 
-/// What keeps Newton's method from an orbit.
+/// The reasons for which Newton's method does not reach an orbit.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Reason {
@@ -93,7 +93,7 @@ pub enum Reason {
     Period(u32),
     /// Neither a shorter step nor a step beyond a corner of the map comes closer.
     Stalled,
-    /// It went on coming closer, but too slowly.
+    /// The residual still fell, but too slowly.
     Slow,
     /// The motion escapes, or its growth over the period exceeds what an f64 holds.
     Escaped,

@@ -15,11 +15,11 @@ pub(crate) struct ShootingIterate {
     pub(crate) points: Vec<StrobePoint>,
     /// The passages over one forcing period, one from each strobe.
     pub(crate) passages: Vec<Passage>,
-    /// The derivatives of these.
+    /// The derivative of the strobe map at each of these strobes.
     pub(crate) jacobians: Vec<Jacobian>,
     /// Image of each strobe less the next one.
     pub(crate) defects: Vec<StrobePoint>,
-    /// The largest of them over 1 + |strobe|.
+    /// The largest defect over 1 + |strobe|.
     pub(crate) residual: f64,
 }
 
@@ -81,7 +81,7 @@ impl ShootingIterate {
         ROUNDINGS * f64::EPSILON * carried.fold(1.0, f64::max)
     }
 
-    /// Whether it closes to the last digits.
+    /// Whether the iterate closes to the last digits.
     pub(crate) fn is_closed(&self) -> bool {
         self.residual <= self.rounding()
     }
