@@ -105,8 +105,8 @@ impl<C: Borrow<Constants<f64>>> Contact<f64, C> {
     }
 
     /// The verdict, in which a touch counts only where the rounding room of the piece is narrow: a
-    /// piece with a wide room is divided first, unless the guard is within rounding of its threshold
-    /// at both ends, where shorter pieces touch as well.
+    /// piece with a wide room is divided first, unless the guard is within rounding of its
+    /// threshold at both ends, where shorter pieces touch as well.
     #[inline(always)]
     fn near(&self, verdict: Proof, room: f64, ends: [&Point<f64>; 2]) -> Proof {
         if verdict != Proof::Touches || room == 0.0 {
