@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Runs programs in five languages on six cases at 1e-6: SciPy, SUNDIALS CVODE and ARKODE, Boost.Odeint,
-# deSolve and Octave. One that is not installed is a failure; what each gets wrong stands in
-# shortcomings.toml, and anything else is one too.
+# Runs programs in five languages on six cases at 1e-6: SciPy, SUNDIALS CVODE and ARKODE,
+# Boost.Odeint, deSolve and Octave. One that is not installed is a failure; what each gets wrong
+# stands in shortcomings.toml, and anything else is one too.
 #
 # Debian or Ubuntu, root (it installs packages). Takes the program from the environment variable
 # PERCUSS, else builds it. Flags are handed on to `percuss validate`, as `--out DIR`.

@@ -125,30 +125,47 @@ fn the_known_shortcomings_are_those_of_the_full_suite() {
 }
 
 /// The sources of all packages, those outside the workspace too.
-fn sources(folder: &Path, found: &mut Vec<PathBuf>) {
+/// How a comment begins in sources of this kind.
+fn comment_marks(extension: &str) -> &'static [&'static str] {
+    match extension {
+        "rs" | "js" | "cpp" => &["//"],
+        "c" | "h" | "java" => &["//", "*", "/*"],
+        "py" | "sh" | "jl" | "R" | "toml" | "yml" | "yaml" => &["#"],
+        "m" => &["%"],
+        _ => &[],
+    }
+}
+
+/// Sources with how their comments begin.
+fn sources(folder: &Path, found: &mut Vec<(PathBuf, &'static [&'static str])>) {
     let entries = std::fs::read_dir(folder).expect("the folder is there");
     for path in entries.map(|entry| entry.expect("the entry is readable").path()) {
         let name = path.file_name().and_then(|name| name.to_str()).unwrap_or_default();
         if path.is_dir() && name != "target" && !name.starts_with('.') {
             sources(&path, found);
-        } else if name.ends_with(".rs") {
-            found.push(path);
+            continue;
+        }
+        let extension = path.extension().and_then(|it| it.to_str()).unwrap_or_default();
+        let marks = comment_marks(extension);
+        if !marks.is_empty() {
+            found.push((path, marks));
         }
     }
 }
 
-/// rustfmt keeps code within this width and leaves comments alone.
+/// Formatters keep code within this width and leave comments alone.
 #[test]
 fn comments_are_at_most_100_columns_wide() {
     const WIDTH: usize = 100;
     let mut found = Vec::new();
     sources(&root(), &mut found);
-    assert!(found.len() > 300, "{} sources", found.len());
+    assert!(found.len() > 900, "{} sources", found.len());
     let mut wide = Vec::new();
-    for path in found {
+    for (path, marks) in found {
         let text = std::fs::read_to_string(&path).expect("the source is text");
         let lines = text.lines().enumerate().filter(|(_, line)| {
-            line.trim_start().starts_with("//") && line.chars().count() > WIDTH
+            let begins = |mark: &&str| line.trim_start().starts_with(mark);
+            marks.iter().any(|it| begins(&it)) && line.chars().count() > WIDTH
         });
         wide.extend(lines.map(|(n, _)| format!("{}:{}", path.display(), n + 1)));
     }

@@ -1,5 +1,5 @@
-% Octave's ode45: of two events in one step the first of the list is reported, not the first in time;
-% and one that is not terminal is reported in place of the terminal one that ends the run.
+% Octave's ode45: of two events in one step the first of the list is reported, not the first in
+% time; and one that is not terminal is reported in place of the terminal one that ends the run.
 
 1;
 

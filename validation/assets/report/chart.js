@@ -62,7 +62,8 @@ function axisOver(values, { log, low, high }) {
 const tip = element("div", { class: "tip", role: "status", hidden: "" });
 document.body.append(tip);
 
-// series: { name, color, marker, dash, width, line, points: [[x, y, note, apart]] }; a point apart is hollow and not joined.
+// series: { name, color, marker, dash, width, line, points: [[x, y, note, apart]] }; a point apart
+// is hollow and not joined.
 function chart(host, { x, y, series, height = 380 }) {
   const draw = () => {
     host.replaceChildren();

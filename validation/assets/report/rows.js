@@ -1,5 +1,5 @@
-// The results: filtered, sorted, and a row's bounds on demand. The address holds the filters, so that
-// a view can be passed on.
+// The results: filtered, sorted, and a row's bounds on demand. The address holds the filters, so
+// that a view can be passed on.
 
 const columns = data.columns;
 const count = data.cases.length ? (columns.case ?? []).length : 0;

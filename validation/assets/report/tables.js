@@ -1,6 +1,8 @@
-// Tables that stand in the page already: sorted by a click on a heading, and linked to the rows of results.
+// Tables that stand in the page already: sorted by a click on a heading, and linked to the rows of
+// results.
 
-// What a cell counts for: its number where it is one, its text otherwise; a dash counts for nothing.
+// What a cell counts for: its number where it is one, its text otherwise; a dash counts for
+// nothing.
 function weight(cell) {
   const text = (cell?.dataset.sort ?? cell?.textContent ?? "").trim();
   if (text === "–" || text === "") return null;

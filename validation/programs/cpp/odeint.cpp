@@ -1,8 +1,8 @@
 // Boost.Odeint, run by percuss: its methods with dense output. It locates no events itself.
 //
-// `METHOD-default` is the documentation's find_crossing.cpp: steps until a condition holds at the end
-// of one, then bisection on the dense output to 1e-6, the tolerances set, and nothing else. `METHOD`
-// is what an expert adds:
+// `METHOD-default` is the documentation's find_crossing.cpp: steps until a condition holds at the
+// end of one, then bisection on the dense output to 1e-6, the tolerances set, and nothing else.
+// `METHOD` is what an expert adds:
 //
 // - Bisection goes on until rounding ends it.
 // - Steps are at most an eighth of a forcing period and of a turn.

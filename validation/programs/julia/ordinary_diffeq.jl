@@ -1,11 +1,12 @@
-# OrdinaryDiffEq.jl with its callbacks, run by percuss. Written against version 6 and its documentation,
-# and reviewed; it has not been run where it was written, because no Julia was in reach.
+# OrdinaryDiffEq.jl with its callbacks, run by percuss. Written against version 6 and its
+# documentation, and reviewed; it has not been run where it was written, because no Julia was in
+# reach.
 #
-# `METHOD-default` is the documentation's bouncing ball: a VectorContinuousCallback whose effect ends
-# the run, the tolerances, and nothing else. `METHOD` is what an expert adds:
+# `METHOD-default` is the documentation's bouncing ball: a VectorContinuousCallback whose effect
+# ends the run, the tolerances, and nothing else. `METHOD` is what an expert adds:
 #
-# - Steps are at most an eighth of a forcing period and of a turn. Within a step the library looks at
-#   ten points of its interpolant by itself.
+# - Steps are at most an eighth of a forcing period and of a turn. Within a step the library looks
+#   at ten points of its interpolant by itself.
 # - `rootfind = SciMLBase.RightRootFind`: the state is on the far side of the root.
 # - A guard that is zero where a mode begins counts from when it has moved away by more than the
 #   tolerance hides.

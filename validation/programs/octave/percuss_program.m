@@ -117,7 +117,8 @@ function [order, way] = leading(row, mode, t, z, passed)
   way = 0;
 end
 
-% The order and the sign of each guard where a mode begins, and the first that ends it at once, or 0.
+% The order and the sign of each guard where a mode begins, and the first that ends it at once, or
+% 0.
 function [orders, ways, fires] = enter(passed)
   global course
   events = course.modes{course.mode}.events;
@@ -158,8 +159,8 @@ function report(t, event, mode, z)
                                    event - 1, mode - 1, numbers(z));
 end
 
-% Goes through an event that ends its mode. `plainly` decides what follows by the signs of conditions
-% alone, zero or not.
+% Goes through an event that ends its mode. `plainly` decides what follows by the signs of
+% conditions alone, zero or not.
 function pass(t, place, z, plainly)
   global course
   if course.run.backward

@@ -14,8 +14,8 @@ import numpy as np
 
 # Displacements of so many roundings are none.
 ROUNDING = 64 * np.finfo(float).eps
-# How much of a guard that was zero where its mode begins the first steps may hide, in tolerances: of
-# a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly.
+# How much of a guard that was zero where its mode begins the first steps may hide, in tolerances:
+# of a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly.
 SIMPLE, MULTIPLE = 0.1, 10
 # So many stretches in so little of a run are one event that is found again and again.
 MOST_STRETCHES, NO_PROGRESS = 200, 1e-9

@@ -3,8 +3,8 @@
 # `METHOD-default` is the first example of roots in the help page: a root function, the tolerances,
 # and nothing else. `METHOD` is what an expert adds:
 #
-# - Root functions have no direction: the guard's rate says which a root has, and a root in the other
-#   one is passed over.
+# - Root functions have no direction: the guard's rate says which a root has, and a root in the
+#   other one is passed over.
 # - Steps are at most an eighth of a forcing period and of a turn.
 # - A guard that is zero where a mode begins, or where a run was interrupted, has the sign that it
 #   has just after it until it has moved away by more than the tolerance hides.

@@ -9,8 +9,8 @@ MOST_AT_ONCE <- 64
 # So many stretches in so little of a run are one event that is found again and again.
 MOST_STRETCHES <- 200
 NO_PROGRESS <- 1e-9
-# How much of a guard that was zero where its mode begins the first steps may hide, in tolerances: of
-# a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly.
+# How much of a guard that was zero where its mode begins the first steps may hide, in tolerances:
+# of a simple zero, which it leaves at once, and of a multiple one, which it leaves slowly.
 SIMPLE <- 0.1
 MULTIPLE <- 10
 
@@ -143,8 +143,8 @@ report <- function(course, t, place, mode, z) {
   course$events[[length(course$events) + 1]] <- event
 }
 
-# Goes through an event that ends its mode. `plainly` decides what follows by the signs of conditions
-# alone, zero or not.
+# Goes through an event that ends its mode. `plainly` decides what follows by the signs of
+# conditions alone, zero or not.
 pass <- function(course, t, place, z, plainly = FALSE) {
   if (course$run$backward) {
     course$t <- t
