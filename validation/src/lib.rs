@@ -11,6 +11,6 @@ pub mod sweep;
 mod unfinished;
 
 pub use percuss_engines::case::systems;
-pub use percuss_engines::{case, engine, number, system};
+pub use percuss_engines::{case, engine, integration, integrators, number, system};
 pub use percuss_harness::{arrays, bench, power, reproduce, score, suite, truth};
 pub use percuss_pictures as picture;

@@ -2,9 +2,10 @@
 
 use crate::exact;
 use percuss_validation::engine::{
-    Accuracy, Engine, Limits, OscillatorOutcome, OscillatorTask, SampleGrid, Stepping, all, answer,
+    Accuracy, Engine, Limits, OscillatorOutcome, OscillatorTask, SampleGrid, Stepping, answer,
     answer_oscillator,
 };
+use percuss_validation::integrators::all;
 use percuss_validation::suite::CaseRun;
 
 fn outcome(engine: &dyn Engine) -> OscillatorOutcome {

@@ -2,7 +2,7 @@
 //! ([`suite`], [`power`]), how fast it is ([`mod@bench`]), and what the paper says ([`reproduce`]).
 
 // Modules here name those of the packages below as if they were their own.
-use percuss_engines::{case, engine, number, system};
+use percuss_engines::{case, engine, integration, integrators, number, system};
 use percuss_pictures as picture;
 
 pub mod arrays;

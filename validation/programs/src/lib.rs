@@ -6,7 +6,8 @@
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! use percuss_engines::engine::{Engine, add};
+//! use percuss_engines::engine::Engine;
+//! use percuss_engines::integrators::add;
 //!
 //! let mut engines: Vec<&'static dyn Engine> = Vec::new();
 //! for program in percuss_programs::read("programs.toml".as_ref())? {

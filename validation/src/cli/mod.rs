@@ -33,7 +33,8 @@ mod terminal;
 mod validate;
 mod work;
 
-use crate::engine::{self, Engine};
+use crate::engine::Engine;
+use crate::integrators;
 use clap::error::{ContextKind, ErrorKind};
 use clap::{ColorChoice, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
@@ -101,7 +102,7 @@ pub fn run_with(
     own: &[&'static dyn Engine],
     arguments: impl IntoIterator<Item = OsString>,
 ) -> ExitCode {
-    match engine::add(own) {
+    match integrators::add(own) {
         Ok(()) => run(arguments),
         Err(failure) => {
             say(&failure.to_string());

@@ -2,7 +2,8 @@
 
 use super::note;
 use crate::case::Shortcoming;
-use crate::engine::{self, Engine};
+use crate::engine::Engine;
+use crate::integrators;
 use anyhow::{Context, Result};
 use clap::Args;
 use std::path::PathBuf;
@@ -49,7 +50,7 @@ impl ProgramFlags {
             // They are engines until the program ends, like its own.
             engines.extend(own.into_iter().map(|it| &*Box::leak(Box::new(it)) as &dyn Engine));
         }
-        engine::add(&engines).context("--programs")?;
+        integrators::add(&engines).context("--programs")?;
         Ok(started)
     }
 }

@@ -3,7 +3,8 @@
 use super::judged::JudgedFlags;
 use super::names::{CASES, held_by};
 use super::{note, say, work};
-use crate::engine::{self, Accuracy, REFERENCE, Stepping};
+use crate::engine::{Accuracy, REFERENCE, Stepping};
+use crate::integrators;
 use crate::number::shortest;
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::{self, CaseRun, Scored, Status, Suite};
@@ -142,7 +143,7 @@ impl Arguments {
 /// The unit of error is that of the engine inside percuss that is called so, where its accuracy is
 /// chosen by a tolerance too.
 fn stepping(name: &str) -> Stepping {
-    let known = engine::all().iter().map(|it| it.declaration()).find(|it| it.name == name);
+    let known = integrators::all().iter().map(|it| it.declaration()).find(|it| it.name == name);
     match known.map(|it| it.stepping) {
         Some(stepping @ Stepping::PerStep { .. }) => stepping,
         _ => Stepping::Adaptive,

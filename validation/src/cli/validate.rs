@@ -5,7 +5,9 @@ use super::names::ENGINES;
 use super::programs::ProgramFlags;
 use super::{OUT_OF_BOUNDS, parse, say, work};
 use crate::case::Defaults;
-use crate::engine::{self, Engine, WrongEngine, WrongWay, hush_contained_panics};
+use crate::engine::{Engine, hush_contained_panics};
+use crate::integrators;
+use crate::integrators::{WrongEngine, WrongWay};
 use crate::power::{self, Finding, Standard};
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::{self, Suite, SuiteScope};
@@ -152,7 +154,7 @@ fn unnoticed(findings: &[Finding]) -> bool {
 }
 
 fn chosen_engines(patterns: &[Regex]) -> Result<Vec<&'static dyn Engine>> {
-    let engines = engine::select(patterns)?;
-    ENGINES.check(patterns, engine::all().iter().map(|it| it.declaration().name))?;
+    let engines = integrators::select(patterns)?;
+    ENGINES.check(patterns, integrators::all().iter().map(|it| it.declaration().name))?;
     Ok(engines)
 }

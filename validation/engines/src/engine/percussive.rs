@@ -1,9 +1,11 @@
 //! The oscillator written down as any other system is, which is how engines are asked to run it.
 
 use super::{
-    Ended, Event, Failure, GuardSample, Numbers, OscillatorEvent, OscillatorOutcome,
-    OscillatorTask, Outcome, Task, Trace,
+    Ended, Event, GuardSample, OscillatorEvent, OscillatorOutcome, OscillatorTask, Outcome, Task,
+    Trace,
 };
+use crate::equations::Numbers;
+use crate::failure::Failure;
 use crate::system::{CheckedSystem, Mode, Row, System, Until, Values};
 use percuss::{Parameters, Phase};
 use std::sync::Arc;
@@ -109,7 +111,7 @@ fn until(
 }
 
 /// The place of a phase among the oscillator's modes.
-pub(super) fn place(phase: Phase) -> usize {
+pub(crate) fn place(phase: Phase) -> usize {
     MODES.iter().position(|mode| *mode == phase).unwrap_or_default()
 }
 

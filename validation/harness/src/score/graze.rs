@@ -7,7 +7,9 @@
 
 use super::growth::RunGrowth;
 use super::occurrence::{Occurrence, number};
-use crate::engine::{Closed, Equations, GUARDS, Oscillator, OscillatorTask};
+use crate::engine::{Equations, OscillatorTask};
+use crate::integration::{GUARDS, Oscillator};
+use crate::integrators::Closed;
 use crate::truth::{Truth, TruthRow};
 use percuss::{Parameters, Phase};
 use std::f64::consts::PI;
