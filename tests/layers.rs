@@ -77,17 +77,27 @@ const PACKAGES: [Package; 6] = [
     },
     Package {
         sources: "validation/programs/src",
-        rooms: &["text", "wire", "answer", "files", "file", "process", "pool", "engine", "start"],
+        rooms: &[
+            "text",
+            "wire",
+            "answer",
+            "files",
+            "programs_file",
+            "process",
+            "pool",
+            "engine",
+            "start",
+        ],
         least_uses: 15,
     },
     Package {
         sources: "validation/harness/src",
-        rooms: &["arrays", "build", "truth", "score", "suite", "power", "bench", "reproduce"],
+        rooms: &["arrays", "provenance", "truth", "score", "suite", "power", "bench", "reproduce"],
         least_uses: 150,
     },
     Package {
         sources: "validation/src",
-        rooms: &["build", "unfinished", "sweep", "report", "cli"],
+        rooms: &["provenance", "unfinished", "sweep", "report", "cli"],
         least_uses: 150,
     },
 ];

@@ -4,8 +4,8 @@
 //! The exact solver lives in the crate `percuss` and knows nothing of this one. Here it is one
 //! [`engine::Engine`] among others, held against tables ([`truth`]) that none of them knows.
 
-pub mod build;
 pub mod cli;
+pub mod provenance;
 pub mod report;
 pub mod sweep;
 mod unfinished;

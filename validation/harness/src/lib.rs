@@ -7,8 +7,8 @@ use percuss_pictures as picture;
 
 pub mod arrays;
 pub mod bench;
-pub mod build;
 pub mod power;
+pub mod provenance;
 pub mod reproduce;
 pub mod score;
 pub mod suite;

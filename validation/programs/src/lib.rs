@@ -25,15 +25,15 @@
 
 mod answer;
 mod engine;
-mod file;
 pub mod files;
 mod pool;
 mod process;
+mod programs_file;
 mod start;
 mod text;
 mod wire;
 
 pub use engine::{NotStarted, ProgramEngine};
-pub use file::{NAMES, Program, is_name, read, shortcomings};
 pub use process::end_all;
+pub use programs_file::{NAMES, Program, is_name, read, shortcomings};
 pub use wire::{Capabilities, EventsBy, PROTOCOL, SetUp, SteppedBy};

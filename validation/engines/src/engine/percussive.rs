@@ -6,7 +6,8 @@ use super::{
 };
 use crate::equations::Numbers;
 use crate::failure::Failure;
-use crate::system::{CheckedSystem, Mode, Row, System, Until, Values};
+use crate::system::by_hand::{self, mode, until};
+use crate::system::{CheckedSystem, Row, System, Values};
 use percuss::{Parameters, Phase};
 use std::sync::Arc;
 
@@ -80,34 +81,12 @@ fn rates(parameters: &Parameters) -> [[Row; STATES]; 3] {
 
 /// A row of which some entries are given and the others are zero.
 fn row(entries: &[(usize, f64)]) -> Row {
-    let mut row = vec![0.0; STATES + 3];
-    entries.iter().for_each(|(place, value)| row[*place] += value);
-    row
+    by_hand::row(STATES, entries)
 }
 
 /// The row of one state.
 fn state(place: usize) -> Row {
-    row(&[(place, 1.0)])
-}
-
-fn mode(name: &str, rates: &[Row; STATES], until: Vec<Until>) -> Mode {
-    Mode {
-        name: name.to_owned(),
-        a: rates.iter().map(|row| row[..STATES].to_vec()).collect(),
-        b: rates.iter().map(|row| [row[COS], row[COS + 1]]).collect(),
-        c: rates.iter().map(|row| row[ONE]).collect(),
-        until,
-        watch: Vec::new(),
-    }
-}
-
-fn until(
-    name: &str,
-    guard: Row,
-    reset: Option<Vec<Row>>,
-    next: Vec<(Option<Row>, usize)>,
-) -> Until {
-    Until { name: name.to_owned(), guard, reset, next }
+    by_hand::state(STATES, place)
 }
 
 /// The place of a phase among the oscillator's modes.

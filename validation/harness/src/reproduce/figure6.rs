@@ -2,8 +2,8 @@
 
 use super::claim::{Claim, ClaimVerdict};
 use super::integrated::{integrator, representatives};
+use super::item_work::{Findings, ItemWork};
 use super::paper::chaotic_model;
-use super::work::{Findings, ItemWork};
 use crate::case;
 use crate::engine::{Accuracy, Engine, Failure, Limits, answer_oscillator};
 use crate::integrators;

@@ -16,9 +16,9 @@ use crate::bench::timed_case::TimedCase;
 use crate::bench::timed_system_case::TimedSystemCase;
 use crate::bench::{Bench, cases, contestants, damping, floor, length, pictures};
 use crate::bench::{table, workload};
-use crate::build;
 use crate::case::Cases;
 use crate::engine::{Declaration, REFERENCE, Stepping, hush_contained_panics};
+use crate::provenance;
 use crate::truth::Library;
 use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
@@ -98,7 +98,8 @@ fn race(arguments: &Arguments) -> Result<u8> {
 fn worker() -> Result<()> {
     let timed_cases = usual_cases()?;
     let workloads = workload::all(&timed_cases);
-    serve(&build::this(), &workloads, io::stdin().lock(), io::stdout().lock()).context("worker")
+    serve(&provenance::this(), &workloads, io::stdin().lock(), io::stdout().lock())
+        .context("worker")
 }
 
 fn measured(
@@ -122,7 +123,7 @@ fn measured(
     let damping = if whole { damping::over_xi(contestants, rounds, &done)? } else { Vec::new() };
     bar.finish_and_clear();
     let measured = Measurement { contests: &contests, floors: &floors, length, damping: &damping };
-    Ok(Bench::new(build::this(), rounds, measured))
+    Ok(Bench::new(provenance::this(), rounds, measured))
 }
 
 /// The floor takes milliseconds a round.

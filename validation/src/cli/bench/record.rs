@@ -8,9 +8,9 @@ use crate::bench::history::{self, Figures, History, HistoryRecord};
 use crate::bench::rounds::RoundTimes;
 use crate::bench::timed_case::TimedCase;
 use crate::bench::{instructions, workload};
-use crate::build;
 use crate::engine::{Accuracy, Failure};
 use crate::integrators::exact;
+use crate::provenance;
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -83,7 +83,7 @@ fn records(arguments: &Arguments, timed_cases: &[TimedCase]) -> Result<Vec<Histo
             None
         };
         let figures = Figures { instructions, ..figures(case, &halves, i)? };
-        Ok(HistoryRecord::of(build::this(), &name, figures))
+        Ok(HistoryRecord::of(provenance::this(), &name, figures))
     };
     let records = timed_cases.iter().enumerate().map(record).collect();
     bar.finish_and_clear();

@@ -1,7 +1,7 @@
 //! Every integrator on systems that are not the oscillator, against closed forms.
 
 mod events;
-mod known;
+mod known_events;
 mod models;
 mod oscillator;
 mod truth;

@@ -1,6 +1,7 @@
 //! Systems written down by hand, as a file would be read.
 
-use crate::system::{Direction, Mode, Row, System, Until, Watch};
+use crate::system::by_hand::{mode, row, state, until};
+use crate::system::{Direction, Mode, Row, System, Watch};
 
 /// A system whose states are of size one.
 fn system(name: &str, states: &[&str], [omega, phi]: [f64; 2], modes: Vec<Mode>) -> System {
@@ -15,42 +16,8 @@ fn system(name: &str, states: &[&str], [omega, phi]: [f64; 2], modes: Vec<Mode>)
     }
 }
 
-/// A mode by the rows of its rates over (x, cos, sin, 1).
-fn mode(name: &str, rates: &[Row], until: Vec<Until>) -> Mode {
-    let size = rates.len();
-    Mode {
-        name: name.to_owned(),
-        a: rates.iter().map(|row| row[..size].to_vec()).collect(),
-        b: rates.iter().map(|row| [row[size], row[size + 1]]).collect(),
-        c: rates.iter().map(|row| row[size + 2]).collect(),
-        until,
-        watch: Vec::new(),
-    }
-}
-
-fn until(
-    name: &str,
-    guard: Row,
-    reset: Option<Vec<Row>>,
-    next: Vec<(Option<Row>, usize)>,
-) -> Until {
-    Until { name: name.to_owned(), guard, reset, next }
-}
-
 fn watch(name: &str, guard: Row, direction: Direction) -> Watch {
     Watch { name: name.to_owned(), guard, direction }
-}
-
-/// A row of which some entries are given and the others are zero.
-fn row(size: usize, entries: &[(usize, f64)]) -> Row {
-    let mut row = vec![0.0; size + 3];
-    entries.iter().for_each(|(place, value)| row[*place] += value);
-    row
-}
-
-/// The row of one state.
-fn state(size: usize, place: usize) -> Row {
-    row(size, &[(place, 1.0)])
 }
 
 /// A ball on a floor; v = 0 is watched, where it is highest.

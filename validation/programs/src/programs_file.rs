@@ -10,7 +10,6 @@ use toml::Spanned;
 const USUAL_TIMEOUT: f64 = 60.0;
 /// The longest time that a file may give a program for an answer.
 const LONGEST_TIMEOUT: f64 = 86_400.0;
-/// What a program may be called.
 /// What a program, a set-up or an engine in files may be called.
 pub const NAMES: &str =
     "a name of 1 to 40 characters: lower-case letters, digits, '-', '_', '.', '+'";
@@ -162,5 +161,5 @@ pub fn is_name(name: &str) -> bool {
 }
 
 #[cfg(test)]
-#[path = "file_tests.rs"]
+#[path = "programs_file_tests.rs"]
 mod tests;

@@ -1,7 +1,7 @@
 //! Which program this is. Its commit is known here alone, so that a commit compiles nothing else
 //! again.
 
-pub use percuss_harness::build::Build;
+pub use percuss_harness::provenance::Build;
 
 /// This program, here.
 #[must_use]

@@ -1,8 +1,8 @@
 //! What a user of a moling rig wants to see and the paper does not show: the progression rate
 //! against the forcing frequency and against the static force.
 
+use super::item_work::{Findings, ItemWork};
 use super::paper::chaotic_model;
-use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
 use crate::picture::Colour;
 use crate::picture::{Figure, KeyEntry, Layer, Plot, caption_without};
