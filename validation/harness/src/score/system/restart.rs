@@ -7,13 +7,13 @@
 
 use super::decisions::{Decision, decisions};
 use super::event_names::EventNames;
-use super::graze::Graze;
-use super::measure_system::{MOST_UNITS, SystemRun, SystemScale, off, scored_horizon};
-use super::restart_figures::{Restart, RestartError, RestartResult};
-use super::statistics::worst;
-use super::system_grazes::{guard_growth, system_grazes};
+use super::grazes::{guard_growth, system_grazes};
+use super::measure::{MOST_UNITS, SystemRun, SystemScale, off, scored_horizon};
 use crate::case::SystemCase;
 use crate::engine::{Accuracy, Ended, Failure, Outcome, Task};
+use crate::score::graze::Graze;
+use crate::score::restart_figures::{Restart, RestartError, RestartResult};
+use crate::score::statistics::worst;
 use crate::system::SystemProblem;
 use crate::truth::{DoubleDouble, SystemTruth, SystemTruthRow, solver};
 use percuss::TwoWord;

@@ -9,17 +9,11 @@
 //! quantity's derivative with respect to the state just before event m (forcing angle, p, y, q, v;
 //! m = 0 is the start). Samples at a fixed tau use the plain derivative.
 
+use crate::score::{SCORED_ERROR, SCORED_FACTOR};
 use crate::truth::{Truth, TruthRow};
 use nalgebra::{SMatrix, SVector};
 use percuss::TwoWord;
 use percuss::{Parameters, Phase};
-
-/// Errors above this, in units of displacement, measure the growth and not the engine.
-pub const SCORED_ERROR: f64 = 1e-3;
-/// The scored horizon is where this times the engine's unit of error times the growth passes
-/// [`SCORED_ERROR`]. One: up to there a method that keeps to its tolerance is still close enough
-/// for its events to be told apart.
-pub const SCORED_FACTOR: f64 = 1.0;
 
 /// p, y, q, v, cos, sin and 1.
 const SIZE: usize = 7;

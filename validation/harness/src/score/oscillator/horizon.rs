@@ -6,12 +6,14 @@
 //! engine's unit of error to 1e-3. In 106 bits the truth lasts twice as long as f64; it counts
 //! while its own unit times growth is below a hundredth of 1e-3.
 
-use super::growth::{RunGrowth, SCORED_ERROR};
+use super::growth::RunGrowth;
 use super::restart::task;
 use super::starts::far_apart;
-use super::statistics::Spread;
 use crate::case::Problem;
 use crate::engine::{Failure, OscillatorOutcome, OscillatorTask, SampleGrid};
+use crate::score::SCORED_ERROR;
+use crate::score::horizons::{Horizons, ValidHorizon};
+use crate::score::statistics::Spread;
 use crate::truth::{Truth, UNIT};
 use percuss::TwoWord;
 use rayon::prelude::*;
@@ -40,35 +42,6 @@ pub struct HorizonTest {
     /// Runs that 106 bits do not decide.
     pub undecided: usize,
     periods: u32,
-}
-
-/// The horizons of one run, in forcing periods.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
-pub struct ValidHorizon {
-    /// Until the error passes 1e-3; zero for a run that failed.
-    pub valid: u32,
-    /// Until the unit of error times the growth passes it.
-    pub predicted: u32,
-    /// Whether the run was still valid where it ended: its horizon is at least `valid`.
-    pub outlasts: bool,
-}
-
-/// The score of an engine.
-#[derive(Clone, Debug)]
-pub struct Horizons {
-    /// The valid horizons, one run after the other.
-    pub runs: Vec<ValidHorizon>,
-    /// Runs that gave no result.
-    pub failed: usize,
-    /// The horizons that were reached.
-    pub valid: Spread,
-    /// The horizon that 99 % of the runs reach.
-    pub valid_q01: f64,
-    /// The horizons that the truth's growth predicts.
-    pub predicted: Spread,
-    /// `valid - predicted`, run by run: zero where an engine's errors are its unit, and what is
-    /// left of the growth's unevenness.
-    pub gained: Spread,
 }
 
 impl HorizonTest {

@@ -3,7 +3,7 @@
 //! An engine whose error may be larger than that value cannot be asked for the mode that the model
 //! says, and what follows depends on it.
 
-use super::system_grazes::guard_growth;
+use super::grazes::guard_growth;
 use crate::system::SystemProblem;
 use crate::truth::{SystemTruth, SystemTruthRow};
 

@@ -7,11 +7,11 @@
 //! event at all, so the figures are of the runs that had an impact.
 
 use super::growth::RunGrowth;
-use super::restart_figures::{Restart, RestartError, RestartResult};
 use super::starts::on_attractor;
-use super::statistics::worst;
 use crate::case::Problem;
 use crate::engine::{Failure, OscillatorOutcome, OscillatorTask, SampleGrid};
+use crate::score::restart_figures::{Restart, RestartError, RestartResult};
+use crate::score::statistics::worst;
 use crate::truth::{Truth, TruthRow};
 use percuss::TwoWord;
 use percuss::{Instant, Phase};

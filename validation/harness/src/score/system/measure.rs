@@ -4,17 +4,17 @@
 //! of error x (1 + size) x growth x number of events, where the size is that of the largest state
 //! so far: an error of one state grows into the others.
 
-use super::SCORED_ERROR;
 use super::decisions::Decision;
 use super::event_names::EventNames;
-use super::graze::Graze;
-use super::matching::{Matching, WINDOW};
-use super::measure::Measures;
-use super::mismatch::{Excused, Mismatch};
-use super::occurrence::Occurrence;
-use super::probed::ProbeResults;
-use super::statistics::{Spread, worst};
 use crate::engine::{Accuracy, Outcome, Task};
+use crate::score::SCORED_ERROR;
+use crate::score::graze::Graze;
+use crate::score::matching::{Matching, WINDOW};
+use crate::score::measures::Measures;
+use crate::score::mismatch::{Excused, Mismatch};
+use crate::score::occurrence::Occurrence;
+use crate::score::probed::ProbeResults;
+use crate::score::statistics::{Spread, worst};
 use crate::truth::{SystemTruth, SystemTruthRow};
 use percuss::TwoWord;
 

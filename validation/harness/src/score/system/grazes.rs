@@ -2,7 +2,7 @@
 //! error is larger than the margin may find the events of a crossing or not.
 
 use super::event_names::EventNames;
-use super::graze::Graze;
+use crate::score::graze::Graze;
 use crate::system::{Direction, System, SystemProblem};
 use crate::truth::{SystemTruth, SystemTruthRow};
 use percuss::affine::{Event, Time, What};

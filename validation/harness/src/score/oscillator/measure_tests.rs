@@ -1,4 +1,5 @@
 use super::*;
+use crate::case::Quantity;
 use crate::case::{Given, Problem};
 use crate::engine::SampleGrid;
 use percuss::Phase::{Contact, NoContact, Progression};
@@ -160,7 +161,7 @@ fn what_is_beyond_the_scored_horizon_does_not_count() {
     let mut planted = Planted::new();
     // A unit of error has grown past what is scored from the ninth sample on.
     for growth in &mut planted.growth.samples[8..] {
-        growth[1] = 2.0 * SCORED_ERROR / (super::super::SCORED_FACTOR * UNIT);
+        growth[1] = 2.0 * SCORED_ERROR / (crate::score::SCORED_FACTOR * UNIT);
     }
     planted.outcome.samples[9][0] += 0.5;
     planted.outcome.events[2].elapsed += 0.5;
@@ -178,7 +179,7 @@ fn what_is_beyond_the_scored_horizon_does_not_count() {
 fn an_event_just_past_the_horizon_is_the_partner_of_one_just_before_it() {
     let mut planted = Planted::new();
     for growth in &mut planted.growth.samples[8..] {
-        growth[0] = 2.0 * SCORED_ERROR / (super::super::SCORED_FACTOR * UNIT);
+        growth[0] = 2.0 * SCORED_ERROR / (crate::score::SCORED_FACTOR * UNIT);
     }
     let horizon = planted.truth.samples[7].elapsed.value();
     let window = WINDOW * problem().model.period();

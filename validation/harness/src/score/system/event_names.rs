@@ -3,8 +3,8 @@
 //! Events of one instant may come in any order where the truth says that the order is free: only
 //! their names count then, and the mode after the last of them.
 
-use super::occurrence::Occurrence;
 use crate::engine::{Ended, Outcome, Task};
+use crate::score::occurrence::Occurrence;
 use crate::system::System;
 use crate::truth::{SystemTruth, SystemTruthRow};
 
