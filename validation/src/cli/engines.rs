@@ -1,8 +1,8 @@
 //! `engines`: what can be run.
 
-use super::format::OutputFlags;
-use super::list::{self, Format};
-use super::programs::ProgramFlags;
+use super::shared::format::OutputFlags;
+use super::shared::list::{self, Format};
+use super::shared::programs::ProgramFlags;
 use crate::engine::{self, Declaration, Location};
 use crate::integrators;
 use anyhow::Result;

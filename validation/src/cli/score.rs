@@ -1,8 +1,9 @@
 //! `score`: answers in files, judged as the runs of `validate` are.
 
-use super::judged::JudgedFlags;
-use super::names::{CASES, held_by};
-use super::{note, say, work};
+use super::shared::judged::JudgedFlags;
+use super::shared::long_work;
+use super::shared::names::{CASES, held_by};
+use super::{note, say};
 use crate::engine::{Accuracy, REFERENCE, Stepping};
 use crate::integrators;
 use crate::number::shortest;
@@ -81,8 +82,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let all = cases.all();
     check_names(arguments, &all, &answered)?;
     let defaults = judged.defaults()?;
-    let pool = work::pool(threads)?;
-    let bar = work::bar(all.len() as u64, "cases");
+    let pool = long_work::pool(threads)?;
+    let bar = long_work::bar(all.len() as u64, "cases");
     let row = |case: &&dyn CaseRun| {
         let engine = arguments.engine(case.name());
         let accuracy = Accuracy::Tolerance(arguments.tolerance);

@@ -1,9 +1,10 @@
 //! `validate`: every engine on every case against the truth.
 
-use super::judged::{JudgedFlags, PreparedCases, accepts};
-use super::names::ENGINES;
-use super::programs::ProgramFlags;
-use super::{OUT_OF_BOUNDS, parse, say, work};
+use super::shared::judged::{JudgedFlags, PreparedCases, accepts};
+use super::shared::names::ENGINES;
+use super::shared::programs::ProgramFlags;
+use super::shared::{long_work, parse};
+use super::{OUT_OF_BOUNDS, say};
 use crate::case::Defaults;
 use crate::engine::{Engine, hush_contained_panics};
 use crate::integrators;
@@ -50,9 +51,9 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         defaults.shortcomings.extend(arguments.programs.shortcomings()?);
     }
     hush_contained_panics();
-    let pool = work::pool(threads)?;
+    let pool = long_work::pool(threads)?;
     let steps = suite::size(all.len(), &engines, &scope) + wrong.count();
-    let bar = work::bar(steps as u64, "rows");
+    let bar = long_work::bar(steps as u64, "rows");
     // Together, so that no thread waits for the last of the rows.
     let (rows, findings) = pool.install(|| {
         rayon::join(

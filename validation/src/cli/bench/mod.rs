@@ -4,10 +4,11 @@ mod compare;
 mod history;
 mod record;
 
-use super::names::{CASES, Selection};
-use super::output::{Destination, make_folder, reader_left, write_whole};
-use super::programs::ProgramFlags;
-use super::{DONE, OUT_OF_BOUNDS, format, output, parse, work};
+use super::shared::names::{CASES, Selection};
+use super::shared::output::{Destination, make_folder, reader_left, write_whole};
+use super::shared::programs::ProgramFlags;
+use super::shared::{long_work, parse};
+use super::{DONE, OUT_OF_BOUNDS};
 use crate::bench::compare::worker::serve;
 use crate::bench::contest::{self, Finisher, contest, system_contest};
 use crate::bench::contestant::Contestant;
@@ -84,7 +85,8 @@ fn race(arguments: &Arguments) -> Result<u8> {
     }
     hush_contained_panics();
     // One thread, this pool's, so that its own time is that of the ensembles too.
-    let bench = work::pool(Some(1))?.install(|| measured(arguments, &contestants, &timed_cases))?;
+    let bench =
+        long_work::pool(Some(1))?.install(|| measured(arguments, &contestants, &timed_cases))?;
     if let Some(folder) = &arguments.out {
         write(&bench, folder)?;
     }
@@ -134,14 +136,14 @@ fn bar(
     contestants: &[&dyn Contestant],
     timed_cases: usize,
     whole: bool,
-) -> work::Bar {
+) -> long_work::Bar {
     let rounds = usize::from(arguments.rounds);
     let mut size = timed_cases as u64 * contest::size(contestants, rounds)
         + floor::size(0, FLOOR_ROUNDS * rounds);
     if whole {
         size += length::size(arguments.long) + damping::size(contestants, rounds);
     }
-    work::bar(size, "turns")
+    long_work::bar(size, "turns")
 }
 
 /// The exact solver is what all are held against: it always runs.

@@ -14,7 +14,7 @@ const NOTE: Style = AnsiColor::Yellow.on_default();
 static QUIET: AtomicBool = AtomicBool::new(false);
 
 /// Takes `--quiet` and `--color` for everything that is said from here on.
-pub(super) fn configure(quiet: bool, color: ColorChoice) {
+pub(in crate::cli) fn configure(quiet: bool, color: ColorChoice) {
     QUIET.store(quiet, Ordering::Relaxed);
     let choice = match color {
         ColorChoice::Auto => Stream::Auto,
@@ -25,13 +25,13 @@ pub(super) fn configure(quiet: bool, color: ColorChoice) {
 }
 
 /// Whether notes and progress are unwanted.
-pub(super) fn is_quiet() -> bool {
+pub(in crate::cli) fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
 /// The value of `--color` before the flags are parsed: help and objections of the parser follow it
 /// too.
-pub(super) fn stated_color(arguments: &[OsString]) -> ColorChoice {
+pub(in crate::cli) fn stated_color(arguments: &[OsString]) -> ColorChoice {
     let texts: Vec<_> = arguments.iter().map(|it| it.to_string_lossy()).collect();
     let mut values = texts.iter().enumerate().filter_map(|(i, text)| match text.as_ref() {
         "--color" => texts.get(i + 1).map(AsRef::as_ref),
@@ -41,12 +41,12 @@ pub(super) fn stated_color(arguments: &[OsString]) -> ColorChoice {
 }
 
 /// One line on stderr about an error, or about why the exit code is not 0.
-pub(super) fn say(line: &str) {
+pub(in crate::cli) fn say(line: &str) {
     put(ERROR, line);
 }
 
 /// One line on stderr that `--quiet` suppresses.
-pub(super) fn note(line: &str) {
+pub(in crate::cli) fn note(line: &str) {
     if !is_quiet() {
         put(NOTE, line);
     }

@@ -1,7 +1,7 @@
 //! Model and start: the flags that all verbs of the dynamics share.
 
-use super::note;
 use super::parse::{self, Typed};
+use super::terminal::note;
 use crate::case::{Given, Problem, read_problem};
 use crate::number::shortest;
 use crate::sweep::SweepPoint;
@@ -14,7 +14,7 @@ use std::path::PathBuf;
 /// The model's parameters, the start, and the file that may give both.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Model and start")]
-pub(super) struct ModelFlags {
+pub(in crate::cli) struct ModelFlags {
     /// Amplitude of the harmonic force [default: 0.3]
     #[arg(long, value_parser = parse::named("a"), allow_hyphen_values = true)]
     a: Option<Typed<f64>>,
@@ -61,12 +61,12 @@ pub(super) struct ModelFlags {
 
 impl ModelFlags {
     /// File and flags together, checked.
-    pub(super) fn problem(&self) -> Result<Problem> {
+    pub(in crate::cli) fn problem(&self) -> Result<Problem> {
         self.given()?.check().map_err(|line| anyhow!(line))
     }
 
     /// The model's flags at a point of a sweep.
-    pub(super) fn at(&self, point: &SweepPoint) -> Self {
+    pub(in crate::cli) fn at(&self, point: &SweepPoint) -> Self {
         let mut at = self.clone();
         for (parameter, value) in &point.values {
             let flag = match parameter {
@@ -93,7 +93,7 @@ impl ModelFlags {
 
     /// The problem whose start is a guess, and whether one was given; a parameter that a flag of
     /// the verb states is set to that.
-    pub(super) fn guess(
+    pub(in crate::cli) fn guess(
         &self,
         stated: Option<(Parameter, &'static str, &Typed<f64>)>,
     ) -> Result<(Problem, bool)> {
@@ -109,7 +109,7 @@ impl ModelFlags {
     }
 
     /// The model and the instant of a grid of starts, which takes the place of the start's phase.
-    pub(super) fn problem_of_grid(&self) -> Result<Problem> {
+    pub(in crate::cli) fn problem_of_grid(&self) -> Result<Problem> {
         let mut given = self.given()?;
         given.start.phase = None;
         given.check().map_err(|line| anyhow!(line))
@@ -150,7 +150,7 @@ impl ModelFlags {
     }
 
     /// Says which flags of the start a grid of starts takes the place of.
-    pub(super) fn note_replaced_by_grid(&self) {
+    pub(in crate::cli) fn note_replaced_by_grid(&self) {
         let given = [
             ("--p", self.p.is_some()),
             ("--y", self.y.is_some()),
@@ -165,7 +165,7 @@ impl ModelFlags {
 
 /// The model's parameters as JSON; null for a NaN.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub(super) struct ParametersJson {
+pub(in crate::cli) struct ParametersJson {
     a: f64,
     b: f64,
     xi: f64,

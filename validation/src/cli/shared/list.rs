@@ -7,13 +7,13 @@ use serde::Serialize;
 
 /// What a list is written as.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(super) enum Format {
+pub(in crate::cli) enum Format {
     Csv,
     Json,
 }
 
 /// Writes a list: its lines as CSV, or all of it as JSON.
-pub(super) fn write(
+pub(in crate::cli) fn write(
     output: &OutputFlags<Format>,
     format: Format,
     list: &impl Serialize,

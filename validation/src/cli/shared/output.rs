@@ -9,14 +9,14 @@ use std::io::{self, BufWriter, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 /// stdout, or a file.
-pub(super) enum Destination {
+pub(in crate::cli) enum Destination {
     Stdout,
     File(PathBuf),
 }
 
 impl Destination {
     /// `--output PATH`; `-` and nothing are stdout.
-    pub(super) fn new(output: Option<&Path>) -> Self {
+    pub(in crate::cli) fn new(output: Option<&Path>) -> Self {
         match output {
             Some(path) if path != Path::new("-") => Self::File(path.to_owned()),
             _ => Self::Stdout,
@@ -24,18 +24,21 @@ impl Destination {
     }
 
     /// Refuses a file that cannot be made, before the work that would be lost.
-    pub(super) fn check(&self) -> Result<()> {
+    pub(in crate::cli) fn check(&self) -> Result<()> {
         let Self::File(path) = self else { return Ok(()) };
         check_file("--output", path)
     }
 
     /// Whether what is written is seen on a terminal.
-    pub(super) fn is_terminal(&self) -> bool {
+    pub(in crate::cli) fn is_terminal(&self) -> bool {
         matches!(self, Self::Stdout) && io::stdout().is_terminal()
     }
 
     /// Writes by `write`, whole or not at all where it is a file.
-    pub(super) fn write(&self, write: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+    pub(in crate::cli) fn write(
+        &self,
+        write: impl FnOnce(&mut dyn Write) -> Result<()>,
+    ) -> Result<()> {
         match self {
             Self::Stdout => {
                 let mut out = BufWriter::new(io::stdout().lock());
@@ -47,7 +50,7 @@ impl Destination {
     }
 
     /// Writes a value as JSON, a list of plain values on one line.
-    pub(super) fn json(&self, value: &impl Serialize) -> Result<()> {
+    pub(in crate::cli) fn json(&self, value: &impl Serialize) -> Result<()> {
         self.write(|out| {
             compact::write(value, &mut *out).map_err(io::Error::from)?;
             Ok(writeln!(out)?)
@@ -56,18 +59,18 @@ impl Destination {
 }
 
 /// Writes a value as JSON on one line, for what is written piece by piece.
-pub(super) fn json_value(out: &mut dyn Write, value: &impl Serialize) -> Result<()> {
+pub(in crate::cli) fn json_value(out: &mut dyn Write, value: &impl Serialize) -> Result<()> {
     Ok(serde_json::to_writer(out, value).map_err(io::Error::from)?)
 }
 
 /// Whether the error is that whoever read our output has left.
-pub(super) fn reader_left(error: &anyhow::Error) -> bool {
+pub(in crate::cli) fn reader_left(error: &anyhow::Error) -> bool {
     let is_pipe = |error: &io::Error| error.kind() == io::ErrorKind::BrokenPipe;
     error.chain().any(|cause| cause.downcast_ref::<io::Error>().is_some_and(is_pipe))
 }
 
 /// Writes a file under a temporary name beside it and renames it.
-pub(super) fn write_whole(
+pub(in crate::cli) fn write_whole(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> Result<()>,
 ) -> Result<()> {
@@ -107,7 +110,7 @@ fn write_or_replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> Result<()
 }
 
 /// Refuses a file that a flag names and that cannot be made, before the work that would be lost.
-pub(super) fn check_file(flag: &str, path: &Path) -> Result<()> {
+pub(in crate::cli) fn check_file(flag: &str, path: &Path) -> Result<()> {
     let shown = path.display();
     let folder = folder_of(path);
     if path.as_os_str().is_empty() || path.is_dir() {
@@ -123,12 +126,12 @@ pub(super) fn check_file(flag: &str, path: &Path) -> Result<()> {
 }
 
 /// The folder that a file is in.
-pub(super) fn folder_of(path: &Path) -> &Path {
+pub(in crate::cli) fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// Makes a folder for several files.
-pub(super) fn make_folder(folder: &Path) -> Result<()> {
+pub(in crate::cli) fn make_folder(folder: &Path) -> Result<()> {
     fs::create_dir_all(folder).map_err(|error| {
         let folder = folder.display();
         anyhow!("--out {folder} cannot be made ({error}); accepted is a writable folder")

@@ -6,7 +6,7 @@ use serde_json::ser::{Formatter, PrettyFormatter};
 use std::io::{self, Write};
 
 /// Writes a value.
-pub(super) fn write(value: &impl Serialize, out: impl Write) -> serde_json::Result<()> {
+pub(in crate::cli) fn write(value: &impl Serialize, out: impl Write) -> serde_json::Result<()> {
     value.serialize(&mut Serializer::with_formatter(out, CompactLines::default()))
 }
 

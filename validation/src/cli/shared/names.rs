@@ -1,6 +1,6 @@
 //! Names that nothing is called: what the user may have meant.
 
-use super::note;
+use super::terminal::note;
 use anyhow::{Result, bail};
 use regex::Regex;
 use std::path::Path;
@@ -12,27 +12,27 @@ const LEAST: f64 = 0.5;
 const SHOWN: usize = 3;
 
 /// A flag that selects things by patterns on their names.
-pub(super) struct Selection<'a> {
+pub(in crate::cli) struct Selection<'a> {
     /// The flag.
-    pub(super) flag: &'a str,
+    pub(in crate::cli) flag: &'a str,
     /// What the names are of.
-    pub(super) what: &'a str,
+    pub(in crate::cli) what: &'a str,
     /// The command that lists all names.
-    pub(super) listed: &'a str,
+    pub(in crate::cli) listed: &'a str,
 }
 
 /// At most this many names of a user's own are all shown.
 const FEW_OWN: usize = 8;
 
 /// `--case`, of the cases inside the binary.
-pub(super) const CASES: Selection<'_> =
+pub(in crate::cli) const CASES: Selection<'_> =
     Selection { flag: "--case", what: "case", listed: "percuss cases lists all" };
 /// `--engine`, of all engines.
-pub(super) const ENGINES: Selection<'_> =
+pub(in crate::cli) const ENGINES: Selection<'_> =
     Selection { flag: "--engine", what: "engine", listed: "percuss engines lists all" };
 
 /// What a folder of a user's own holds: its cases by name where they are few.
-pub(super) fn held_by(folder: &Path, names: &[&str]) -> String {
+pub(in crate::cli) fn held_by(folder: &Path, names: &[&str]) -> String {
     let folder = folder.display();
     match names {
         [] => format!("{folder} holds none"),
@@ -44,7 +44,7 @@ pub(super) fn held_by(folder: &Path, names: &[&str]) -> String {
 
 impl Selection<'_> {
     /// Refuses patterns that select nothing together; a note says which of several select nothing.
-    pub(super) fn check<'n>(
+    pub(in crate::cli) fn check<'n>(
         &self,
         patterns: &[Regex],
         names: impl IntoIterator<Item = &'n str>,
@@ -61,7 +61,7 @@ impl Selection<'_> {
     }
 
     /// What is said of a pattern that matches nothing.
-    pub(super) fn nothing(&self, pattern: &str, names: &[&str]) -> String {
+    pub(in crate::cli) fn nothing(&self, pattern: &str, names: &[&str]) -> String {
         let Self { flag, what, listed } = self;
         let near = match nearest(pattern, names.iter().copied()) {
             near if near.is_empty() => String::new(),
@@ -73,7 +73,10 @@ impl Selection<'_> {
 
 /// The names most like what was typed, best first; a part of a name between hyphens or underscores
 /// counts as much as the whole.
-pub(super) fn nearest<'n>(typed: &str, names: impl IntoIterator<Item = &'n str>) -> Vec<&'n str> {
+pub(in crate::cli) fn nearest<'n>(
+    typed: &str,
+    names: impl IntoIterator<Item = &'n str>,
+) -> Vec<&'n str> {
     let plain: String =
         typed.chars().filter(|it| it.is_alphanumeric() || "-_.".contains(*it)).collect();
     let plain = plain.to_lowercase();

@@ -3,7 +3,7 @@
 use percuss::Endless;
 
 /// What never happens.
-pub(super) const fn words(endless: Endless) -> &'static str {
+pub(in crate::cli) const fn words(endless: Endless) -> &'static str {
     match endless {
         Endless::NeverReturns => "the mass never returns to the slider",
         Endless::NeverStops => "the slider never stops",
@@ -12,6 +12,6 @@ pub(super) const fn words(endless: Endless) -> &'static str {
 }
 
 /// What to say of a run that ends so.
-pub(super) fn notice(endless: Endless) -> String {
+pub(in crate::cli) fn notice(endless: Endless) -> String {
     format!("{}: the run ends at its horizon", words(endless))
 }

@@ -1,9 +1,11 @@
 //! What `validate` and `score` have in common: the cases, the report, and what the verdicts come
 //! to.
 
+use super::exit_codes::{DONE, OUT_OF_BOUNDS};
 use super::names::{CASES, Selection, held_by};
 use super::output::{Destination, make_folder, reader_left};
-use super::{DONE, OUT_OF_BOUNDS, note, parse, reports, say};
+use super::terminal::{note, say};
+use super::{parse, reports};
 use crate::case::{self, Cases, Defaults};
 use crate::report::{
     Baseline, CASES_FLAG, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary,
@@ -18,12 +20,12 @@ use std::path::{Path, PathBuf};
 
 /// The flags of verbs that judge runs.
 #[derive(Args)]
-pub(super) struct JudgedFlags {
+pub(in crate::cli) struct JudgedFlags {
     #[command(flatten)]
-    pub(super) chosen: CaseFlags,
+    pub(in crate::cli) chosen: CaseFlags,
     /// Writes report.html, report.json, errors.csv, junit.xml and pictures into this folder
     #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
+    pub(in crate::cli) out: Option<PathBuf>,
     /// A row without an answer is a failure: of an engine that is not installed, or of a case that
     /// was not answered
     #[arg(long)]
@@ -47,13 +49,13 @@ pub(super) struct JudgedFlags {
 
 /// Which cases.
 #[derive(Args)]
-pub(super) struct CaseFlags {
+pub(in crate::cli) struct CaseFlags {
     /// Only cases whose name matches; several are alternatives
     #[arg(short, long = "case", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
-    pub(super) case: Vec<Regex>,
+    pub(in crate::cli) case: Vec<Regex>,
     /// Reads the cases from this folder instead of those inside the binary
     #[arg(long, value_name = "DIR")]
-    pub(super) cases: Option<PathBuf>,
+    pub(in crate::cli) cases: Option<PathBuf>,
 }
 
 /// The summary's formats.
@@ -74,7 +76,7 @@ const FEW_CASES: usize = 3;
 
 impl CaseFlags {
     /// The cases that are chosen.
-    pub(super) fn read(&self) -> Result<Cases> {
+    pub(in crate::cli) fn read(&self) -> Result<Cases> {
         let mut cases = match &self.cases {
             Some(folder) => Cases::from_directory(folder).context("--cases")?,
             None => Cases::embedded()?,
@@ -90,7 +92,7 @@ impl CaseFlags {
     }
 
     /// Whether a case is chosen.
-    pub(super) fn accepts(&self, name: &str) -> bool {
+    pub(in crate::cli) fn accepts(&self, name: &str) -> bool {
         accepts(&self.case, name)
     }
 
@@ -105,14 +107,14 @@ impl CaseFlags {
     }
 
     /// The chosen cases with their reference data.
-    pub(super) fn open(&self, reference: Option<&Path>) -> Result<OpenedCases> {
+    pub(in crate::cli) fn open(&self, reference: Option<&Path>) -> Result<OpenedCases> {
         let (cases, library) = (self.read()?, self.library(reference)?);
         Ok(OpenedCases { cases, library, are_users: self.cases.is_some() })
     }
 }
 
 /// Cases whose truth is still to be read.
-pub(super) struct OpenedCases {
+pub(in crate::cli) struct OpenedCases {
     cases: Cases,
     library: Library,
     /// Whether they come from a folder, not from inside the binary.
@@ -121,7 +123,7 @@ pub(super) struct OpenedCases {
 
 impl OpenedCases {
     /// The cases with their truth, and with the probes of a suite if one is given.
-    pub(super) fn prepare(self, probes: Option<Suite>) -> Result<PreparedCases> {
+    pub(in crate::cli) fn prepare(self, probes: Option<Suite>) -> Result<PreparedCases> {
         let Self { cases, library, are_users } = self;
         let replayed: Vec<String> =
             cases.names().filter(|name| library.is_replayed(name)).map(str::to_owned).collect();
@@ -163,21 +165,21 @@ fn note_faint_states(prepared: &PreparedSystem) {
 }
 
 /// Whether one of the patterns matches, or there are none.
-pub(super) fn accepts(patterns: &[Regex], name: &str) -> bool {
+pub(in crate::cli) fn accepts(patterns: &[Regex], name: &str) -> bool {
     patterns.is_empty() || patterns.iter().any(|it| it.is_match(name))
 }
 
 /// All cases that are asked for, made ready.
-pub(super) struct PreparedCases {
+pub(in crate::cli) struct PreparedCases {
     /// The names of those without tables.
-    pub(super) replayed: Vec<String>,
-    pub(super) oscillator: Vec<Prepared>,
-    pub(super) systems: Vec<PreparedSystem>,
+    pub(in crate::cli) replayed: Vec<String>,
+    pub(in crate::cli) oscillator: Vec<Prepared>,
+    pub(in crate::cli) systems: Vec<PreparedSystem>,
 }
 
 impl PreparedCases {
     /// All cases: those of the oscillator, then those of other systems.
-    pub(super) fn all(&self) -> Vec<&dyn CaseRun> {
+    pub(in crate::cli) fn all(&self) -> Vec<&dyn CaseRun> {
         let oscillator = self.oscillator.iter().map(|it| it as &dyn CaseRun);
         oscillator.chain(self.systems.iter().map(|it| it as &dyn CaseRun)).collect()
     }
@@ -185,7 +187,7 @@ impl PreparedCases {
 
 impl JudgedFlags {
     /// Refuses flags without effect.
-    pub(super) fn check(&self) -> Result<()> {
+    pub(in crate::cli) fn check(&self) -> Result<()> {
         if self.rows && self.format != Format::Table {
             bail!("--rows has no effect with this --format; accepted with --rows is table");
         }
@@ -193,20 +195,20 @@ impl JudgedFlags {
     }
 
     /// The report that this run is held against.
-    pub(super) fn baseline(&self) -> Result<Option<Baseline>> {
+    pub(in crate::cli) fn baseline(&self) -> Result<Option<Baseline>> {
         self.baseline.as_deref().map(read_baseline).transpose()
     }
 
     /// The chosen cases with their reference data, once the folder of the report is made: to make
     /// them ready may take long.
-    pub(super) fn open(&self) -> Result<OpenedCases> {
+    pub(in crate::cli) fn open(&self) -> Result<OpenedCases> {
         let cases = self.chosen.open(self.reference.as_deref())?;
         self.out.as_deref().map(make_folder).transpose()?;
         Ok(cases)
     }
 
     /// The bounds and known shortcomings that apply.
-    pub(super) fn defaults(&self) -> Result<Defaults> {
+    pub(in crate::cli) fn defaults(&self) -> Result<Defaults> {
         Ok(match self.chosen.cases {
             Some(_) => case::defaults_of_own_cases()?,
             None => case::defaults()?,
@@ -214,7 +216,7 @@ impl JudgedFlags {
     }
 
     /// The folders that data were read from, with their flags.
-    pub(super) fn folders(&self) -> Vec<(&'static str, String)> {
+    pub(in crate::cli) fn folders(&self) -> Vec<(&'static str, String)> {
         let given = [(CASES_FLAG, &self.chosen.cases), ("--reference", &self.reference)];
         let shown = |(flag, folder): (&'static str, &Option<PathBuf>)| {
             Some((flag, folder.as_ref()?.display().to_string()))
@@ -223,7 +225,7 @@ impl JudgedFlags {
     }
 
     /// What is worse than in the baseline, or gone of the rows that were `asked` for.
-    pub(super) fn worse(
+    pub(in crate::cli) fn worse(
         &self,
         baseline: &Baseline,
         report: &Report,
@@ -244,7 +246,7 @@ impl JudgedFlags {
     }
 
     /// Writes files, annotations and the summary, and says what the verdicts come to.
-    pub(super) fn write(
+    pub(in crate::cli) fn write(
         &self,
         report: &Report,
         evidence: &ReportEvidence,

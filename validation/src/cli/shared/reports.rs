@@ -7,7 +7,11 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// Every format of the report, and the pictures, into a folder.
-pub(super) fn write(report: &Report, evidence: &ReportEvidence, folder: &Path) -> Result<()> {
+pub(in crate::cli) fn write(
+    report: &Report,
+    evidence: &ReportEvidence,
+    folder: &Path,
+) -> Result<()> {
     for exporter in exporters() {
         let path = folder.join(exporter.file_name());
         write_whole(&path, |out| Ok(exporter.write(report, evidence, out)?)).context("--out")?;
@@ -25,7 +29,7 @@ pub(super) fn write(report: &Report, evidence: &ReportEvidence, folder: &Path) -
 
 /// Writes annotations to stderr, which the service reads as well: stdout holds the table and
 /// nothing else.
-pub(super) fn annotate(report: &Report, evidence: &ReportEvidence, require: bool) {
+pub(in crate::cli) fn annotate(report: &Report, evidence: &ReportEvidence, require: bool) {
     if under_the_service() {
         for line in annotations(report, evidence, require) {
             // Where stderr is closed there is no one to tell.

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 
 /// The flags that say where a result goes, and in which format.
 #[derive(Args, Clone, Debug)]
-pub(super) struct OutputFlags<F: ValueEnum + Send + Sync + 'static> {
+pub(in crate::cli) struct OutputFlags<F: ValueEnum + Send + Sync + 'static> {
     /// Where the result goes, - is stdout; its extension is its format
     #[arg(long, value_name = "PATH")]
     output: Option<PathBuf>,
@@ -19,19 +19,19 @@ pub(super) struct OutputFlags<F: ValueEnum + Send + Sync + 'static> {
 impl<F: ValueEnum + PartialEq + Send + Sync + 'static> OutputFlags<F> {
     /// The format that --output and --format agree on, or else `usual`; refuses a path that cannot
     /// be written.
-    pub(super) fn format(&self, usual: F) -> Result<F> {
+    pub(in crate::cli) fn format(&self, usual: F) -> Result<F> {
         let format = chosen(self.output.as_deref(), self.format.clone(), usual)?;
         self.destination().check()?;
         Ok(format)
     }
 
-    pub(super) fn destination(&self) -> Destination {
+    pub(in crate::cli) fn destination(&self) -> Destination {
         Destination::new(self.output.as_deref())
     }
 }
 
 /// Chooses a format as [`OutputFlags::format`] does, for verbs whose flags are described otherwise.
-pub(super) fn chosen<F: ValueEnum + PartialEq>(
+pub(in crate::cli) fn chosen<F: ValueEnum + PartialEq>(
     output: Option<&Path>,
     stated: Option<F>,
     usual: F,

@@ -1,6 +1,6 @@
 //! `--programs FILE.toml`: engines that are programs of any language.
 
-use super::note;
+use super::terminal::note;
 use crate::case::Shortcoming;
 use crate::engine::Engine;
 use crate::integrators;
@@ -10,7 +10,7 @@ use std::path::PathBuf;
 
 /// Engines beside those of this program.
 #[derive(Args)]
-pub(super) struct ProgramFlags {
+pub(in crate::cli) struct ProgramFlags {
     /// Adds the engines of the programs that this file names
     #[arg(long, value_name = "FILE.toml")]
     programs: Option<PathBuf>,
@@ -18,7 +18,7 @@ pub(super) struct ProgramFlags {
 
 /// The programs of this run; they are ended when it is dropped.
 #[must_use]
-pub(super) struct StartedPrograms(());
+pub(in crate::cli) struct StartedPrograms(());
 
 impl Drop for StartedPrograms {
     fn drop(&mut self) {
@@ -28,7 +28,7 @@ impl Drop for StartedPrograms {
 
 impl ProgramFlags {
     /// What is known of the programs that falls short.
-    pub(super) fn shortcomings(&self) -> Result<Vec<Shortcoming>> {
+    pub(in crate::cli) fn shortcomings(&self) -> Result<Vec<Shortcoming>> {
         match &self.programs {
             Some(file) => percuss_programs::shortcomings(file).context("--programs"),
             None => Ok(Vec::new()),
@@ -37,7 +37,7 @@ impl ProgramFlags {
 
     /// Starts the programs and adds their engines to all others; no engine may have been asked for
     /// before. One that cannot be started has an engine by its name, whose rows say why.
-    pub(super) fn start(&self) -> Result<StartedPrograms> {
+    pub(in crate::cli) fn start(&self) -> Result<StartedPrograms> {
         let started = StartedPrograms(());
         let Some(file) = &self.programs else { return Ok(started) };
         crate::unfinished::watch();

@@ -1,6 +1,6 @@
 //! How far a run is, for a bar on stderr; the run takes no notice of it.
 
-use super::work::Bar;
+use super::long_work::Bar;
 use percuss::Instant;
 use std::cell::Cell;
 
@@ -8,7 +8,7 @@ use std::cell::Cell;
 const RARELY: u64 = 256;
 
 /// A bar that is moved now and then.
-pub(super) struct Progress {
+pub(in crate::cli) struct Progress {
     bar: Option<Bar>,
     calls: Cell<u64>,
     omega: f64,
@@ -18,18 +18,23 @@ pub(super) struct Progress {
 
 impl Progress {
     /// Creates the progress of a run from `start` to `horizon`.
-    pub(super) fn new(bar: Option<Bar>, omega: f64, start: Instant, horizon: &Instant) -> Self {
+    pub(in crate::cli) fn new(
+        bar: Option<Bar>,
+        omega: f64,
+        start: Instant,
+        horizon: &Instant,
+    ) -> Self {
         let span = horizon.since(&start, omega).value();
         Self { bar, calls: Cell::new(0), omega, start, span }
     }
 
     /// The run is at an instant.
-    pub(super) fn at(&self, instant: &Instant) {
+    pub(in crate::cli) fn at(&self, instant: &Instant) {
         self.at_least(instant, 0.0);
     }
 
     /// The run is at an instant, or has done this share of what was wanted where that is more.
-    pub(super) fn at_least(&self, instant: &Instant, done: f64) {
+    pub(in crate::cli) fn at_least(&self, instant: &Instant, done: f64) {
         let Some(bar) = &self.bar else { return };
         let calls = self.calls.get();
         self.calls.set(calls + 1);

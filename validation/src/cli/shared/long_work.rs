@@ -1,7 +1,7 @@
 //! Long work: its length, its threads and its progress.
 
-use super::is_quiet;
 use super::parse::MAX_PERIODS;
+use super::terminal::is_quiet;
 use anyhow::{Context, Result, bail};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{self, IsTerminal};
@@ -10,7 +10,7 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::time::Duration;
 
 /// A run of both together has an accepted length.
-pub(super) fn check_horizon(transient: u64, periods: u64) -> Result<()> {
+pub(in crate::cli) fn check_horizon(transient: u64, periods: u64) -> Result<()> {
     let whole = transient.saturating_add(periods);
     if whole > MAX_PERIODS {
         bail!(
@@ -21,7 +21,7 @@ pub(super) fn check_horizon(transient: u64, periods: u64) -> Result<()> {
 }
 
 /// A pool of as many threads as were asked for, or of all.
-pub(super) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool> {
+pub(in crate::cli) fn pool(threads: Option<u16>) -> Result<rayon::ThreadPool> {
     let threads = usize::from(threads.unwrap_or(0));
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
     pool.context("--threads: the threads cannot be started")
@@ -32,7 +32,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 
 /// Progress on stderr with the time to go: of work that takes long, where stderr is a terminal and
 /// `--quiet` was not given.
-pub(super) struct Bar {
+pub(in crate::cli) struct Bar {
     bar: ProgressBar,
     /// Ends the wait for [`PATIENCE`].
     waiting: Mutex<Option<Sender<()>>>,
@@ -51,22 +51,22 @@ impl Bar {
     }
 
     /// Tells the bar that this much more is done.
-    pub(super) fn inc(&self, count: u64) {
+    pub(in crate::cli) fn inc(&self, count: u64) {
         self.bar.inc(count);
     }
 
     /// There is more to do than was said.
-    pub(super) fn inc_length(&self, count: u64) {
+    pub(in crate::cli) fn inc_length(&self, count: u64) {
         self.bar.inc_length(count);
     }
 
     /// This share of it is done, 0 to 1.
-    pub(super) fn show_share(&self, share: f64) {
+    pub(in crate::cli) fn show_share(&self, share: f64) {
         self.bar.set_position((share * SHARES) as u64);
     }
 
     /// Takes it off the terminal.
-    pub(super) fn finish_and_clear(&self) {
+    pub(in crate::cli) fn finish_and_clear(&self) {
         drop(self.waiting.lock().map(|mut waiting| waiting.take()));
         self.bar.finish_and_clear();
     }
@@ -92,7 +92,7 @@ fn shown_later(bar: ProgressBar) -> Sender<()> {
 }
 
 /// A bar of so many units.
-pub(super) fn bar(length: u64, unit: &str) -> Bar {
+pub(in crate::cli) fn bar(length: u64, unit: &str) -> Bar {
     let style = format!("{{bar:40}} {{pos}}/{{len}} {unit}, {{eta}} to go");
     Bar::new(ProgressBar::new(length), &style)
 }
@@ -101,12 +101,12 @@ pub(super) fn bar(length: u64, unit: &str) -> Bar {
 const SHARES: f64 = 1000.0;
 
 /// A bar for a share of 0 to 1.
-pub(super) fn share_bar() -> Bar {
+pub(in crate::cli) fn share_bar() -> Bar {
     Bar::new(ProgressBar::new(SHARES as u64), "{bar:40} {percent} %, {eta} to go")
 }
 
 /// A bar for a run of one motion, from its start to its horizon; none where its rows appear on the
 /// terminal themselves.
-pub(super) fn run_bar(rows_are_seen: bool) -> Option<Bar> {
+pub(in crate::cli) fn run_bar(rows_are_seen: bool) -> Option<Bar> {
     (!rows_are_seen).then(share_bar)
 }
