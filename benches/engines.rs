@@ -13,7 +13,8 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use percuss_validation::bench::contestant::enter;
 use percuss_validation::bench::timed_case::TimedCase;
 use percuss_validation::case::embedded;
-use percuss_validation::engine::{Accuracy, Stepping, all};
+use percuss_validation::engine::{Accuracy, Stepping};
+use percuss_validation::integrators::all;
 use percuss_validation::truth::Library;
 
 const CASE: &str = "chaos-from-rest";

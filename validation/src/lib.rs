@@ -4,13 +4,13 @@
 //! The exact solver lives in the crate `percuss` and knows nothing of this one. Here it is one
 //! [`engine::Engine`] among others, held against tables ([`truth`]) that none of them knows.
 
-pub mod build;
 pub mod cli;
+pub mod provenance;
 pub mod report;
 pub mod sweep;
 mod unfinished;
 
 pub use percuss_engines::case::systems;
-pub use percuss_engines::{case, engine, number, system};
+pub use percuss_engines::{case, engine, integration, integrators, number, system};
 pub use percuss_harness::{arrays, bench, power, reproduce, score, suite, truth};
 pub use percuss_pictures as picture;

@@ -11,9 +11,9 @@ use percuss_validation::bench::library_part::library_part;
 use percuss_validation::bench::timed_case::TimedCase;
 use percuss_validation::bench::timed_system_case::TimedSystemCase;
 use percuss_validation::case::Cases;
-use percuss_validation::engine::{
-    Accuracy, CONTROL, Engine, Limits, Location, Outcome, Script, all, answer_oscillator, wrong,
-};
+use percuss_validation::engine::{Accuracy, Engine, Limits, Location, Outcome, answer_oscillator};
+use percuss_validation::integration::Script;
+use percuss_validation::integrators::{CONTROL, all, wrong};
 use percuss_validation::truth::Library;
 use std::path::{Path, PathBuf};
 

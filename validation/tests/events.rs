@@ -2,7 +2,7 @@
 
 use crate::exact;
 use percuss_validation::case::defaults;
-use percuss_validation::engine::select;
+use percuss_validation::integrators::select;
 use percuss_validation::report::{EventPicture, MismatchKind, View, event_pictures};
 use percuss_validation::suite::{self, CaseRun, Suite};
 use percuss_validation::truth::Library;

@@ -5,7 +5,7 @@
 mod systems_by_engine;
 
 use percuss_validation::case::Cases;
-use percuss_validation::engine::all;
+use percuss_validation::integrators::all;
 use serde_json::json;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};

@@ -16,6 +16,7 @@ mod browser;
 mod case_files;
 mod command_line;
 mod contributing;
+mod counted_work;
 mod dynamics_verbs;
 mod events;
 mod every_flag;
@@ -50,7 +51,6 @@ mod systems;
 mod systems_page;
 mod terminal;
 mod validate;
-mod work;
 
 mod exact;
 mod support;

@@ -8,9 +8,8 @@
 #[path = "../examples/engine.rs"]
 mod engine;
 
-use percuss_validation::engine::{
-    self as engines, Accuracy, Declaration, Engine, Failure, Limits, Outcome, Task,
-};
+use percuss_validation::engine::{Accuracy, Declaration, Engine, Failure, Limits, Outcome, Task};
+use percuss_validation::integrators;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, ExitCode, Output};
@@ -108,7 +107,7 @@ fn the_report_is_whole() {
 fn it_is_an_engine_of_every_verb() {
     let listed = text(&example(&["engines", "--format", "csv"]).stdout);
     assert!(listed.lines().any(|line| line.starts_with("heun,an example,1.0.0,")), "{listed}");
-    assert_eq!(listed.lines().count(), 2 + engines::all().len());
+    assert_eq!(listed.lines().count(), 2 + integrators::all().len());
     let raced = example(&["bench", "-e", "^heun$", "-c", "^impact-into", "--rounds", "1"]);
     assert!(text(&raced.stdout).contains("heun"), "{}", text(&raced.stderr));
 }
@@ -139,10 +138,11 @@ fn its_accuracy_is_held_to_a_baseline() {
 
 fn names_that_mislead_are_refused() {
     // This process has not asked for any engine yet, so that only the names can be at fault.
-    let refused = engines::add(&[engines::exact()]).expect_err("the reference is there already");
+    let refused =
+        integrators::add(&[integrators::exact()]).expect_err("the reference is there already");
     assert!(refused.reason.contains("\"exact\""), "{refused}");
-    assert_eq!(engines::add(&[]), Ok(()));
-    let late = engines::add(&[]).expect_err("once only");
+    assert_eq!(integrators::add(&[]), Ok(()));
+    let late = integrators::add(&[]).expect_err("once only");
     assert!(late.reason.contains("before any engine"), "{late}");
 }
 

@@ -3,9 +3,10 @@
 use crate::exact;
 use percuss::{Model, Parameters, Start};
 use percuss_validation::case::{Case, defaults, embedded};
-use percuss_validation::engine::{
-    Accuracy, CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, WrongEngine, WrongWay,
-    faulty, wrong, wrong_on_systems,
+use percuss_validation::engine::Accuracy;
+use percuss_validation::integrators::{
+    CONTROL, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, Way, WrongEngine, WrongWay, faulty, wrong,
+    wrong_on_systems,
 };
 use percuss_validation::power::{
     AS_EXACT, Finding, Gate, Standard, all_on_systems, examine, examine_on_systems, is_run,

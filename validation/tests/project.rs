@@ -2,7 +2,7 @@
 
 use crate::support;
 use percuss_validation::case::Cases;
-use percuss_validation::engine::all;
+use percuss_validation::integrators::all;
 use percuss_validation::suite::{Suite, SuiteScope, size};
 use std::path::{Path, PathBuf};
 

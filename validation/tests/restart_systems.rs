@@ -6,8 +6,9 @@
 use crate::exact::probed_systems;
 use percuss_validation::case::Cases;
 use percuss_validation::engine::{
-    Accuracy, Engine, Failure, Limits, Outcome, REFERENCE, Task, all, answer,
+    Accuracy, Engine, Failure, Limits, Outcome, REFERENCE, Task, answer,
 };
+use percuss_validation::integrators::all;
 use percuss_validation::score::{Restart, SystemRestartRun, SystemRestartTest};
 use percuss_validation::suite::{PreparedSystem, Suite, prepare_systems};
 use percuss_validation::truth::Library;

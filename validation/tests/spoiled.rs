@@ -3,8 +3,9 @@
 use percuss::Phase;
 use percuss_validation::case::{defaults, embedded};
 use percuss_validation::engine::{
-    Accuracy, Declaration, Engine, Event, Failure, Limits, OscillatorOutcome, Outcome, Task, exact,
+    Accuracy, Declaration, Engine, Event, Failure, Limits, OscillatorOutcome, Outcome, Task,
 };
+use percuss_validation::integrators::exact;
 use percuss_validation::score::Verdict;
 use percuss_validation::suite::{CaseRun, Suite, prepare, run};
 use percuss_validation::truth::Library;

@@ -2,7 +2,8 @@
 
 use crate::support::{refused, run, stdout, text};
 use percuss_validation::case::{Cases, TROUBLE};
-use percuss_validation::engine::{Accuracy, Limits, Task, answer, exact};
+use percuss_validation::engine::{Accuracy, Limits, Task, answer};
+use percuss_validation::integrators::exact;
 use percuss_validation::truth::{Library, SystemTruth};
 use std::collections::BTreeMap;
 use std::fs;

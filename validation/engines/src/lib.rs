@@ -3,7 +3,12 @@
 //!
 //! The integrators' libraries are compiled here and nowhere else.
 
+mod accuracy;
 pub mod case;
 pub mod engine;
+mod equations;
+mod failure;
+pub mod integration;
+pub mod integrators;
 pub mod number;
 pub mod system;

@@ -2,7 +2,8 @@
 //! in every picture and on every page.
 
 use super::colour::Colour;
-use percuss_engines::engine::{self, Colours};
+use percuss_engines::engine::Colours;
+use percuss_engines::integrators;
 
 /// How an engine is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,7 +46,7 @@ const MARKERS: [Marker; 7] = [
 /// engines looks as the whole does.
 #[must_use]
 pub fn looks(engines: &[(&str, &str)]) -> Vec<Look> {
-    let known: Vec<_> = engine::all().iter().map(|engine| engine.declaration()).collect();
+    let known: Vec<_> = integrators::all().iter().map(|engine| engine.declaration()).collect();
     let colours_of = |library: &str| {
         let kin = known.iter().find(|it| it.library == library);
         kin.map_or(Colours::OTHERS, |it| it.colours)
@@ -108,7 +109,7 @@ mod tests {
 
     #[test]
     fn a_selection_looks_as_the_whole() {
-        let whole: Vec<_> = engine::all().iter().map(|engine| engine.declaration()).collect();
+        let whole: Vec<_> = integrators::all().iter().map(|engine| engine.declaration()).collect();
         let whole: Vec<_> = whole.iter().map(|it| (it.name, it.library)).collect();
         let looks_of_all = looks(&whole);
         for (engine, of_all) in whole.iter().zip(&looks_of_all) {

@@ -6,7 +6,8 @@
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! use percuss_engines::engine::{Engine, add};
+//! use percuss_engines::engine::Engine;
+//! use percuss_engines::integrators::add;
 //!
 //! let mut engines: Vec<&'static dyn Engine> = Vec::new();
 //! for program in percuss_programs::read("programs.toml".as_ref())? {
@@ -24,15 +25,15 @@
 
 mod answer;
 mod engine;
-mod file;
 pub mod files;
 mod pool;
 mod process;
+mod programs_file;
 mod start;
 mod text;
 mod wire;
 
 pub use engine::{NotStarted, ProgramEngine};
-pub use file::{NAMES, Program, is_name, read, shortcomings};
 pub use process::end_all;
+pub use programs_file::{NAMES, Program, is_name, read, shortcomings};
 pub use wire::{Capabilities, EventsBy, PROTOCOL, SetUp, SteppedBy};

@@ -1,8 +1,8 @@
 //! The processes of one program: as many as there are runs at a time, each used again as long as it
 //! does nothing wrong.
 
-use crate::file::Program;
 use crate::process::Process;
+use crate::programs_file::Program;
 use crate::wire::{ReplyContent, RunAsk, RunReply};
 use percuss_engines::engine::Failure;
 use std::sync::{Mutex, MutexGuard, PoisonError};

@@ -1,9 +1,9 @@
 //! A program started for the first time: what it says of itself becomes engines.
 
 use crate::engine::{NotStarted, ProgramEngine};
-use crate::file::{Program, is_name};
 use crate::pool::Pool;
 use crate::process::Process;
+use crate::programs_file::{Program, is_name};
 use crate::text::plain;
 use crate::wire::{Capabilities, ReplyContent, SetUp, SteppedBy};
 use std::io::ErrorKind;

@@ -8,8 +8,9 @@ use percuss::{Parameters, Start};
 use percuss_engines::case::Given;
 use percuss_engines::engine::{
     Accuracy, Engine, Limits, OscillatorOutcome, OscillatorTask, Outcome, SampleGrid, Stepping,
-    Task, answer, answer_oscillator, exact,
+    Task, answer, answer_oscillator,
 };
+use percuss_engines::integrators::exact;
 use percuss_engines::system::{CheckedSystem, Direction, Mode, System, Until, Watch};
 use percuss_programs::ProgramEngine;
 use std::path::Path;

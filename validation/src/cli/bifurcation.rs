@@ -1,10 +1,11 @@
 //! `bifurcation`: a brute-force diagram, as a table or a picture.
 
-use super::endless::words;
-use super::format::OutputFlags;
-use super::model::ModelFlags;
-use super::parse::{self, MAX_PERIODS, Typed};
-use super::{note, work};
+use super::note;
+use super::shared::endless::words;
+use super::shared::format::OutputFlags;
+use super::shared::long_work;
+use super::shared::model::ModelFlags;
+use super::shared::parse::{self, MAX_PERIODS, Typed};
 use crate::number::shortest;
 use crate::picture::{self, Figure, Layer, Plot};
 use anyhow::{Result, anyhow, bail};
@@ -64,8 +65,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<bool> {
     let diagram = diagram(arguments, &arguments.model)?;
     let most = if format == Format::Svg { MAX_SVG } else { MAX_ROWS };
     check_size(arguments, most)?;
-    let bar = work::bar(u64::from(arguments.steps), "values");
-    let steps = work::pool(threads)?.install(|| diagram.steps(|| bar.inc(1)));
+    let bar = long_work::bar(u64::from(arguments.steps), "values");
+    let steps = long_work::pool(threads)?.install(|| diagram.steps(|| bar.inc(1)));
     bar.finish_and_clear();
     let steps =
         steps.map_err(|error| anyhow!("--parameter {}: {error}", diagram.parameter.as_str()))?;
@@ -112,7 +113,7 @@ pub(super) fn diagram(arguments: &Arguments, model: &ModelFlags) -> Result<Diagr
 
 /// Refuses more rows than are held in memory.
 pub(super) fn check_size(arguments: &Arguments, most: u64) -> Result<()> {
-    work::check_horizon(arguments.transient, u64::from(arguments.periods))?;
+    long_work::check_horizon(arguments.transient, u64::from(arguments.periods))?;
     let rows = u64::from(arguments.steps) * u64::from(arguments.periods);
     if rows > most {
         bail!("--steps times --periods is {rows}: accepted are at most {most}");

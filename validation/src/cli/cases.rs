@@ -1,7 +1,7 @@
 //! `cases`: what engines are held to.
 
-use super::format::OutputFlags;
-use super::list::{self, Format};
+use super::shared::format::OutputFlags;
+use super::shared::list::{self, Format};
 use crate::case::{Case, Cases, FileError, Horizon, SystemCase};
 use crate::report::OSCILLATOR;
 use crate::truth::Library;

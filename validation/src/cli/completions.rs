@@ -1,7 +1,7 @@
 //! `completions`: what a shell asks when the tabulator key is pressed.
 
 use super::command;
-use super::output::Destination;
+use super::shared::output::Destination;
 use anyhow::Result;
 use clap::Args;
 use clap_complete::{Shell, generate};

@@ -1,9 +1,10 @@
 //! `engines`: what can be run.
 
-use super::format::OutputFlags;
-use super::list::{self, Format};
-use super::programs::ProgramFlags;
+use super::shared::format::OutputFlags;
+use super::shared::list::{self, Format};
+use super::shared::programs::ProgramFlags;
 use crate::engine::{self, Declaration, Location};
+use crate::integrators;
 use anyhow::Result;
 use clap::Args;
 use serde::Serialize;
@@ -41,7 +42,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
         let Declaration { name, library, version, method, events, .. } = engine.declaration();
         Line { name, library, version, method, events, available: engine.available().is_ok() }
     };
-    let lines: Vec<Line> = engine::all().iter().map(line).collect();
+    let lines: Vec<Line> = integrators::all().iter().map(line).collect();
     let list = List { schema: 1, percuss: env!("CARGO_PKG_VERSION"), engines: &lines };
     list::write(&arguments.output, format, &list, &lines)
 }

@@ -1,8 +1,8 @@
 //! `export`: what cases ask, as files for readers of any language.
 
-use super::compact;
-use super::judged::CaseFlags;
-use super::output::{Destination, make_folder, write_whole};
+use super::shared::compact;
+use super::shared::judged::CaseFlags;
+use super::shared::output::{Destination, make_folder, write_whole};
 use crate::suite::CaseRun;
 use anyhow::{Context, Result};
 use clap::Args;

@@ -1,12 +1,13 @@
 //! `lyapunov`: the exponents of one motion.
 
-use super::endless::notice;
-use super::format::OutputFlags;
-use super::model::{ModelFlags, ParametersJson};
+use super::note;
 use super::orbits::Format;
-use super::parse::{self, MAX_PERIODS};
-use super::progress::Progress;
-use super::{note, work};
+use super::shared::endless::notice;
+use super::shared::format::OutputFlags;
+use super::shared::long_work;
+use super::shared::model::{ModelFlags, ParametersJson};
+use super::shared::parse::{self, MAX_PERIODS};
+use super::shared::progress::Progress;
 use crate::case::Problem;
 use anyhow::Result;
 use clap::Args;
@@ -45,7 +46,7 @@ struct Json {
 pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     arguments.output.format(Format::Json)?;
     let problem = arguments.model.problem()?;
-    work::check_horizon(arguments.transient, arguments.periods)?;
+    long_work::check_horizon(arguments.transient, arguments.periods)?;
     let found = spectrum(arguments, &problem);
     let json = Json {
         schema: 1,
@@ -73,7 +74,7 @@ fn spectrum(arguments: &Arguments, problem: &Problem) -> Spectrum {
     let Arguments { transient, periods, .. } = *arguments;
     let Problem { model, entry, .. } = problem;
     let end = entry.instant.after_periods(transient + periods, 1);
-    let bar = Some(work::share_bar());
+    let bar = Some(long_work::share_bar());
     let progress = Progress::new(bar, model.parameters().omega, entry.instant, &end);
     let mut seen = |segment: &Segment| progress.at(&segment.entry().instant);
     Spectrum::told(model, *entry, transient, periods, &mut seen)

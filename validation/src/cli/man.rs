@@ -1,7 +1,7 @@
 //! `man`: the manual, a page a verb.
 
 use super::command;
-use super::output::{make_folder, write_whole};
+use super::shared::output::{make_folder, write_whole};
 use anyhow::{Context, Result};
 use clap::{Args, Command};
 use clap_mangen::Man;

@@ -1,51 +1,35 @@
-//! The command line, a file a verb. What it promises is in docs/COMMAND_LINE.md.
+//! The command line, a file or a folder a verb; what several verbs share is in `shared`. What the
+//! command line promises is in docs/COMMAND_LINE.md.
 
 mod basins;
 mod bench;
 mod bifurcation;
 mod cases;
-mod compact;
 mod completions;
-mod endless;
 mod engines;
 mod events;
 mod export;
-mod format;
-mod judged;
-mod list;
 mod lyapunov;
 mod man;
-mod model;
-mod names;
 mod orbits;
-mod output;
-mod parse;
 mod poincare;
-mod programs;
-mod progress;
-mod reports;
 mod reproduce;
 mod score;
+mod shared;
 mod simulate;
 mod sweep;
 mod systems;
-mod terminal;
 mod validate;
-mod work;
 
-use crate::engine::{self, Engine};
+use crate::engine::Engine;
+use crate::integrators;
 use clap::error::{ContextKind, ErrorKind};
 use clap::{ColorChoice, Command, CommandFactory, FromArgMatches, Parser, Subcommand};
+use shared::exit_codes::{DONE, OUT_OF_BOUNDS, REFUSED};
+use shared::terminal::{note, say};
+use shared::{output, parse, terminal};
 use std::ffi::OsString;
 use std::process::ExitCode;
-use terminal::{is_quiet, note, say};
-
-/// Done, and within bounds.
-const DONE: u8 = 0;
-/// Ran, and a bound failed or an engine erred.
-const OUT_OF_BOUNDS: u8 = 1;
-/// Bad usage, bad input, input or output that failed, or nothing selected.
-const REFUSED: u8 = 2;
 
 /// Exact solver of the visco-elastic impact oscillator with drift, and integrators held against it.
 #[derive(Parser)]
@@ -101,7 +85,7 @@ pub fn run_with(
     own: &[&'static dyn Engine],
     arguments: impl IntoIterator<Item = OsString>,
 ) -> ExitCode {
-    match engine::add(own) {
+    match integrators::add(own) {
         Ok(()) => run(arguments),
         Err(failure) => {
             say(&failure.to_string());

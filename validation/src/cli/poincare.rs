@@ -1,12 +1,12 @@
 //! `poincare`: a stroboscopic section, as a table, an array or a picture.
 
-use super::endless::notice;
-use super::format::OutputFlags;
-use super::model::ModelFlags;
 use super::note;
-use super::parse::{self, MAX_PERIODS};
-use super::progress::Progress;
-use super::work::{self, Bar};
+use super::shared::endless::notice;
+use super::shared::format::OutputFlags;
+use super::shared::long_work::{self, Bar};
+use super::shared::model::ModelFlags;
+use super::shared::parse::{self, MAX_PERIODS};
+use super::shared::progress::Progress;
 use crate::case::Problem;
 use crate::number::shortest;
 use crate::picture::{self, Figure, Layer, Plot};
@@ -49,7 +49,7 @@ const MAX_PICTURE: u64 = 5_000_000;
 pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     let format = arguments.output.format(Format::Csv)?;
     let problem = arguments.model.problem()?;
-    work::check_horizon(arguments.transient, arguments.periods)?;
+    long_work::check_horizon(arguments.transient, arguments.periods)?;
     if format == Format::Png && arguments.periods > MAX_PICTURE {
         bail!(
             "--periods {} is not accepted for a picture: at most {MAX_PICTURE}",
@@ -57,7 +57,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
         );
     }
     let destination = arguments.output.destination();
-    let bar = work::run_bar(destination.is_terminal());
+    let bar = long_work::run_bar(destination.is_terminal());
     let course = ShownCourse::new(arguments, &problem);
     let progress = course.progress(bar);
     let (mut last, mut count) = (problem.entry, 0);

@@ -1,9 +1,11 @@
 //! `score`: answers in files, judged as the runs of `validate` are.
 
-use super::judged::JudgedFlags;
-use super::names::{CASES, held_by};
-use super::{note, say, work};
-use crate::engine::{self, Accuracy, REFERENCE, Stepping};
+use super::shared::judged::JudgedFlags;
+use super::shared::long_work;
+use super::shared::names::{CASES, held_by};
+use super::{note, say};
+use crate::engine::{Accuracy, REFERENCE, Stepping};
+use crate::integrators;
 use crate::number::shortest;
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::{self, CaseRun, Scored, Status, Suite};
@@ -80,8 +82,8 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let all = cases.all();
     check_names(arguments, &all, &answered)?;
     let defaults = judged.defaults()?;
-    let pool = work::pool(threads)?;
-    let bar = work::bar(all.len() as u64, "cases");
+    let pool = long_work::pool(threads)?;
+    let bar = long_work::bar(all.len() as u64, "cases");
     let row = |case: &&dyn CaseRun| {
         let engine = arguments.engine(case.name());
         let accuracy = Accuracy::Tolerance(arguments.tolerance);
@@ -142,7 +144,7 @@ impl Arguments {
 /// The unit of error is that of the engine inside percuss that is called so, where its accuracy is
 /// chosen by a tolerance too.
 fn stepping(name: &str) -> Stepping {
-    let known = engine::all().iter().map(|it| it.declaration()).find(|it| it.name == name);
+    let known = integrators::all().iter().map(|it| it.declaration()).find(|it| it.name == name);
     match known.map(|it| it.stepping) {
         Some(stepping @ Stepping::PerStep { .. }) => stepping,
         _ => Stepping::Adaptive,

@@ -1,7 +1,7 @@
 //! `systems`: the piecewise-affine systems inside the program.
 
-use super::format::OutputFlags;
-use super::list::{self, Format};
+use super::shared::format::OutputFlags;
+use super::shared::list::{self, Format};
 use crate::systems::SYSTEMS;
 use anyhow::Result;
 use clap::Args;

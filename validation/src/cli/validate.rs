@@ -1,11 +1,14 @@
 //! `validate`: every engine on every case against the truth.
 
-use super::judged::{JudgedFlags, PreparedCases, accepts};
-use super::names::ENGINES;
-use super::programs::ProgramFlags;
-use super::{OUT_OF_BOUNDS, parse, say, work};
+use super::shared::judged::{JudgedFlags, PreparedCases, accepts};
+use super::shared::names::ENGINES;
+use super::shared::programs::ProgramFlags;
+use super::shared::{long_work, parse};
+use super::{OUT_OF_BOUNDS, say};
 use crate::case::Defaults;
-use crate::engine::{self, Engine, WrongEngine, WrongWay, hush_contained_panics};
+use crate::engine::{Engine, hush_contained_panics};
+use crate::integrators;
+use crate::integrators::{WrongEngine, WrongWay};
 use crate::power::{self, Finding, Standard};
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
 use crate::suite::{self, Suite, SuiteScope};
@@ -48,9 +51,9 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         defaults.shortcomings.extend(arguments.programs.shortcomings()?);
     }
     hush_contained_panics();
-    let pool = work::pool(threads)?;
+    let pool = long_work::pool(threads)?;
     let steps = suite::size(all.len(), &engines, &scope) + wrong.count();
-    let bar = work::bar(steps as u64, "rows");
+    let bar = long_work::bar(steps as u64, "rows");
     // Together, so that no thread waits for the last of the rows.
     let (rows, findings) = pool.install(|| {
         rayon::join(
@@ -152,7 +155,7 @@ fn unnoticed(findings: &[Finding]) -> bool {
 }
 
 fn chosen_engines(patterns: &[Regex]) -> Result<Vec<&'static dyn Engine>> {
-    let engines = engine::select(patterns)?;
-    ENGINES.check(patterns, engine::all().iter().map(|it| it.declaration().name))?;
+    let engines = integrators::select(patterns)?;
+    ENGINES.check(patterns, integrators::all().iter().map(|it| it.declaration().name))?;
     Ok(engines)
 }

@@ -3,7 +3,8 @@
 
 use super::table::wrapped;
 use super::{Order, Report, ReportEvidence, ReportRow, orders};
-use crate::engine::{ELSEWHERE, REFERENCE};
+use crate::engine::REFERENCE;
+use crate::integration::ELSEWHERE;
 use crate::score::Verdict;
 use std::collections::BTreeMap;
 

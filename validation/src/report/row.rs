@@ -1,8 +1,8 @@
 //! What a report holds: the keys of `report.json`.
 
 use super::ranking::{Ranked, ranking};
-use crate::build::{self, Build};
 use crate::engine::{Declaration, Engine, Work};
+use crate::provenance::{self, Build};
 use crate::score::attractor::Comparison;
 use crate::score::{Checked, Horizons, Restart, Spread, Verdict, order};
 use crate::suite::{Scored, Status, Suite};
@@ -156,7 +156,7 @@ impl Report {
         let mut results: Vec<ReportRow> = rows.iter().map(ReportRow::of).collect();
         fill_orders(&mut results);
         Self {
-            build: build::this(),
+            build: provenance::this(),
             suite,
             engines: engines.iter().map(|engine| EngineEntry::of(*engine)).collect(),
             summary: Summary::of(&results),

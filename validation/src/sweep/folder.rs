@@ -1,7 +1,7 @@
 //! The folder of a sweep: what is in it under which name, and which plan and program it is of.
 
 use super::plan::Plan;
-use crate::build;
+use crate::provenance;
 use crate::unfinished::Unfinished;
 use anyhow::{Result, anyhow, bail};
 use percuss::lanes::Instructions;
@@ -54,7 +54,7 @@ impl ComputedBy {
     /// This program, here.
     #[must_use]
     pub fn this() -> Self {
-        let build = build::this();
+        let build = provenance::this();
         let scalar = Instructions::widest() == Instructions::ONE;
         let arithmetic = if scalar { "scalar" } else { "vector" };
         Self { percuss: build.percuss, commit: build.commit, arithmetic: arithmetic.to_owned() }

@@ -22,7 +22,7 @@ mod shard;
 mod spool;
 mod status;
 mod tiling;
-mod work;
+mod verb;
 
 pub use array::{Array, ArrayValues};
 pub use axis::{SweepAxis, SweepPoint};
@@ -34,4 +34,4 @@ pub use plan::{Plan, PlanFile};
 pub use run::{Sweep, SweepObserver};
 pub use shard::Damage;
 pub use status::{ShardState, SweepStatus};
-pub use work::{SweepVerb, Tiles};
+pub use verb::{SweepVerb, Tiles};

@@ -7,7 +7,7 @@ use super::deal::Deal;
 use super::folder::Folder;
 use super::plan::{Plan, digest};
 use super::tiling::Tiling;
-use super::work::SweepVerb;
+use super::verb::SweepVerb;
 use anyhow::{Context, Result};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};

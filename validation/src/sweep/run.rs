@@ -5,7 +5,7 @@ use super::pilot::{self, Dealt};
 use super::plan::Plan;
 use super::shard::{self, Damage, Identity, Shard, ShardHead};
 use super::tiling::{self, Tiling};
-use super::work::SweepVerb;
+use super::verb::SweepVerb;
 use anyhow::{Result, bail};
 use rayon::prelude::*;
 use std::time::{Duration, Instant};

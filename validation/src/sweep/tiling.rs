@@ -5,7 +5,7 @@
 //! depend on it.
 
 use super::plan::Plan;
-use super::work::SweepVerb;
+use super::verb::SweepVerb;
 use anyhow::{Context, Result, bail};
 use std::ops::Range;
 

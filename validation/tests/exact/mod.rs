@@ -3,8 +3,9 @@
 use percuss::lanes::Instructions;
 use percuss_validation::case::{Case, Cases, Given, Problem, embedded};
 use percuss_validation::engine::{
-    Accuracy, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, all, answer_oscillator,
+    Accuracy, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, answer_oscillator,
 };
+use percuss_validation::integrators::all;
 use percuss_validation::suite::{PreparedSystem, Suite, prepare_systems};
 use percuss_validation::truth::Library;
 
@@ -20,7 +21,7 @@ pub fn run(task: &OscillatorTask) -> Result<OscillatorOutcome, Failure> {
 
 /// Runs a task by these instructions.
 pub fn run_in_lanes(by: Instructions, task: &OscillatorTask) -> OscillatorOutcome {
-    percuss_validation::engine::run_in_lanes(by, task, 1).pop().expect("one motion")
+    percuss_validation::integrators::run_in_lanes(by, task, 1).pop().expect("one motion")
 }
 
 /// The embedded case of this name.

@@ -2,7 +2,8 @@
 
 use crate::support::{refused, run, text};
 use percuss_validation::case::{Cases, defaults};
-use percuss_validation::engine::{Accuracy, Ended, Task, all};
+use percuss_validation::engine::{Accuracy, Ended, Task};
+use percuss_validation::integrators::all;
 use percuss_validation::number::shortest;
 use percuss_validation::suite::{Answered, CaseRun, Status, Suite, one, prepare, prepare_systems};
 use percuss_validation::truth::Library;

@@ -1,7 +1,7 @@
 //! A report with everything in it, and with what is hard to show: numbers that are not finite,
 //! names that need escaping, engines without a result.
 
-use percuss_validation::build::Build;
+use percuss_validation::provenance::Build;
 use percuss_validation::report::{
     CaseNote, EngineEntry, ErrorGrowth, EventMark, EventPicture, FaultRow, GrazeRow, MismatchKind,
     Ranked, Report, ReportEvidence, ReportRow, RestartHistogram, SectionPair, Summary, Units,

@@ -1,6 +1,6 @@
 //! What is expected of an engine on a case.
 
-use crate::engine::Accuracy;
+use crate::accuracy::Accuracy;
 use regex::Regex;
 use std::fmt;
 

@@ -2,7 +2,7 @@
 
 use super::bound::{Bound, NamePattern, Quantity, Shortcoming, Statistic};
 use super::located::{FileError, FileText};
-use crate::engine::Accuracy;
+use crate::accuracy::Accuracy;
 use regex::Regex;
 use serde::Deserialize;
 use toml::Spanned;

@@ -3,9 +3,9 @@
 use super::Case;
 use super::bound::Shortcoming;
 use super::expectations::{Defaults, read_bounds};
-use super::known::read_shortcomings;
 use super::located::{FileError, read_text};
-use super::system::{SystemCase, is_of_a_system, parse_system_case};
+use super::shortcomings::read_shortcomings;
+use super::system_case::{SystemCase, is_of_a_system, parse_system_case};
 use super::wire::parse_case;
 use include_dir::{Dir, include_dir};
 use std::path::{Path, PathBuf};

@@ -3,13 +3,13 @@
 mod accepted;
 mod bound;
 mod expectations;
-mod known;
 mod library;
 mod located;
 mod probed;
 mod problem;
 mod regime;
-mod system;
+mod shortcomings;
+mod system_case;
 pub mod systems;
 mod wire;
 
@@ -24,7 +24,7 @@ pub use percuss::affine::TROUBLE;
 pub use probed::ProbedCase;
 pub use problem::{Given, Problem};
 pub use regime::Regime;
-pub use system::{SystemCase, parse_system_case};
+pub use system_case::{SystemCase, parse_system_case};
 pub use wire::{parse_case, parse_problem, read_problem};
 
 use percuss::{Parameters, Start};

@@ -1,9 +1,9 @@
 //! An engine's answer, checked for completeness before anything is measured of it, and the work
 //! that it takes at the least.
 
-use super::{
-    Accuracy, Engine, Failure, Limits, OscillatorOutcome, OscillatorTask, Outcome, Task, contain,
-};
+use super::{Engine, Limits, OscillatorOutcome, OscillatorTask, Outcome, Task, contain};
+use crate::accuracy::Accuracy;
+use crate::failure::Failure;
 
 /// Runs an engine on a system, contains its panics and checks that its answer is complete.
 ///
@@ -77,7 +77,8 @@ fn complete<M, S>(outcome: &Outcome<M, S>, asked: usize) -> Result<(), Failure> 
 mod tests {
     use super::*;
     use crate::case::{Case, Given, embedded};
-    use crate::engine::{Event, SampleGrid, exact};
+    use crate::engine::{Event, SampleGrid};
+    use crate::integrators::exact;
     use percuss::Phase;
 
     const COUNT: usize = 100;

@@ -1,6 +1,6 @@
 //! What an engine says of itself: all that the rest of the program has to know about it.
 
-use super::Stepping;
+use crate::accuracy::Stepping;
 
 /// The name of the exact solver, with which the names of all exact engines begin and no other.
 pub const REFERENCE: &str = "exact";

@@ -1,62 +1,33 @@
-//! Engines: anything that can run a piecewise-affine system and say when its modes begin.
+//! What an engine is: anything that can run a piecewise-affine system and say when its modes begin.
 //!
-//! Add one by implementing [`Engine`] in a file of its own and naming it in `registry.rs`. An
-//! engine takes plain f64 slices, because the libraries disagree about their linear algebra, and is
-//! set up the way an expert user of its library would; what that took stands in its module.
+//! This room holds the trait, what an engine is asked ([`Task`]), what it answers ([`Outcome`]),
+//! and what it says of itself ([`Declaration`]).
+//!
+//! Add one by implementing [`Engine`] in a file of its own in the room `integrators` and naming it
+//! in that room's `registry.rs`. An engine takes plain f64 slices, because the libraries disagree
+//! about their linear algebra, and is set up the way an expert user of its library would; what that
+//! took stands in its module.
 
-mod accuracy;
 mod answer;
-mod cubic;
 mod declaration;
-mod differential_equations;
-mod diffsol;
-mod equations;
-mod exact;
-mod exact_system;
-mod field;
-mod in_lanes;
-mod joining;
-mod location;
-mod meter;
-#[cfg(test)]
-mod odd_input;
-mod ode_solvers;
-mod original;
+mod limits;
 mod oscillator_task;
 mod percussive;
-mod pins;
-mod registry;
-mod sampler;
-mod script;
-#[cfg(test)]
-mod systems;
 mod task;
 mod trace;
-mod walk;
-#[cfg(test)]
-mod watching;
-mod wrong;
 
-pub use accuracy::{Accuracy, Stepping, shortest_time};
+pub use crate::accuracy::{Accuracy, Stepping, shortest_time};
+pub use crate::equations::{Entered, Equations, Numbers};
+pub use crate::failure::Failure;
 pub use answer::{answer, answer_oscillator, least_work};
 pub use declaration::{Colours, Declaration, Location, REFERENCE, Role};
-pub(crate) use equations::NO_GUARD;
-pub use equations::{Entered, Equations, Numbers};
-pub use exact_system::end_of_exact_run;
-pub use field::{GUARDS, Oscillator, event_between};
-pub use in_lanes::run_in_lanes;
-pub use meter::{Failure, Limits, contain, hush_contained_panics};
-pub use original::ELSEWHERE;
+pub(crate) use limits::stop;
+pub use limits::{Limits, contain, hush_contained_panics};
 pub use oscillator_task::{OscillatorTask, SampleGrid};
 pub use percussive::percussive;
-pub use registry::{add, all, exact, select};
-pub use script::Script;
+pub(crate) use percussive::place;
 pub use task::Task;
 pub use trace::{GuardSample, Trace, Watched};
-pub use wrong::{
-    CONTROL, COOLDOWN, Closed, FAULTY_CONTROL, FAULTY_ON_SYSTEMS_CONTROL, SOUND, Way, WrongEngine,
-    WrongWay, faulty, faulty_on_systems, wrong, wrong_on_systems,
-};
 
 use crate::system::Values;
 use percuss::Phase;

@@ -1,10 +1,13 @@
 //! The oscillator written down as any other system is, which is how engines are asked to run it.
 
 use super::{
-    Ended, Event, Failure, GuardSample, Numbers, OscillatorEvent, OscillatorOutcome,
-    OscillatorTask, Outcome, Task, Trace,
+    Ended, Event, GuardSample, OscillatorEvent, OscillatorOutcome, OscillatorTask, Outcome, Task,
+    Trace,
 };
-use crate::system::{CheckedSystem, Mode, Row, System, Until, Values};
+use crate::equations::Numbers;
+use crate::failure::Failure;
+use crate::system::by_hand::{self, mode, until};
+use crate::system::{CheckedSystem, Row, System, Values};
 use percuss::{Parameters, Phase};
 use std::sync::Arc;
 
@@ -78,38 +81,16 @@ fn rates(parameters: &Parameters) -> [[Row; STATES]; 3] {
 
 /// A row of which some entries are given and the others are zero.
 fn row(entries: &[(usize, f64)]) -> Row {
-    let mut row = vec![0.0; STATES + 3];
-    entries.iter().for_each(|(place, value)| row[*place] += value);
-    row
+    by_hand::row(STATES, entries)
 }
 
 /// The row of one state.
 fn state(place: usize) -> Row {
-    row(&[(place, 1.0)])
-}
-
-fn mode(name: &str, rates: &[Row; STATES], until: Vec<Until>) -> Mode {
-    Mode {
-        name: name.to_owned(),
-        a: rates.iter().map(|row| row[..STATES].to_vec()).collect(),
-        b: rates.iter().map(|row| [row[COS], row[COS + 1]]).collect(),
-        c: rates.iter().map(|row| row[ONE]).collect(),
-        until,
-        watch: Vec::new(),
-    }
-}
-
-fn until(
-    name: &str,
-    guard: Row,
-    reset: Option<Vec<Row>>,
-    next: Vec<(Option<Row>, usize)>,
-) -> Until {
-    Until { name: name.to_owned(), guard, reset, next }
+    by_hand::state(STATES, place)
 }
 
 /// The place of a phase among the oscillator's modes.
-pub(super) fn place(phase: Phase) -> usize {
+pub(crate) fn place(phase: Phase) -> usize {
     MODES.iter().position(|mode| *mode == phase).unwrap_or_default()
 }
 

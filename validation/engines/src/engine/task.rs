@@ -1,8 +1,10 @@
 //! A run of a system, as engines are asked for it.
 
-use super::joining::{Integration, Times};
-use super::{Failure, Numbers, OscillatorTask, Watched, shortest_time};
-use crate::system::{Affine, CheckedSystem, SystemProblem, Values};
+use super::{OscillatorTask, Watched};
+use crate::accuracy::shortest_time;
+use crate::equations::Numbers;
+use crate::failure::Failure;
+use crate::system::{CheckedSystem, SystemProblem, Values};
 use std::sync::Arc;
 
 /// A run of a system that is to be made.
@@ -80,26 +82,5 @@ impl Task {
     pub fn shortest_time(&self) -> f64 {
         let own = self.oscillator.as_ref().map(|task| shortest_time(&task.parameters));
         own.unwrap_or_else(|| self.system.shortest_time())
-    }
-}
-
-impl<'a> Integration<'a, Affine<'a>> {
-    /// The integration of the system that a task asks for.
-    pub(super) fn of_system(task: &'a Task) -> Self {
-        let system = &*task.system;
-        let instants = task.watched.as_ref().map_or(&task.samples, |watched| &watched.instants);
-        Self {
-            equations: Affine::of(system),
-            mode: task.mode,
-            state: task.state,
-            span: task.span,
-            samples: instants.iter().map(|time| time.min(task.span)).collect(),
-            times: Times {
-                period: system.period(),
-                turn: system.turn(),
-                shortest: system.shortest_time(),
-            },
-            watched: task.watched.as_ref(),
-        }
     }
 }

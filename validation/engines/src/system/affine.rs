@@ -4,7 +4,7 @@ use super::chain::{Leading, value};
 use super::checked::{CheckedMode, Successor};
 use super::numbers::Guards;
 use super::{CheckedSystem, Values};
-use crate::engine::{Entered, Equations, NO_GUARD, Numbers};
+use crate::equations::{Entered, Equations, NO_GUARD, Numbers};
 
 /// The equations of a system.
 ///

@@ -4,7 +4,7 @@
 use super::chain::{AugmentedRow, Chain, ModeMatrix, value};
 use super::spectrum::{Rates, spectrum};
 use super::{Direction, MOST_GUARDS, MOST_STATES, Mode, Row, System, Until};
-use crate::engine::Failure;
+use crate::failure::Failure;
 use std::f64::consts::TAU;
 use std::sync::OnceLock;
 

@@ -1,7 +1,7 @@
 //! What is refused, and what is known of a system before it is run.
 
 use super::*;
-use crate::engine::{Equations, Numbers};
+use crate::equations::{Equations, Numbers};
 use crate::system::{Affine, Until, Values, Watch};
 
 /// A ball that does not rebound from a shaking table, A = 1 and omega = 1.25.

@@ -6,6 +6,7 @@
 //! and an event where it has risen to zero.
 
 mod affine;
+pub(crate) mod by_hand;
 mod chain;
 mod checked;
 mod given;

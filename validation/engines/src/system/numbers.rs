@@ -1,7 +1,7 @@
 //! Numbers side by side whose count is known when a system is read: no memory is asked for, and no
 //! library sees more of them than the system has.
 
-use crate::engine::Numbers;
+use crate::equations::Numbers;
 use std::ops::{Deref, DerefMut};
 
 /// The most states of a system.

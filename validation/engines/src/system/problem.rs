@@ -2,7 +2,8 @@
 
 use super::given::rounded;
 use super::{CheckedSystem, System, Values};
-use crate::engine::{Failure, Numbers};
+use crate::equations::Numbers;
+use crate::failure::Failure;
 use percuss::affine::{self, Solver, StartPoint};
 use std::sync::Arc;
 

@@ -72,7 +72,7 @@ pub fn errs_least(bench: &Bench, case: &str) -> bool {
 mod tests {
     use super::super::report::{CaseEntry, EventCost, Floor};
     use super::*;
-    use crate::build::Build;
+    use crate::provenance::Build;
 
     const CASE: &str = "fast";
 

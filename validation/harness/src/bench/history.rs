@@ -1,7 +1,7 @@
 //! The history: a line of JSON a workload and recorded version, oldest first, appended to and never
 //! rewritten.
 
-use crate::build::Build;
+use crate::provenance::Build;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 

@@ -8,8 +8,9 @@ use super::contestant::Contestant;
 use super::rounds::Benchmark;
 use super::timed::TimedRun;
 use super::timed_case::{Score, TimedCase};
+use crate::engine::contain;
 use crate::engine::{Accuracy, Declaration, Failure, OscillatorOutcome, Work};
-use crate::engine::{contain, exact, run_in_lanes};
+use crate::integrators::{exact, run_in_lanes};
 use percuss::lanes::Instructions;
 
 /// Runs a call: several times as many as are under way at once in the widest vectors.

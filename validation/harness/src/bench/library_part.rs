@@ -8,9 +8,9 @@
 
 use super::rounds::Benchmark;
 use super::timed_case::TimedCase;
-use crate::engine::{
-    Accuracy, Engine, Failure, Limits, OscillatorOutcome, Outcome, Script, Task, contain, exact,
-};
+use crate::engine::{Accuracy, Engine, Failure, Limits, OscillatorOutcome, Outcome, Task, contain};
+use crate::integration::Script;
+use crate::integrators::exact;
 use percuss::Step;
 use std::hint::black_box;
 

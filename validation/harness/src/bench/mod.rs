@@ -36,14 +36,14 @@ pub use report::Bench;
 pub use summary::summary;
 pub use table::table;
 
-use crate::engine;
+use crate::integrators;
 use contestant::{Contestant, EnteredEngine};
 use lanes::ExactLanes;
 
 /// Every contestant, the exact solver first.
 #[must_use]
 pub fn contestants() -> Vec<Box<dyn Contestant>> {
-    let engines = engine::all().iter();
+    let engines = integrators::all().iter();
     let entered = engines.map(|engine| Box::new(EnteredEngine(*engine)) as Box<dyn Contestant>);
     let mut all: Vec<_> = entered.collect();
     all.insert(1, Box::new(ExactLanes));

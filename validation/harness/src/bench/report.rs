@@ -6,9 +6,9 @@ use super::equal_accuracy::{AccuracyPoint, Basis, COMPARABLE, LOOSE, TIGHT, time
 use super::floor::Floors;
 use super::length::Length;
 pub use super::timed_case::CaseEntry;
-use crate::build::Build;
 use crate::engine::{REFERENCE, Stepping};
 use crate::number::shortest;
+use crate::provenance::Build;
 use serde::{Deserialize, Serialize};
 
 /// A whole bench.

@@ -5,9 +5,8 @@ use super::rounds::Benchmark;
 use super::timed::{ContestEntry, TimedRun};
 use super::timed_case::Score;
 use super::timed_system_case::TimedSystemCase;
-use crate::engine::{
-    Accuracy, Engine, Failure, Limits, Outcome, Work, contain, end_of_exact_run, exact,
-};
+use crate::engine::{Accuracy, Engine, Failure, Limits, Outcome, Work, contain};
+use crate::integrators::{end_of_exact_run, exact};
 use crate::system::Values;
 use std::hint::black_box;
 

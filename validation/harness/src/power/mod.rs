@@ -10,7 +10,8 @@ mod systems;
 pub use systems::{all_on_systems, examine_on_systems, is_run};
 
 use crate::case::{Bound, Quantity};
-use crate::engine::{Accuracy, Limits, REFERENCE, SOUND, Way, WrongEngine, faulty, wrong};
+use crate::engine::{Accuracy, Limits, REFERENCE};
+use crate::integrators::{SOUND, Way, WrongEngine, faulty, wrong};
 use crate::number::brief;
 use crate::score::{Checked, Expected, Measures, Subject, Verdict, judge};
 use crate::suite::{CaseRun, Extent, Prepared};

@@ -3,8 +3,9 @@
 
 use super::{AS_EXACT, Finding, Standard, judged};
 use crate::case::Bound;
-use crate::engine::{
-    COOLDOWN, Equations, Limits, Way, WrongEngine, WrongWay, faulty_on_systems, wrong_on_systems,
+use crate::engine::{Equations, Limits};
+use crate::integrators::{
+    COOLDOWN, Way, WrongEngine, WrongWay, faulty_on_systems, wrong_on_systems,
 };
 use crate::score::Checked;
 use crate::suite::{CaseRun, PreparedSystem};

@@ -1,7 +1,7 @@
 //! The attractors of Figs. 7 to 10 at one forcing frequency.
 
+use super::item_work::model;
 use super::paper::attractors_model;
-use super::work::model;
 use crate::engine::Failure;
 use percuss::dynamics::attractor::{Attractor, AttractorKind, Basins, Grid, Window};
 use percuss::dynamics::strobe::{StrobeMap, StrobePoint};

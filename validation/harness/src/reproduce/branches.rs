@@ -3,7 +3,7 @@
 
 use super::attractors::{found, of_period};
 use super::continued::branch;
-use super::work::{Findings, ItemWork};
+use super::item_work::{Findings, ItemWork};
 use crate::engine::Failure;
 use crate::picture::Colour;
 use crate::picture::{Figure, INK, KeyEntry, Layer, Plot, Stroke};

@@ -3,8 +3,8 @@
 use super::attractors::{described, found, of_period, start};
 use super::claim::{Claim, ClaimVerdict};
 use super::continued::first;
+use super::item_work::{Findings, ItemWork};
 use super::paper::attractors_model;
-use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
 use crate::picture::{Figure, INK, Layer, Plot};
 use percuss::Parameter;

@@ -2,8 +2,8 @@
 
 use super::claim::{Claim, ClaimVerdict};
 use super::curve::{self, HEADER};
+use super::item_work::{Findings, ItemWork, from_rest};
 use super::paper::chaotic_model;
-use super::work::{Findings, ItemWork, from_rest};
 use crate::engine::Failure;
 use crate::picture::{Figure, Layer, MotionPiece, Plot, caption};
 use percuss::{Parameters, Phase};

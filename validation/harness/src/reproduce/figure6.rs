@@ -2,10 +2,11 @@
 
 use super::claim::{Claim, ClaimVerdict};
 use super::integrated::{integrator, representatives};
+use super::item_work::{Findings, ItemWork};
 use super::paper::chaotic_model;
-use super::work::{Findings, ItemWork};
 use crate::case;
-use crate::engine::{self, Accuracy, Engine, Failure, Limits, answer_oscillator};
+use crate::engine::{Accuracy, Engine, Failure, Limits, answer_oscillator};
+use crate::integrators;
 use crate::number::brief;
 use crate::picture::{Figure, INK, Layer, Plot, caption, phase_colour};
 use crate::score::attractor::{AttractorTest, Comparison, RunSection, calibrated, run_of};
@@ -22,7 +23,7 @@ const POINTS: u32 = 20_000;
 pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     let engines = representatives();
     let integrated = integrator()?;
-    let exact = section(engine::exact(), Accuracy::Exact)?;
+    let exact = section(integrators::exact(), Accuracy::Exact)?;
     let other = section(integrated, Accuracy::Tolerance(TOLERANCE))?;
     let comparisons = compared(&engines)?;
     let mut findings = Findings::default();

@@ -3,8 +3,8 @@
 use super::attractors::{described, found, map, of_period, strange};
 use super::claim::{Claim, ClaimVerdict};
 use super::curve;
+use super::item_work::{Findings, ItemWork};
 use super::paper::attractors_model;
-use super::work::{Findings, ItemWork};
 use crate::engine::Failure;
 use crate::picture::{Figure, INK, Layer, Plot, caption};
 use percuss::dynamics::attractor::Attractor;

@@ -2,7 +2,7 @@
 
 use super::attractors::{TRANSIENT, WINDOW, grid, map};
 use super::claim::{Claim, ClaimVerdict};
-use super::work::{Findings, ItemWork};
+use super::item_work::{Findings, ItemWork};
 use crate::engine::Failure;
 use percuss::dynamics::attractor::{
     AttractorCatalog, Basins, Entropy, Uncertainty, entropy, uncertainty_of,

@@ -3,8 +3,9 @@
 use super::attractors::start;
 use super::paper::attractors_model;
 use crate::engine::{
-    self, Accuracy, Engine, Failure, Limits, Location, Role, Stepping, answer_oscillator,
+    Accuracy, Engine, Failure, Limits, Location, Role, Stepping, answer_oscillator,
 };
+use crate::integrators;
 use crate::score::attractor::run_of;
 use percuss::dynamics::strobe::StrobePoint;
 
@@ -15,7 +16,7 @@ pub(super) fn representatives() -> Vec<&'static dyn Engine> {
         let adaptive = !matches!(it.stepping, Stepping::Exact | Stepping::Fixed { .. });
         it.role == Role::Representative && adaptive
     };
-    engine::all().iter().filter(stands).copied().collect()
+    integrators::all().iter().filter(stands).copied().collect()
 }
 
 /// The first of [`representatives`] whose events are located on its own dense output.

@@ -19,13 +19,13 @@ mod figure7;
 mod figures8_9;
 mod fractal;
 mod integrated;
+mod item_work;
 pub mod paper;
-mod progression;
+mod progression_rate;
 mod table1;
-mod work;
 
 pub use claim::{Claim, ClaimEvidence, ClaimVerdict};
-pub use work::{Findings, ItemWork, Parts, Size};
+pub use item_work::{Findings, ItemWork, Parts, Size};
 
 use crate::engine::Failure;
 
@@ -101,7 +101,7 @@ pub const fn items() -> &'static [Item] {
             run: bifurcations::run,
         },
         Item { id: "branches", claims: &[], parts: 6, kept: &[], run: branches::run },
-        Item { id: "progression", claims: &[], parts: 2, kept: &[], run: progression::run },
+        Item { id: "progression", claims: &[], parts: 2, kept: &[], run: progression_rate::run },
         Item { id: "boundaries", claims: &["fractal"], parts: 6, kept: &[], run: fractal::run },
     ]
 }

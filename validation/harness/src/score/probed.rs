@@ -1,7 +1,7 @@
 //! What was asked of an engine beyond the run of a case itself, and how it did.
 
 use super::attractor::Comparison;
-use super::horizon::Horizons;
+use super::horizons::Horizons;
 use super::restart_figures::Restart;
 
 /// What the probes gave for one engine.

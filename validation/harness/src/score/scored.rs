@@ -2,7 +2,7 @@
 //! bound, and a bound with the figure it was held against.
 
 use super::graze::Graze;
-use super::measure::Measures;
+use super::measures::Measures;
 use super::occurrence::Occurrence;
 use crate::case::{Quantity, Statistic};
 use crate::number::brief;

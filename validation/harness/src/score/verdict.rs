@@ -4,7 +4,7 @@
 //! A row has one class, the first that applies of: unavailable, not-run, error, fail, known,
 //! undecidable, not-scored, pass.
 
-use super::measure::Measures;
+use super::measures::Measures;
 use super::mismatch::Excused;
 use super::scored::{Checked, ScoredRun, Verdict};
 use super::shortcoming::{Answer, answer};

@@ -1,7 +1,7 @@
 //! A program and the processes that it has started.
 
 use super::live;
-use crate::file::Program;
+use crate::programs_file::Program;
 use std::io;
 use std::process::{Child, ChildStderr, ChildStdin, ChildStdout, Command, Stdio};
 use std::time::{Duration, Instant};

@@ -8,7 +8,7 @@ mod sweep;
 
 pub use live::end_all;
 
-use crate::file::Program;
+use crate::programs_file::Program;
 use crate::text::last_line;
 use crate::wire::{Ask, Asked, ReplyContent, RunAsk, decode};
 use group::{Group, ProgramExit};

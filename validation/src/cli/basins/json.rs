@@ -1,7 +1,7 @@
 //! The attractors as JSON.
 
 use super::Survey;
-use crate::cli::model::ParametersJson;
+use crate::cli::shared::model::ParametersJson;
 use percuss::dynamics::attractor::{
     Attractor, Basins, Entropy, Label, Uncertainty, entropy, uncertainty,
 };

@@ -5,11 +5,11 @@ pub(super) mod json;
 mod npz;
 mod table;
 
-use super::format::{self, OutputFlags};
-use super::model::ModelFlags;
-use super::output::Destination;
-use super::parse::{self, MAX_TRANSIENT};
-use super::work;
+use super::shared::format::{self, OutputFlags};
+use super::shared::long_work;
+use super::shared::model::ModelFlags;
+use super::shared::output::Destination;
+use super::shared::parse::{self, MAX_TRANSIENT};
 use crate::case::Problem;
 use anyhow::{Result, bail};
 use clap::{Args, ValueEnum};
@@ -175,10 +175,10 @@ impl GridFlags {
         model.note_replaced_by_grid();
         let map = StrobeMap::new(problem.model, problem.entry.instant);
         let grid = self.grid_of(problem.start.q);
-        let bar = work::bar(grid.len() as u64, "starts");
+        let bar = long_work::bar(grid.len() as u64, "starts");
         let seen = |count| bar.inc(count);
         let basins =
-            work::pool(threads)?.install(|| Basins::of(&map, &grid, self.transient, &seen));
+            long_work::pool(threads)?.install(|| Basins::of(&map, &grid, self.transient, &seen));
         bar.finish_and_clear();
         Ok(Survey { problem, transient: self.transient, basins })
     }

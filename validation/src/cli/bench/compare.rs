@@ -1,14 +1,15 @@
 //! `bench compare OLD NEW`: two binaries, or two recorded versions.
 
-use super::output::{Destination, reader_left};
-use super::{DONE, OUT_OF_BOUNDS, work};
+use super::{DONE, OUT_OF_BOUNDS};
 use crate::bench::compare::binaries::{Common, LIVES, Pair, TimeQuotient, common, quotients};
 use crate::bench::compare::recorded::changes;
 use crate::bench::compare::verdict::{WorkloadVerdict, is_doubtful};
 use crate::bench::history::{self, History, HistoryRecord};
-use crate::cli::names::{Selection, nearest};
 use crate::cli::note;
-use crate::cli::parse;
+use crate::cli::shared::long_work;
+use crate::cli::shared::names::{Selection, nearest};
+use crate::cli::shared::output::{Destination, reader_left};
+use crate::cli::shared::parse;
 use crate::number::shortest;
 use anyhow::{Result, anyhow, bail};
 use clap::Args;
@@ -81,7 +82,7 @@ fn against(arguments: &Arguments, old: &Path, new: &Path) -> Result<Said> {
     let Common { shared, lost, versions } = common(&pair)?;
     lost.iter().for_each(|bench| note(&format!("{bench}: only in {}", arguments.old)));
     let benches = chosen(arguments, shared.into_iter())?;
-    let bar = work::bar(u64::from(LIVES) * benches.len() as u64, "turns");
+    let bar = long_work::bar(u64::from(LIVES) * benches.len() as u64, "turns");
     let first = quotients(&pair, &benches, &|| bar.inc(1))?;
     let doubtful: Vec<String> =
         first.iter().filter(|it| is_doubtful(it.value)).map(|it| it.bench.clone()).collect();

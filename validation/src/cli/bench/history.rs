@@ -1,8 +1,8 @@
 //! `bench history`: the history as a picture.
 
-use super::format::OutputFlags;
 use crate::bench::history::{self, History};
 use crate::bench::history_picture;
+use crate::cli::shared::format::OutputFlags;
 use crate::picture::{png, svg};
 use anyhow::{Result, anyhow, bail};
 use clap::{Args, ValueEnum};

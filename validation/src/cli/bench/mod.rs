@@ -4,10 +4,11 @@ mod compare;
 mod history;
 mod record;
 
-use super::names::{CASES, Selection};
-use super::output::{Destination, make_folder, reader_left, write_whole};
-use super::programs::ProgramFlags;
-use super::{DONE, OUT_OF_BOUNDS, format, output, parse, work};
+use super::shared::names::{CASES, Selection};
+use super::shared::output::{Destination, make_folder, reader_left, write_whole};
+use super::shared::programs::ProgramFlags;
+use super::shared::{long_work, parse};
+use super::{DONE, OUT_OF_BOUNDS};
 use crate::bench::compare::worker::serve;
 use crate::bench::contest::{self, Finisher, contest, system_contest};
 use crate::bench::contestant::Contestant;
@@ -16,9 +17,9 @@ use crate::bench::timed_case::TimedCase;
 use crate::bench::timed_system_case::TimedSystemCase;
 use crate::bench::{Bench, cases, contestants, damping, floor, length, pictures};
 use crate::bench::{table, workload};
-use crate::build;
 use crate::case::Cases;
 use crate::engine::{Declaration, REFERENCE, Stepping, hush_contained_panics};
+use crate::provenance;
 use crate::truth::Library;
 use anyhow::{Context, Result, bail};
 use clap::{Args, Subcommand};
@@ -84,7 +85,8 @@ fn race(arguments: &Arguments) -> Result<u8> {
     }
     hush_contained_panics();
     // One thread, this pool's, so that its own time is that of the ensembles too.
-    let bench = work::pool(Some(1))?.install(|| measured(arguments, &contestants, &timed_cases))?;
+    let bench =
+        long_work::pool(Some(1))?.install(|| measured(arguments, &contestants, &timed_cases))?;
     if let Some(folder) = &arguments.out {
         write(&bench, folder)?;
     }
@@ -98,7 +100,8 @@ fn race(arguments: &Arguments) -> Result<u8> {
 fn worker() -> Result<()> {
     let timed_cases = usual_cases()?;
     let workloads = workload::all(&timed_cases);
-    serve(&build::this(), &workloads, io::stdin().lock(), io::stdout().lock()).context("worker")
+    serve(&provenance::this(), &workloads, io::stdin().lock(), io::stdout().lock())
+        .context("worker")
 }
 
 fn measured(
@@ -122,7 +125,7 @@ fn measured(
     let damping = if whole { damping::over_xi(contestants, rounds, &done)? } else { Vec::new() };
     bar.finish_and_clear();
     let measured = Measurement { contests: &contests, floors: &floors, length, damping: &damping };
-    Ok(Bench::new(build::this(), rounds, measured))
+    Ok(Bench::new(provenance::this(), rounds, measured))
 }
 
 /// The floor takes milliseconds a round.
@@ -133,14 +136,14 @@ fn bar(
     contestants: &[&dyn Contestant],
     timed_cases: usize,
     whole: bool,
-) -> work::Bar {
+) -> long_work::Bar {
     let rounds = usize::from(arguments.rounds);
     let mut size = timed_cases as u64 * contest::size(contestants, rounds)
         + floor::size(0, FLOOR_ROUNDS * rounds);
     if whole {
         size += length::size(arguments.long) + damping::size(contestants, rounds);
     }
-    work::bar(size, "turns")
+    long_work::bar(size, "turns")
 }
 
 /// The exact solver is what all are held against: it always runs.

@@ -1,15 +1,17 @@
 //! `bench record`: lines of this version, appended to the history.
 
-use super::output::{Destination, check_file, reader_left, write_whole};
-use super::{parse, usual_cases, work};
+use super::usual_cases;
 use crate::bench::contestant::enter;
 use crate::bench::floor::{self, Floors};
 use crate::bench::history::{self, Figures, History, HistoryRecord};
 use crate::bench::rounds::RoundTimes;
 use crate::bench::timed_case::TimedCase;
 use crate::bench::{instructions, workload};
-use crate::build;
-use crate::engine::{Accuracy, Failure, exact};
+use crate::cli::shared::output::{Destination, check_file, reader_left, write_whole};
+use crate::cli::shared::{long_work, parse};
+use crate::engine::{Accuracy, Failure};
+use crate::integrators::exact;
+use crate::provenance;
 use anyhow::{Context, Result, anyhow};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -69,7 +71,7 @@ fn records(arguments: &Arguments, timed_cases: &[TimedCase]) -> Result<Vec<Histo
     let rounds = usize::from(arguments.rounds);
     let workloads = workload::all(timed_cases);
     let counted = if arguments.instructions { timed_cases.len() as u64 } else { 0 };
-    let bar = work::bar(2 * floor::size(workloads.len(), rounds) + counted, "turns");
+    let bar = long_work::bar(2 * floor::size(workloads.len(), rounds) + counted, "turns");
     let half = || floor::floors(&workloads, rounds, &|| bar.inc(1));
     let halves = [half()?, half()?];
     let record = |(i, case): (usize, &TimedCase)| {
@@ -82,7 +84,7 @@ fn records(arguments: &Arguments, timed_cases: &[TimedCase]) -> Result<Vec<Histo
             None
         };
         let figures = Figures { instructions, ..figures(case, &halves, i)? };
-        Ok(HistoryRecord::of(build::this(), &name, figures))
+        Ok(HistoryRecord::of(provenance::this(), &name, figures))
     };
     let records = timed_cases.iter().enumerate().map(record).collect();
     bar.finish_and_clear();

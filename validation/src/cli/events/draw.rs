@@ -1,8 +1,9 @@
 //! The picture of a run of a system.
 
-use super::super::format::OutputFlags;
-use super::super::{names, note};
+use super::super::note;
 use super::Format;
+use crate::cli::shared::format::OutputFlags;
+use crate::cli::shared::names;
 use crate::picture::{self, MOST_STATES, SystemMotion};
 use crate::truth::DoubleDouble;
 use anyhow::{Result, bail};

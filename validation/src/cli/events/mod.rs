@@ -6,9 +6,10 @@ mod draw;
 mod rows;
 mod write;
 
-use super::format::OutputFlags;
-use super::parse::{self, Typed};
-use super::{DONE, OUT_OF_BOUNDS, names, note};
+use super::shared::format::OutputFlags;
+use super::shared::names;
+use super::shared::parse::{self, Typed};
+use super::{DONE, OUT_OF_BOUNDS, note};
 use crate::case::{FileError, parse_system_case, read_text};
 use crate::systems::{SYSTEMS, named};
 use crate::truth::DoubleDouble;

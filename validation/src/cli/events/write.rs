@@ -1,7 +1,7 @@
 //! The rows of `events` as CSV and as JSON.
 
 use super::rows::{Rows, RunEnd};
-use crate::cli::output::json_value;
+use crate::cli::shared::output::json_value;
 use anyhow::Result;
 use std::io::Write;
 

@@ -2,9 +2,10 @@
 
 use super::json::OrbitJson;
 use super::{Format, period};
-use crate::cli::format::OutputFlags;
-use crate::cli::model::ModelFlags;
-use crate::cli::{DONE, OUT_OF_BOUNDS, note, say, work};
+use crate::cli::shared::format::OutputFlags;
+use crate::cli::shared::long_work;
+use crate::cli::shared::model::ModelFlags;
+use crate::cli::{DONE, OUT_OF_BOUNDS, note, say};
 use anyhow::Result;
 use clap::Args;
 use percuss::dynamics::orbit::{Orbit, scan};
@@ -45,7 +46,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
 
 /// The preferred orbit of a scan; how many others there are is said.
 pub(super) fn scanned(map: &StrobeMap, period: u32) -> Result<Orbit, (f64, String)> {
-    let bar = work::share_bar();
+    let bar = long_work::share_bar();
     let found = scan(map, period, &mut |share| bar.show_share(share));
     bar.finish_and_clear();
     say_which(&found, period);

@@ -4,10 +4,11 @@ use super::find::{preferred, scanned};
 use super::json::{BranchJson, Doubled, Followed};
 use super::{Format, period};
 use crate::case::Problem;
-use crate::cli::format::OutputFlags;
-use crate::cli::model::ModelFlags;
-use crate::cli::parse::{self, Typed};
-use crate::cli::{DONE, OUT_OF_BOUNDS, say, work};
+use crate::cli::shared::format::OutputFlags;
+use crate::cli::shared::long_work;
+use crate::cli::shared::model::ModelFlags;
+use crate::cli::shared::parse::{self, Typed};
+use crate::cli::{DONE, OUT_OF_BOUNDS, say};
 use anyhow::{Result, anyhow};
 use clap::Args;
 use percuss::dynamics::continuation::{
@@ -43,7 +44,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     arguments.output.format(Format::Json)?;
-    let bar = work::share_bar();
+    let bar = long_work::share_bar();
     let (followed, why) =
         followed(arguments, &arguments.model, Reporting::Told(&|share| bar.show_share(share)))?;
     bar.finish_and_clear();

@@ -1,6 +1,6 @@
 //! Orbits and branches as JSON.
 
-use crate::cli::model::ParametersJson;
+use crate::cli::shared::model::ParametersJson;
 use percuss::dynamics::continuation::{Bifurcation, Branch, BranchPoint};
 use percuss::dynamics::orbit::Orbit;
 use percuss::dynamics::strobe::StrobePoint;

@@ -3,9 +3,10 @@
 mod claims;
 mod store;
 
-use super::names::nearest;
-use super::output::{Destination, make_folder, reader_left, write_whole};
-use super::{DONE, OUT_OF_BOUNDS, say, work};
+use super::shared::long_work;
+use super::shared::names::nearest;
+use super::shared::output::{Destination, make_folder, reader_left, write_whole};
+use super::{DONE, OUT_OF_BOUNDS, say};
 use crate::engine::{Failure, hush_contained_panics};
 use crate::reproduce::paper::Paper;
 use crate::reproduce::{Claim, Findings, Item, ItemWork, Size, items};
@@ -42,9 +43,9 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let size = arguments.size.unwrap_or(Size::Default);
     make_folder(&arguments.out)?;
     let store = Store::open(&arguments.out, size)?;
-    let pool = work::pool(threads)?;
+    let pool = long_work::pool(threads)?;
     hush_contained_panics();
-    let bar = work::bar(chosen.iter().map(|item| u64::from(item.parts)).sum(), "parts");
+    let bar = long_work::bar(chosen.iter().map(|item| u64::from(item.parts)).sum(), "parts");
     let task = ItemWork { paper: Paper::read()?, size, step: &|| bar.inc(1), parts: &store };
     let done: Vec<Result<Vec<Claim>, Failure>> =
         pool.install(|| chosen.par_iter().map(|item| settle(item, &task, &store)).collect());

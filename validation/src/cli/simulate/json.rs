@@ -2,8 +2,8 @@
 
 use super::plan::{PlannedRun, RunEnding};
 use super::rows::{RunRow, Sink};
-use crate::cli::model::ParametersJson;
-use crate::cli::output::json_value;
+use crate::cli::shared::model::ParametersJson;
+use crate::cli::shared::output::json_value;
 use anyhow::Result;
 use percuss::Phase;
 use serde::Serialize;

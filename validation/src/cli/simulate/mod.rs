@@ -5,10 +5,11 @@ mod json;
 mod plan;
 mod rows;
 
-use super::format::OutputFlags;
-use super::model::ModelFlags;
-use super::parse::{self, MAX_PERIODS, Typed};
-use super::{note, work};
+use super::note;
+use super::shared::format::OutputFlags;
+use super::shared::long_work;
+use super::shared::model::ModelFlags;
+use super::shared::parse::{self, MAX_PERIODS, Typed};
 use crate::picture;
 use anyhow::{Result, bail};
 use clap::{ArgGroup, Args, ValueEnum};
@@ -54,7 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     let format = arguments.output.format(Format::Csv)?;
     check_effect(arguments, format)?;
     let destination = arguments.output.destination();
-    let bar = work::run_bar(destination.is_terminal());
+    let bar = long_work::run_bar(destination.is_terminal());
     let plan = PlannedRun::new(arguments.model.problem()?, arguments, bar)?;
     let mut ending = RunEnding::default();
     destination.write(|out| {

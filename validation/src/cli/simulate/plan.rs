@@ -2,10 +2,10 @@
 
 use super::Arguments;
 use crate::case::Problem;
-use crate::cli::endless::words;
-use crate::cli::parse::{MAX_PERIODS, Typed};
-use crate::cli::progress::Progress;
-use crate::cli::work::Bar;
+use crate::cli::shared::endless::words;
+use crate::cli::shared::long_work::Bar;
+use crate::cli::shared::parse::{MAX_PERIODS, Typed};
+use crate::cli::shared::progress::Progress;
 use anyhow::{Result, bail};
 use percuss::{Endless, Exit, Instant, Segment, Trajectory};
 

@@ -4,7 +4,7 @@ use super::records;
 use crate::case::Problem;
 use crate::cli::basins::json::{AttractorJson, Json};
 use crate::cli::basins::{AttractorArguments, BasinArguments, GridFlags, Survey};
-use crate::cli::model::ModelFlags;
+use crate::cli::shared::model::ModelFlags;
 use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
 use anyhow::Result;
 use percuss::dynamics::attractor::{Basins, BlockLabeller, Grid, Label, LabelledBlock};

@@ -2,7 +2,7 @@
 
 use super::records;
 use crate::cli::lyapunov::Arguments;
-use crate::cli::work;
+use crate::cli::shared::long_work;
 use crate::sweep::{Array, SweepPoint, SweepVerb, Tiles};
 use anyhow::Result;
 use percuss::Endless;
@@ -15,7 +15,7 @@ pub(super) struct ExponentWork {
 
 impl ExponentWork {
     pub(super) fn new(arguments: Arguments) -> Result<Self> {
-        work::check_horizon(arguments.transient, arguments.periods)?;
+        long_work::check_horizon(arguments.transient, arguments.periods)?;
         Ok(Self { arguments })
     }
 }

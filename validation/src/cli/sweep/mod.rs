@@ -11,10 +11,10 @@ mod verb;
 
 #[cfg(feature = "mpi")]
 use super::REFUSED;
-use super::format::OutputFlags;
-use super::output::{self, Destination};
-use super::parse;
-use super::work::{self, Bar};
+use super::shared::format::OutputFlags;
+use super::shared::long_work::{self, Bar};
+use super::shared::output::{self, Destination};
+use super::shared::parse;
 use super::{DONE, OUT_OF_BOUNDS, note, say};
 #[cfg(feature = "mpi")]
 use crate::sweep::Ranks;
@@ -123,10 +123,10 @@ fn compute(arguments: &RunArguments, threads: Option<u16>) -> Result<u8> {
     {
         return by_ranks(&ranks, &plan, work.as_ref(), &folder, threads);
     }
-    work::pool(threads)?.install(|| {
+    long_work::pool(threads)?.install(|| {
         folder.begin(&plan)?;
         let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
-        let progress = SweepProgress { bar: work::bar(0, "tiles") };
+        let progress = SweepProgress { bar: long_work::bar(0, "tiles") };
         match shard {
             Some(shard) => sweep.run(shard, &progress),
             None => sweep.run_all(&progress),
@@ -144,7 +144,7 @@ fn by_ranks(
     folder: &Folder,
     threads: Option<u16>,
 ) -> Result<u8> {
-    let pool = work::pool(threads)?;
+    let pool = long_work::pool(threads)?;
     let begin = || {
         pool.install(|| {
             folder.begin(plan)?;
@@ -163,7 +163,7 @@ fn by_ranks(
         return Ok(REFUSED);
     }
     let sweep = sweep?;
-    ranks.run(&sweep, &pool, &SweepProgress { bar: work::bar(0, "tiles") })?;
+    ranks.run(&sweep, &pool, &SweepProgress { bar: long_work::bar(0, "tiles") })?;
     Ok(DONE)
 }
 
@@ -173,7 +173,7 @@ fn status(arguments: &StatusArguments, threads: Option<u16>) -> Result<u8> {
     let folder = Folder::new(&arguments.sweep.out)?;
     let (plan, work) = arguments.sweep.plan()?;
     let status = if folder.check(&plan)? {
-        work::pool(threads)?.install(|| {
+        long_work::pool(threads)?.install(|| {
             let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
             anyhow::Ok(SweepStatus::of(&sweep))
         })?
@@ -205,9 +205,9 @@ fn merged(arguments: &MergeArguments, threads: Option<u16>) -> Result<u8> {
     let (plan, work) = arguments.sweep.plan()?;
     let beside = output::folder_of(output);
     let merged = if folder.check(&plan)? {
-        work::pool(threads)?.install(|| {
+        long_work::pool(threads)?.install(|| {
             let sweep = Sweep::new(&plan, work.as_ref(), &folder)?;
-            let bar = work::bar(plan.points(), "points");
+            let bar = long_work::bar(plan.points(), "points");
             let merge = Merge::new(&sweep)?;
             destination.write(|out| merge.write(beside, out, &|| bar.inc(1)))
         })

@@ -1,6 +1,6 @@
 //! The state of a sweep, as JSON and for people.
 
-use crate::cli::output::Destination;
+use crate::cli::shared::output::Destination;
 use crate::sweep::{Plan, ShardState, SweepStatus};
 use clap::ValueEnum;
 use serde::Serialize;

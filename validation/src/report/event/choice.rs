@@ -5,7 +5,8 @@ use super::course::picture;
 use super::mismatch::EventMismatch;
 use super::system;
 use crate::case::{Case, Given};
-use crate::engine::{self, Engine, Limits, OscillatorTask, SampleGrid};
+use crate::engine::{Engine, Limits, OscillatorTask, SampleGrid};
+use crate::integrators;
 use crate::score::Verdict;
 use crate::suite::{Answered, Prepared, PreparedSystem, Scored, Status, Suite};
 use crate::truth::Truth;
@@ -64,7 +65,7 @@ fn candidate<'a>(
     if !affordable || !(wrong || row.judgement.verdict == Verdict::Fail) {
         return None;
     }
-    let engine = *engine::all().iter().find(|it| it.declaration().name == row.engine)?;
+    let engine = *integrators::all().iter().find(|it| it.declaration().name == row.engine)?;
     let steps = answered.work().steps.max(1) as f64;
     match &**answered {
         Answered::Oscillator(_) => {

@@ -72,7 +72,8 @@ impl GuardCurve {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::{Equations, GUARDS, Oscillator};
+    use crate::engine::Equations;
+    use crate::integration::{GUARDS, Oscillator};
 
     /// A look at an engine's guard shows what the curve shows at the same state.
     #[test]

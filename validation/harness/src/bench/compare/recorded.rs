@@ -85,7 +85,7 @@ fn repeatable(quotient: f64) -> WorkloadVerdict {
 mod tests {
     use super::*;
     use crate::bench::history::Figures;
-    use crate::build::Build;
+    use crate::provenance::Build;
 
     fn record(
         instructions: Option<f64>,

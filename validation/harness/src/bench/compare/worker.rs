@@ -15,7 +15,7 @@
 
 use crate::bench::clock::Stopwatch;
 use crate::bench::workload::Workload;
-use crate::build::Build;
+use crate::provenance::Build;
 use std::io::{self, BufRead, Write};
 
 /// The protocol's name and number, first words of the greeting.

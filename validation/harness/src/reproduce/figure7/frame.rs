@@ -6,7 +6,7 @@ use crate::picture::Colour;
 use crate::picture::{Layer, Plot, Raster, basin_colours};
 use crate::reproduce::attractors::{TRANSIENT, WINDOW, described, grid, map};
 use crate::reproduce::integrated::strobes;
-use crate::reproduce::work::ItemWork;
+use crate::reproduce::item_work::ItemWork;
 use percuss::dynamics::attractor::{Attractor, Basins, Label};
 use percuss::dynamics::orbit::Orbit;
 use serde::{Deserialize, Serialize};

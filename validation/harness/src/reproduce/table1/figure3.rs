@@ -2,8 +2,8 @@
 
 use super::super::claim::{Claim, ClaimVerdict};
 use super::super::curve;
+use super::super::item_work::ItemWork;
 use super::super::paper::TABLE_1_UNIT;
-use super::super::work::ItemWork;
 use super::Table1Run;
 use crate::engine::Failure;
 use crate::picture::{Figure, INK, Layer, MotionPiece, Plot, PlotWindow, caption};

@@ -2,7 +2,7 @@
 
 use super::super::claim::{Claim, ClaimVerdict};
 use super::super::curve;
-use super::super::work::ItemWork;
+use super::super::item_work::ItemWork;
 use super::Table1Run;
 use crate::engine::Failure;
 use crate::picture::{Figure, MotionPiece, Plot, caption};

@@ -5,8 +5,8 @@ mod figure4;
 
 use super::claim::{Claim, ClaimVerdict};
 use super::curve::{self, HEADER};
+use super::item_work::{Findings, ItemWork, from_rest};
 use super::paper::{PrintedRow, TABLE_1_UNIT, table_1_model};
-use super::work::{Findings, ItemWork, from_rest};
 use crate::engine::Failure;
 use crate::picture::MotionPiece;
 use percuss::dynamics::orbit::Orbit;

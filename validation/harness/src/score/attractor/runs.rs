@@ -3,7 +3,8 @@
 use super::limits::ComparisonPlan;
 use super::section::{RunSection, run_of};
 use crate::case::Case;
-use crate::engine::{self, Accuracy, Engine, Failure, Limits, answer_oscillator};
+use crate::engine::{Accuracy, Engine, Failure, Limits, answer_oscillator};
+use crate::integrators;
 use percuss::{Parameters, Start};
 
 /// Which runs of the exact solver: no two kinds share a start.
@@ -69,7 +70,8 @@ fn nth_section(
     let periods = plan.transient + plan.periods;
     let task = run_of(parameters, start, periods).ok_or_else(refused)?;
     let truth = run_of(case.parameters, start, periods).ok_or_else(refused)?;
-    let outcome = answer_oscillator(engine::exact(), &task, Accuracy::Exact, &Limits::default())?;
+    let outcome =
+        answer_oscillator(integrators::exact(), &task, Accuracy::Exact, &Limits::default())?;
     RunSection::judged(&task, &outcome, plan.transient, &truth.problem)
 }
 

@@ -1,0 +1,207 @@
+//! Modes joined at their events: what every integrator's run has in common.
+
+use super::field::Coordinates;
+use super::meter::Meter;
+use super::sampler::Sampler;
+use crate::accuracy::shortest_time;
+use crate::engine::{Ended, Event, OscillatorTask, Outcome, Task, Watched};
+use crate::equations::{Entered, Equations};
+use crate::failure::Failure;
+use crate::system::Affine;
+use std::f64::consts::TAU;
+
+/// The times in which a system changes; libraries that have to be told how long a step may be are
+/// told by these.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Times {
+    /// The forcing period, or what stands for it.
+    pub(crate) period: f64,
+    /// The shortest turn of an oscillation.
+    pub(crate) turn: f64,
+    /// The unit of fixed steps.
+    pub(crate) shortest: f64,
+}
+
+/// A run that an integrator is asked for, in the time elapsed since its start.
+pub(crate) struct Integration<'a, E: Equations> {
+    pub(crate) equations: E,
+    pub(crate) mode: E::Mode,
+    pub(crate) state: E::State,
+    pub(crate) span: f64,
+    /// When the state is taken.
+    pub(crate) samples: Vec<f64>,
+    pub(crate) times: Times,
+    pub(crate) watched: Option<&'a Watched>,
+}
+
+impl<'a, E: Coordinates> Integration<'a, E> {
+    /// The integration of the oscillator that a task asks for.
+    pub(crate) fn of(task: &'a OscillatorTask) -> Self {
+        Self::by(task, E::of(&task.parameters, task.forcing_angle))
+    }
+
+    /// The integration of a task by these equations.
+    pub(crate) fn by(task: &'a OscillatorTask, equations: E) -> Self {
+        let period = task.problem.model.period();
+        Self {
+            equations,
+            mode: task.phase,
+            state: equations.of_bounded(&task.state),
+            span: task.span,
+            samples: task.sample_times(),
+            times: Times { period, turn: TAU, shortest: shortest_time(&task.parameters) },
+            watched: task.watched.as_ref(),
+        }
+    }
+}
+
+impl<'a> Integration<'a, Affine<'a>> {
+    /// The integration of the system that a task asks for.
+    pub(crate) fn of_system(task: &'a Task) -> Self {
+        let system = &*task.system;
+        let instants = task.watched.as_ref().map_or(&task.samples, |watched| &watched.instants);
+        Self {
+            equations: Affine::of(system),
+            mode: task.mode,
+            state: task.state,
+            span: task.span,
+            samples: instants.iter().map(|time| time.min(task.span)).collect(),
+            times: Times {
+                period: system.period(),
+                turn: system.turn(),
+                shortest: system.shortest_time(),
+            },
+            watched: task.watched.as_ref(),
+        }
+    }
+}
+
+/// A state of a run, in the co-ordinates of its equations.
+#[derive(Debug)]
+pub(crate) struct Moment<E: Equations> {
+    /// Time since the start.
+    pub(crate) t: f64,
+    /// When the mode began.
+    pub(crate) began: f64,
+    pub(crate) mode: E::Mode,
+    pub(crate) state: E::State,
+    /// What is known of the mode's entry.
+    pub(crate) entered: Entered,
+}
+
+impl<E: Equations> Clone for Moment<E> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<E: Equations> Copy for Moment<E> {}
+
+impl<E: Equations> Moment<E> {
+    /// The start of a run.
+    pub(crate) fn start(equations: &E, mode: E::Mode, state: E::State) -> Self {
+        let entered = equations.enter(None, mode, 0.0, &state);
+        Self { t: 0.0, began: 0.0, mode, state, entered }
+    }
+
+    /// The mode that begins where a guard has ended this one.
+    fn after(&self, equations: &E, t: f64, guard: usize, state: &E::State) -> Self {
+        let (mode, state) = equations.switch(self.mode, guard, t, state);
+        let entered = equations.enter(Some((self.mode, guard)), mode, t, &state);
+        Self { t, began: t, mode, state, entered }
+    }
+}
+
+/// How a stretch of one mode ended.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum StretchEnd<S> {
+    /// A guard has risen to zero.
+    Switch { t: f64, guard: usize, state: S },
+    /// The mode goes on.
+    Inside { t: f64, state: S },
+}
+
+/// Less than this share of the whole run is no step for any library; the state does not change in
+/// it.
+const SHORTEST: f64 = 16.0 * f64::EPSILON;
+
+/// Runs an integration by stretches of one mode, each from the moment given to an event or to some
+/// later time in the same mode, the end of the integration at the latest.
+pub(crate) fn join<E: Equations>(
+    integration: &Integration<'_, E>,
+    meter: &Meter<E::Mode>,
+    mut stretch: impl FnMut(&Moment<E>, &mut Sampler<E::State>) -> Result<StretchEnd<E::State>, Failure>,
+) -> Result<Outcome<E::Mode, E::State>, Failure> {
+    let Integration { equations, span, .. } = integration;
+    let mut outcome = Outcome::default();
+    integration.watched.iter().for_each(|watched| meter.watch(watched));
+    let mut sampler = Sampler::new(integration.samples.clone());
+    let mut now = Moment::start(equations, integration.mode, integration.state);
+    let mut instant = SimultaneousEvents::default();
+    sampler.take(0.0, |_| Ok::<_, Failure>(now.state))?;
+    let goes_on = |now: &Moment<E>| now.entered.fires.is_some() || span - now.t > SHORTEST * span;
+    while goes_on(&now) && !meter.has_seen_enough(now.t) {
+        let ended = match now.entered.fires {
+            Some(guard) => StretchEnd::Switch { t: now.t, guard, state: now.state },
+            None => stretch(&now, &mut sampler)?,
+        };
+        for crossing in sampler.counted.drain(..) {
+            meter.events(outcome.events.len())?;
+            let event = equations.event(now.mode, crossing.guard);
+            let state = equations.reported(&crossing.state);
+            outcome.events.push(Event { event, mode: now.mode, elapsed: crossing.t, state });
+        }
+        now = match ended {
+            StretchEnd::Inside { t, state } => Moment { t, state, ..now },
+            StretchEnd::Switch { t, state, .. } if equations.leaves_domain() => {
+                now = Moment { t, state, ..now };
+                outcome.ended = Ended::LeavesDomain;
+                break;
+            }
+            StretchEnd::Switch { t, guard, state } => {
+                meter.events(outcome.events.len())?;
+                meter.phase_ended(t);
+                let next = now.after(equations, t, guard, &state);
+                let event = equations.event(now.mode, guard);
+                let state = equations.reported(&next.state);
+                outcome.events.push(Event { event, mode: next.mode, elapsed: t, state });
+                now = next;
+                if instant.is_crowded(t) {
+                    outcome.ended = Ended::NoProgress;
+                    break;
+                }
+                now
+            }
+        };
+    }
+    outcome.end = equations.reported(&now.state);
+    outcome.ended_at = now.t;
+    outcome.samples = sampler.finish(now.state);
+    for state in &mut outcome.samples {
+        *state = equations.reported(state);
+    }
+    outcome.work = meter.work();
+    meter.hand_over(&mut outcome);
+    Ok(outcome)
+}
+
+/// So many events in one instant end a run.
+const MOST_AT_ONCE: u32 = 64;
+/// Events that are no further apart than this, relative to their time, lie in one instant.
+const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
+
+/// The events of one instant, counted.
+#[derive(Default)]
+struct SimultaneousEvents {
+    last: f64,
+    count: u32,
+}
+
+impl SimultaneousEvents {
+    /// Counts an event; whether it is one too many in its instant.
+    fn is_crowded(&mut self, t: f64) -> bool {
+        self.count = if t - self.last <= ONE_INSTANT * t { self.count + 1 } else { 1 };
+        self.last = t;
+        self.count >= MOST_AT_ONCE
+    }
+}

@@ -1,0 +1,83 @@
+//! The search for events on guards that are made up as functions of time.
+
+use super::*;
+use crate::engine::Limits;
+use crate::integration::field::{GUARDS, Oscillator};
+use percuss::{Parameters, Phase};
+
+/// Contact with a trial force as given and no velocity, so that q is the force.
+fn first(force: fn(f64) -> f64, rate: fn(f64) -> f64) -> Option<GuardRise> {
+    let parameters = Parameters { a: 0.0, b: 0.0, ..Parameters::default() };
+    let meter = Meter::new(&Limits::default());
+    let equations = Made { oscillator: Oscillator::of(&parameters, 0.0), force, rate };
+    let from = Moment::start(&equations, Phase::Contact, [0.0; 4]);
+    let search = GuardSearch::new(equations, &from, &meter);
+    let mut state_at = |t| Ok([t, 0.0, 0.0, 0.0]);
+    search.step(0.0, 1.0, &mut state_at, &mut Vec::new()).ok().flatten()
+}
+
+/// Guards made up as functions of time, which the state carries.
+#[derive(Clone, Copy)]
+struct Made {
+    oscillator: Oscillator,
+    force: fn(f64) -> f64,
+    rate: fn(f64) -> f64,
+}
+
+impl Equations for Made {
+    type Mode = Phase;
+    type State = [f64; 4];
+    type Guards = [f64; GUARDS];
+    fn dimension(&self) -> usize {
+        4
+    }
+    fn most_guards(&self) -> usize {
+        GUARDS
+    }
+    fn count(&self, phase: Phase) -> usize {
+        self.oscillator.count(phase)
+    }
+    fn derivatives(&self, phase: Phase, t: f64, u: &[f64], du: &mut [f64]) {
+        self.oscillator.derivatives(phase, t, u, du);
+    }
+    fn jacobian_product(&self, phase: Phase, w: &[f64], dw: &mut [f64]) {
+        self.oscillator.jacobian_product(phase, w, dw);
+    }
+    fn guards(&self, _: Phase, _: f64, u: &[f64]) -> [f64; GUARDS] {
+        [(self.force)(u[0]) - 1.0, -(self.force)(u[0])]
+    }
+    fn rates(&self, _: Phase, t: f64, _: &[f64]) -> [f64; GUARDS] {
+        [(self.rate)(t), -(self.rate)(t)]
+    }
+    fn switch(&self, phase: Phase, guard: usize, t: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
+        self.oscillator.switch(phase, guard, t, u)
+    }
+    fn settle(&self, entered: Entered, u: &[f64], guards: &mut [f64; GUARDS]) {
+        self.oscillator.settle(entered, u, guards);
+    }
+}
+
+#[test]
+fn a_crossing_is_found_to_the_last_bit() {
+    let found = first(|t| 0.3 + t, |_| 1.0);
+    assert!(found.is_some_and(|it| it.guard == 0 && (it.t - 0.7).abs() <= f64::EPSILON));
+}
+
+#[test]
+fn a_touch_between_two_looks_is_found() {
+    let found = first(|t| 1.0 + 1e-12 - (t - 0.7).powi(2), |t| -2.0 * (t - 0.7));
+    assert!(found.is_some_and(|it| it.guard == 0 && (it.t - (0.7 - 1e-6)).abs() < 1e-9));
+    assert_eq!(first(|t| 1.0 - 1e-12 - (t - 0.7).powi(2), |t| -2.0 * (t - 0.7)), None);
+}
+
+#[test]
+fn of_two_crossings_between_two_looks_the_first_counts() {
+    let force = |t: f64| 0.5 + 1e3 * (t - 0.99) * (0.999 - t) * 60.0 + 0.4;
+    let rate = |t: f64| 6e4 * (0.99 + 0.999 - 2.0 * t);
+    assert!(first(force, rate).is_some_and(|it| it.guard == 0 && it.t > 0.99));
+}
+
+#[test]
+fn a_start_on_the_surface_is_no_crossing() {
+    assert_eq!(first(|t| 1.0 - 0.5 * t, |_| -0.5), None);
+}

@@ -1,0 +1,81 @@
+//! A run repeated without the harness's own part, so that a bench can measure what that part takes.
+//!
+//! The run is told where its events lie. [`GuardSearch`] then evaluates no guard and asks for no
+//! state inside a step, and the meter neither counts nor checks. The library takes the same steps
+//! from the same states, so that the answer is the same to the last bit; whoever times the repeated
+//! run can hold it to that.
+//!
+//! [`GuardSearch`]: super::location::GuardSearch
+
+use crate::engine::Event;
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+thread_local! {
+    static SCRIPT: RefCell<Option<Script>> = const { RefCell::new(None) };
+}
+
+/// A guard that has risen to zero.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct GuardRise {
+    pub(crate) t: f64,
+    pub(crate) guard: usize,
+}
+
+/// The crossings of a run that was made before.
+#[derive(Clone, Debug)]
+pub struct Script(Rc<AnswerLines>);
+
+#[derive(Debug)]
+struct AnswerLines {
+    crossings: Vec<GuardRise>,
+    /// Whether a run has asked for them.
+    read: Cell<bool>,
+}
+
+impl Script {
+    /// The crossings of a run that found these events.
+    #[must_use]
+    pub fn of<M, S>(events: &[Event<M, S>]) -> Self {
+        let crossing = |event: &Event<M, S>| GuardRise { t: event.elapsed, guard: event.event };
+        let crossings = events.iter().map(crossing).collect();
+        Self(Rc::new(AnswerLines { crossings, read: Cell::new(false) }))
+    }
+
+    /// Makes a run that is told these crossings.
+    pub fn follow<T>(&self, run: impl FnOnce() -> T) -> T {
+        SCRIPT.set(Some(self.clone()));
+        let done = run();
+        SCRIPT.set(None);
+        done
+    }
+
+    /// Whether a run was told: an engine that has no meter has nothing that could be left out.
+    #[must_use]
+    pub fn was_read(&self) -> bool {
+        self.0.read.get()
+    }
+}
+
+/// The crossings that a run is told, one after another.
+pub(crate) struct ToldCrossings {
+    script: Script,
+    next: Cell<usize>,
+}
+
+impl ToldCrossings {
+    /// What the run that begins on this thread is told; nothing as a rule.
+    pub(crate) fn here() -> Option<Self> {
+        let script = SCRIPT.with_borrow(Clone::clone)?;
+        script.0.read.set(true);
+        Some(Self { script, next: Cell::new(0) })
+    }
+
+    /// The next crossing, if it is not after `end`.
+    pub(crate) fn up_to(&self, end: f64) -> Option<GuardRise> {
+        let next = self.next.get();
+        let found = self.script.0.crossings.get(next).copied().filter(|it| it.t <= end)?;
+        self.next.set(next + 1);
+        Some(found)
+    }
+}

@@ -1,0 +1,118 @@
+//! The exact solver on any piecewise-affine system.
+
+use crate::engine::{Ended, Event, Limits, Outcome, Task, Work};
+use crate::equations::Numbers;
+use crate::failure::Failure;
+use crate::system::{SystemProblem, Values};
+use percuss::affine::{self, Ending, Time, What};
+use std::hint::black_box;
+
+/// Runs a task in closed form; the system has to be there with its exact coefficients.
+pub(super) fn run(task: &Task, limits: &Limits) -> Result<Outcome, Failure> {
+    let problem = task.exact.as_deref();
+    let problem =
+        problem.ok_or_else(|| Failure::new("the system's exact coefficients are not there"))?;
+    let horizon = problem.clock(task.span);
+    let run = problem.solver.run(&problem.start, horizon);
+    let mut run = run.ok_or_else(|| Failure::new("the start is not decided"))?;
+    let begin = Time::of(&problem.start.time);
+    let mut record = Record { problem, task, begin, outcome: Outcome::default() };
+    let mut segment = run.start();
+    for event in run.by_ref() {
+        record.sample(&segment, record.elapsed(&event.time));
+        if let What::End(ending) = event.what {
+            record.end(&segment, &event, ending)?;
+            break;
+        }
+        record.push(&event);
+        if record.outcome.events.len() > limits.events {
+            return Err(Failure::new(format!("gave up after {} events", limits.events)));
+        }
+        segment = event;
+    }
+    let mut outcome = record.outcome;
+    let evaluations = run.work().evaluations;
+    let steps = outcome.events.len() as u64 + 1;
+    outcome.work = Work { rhs_evaluations: evaluations, steps, ..Work::default() };
+    Ok(outcome)
+}
+
+/// The state at the end of a run whose events are looked at and not kept: what the exact solver
+/// does by itself. It is here because generic code is as fast as the crate that compiles it.
+#[must_use]
+pub fn end_of_exact_run(problem: &SystemProblem, span: f64) -> Option<Values> {
+    let run = problem.solver.run(&problem.start, problem.clock(span))?;
+    let last = run.map(black_box).last()?;
+    Some(Values::of(&last.state))
+}
+
+struct Record<'a> {
+    problem: &'a SystemProblem,
+    task: &'a Task,
+    /// The time of the start, which is a quotient of long integers in the problem.
+    begin: Time<f64>,
+    outcome: Outcome,
+}
+
+impl Record<'_> {
+    fn elapsed(&self, time: &Time<f64>) -> f64 {
+        let ahead = (time.high - self.begin.high) + (time.low - self.begin.low);
+        if self.problem.backward { -ahead } else { ahead }
+    }
+
+    /// The states asked for in the segment that `segment` begins, those at its end left out.
+    fn sample(&mut self, segment: &affine::Event<f64>, end: f64) {
+        let asked = &self.task.samples[self.outcome.samples.len()..];
+        for elapsed in asked.iter().take_while(|elapsed| **elapsed < end) {
+            let state = self.state_at(segment, *elapsed);
+            self.outcome.samples.push(Values::of(&state));
+        }
+    }
+
+    /// The state a time after the start, in the segment that `segment` begins.
+    fn state_at(&self, segment: &affine::Event<f64>, elapsed: f64) -> Vec<f64> {
+        let ahead = if self.problem.backward { -elapsed } else { elapsed };
+        self.problem.solver.state_at(segment, &self.begin.after(ahead))
+    }
+
+    fn push(&mut self, event: &affine::Event<f64>) {
+        let modes = &self.problem.exact.modes;
+        let number = match event.what {
+            What::Watch(mode, watch) => modes[mode].until.len() + watch,
+            What::Until(_, until) => until,
+            What::Start | What::End(_) => return,
+        };
+        self.outcome.events.push(Event {
+            event: number,
+            mode: event.mode,
+            elapsed: self.elapsed(&event.time),
+            state: Values::of(&event.state),
+        });
+    }
+
+    /// Takes the ending of the segment that `segment` begins.
+    fn end(
+        &mut self,
+        segment: &affine::Event<f64>,
+        event: &affine::Event<f64>,
+        ending: Ending<f64>,
+    ) -> Result<(), Failure> {
+        self.outcome.ended = match ending {
+            Ending::Horizon => Ended::Horizon,
+            Ending::Accumulation(..) => Ended::Accumulation,
+            Ending::LeavesDomain => Ended::LeavesDomain,
+            Ending::NoProgress => Ended::NoProgress,
+            Ending::BeyondGuard => Ended::BeyondGuard,
+            Ending::Undecided => return Err(Failure::new("rounding hides how a mode ends")),
+        };
+        self.outcome.ended_at = self.elapsed(&event.time);
+        self.outcome.end = match ending {
+            // The run's horizon is the clock's time there, which is rounded.
+            Ending::Horizon => Values::of(&self.state_at(segment, self.task.span)),
+            _ => Values::of(&event.state),
+        };
+        // A run that ends early stays where it is, and one at its horizon has a sample there.
+        self.outcome.samples.resize(self.task.samples.len(), self.outcome.end);
+        Ok(())
+    }
+}

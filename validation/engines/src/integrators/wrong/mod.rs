@@ -1,0 +1,293 @@
+//! Engines that are wrong on purpose, one fault each: what no fault trips is no gate.
+//!
+//! [`wrong`] are held to the exact solver's bounds, [`faulty`] to those of a good integrator. The
+//! faults of [`wrong_on_systems`] and [`faulty_on_systems`] each show in one [`Way`] of running a
+//! case of a system, and nowhere else.
+//!
+//! They never run beside the others; the power test runs them and asks which bounds notice. Four
+//! are the exact solver on something slightly different; the others are a plain solver that walks
+//! along the closed forms ([`walk`]), which without a fault stays within the bounds it is held to.
+
+mod altered;
+mod closed;
+mod integrator;
+mod misled;
+mod printed;
+mod systems;
+mod ties;
+mod walk;
+
+use crate::engine::Engine;
+use altered::{Alteration, Altered};
+pub use closed::Closed;
+use integrator::{Faulty, IntegratorFault};
+use misled::SystemFault;
+pub use systems::COOLDOWN;
+use systems::FaultyOnSystems;
+use ties::LastFirst;
+use walk::{WalkFault, WrongWalk};
+
+/// A wrong engine and what is wrong with it.
+#[derive(Clone, Copy)]
+pub struct WrongEngine {
+    /// The engine.
+    pub engine: &'static dyn Engine,
+    /// The engine's fault, in a phrase.
+    pub fault: &'static str,
+}
+
+/// The walking solver without a fault: the control of the power test.
+pub static CONTROL: &dyn Engine = &WrongWalk { name: "walk-control", fault: WalkFault::None };
+
+/// How rarely an engine drops an event.
+pub const DROPPED: [u64; 2] = [100, 1000];
+
+static WRONG: [WrongEngine; 9] = [
+    WrongEngine {
+        engine: &WrongWalk { name: "wrong-dropped-100", fault: WalkFault::Dropped(DROPPED[0]) },
+        fault: "every hundredth event is dropped",
+    },
+    WrongEngine {
+        engine: &WrongWalk { name: "wrong-dropped-1000", fault: WalkFault::Dropped(DROPPED[1]) },
+        fault: "every thousandth event is dropped",
+    },
+    WrongEngine {
+        engine: &Altered { name: "wrong-omega", change: Alteration::Frequency },
+        fault: "omega is larger by 0.002",
+    },
+    WrongEngine {
+        engine: &Altered { name: "wrong-xi", change: Alteration::Damping },
+        fault: "xi is larger by 1 %",
+    },
+    WrongEngine {
+        engine: &Altered { name: "wrong-drift", change: Alteration::Drift },
+        fault: "Eq. (20) as printed, with + before the exponential",
+    },
+    WrongEngine {
+        engine: &WrongWalk { name: "wrong-arctan", fault: WalkFault::Arctangent },
+        fault: "Eqs. (15) to (17) as printed, with arctan for beta and delta",
+    },
+    WrongEngine {
+        engine: &WrongWalk { name: "wrong-sign-change", fault: WalkFault::SignChange },
+        fault: "guards are looked at only where a step ends, for a change of sign",
+    },
+    WrongEngine {
+        engine: &WrongWalk { name: "wrong-impact", fault: WalkFault::ContactAtImpact },
+        fault: "every impact goes into contact, none straight into progression",
+    },
+    WrongEngine {
+        engine: &Altered { name: "wrong-clock", change: Alteration::Clock },
+        fault: "time is one number: omega tau loses digits late in a run",
+    },
+];
+
+/// All of them.
+#[must_use]
+pub fn wrong() -> &'static [WrongEngine] {
+    &WRONG
+}
+
+/// The integrator of [`faulty`] without a fault: the control of its power test.
+pub static FAULTY_CONTROL: &dyn Engine =
+    &Faulty { name: "dopri5-control", slip: IntegratorFault::None };
+
+/// How rarely an integrator drops an event, or gives up a run.
+const SELDOM: u64 = 20;
+
+macro_rules! faulty {
+    ($name:literal, $slip:expr, $fault:literal) => {
+        WrongEngine { engine: &Faulty { name: $name, slip: $slip }, fault: $fault }
+    };
+}
+
+static FAULTY: [WrongEngine; 9] = [
+    faulty!(
+        "dopri5-drops",
+        IntegratorFault::Dropped(SELDOM),
+        "every twentieth event is not noticed"
+    ),
+    faulty!("dopri5-at-step-end", IntegratorFault::AtStepEnd, "an event is put at its step's end"),
+    faulty!(
+        "dopri5-sign-at-ends",
+        IntegratorFault::SignAtEnds,
+        "guards are looked at only at steps' ends"
+    ),
+    faulty!("dopri5-late", IntegratorFault::Late, "an event is found thirty tolerances late"),
+    faulty!(
+        "dopri5-old-derivative",
+        IntegratorFault::OldDerivative,
+        "a restart begins with the derivative of the phase before"
+    ),
+    faulty!(
+        "dopri5-any-direction",
+        IntegratorFault::AnyDirection,
+        "the direction of a guard is ignored"
+    ),
+    faulty!(
+        "dopri5-low-order",
+        IntegratorFault::LowOrder,
+        "the interpolant is of order 3 instead of 4"
+    ),
+    faulty!(
+        "dopri5-parameters",
+        IntegratorFault::Parameters,
+        "b and xi are larger by 1e-4 of themselves"
+    ),
+    faulty!(
+        "dopri5-gives-up",
+        IntegratorFault::GivesUp(SELDOM),
+        "some restarts end without a result"
+    ),
+];
+
+/// Integrators with one fault each, held to the bounds of the engine without it, [`SOUND`].
+#[must_use]
+pub fn faulty() -> &'static [WrongEngine] {
+    &FAULTY
+}
+
+/// The engine whose bounds [`faulty`] integrators are held to.
+pub const SOUND: &str = "ode_solvers-dopri5";
+
+/// A way of running a case of a system, as far as the case itself tells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Way {
+    /// Back in time.
+    Backward,
+    /// With a guard that is watched in one direction.
+    Direction,
+    /// From a state on a guard.
+    StartOnGuard,
+    /// With states taken where events are: each event has the state after its reset.
+    OutputAtEvents,
+    /// With states taken between events, in steps that an event cuts short.
+    OutputBetweenEvents,
+    /// With several events in one instant.
+    Simultaneous,
+    /// With events that follow each other closely, as in chatter and before an accumulation.
+    CloseEvents,
+}
+
+impl Way {
+    /// What cases of this way have, for people.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Backward => "a run back in time",
+            Self::Direction => "a guard that is watched in one direction",
+            Self::StartOnGuard => "a start on a guard",
+            Self::OutputAtEvents => "resets, after which each event has its state",
+            Self::OutputBetweenEvents => "states asked for soon after an event",
+            Self::Simultaneous => "several events in one instant",
+            Self::CloseEvents => "events that follow each other closely",
+        }
+    }
+}
+
+/// An engine that is wrong in one way of running a case.
+#[derive(Clone, Copy)]
+pub struct WrongWay {
+    /// The engine and its fault.
+    pub wrong: WrongEngine,
+    /// Where the fault shows.
+    pub way: Way,
+}
+
+static WRONG_ON_SYSTEMS: [WrongWay; 1] = [WrongWay {
+    wrong: WrongEngine {
+        engine: &LastFirst { name: "wrong-last-first" },
+        fault: "of events in one instant the file's last comes first",
+    },
+    way: Way::Simultaneous,
+}];
+
+/// Engines that are held to the exact solver's bounds on systems.
+#[must_use]
+pub fn wrong_on_systems() -> &'static [WrongWay] {
+    &WRONG_ON_SYSTEMS
+}
+
+/// The integrator of [`faulty_on_systems`] without a fault.
+pub static FAULTY_ON_SYSTEMS_CONTROL: &dyn Engine =
+    &FaultyOnSystems { name: "dopri5-control", slip: SystemFault::None };
+
+macro_rules! faulty_on_systems {
+    ($way:ident, $name:literal, $slip:ident, $fault:literal) => {
+        WrongWay {
+            wrong: WrongEngine {
+                engine: &FaultyOnSystems { name: $name, slip: SystemFault::$slip },
+                fault: $fault,
+            },
+            way: Way::$way,
+        }
+    };
+}
+
+static FAULTY_ON_SYSTEMS: [WrongWay; 10] = [
+    faulty_on_systems!(
+        Backward,
+        "dopri5-forward-directions",
+        ForwardDirections,
+        "back in time a watched guard counts in its direction of forward time"
+    ),
+    faulty_on_systems!(
+        Backward,
+        "dopri5-forward-forcing",
+        ForwardForcing,
+        "back in time the forcing's clock goes on ahead"
+    ),
+    faulty_on_systems!(
+        Backward,
+        "dopri5-past-boundary",
+        PastBoundary,
+        "back in time a run goes on past the boundary of its mode"
+    ),
+    faulty_on_systems!(
+        Direction,
+        "dopri5-both-directions",
+        BothDirections,
+        "the direction of a watched guard is ignored"
+    ),
+    faulty_on_systems!(
+        StartOnGuard,
+        "dopri5-fires-at-start",
+        FiresAtStart,
+        "a guard that is zero at the start is an event there"
+    ),
+    faulty_on_systems!(
+        StartOnGuard,
+        "dopri5-misses-at-start",
+        MissesAtStart,
+        "an event at the start is not noticed"
+    ),
+    faulty_on_systems!(
+        OutputAtEvents,
+        "dopri5-state-before",
+        StateBefore,
+        "an event has the state before its reset"
+    ),
+    faulty_on_systems!(
+        OutputBetweenEvents,
+        "dopri5-uncut-output",
+        UncutOutput,
+        "states in a step that an event cuts short are those of the whole step"
+    ),
+    faulty_on_systems!(
+        Simultaneous,
+        "dopri5-one-at-once",
+        OneAtOnce,
+        "of events in one instant the first alone is noticed"
+    ),
+    faulty_on_systems!(
+        CloseEvents,
+        "dopri5-cooldown",
+        Cooldown,
+        "for a hundredth of the system's unit of time after an event none is noticed"
+    ),
+];
+
+/// Integrators with one fault each, held to the bounds of [`SOUND`] on systems.
+#[must_use]
+pub fn faulty_on_systems() -> &'static [WrongWay] {
+    &FAULTY_ON_SYSTEMS
+}

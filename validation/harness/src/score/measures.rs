@@ -1,0 +1,119 @@
+//! The figures of one run, of the oscillator and of any other system.
+
+use super::mismatch::Mismatch;
+use super::occurrence::Occurrence;
+use super::probed::ProbeResults;
+use super::statistics::Spread;
+use crate::case::{Quantity, Statistic};
+
+/// What a run measured, up to the scored horizon.
+#[derive(Clone, Debug)]
+pub struct Measures {
+    /// The scored horizon, in forcing periods.
+    pub horizon_periods: f64,
+    /// Whether that is the case's whole horizon.
+    pub whole: bool,
+    /// The truth's events on the case's whole horizon.
+    pub total: usize,
+    /// The truth's samples on the case's whole horizon, the start left out.
+    pub samples: usize,
+    /// Samples before the scored horizon, the start left out.
+    pub sampled: usize,
+    /// The truth's events before the scored horizon.
+    pub expected: usize,
+    /// Events that are matched, of the `expected` ones.
+    pub matched: usize,
+    /// The engine's events, as matching sees them.
+    pub found: Vec<Occurrence>,
+    /// The events that the engine and the truth do not share.
+    pub mismatch: Mismatch,
+    /// Whether the phases follow each other as in the truth.
+    pub phase_sequence_ok: bool,
+    /// Errors of matched events' times.
+    pub event_time: Spread,
+    /// max(|dp|, |dy|, |dq|) on the sample.
+    pub state: Spread,
+    /// |dv| at the horizon; NaN where that is not scored.
+    pub drift: f64,
+    /// The part of the drift's error that the errors of the events' times explain to first order;
+    /// NaN where the drift is not scored.
+    pub drift_by_times: f64,
+    /// Forcing periods until the state's error passes [`SCORED_ERROR`](super::SCORED_ERROR).
+    pub valid_periods: f64,
+    /// Error of each matched event's time in units of error x (1 + |value|) x growth x events.
+    pub event_time_units: Vec<f64>,
+    /// Largest error of a matched event's time or state in these units; NaN where none is matched.
+    pub event_constant: f64,
+    /// Largest error of the sample's states in these units; NaN where no sample is scored.
+    pub state_constant: f64,
+    /// What was asked beyond the run itself.
+    pub probed: ProbeResults,
+}
+
+impl Measures {
+    /// A figure; NaN if it was not measured.
+    #[must_use]
+    pub fn figure(&self, quantity: Quantity, statistic: Statistic) -> f64 {
+        let of = |spread: &Spread| match statistic {
+            Statistic::Median => spread.median,
+            Statistic::Q99 => spread.q99,
+            Statistic::Max | Statistic::Value => spread.max,
+        };
+        match quantity {
+            Quantity::EventsMissed => self.mismatch.missed.len() as f64,
+            Quantity::EventsSpurious => self.mismatch.spurious.len() as f64,
+            Quantity::PhaseSequence => f64::from(u8::from(!self.phase_sequence_ok)),
+            Quantity::EventTimeError => of(&self.event_time),
+            Quantity::StateError => of(&self.state),
+            Quantity::DriftError => self.drift,
+            Quantity::EventConstant => self.event_constant,
+            Quantity::StateConstant => self.state_constant,
+            Quantity::ValidPeriods => self.valid_periods,
+            Quantity::ValidGain => {
+                self.probed.horizons.as_ref().map_or(f64::NAN, |it| of(&it.gained))
+            }
+            Quantity::RestartError => {
+                self.probed.restart.as_ref().map_or(f64::NAN, |it| of(&it.units))
+            }
+            Quantity::RestartsFailed => {
+                self.probed.restart.as_ref().map_or(f64::NAN, |it| it.failed as f64)
+            }
+            Quantity::RunsFailed => 0.0,
+            Quantity::AttractorDistance => self.probed.share(),
+        }
+    }
+
+    /// Whether a bound on a quantity applies: not where the truth has no event to measure it at,
+    /// nor where the suite did not ask for the probe that measures it.
+    #[must_use]
+    pub fn concerns(&self, quantity: Quantity) -> bool {
+        match quantity {
+            Quantity::EventTimeError | Quantity::EventConstant => self.total > 0,
+            Quantity::StateError | Quantity::StateConstant => self.samples > 0,
+            Quantity::ValidGain => self.probed.horizons.is_some(),
+            Quantity::RestartError => self.probed.restarted(),
+            Quantity::RestartsFailed => self.probed.restart.is_some(),
+            Quantity::AttractorDistance => self.probed.attractor.is_some(),
+            _ => true,
+        }
+    }
+
+    /// Whether nothing was measured of a quantity because the scored horizon ends before there is
+    /// anything to measure.
+    #[must_use]
+    pub fn lacks(&self, quantity: Quantity) -> bool {
+        match quantity {
+            Quantity::EventTimeError | Quantity::EventConstant => self.matched == 0,
+            Quantity::StateError | Quantity::StateConstant => self.sampled == 0,
+            Quantity::DriftError => !self.whole,
+            _ => false,
+        }
+    }
+
+    /// Whether enough was scored for a row to pass: a twentieth of the truth's events, or the whole
+    /// horizon where it has none.
+    #[must_use]
+    pub fn is_scored(&self) -> bool {
+        if self.total == 0 { self.whole } else { 20 * self.expected >= self.total }
+    }
+}

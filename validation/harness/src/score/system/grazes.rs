@@ -1,0 +1,284 @@
+//! Grazes of a system's true run: extrema of guards close to zero, where an engine whose allowed
+//! error is larger than the margin may find the events of a crossing or not.
+
+use super::event_names::EventNames;
+use crate::score::graze::Graze;
+use crate::system::{Direction, System, SystemProblem};
+use crate::truth::{SystemTruth, SystemTruthRow};
+use percuss::affine::{Event, Time, What};
+
+/// Margins above this part of a guard's size are no grazes.
+const WIDEST: f64 = 1e-2;
+/// Instants at which a guard's rate is looked at, in one period of the forcing or of the system's
+/// fastest oscillation.
+const LOOKS: f64 = 128.0;
+/// Looks at a segment at the least.
+const FEWEST_LOOKS: f64 = 16.0;
+/// Looks at a segment at the most.
+const MOST_LOOKS: f64 = 1e5;
+/// A guard this close to zero at a segment's entry, over its size, began on it.
+const ON_GUARD: f64 = 1e-12;
+/// Halvings of a bracket, after which an extremum is known to rounding.
+const HALVINGS: u32 = 60;
+
+/// The grazes of a true run, in the order of time.
+#[must_use]
+pub fn system_grazes(
+    problem: &SystemProblem,
+    truth: &SystemTruth,
+    names: &EventNames,
+) -> Vec<Graze> {
+    let scan = SystemScan { problem, system: problem.checked.system(), truth, names };
+    let ends = truth.events.iter().chain([&truth.end]);
+    let begins = std::iter::once(&truth.start).chain(&truth.events);
+    let mut found: Vec<Graze> = begins
+        .zip(ends)
+        .enumerate()
+        .flat_map(|(n, (begin, end))| scan.segment(n, begin, end))
+        .collect();
+    // Both segments that meet at an extremum may have found it.
+    let same = 1e-9 * problem.turn();
+    found.sort_by(|a, b| a.event.cmp(&b.event).then(a.elapsed.total_cmp(&b.elapsed)));
+    found.dedup_by(|b, a| a.event == b.event && b.elapsed - a.elapsed <= same);
+    found.sort_by(|a, b| a.elapsed.total_cmp(&b.elapsed));
+    found
+}
+
+struct SystemScan<'a> {
+    problem: &'a SystemProblem,
+    system: &'a System,
+    truth: &'a SystemTruth,
+    names: &'a EventNames,
+}
+
+/// A segment of the true run in closed form.
+struct SystemSegment<'a> {
+    scan: &'a SystemScan<'a>,
+    begin: Event<f64>,
+    began: f64,
+    mode: usize,
+}
+
+/// A guard of a mode, and which of its crossings are events.
+struct ScannedGuard<'a> {
+    event: usize,
+    row: &'a [f64],
+    /// `None`: it ends its mode.
+    direction: Option<Direction>,
+}
+
+impl SystemScan<'_> {
+    /// The grazes of the segment after `n` events.
+    fn segment(&self, n: usize, begin: &SystemTruthRow, end: &SystemTruthRow) -> Vec<Graze> {
+        let began = begin.elapsed.value();
+        let length = end.elapsed.minus(begin.elapsed).value();
+        let clock = Time::of(&self.problem.start.time);
+        let time = clock.after(if self.problem.backward { -began } else { began });
+        let state = begin.state.iter().map(|it| it.value()).collect();
+        let begin = Event { what: What::Start, time, state, mode: begin.mode, errors: None };
+        let segment = SystemSegment { scan: self, mode: begin.mode, begin, began };
+        let guards = self.guards(segment.mode);
+        guards.iter().flat_map(|guard| segment.grazes(n, guard, length)).collect()
+    }
+
+    fn guards(&self, mode: usize) -> Vec<ScannedGuard<'_>> {
+        let mode = &self.system.modes[mode];
+        let until = mode.until.iter().map(|it| (&it.guard, None));
+        let watch = mode.watch.iter().map(|it| (&it.guard, Some(it.direction)));
+        let all = until.chain(watch).enumerate();
+        all.map(|(event, (row, direction))| ScannedGuard { event, row, direction }).collect()
+    }
+
+    /// Whether an event is only watched in a mode, which goes on.
+    fn is_watched(&self, mode: usize, row: &SystemTruthRow) -> bool {
+        row.mode == mode && row.event >= self.system.modes[mode].until.len()
+    }
+
+    /// How many events a crossing makes that turns back at once.
+    fn makes(&self, mode: usize, guard: &ScannedGuard<'_>) -> usize {
+        match guard.direction {
+            Some(Direction::Both) => 2,
+            Some(_) => 1,
+            None => {
+                let next = &self.system.modes[mode].until[guard.event].next;
+                if next.iter().all(|(_, next)| *next == mode) { 1 } else { 2 }
+            }
+        }
+    }
+
+    /// What one unit of error in the states may have become in a guard.
+    fn growth(&self, guard: &[f64], elapsed: f64) -> f64 {
+        let passed = |it: &&SystemTruthRow| it.elapsed.value() <= elapsed;
+        let sample = self.truth.samples.iter().take_while(passed).last();
+        guard_growth(guard, sample.unwrap_or(&self.truth.start), &self.system.scales)
+    }
+}
+
+/// The largest of the contributions of the states' errors, as they are in a row of the truth, to
+/// that of a guard's value.
+pub(super) fn guard_growth(guard: &[f64], row: &SystemTruthRow, scales: &[f64]) -> f64 {
+    let parts = guard.iter().zip(&row.growth).zip(scales);
+    let parts = parts.map(|((factor, growth), scale)| factor.abs() * scale * growth);
+    (1.0 + row.size) * parts.fold(0.0, f64::max)
+}
+
+impl SystemSegment<'_> {
+    /// The states, cos theta, sin theta and 1 at a time since the segment's begin.
+    fn point(&self, d: f64) -> Vec<f64> {
+        let ahead = if self.scan.problem.backward { -d } else { d };
+        let mut z = self.scan.problem.solver.state_at(&self.begin, &self.begin.time.after(ahead));
+        let (sin, cos) =
+            (self.scan.system.omega * (self.began + d) + self.scan.system.phi).sin_cos();
+        z.extend([cos, sin, 1.0]);
+        z
+    }
+
+    fn value(&self, row: &[f64], d: f64) -> f64 {
+        row.iter().zip(self.point(d)).map(|(a, b)| a * b).sum()
+    }
+
+    fn rate(&self, row: &[f64], d: f64) -> f64 {
+        let (system, z) = (self.scan.system, self.point(d));
+        let mode = &system.modes[self.mode];
+        let states = system.states.len();
+        let [cos, sin] = [z[states], z[states + 1]];
+        let rate = |i: usize| {
+            let own: f64 = mode.a[i].iter().zip(&z).map(|(a, x)| a * x).sum();
+            own + mode.b[i][0] * cos + mode.b[i][1] * sin + mode.c[i]
+        };
+        let of_states: f64 = (0..states).map(|i| row[i] * rate(i)).sum();
+        of_states + system.omega * (row[states + 1] * cos - row[states] * sin)
+    }
+
+    /// The extrema of a guard that are grazes, those just beyond the segment's end included.
+    fn grazes(&self, n: usize, guard: &ScannedGuard<'_>, length: f64) -> Vec<Graze> {
+        let size = self.size(guard.row);
+        let turn = self.scan.problem.turn();
+        let looks = (length / turn * LOOKS).clamp(FEWEST_LOOKS, MOST_LOOKS);
+        let mut step = length / looks;
+        // The crossing that ends the segment may turn back soon after it. An event that is only
+        // watched may be the extremum itself, and rounding puts that on either side of it.
+        let watched = |it: &SystemTruthRow| self.scan.is_watched(self.mode, it);
+        let goes_on = self.scan.truth.events.get(n).is_some_and(watched);
+        let beyond = match guard.direction {
+            None => 0.25 * turn,
+            Some(_) if goes_on => step,
+            Some(_) => 0.0,
+        };
+        if length <= 0.0 {
+            return Vec::new();
+        }
+        let mut from = 0.0;
+        if self.value(guard.row, 0.0).abs() <= ON_GUARD * size {
+            from = step;
+        }
+        let mut found = Vec::new();
+        let mut rate = self.rate(guard.row, from);
+        while from < length + beyond {
+            if from >= length {
+                step = step.max(turn / LOOKS);
+            }
+            let next = self.rate(guard.row, from + step);
+            if (rate > 0.0) != (next > 0.0) {
+                let at = self.turning(guard.row, (from, from + step), rate > 0.0);
+                found.extend(self.graze(n, guard, at, (length, size, rate > 0.0)));
+            }
+            (from, rate) = (from + step, next);
+        }
+        found
+    }
+
+    /// The instant at which a rate changes its sign.
+    fn turning(&self, row: &[f64], (mut left, mut right): (f64, f64), rising: bool) -> f64 {
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * (left + right);
+            if (self.rate(row, middle) > 0.0) == rising { left = middle } else { right = middle }
+        }
+        0.5 * (left + right)
+    }
+
+    fn size(&self, row: &[f64]) -> f64 {
+        let scales = self.scan.system.scales.iter().chain([&1.0, &1.0, &1.0]);
+        row.iter().zip(scales).map(|(entry, scale)| (entry * scale).abs()).sum()
+    }
+
+    /// The graze of an extremum; a maximum is one if it is close to zero, and a minimum where the
+    /// guard is only watched.
+    fn graze(
+        &self,
+        n: usize,
+        guard: &ScannedGuard<'_>,
+        at: f64,
+        (length, size, maximum): (f64, f64, bool),
+    ) -> Option<Graze> {
+        let value = self.value(guard.row, at);
+        let margin = if maximum { value } else { -value };
+        let until = guard.direction.is_none();
+        let counts = margin.abs() <= WIDEST * size && (maximum || !until);
+        // A guard that ends its mode cannot have passed zero before the segment's end.
+        let inside = !until || (margin < 0.0) == (at < length);
+        if !counts || !inside {
+            return None;
+        }
+        let scan = self.scan;
+        let elapsed = self.began + at;
+        let growth = scan.growth(guard.row, elapsed) * n.max(1) as f64;
+        let makes = scan.makes(self.mode, guard);
+        let crossed =
+            if margin < 0.0 { None } else { self.crossed(n, guard, makes, (at, maximum)) };
+        // What touches zero exactly crosses nothing.
+        let touches = margin <= ON_GUARD * size;
+        let events = crossed.or_else(|| touches.then(Vec::new))?;
+        let event = Some(scan.names.number(self.mode, guard.event));
+        Some(Graze { elapsed, margin, growth, events, mode: self.mode, event, ends: until, makes })
+    }
+
+    /// The truth's events that a touch makes: the crossings just before and just after it.
+    fn crossed(
+        &self,
+        n: usize,
+        guard: &ScannedGuard<'_>,
+        makes: usize,
+        (at, maximum): (f64, bool),
+    ) -> Option<Vec<usize>> {
+        let Some(direction) = guard.direction else {
+            // The segment ends by the crossing, and a mode that is left is entered again.
+            let events = &self.scan.truth.events;
+            let own = events.get(n).is_some_and(|it| it.event == guard.event);
+            return (own && events.len() >= n + makes).then(|| (n..n + makes).collect());
+        };
+        let before = || self.watched(guard, at, (0..n).rev());
+        let after = || self.watched(guard, at, n..self.scan.truth.events.len());
+        match direction {
+            Direction::Both => Some(vec![before()?, after()?]),
+            // Up and down again, or down and up: the one of the two that is counted.
+            _ if (direction == Direction::Rising) == maximum => Some(vec![before()?]),
+            _ => Some(vec![after()?]),
+        }
+    }
+
+    /// The nearest of these events that is a watched guard's, if the guard goes one way from it to
+    /// its extremum, or back, and nothing ends the mode between them.
+    fn watched(
+        &self,
+        guard: &ScannedGuard<'_>,
+        at: f64,
+        mut candidates: impl Iterator<Item = usize>,
+    ) -> Option<usize> {
+        const LOOKS_BETWEEN: u32 = 16;
+        let events = &self.scan.truth.events;
+        let is_own = |k: &usize| events[*k].event == guard.event && events[*k].mode == self.mode;
+        let mut open = true;
+        let found = candidates.find(|k| {
+            open &= self.scan.is_watched(self.mode, &events[*k]);
+            !open || is_own(k)
+        });
+        let own = found.filter(|_| open)?;
+        let from = events[own].elapsed.value() - self.began;
+        let share = |k: u32| f64::from(k) / f64::from(LOOKS_BETWEEN);
+        let mut rates =
+            (0..LOOKS_BETWEEN).map(|k| self.rate(guard.row, from + share(k) * (at - from)) > 0.0);
+        let first = rates.next()?;
+        rates.all(|it| it == first).then_some(own)
+    }
+}

@@ -1,0 +1,234 @@
+//! The restart test of a piecewise-affine system: from states along a case's true run through the
+//! next two events.
+//!
+//! Each sample of the truth, rounded, is a start of its own. Its run ends half way between the
+//! second and the third of the instants at which the case has events from there on, so that what is
+//! measured is one passage through events and not what a long run makes of it.
+
+use super::decisions::{Decision, decisions};
+use super::event_names::EventNames;
+use super::grazes::{guard_growth, system_grazes};
+use super::measure::{MOST_UNITS, SystemRun, SystemScale, off, scored_horizon};
+use crate::case::SystemCase;
+use crate::engine::{Accuracy, Ended, Failure, Outcome, Task};
+use crate::score::graze::Graze;
+use crate::score::restart_figures::{Restart, RestartError, RestartResult};
+use crate::score::statistics::worst;
+use crate::system::SystemProblem;
+use crate::truth::{DoubleDouble, SystemTruth, SystemTruthRow, solver};
+use percuss::TwoWord;
+use percuss::affine::{Rational, Solver, StartPoint};
+use rayon::prelude::*;
+use std::sync::Arc;
+
+/// Instants with events through which a run goes.
+const INSTANTS: usize = 2;
+/// A guard that is zero by the model is below this share of its terms in 106 bits.
+const BY_MODEL: f64 = 1e-24;
+/// Events that are closer together than this, over the system's unit of time, are passed as one.
+const CLOSE: f64 = 1e-5;
+
+/// A run with its truth.
+pub struct SystemRestartRun {
+    /// What an engine is asked.
+    pub task: Task,
+    /// What is true.
+    pub truth: SystemTruth,
+    grazes: Vec<Graze>,
+    decisions: Vec<Decision>,
+}
+
+/// The runs of one case.
+pub struct SystemRestartTest {
+    /// The runs with a truth, in the order of their starts.
+    pub runs: Vec<SystemRestartRun>,
+    /// Runs that 106 bits do not decide, which are left out.
+    pub undecided: usize,
+    names: EventNames,
+}
+
+/// Where restarts come from: a case with its truth, and what its runs share.
+struct Restarts<'a> {
+    case: &'a SystemCase,
+    problem: &'a SystemProblem,
+    truth: &'a SystemTruth,
+    names: &'a EventNames,
+    solver: Solver<DoubleDouble>,
+}
+
+impl SystemRestartTest {
+    /// Makes runs from at most `count` of the samples of a case's truth, spread evenly over those
+    /// that events follow. None are made of a case that has fewer events than a run passes.
+    ///
+    /// # Errors
+    /// A system that the solver does not take.
+    pub fn new(
+        case: &SystemCase,
+        problem: &SystemProblem,
+        truth: &SystemTruth,
+        count: usize,
+    ) -> Result<Self, String> {
+        let names = EventNames::of(problem.checked.system());
+        let restarts = Restarts { case, problem, truth, names: &names, solver: solver(case)? };
+        let spans = truth.samples.iter().skip(1).filter_map(|row| Some((row, restarts.span(row)?)));
+        let starts: Vec<_> = spans.collect();
+        let count = count.min(starts.len());
+        let spread = |k: usize| starts[k * starts.len() / count];
+        let made: Vec<_> = (0..count).into_par_iter().map(|k| restarts.run(spread(k))).collect();
+        let runs: Vec<_> = made.into_iter().flatten().collect();
+        Ok(Self { undecided: count - runs.len(), runs, names })
+    }
+
+    /// Scores an engine, given how it runs a task, on the first runs, at most this many. Runs in
+    /// which an error of `unit` may decide what follows are not made.
+    pub fn score_first(
+        &self,
+        most: usize,
+        (accuracy, unit): (Accuracy, f64),
+        run: impl Fn(&Task) -> Result<Outcome, Failure> + Sync,
+    ) -> Restart {
+        let runs = &self.runs[..most.min(self.runs.len())];
+        let results: Vec<_> = runs
+            .par_iter()
+            .filter(|it| it.is_decided(accuracy, unit))
+            .map(|it| RestartResult {
+                impact: !it.truth.events.is_empty(),
+                events: it.truth.events.len(),
+                error: run(&it.task).map(|outcome| it.error(&self.names, &outcome, unit)).ok(),
+            })
+            .collect();
+        Restart::of(&results, self.undecided)
+    }
+
+    /// The time that all runs take together.
+    #[must_use]
+    pub fn span(&self) -> f64 {
+        self.runs.iter().map(|it| it.task.span).sum()
+    }
+}
+
+impl Restarts<'_> {
+    /// How long the run from a sample takes; none where too few events follow.
+    fn span(&self, row: &SystemTruthRow) -> Option<f64> {
+        let close = CLOSE * self.case.system.time_scale;
+        let begin = row.elapsed.value();
+        let mut instants = vec![begin];
+        for event in &self.truth.events {
+            let ahead = event.elapsed.value();
+            if ahead <= begin {
+                continue;
+            }
+            let last = instants[instants.len() - 1];
+            if instants.len() > INSTANTS && ahead - last > 2.0 * close {
+                return Some(0.5 * (last + ahead) - begin);
+            }
+            if ahead - last > close {
+                instants.push(ahead);
+            } else {
+                // The run ends behind all events of one instant.
+                let place = instants.len() - 1;
+                instants[place] = ahead;
+            }
+        }
+        None
+    }
+
+    fn run(&self, (row, span): (&SystemTruthRow, f64)) -> Option<SystemRestartRun> {
+        let begin = self.problem.clock(row.elapsed.value());
+        let zero = Rational::ZERO;
+        let exact = |value: f64| Rational::try_from(value).ok();
+        let state =
+            row.state.iter().map(|it| Some([zero.clone(), zero.clone(), exact(it.value())?]));
+        let state = state.collect::<Option<Vec<_>>>()?;
+        let start = StartPoint { mode: row.mode, time: exact(begin)?, state };
+        let until = if self.case.backward { begin - span } else { begin + span };
+        let mut case = SystemCase { until, samples: 1, ..self.case.clone() };
+        case.system.start = Some(start.clone());
+        let truth = SystemTruth::replayed(&case, &self.solver).ok()?;
+        if truth.ended != Ended::Horizon {
+            return None;
+        }
+        let problem = Arc::new(self.problem.from_start(start).ok()?);
+        let task = Task::of(&problem, truth.span, truth.sample_times()).ok()?;
+        let grazes = system_grazes(&problem, &truth, self.names);
+        let decisions = decisions(&problem, &truth);
+        Some(SystemRestartRun { task, truth, grazes, decisions })
+    }
+}
+
+/// The size of a guard's value in a state, and of the terms that it is summed from; no value where
+/// the guard depends on theta, which is known in f64 alone.
+fn at_entry(guard: &[Rational], state: &[TwoWord]) -> [f64; 2] {
+    let (factors, [cos, sin, one]) = guard.split_at(state.len()) else { return [0.0; 2] };
+    let terms = state.iter().zip(factors).map(|(x, factor)| x.times_two_word(two_words(factor)));
+    let terms: Vec<TwoWord> = terms.chain([two_words(one)]).collect();
+    let size = terms.iter().map(|term| term.value().abs()).sum();
+    let value = terms.into_iter().fold(TwoWord::ZERO, TwoWord::plus).value();
+    let is_told = [cos, sin].iter().all(|factor| **factor == Rational::ZERO);
+    if is_told { [value.abs(), size] } else { [0.0, size] }
+}
+
+/// A rational number, rounded to two words.
+fn two_words(exact: &Rational) -> TwoWord {
+    let high = exact.to_f64().value();
+    let low = Rational::try_from(high).map_or(0.0, |high| (exact - high).to_f64().value());
+    TwoWord::sum(high, low)
+}
+
+impl SystemRestartRun {
+    /// Whether errors of this unit leave open nothing that follows.
+    fn is_decided(&self, accuracy: Accuracy, unit: f64) -> bool {
+        let scale = SystemScale::of((accuracy, unit), &self.grazes, &self.decisions);
+        self.has_an_order(unit)
+            && self.has_clear_entries(unit)
+            && scored_horizon(&self.task, &self.truth, scale).1
+    }
+
+    /// Whether the errors that a method is allowed leave no guard open where a mode is entered: one
+    /// that is zero there in the case's run may be off by the rounding of this run's start.
+    fn has_clear_entries(&self, unit: f64) -> bool {
+        let Some(problem) = &self.task.exact else { return true };
+        let system = self.task.system.system();
+        self.truth.events.iter().all(|row| {
+            let rounded = system.modes[row.mode].until.iter();
+            problem.exact.modes[row.mode].until.iter().zip(rounded).all(|(exact, rounded)| {
+                let [value, size] = at_entry(&exact.guard, &row.state);
+                let allowed = MOST_UNITS * unit * guard_growth(&rounded.guard, row, &system.scales);
+                value <= BY_MODEL * size || value > allowed
+            })
+        })
+    }
+
+    /// Whether the errors that a method is allowed leave the order of events that are not of one
+    /// instant. Rounding the start of a run towards such an instant leaves it to its last digits.
+    fn has_an_order(&self, unit: f64) -> bool {
+        let scale = self.task.system.system().time_scale;
+        self.truth.events.windows(2).all(|pair| {
+            let apart = pair[1].elapsed.minus(pair[0].elapsed).value();
+            let size = pair[1].size_of_time(scale);
+            apart == 0.0 || apart > MOST_UNITS * unit * scale * size * pair[1].growth_time
+        })
+    }
+
+    fn error(&self, names: &EventNames, outcome: &Outcome, unit: f64) -> RestartError {
+        let run = SystemRun { task: &self.task, truth: &self.truth, outcome, unit };
+        let end = &self.truth.end;
+        let (all, own) =
+            (names.of_truth(&self.truth), names.of_outcome(&self.task, &self.truth, outcome));
+        let pairs = || all.iter().zip(&own);
+        let same_modes = all.len() == own.len() && pairs().all(|(truth, own)| truth.is_like(own));
+        // A constant is by the number of events, the error of a restart is not.
+        let late = pairs().enumerate().map(|(n, (truth, own))| {
+            run.time_units((truth.elapsed, own.elapsed, n)) * (n + 1) as f64
+        });
+        let states = end.state.iter().zip(outcome.end.iter()).zip(run.scales());
+        let absolute = states.map(|((truth, own), scale)| off(*truth, *own) / scale);
+        RestartError {
+            units: run.units(end, &outcome.end, 1),
+            drift_units: f64::NAN,
+            time_units: if same_modes { worst(late) } else { f64::NAN },
+            absolute: worst(absolute),
+            same_modes,
+        }
+    }
+}

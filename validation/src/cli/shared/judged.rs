@@ -1,0 +1,289 @@
+//! What `validate` and `score` have in common: the cases, the report, and what the verdicts come
+//! to.
+
+use super::exit_codes::{DONE, OUT_OF_BOUNDS};
+use super::names::{CASES, Selection, held_by};
+use super::output::{Destination, make_folder, reader_left};
+use super::terminal::{note, say};
+use super::{parse, reports};
+use crate::case::{self, Cases, Defaults};
+use crate::report::{
+    Baseline, CASES_FLAG, Compared, RankingFormat, Report, ReportEvidence, RowPlace, Summary,
+    ranking_text, screen,
+};
+use crate::suite::{self, CaseRun, Prepared, PreparedSystem, Suite};
+use crate::truth::Library;
+use anyhow::{Context, Result, anyhow, bail};
+use clap::{Args, ValueEnum};
+use regex::Regex;
+use std::path::{Path, PathBuf};
+
+/// The flags of verbs that judge runs.
+#[derive(Args)]
+pub(in crate::cli) struct JudgedFlags {
+    #[command(flatten)]
+    pub(in crate::cli) chosen: CaseFlags,
+    /// Writes report.html, report.json, errors.csv, junit.xml and pictures into this folder
+    #[arg(long, value_name = "DIR")]
+    pub(in crate::cli) out: Option<PathBuf>,
+    /// A row without an answer is a failure: of an engine that is not installed, or of a case that
+    /// was not answered
+    #[arg(long)]
+    require: bool,
+    /// Fails where anything is worse than in this report, or gone
+    #[arg(long, value_name = "report.json")]
+    baseline: Option<PathBuf>,
+    /// A row of the baseline that was not made is no failure
+    #[arg(long, requires = "baseline")]
+    allow_missing: bool,
+    /// Prints every row above the summary, as is done for at most three cases
+    #[arg(long)]
+    rows: bool,
+    /// Format of the summary on stdout
+    #[arg(long, value_enum, default_value_t = Format::Table)]
+    format: Format,
+    /// Reads the reference data from this folder instead of those inside the binary
+    #[arg(long, value_name = "DIR")]
+    reference: Option<PathBuf>,
+}
+
+/// Which cases.
+#[derive(Args)]
+pub(in crate::cli) struct CaseFlags {
+    /// Only cases whose name matches; several are alternatives
+    #[arg(short, long = "case", value_name = "RE", value_parser = parse::pattern, allow_hyphen_values = true)]
+    pub(in crate::cli) case: Vec<Regex>,
+    /// Reads the cases from this folder instead of those inside the binary
+    #[arg(long, value_name = "DIR")]
+    pub(in crate::cli) cases: Option<PathBuf>,
+}
+
+/// The summary's formats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Format {
+    /// For people: the ranking, where each engine fails, and the number of rows of each class
+    Table,
+    /// A Markdown table, for a wiki or a comment
+    Markdown,
+    /// Comma-separated values
+    Csv,
+    /// The ranking and the number of rows of each class
+    Json,
+}
+
+/// With at most this many cases the rows are printed too.
+const FEW_CASES: usize = 3;
+
+impl CaseFlags {
+    /// The cases that are chosen.
+    pub(in crate::cli) fn read(&self) -> Result<Cases> {
+        let mut cases = match &self.cases {
+            Some(folder) => Cases::from_directory(folder).context("--cases")?,
+            None => Cases::embedded()?,
+        };
+        let names: Vec<&str> = cases.names().collect();
+        let listed = match &self.cases {
+            Some(folder) => held_by(folder, &names),
+            None => CASES.listed.to_owned(),
+        };
+        Selection { listed: &listed, ..CASES }.check(&self.case, names)?;
+        cases.retain(|name| self.accepts(name));
+        Ok(cases)
+    }
+
+    /// Whether a case is chosen.
+    pub(in crate::cli) fn accepts(&self, name: &str) -> bool {
+        accepts(&self.case, name)
+    }
+
+    /// The reference data of the cases: those inside the binary, or of a folder.
+    fn library(&self, reference: Option<&Path>) -> Result<Library> {
+        Ok(match reference {
+            Some(folder) => Library::from_directory(folder).context("--reference")?,
+            // Cases of a user's own may come before their tables.
+            None if self.cases.is_some() => Library::embedded()?.replaying(),
+            None => Library::embedded()?,
+        })
+    }
+
+    /// The chosen cases with their reference data.
+    pub(in crate::cli) fn open(&self, reference: Option<&Path>) -> Result<OpenedCases> {
+        let (cases, library) = (self.read()?, self.library(reference)?);
+        Ok(OpenedCases { cases, library, are_users: self.cases.is_some() })
+    }
+}
+
+/// Cases whose truth is still to be read.
+pub(in crate::cli) struct OpenedCases {
+    cases: Cases,
+    library: Library,
+    /// Whether they come from a folder, not from inside the binary.
+    are_users: bool,
+}
+
+impl OpenedCases {
+    /// The cases with their truth, and with the probes of a suite if one is given.
+    pub(in crate::cli) fn prepare(self, probes: Option<Suite>) -> Result<PreparedCases> {
+        let Self { cases, library, are_users } = self;
+        let replayed: Vec<String> =
+            cases.names().filter(|name| library.is_replayed(name)).map(str::to_owned).collect();
+        let prepared = PreparedCases {
+            replayed,
+            oscillator: suite::prepare(cases.oscillator, &library, probes)?,
+            systems: suite::prepare_systems(cases.systems, &library, probes)?,
+        };
+        if are_users {
+            prepared.systems.iter().for_each(note_faint_states);
+        }
+        for name in &prepared.replayed {
+            note(&format!(
+                "{name}: without tables: its truth is the exact solver's run made again in 106 bits"
+            ));
+        }
+        Ok(prepared)
+    }
+}
+
+/// Says which states of a case are too small beside the others for their errors to be seen.
+fn note_faint_states(prepared: &PreparedSystem) {
+    let system = &prepared.case.system;
+    let faint = prepared.truth.faint_states(&system.scales);
+    let names: Vec<&str> = faint.iter().map(|n| system.states[*n].as_str()).collect();
+    if !names.is_empty() {
+        note(&format!(
+            "{}: {} so small beside 1 and the largest state that errors are hardly seen: \
+             give {} `scales` in its file",
+            prepared.case.name,
+            if names.len() == 1 {
+                format!("{} stays", names[0])
+            } else {
+                format!("{} stay", names.join(", "))
+            },
+            system.name
+        ));
+    }
+}
+
+/// Whether one of the patterns matches, or there are none.
+pub(in crate::cli) fn accepts(patterns: &[Regex], name: &str) -> bool {
+    patterns.is_empty() || patterns.iter().any(|it| it.is_match(name))
+}
+
+/// All cases that are asked for, made ready.
+pub(in crate::cli) struct PreparedCases {
+    /// The names of those without tables.
+    pub(in crate::cli) replayed: Vec<String>,
+    pub(in crate::cli) oscillator: Vec<Prepared>,
+    pub(in crate::cli) systems: Vec<PreparedSystem>,
+}
+
+impl PreparedCases {
+    /// All cases: those of the oscillator, then those of other systems.
+    pub(in crate::cli) fn all(&self) -> Vec<&dyn CaseRun> {
+        let oscillator = self.oscillator.iter().map(|it| it as &dyn CaseRun);
+        oscillator.chain(self.systems.iter().map(|it| it as &dyn CaseRun)).collect()
+    }
+}
+
+impl JudgedFlags {
+    /// Refuses flags without effect.
+    pub(in crate::cli) fn check(&self) -> Result<()> {
+        if self.rows && self.format != Format::Table {
+            bail!("--rows has no effect with this --format; accepted with --rows is table");
+        }
+        Ok(())
+    }
+
+    /// The report that this run is held against.
+    pub(in crate::cli) fn baseline(&self) -> Result<Option<Baseline>> {
+        self.baseline.as_deref().map(read_baseline).transpose()
+    }
+
+    /// The chosen cases with their reference data, once the folder of the report is made: to make
+    /// them ready may take long.
+    pub(in crate::cli) fn open(&self) -> Result<OpenedCases> {
+        let cases = self.chosen.open(self.reference.as_deref())?;
+        self.out.as_deref().map(make_folder).transpose()?;
+        Ok(cases)
+    }
+
+    /// The bounds and known shortcomings that apply.
+    pub(in crate::cli) fn defaults(&self) -> Result<Defaults> {
+        Ok(match self.chosen.cases {
+            Some(_) => case::defaults_of_own_cases()?,
+            None => case::defaults()?,
+        })
+    }
+
+    /// The folders that data were read from, with their flags.
+    pub(in crate::cli) fn folders(&self) -> Vec<(&'static str, String)> {
+        let given = [(CASES_FLAG, &self.chosen.cases), ("--reference", &self.reference)];
+        let shown = |(flag, folder): (&'static str, &Option<PathBuf>)| {
+            Some((flag, folder.as_ref()?.display().to_string()))
+        };
+        given.into_iter().filter_map(shown).collect()
+    }
+
+    /// What is worse than in the baseline, or gone of the rows that were `asked` for.
+    pub(in crate::cli) fn worse(
+        &self,
+        baseline: &Baseline,
+        report: &Report,
+        asked: impl Fn(&RowPlace<'_>) -> bool,
+    ) -> Result<Vec<String>> {
+        let Compared { mut worse, gone, common } = baseline.compare(report, asked);
+        if common == 0 {
+            bail!(
+                "--baseline: no row in common with this run; accepted is a report of the same rows"
+            );
+        }
+        if self.allow_missing {
+            gone.iter().for_each(|it| note(&format!("{it}: gone, which --allow-missing accepts")));
+        } else {
+            worse.extend(gone.iter().map(|it| format!("{it}: gone, --allow-missing accepts that")));
+        }
+        Ok(worse)
+    }
+
+    /// Writes files, annotations and the summary, and says what the verdicts come to.
+    pub(in crate::cli) fn write(
+        &self,
+        report: &Report,
+        evidence: &ReportEvidence,
+        cases: usize,
+    ) -> Result<u8> {
+        if let Some(folder) = &self.out {
+            reports::write(report, evidence, folder)?;
+        }
+        reports::annotate(report, evidence, self.require);
+        let with_rows = self.rows || cases <= FEW_CASES;
+        let text = match self.format {
+            Format::Table => screen(report, evidence, with_rows),
+            Format::Markdown => ranking_text(report, RankingFormat::Markdown)?,
+            Format::Csv => ranking_text(report, RankingFormat::Csv)?,
+            Format::Json => ranking_text(report, RankingFormat::Json)?,
+        };
+        if self.format != Format::Table {
+            evidence.worse.iter().for_each(|it| say(&format!("worse than --baseline: {it}")));
+        }
+        let shown = Destination::Stdout.write(|out| Ok(out.write_all(text.as_bytes())?));
+        // A reader that leaves early does not turn a failure into a success.
+        shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })?;
+        Ok(self.code(report, evidence))
+    }
+
+    fn code(&self, report: &Report, evidence: &ReportEvidence) -> u8 {
+        let Summary { fail, error, unavailable, .. } = report.summary;
+        let lacking = self.require && unavailable > 0;
+        let out_of_bounds = fail + error > 0 || lacking || !evidence.worse.is_empty();
+        if out_of_bounds { OUT_OF_BOUNDS } else { DONE }
+    }
+}
+
+fn read_baseline(path: &Path) -> Result<Baseline> {
+    let accepted = "accepted is a report.json of this program";
+    let text = std::fs::read_to_string(path)
+        .map_err(|error| anyhow!("--baseline {}: {error}; {accepted}", path.display()))?;
+    Baseline::read(&text)
+        .map_err(|error| anyhow!("--baseline {}: {error}; {accepted}", path.display()))
+}
