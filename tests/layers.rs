@@ -1,5 +1,5 @@
-//! The sources use one another in one direction: no folder of the library uses one above it, and in
-//! no package do files use one another in a circle.
+//! The sources use one another in one direction: no folder of the library uses one above it, no
+//! room of `src/affine/` does either, and in no package do files use one another in a circle.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -18,6 +18,19 @@ const LAYERS: [&str; 12] = [
     "lanes",
     "dynamics",
     "affine",
+];
+
+/// The rooms of `src/affine/`, each allowed to use those before it.
+const ROOMS: [&str; 9] = [
+    "model",
+    "zeros",
+    "arithmetic",
+    "modal",
+    "closed_form",
+    "guards",
+    "first_crossing",
+    "solver",
+    "run",
 ];
 
 /// The packages of the workspace, and how many uses of one file by another each has at least.
@@ -73,6 +86,8 @@ fn module(root: &Path, path: &Path) -> Option<String> {
 fn used(module: &str, text: &str, names: &[String]) -> BTreeSet<String> {
     let text = text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or(text);
     let code: Vec<_> = text.lines().filter(|line| !line.trim_start().starts_with("//")).collect();
+    // `pub(in crate::affine)` says who may use an item, and uses nothing.
+    let code = code.join("\n").replace("pub(in crate::", "pub(in ");
     let named = |path: String| {
         let within = |name: &&String| {
             let rest = path.strip_prefix(name.as_str());
@@ -80,11 +95,7 @@ fn used(module: &str, text: &str, names: &[String]) -> BTreeSet<String> {
         };
         names.iter().filter(within).max_by_key(|name| name.len()).cloned()
     };
-    paths(module, &code.join("\n"))
-        .into_iter()
-        .filter_map(named)
-        .filter(|it| it != module)
-        .collect()
+    paths(module, &code).into_iter().filter_map(named).filter(|it| it != module).collect()
 }
 
 /// The paths that begin with `crate` or `super`, from the root of the package.
@@ -109,20 +120,42 @@ fn paths(module: &str, code: &str) -> Vec<String> {
     found
 }
 
-#[test]
-fn no_layer_uses_one_above_it() {
-    let layer = |module: &str| {
-        let room = module.split("::").next().unwrap();
-        let place = LAYERS.iter().position(|it| *it == room);
-        place.unwrap_or_else(|| panic!("{module} has no place among the layers"))
+/// Holds the modules whose paths begin with `inside` to an order of the folders and files that they
+/// are in: each may use those before it.
+fn assert_ordered(uses: &Uses, inside: &str, order: &[&str]) {
+    let place = |module: &str| -> Option<usize> {
+        let room = module.strip_prefix(inside)?.split("::").next()?;
+        let place = order.iter().position(|it| *it == room);
+        Some(place.unwrap_or_else(|| panic!("{module} has no place in the order")))
     };
-    let uses = uses(&root().join("src"));
-    assert!(uses.len() > 80, "{} files only", uses.len());
-    for (module, used) in &uses {
+    for (n, room) in order.iter().enumerate() {
+        assert!(uses.keys().any(|it| place(it) == Some(n)), "{inside}{room} is not there");
+    }
+    for (module, used) in uses {
+        let Some(own) = place(module) else { continue };
         for it in used {
-            assert!(layer(it) <= layer(module), "{module} uses {it}, which is above it");
+            let is_above = place(it).is_some_and(|it| it > own);
+            // What a folder exports is from all of its rooms.
+            let is_export = it.as_str() == inside.trim_end_matches("::");
+            assert!(!is_above && !is_export, "{module} uses {it}, which is above it");
         }
     }
+}
+
+#[test]
+fn no_layer_uses_one_above_it() {
+    let uses = uses(&root().join("src"));
+    assert!(uses.len() > 80, "{} files only", uses.len());
+    assert_ordered(&uses, "", &LAYERS);
+}
+
+#[test]
+fn no_room_of_affine_uses_one_above_it() {
+    let uses = uses(&root().join("src"));
+    let rooms = |it: &str| it.starts_with("affine::");
+    let edges = uses.iter().filter(|it| rooms(it.0)).flat_map(|it| it.1).filter(|it| rooms(it));
+    assert!(edges.count() > 100, "few uses among the rooms");
+    assert_ordered(&uses, "affine::", &ROOMS);
 }
 
 /// A folder's `mod.rs` exports what is in the folder, which uses its types: these are one.

@@ -1,12 +1,12 @@
 //! The guards that a search has found crossed: watched events, and the errors at the crossing.
 
 use super::Run;
-use crate::affine::clock::Time;
-use crate::affine::enclosure::{EnclosedCrossing, Enclosure, LAST_WORD, roundings};
-use crate::affine::event::{Ending, What};
-use crate::affine::structure::Firing;
-use crate::affine::system::Direction;
-use crate::affine::vector::{Vector, unit};
+use super::enclosure::{EnclosedCrossing, Enclosure, LAST_WORD, roundings};
+use crate::affine::arithmetic::clock::Time;
+use crate::affine::arithmetic::vector::{Vector, unit};
+use crate::affine::model::system::Direction;
+use crate::affine::solver::event::{Ending, What};
+use crate::affine::zeros::graph::Firing;
 use crate::number::Number;
 
 impl<T: Number> Run<'_, T> {
