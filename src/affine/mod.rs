@@ -1,53 +1,26 @@
 //! Any piecewise-affine hybrid system, solved in closed form between its events.
 
-mod accumulation;
-mod beside;
-mod bound;
-mod build;
-mod clock;
-mod crossing;
-mod enclosure;
-mod error;
-mod event;
-mod expression;
-mod fading;
-mod file;
-mod flow;
-mod form;
-mod hull;
-mod known;
+// The rooms, each of which uses only those before it: model, zeros, arithmetic, modal, closed_form,
+// guards, first_crossing, solver, run.
+mod arithmetic;
+mod closed_form;
+mod first_crossing;
+mod guards;
 mod modal;
-mod modal_state;
-mod motion;
-mod nilpotent;
-mod nudge;
-mod point;
-mod quotient;
-mod reach;
-mod residue;
-mod row;
+mod model;
 mod run;
-mod search;
-mod series;
-mod settle;
 mod solver;
-mod starts;
-mod structural;
-mod structure;
-mod system;
-mod taylor;
-mod track;
-mod vector;
+mod zeros;
 
-pub use clock::Time;
+pub use arithmetic::clock::Time;
 pub use dashu_ratio::RBig as Rational;
-pub use error::SystemError;
-pub use event::{Ending, Errors, Event, What};
-pub use file::SystemFile;
-pub use run::Run;
-pub use solver::{Solver, Unprepared};
-pub use system::{
+pub use guards::track::SearchWork;
+pub use model::error::SystemError;
+pub use model::file::SystemFile;
+pub use model::system::{
     Direction, Forcing, LARGEST_DIMENSION, Mode, Row, StartPoint, Successor, System, TROUBLE,
     Until, Watch,
 };
-pub use track::SearchWork;
+pub use run::Run;
+pub use solver::event::{Ending, Errors, Event, What};
+pub use solver::{Solver, Unprepared};

@@ -1,6 +1,6 @@
 //! Matrices of wide numbers, as rows.
 
-use super::real::BigReal;
+use crate::affine::arithmetic::real::BigReal;
 
 pub type BigMatrix = Vec<Vec<BigReal>>;
 

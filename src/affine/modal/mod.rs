@@ -4,19 +4,23 @@
 //! blocks of X exp(B t) W z. Eigenvalues that are so close to each other that their
 //! eigenvectors nearly coincide stay together in one block. This is done once a mode, in numbers of
 //! several hundred bits.
+//!
+//! [`polynomial`] finds the eigenvalues, and this file makes blocks of them, with the products,
+//! inverses and null spaces of [`matrix`]. [`quasi_triangular`] chooses the co-ordinates of
+//! eigenvalues that stay together. Read this file first.
 
-mod flag;
 mod matrix;
 mod polynomial;
-mod real;
+mod quasi_triangular;
 
 pub(super) use self::matrix::row_times;
 use self::matrix::{
     BigMatrix, identity, inverse, largest, null_space, product, shifted, transposed,
 };
 use self::polynomial::{Eigenvalue, eigenvalues};
-pub(super) use self::real::BigReal;
-use super::system::Row;
+use self::quasi_triangular::triangular;
+use crate::affine::arithmetic::real::BigReal;
+use crate::affine::model::system::Row;
 use dashu_ratio::RBig;
 
 /// Eigenvalues stay together if their distance is below this share of the larger one: the
@@ -218,7 +222,7 @@ fn block(matrix: &BigMatrix, cluster: &[Eigenvalue], time_scale: f64) -> Option<
     let block = Block { kind: Kind::Cluster, columns, rows, matrix: inner, off };
     let block = named(block, cluster);
     let of_several = matches!(block.kind, Kind::Cluster).then_some(&block);
-    Some(of_several.and_then(|it| flag::triangular(it, cluster, time_scale)).unwrap_or(block))
+    Some(of_several.and_then(|it| triangular(it, cluster, time_scale)).unwrap_or(block))
 }
 
 /// What rounding may have made of a zero of a block's matrix W M X at most, from how far W M is off

@@ -1,8 +1,8 @@
 //! The characteristic polynomial with exact coefficients, its factors of equal multiplicity, and
 //! their roots.
 
-use super::real::{BITS, BigComplex, BigReal};
-use crate::affine::system::Row;
+use crate::affine::arithmetic::real::{BITS, BigComplex, BigReal};
+use crate::affine::model::system::Row;
 use dashu_ratio::RBig;
 
 /// Coefficients, lowest first; the last is not zero.

@@ -1,17 +1,17 @@
 //! How a run begins: at a start, with the errors that the start has.
 
 use super::Run;
-use crate::affine::clock::Time;
-use crate::affine::enclosure::Enclosure;
-use crate::affine::event::{Event, What};
-use crate::affine::modal::BigReal;
-use crate::affine::point::{Ends, GuardedSegment};
+use super::enclosure::Enclosure;
+use crate::affine::arithmetic::clock::Time;
+use crate::affine::arithmetic::real::BigReal;
+use crate::affine::arithmetic::vector::{Vector, rounded, unit};
+use crate::affine::first_crossing::taylor::Misses;
+use crate::affine::guards::point::{Ends, GuardedSegment};
+use crate::affine::guards::track::SearchWork;
+use crate::affine::model::system::{LARGEST_DIMENSION, StartPoint};
 use crate::affine::solver::Solver;
-use crate::affine::system::{LARGEST_DIMENSION, StartPoint};
-use crate::affine::taylor::Misses;
-use crate::affine::track::SearchWork;
-use crate::affine::vector::{Vector, rounded, unit};
-use crate::number::Number;
+use crate::affine::solver::event::{Event, What};
+use crate::numeric::number::Number;
 use std::collections::VecDeque;
 
 impl<T: Number> Solver<T> {

@@ -1,13 +1,13 @@
 //! The guards that a search has found crossed: watched events, and the errors at the crossing.
 
 use super::Run;
-use crate::affine::clock::Time;
-use crate::affine::enclosure::{EnclosedCrossing, Enclosure, LAST_WORD, roundings};
-use crate::affine::event::{Ending, What};
-use crate::affine::structure::Firing;
-use crate::affine::system::Direction;
-use crate::affine::vector::{Vector, unit};
-use crate::number::Number;
+use super::enclosure::{EnclosedCrossing, Enclosure, LAST_WORD, roundings};
+use crate::affine::arithmetic::clock::Time;
+use crate::affine::arithmetic::vector::{Vector, unit};
+use crate::affine::model::system::Direction;
+use crate::affine::solver::event::{Ending, What};
+use crate::affine::zeros::graph::Firing;
+use crate::numeric::number::Number;
 
 impl<T: Number> Run<'_, T> {
     /// The events whose guards cross within what rounding may do, so that it is open which is the

@@ -1,41 +1,49 @@
 //! A run: segments joined at their events, by the rules of docs/SYSTEM_FORMAT.md.
+//!
+//! [`begin`] makes a run of a start. This file enters each segment and asks for its first crossing;
+//! [`crossed`] says which events the crossed guards are, and [`transition`] resets the state and
+//! picks the successor. [`accumulation`] encloses where impacts accumulate, and [`enclosure`]
+//! carries the errors along in a run that follows them. Read this file first, then `crossed` and
+//! `transition`.
 
+mod accumulation;
 mod begin;
 mod crossed;
+mod enclosure;
 mod transition;
 
-use crate::affine::clock::Time;
-use crate::affine::enclosure::{Enclosure, roundings};
-use crate::affine::event::{Ending, Errors, Event, What};
-use crate::affine::known::Loan;
-use crate::affine::point::{Ends, GuardedSegment, Passed};
-use crate::affine::search::Found;
+use crate::affine::arithmetic::clock::Time;
+use crate::affine::arithmetic::vector::{Vector, is_told, twice_summed, unit};
+use crate::affine::first_crossing::search::Found;
+use crate::affine::first_crossing::taylor::Misses;
+use crate::affine::guards::point::{Ends, GuardedSegment, Passed};
+use crate::affine::guards::track::{SearchWork, Track};
+use crate::affine::solver::event::{Ending, Errors, Event, What};
+use crate::affine::solver::pool::Loan;
 use crate::affine::solver::{Solver, SolverMode};
-use crate::affine::structure::Firing;
-use crate::affine::taylor::Misses;
-use crate::affine::track::{SearchWork, Track};
-use crate::affine::vector::{Vector, is_told, twice_summed, unit};
-use crate::number::Number;
+use crate::affine::zeros::graph::Firing;
+use crate::numeric::number::Number;
+use enclosure::{Enclosure, roundings};
 use std::collections::VecDeque;
 
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
 pub struct Run<'a, T> {
-    pub(in crate::affine) solver: &'a Solver<T>,
-    pub(in crate::affine) structure: Loan<'a, T>,
+    solver: &'a Solver<T>,
+    structure: Loan<'a, T>,
     work: SearchWork,
     horizon: T,
-    pub(in crate::affine) node: usize,
+    node: usize,
     /// The time at which the segment was entered, and the state there.
     entered: Time<T>,
     state: Vector<T>,
     /// Each guard, with the place from which its search goes on.
     tracks: Vec<Track>,
     ends: Ends<T>,
-    pub(in crate::affine) segment: GuardedSegment<'a, T>,
+    segment: GuardedSegment<'a, T>,
     /// How the search by Taylor polynomials fares in each mode.
     misses: Vec<Misses>,
     /// The coefficient of restitution of an impact, from its fastest occurrence.
-    pub(in crate::affine) restitution: Option<Restitution<T>>,
+    restitution: Option<Restitution<T>>,
     /// Guards that fire at the instant of entry.
     at_entry: u64,
     /// The mode and the guards of the last crossing whose order rounding left open.
@@ -46,7 +54,7 @@ pub struct Run<'a, T> {
     decided: usize,
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
-    pub(in crate::affine) enclosure: Option<Enclosure>,
+    enclosure: Option<Enclosure>,
     /// The start, with the errors that it has before the rounding of its modal co-ordinates.
     start: Event<T>,
     /// The event that was given out last, or the start.
@@ -55,7 +63,7 @@ pub struct Run<'a, T> {
 
 /// The quotient of the rates after and before an impact, from its fastest occurrence.
 #[derive(Clone, Copy, Debug)]
-pub(in crate::affine) struct Restitution<T> {
+struct Restitution<T> {
     pub node: usize,
     pub until: usize,
     pub rate: f64,
@@ -130,7 +138,7 @@ impl<T: Number> Run<'_, T> {
         }
     }
 
-    pub(in crate::affine) fn tracks_live(&self, guard: usize) -> bool {
+    fn tracks_live(&self, guard: usize) -> bool {
         self.tracks[guard].live
     }
 

@@ -1,11 +1,11 @@
 //! From an `until` to the next segment: the reset, the successor, and what ends a run there.
 
 use super::Run;
-use crate::affine::clock::Time;
-use crate::affine::event::{Ending, What};
-use crate::affine::structure::Firing;
-use crate::affine::vector::{Vector, twice_summed, unit};
-use crate::number::Number;
+use crate::affine::arithmetic::clock::Time;
+use crate::affine::arithmetic::vector::{Vector, twice_summed, unit};
+use crate::affine::solver::event::{Ending, What};
+use crate::affine::zeros::graph::Firing;
+use crate::numeric::number::Number;
 
 /// How many events of `until` one instant may have.
 const MOST_AT_ONCE: u32 = 64;

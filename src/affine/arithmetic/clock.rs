@@ -1,0 +1,91 @@
+//! Time, and the angle of the forcing, as a sum of two numbers that is never rounded to one.
+
+use super::real::BigReal;
+use super::vector::{turned, unit};
+use crate::affine::model::system::Forcing;
+use crate::numeric::number::Number;
+use dashu_ratio::RBig;
+
+/// A time in two words of an arithmetic.
+#[derive(Clone, Copy, Debug)]
+pub struct Time<T> {
+    /// The time, rounded.
+    pub high: T,
+    /// What rounding left.
+    pub low: T,
+}
+
+/// The phase of the forcing, theta = omega t + phi, at any time.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock<T> {
+    omega: Time<T>,
+    phi: Time<T>,
+}
+
+impl<T: Number> Time<T> {
+    /// A rational time, rounded to two words.
+    #[must_use]
+    pub fn of(number: &RBig) -> Self {
+        let real = BigReal::of(number);
+        let (high, low) = real.words();
+        if unit::<T>() > 1e-20 {
+            return Self { high: T::exact(high), low: T::exact(low) };
+        }
+        Self { high: T::exact(high) + T::exact(low), low: T::zero() }
+    }
+
+    /// A time later, or earlier.
+    #[must_use]
+    #[inline]
+    pub fn after(&self, elapsed: T) -> Self {
+        let Self { high, low } = sum(self.high, elapsed);
+        sum(high, low + self.low)
+    }
+
+    /// How much later this time is than another: rounded, and what rounding left.
+    #[must_use]
+    #[inline]
+    pub(in crate::affine) fn since(&self, other: &Self) -> Self {
+        self.after(-other.high).after(-other.low)
+    }
+
+    /// The time, rounded to one number.
+    #[must_use]
+    #[inline]
+    pub fn value(&self) -> T {
+        self.high + self.low
+    }
+}
+
+/// A sum and what rounding took from it.
+#[inline]
+fn sum<T: Number>(a: T, b: T) -> Time<T> {
+    let high = a + b;
+    let seen = high - a;
+    Time { high, low: (a - (high - seen)) + (b - seen) }
+}
+
+impl<T: Number> Clock<T> {
+    pub fn of(forcing: &Forcing) -> Self {
+        Self { omega: Time::of(&forcing.omega), phi: Time::of(&forcing.phi) }
+    }
+
+    /// How far the arithmetic may have theta from the truth at a time: omega, times and their sums
+    /// are rounded to 106 bits, whether those are one number or two.
+    #[inline]
+    pub fn rounding(&self, time: &Time<T>) -> f64 {
+        const UNIT: f64 = f64::EPSILON * f64::EPSILON;
+        UNIT * ((self.omega.high * time.high).to_f64().abs() + self.phi.high.to_f64().abs())
+    }
+
+    /// Sine and cosine of theta at a time.
+    #[inline]
+    pub fn sin_cos(&self, time: &Time<T>) -> (T, T) {
+        let product = self.omega.high * time.high;
+        let rest = self.omega.high.product_error(time.high)
+            + (self.omega.high * time.low + self.omega.low * time.high);
+        let Time { high, low } = sum(product, self.phi.high);
+        let low = low + (rest + self.phi.low);
+        turned(high.sin_cos(), low)
+    }
+}

@@ -1,0 +1,328 @@
+//! The closed form of a mode: z(t) = exp(M t) z, block by block.
+
+use super::bound::Later;
+use super::modal_state::ModalState;
+use super::motion::BlockMotion;
+use crate::affine::arithmetic::real::BigReal;
+use crate::affine::arithmetic::vector::{
+    UNDERFLOW, Vector, add_product, euclidean, norm, unit, vector,
+};
+use crate::affine::modal;
+use crate::affine::model::system::LARGEST_DIMENSION;
+use crate::numeric::number::Number;
+use std::ops::Range;
+
+/// A mode's closed form.
+#[derive(Clone, Debug)]
+pub struct ModeFlow<T> {
+    pub dimension: usize,
+    pub blocks: Vec<FlowBlock<T>>,
+    /// How long a bound may be asked for: a growing block grows by at most e.
+    pub longest: f64,
+    /// How fast the co-ordinates of any block move at most ([`modal::Block::speed`]).
+    pub speed: f64,
+    /// The matrix W of all blocks, by columns.
+    to_modal: Vec<Vector<T>>,
+    /// The matrix W of all blocks, rounded to f64, by columns; and the sizes of its entries.
+    to_modal_rounded: Vec<Vector<f64>>,
+    to_modal_sizes: Vec<Vector<f64>>,
+    /// The first co-ordinates of pairs that turn.
+    turning: Vec<usize>,
+    /// The matrix X of all blocks, by columns.
+    from_modal: Vec<Vector<T>>,
+    /// How far the entries of X and of W may be off, by columns.
+    off: [Vec<Vector<f64>>; 2],
+}
+
+/// A block of modal co-ordinates that move by themselves.
+#[derive(Clone, Debug)]
+pub struct FlowBlock<T> {
+    pub at: usize,
+    pub size: usize,
+    /// How fast its co-ordinates move at most ([`modal::Block::speed`]).
+    speed: f64,
+    motion: BlockMotion<T>,
+    /// What is known of it at all later times.
+    pub later: Later,
+}
+
+impl<T: Number> ModeFlow<T> {
+    /// A mode's closed form from its blocks.
+    pub fn of(blocks: &[modal::Block]) -> Self {
+        let dimension = blocks.iter().map(|it| it.matrix.len()).sum();
+        let mut flow = Self {
+            dimension,
+            blocks: Vec::new(),
+            longest: f64::INFINITY,
+            speed: 0.0,
+            to_modal: Vec::new(),
+            to_modal_rounded: Vec::new(),
+            to_modal_sizes: Vec::new(),
+            turning: Vec::new(),
+            from_modal: Vec::new(),
+            off: [Vec::new(), Vec::new()],
+        };
+        let (mut to_modal, mut off) = (Vec::new(), Vec::new());
+        for block in blocks {
+            flow.from_modal.extend(transposed(&block.columns));
+            let at = to_modal.len();
+            to_modal.extend(block.rows.iter().cloned());
+            let [columns, rows] = &block.off;
+            flow.off[0].extend(by_columns(columns));
+            off.extend(rows.iter().cloned());
+            flow.blocks.push(FlowBlock::of(block, at));
+        }
+        let rate =
+            |block: &FlowBlock<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
+        flow.speed = flow.blocks.iter().map(|it| it.speed).fold(0.0, f64::max);
+        flow.longest = 1.0 / flow.blocks.iter().map(rate).fold(0.0, f64::max);
+        flow.to_modal = transposed(&to_modal);
+        flow.off[1] = by_columns(&off);
+        let rounded = |row: &Vector<T>| row.map(Number::to_f64);
+        flow.to_modal_rounded = flow.to_modal.iter().map(rounded).collect();
+        let sizes = |row: &Vector<f64>| row.map(f64::abs);
+        flow.to_modal_sizes = flow.to_modal_rounded.iter().map(sizes).collect();
+        let turns = |it: &&FlowBlock<T>| matches!(it.motion, BlockMotion::Pair { .. });
+        flow.turning = flow.blocks.iter().filter(turns).map(|it| it.at).collect();
+        flow
+    }
+
+    /// The modal co-ordinates of a state alone.
+    #[inline]
+    pub fn co_ordinates(&self, z: &Vector<T>) -> Vector<T> {
+        times(&self.to_modal, z)
+    }
+
+    /// The modal co-ordinates of a state.
+    #[inline]
+    pub fn modal(&self, z: &Vector<T>) -> ModalState<T> {
+        let mut modal = ModalState::default();
+        self.take(&mut modal, z);
+        modal
+    }
+
+    /// Makes a place hold the modal co-ordinates of a state.
+    #[inline]
+    pub fn take(&self, modal: &mut ModalState<T>, z: &Vector<T>) {
+        match self.dimension {
+            0..=4 => self.take_in::<4>(modal, z),
+            5..=8 => self.take_in::<8>(modal, z),
+            _ => self.take_in::<LARGEST_DIMENSION>(modal, z),
+        }
+        for at in &self.turning {
+            let norm = modal.sizes[*at] + modal.sizes[at + 1];
+            (modal.sizes[*at], modal.sizes[at + 1]) = (norm, norm);
+        }
+    }
+
+    #[inline(always)]
+    fn take_in<const ROWS: usize>(&self, modal: &mut ModalState<T>, z: &Vector<T>) {
+        let (mut sums, mut sizes) = ([T::zero(); ROWS], [0.0; ROWS]);
+        for ((column, own), entry) in self.to_modal.iter().zip(&self.to_modal_sizes).zip(z) {
+            add_product(&mut sums, column, *entry);
+            add_product(&mut sizes, own, entry.to_f64().abs());
+        }
+        modal.y[..ROWS].copy_from_slice(&sums);
+        modal.sizes[..ROWS].copy_from_slice(&sizes);
+    }
+
+    /// Modal co-ordinates of which no rounding is counted so far.
+    #[inline]
+    pub fn exact(&self, y: &Vector<T>) -> ModalState<T> {
+        let mut modal = ModalState { y: *y, sizes: y.map(|it| it.to_f64().abs()) };
+        for at in &self.turning {
+            let norm = euclidean(modal.sizes[*at..at + 2].iter().copied());
+            modal.sizes[*at..at + 2].fill(norm);
+        }
+        modal
+    }
+
+    /// Modal co-ordinates of which no rounding is counted so far but that of the blocks that are
+    /// polynomials of the time.
+    pub fn polynomial_sizes(&self, modal: &ModalState<T>) -> ModalState<T> {
+        let mut own = self.exact(&modal.y);
+        for block in self.blocks.iter().filter(|it| it.later == Later::Polynomial) {
+            own.sizes[block.range()].copy_from_slice(&modal.sizes[block.range()]);
+        }
+        own
+    }
+
+    /// The state with these modal co-ordinates.
+    #[inline]
+    pub fn state(&self, y: &Vector<T>) -> Vector<T> {
+        times(&self.from_modal, y)
+    }
+
+    /// The sizes of what each entry of the state is summed from, where the modal co-ordinates have
+    /// sizes.
+    pub fn sizes(&self, y: &Vector<f64>) -> [f64; LARGEST_DIMENSION] {
+        let mut sizes = [0.0; LARGEST_DIMENSION];
+        for (column, entry) in self.from_modal.iter().zip(y) {
+            let terms = column.iter().map(|it| (it.to_f64() * entry).abs());
+            sizes.iter_mut().zip(terms).for_each(|(size, term)| *size += term);
+        }
+        sizes
+    }
+
+    /// How far each entry of the state may be off because the matrix X is, where the modal
+    /// co-ordinates have sizes.
+    pub fn state_off(&self, y: &Vector<f64>) -> Vector<f64> {
+        times(&self.off[0], y)
+    }
+
+    /// What rounding may do to a state where it is taken to modal co-ordinates: the states that
+    /// belong to the error of each of them.
+    pub fn entry_roundings(&self, z: &Vector<T>, unit: f64) -> Vec<Vector<f64>> {
+        let margin = (self.dimension + 2) as f64 * unit;
+        let error = |(n, column): (usize, &Vector<T>)| {
+            let terms = self.to_modal.iter().zip(z).map(|(it, z)| (it[n].to_f64(), z.to_f64()));
+            let size: f64 = terms.map(|(factor, entry)| (factor * entry).abs()).sum();
+            let off = self.off[1].iter().zip(z).map(|(it, z)| it[n] * z.to_f64().abs());
+            let error = margin * size + off.sum::<f64>();
+            column.map(|entry| error * entry.to_f64())
+        };
+        self.from_modal.iter().enumerate().map(error).collect()
+    }
+
+    /// The modal co-ordinates a time later.
+    #[inline]
+    pub fn at(&self, modal: &ModalState<T>, time: T) -> ModalState<T> {
+        let mut later = *modal;
+        self.advance(&mut later, time, u16::MAX);
+        later
+    }
+
+    /// Advances the co-ordinates of these blocks.
+    #[inline]
+    pub fn advance(&self, ModalState { y, sizes }: &mut ModalState<T>, time: T, blocks: u16) {
+        for (n, block) in self.blocks.iter().enumerate() {
+            if blocks >> n & 1 == 1 {
+                block.motion.advance(block.range(), y, sizes, time);
+            }
+        }
+    }
+
+    /// The state a short time after these modal co-ordinates, by one of their derivatives or two
+    /// where the third is less than rounding.
+    ///
+    /// Blocks that move so fast that they are others by then stay as they are: the time is below
+    /// the rounding of the time at which they are known.
+    #[inline]
+    pub fn state_shortly_after(&self, modal: &ModalState<T>, time: T) -> Vector<T> {
+        let mut later = *modal;
+        for (n, block) in self.blocks.iter().enumerate() {
+            let turn = (block.speed * time.to_f64()).abs();
+            let derivatives = match [turn * turn, turn * turn * turn] {
+                [square, _] if square <= 0.25 * unit::<T>() => 1,
+                [_, cube] if cube <= 0.25 * unit::<T>() => 2,
+                _ if turn <= 1.0 => {
+                    self.advance(&mut later, time, 1 << n);
+                    continue;
+                }
+                _ => continue,
+            };
+            block.motion.nudge(&mut later.y[block.range()], derivatives, time);
+        }
+        self.state(&later.y)
+    }
+
+    /// The norms of each block's co-ordinates.
+    #[inline]
+    pub fn norms<U: Number>(&self, y: &Vector<U>) -> Vector<f64> {
+        let mut norms = [0.0; LARGEST_DIMENSION];
+        self.measure(&mut norms, y);
+        norms
+    }
+
+    /// Makes a place hold the norms of each block's co-ordinates; beyond the blocks it stays.
+    #[inline]
+    pub fn measure<U: Number>(&self, norms: &mut Vector<f64>, y: &Vector<U>) {
+        for (place, block) in norms.iter_mut().zip(&self.blocks) {
+            *place = norm(&y[block.range()]);
+        }
+    }
+
+    /// Norms of errors of each block's co-ordinates, a time later at most, but for what
+    /// [`ModalRow::bound`](crate::affine::guards::row::ModalRow::bound) adds.
+    pub fn decayed(&self, norms: &Vector<f64>, time: f64) -> Vector<f64> {
+        let mut later = *norms;
+        for (norm, block) in later.iter_mut().zip(&self.blocks) {
+            *norm *= block.motion.decay(time);
+        }
+        later
+    }
+
+    /// What underflow may do to each block's modal co-ordinates at most: to zeros nothing.
+    pub fn underflow(&self, y: &Vector<T>) -> Vector<f64> {
+        let lost = |norm: f64| if norm > 0.0 { 4.0 * UNDERFLOW * (1.0 + norm) } else { 0.0 };
+        self.norms(y).map(lost)
+    }
+
+    /// The modal co-ordinates of an error, in f64.
+    pub fn modal_rounded(&self, z: &Vector<f64>) -> Vector<f64> {
+        times(&self.to_modal_rounded, z)
+    }
+
+    /// The columns of exp(M t), in f64.
+    pub fn transition(&self, time: T) -> Vec<Vector<f64>> {
+        let column = |n: usize| {
+            let mut unit = [T::zero(); LARGEST_DIMENSION];
+            unit[n] = T::one();
+            self.state(&self.at(&self.modal(&unit), time).y).map(Number::to_f64)
+        };
+        (0..self.dimension).map(column).collect()
+    }
+}
+
+impl<T: Number> FlowBlock<T> {
+    /// Its co-ordinates.
+    #[inline]
+    pub fn range(&self) -> Range<usize> {
+        self.at..self.at + self.size
+    }
+
+    fn of(block: &modal::Block, at: usize) -> Self {
+        let motion = BlockMotion::of(block, at);
+        let (size, later) = (block.matrix.len(), Later::of(block));
+        Self { at, size, speed: block.speed(), motion, later }
+    }
+}
+
+/// The product of a matrix, given by its columns, with a vector; entries beyond its rows are zero.
+#[inline]
+fn times<T: Number>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
+    match columns.len() {
+        0..=4 => times_in::<T, 4>(columns, vector),
+        5..=8 => times_in::<T, 8>(columns, vector),
+        _ => times_in::<T, LARGEST_DIMENSION>(columns, vector),
+    }
+}
+
+/// The first `ROWS` entries of the product of a matrix, by columns, and a vector.
+#[inline]
+fn times_in<T: Number, const ROWS: usize>(columns: &[Vector<T>], vector: &Vector<T>) -> Vector<T> {
+    let mut sums = [T::zero(); ROWS];
+    for (n, column) in columns.iter().enumerate() {
+        let factor = vector[n];
+        add_product(&mut sums, column, factor);
+    }
+    let mut product = [T::zero(); LARGEST_DIMENSION];
+    product[..ROWS].copy_from_slice(&sums);
+    product
+}
+
+/// A matrix of f64 by columns.
+fn by_columns(matrix: &[Vec<f64>]) -> Vec<Vector<f64>> {
+    let columns = matrix.first().map_or(0, Vec::len);
+    let mut all = vec![[0.0; LARGEST_DIMENSION]; columns];
+    for (n, row) in matrix.iter().enumerate() {
+        all.iter_mut().zip(row).for_each(|(column, entry)| column[n] = *entry);
+    }
+    all
+}
+
+fn transposed<T: Number>(matrix: &[Vec<BigReal>]) -> Vec<Vector<T>> {
+    let columns = matrix.first().map_or(0, Vec::len);
+    let column = |n: usize| vector(&matrix.iter().map(|row| row[n].clone()).collect::<Vec<_>>());
+    (0..columns).map(column).collect()
+}

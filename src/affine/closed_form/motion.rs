@@ -1,0 +1,333 @@
+//! How the modal co-ordinates of a block move: exp(B t) y.
+
+use super::nilpotent::{Chain, nilpotent};
+use crate::affine::arithmetic::real::BigReal;
+use crate::affine::arithmetic::vector::{Vector, rounded, turned, unit, vector};
+use crate::affine::modal::{self, Kind};
+use crate::affine::model::system::LARGEST_DIMENSION;
+use crate::numeric::number::Number;
+use std::ops::Range;
+
+/// A number in two words of an arithmetic.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct SplitNumber<T> {
+    pub high: T,
+    low: T,
+}
+
+#[derive(Clone, Debug)]
+pub(super) enum BlockMotion<T> {
+    /// The block stands still: exp(B t) = 1.
+    Still,
+    Real {
+        rate: SplitNumber<T>,
+    },
+    Pair {
+        rate: Option<SplitNumber<T>>,
+        frequency: SplitNumber<T>,
+    },
+    /// The matrix is that of the block less its rate, and has so many powers that are not zero.
+    Nilpotent {
+        rate: Option<SplitNumber<T>>,
+        matrix: Vec<Vector<T>>,
+        powers: usize,
+        /// The entries of the matrix that are not zero, where its rows have an order.
+        chain: Option<Chain<T>>,
+    },
+    Cluster(Box<Powers<T>>),
+}
+
+/// exp(B t) by tables: t = step (d_0 + 16 d_1 + ...) + rest.
+#[derive(Clone, Debug)]
+pub(super) struct Powers<T> {
+    step: f64,
+    /// exp(B step 16^j d) for d from 1 to 15.
+    tables: Vec<Vec<Vec<Vector<T>>>>,
+    pub matrix: Vec<Vector<T>>,
+}
+
+fn words<T: Number>(value: &BigReal) -> SplitNumber<T> {
+    if unit::<T>() > 1e-20 {
+        // Not the rounded sum of the two, which may be the next number: a half ulp is a tie.
+        let (high, low) = value.words();
+        return SplitNumber { high: T::exact(high), low: T::exact(low) };
+    }
+    // What is left beyond an arithmetic of two words is not resolved by it either.
+    SplitNumber { high: rounded(value), low: T::zero() }
+}
+
+fn nonzero<T: Number>(value: &BigReal) -> Option<SplitNumber<T>> {
+    (!value.is_zero()).then(|| words(value))
+}
+
+impl<T: Number> BlockMotion<T> {
+    /// The motion of a block whose co-ordinates begin at a place of the vector.
+    pub fn of(block: &modal::Block, at: usize) -> Self {
+        match &block.kind {
+            Kind::Real(rate) if rate.is_zero() => Self::Still,
+            Kind::Real(rate) => Self::Real { rate: words(rate) },
+            Kind::Pair(rate, frequency) => {
+                Self::Pair { rate: nonzero(rate), frequency: words(frequency) }
+            }
+            Kind::Nilpotent(rate) => {
+                let (matrix, index) = nilpotent(block, rate);
+                if index <= 1 && rate.is_zero() {
+                    return Self::Still;
+                }
+                let (rate, chain) = (nonzero(rate), Chain::of(&matrix, at));
+                let matrix = matrix.iter().map(|row| vector(row)).collect();
+                Self::Nilpotent { rate, matrix, powers: index - 1, chain }
+            }
+            Kind::Cluster => Self::Cluster(Box::new(Powers::of(&block.matrix))),
+        }
+    }
+
+    /// By what co-ordinates that decay, and only turn beside that, have become smaller a time later
+    /// at least; 1 for others.
+    pub fn decay(&self, time: f64) -> f64 {
+        /// Room for the rounding of the exponential and of its exponent.
+        const OUTWARD: f64 = 1.0 + 1e-9;
+        match self {
+            Self::Real { rate } | Self::Pair { rate: Some(rate), .. } => {
+                let exponent = rate.high.to_f64() * time;
+                let rounded = exponent * (1.0 - 1e-12);
+                if exponent < 0.0 { libm::exp(rounded) * OUTWARD } else { 1.0 }
+            }
+            _ => 1.0,
+        }
+    }
+
+    /// The co-ordinates a time later, and the sizes of what each is summed from, in units of which
+    /// it rounds by a few: terms may cancel, so the co-ordinate itself can be much smaller. Both
+    /// sizes of a pair are at least its norm.
+    #[inline]
+    pub fn advance(&self, own: Range<usize>, y: &mut Vector<T>, sizes: &mut Vector<f64>, time: T) {
+        match self {
+            Self::Still => {}
+            Self::Real { rate } => {
+                let at = own.start;
+                let factor = exponential(*rate, time);
+                y[at] = y[at] * factor;
+                sizes[at] *= raised(factor, rate, time);
+            }
+            Self::Pair { rate, frequency } => {
+                let [at, next] = [own.start, own.start + 1];
+                let (sin, cos) = circular(*frequency, time);
+                let (first, second) = (y[at], y[next]);
+                y[at] = cos * first + sin * second;
+                y[next] = cos * second - sin * first;
+                let phase = raised(T::one(), frequency, time);
+                sizes[at] *= phase;
+                sizes[next] *= phase;
+                if let Some(rate) = rate {
+                    let factor = exponential(*rate, time);
+                    (y[at], y[next]) = (y[at] * factor, y[next] * factor);
+                    let factor = raised(factor, rate, time);
+                    sizes[at] *= factor;
+                    sizes[next] *= factor;
+                }
+            }
+            Self::Nilpotent { rate, matrix, powers, chain } => {
+                match chain {
+                    Some(chain) => {
+                        chain.advance(*powers, y, sizes, time);
+                        sizes[own.clone()].iter_mut().for_each(|size| *size *= TWICE);
+                    }
+                    None => {
+                        let (y, sizes) = (&mut y[own.clone()], &mut sizes[own.clone()]);
+                        taylor(matrix, *powers, y, sizes, time);
+                    }
+                }
+                if rate.is_some() {
+                    decay(*rate, time, &mut y[own.clone()], &mut sizes[own]);
+                }
+            }
+            Self::Cluster(powers) => powers.advance(&mut y[own.clone()], &mut sizes[own], time),
+        }
+    }
+}
+
+/// By what the sizes of Horner's sums are raised, because five roundings a power are more than
+/// those of a sum.
+const TWICE: f64 = 2.0;
+
+/// `y = exp(B time) y` by so many terms of the Taylor series, in Horner's scheme, and the sizes of
+/// what that sums, raised.
+#[inline]
+fn taylor<T: Number>(matrix: &[Vector<T>], terms: usize, y: &mut [T], sizes: &mut [f64], time: T) {
+    match y.len() {
+        2 => taylor_in::<T, 2>(matrix, terms, y, sizes, time),
+        3 => taylor_in::<T, 3>(matrix, terms, y, sizes, time),
+        4 => taylor_in::<T, 4>(matrix, terms, y, sizes, time),
+        _ => taylor_in::<T, LARGEST_DIMENSION>(matrix, terms, y, sizes, time),
+    }
+}
+
+/// The sums of [`taylor`] in vectors of a length that the compiler knows, whose entries it keeps in
+/// registers.
+#[inline(always)]
+fn taylor_in<T: Number, const LENGTH: usize>(
+    matrix: &[Vector<T>],
+    terms: usize,
+    y: &mut [T],
+    sizes: &mut [f64],
+    time: T,
+) {
+    let count = y.len();
+    let (mut start, mut sizes_at_start) = ([T::zero(); LENGTH], [0.0; LENGTH]);
+    start[..count].copy_from_slice(y);
+    sizes_at_start[..count].copy_from_slice(sizes);
+    let (mut now, mut sizes_now) = (start, sizes_at_start);
+    for k in (1..=terms).rev() {
+        let (last, sizes_last) = (now, sizes_now);
+        let factor = if k == 1 { time } else { time / T::exact(k as f64) };
+        let size_of_factor = factor.to_f64().abs();
+        for n in 0..count {
+            let row = &matrix[n];
+            let (mut sum, mut size) = (row[0] * last[0], row[0].to_f64().abs() * sizes_last[0]);
+            for k in 1..count {
+                sum = sum + row[k] * last[k];
+                size += row[k].to_f64().abs() * sizes_last[k];
+            }
+            now[n] = start[n] + factor * sum;
+            sizes_now[n] = sizes_at_start[n] + size_of_factor * size;
+        }
+    }
+    y.copy_from_slice(&now[..count]);
+    sizes.iter_mut().zip(sizes_now).for_each(|(size, now)| *size = TWICE * now);
+}
+
+#[inline]
+fn copied<T: Number>(y: &[T]) -> Vector<T> {
+    let mut copy = [T::zero(); LARGEST_DIMENSION];
+    copy[..y.len()].copy_from_slice(y);
+    copy
+}
+
+#[inline(always)]
+fn decay<T: Number>(rate: Option<SplitNumber<T>>, time: T, y: &mut [T], sizes: &mut [f64]) {
+    let Some(rate) = rate else { return };
+    let factor = exponential(rate, time);
+    y.iter_mut().for_each(|entry| *entry = *entry * factor);
+    let factor = raised(factor, &rate, time);
+    sizes.iter_mut().for_each(|size| *size *= factor);
+}
+
+/// A product with a rate, and what rounding took from it.
+#[inline]
+fn product<T: Number>(rate: SplitNumber<T>, time: T) -> (T, T) {
+    let high = rate.high * time;
+    (high, rate.high.product_error(time) + rate.low * time)
+}
+
+#[inline]
+fn exponential<T: Number>(rate: SplitNumber<T>, time: T) -> T {
+    let (high, low) = product(rate, time);
+    let value = high.exp();
+    value + value * low
+}
+
+#[inline]
+fn circular<T: Number>(frequency: SplitNumber<T>, time: T) -> (T, T) {
+    let (high, low) = product(frequency, time);
+    turned(high.sin_cos(), low)
+}
+
+/// A sixth, rounded up, of how far rounding may have a phase off in units of it: a frequency is
+/// rounded to 2^-106, its product with a time by four times that. Sizes are counted in at least six
+/// roundings where they are used.
+const PHASE: f64 = 0.25 * f64::EPSILON * f64::EPSILON;
+
+/// A factor, raised by what the rounding of its exponent or angle, a rate times a time, adds in
+/// units of the arithmetic.
+#[inline]
+fn raised<T: Number>(factor: T, rate: &SplitNumber<T>, time: T) -> f64 {
+    factor.to_f64() * (1.0 + PHASE / unit::<T>() * (rate.high * time).to_f64().abs())
+}
+
+impl<T: Number> Powers<T> {
+    /// Tables up to 16^13 steps: f64 holds each smaller number of them.
+    const LEVELS: usize = 13;
+    const MOST_STEPS: f64 = (1_u64 << (4 * Self::LEVELS)) as f64;
+
+    fn of(matrix: &[Vec<BigReal>]) -> Self {
+        let size = modal::norm(matrix);
+        let exponent = if size > 0.0 { -libm::ceil(libm::log2(size)) - 1.0 } else { 0.0 };
+        let step = libm::exp2(exponent);
+        let mut tables = Vec::new();
+        let mut first = modal::exponential(matrix, exponent as isize);
+        for _ in 0..Self::LEVELS {
+            let multiples = modal::multiples(&first, 16);
+            let (last, table) = match multiples.split_last() {
+                Some(split) => split,
+                None => break,
+            };
+            let rounded = |it: &Vec<Vec<BigReal>>| it.iter().map(|row| vector(row)).collect();
+            tables.push(table.iter().map(rounded).collect());
+            first = last.clone();
+        }
+        Self { step, tables, matrix: matrix.iter().map(|row| vector(row)).collect() }
+    }
+
+    /// The matrices of the tables whose product is exp(B t), but for the rest of the time.
+    #[inline]
+    fn factors(&self, steps: f64) -> impl Iterator<Item = &Vec<Vector<T>>> {
+        let mut digits = steps as u64;
+        let chosen = self.tables.iter().map_while(move |table| {
+            let digit = (digits > 0).then_some((digits & 15) as usize)?;
+            digits >>= 4;
+            Some((table, digit))
+        });
+        chosen.filter_map(|(table, digit)| Some(&table[digit.checked_sub(1)?]))
+    }
+
+    /// How many steps of the tables a time has.
+    #[inline]
+    fn steps(&self, time: f64) -> f64 {
+        libm::floor(time / self.step).max(0.0)
+    }
+
+    /// The co-ordinates a time later, and the sizes of what they are summed from, once for each
+    /// product; not inlined, because its vectors would take other motions' places in registers.
+    #[inline(never)]
+    fn advance(&self, y: &mut [T], sizes: &mut [f64], time: T) {
+        let steps = self.steps(time.to_f64());
+        if steps >= Self::MOST_STEPS {
+            // Nothing is told of so long a time.
+            return y.fill(T::exact(f64::NAN));
+        }
+        let rest = time - T::exact(steps * self.step);
+        let mut products = 1.0;
+        for matrix in self.factors(steps) {
+            products += 1.0;
+            let (last, sizes_last): (Vector<T>, Vector<f64>) = (copied(y), copied(sizes));
+            for (n, row) in matrix.iter().enumerate() {
+                let (mut sum, mut size) = (T::zero(), 0.0);
+                for (k, factor) in row[..y.len()].iter().enumerate() {
+                    sum = sum + *factor * last[k];
+                    size += factor.to_f64().abs() * sizes_last[k];
+                }
+                (y[n], sizes[n]) = (sum, size);
+            }
+        }
+        sizes.iter_mut().for_each(|size| *size *= products);
+        taylor(&self.matrix, self.terms(rest.to_f64()), y, sizes, rest);
+    }
+
+    /// How many terms of the series exp(B rest) the last digit needs: a co-ordinate that is much
+    /// smaller than the others is moved by each of them after at most as many products as there are
+    /// others, and what follows is relative to that.
+    #[inline]
+    fn terms(&self, rest: f64) -> usize {
+        /// Couplings of different sizes.
+        const BELOW: f64 = 1.0 / 4096.0;
+        // |B rest| is at most 1/2 where the rest is a step.
+        let size = 0.5 * (rest / self.step).abs();
+        let (mut terms, mut next) = (0, size);
+        while next > BELOW * unit::<T>() && terms < 2 * T::TERMS {
+            terms += 1;
+            next *= size / (terms + 1) as f64;
+        }
+        terms + self.matrix.len() - 1
+    }
+}

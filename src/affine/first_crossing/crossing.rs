@@ -1,0 +1,207 @@
+//! The first crossing shortly after a point: its proof and its candidate.
+//!
+//! Where a guard rises steadily through zero, bounds of its derivatives prove that it does so once,
+//! between two times. A Taylor polynomial guesses at the time, which `settle.rs` brings to the last
+//! digit.
+
+use crate::affine::guards::point::{GuardedPoint, GuardedSegment, Passed, PerGuard};
+use crate::affine::guards::row::ModalRow;
+use crate::affine::guards::track::{SearchWork, Track, live, outward};
+use crate::numeric::number::Number;
+
+/// The number of Taylor terms that are summed to guess at a crossing, at most.
+const TERMS: usize = 8;
+
+/// A crossing that is proved to be the only one shortly after a point.
+struct Rising<T> {
+    /// The number of the guard.
+    guard: usize,
+    /// When it is, after the point, by a Taylor polynomial.
+    after: T,
+    /// The size of the last step towards the polynomial's root.
+    change: f64,
+    /// How long after the point it is at most.
+    within: f64,
+    /// The guard's rate at the point; half of it is the least that it has before `within`.
+    slope: f64,
+    /// What rounding may do to the time.
+    error: f64,
+}
+
+/// The first crossing of all guards.
+pub(super) struct FirstCrossing<T> {
+    /// When it is, by Taylor polynomials.
+    pub time: T,
+    /// Between which times its first guard is proved to cross.
+    pub between: [T; 2],
+    /// The guards that cross within what rounding may do, as bits.
+    pub guards: u64,
+}
+
+impl<T: Number> GuardedSegment<'_, T> {
+    /// The first crossing shortly after a point, if it is proved to be one. Guards that have
+    /// passed are not looked at before their time.
+    #[inline]
+    pub(super) fn rising(
+        &self,
+        tracks: &[Track],
+        at: &GuardedPoint<T>,
+        passed: &Passed<T>,
+        work: &mut SearchWork,
+    ) -> Option<FirstCrossing<T>> {
+        let mut all: PerGuard<Rising<T>> = PerGuard::new();
+        for (n, track) in live(tracks).filter(|(n, _)| !passed.has(*n, at.time)) {
+            all.extend(self.rises(n, track, at));
+        }
+        let first = all.iter().reduce(|a, b| if b.after < a.after { b } else { a })?;
+        let mut guards = 0;
+        for it in &all {
+            if self.is_tied(at, first, it)? {
+                guards |= 1 << it.guard;
+            }
+        }
+        let end = at.time + T::exact(first.within);
+        let is_open = |n: usize| all.iter().all(|it| it.guard != n) && !passed.has(n, end);
+        for (n, track) in live(tracks).filter(|(n, _)| is_open(*n)) {
+            let excess = self.excess(n, track, at, first.within);
+            let below = excess <= 4.0 * at.slack[n];
+            if !below {
+                return None;
+            }
+            if excess >= -at.slack[n] {
+                work.doubt(n);
+            }
+        }
+        let lowest = all.iter().find(|it| guards & (1 << it.guard) != 0)?;
+        let earliest = at.time - T::exact(4.0 * lowest.error);
+        let between = [earliest, at.time + T::exact(lowest.within)];
+        Some(FirstCrossing { time: at.time + first.after, between, guards })
+    }
+
+    /// Whether a guard crosses together with the first, within what rounding may do. Where
+    /// polynomials hide which is first, nothing is told.
+    #[inline]
+    fn is_tied(&self, at: &GuardedPoint<T>, first: &Rising<T>, other: &Rising<T>) -> Option<bool> {
+        if first.guard == other.guard {
+            return Some(true);
+        }
+        let gap = (other.after - first.after).to_f64();
+        let error = first.error + other.error;
+        let hidden = self.truncation(at, first) + self.truncation(at, other);
+        if gap > error + hidden {
+            return Some(false);
+        }
+        (hidden <= error).then_some(gap <= error)
+    }
+
+    /// What the rest of a guard's Taylor series, and steps that were not taken, may do to the time
+    /// of a crossing.
+    #[inline]
+    fn truncation(&self, at: &GuardedPoint<T>, it: &Rising<T>) -> f64 {
+        let row = &self.rows[it.guard];
+        let terms = terms(row);
+        let next = row.bound(terms, &at.norms, it.within);
+        let rest = (1..=terms).fold(next, |rest, k| rest * it.within / k as f64);
+        it.change + 2.0 * rest / it.slope
+    }
+
+    /// Whether a guard rises through zero once, shortly after a point, and when.
+    #[inline]
+    fn rises(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> Option<Rising<T>> {
+        let orders = outward(&at.orders[n], track);
+        let slack = at.slack[n];
+        let [value, slope, bend, third] = orders.map(Number::to_f64);
+        let rising = slope > 0.0 && value <= 4.0 * slack;
+        if track.zeros > 0 || !rising {
+            return None;
+        }
+        let within = (2.0 * value.abs() + 8.0 * slack) / slope;
+        let fourth = self.rows[n].bound(4, &at.norms, within);
+        let [_, slope_off, bend_off, third_off] = self.order_roundings(n, at);
+        let (bend, third) = (bend.abs() + bend_off, third.abs() + third_off);
+        let change = slope_off + within * (bend + within * (0.5 * third + within * fourth / 6.0));
+        let steadily = change < 0.5 * slope;
+        if !steadily {
+            return None;
+        }
+        let (after, change) = self.root(n, track, at);
+        // Where terms of the slope cancel, their rounding is more than that of the value.
+        let moved = within * (slope_off + within * (0.5 * bend_off + within * third_off / 6.0));
+        let (is_told, error) = (after.to_f64().is_finite(), 2.0 * (slack + moved) / slope);
+        is_told.then_some(Rising { guard: n, after, change, within, slope, error })
+    }
+
+    /// The time to a root of a guard's Taylor polynomial that is near a point, and the last step
+    /// towards it. Where the polynomial is not the guard's, it may be far from a crossing.
+    #[inline]
+    pub(super) fn root(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> (T, f64) {
+        let first = outward(&at.orders[n], track);
+        let mut all = [T::zero(); TERMS];
+        let last = terms(&self.rows[n]);
+        let mut orders = [T::zero(); TERMS];
+        orders[..4].copy_from_slice(&first);
+        if last > 4 {
+            orders[4..].copy_from_slice(&outward(&self.rows[n].orders_from(4, &at.modal.y), track));
+        }
+        for (k, term) in all[..last].iter_mut().enumerate() {
+            if !orders[k].to_f64().is_finite() {
+                // It is a first guess, which fewer terms give as well.
+                break;
+            }
+            *term = orders[k] * T::inverse_factorial(k);
+        }
+        let (mut step, mut change) = (T::exact(reverted(&first)), f64::INFINITY);
+        for _ in 0..2 {
+            let (mut value, mut slope) = (T::zero(), T::zero());
+            for term in all[..last].iter().rev() {
+                slope = slope * step + value;
+                value = value * step + *term;
+            }
+            let by = value / slope;
+            (step, change) = (step - by, by.to_f64().abs());
+        }
+        (step, change)
+    }
+
+    /// What rounding may have done to the value and three derivatives of a guard.
+    #[inline]
+    fn order_roundings(&self, n: usize, at: &GuardedPoint<T>) -> [f64; 4] {
+        self.rows[n].order_sizes::<4>(&at.modal.sizes).map(|size| self.margin * size)
+    }
+
+    /// A bound of a guard over a short time after a point.
+    #[inline]
+    pub(super) fn excess(&self, n: usize, track: &Track, at: &GuardedPoint<T>, within: f64) -> f64 {
+        let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::to_f64);
+        let fourth = self.rows[n].bound(4, &at.norms, within);
+        let [_, slope_off, bend_off, third_off] = self.order_roundings(n, at);
+        let slope = slope + slope_off;
+        let rest = 0.5 * bend.abs() + within * (third.abs() / 6.0 + within * fourth / 24.0);
+        let rest = rest + 0.5 * bend_off + within * third_off / 6.0;
+        match track.zeros {
+            0 => value + within * (slope.max(0.0) + within * rest),
+            // It has left zero for the inside, and does not come back so soon.
+            1 if slope + within * rest < 0.0 => f64::NEG_INFINITY,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// The number of a guard's Taylor terms that are summed to guess at a crossing.
+#[inline]
+fn terms<T>(row: &ModalRow<T>) -> usize {
+    row.last.clamp(4, TERMS)
+}
+
+/// The step to the root of a cubic that is near zero, by the series of its inverse to the third
+/// order: what a cubic tells of a guard is no more than that.
+#[inline]
+fn reverted<T: Number>(orders: &[T; 4]) -> f64 {
+    let [value, slope, bend, third] = orders.map(Number::to_f64);
+    let inverse = 1.0 / slope;
+    let step = -value * inverse;
+    let share = step * inverse;
+    let (second, third) = (0.5 * bend * share, third / 6.0 * step * share);
+    let square = second * second;
+    step + step * (5.0 * second * (third - square) + (2.0 * square - third) - second)
+}

@@ -1,0 +1,263 @@
+//! Whether a guard stays negative on a piece, by the Bernstein coefficients of a polynomial that
+//! lies above it: the same theorem as in `crossing/certificate.rs`, in any arithmetic.
+
+use crate::affine::arithmetic::vector::unit;
+use crate::crossing::certificate::MIDDLE;
+use crate::numeric::number::Number;
+use crate::numeric::real::Real;
+use smallvec::SmallVec;
+
+/// Bernstein coefficients of degree eight.
+type Hull<T> = [T; 9];
+
+/// The narrowest part of a piece that is looked at without an evaluation.
+const NARROWEST: f64 = 1.0 / 65_536.0;
+
+/// The distance to a root at which the search of a place before it ends, relative to the root:
+/// Newton's method does the rest.
+const NEAR: f64 = 1e-2;
+
+/// What is known of a guard on a piece.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Judged {
+    /// It stays negative.
+    Clear,
+    /// It comes as near to zero as rounding goes, all over the piece, and no further.
+    Touch,
+    /// It stays negative on this share of the piece; nothing is proved about the rest.
+    Open(f64),
+}
+
+/// A piece's length, and the quotients of it that all guards need. They are in the arithmetic
+/// itself, whose digits they have to have.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lengths<T> {
+    pub length: T,
+    seventh: T,
+    /// L/6 and L/5, by which the next derivative counts.
+    sixth: T,
+    fifth: T,
+    /// The middle coefficient of an eighth derivative of 1.
+    middle: T,
+}
+
+impl<T: Number> Lengths<T> {
+    #[inline]
+    pub fn of(length: T) -> Self {
+        let square = length * length;
+        let power = square * square * (square * square);
+        Self {
+            length,
+            seventh: length / T::exact(7.0),
+            sixth: length / T::exact(6.0),
+            fifth: length / T::exact(5.0),
+            middle: power / T::exact(MIDDLE),
+        }
+    }
+}
+
+/// Judges a guard from its orders at both ends, a bound of its eighth derivative, a line above what
+/// is not in the orders, what rounding may do to its values, and the number of its orders that are
+/// exactly zero at the left end.
+#[inline]
+pub(super) fn judge<T: Number>(
+    ends: &[[T; 4]; 2],
+    lengths: &Lengths<T>,
+    eighth: f64,
+    [from, to]: [f64; 2],
+    slack: f64,
+    zeros: usize,
+) -> Judged {
+    let mut hull = interpolant(ends, lengths);
+    if eighth != 0.0 {
+        hull[4] = hull[4] + lengths.middle * T::exact(eighth);
+    }
+    if from != 0.0 || to != 0.0 {
+        for (n, entry) in hull.iter_mut().enumerate() {
+            let share = n as f64 * 0.125;
+            *entry = *entry + T::exact(from * (1.0 - share) + to * share);
+        }
+    }
+    let [mut sum, mut size, mut top] = [0.0_f64, 0.0, f64::NEG_INFINITY];
+    for entry in hull.map(Number::to_f64) {
+        // Unlike the largest of them, a sum has what is no number.
+        sum += entry.abs();
+        size = size.larger(entry.abs());
+        top = top.larger(entry);
+    }
+    if !(sum + slack).is_finite() {
+        return Judged::Open(0.0);
+    }
+    let slack = slack + 16.0 * unit::<T>() * size;
+    let stays_below = top < -slack || zeros > 0 && is_clear(&hull, slack, zeros);
+    if stays_below {
+        return Judged::Clear;
+    }
+    if size <= 64.0 * slack && top <= slack {
+        return Judged::Touch;
+    }
+    Judged::Open(clear_share(&hull, slack, zeros))
+}
+
+/// The coefficients of the polynomial of degree seven that shares value and three derivatives at
+/// both ends, raised to degree eight.
+#[inline]
+fn interpolant<T: Number>(ends: &[[T; 4]; 2], lengths: &Lengths<T>) -> Hull<T> {
+    let Lengths { seventh, sixth, fifth, .. } = *lengths;
+    let [left, right] = ends;
+    let [a, b, c, d] = next_to_an_end(left, [seventh, sixth, fifth]);
+    let [h, g, f, e] = next_to_an_end(right, [-seventh, -sixth, -fifth]);
+    let seventh = [a, b, c, d, e, f, g, h];
+    let mut hull = [a; 9];
+    hull[8] = h;
+    for n in 1..8 {
+        let share = T::exact(n as f64 * 0.125);
+        hull[n] = seventh[n] + share * (seventh[n - 1] - seventh[n]);
+    }
+    hull
+}
+
+/// The four coefficients of degree seven that belong to an end.
+#[inline]
+fn next_to_an_end<T: Number>(orders: &[T; 4], [seventh, sixth, fifth]: [T; 3]) -> [T; 4] {
+    let [value, slope, bend, third] = *orders;
+    let first = slope * seventh;
+    let second = bend * seventh * sixth;
+    let third = third * seventh * sixth * fifth;
+    let (two, three) = (T::exact(2.0), T::exact(3.0));
+    [value, value + first, value + two * first + second, value + three * (first + second) + third]
+}
+
+/// Whether all coefficients are negative by more than rounding. With zeros at the left end those
+/// that belong to it are exact but for their own roundings, however small they are relative to the
+/// others' slack.
+#[inline]
+fn is_clear<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> bool {
+    if zeros == 0 {
+        return hull.iter().all(|it| it.to_f64() < -slack);
+    }
+    let size = hull.iter().fold(0.0_f64, |size, it| size.larger(it.to_f64().abs()));
+    let relative = 64.0 * unit::<T>() * size;
+    let room = |n: usize| if n < 4 { relative } else { slack.max(relative) };
+    hull.iter().enumerate().skip(zeros.min(8)).all(|(n, it)| it.to_f64() < -room(n))
+}
+
+/// The share of the piece up to which the hull is negative.
+#[inline]
+fn clear_share<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> f64 {
+    if let Some(share) = simple_root(hull, slack, zeros) {
+        return share;
+    }
+    let mut parts: SmallVec<[_; 20]> = SmallVec::new();
+    parts.push((*hull, 0.0, 1.0, zeros));
+    while let Some((hull, from, width, zeros)) = parts.pop() {
+        if is_clear(&hull, slack, zeros) {
+            continue;
+        }
+        if width <= NARROWEST {
+            return from;
+        }
+        if let Some(share) = simple_root(&hull, slack, zeros) {
+            return from + width * share;
+        }
+        let (left, right) = halves(&hull);
+        let half = 0.5 * width;
+        parts.push((right, from + half, half, 0));
+        parts.push((left, from, half, zeros));
+    }
+    1.0
+}
+
+/// Where a hull whose coefficients change their sign once, upward, is still negative: by Descartes'
+/// rule there is one root, and it is beyond.
+#[inline]
+fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f64> {
+    let hull = hull.map(|it| (it + T::exact(slack)).to_f64());
+    let zeros = zeros.min(8);
+    let first = zeros + hull[zeros..].iter().position(|it| *it >= 0.0)?;
+    if first == zeros || !hull[first..].iter().all(|it| *it >= 0.0) || hull[8] <= 0.0 {
+        return None;
+    }
+    // The root of the control polygon is near that of the polynomial.
+    let (below, above) = (hull[first - 1], hull[first]);
+    let place = 0.125 * ((first - 1) as f64 + below / (below - above));
+    Some(negative_until(&hull, place))
+}
+
+/// A place just before the root of a hull that has one: where it is negative beyond rounding.
+/// Newton's method, kept between a place before the root and one behind it, aims at half the
+/// distance that is near enough; it begins at `place`, inside.
+#[inline]
+fn negative_until(hull: &[f64; 9], mut place: f64) -> f64 {
+    const STEPS: usize = 16;
+    /// A difference of order k is off by 2^k roundings of k sums, and has the weight C(8, k): 3^8
+    /// in all, and eight times that.
+    const ROUNDING: f64 = 8.0 * 6561.0 * f64::EPSILON;
+    let powers = powers(hull);
+    let rounding = ROUNDING * hull.iter().fold(0.0_f64, |size, it| size.larger(it.abs()));
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..STEPS {
+        let (value, slope) = value_and_slope(&powers, place);
+        let value = value + rounding;
+        let ahead = -value / slope;
+        if value < 0.0 {
+            low = place;
+            if ahead >= 0.0 && ahead < NEAR * place {
+                break;
+            }
+        } else {
+            high = place;
+        }
+        if high - low < NEAR * high {
+            break;
+        }
+        let aim = (1.0 - 0.5 * NEAR) * (place + ahead);
+        place = if low < aim && aim < high { aim } else { 0.5 * (low + high) };
+    }
+    low
+}
+
+/// A polynomial in powers, and its slope, each as four sums that do not wait for one another.
+#[inline]
+fn value_and_slope(powers: &[f64; 9], x: f64) -> (f64, f64) {
+    let [a, b, c, d, e, f, g, h, i] = *powers;
+    let square = x * x;
+    let fourth = square * square;
+    let value = (a + b * x)
+        + (c + d * x) * square
+        + ((e + f * x) + (g + h * x) * square + i * fourth) * fourth;
+    let slope = (b + 2.0 * c * x)
+        + (3.0 * d + 4.0 * e * x) * square
+        + ((5.0 * f + 6.0 * g * x) + (7.0 * h + 8.0 * i * x) * square) * fourth;
+    (value, slope)
+}
+
+/// The coefficients of a polynomial in powers, from its Bernstein coefficients: C(8, k) times their
+/// differences.
+#[inline]
+fn powers(hull: &[f64; 9]) -> [f64; 9] {
+    const CHOOSE: [f64; 9] = [1.0, 8.0, 28.0, 56.0, 70.0, 56.0, 28.0, 8.0, 1.0];
+    let mut powers = *hull;
+    for order in 1..9 {
+        for n in (order..9).rev() {
+            powers[n] -= powers[n - 1];
+        }
+    }
+    for n in 0..9 {
+        powers[n] *= CHOOSE[n];
+    }
+    powers
+}
+
+#[inline]
+fn halves<T: Number>(hull: &Hull<T>) -> (Hull<T>, Hull<T>) {
+    let half = T::exact(0.5);
+    let (mut left, mut right) = (*hull, *hull);
+    for (level, entry) in left.iter_mut().enumerate().skip(1) {
+        for k in 0..9 - level {
+            right[k] = (right[k] + right[k + 1]) * half;
+        }
+        *entry = right[0];
+    }
+    (left, right)
+}

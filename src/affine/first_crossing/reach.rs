@@ -1,0 +1,277 @@
+//! How far a guard is looked at in one piece, and what of it is only enclosed there.
+//!
+//! A piece is as long as the eighth derivative allows (`hull.rs`). Of blocks that move much faster
+//! than the rest and are small relative to the guard, only bounds are used: a part exp(-r s) c is
+//! below its chord if c > 0, and below its right end if c < 0; any other part is below its norm.
+//! What is left is slow, and pieces of it are long. Where that leaves only a constant, the piece
+//! has no end.
+
+use super::hull::{self, Judged, Lengths};
+use crate::affine::arithmetic::vector::{Vector, root};
+use crate::affine::closed_form::bound::Later;
+use crate::affine::guards::point::{Ends, GuardedPoint, GuardedSegment};
+use crate::affine::guards::row::{ModalRow, RowPart};
+use crate::affine::guards::track::{Track, outward};
+use crate::affine::model::system::LARGEST_DIMENSION;
+use crate::crossing::certificate::MIDDLE;
+use crate::numeric::number::Number;
+
+/// The share of a guard's size that the remainder of a piece may have.
+const REMAINDER: f64 = 3e-2;
+
+/// The share of a guard's size that has to be left when its fastest blocks are enclosed.
+const LEFT: f64 = 0.25;
+
+/// The share of a guard's size that has to be left where all but a constant is enclosed: rounding
+/// is far below it.
+const CLOSE: f64 = 1e-3;
+
+/// The share of its largest part that a guard near zero is taken to have.
+const SMALLEST: f64 = 1e-3;
+
+/// Room for the rounding of a part.
+const OUTWARD: f64 = 1.0 + 1e-12;
+
+/// How far a guard is looked at.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Reach {
+    /// How many of the blocks are only enclosed.
+    cut: usize,
+    /// How far that goes.
+    pub length: f64,
+    /// How far a piece with all blocks goes.
+    whole: f64,
+}
+
+impl<T: Number> GuardedSegment<'_, T> {
+    /// How far a guard is looked at from a point.
+    #[inline]
+    pub(super) fn reach(
+        &self,
+        n: usize,
+        track: &Track,
+        left: &GuardedPoint<T>,
+        longest: f64,
+    ) -> Reach {
+        let row = &self.rows[n];
+        let orders = outward(&left.orders[n], track).map(Number::to_f64);
+        let rests = eighths(row, left, longest);
+        let whole = length(&orders, rests[0], track.zeros, || row.size(&left.modal.y)).min(longest);
+        let mut reach = Reach { cut: 0, length: whole, whole };
+        if track.zeros == 0 && whole < longest {
+            enclose(row, track, left, (orders[0], &rests, longest), &mut reach);
+        }
+        if reach.length == f64::INFINITY {
+            let orders =
+                outward(&row.first_orders(&left.modal.y, row.first_column(reach.cut)), track);
+            let orders = orders.map(Number::to_f64);
+            reach.length = polynomial_reach(&orders, track.zeros, left.slack[n]);
+            reach.whole = reach.whole.min(reach.length);
+        }
+        reach
+    }
+
+    /// Judges a guard on a piece.
+    #[inline]
+    pub(super) fn judge(
+        &self,
+        n: usize,
+        track: &Track,
+        reach: &Reach,
+        ends: &Ends<T>,
+        lengths: &Lengths<T>,
+    ) -> Judged {
+        let Ends { left, right, .. } = ends;
+        let row = &self.rows[n];
+        let length = lengths.length.to_f64();
+        let cut = if length <= reach.whole { 0 } else { reach.cut };
+        let mut slack = left.slack[n].max(right.slack[n]);
+        if !self.is_by_series(n, right.time.to_f64()) {
+            slack += self.margin * self.derivatives(row, left, cut, length);
+        }
+        if cut == 0 {
+            let orders = [outward(&left.orders[n], track), outward(&right.orders[n], track)];
+            let eighth = eighth(row, track, left, 0, length);
+            return hull::judge(&orders, lengths, eighth, [0.0; 2], slack, track.zeros);
+        }
+        let raise = raise(row, track, ends, cut);
+        let from = row.first_column(cut);
+        let orders = [left, right].map(|it| outward(&row.first_orders(&it.modal.y, from), track));
+        let eighth = eighth(row, track, left, cut, length);
+        hull::judge(&orders, lengths, eighth, raise, slack, track.zeros)
+    }
+
+    /// The sizes of what derivatives are summed from, as far as a coefficient of a hull has them:
+    /// the third and fourth have most, 3/7 L, L^2/14 and L^3/210 of the first three.
+    #[inline]
+    fn derivatives(&self, row: &ModalRow<T>, at: &GuardedPoint<T>, cut: usize, length: f64) -> f64 {
+        let size = |part: &RowPart| {
+            // Nothing comes of zeros, even where a factor of theirs overflows.
+            let sizes: f64 = at.modal.sizes[self.flow.blocks[part.block].range()].iter().sum();
+            if sizes == 0.0 {
+                return 0.0;
+            }
+            let norm = |k: usize| sizes * part.later.bound(&part.norms, k, length);
+            let slope = 3.0 / 7.0 * norm(1);
+            (slope + length * (norm(2) / 14.0 + length * norm(3) / 210.0)) * length
+        };
+        row.parts[cut..].iter().map(size).sum()
+    }
+}
+
+/// Leaves as many blocks to their enclosures as lets a piece be longest.
+#[inline]
+fn enclose<T: Number>(
+    row: &ModalRow<T>,
+    track: &Track,
+    left: &GuardedPoint<T>,
+    (begin, rests, longest): (f64, &Vector<f64>, f64),
+    reach: &mut Reach,
+) {
+    /// A rest that is smaller by less makes a piece longer by less than a third.
+    const MUCH: f64 = 0.1;
+    let (mut value, mut best) = (begin, rests[0]);
+    for (k, part) in row.parts.iter().enumerate() {
+        let own = part_of(row, part, track, &left.modal.y);
+        value += match part.later {
+            Later::Fading => own.max(0.0) - own,
+            Later::Steady => part.norms[0] * left.norms[part.block] - own,
+            Later::Polynomial | Later::Growing(_) => break,
+        };
+        let rest = if k + 1 < row.parts.len() { rests[k + 1] } else { 0.0 };
+        let is_constant = || row.parts[k + 1..].iter().all(|it| it.norms[1] == 0.0);
+        let share = if rest == 0.0 && is_constant() { CLOSE } else { LEFT };
+        if value > share * begin {
+            if part.later == Later::Fading && rest < MUCH * best {
+                let from = row.first_column(k + 1);
+                let slope = track.outward * row.first_orders(&left.modal.y, from)[1].to_f64();
+                let length = held_back(-own, part.norms[1] / part.norms[0], value, slope);
+                if length > reach.length {
+                    (reach.cut, reach.length) = (k + 1, length.min(longest));
+                }
+            }
+            break;
+        }
+        if rest < MUCH * best {
+            let length = root(REMAINDER * MIDDLE * -value / rest, 8).min(longest);
+            if length > reach.length {
+                best = rest;
+                (reach.cut, reach.length) = (k + 1, length);
+            }
+        }
+    }
+}
+
+/// How long a decay at a rate keeps a guard below zero that is `value` and rises without it: until
+/// it is twice as large as the rest has become. The next piece is short relative to the decay time.
+#[inline]
+fn held_back(decay: f64, rate: f64, value: f64, slope: f64) -> f64 {
+    let until = |rest: f64| libm::log(decay / (2.0 * rest)) / rate;
+    let length = until(value.abs());
+    if length > 0.0 { until(value.abs() + length * slope.abs()) } else { 0.0 }
+}
+
+/// Bounds of the eighth derivative of all blocks from each on.
+#[inline]
+fn eighths<T: Number>(row: &ModalRow<T>, left: &GuardedPoint<T>, longest: f64) -> Vector<f64> {
+    let mut rests = [0.0; LARGEST_DIMENSION];
+    let mut sum = 0.0;
+    for (n, part) in row.parts.iter().enumerate().rev() {
+        sum += part.bound(8, longest, &left.norms);
+        rests[n] = sum;
+    }
+    rests
+}
+
+/// An upper bound of the eighth derivative of all blocks from `cut` on, not negative.
+#[inline]
+fn eighth<T: Number>(
+    row: &ModalRow<T>,
+    track: &Track,
+    left: &GuardedPoint<T>,
+    cut: usize,
+    length: f64,
+) -> f64 {
+    let mut sum = 0.0;
+    for part in &row.parts[cut..] {
+        // An even derivative of a decay has its sign.
+        let falls = part.later == Later::Fading && part_of(row, part, track, &left.modal.y) <= 0.0;
+        if !falls {
+            sum += part.bound(8, length, &left.norms);
+        }
+    }
+    sum * OUTWARD
+}
+
+/// What the first blocks add to a guard on a piece at most, at its ends; between them it is below
+/// the straight line.
+#[inline]
+fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize) -> [f64; 2] {
+    let mut raise = [0.0; 2];
+    for part in &row.parts[..cut] {
+        let [from, to] = [&ends.left, &ends.right].map(|it| part_of(row, part, track, &it.modal.y));
+        let own = match part.later {
+            Later::Fading if from > 0.0 => [from * OUTWARD, to * OUTWARD],
+            Later::Fading => [to / OUTWARD; 2],
+            _ => [part.norms[0] * ends.left.norms[part.block] * OUTWARD; 2],
+        };
+        raise = [raise[0] + own[0], raise[1] + own[1]];
+    }
+    raise
+}
+
+/// What a block adds to the value of a guard.
+#[inline]
+pub(super) fn part_of<T: Number>(
+    row: &ModalRow<T>,
+    part: &RowPart,
+    track: &Track,
+    y: &Vector<T>,
+) -> f64 {
+    let columns = &row.columns[part.columns.0..part.columns.1];
+    let terms = columns.iter().map(|it| it.orders[0].to_f64() * y[it.at].to_f64());
+    track.outward * terms.sum::<f64>()
+}
+
+/// A length that ends a little beyond the root that the first terms of a polynomial suggest, or
+/// where they have grown so much that rounding would hide the beginning.
+#[inline]
+fn polynomial_reach(orders: &[f64; 4], zeros: usize, slack: f64) -> f64 {
+    const GROWTH: f64 = 1e6;
+    let [value, slope, bend, third] = *orders;
+    let size = value.abs().max(slack);
+    if zeros > 0 || size == 0.0 {
+        return f64::INFINITY;
+    }
+    let rise = if value < -slack { rise([value, slope, 0.5 * bend]) } else { f64::INFINITY };
+    let by_slope = GROWTH * size / slope.abs();
+    let by_bend = root(GROWTH * size / bend.abs(), 2);
+    let by_third = root(GROWTH * size / third.abs(), 3);
+    (1.25 * rise).min(by_slope).min(by_bend).min(by_third)
+}
+
+/// Where a parabola that is negative at zero rises through zero; infinite where it does not.
+#[inline]
+pub(super) fn rise([value, slope, bend]: [f64; 3]) -> f64 {
+    // In the form that does not cancel.
+    let divisor = slope + (slope * slope - 4.0 * value * bend).sqrt();
+    if divisor > 0.0 { -2.0 * value / divisor } else { f64::INFINITY }
+}
+
+/// A length on which the remainder stays small relative to what a guard becomes by one of its first
+/// derivatives that are not zero.
+#[inline]
+fn length(orders: &[f64; 4], eighth: f64, zeros: usize, size: impl Fn() -> f64) -> f64 {
+    if eighth == 0.0 {
+        return f64::INFINITY;
+    }
+    if eighth.is_nan() || eighth == f64::INFINITY {
+        return 0.0;
+    }
+    let room = REMAINDER * MIDDLE / eighth;
+    let [value, slope, bend, _] = orders.map(f64::abs);
+    let smallest = SMALLEST * size();
+    let by_value = if zeros > 0 { smallest } else { value.max(smallest) };
+    let by_slope = if zeros > 1 { 0.0 } else { root(0.5 * room * slope, 7) };
+    root(room * by_value, 8).max(by_slope).max(root(0.125 * room * bend, 6))
+}

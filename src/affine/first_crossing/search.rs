@@ -1,0 +1,247 @@
+//! The first crossing of a mode's guards.
+//!
+//! Where Taylor polynomials prove the first crossing from a point on (`taylor.rs` and
+//! `taylor_with_decay.rs`), nothing else is looked at. Otherwise a segment is passed in pieces. On
+//! each the Bernstein coefficients of a polynomial that lies above the guard show that it stays
+//! negative, or up to where it does. There a crossing is searched (`crossing.rs`). What shows
+//! neither is looked at in shorter pieces. See the page docs/ROUNDING.md for what rounding may
+//! take.
+//!
+//! What is generic is compiled by the crate that uses it, which may do so in many units without
+//! optimising across them; so what runs at every event is marked to be inlined, here and in the
+//! modules that this one uses.
+
+use super::crossing::FirstCrossing;
+use super::hull::{Judged, Lengths};
+use super::reach::Reach;
+use super::taylor::Misses;
+use crate::affine::arithmetic::vector::unit;
+use crate::affine::guards::point::{Ends, GuardedPoint, GuardedSegment, Passed, PerGuard};
+use crate::affine::guards::track::{SearchWork, Track, live};
+use crate::numeric::number::Number;
+
+/// The largest number of pieces from one event to the next, of all guards together: about a
+/// second's work in 106 bits. A mode of many guards has [`FEWEST_PIECES`] nevertheless.
+const MOST_PIECES: u64 = 1 << 18;
+const FEWEST_PIECES: u64 = 1 << 14;
+
+/// A piece that has to be divided counts as this many more.
+const OPEN: u64 = 8;
+
+/// How a search ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Found {
+    /// No guard crosses before the limit.
+    Nothing,
+    /// The first crossing is the left end: all guards that cross there within what rounding may do,
+    /// as bits.
+    Crossing(u64),
+    /// The search takes too much work.
+    Lost,
+}
+
+impl<T: Number> GuardedSegment<'_, T> {
+    /// The first crossing after the left end and not after `limit`.
+    #[inline]
+    pub fn first(
+        &self,
+        tracks: &mut [Track],
+        ends: &mut Ends<T>,
+        limit: T,
+        misses: &mut Misses,
+        work: &mut SearchWork,
+    ) -> Found {
+        let mut most = f64::INFINITY;
+        let span = [ends.left.time, limit];
+        // After a crossing that is only watched the piece that it is in goes on.
+        let mut is_ahead = ends.left.time < ends.passed.until;
+        let guards = live(tracks).count().max(1) as u64;
+        let mut work_left = (MOST_PIECES / guards).max(FEWEST_PIECES);
+        while work_left > 0 {
+            work_left -= 1;
+            if ends.left.time >= limit {
+                return Found::Nothing;
+            }
+            if work.undecidable > 0 && self.follows_errors() {
+                return Found::Lost;
+            }
+            self.measure(&mut ends.left);
+            let crossing = self
+                .first_by_taylor(tracks, &ends.left, misses, work)
+                .or_else(|| self.first_beside_a_decay(tracks, &ends.left, misses, work));
+            if let Some(crossing) = crossing {
+                return self.settled_by(&crossing, tracks, ends, span, work);
+            }
+            let known = if is_ahead { ends.passed.guards } else { 0 };
+            let reaches = self.reaches(tracks, &ends.left, known);
+            if !is_ahead && !self.look_ahead(tracks, ends, &reaches, limit, most, work) {
+                return Found::Lost;
+            }
+            is_ahead = false;
+            let length = (ends.right.time - ends.left.time).to_f64();
+            work.pieces += 1;
+            let Some(share) = self.clear_share(tracks, &reaches, ends, work) else {
+                ends.step();
+                most = f64::INFINITY;
+                clear_zeros(tracks);
+                continue;
+            };
+            work_left = work_left.saturating_sub(OPEN);
+            let left = &ends.left;
+            let is_told = |n: usize| (left.orders[n][0].to_f64().abs() + left.slack[n]).is_finite();
+            if !live(tracks).all(|(n, _)| is_told(n)) {
+                // Where numbers overflow, nothing is told.
+                return Found::Lost;
+            }
+            if !self.shortened(tracks, ends, share, work) {
+                most = 64.0 * length;
+                continue;
+            }
+            self.measure(&mut ends.left);
+            if let Some(crossing) = self.rising(tracks, &ends.left, &ends.passed, work) {
+                return self.settled_by(&crossing, tracks, ends, span, work);
+            }
+            most = 0.25 * length;
+        }
+        Found::Lost
+    }
+
+    /// Brings the left end on by the clear share of a piece, if any. A piece of which nothing is
+    /// clear and that has no shorter one, because its ends are next to each other, is stepped over:
+    /// the answer is then no.
+    #[inline]
+    fn shortened(
+        &self,
+        tracks: &mut [Track],
+        ends: &mut Ends<T>,
+        share: f64,
+        work: &mut SearchWork,
+    ) -> bool {
+        let (from, end) = (ends.left.time, ends.right.time);
+        let to = from + (end - from) * T::exact(share);
+        if to > from {
+            self.evaluate(&mut ends.left, to, work);
+            clear_zeros(tracks);
+        } else if (end - from).to_f64() <= 8.0 * unit::<T>() * end.to_f64() {
+            // What happens within rounding is a touch.
+            work.undecidable += 1;
+            ends.step();
+            clear_zeros(tracks);
+            return false;
+        }
+        true
+    }
+
+    /// Brings the left end to a crossing that is proved, if that is not after the span's end. It is
+    /// not before the span's begin, the event before it, whatever rounding says.
+    #[inline]
+    fn settled_by(
+        &self,
+        crossing: &FirstCrossing<T>,
+        tracks: &[Track],
+        ends: &mut Ends<T>,
+        span: [T; 2],
+        work: &mut SearchWork,
+    ) -> Found {
+        match self.settled(tracks, &mut ends.left, crossing, span, work) {
+            true => Found::Crossing(crossing.guards),
+            false => Found::Nothing,
+        }
+    }
+
+    /// How far each guard is looked at from a point, but for those of which all is known.
+    #[inline]
+    fn reaches(&self, tracks: &[Track], left: &GuardedPoint<T>, known: u64) -> PerGuard<Reach> {
+        let longest = self.flow.longest;
+        let mut reaches = PerGuard::new();
+        for (n, track) in tracks.iter().enumerate() {
+            reaches.push(match track.live && known >> n & 1 == 0 {
+                true => self.reach(n, track, left, longest),
+                false => Reach::default(),
+            });
+        }
+        reaches
+    }
+
+    /// Evaluates the right end of the next piece, unless overflow hides how long a piece may be or
+    /// rounding has no instant so near.
+    #[inline]
+    fn look_ahead(
+        &self,
+        tracks: &[Track],
+        ends: &mut Ends<T>,
+        reaches: &[Reach],
+        limit: T,
+        most: f64,
+        work: &mut SearchWork,
+    ) -> bool {
+        let left = &ends.left;
+        let mut length = most;
+        for (n, track) in live(tracks) {
+            if reaches[n].length.is_nan() || reaches[n].length <= 0.0 {
+                return false;
+            }
+            length = length.min(reaches[n].length).min(self.near_root(track, &left.orders[n]));
+        }
+        let mut end = left.time + T::exact(length);
+        if end <= left.time {
+            return false;
+        }
+        // A sum with infinity is no number in two words.
+        let inside = end < limit;
+        if !inside {
+            end = limit;
+        }
+        self.evaluate(&mut ends.right, end, work);
+        true
+    }
+
+    /// A length a little beyond the root that the first two terms of a guard suggest, if it begins
+    /// at zero and turns back.
+    #[inline]
+    fn near_root(&self, track: &Track, orders: &[T; 4]) -> f64 {
+        let (Some(first), Some(second)) = (orders.get(track.zeros), orders.get(track.zeros + 1))
+        else {
+            return f64::INFINITY;
+        };
+        let ratio = -(first.to_f64() / second.to_f64());
+        if track.zeros > 0 && ratio > 0.0 {
+            1.25 * ratio * (track.zeros + 1) as f64
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    /// The share of a piece on which all guards are proved to stay negative; none if it is all of
+    /// it.
+    #[inline]
+    fn clear_share(
+        &self,
+        tracks: &[Track],
+        reaches: &[Reach],
+        ends: &mut Ends<T>,
+        work: &mut SearchWork,
+    ) -> Option<f64> {
+        let until = ends.right.time;
+        let lengths = Lengths::of(until - ends.left.time);
+        let (mut share, mut guards): (Option<f64>, u64) = (None, 0);
+        for (n, track) in live(tracks) {
+            if ends.passed.has(n, until) {
+                guards |= 1 << n;
+                continue;
+            }
+            match self.judge(n, track, &reaches[n], ends, &lengths) {
+                Judged::Clear => guards |= 1 << n,
+                Judged::Touch => work.doubt(n),
+                Judged::Open(open) => share = Some(share.map_or(open, |it| it.min(open))),
+            }
+        }
+        ends.passed = Passed { guards, until };
+        share
+    }
+}
+
+#[inline]
+fn clear_zeros(tracks: &mut [Track]) {
+    tracks.iter_mut().for_each(|track| track.zeros = 0);
+}

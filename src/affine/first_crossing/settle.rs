@@ -1,0 +1,170 @@
+//! A crossing's time to the last digit: Newton's method inside of the proved bracket.
+
+use super::crossing::FirstCrossing;
+use crate::affine::arithmetic::vector::unit;
+use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
+use crate::affine::guards::track::{SearchWork, Track, outward};
+use crate::numeric::number::Number;
+
+/// Between which times a root is, and the size of the last step towards it.
+struct Bracket<T> {
+    low: T,
+    high: T,
+    last: f64,
+}
+
+/// What comes next on the way to a root.
+enum Next<T> {
+    /// The guard is evaluated at a time.
+    Evaluate(T),
+    /// The root is a step away that needs no evaluation.
+    Step(T),
+    /// Rounding shows no better time.
+    Nothing,
+}
+
+impl<T: Number> Bracket<T> {
+    #[inline]
+    fn middle(&self) -> T {
+        (self.low + self.high) * T::exact(0.5)
+    }
+
+    /// Whether a time is inside, and no end.
+    #[inline]
+    fn holds(&self, time: T) -> bool {
+        self.low < time && time < self.high
+    }
+}
+
+impl<T: Number> GuardedSegment<'_, T> {
+    /// Brings a point to the crossing, to the last digit; whether that is not after `limit`. It is
+    /// not before `from`. Of the guards only the first that crosses is evaluated there.
+    #[inline]
+    pub(super) fn settled(
+        &self,
+        tracks: &[Track],
+        point: &mut GuardedPoint<T>,
+        crossing: &FirstCrossing<T>,
+        [from, limit]: [T; 2],
+        work: &mut SearchWork,
+    ) -> bool {
+        const ROUNDS: usize = 128;
+        // A crossing exactly at the limit counts.
+        let room = T::exact(4.0 * unit::<T>() * limit.to_f64());
+        let n = crossing.guards.trailing_zeros() as usize;
+        let [mut low, high] = crossing.between;
+        if low < from {
+            low = from;
+        }
+        let inside = low <= crossing.time && crossing.time <= high;
+        let mut bracket = Bracket { low, high, last: f64::INFINITY };
+        let mut next = if inside { crossing.time } else { bracket.middle() };
+        for _ in 0..ROUNDS {
+            self.evaluate_guard(n, point, next, work);
+            next = match self.next_to_root(n, &tracks[n], point, &mut bracket) {
+                Next::Evaluate(time) => time,
+                Next::Step(step) => {
+                    point.later = step;
+                    return point.time + step <= limit + room;
+                }
+                Next::Nothing => break,
+            };
+        }
+        point.later = remaining(&point.orders[n]);
+        if point.time + point.later < from {
+            point.later = from - point.time;
+        }
+        point.time <= limit + room
+    }
+
+    /// What comes next on the way from a point to a guard's root. Newton's steps are taken while
+    /// they shrink and stay where the root is proved to be; elsewhere that is halved.
+    #[inline]
+    fn next_to_root(
+        &self,
+        n: usize,
+        track: &Track,
+        point: &GuardedPoint<T>,
+        bracket: &mut Bracket<T>,
+    ) -> Next<T> {
+        /// Beyond this share of a point's time a cubic does not tell the rest to the last digit.
+        const FAR: f64 = 1e-4;
+        // A value within a few roundings of its terms shows no better time.
+        let noise = 4.0 * unit::<T>() * self.rows[n].size(&point.modal.y);
+        let orders = outward(&point.orders[n], track);
+        let value = orders[0].to_f64();
+        if value.abs() <= noise {
+            return Next::Nothing;
+        }
+        *(if value < 0.0 { &mut bracket.low } else { &mut bracket.high }) = point.time;
+        let mut step = newton(&orders);
+        let end = point.time + step;
+        if bracket.low <= end && end <= bracket.high && self.is_last(&orders, step) {
+            return Next::Step(step);
+        }
+        if step.to_f64().abs() > FAR * point.time.to_f64() {
+            step = self.root(n, track, point).0;
+        }
+        let (mut better, mut size) = (point.time + step, step.to_f64().abs());
+        if size <= unit::<T>() * point.time.to_f64().abs() {
+            return Next::Nothing;
+        }
+        if !(size < 0.25 * bracket.last && bracket.holds(better)) {
+            // Steps that do not shrink are rounding, where that can be what the value is.
+            better = bracket.middle();
+            if value.abs() <= 4.0 * point.slack[n] || !bracket.holds(better) {
+                return Next::Nothing;
+            }
+            size = (better - point.time).to_f64().abs();
+        }
+        if better <= T::zero() {
+            return Next::Nothing;
+        }
+        bracket.last = size;
+        Next::Evaluate(better)
+    }
+
+    /// Whether a step to a crossing is so short that two derivatives of all co-ordinates do what
+    /// another evaluation would do: what the third adds is less than rounding, and so is what the
+    /// fourth of a guard that nearly touches adds to the step, turn^2 BEND/24 of it. Errors are
+    /// followed from one evaluation to the next.
+    #[inline]
+    fn is_last(&self, orders: &[T; 4], step: T) -> bool {
+        /// The share by which the guard's slope may change.
+        const BEND: f64 = 1e-5;
+        let turn = (self.flow.speed * step.to_f64()).abs();
+        let is_small = turn * turn * turn <= 0.25 * unit::<T>();
+        let rises = orders[1].to_f64() > 0.0;
+        rises && is_small && is_straight(orders, step, BEND) && !self.follows_errors()
+    }
+}
+
+/// The rest of the way to a root, where that is so short that a cubic tells it.
+#[inline]
+fn remaining<T: Number>(orders: &[T; 4]) -> T {
+    /// The share by which the slope may change.
+    const SHORT: f64 = 1e-2;
+    let step = newton(orders);
+    if is_straight(orders, step, SHORT) { step } else { T::zero() }
+}
+
+/// Whether a guard's slope changes by at most a share on a step.
+#[inline]
+fn is_straight<T: Number>(orders: &[T; 4], step: T, share: f64) -> bool {
+    let [slope, bend] = [orders[1].to_f64(), orders[2].to_f64()];
+    (step.to_f64() * bend).abs() <= share * slope.abs()
+}
+
+/// The step to the root of a cubic that is near zero, by Newton's method.
+#[inline]
+fn newton<T: Number>(orders: &[T; 4]) -> T {
+    let [value, slope, bend, third] = *orders;
+    let (half, sixth) = (bend * T::exact(0.5), third / T::exact(6.0));
+    let mut step = -value / slope;
+    for _ in 0..3 {
+        let cubic = value + step * (slope + step * (half + step * sixth));
+        let tangent = slope + step * (bend + step * third * T::exact(0.5));
+        step = step - cubic / tangent;
+    }
+    step
+}

@@ -1,0 +1,237 @@
+//! The first crossing after a point, proved by the Taylor polynomials of the guards there.
+//!
+//! Most segments are short relative to the times in which the motion changes. There the polynomial
+//! of degree 7 or 15 at the entry and a bound of the next derivative prove which guard crosses
+//! first and between which times (`quotient.rs`), and the closed form is evaluated at the crossing
+//! alone. What is not proved so is left to `search.rs`.
+
+use super::crossing::FirstCrossing;
+use super::quotient::{Quotient, WINDOW};
+use super::reach::rise;
+use crate::affine::arithmetic::vector::{LOST, root};
+use crate::affine::closed_form::bound::ORDERS;
+use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
+use crate::affine::guards::track::{SearchWork, Track, live, outward};
+use crate::numeric::number::Number;
+
+/// The numbers of derivatives that are looked at, the value and the one that is bounded included.
+pub(super) const FEW: usize = 9;
+pub(super) const ALL: usize = ORDERS;
+
+/// Up to this share of what a guard begins with, the remainder after [`FEW`] derivatives leaves
+/// some digits of the root.
+pub(super) const LITTLE: f64 = 1e-3;
+
+/// Beyond this share the derivatives after [`FEW`] give so many more digits of the root that one
+/// evaluation is enough.
+pub(super) const NOTHING: f64 = 1e-7;
+
+/// Beyond this share even [`ALL`] derivatives prove nothing.
+const MUCH: f64 = 10.0;
+
+/// How often the polynomials were looked at in a mode since they last proved a crossing: of whole
+/// guards at its entry and later, and beside a decay at its entry and later. Whether they do is
+/// mostly the same at each entry, and a vain attempt costs as much as an evaluation or two.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Misses([u8; 4]);
+
+/// What is looked at.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Looked {
+    /// The polynomials of whole guards.
+    Whole,
+    /// Those of what is left beside a decay.
+    Beside,
+}
+
+impl Misses {
+    const MOST: u8 = 2;
+    /// The pauses after so many, of whole guards and beside a decay, which is seldom worth a second
+    /// look where it was not worth one.
+    const PAUSE: [u8; 2] = [16, 64];
+
+    /// Whether to look at them: at first, and after a pause once more.
+    #[inline]
+    pub(super) fn are_few(&mut self, looked: Looked, is_later: bool) -> bool {
+        let count = &mut self.0[Self::at(looked, is_later)];
+        *count += 1;
+        if *count > Self::MOST + Self::PAUSE[looked as usize] {
+            *count = Self::MOST;
+        }
+        *count <= Self::MOST
+    }
+
+    /// A crossing is proved.
+    #[inline]
+    pub(super) fn forget(&mut self, looked: Looked, is_later: bool) {
+        self.0[Self::at(looked, is_later)] = 0;
+    }
+
+    #[inline]
+    fn at(looked: Looked, is_later: bool) -> usize {
+        2 * looked as usize + usize::from(is_later)
+    }
+}
+
+impl<T: Number> GuardedSegment<'_, T> {
+    /// The first crossing after a point, if the polynomials there prove it. Runs that follow their
+    /// errors are left to the search, which counts what errors leave open.
+    #[inline]
+    pub(super) fn first_by_taylor(
+        &self,
+        tracks: &[Track],
+        at: &GuardedPoint<T>,
+        misses: &mut Misses,
+        work: &mut SearchWork,
+    ) -> Option<FirstCrossing<T>> {
+        let is_later = at.time > T::zero();
+        if self.follows_errors() || !misses.are_few(Looked::Whole, is_later) {
+            return None;
+        }
+        let (n, rough) = nearest(tracks, at)?;
+        let zeros = tracks[n].zeros;
+        let power = |sum: f64, last: usize| (1..=last).fold(sum, |sum, k| sum * rough / k as f64);
+        let lead = power(at.orders[n][zeros].to_f64().abs(), zeros);
+        let rest = power(self.rows[n].bound(FEW - 1, &at.norms, rough), FEW - 1);
+        let crossing = if rest <= LITTLE * lead {
+            let mut crossing = self.proved::<FEW>(n, tracks, at, rough)?;
+            if rest > NOTHING * lead {
+                self.refine(n, at, &mut crossing);
+            }
+            crossing
+        } else if rest <= MUCH * lead {
+            self.proved::<ALL>(n, tracks, at, rough)?
+        } else {
+            return None;
+        };
+        misses.forget(Looked::Whole, is_later);
+        work.pieces += 1;
+        Some(crossing)
+    }
+
+    /// A guard's crossing near a rough root, if so many derivatives prove that it is the first.
+    #[inline]
+    fn proved<const N: usize>(
+        &self,
+        n: usize,
+        tracks: &[Track],
+        at: &GuardedPoint<T>,
+        rough: f64,
+    ) -> Option<FirstCrossing<T>> {
+        let guard = self.quotient::<N>(n, &tracks[n], at);
+        let after = guard.root(rough)?;
+        let last = self.rows[n].bound(N - 1, &at.norms, (1.0 + WINDOW) * after);
+        let room = guard.crosses(after, last)?;
+        let end = (1.0 + room) * after;
+        let mut guards = 1 << n;
+        for (other, track) in live(tracks).filter(|(other, _)| *other != n) {
+            if self.rows[other].twin == self.rows[n].twin && track.outward == tracks[n].outward {
+                guards |= 1 << other;
+            } else if !self.stays_negative::<N>(other, track, at, end) {
+                return None;
+            }
+        }
+        let time = |share: f64| at.time + T::exact(share * after);
+        let between = [time(1.0 - room), time(1.0 + room)];
+        Some(FirstCrossing { time: time(1.0), between, guards })
+    }
+
+    /// Brings the time of a crossing nearer to where all derivatives of its guard have it.
+    #[inline]
+    fn refine(&self, n: usize, at: &GuardedPoint<T>, crossing: &mut FirstCrossing<T>) {
+        let orders = self.rows[n].rounded_orders::<ALL>(&at.modal.y, 0);
+        let after = crossing.time - at.time;
+        let root = after.to_f64();
+        let (step, _) = Quotient::of([&orders, &[0.0; ALL]], 0, 0.0, [0.0; 2]).step(root);
+        let better = crossing.time - T::exact(step * root);
+        let [low, high] = crossing.between;
+        if low < better && better < high {
+            crossing.time = better;
+        }
+    }
+
+    /// Whether a guard is proved to stay negative from a point on.
+    #[inline]
+    pub(super) fn stays_negative<const N: usize>(
+        &self,
+        n: usize,
+        track: &Track,
+        at: &GuardedPoint<T>,
+        length: f64,
+    ) -> bool {
+        if self.excess(n, track, at, length) < -4.0 * at.slack[n] {
+            return true;
+        }
+        if track.zeros > 2 {
+            return false;
+        }
+        let last = self.rows[n].bound(N - 1, &at.norms, length);
+        self.quotient::<N>(n, track, at).is_negative(length, last)
+    }
+
+    /// A guard that begins with at most two zeros.
+    #[inline]
+    fn quotient<const N: usize>(
+        &self,
+        n: usize,
+        track: &Track,
+        at: &GuardedPoint<T>,
+    ) -> Quotient<N> {
+        let [mut orders, sizes] = self.rows[n].orders_and_sizes::<N>(&at.modal, 0);
+        orders[..4].copy_from_slice(&at.orders[n].map(Number::to_f64));
+        orders.iter_mut().for_each(|order| *order *= track.outward);
+        let lost = LOST * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
+        let errors = [at.slack[n], lost];
+        Quotient::of([&orders, &sizes], track.zeros, self.margin, errors)
+    }
+}
+
+/// The guard whose first terms suggest the earliest root after a point, and that root.
+#[inline]
+fn nearest<T: Number>(tracks: &[Track], at: &GuardedPoint<T>) -> Option<(usize, f64)> {
+    let mut nearest = (usize::MAX, f64::INFINITY);
+    for (n, track) in live(tracks) {
+        let root = rough_root(track, &at.orders[n]);
+        if root < nearest.1 {
+            nearest = (n, root);
+        }
+    }
+    (nearest.1 < f64::INFINITY).then_some(nearest)
+}
+
+/// A root that a guard's first terms suggest; infinite, or no number, where there is none.
+#[inline]
+pub(super) fn rough_root<T: Number>(track: &Track, orders: &[T; 4]) -> f64 {
+    let [value, slope, bend, third] = outward(orders, track).map(Number::to_f64);
+    let (bend, third) = (0.5 * bend, third / 6.0);
+    match track.zeros {
+        0 => positive_root([value, slope, bend, third]),
+        1 => positive_root([slope, bend, third, 0.0]),
+        2 => positive_root([bend, third, 0.0, 0.0]),
+        _ => f64::INFINITY,
+    }
+}
+
+/// Where a cubic that is negative at zero has about become positive: by its quadratic, or where
+/// that stays negative, its last root. Infinite, or no number, where there is none.
+#[inline]
+pub(super) fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
+    const STEPS: usize = 4;
+    let is_below = value < 0.0;
+    if !is_below {
+        return f64::INFINITY;
+    }
+    let first = rise([value, slope, bend]);
+    let comes_back = third > 0.0;
+    if first < f64::INFINITY || !comes_back {
+        return first;
+    }
+    // From above all roots Newton's method falls to the last one.
+    let share = |of: f64| (-of).max(0.0) / third;
+    let mut at = 1.1 * (root(share(value), 3) + root(share(slope), 2) + share(bend));
+    for _ in 0..STEPS {
+        let cubic = value + at * (slope + at * (bend + at * third));
+        at -= cubic / (slope + at * (2.0 * bend + 3.0 * at * third));
+    }
+    if at > 0.0 { at } else { f64::INFINITY }
+}

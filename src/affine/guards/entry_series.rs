@@ -1,0 +1,91 @@
+//! A guard shortly after an entry at which it is a structural zero: by its Taylor series, of which
+//! the zeros are left out.
+
+use super::row::ModalRow;
+use crate::affine::arithmetic::vector::{Vector, root, unit};
+use crate::affine::closed_form::bound::{Later, ORDERS};
+use crate::affine::closed_form::modal_state::ModalState;
+use crate::numeric::number::Number;
+
+/// A guard's Taylor coefficients at entry, with the sizes of what they are summed from.
+pub(super) struct GuardSeries<T> {
+    coefficients: [T; ORDERS],
+    sizes: [f64; ORDERS],
+}
+
+/// What the series of a segment's guards are made from.
+pub(super) struct SeriesEntry<T> {
+    /// The entry's co-ordinates, without the rounding of those that are no polynomials.
+    pub modal: ModalState<T>,
+    /// The norms of the sizes of all.
+    pub norms: Vector<f64>,
+    /// The time up to which the series are asked for.
+    pub until: f64,
+}
+
+/// Whether a guard that begins with so many zeros can be summed from its series.
+#[inline]
+pub(super) fn has_series(zeros: usize) -> bool {
+    0 < zeros && zeros < ORDERS
+}
+
+impl<T: Number> GuardSeries<T> {
+    /// The series of a guard that begins with so many zeros; zero where it has none.
+    pub fn of(row: &ModalRow<T>, zeros: usize, entry: &SeriesEntry<T>) -> Self {
+        let (mut coefficients, mut sizes) = ([T::zero(); ORDERS], [0.0; ORDERS]);
+        if !has_series(zeros) {
+            return Self { coefficients, sizes };
+        }
+        for k in zeros..row.last {
+            let (value, size) = row.order(k, &entry.modal);
+            coefficients[k] = value * T::inverse_factorial(k);
+            sizes[k] = size * f64::inverse_factorial(k);
+        }
+        // What rounding did to the entry moves as the co-ordinates do: how large the derivatives of
+        // a fast block are does not matter, because that decays.
+        let others = row.parts.iter().filter(|it| it.later != Later::Polynomial);
+        let moved: f64 = others.map(|it| it.bound(zeros, entry.until, &entry.norms)).sum();
+        sizes[zeros] += moved * f64::inverse_factorial(zeros);
+        Self { coefficients, sizes }
+    }
+
+    /// Value and three derivatives at a time, and the size of what the value is summed from.
+    #[inline]
+    pub fn at(&self, time: T) -> ([T; 4], f64) {
+        let Self { coefficients, sizes } = self;
+        let [mut value, mut slope, mut bend, mut third] = [T::zero(); 4];
+        let (mut size, size_of_time) = (0.0, time.to_f64().abs());
+        let last = sizes[..ORDERS - 1].iter().rposition(|it| *it > 0.0).map_or(0, |it| it + 1);
+        for (coefficient, own) in coefficients[..last].iter().zip(sizes).rev() {
+            third = third * time + bend;
+            bend = bend * time + slope;
+            slope = slope * time + value;
+            value = value * time + *coefficient;
+            size = size * size_of_time + own;
+        }
+        ([value, slope, bend + bend, T::exact(6.0) * third], size)
+    }
+}
+
+/// The products of the numbers beyond each up to the last order, which f64 holds exactly.
+const FACTORS: [f64; ORDERS] = {
+    let mut factors = [1.0; ORDERS];
+    let mut n = ORDERS - 1;
+    while n > 0 {
+        factors[n - 1] = factors[n] * n as f64;
+        n -= 1;
+    }
+    factors
+};
+
+/// Up to which time a guard's series without its last order is good to the last digit: `lead` is
+/// the first derivative that is not zero, `last` a bound of the last.
+#[inline]
+pub(super) fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64 {
+    if last == 0.0 {
+        return f64::INFINITY;
+    }
+    let order = ORDERS - 1;
+    let power = unit::<T>() * lead * FACTORS[zeros] / last;
+    0.9 * root(power, order - zeros)
+}

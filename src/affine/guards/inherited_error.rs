@@ -1,0 +1,31 @@
+//! What errors that were made before a segment may do to a guard along it.
+
+use super::row::ModalRow;
+use crate::affine::arithmetic::vector::Vector;
+use crate::affine::closed_form::bound::ORDERS;
+use crate::affine::closed_form::flow::ModeFlow;
+use crate::numeric::number::Number;
+
+/// The factor by which bounds are raised against rounding in f64.
+pub const OUTWARD: f64 = 1.0 + 1e-9;
+
+/// What the errors at the entry of a segment do to a row along it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct InheritedError {
+    /// Bounds of value and derivatives at entry, of the blocks that are polynomials of the time: so
+    /// an error of a rate is none of the value before time has passed.
+    pub orders: [f64; ORDERS],
+    /// Bounds of the norms of the other blocks' co-ordinates at entry.
+    pub norms: Vector<f64>,
+}
+
+impl InheritedError {
+    /// A bound of it at a time, which is not negative. Between two times it is at most the larger
+    /// of theirs, because decays and polynomials of positive terms are convex.
+    pub fn by<T: Number>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>, time: f64) -> f64 {
+        let polynomial =
+            (1..ORDERS).rev().fold(0.0, |sum, k| (sum + self.orders[k]) * time / k as f64);
+        let norms = flow.decayed(&self.norms, time);
+        (self.orders[0] + polynomial) * OUTWARD + row.bound(0, &norms, time)
+    }
+}

@@ -1,0 +1,49 @@
+//! A guard as a search follows it, and what a search costs.
+
+use crate::numeric::number::Number;
+
+/// What is known of a guard at the left end of what is searched.
+#[derive(Clone, Copy, Debug)]
+pub struct Track {
+    /// 1 where a crossing rises, -1 where it falls: the guard times this is negative inside.
+    pub outward: f64,
+    /// How many derivatives, the value included, are zero at the left end.
+    pub zeros: usize,
+    /// Whether it can cross at all.
+    pub live: bool,
+}
+
+/// What a search has cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SearchWork {
+    /// Evaluations of the closed form.
+    pub evaluations: u64,
+    /// Pieces that were certified.
+    pub pieces: u64,
+    /// Touches, entries, conditions and ties that rounding does not decide.
+    pub undecidable: u64,
+    /// The first guard that rounding left open by itself, as its number among those of its mode:
+    /// the events that end it come first, then the watched ones.
+    pub doubtful: Option<usize>,
+}
+
+impl SearchWork {
+    /// Counts a guard that rounding leaves open.
+    #[inline]
+    pub(in crate::affine) fn doubt(&mut self, guard: usize) {
+        self.undecidable += 1;
+        self.doubtful = self.doubtful.or(Some(guard));
+    }
+}
+
+/// Value and derivatives of a guard, positive outside.
+#[inline]
+pub fn outward<T: Number>(orders: &[T; 4], track: &Track) -> [T; 4] {
+    if track.outward < 0.0 { orders.map(|it| -it) } else { *orders }
+}
+
+/// The guards that can cross, with their numbers.
+#[inline]
+pub fn live(tracks: &[Track]) -> impl Iterator<Item = (usize, &Track)> {
+    tracks.iter().enumerate().filter(|(_, track)| track.live)
+}

@@ -1,0 +1,147 @@
+//! From the tables of a file to a system.
+
+mod mode;
+mod names;
+
+use crate::affine::model::error::SystemError;
+use crate::affine::model::file::{GivenParameter, Scalar, StartTable, SystemFile};
+use crate::affine::model::system::{LARGEST_COUNT, LARGEST_DIMENSION, StartPoint, System, TROUBLE};
+use dashu_ratio::RBig;
+use mode::ModeReader;
+use names::{Accepts, Names};
+use std::collections::BTreeMap;
+use toml::Spanned;
+
+impl SystemFile {
+    /// The system that the file describes.
+    ///
+    /// # Errors
+    /// Whatever does not make sense, with its place and what is accepted.
+    pub fn system(&self) -> Result<System, SystemError> {
+        system(self)
+    }
+}
+
+/// A word for a kind of trouble.
+fn trouble(file: &SystemFile, kind: &Spanned<String>) -> Result<String, SystemError> {
+    if TROUBLE.contains(&kind.get_ref().as_str()) {
+        return Ok(kind.get_ref().clone());
+    }
+    let what = format!("{:?} is not accepted: any of {}", kind.get_ref(), TROUBLE.join(", "));
+    Err(file.error(&kind.span(), &format!("trouble {what}")))
+}
+
+fn system(file: &SystemFile) -> Result<System, SystemError> {
+    let mut names = Names::of(file)?;
+    let forcing = names.forcing()?;
+    names.check_lets()?;
+    let tables = &file.tables;
+    let mut system = System {
+        name: file.kebab(&tables.name)?,
+        why: tables.why.clone(),
+        trouble: tables.trouble.iter().map(|it| trouble(file, it)).collect::<Result<_, _>>()?,
+        source: tables.source.clone(),
+        parameters: file.parameters.iter().filter_map(parameter).collect(),
+        states: names.states.clone(),
+        scales: names.scales()?,
+        time_scale: names.time_scale(forcing.as_ref())?,
+        forcing,
+        modes: Vec::new(),
+        start: None,
+    };
+    let dimension = system.dimension();
+    if dimension > LARGEST_DIMENSION {
+        let what = format!(
+            "{} states are too many: with cos, sin (where the system is forced) and 1 appended \
+             there are {dimension}, and up to {LARGEST_DIMENSION} are accepted",
+            system.states.len()
+        );
+        return Err(file.error(&tables.states.span(), &what));
+    }
+    let places = mode_places(file)?;
+    let omega = system.forcing.as_ref().map(|it| it.omega.clone());
+    for table in &tables.mode {
+        let reader = ModeReader { file, places: &places, omega: omega.as_ref() };
+        let here = system.modes.len();
+        system.modes.push(reader.mode(&mut names, table, here)?);
+    }
+    if let Some(start) = &file.start {
+        system.start = Some(start_point(&mut names, start, &places)?);
+    }
+    Ok(system)
+}
+
+/// A parameter's name and value.
+fn parameter((name, it): (&String, &GivenParameter)) -> Option<(String, f64)> {
+    it.value.number().map(|value| (name.clone(), value.to_f64().value()))
+}
+
+/// The index of each mode by its name.
+fn mode_places(file: &SystemFile) -> Result<BTreeMap<String, usize>, SystemError> {
+    let mut places = BTreeMap::new();
+    for (index, mode) in file.tables.mode.iter().enumerate() {
+        if places.insert(file.kebab(&mode.name)?, index).is_some() {
+            let what = format!("the mode {:?} is there twice", mode.name.get_ref());
+            return Err(file.error(&mode.name.span(), &what));
+        }
+    }
+    if places.is_empty() || places.len() > LARGEST_COUNT {
+        let what = format!("{} modes are not accepted: 1 to {LARGEST_COUNT} are", places.len());
+        return Err(file.error(&file.tables.name.span(), &what));
+    }
+    Ok(places)
+}
+
+fn start_point(
+    names: &mut Names,
+    table: &StartTable,
+    places: &BTreeMap<String, usize>,
+) -> Result<StartPoint, SystemError> {
+    let refuse = |what: &str| SystemError::at(&table.place, what);
+    let known: Vec<_> = places.keys().map(String::as_str).collect();
+    let mode = match table.entries.get("mode") {
+        Some(GivenParameter { value: Scalar::Text(name), place }) => {
+            places.get(name).copied().ok_or_else(|| {
+                let what =
+                    format!("there is no mode {name:?}: accepted is one of {}", known.join(", "));
+                SystemError::at(place, &what)
+            })?
+        }
+        Some(GivenParameter { place, .. }) => {
+            let what = format!("mode is no number: accepted is one of {}", known.join(", "));
+            return Err(SystemError::at(place, &what));
+        }
+        None => {
+            let what =
+                format!("mode is missing in [start]: accepted is one of {}", known.join(", "));
+            return Err(refuse(&what));
+        }
+    };
+    names.accepts = Accepts::Forcing;
+    let time = match table.entries.get("t") {
+        Some(GivenParameter { value, place }) => names.constant_at("t", value, place)?,
+        _ => RBig::ZERO,
+    };
+    let states = names.states.clone();
+    let mut state = Vec::with_capacity(states.len());
+    for name in &states {
+        let Some(GivenParameter { value, place }) = table.entries.get(name) else {
+            return Err(refuse(&format!("the state {name} is missing in [start]")));
+        };
+        let form = names.affine(value);
+        let form = form.map_err(|what| SystemError::at(place, &format!("{name}: {what}")))?;
+        if form.has_states() {
+            let what = "a start is an expression of parameters, cos and sin";
+            return Err(SystemError::at(place, &format!("{name}: {what}")));
+        }
+        let [.., cos, sin, one] = form.0.as_slice() else { continue };
+        state.push([cos.clone(), sin.clone(), one.clone()]);
+    }
+    let surplus = |key: &&String| !(["mode", "t"].contains(&key.as_str()) || states.contains(key));
+    if let Some(key) = table.entries.keys().find(surplus) {
+        let place = &table.entries[key].place;
+        let what = format!("{key} is no state: accepted are mode, t, {}", states.join(", "));
+        return Err(SystemError::at(place, &what));
+    }
+    Ok(StartPoint { mode, time, state })
+}

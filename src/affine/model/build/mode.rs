@@ -1,0 +1,199 @@
+//! From the tables of a mode to its equations, events and successors.
+
+use super::names::Names;
+use crate::affine::model::error::SystemError;
+use crate::affine::model::expression::{condition, expression};
+use crate::affine::model::file::{ModeTable, SystemFile, UntilTable, WatchTable};
+use crate::affine::model::form::Form;
+use crate::affine::model::system::{Direction, LARGEST_COUNT, Mode, Row, Successor, Until, Watch};
+use dashu_ratio::RBig;
+use std::collections::{BTreeMap, BTreeSet};
+use toml::Spanned;
+
+/// How runs end, which is what no event may be called.
+const ENDINGS: [&str; 6] =
+    ["end", "accumulation", "leaves-domain", "no-progress", "beyond-guard", "undecided"];
+
+/// What the tables of a mode need beside the names.
+pub(super) struct ModeReader<'a> {
+    pub(super) file: &'a SystemFile,
+    pub(super) places: &'a BTreeMap<String, usize>,
+    pub(super) omega: Option<&'a RBig>,
+}
+
+impl ModeReader<'_> {
+    pub(super) fn mode(
+        &self,
+        names: &mut Names,
+        table: &ModeTable,
+        here: usize,
+    ) -> Result<Mode, SystemError> {
+        let mut matrix = self.rates(names, table)?;
+        let dimension = matrix.len() + if self.omega.is_some() { 3 } else { 1 };
+        if let Some(omega) = self.omega {
+            let cos = dimension - 3;
+            let mut rates = [vec![RBig::ZERO; dimension], vec![RBig::ZERO; dimension]];
+            rates[0][cos + 1] = -omega.clone();
+            rates[1][cos] = omega.clone();
+            matrix.extend(rates);
+        }
+        matrix.push(vec![RBig::ZERO; dimension]);
+        let count = table.until.len() + table.watch.len();
+        if count > LARGEST_COUNT {
+            let what =
+                format!("{count} events are too many: up to {LARGEST_COUNT} a mode are accepted");
+            return Err(self.file.error(&table.name.span(), &what));
+        }
+        self.check_events(table)?;
+        let until = table.until.iter().map(|it| self.until(names, it, here));
+        let until = until.collect::<Result<_, _>>()?;
+        let watch = table.watch.iter().map(|it| self.watch(names, it)).collect::<Result<_, _>>()?;
+        Ok(Mode { name: table.name.get_ref().clone(), matrix, until, watch })
+    }
+
+    fn check_events(&self, table: &ModeTable) -> Result<(), SystemError> {
+        let until = table.until.iter().map(|it| &it.name);
+        let mut seen = BTreeSet::new();
+        for name in until.chain(table.watch.iter().map(|it| &it.name)) {
+            if ENDINGS.contains(&name.get_ref().as_str()) {
+                let what = format!("{:?} is the name of an ending", name.get_ref());
+                return Err(self.file.error(&name.span(), &what));
+            }
+            if !seen.insert(self.file.kebab(name)?) {
+                let what = format!("the event {:?} is there twice in its mode", name.get_ref());
+                return Err(self.file.error(&name.span(), &what));
+            }
+        }
+        Ok(())
+    }
+
+    /// The rows of M that belong to the states.
+    fn rates(&self, names: &mut Names, table: &ModeTable) -> Result<Vec<Row>, SystemError> {
+        let mut rates = BTreeMap::new();
+        for equation in table.equations.get_ref() {
+            let (state, rate) = self.assignment(names, equation, true)?;
+            if rates.insert(state, rate).is_some() {
+                let what = format!("{}' is given twice", names.states[state]);
+                return Err(self.file.error(&equation.span(), &what));
+            }
+        }
+        match (0..names.states.len()).find(|state| !rates.contains_key(state)) {
+            None => Ok(rates.into_values().collect()),
+            Some(state) => {
+                let what = format!("an equation `{}' = ...` is missing", names.states[state]);
+                Err(self.file.error(&table.equations.span(), &what))
+            }
+        }
+    }
+
+    /// `x' = ...`, or without the prime: the state's index, and the row.
+    fn assignment(
+        &self,
+        names: &mut Names,
+        text: &Spanned<String>,
+        primed: bool,
+    ) -> Result<(usize, Row), SystemError> {
+        let refuse = |what: &str| self.file.error(&text.span(), what);
+        let prime = if primed { "'" } else { "" };
+        let shape = format!("`x{prime} = ...` with a state x is accepted");
+        let Some((left, right)) = text.get_ref().split_once('=') else {
+            return Err(refuse(&shape));
+        };
+        let left = left.trim();
+        let name = if primed { left.strip_suffix('\'').map(str::trim_end) } else { Some(left) };
+        let state = name.and_then(|name| names.states.iter().position(|it| it == name));
+        let state = state.ok_or_else(|| refuse(&format!("{left:?}: {shape}")))?;
+        let form = expression(right, names).map_err(|what| refuse(&what))?;
+        Ok((state, self.row(form).map_err(|what| refuse(&what))?))
+    }
+
+    fn row(&self, form: Form) -> Result<Row, String> {
+        form.check_range()?;
+        let states = form.0.len() - 3;
+        let forced = self.omega.is_some();
+        let kept = |(index, it)| (forced || index < states || index == states + 2).then_some(it);
+        Ok(form.0.into_iter().enumerate().filter_map(kept).collect())
+    }
+
+    fn guard(&self, names: &mut Names, text: &Spanned<String>) -> Result<Row, SystemError> {
+        let form = condition(text.get_ref(), names);
+        let row = form.and_then(|form| self.row(form));
+        row.map_err(|what| self.file.error(&text.span(), &what))
+    }
+
+    fn until(
+        &self,
+        names: &mut Names,
+        table: &UntilTable,
+        here: usize,
+    ) -> Result<Until, SystemError> {
+        let guard = self.guard(names, &table.guard)?;
+        let dimension = guard.len();
+        let unit = |index| {
+            let mut row = vec![RBig::ZERO; dimension];
+            row[index] = RBig::ONE;
+            row
+        };
+        let mut reset: Vec<Row> = (0..dimension).map(unit).collect();
+        let mut assigned = BTreeSet::new();
+        for text in &table.reset {
+            let (state, row) = self.assignment(names, text, false)?;
+            if !assigned.insert(state) {
+                let what = format!("{} is assigned twice", names.states[state]);
+                return Err(self.file.error(&text.span(), &what));
+            }
+            reset[state] = row;
+        }
+        let next = self.successors(names, table, here)?;
+        Ok(Until { name: table.name.get_ref().clone(), guard, reset, next })
+    }
+
+    fn successors(
+        &self,
+        names: &mut Names,
+        table: &UntilTable,
+        here: usize,
+    ) -> Result<Vec<Successor>, SystemError> {
+        let Some(next) = &table.next else { return Ok(vec![Successor { when: None, mode: here }]) };
+        let refuse = |what: &str| Err(self.file.error(&next.span(), what));
+        let count = next.get_ref().len();
+        if count == 0 || count > LARGEST_COUNT {
+            return refuse(&format!(
+                "{count} successors are not accepted: 1 to {LARGEST_COUNT} are"
+            ));
+        }
+        let mut successors = Vec::with_capacity(count);
+        for (n, entry) in next.get_ref().iter().enumerate() {
+            if entry.when.is_some() == (n + 1 == count) {
+                return refuse("every successor but the last has a `when`, and the last has none");
+            }
+            let Some(mode) = self.places.get(entry.mode.get_ref()) else {
+                let known: Vec<_> = self.places.keys().map(String::as_str).collect();
+                let what = format!(
+                    "there is no mode {:?}: accepted is one of {}",
+                    entry.mode.get_ref(),
+                    known.join(", ")
+                );
+                return Err(self.file.error(&entry.mode.span(), &what));
+            };
+            let when = entry.when.as_ref().map(|it| self.guard(names, it)).transpose()?;
+            successors.push(Successor { when, mode: *mode });
+        }
+        Ok(successors)
+    }
+
+    fn watch(&self, names: &mut Names, table: &WatchTable) -> Result<Watch, SystemError> {
+        let direction = match table.direction.as_ref().map(|it| (it.get_ref().as_str(), it.span()))
+        {
+            None | Some(("rising", _)) => Direction::Rising,
+            Some(("falling", _)) => Direction::Falling,
+            Some(("both", _)) => Direction::Both,
+            Some((other, span)) => {
+                let what = format!("{other:?} is no direction: rising, falling or both is");
+                return Err(self.file.error(&span, &what));
+            }
+        };
+        let guard = self.guard(names, &table.guard)?;
+        Ok(Watch { name: table.name.get_ref().clone(), guard, direction })
+    }
+}

@@ -1,0 +1,241 @@
+//! What the names of a file's expressions mean.
+
+use crate::affine::model::error::SystemError;
+use crate::affine::model::expression::{Scope, expression, is_name};
+use crate::affine::model::file::{GivenParameter, Scalar, SystemFile};
+use crate::affine::model::form::Form;
+use crate::affine::model::system::Forcing;
+use dashu_ratio::RBig;
+use std::collections::{BTreeMap, BTreeSet};
+use toml::Spanned;
+
+/// Names that expressions cannot give to anything else.
+const RESERVED: [&str; 4] = ["cos", "sin", "omega", "phi"];
+
+/// Keys of a start beside the states.
+const OF_A_START: [&str; 2] = ["t", "mode"];
+
+/// What the names of a file's expressions mean.
+pub(super) struct Names<'a> {
+    file: &'a SystemFile,
+    pub(super) states: Vec<String>,
+    forced: bool,
+    values: BTreeMap<String, Form>,
+    /// The `[let]`s that are being read, to see a circle.
+    open: Vec<String>,
+    /// What an expression may be of here.
+    pub(super) accepts: Accepts,
+}
+
+/// What an expression may be of.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Accepts {
+    /// States, cos, sin and what is constant.
+    States,
+    /// Cos, sin and what is constant, as at a start.
+    Forcing,
+    /// What is constant alone.
+    Constants,
+}
+
+impl<'a> Names<'a> {
+    pub(super) fn of(file: &'a SystemFile) -> Result<Self, SystemError> {
+        let tables = &file.tables;
+        if *tables.schema.get_ref() != 1 {
+            return Err(file.error(&tables.schema.span(), "the schema that is accepted is 1"));
+        }
+        let states: Vec<_> =
+            tables.states.get_ref().iter().map(|it| it.get_ref().clone()).collect();
+        if states.is_empty() {
+            return Err(file.error(&tables.states.span(), "at least one state is accepted"));
+        }
+        let (forced, values) = (tables.forcing.is_some(), BTreeMap::new());
+        let open = Vec::new();
+        let mut names = Self { file, states, forced, values, open, accepts: Accepts::States };
+        names.check_names()?;
+        for (name, GivenParameter { value, place }) in &file.parameters {
+            let number = value.number().ok_or_else(|| {
+                let what = "a parameter is a finite number; an expression belongs into [let]";
+                SystemError::at(place, &format!("{name}: {what}"))
+            })?;
+            names.values.insert(name.clone(), Form::number(names.states.len(), number));
+        }
+        Ok(names)
+    }
+
+    fn check_names(&self) -> Result<(), SystemError> {
+        let tables = &self.file.tables;
+        let place = |span| self.file.source().place(&span);
+        let states = tables.states.get_ref().iter().map(|it| (it.get_ref(), place(it.span())));
+        let parameters = self.file.parameters.iter().map(|(name, it)| (name, it.place.clone()));
+        let lets = tables.lets.iter().map(|(name, it)| (name, place(it.span())));
+        let mut seen = BTreeSet::new();
+        for (name, place) in states.chain(parameters).chain(lets) {
+            let is_state = self.states.contains(name);
+            let what = if is_state && OF_A_START.contains(&name.as_str()) {
+                format!("{name} is no name of a state: a start holds a {name} beside the states")
+            } else if RESERVED.contains(&name.as_str()) {
+                format!("{name} is reserved for theta = omega t + phi")
+            } else if !is_name(name) {
+                format!("{name:?} is no name: a letter, then letters, digits and underscores are")
+            } else if !seen.insert(name) {
+                format!("{name} is given twice; states, parameters and [let] share their names")
+            } else {
+                continue;
+            };
+            return Err(SystemError::at(&place, &what));
+        }
+        Ok(())
+    }
+
+    /// Reads every `[let]`, used or not.
+    pub(super) fn check_lets(&mut self) -> Result<(), SystemError> {
+        let file = self.file;
+        for (name, text) in &file.tables.lets {
+            self.value(name)
+                .map_err(|what| file.error(&text.span(), &format!("{name}: {what}")))?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn forcing(&mut self) -> Result<Option<Forcing>, SystemError> {
+        let Some(table) = &self.file.tables.forcing else { return Ok(None) };
+        let omega = self.constant("omega", &table.omega)?;
+        let phi = self.constant("phi", &table.phi)?;
+        if omega <= RBig::ZERO {
+            return Err(self.file.error(&table.omega.span(), "omega is accepted above 0"));
+        }
+        for (name, value) in [("omega", &omega), ("phi", &phi)] {
+            let form = Form::number(self.states.len(), value.clone());
+            self.values.insert(name.to_owned(), form);
+        }
+        Ok(Some(Forcing { omega, phi }))
+    }
+
+    pub(super) fn scales(&mut self) -> Result<Vec<f64>, SystemError> {
+        let Some(scales) = &self.file.tables.scales else {
+            return Ok(vec![1.0; self.states.len()]);
+        };
+        if scales.get_ref().len() != self.states.len() {
+            let what = format!("scales holds a number a state, {} of them", self.states.len());
+            return Err(self.file.error(&scales.span(), &what));
+        }
+        scales.get_ref().iter().map(|it| self.positive("scales", it)).collect()
+    }
+
+    pub(super) fn time_scale(&mut self, forcing: Option<&Forcing>) -> Result<f64, SystemError> {
+        match (&self.file.tables.time_scale, forcing) {
+            (Some(scale), _) => self.positive("time_scale", scale),
+            (None, Some(forcing)) => Ok(1.0 / forcing.omega.to_f64().value()),
+            (None, None) => Ok(1.0),
+        }
+    }
+
+    fn positive(&mut self, key: &str, scalar: &Spanned<Scalar>) -> Result<f64, SystemError> {
+        let value = self.constant(key, scalar)?.to_f64().value();
+        if value > 0.0 && value.is_finite() {
+            return Ok(value);
+        }
+        Err(self.file.error(&scalar.span(), &format!("{key}: a positive number is accepted")))
+    }
+
+    /// A number, or an expression of parameters.
+    fn constant(&mut self, key: &str, scalar: &Spanned<Scalar>) -> Result<RBig, SystemError> {
+        let place = self.file.source().place(&scalar.span());
+        self.constant_at(key, scalar.get_ref(), &place)
+    }
+
+    pub(super) fn constant_at(
+        &mut self,
+        key: &str,
+        scalar: &Scalar,
+        place: &str,
+    ) -> Result<RBig, SystemError> {
+        let before = std::mem::replace(&mut self.accepts, Accepts::Constants);
+        let form = self.affine(scalar);
+        self.accepts = before;
+        let form = form.map_err(|it| SystemError::at(place, &format!("{key}: {it}")))?;
+        form.constant().cloned().ok_or_else(|| {
+            SystemError::at(place, &format!("{key}: a number or an expression of parameters"))
+        })
+    }
+
+    pub(super) fn affine(&mut self, scalar: &Scalar) -> Result<Form, String> {
+        let form = match scalar {
+            Scalar::Text(text) => expression(text, self)?,
+            other => other
+                .number()
+                .map(|number| Form::number(self.states.len(), number))
+                .ok_or_else(|| "a finite number is accepted".to_owned())?,
+        };
+        form.check_range()?;
+        Ok(form)
+    }
+}
+
+impl Scope for Names<'_> {
+    fn value(&mut self, name: &str) -> Result<Form, String> {
+        let states = self.states.len();
+        if let Some(form) = self.values.get(name) {
+            return Ok(form.clone());
+        }
+        if let Some(index) = self.states.iter().position(|it| it == name) {
+            return match self.accepts {
+                Accepts::States => Ok(Form::unit(states, index)),
+                Accepts::Forcing => Err(format!(
+                    "{name} is a state: a start is an expression of parameters, cos, sin"
+                )),
+                Accepts::Constants => {
+                    Err(format!("{name} is a state: an expression of parameters is accepted"))
+                }
+            };
+        }
+        if let Some(index) = ["cos", "sin"].iter().position(|it| *it == name) {
+            return if self.accepts == Accepts::Constants {
+                Err(format!("{name} changes with time: an expression of parameters is accepted"))
+            } else if self.forced {
+                Ok(Form::unit(states, states + index))
+            } else {
+                Err(format!("{name} means nothing without forcing"))
+            };
+        }
+        let file = self.file;
+        let Some(text) = file.tables.lets.get(name) else {
+            let known = self.known();
+            let accepted = if known.is_empty() {
+                "a number, as there are no parameters".to_owned()
+            } else {
+                known.join(", ")
+            };
+            return Err(format!("{name} is not known: accepted are {accepted}"));
+        };
+        if self.open.iter().any(|it| it == name) {
+            return Err(format!("{name} is defined by itself"));
+        }
+        self.open.push(name.to_owned());
+        let before = std::mem::replace(&mut self.accepts, Accepts::States);
+        let form = expression(text.get_ref(), self);
+        self.accepts = before;
+        self.open.pop();
+        let form = form?;
+        self.values.insert(name.to_owned(), form.clone());
+        Ok(form)
+    }
+
+    fn states(&self) -> usize {
+        self.states.len()
+    }
+}
+
+impl Names<'_> {
+    /// All names that an expression may hold here.
+    fn known(&self) -> Vec<&str> {
+        let states = self.states.iter().filter(|_| self.accepts == Accepts::States);
+        let turns = self.forced && self.accepts != Accepts::Constants;
+        let turning: &[_] = if turns { &["cos", "sin"] } else { &[] };
+        let given = ["omega", "phi"].into_iter().filter(|it| self.values.contains_key(*it));
+        let names = self.file.parameters.keys().chain(self.file.tables.lets.keys());
+        let all = states.chain(names).map(String::as_str);
+        all.chain(turning.iter().copied()).chain(given).collect()
+    }
+}

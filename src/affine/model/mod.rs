@@ -1,0 +1,14 @@
+//! The model that a system's file describes, read exactly.
+//!
+//! [`system`] says what a piecewise-affine system is; the other rooms use nothing else of this one.
+//! [`mod@file`] has the tables of a `*.system.toml` as they are written, and [`build`] makes a
+//! system of them. The text of an equation or a guard ([`expression`]) becomes a form with rational
+//! coefficients ([`form`]), and what is refused becomes an [`error`] with its place. Read `system`
+//! first, then `file` and `build`.
+
+mod build;
+pub mod error;
+mod expression;
+pub mod file;
+mod form;
+pub mod system;

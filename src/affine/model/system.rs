@@ -1,0 +1,186 @@
+//! A piecewise-affine hybrid system with exact coefficients.
+//!
+//! The state with cos theta and sin theta (of a forced system) and 1 appended is z, in this order.
+//! In each mode z' = M z; a guard is a row w, with the value w z; a reset is a matrix R, z+ = R z.
+
+use super::error::SystemError;
+use super::file::SystemFile;
+use dashu_ratio::RBig;
+use std::collections::BTreeMap;
+
+/// A row of exact coefficients, one for each entry of z.
+pub type Row = Vec<RBig>;
+
+/// The largest number of entries of z.
+pub const LARGEST_DIMENSION: usize = 12;
+
+/// The largest number of modes, of events in a mode and of successors of an event.
+pub(super) const LARGEST_COUNT: usize = 64;
+
+/// The kinds of trouble that a system or a case may be said to make.
+pub const TROUBLE: [&str; 19] = [
+    "jump",
+    "accumulation",
+    "simultaneous",
+    "sliding",
+    "chatter",
+    "clock",
+    "start-on-guard",
+    "many-guards",
+    "stiffness",
+    "graze",
+    "double-crossing",
+    "multiple-zero",
+    "restart-on-zero",
+    "side-of-root",
+    "output-at-events",
+    "backward",
+    "direction",
+    "hysteresis",
+    "chaos",
+];
+
+/// A piecewise-affine hybrid system.
+#[derive(Clone, Debug)]
+pub struct System {
+    /// The system's name.
+    pub name: String,
+    /// What it is for, in one sentence, or nothing.
+    pub why: String,
+    /// The kinds of trouble that it makes.
+    pub trouble: Vec<String>,
+    /// The publication or program that the system is from, or nothing.
+    pub source: String,
+    /// The values of its parameters.
+    pub parameters: BTreeMap<String, f64>,
+    /// The names of the states.
+    pub states: Vec<String>,
+    /// The size of each state, by which it is divided before any norm.
+    pub scales: Vec<f64>,
+    /// The unit by which times are divided before any comparison.
+    pub time_scale: f64,
+    /// The forcing, of a forced system.
+    pub forcing: Option<Forcing>,
+    /// The modes.
+    pub modes: Vec<Mode>,
+    /// The point at which a run begins, if the file says so.
+    pub start: Option<StartPoint>,
+}
+
+/// A forcing of the phase theta = omega t + phi.
+#[derive(Clone, Debug)]
+pub struct Forcing {
+    /// The frequency, radians a unit of time: positive, or negative where a system runs backward.
+    pub omega: RBig,
+    /// The phase at time zero, radians.
+    pub phi: RBig,
+}
+
+/// One of the system's modes.
+#[derive(Clone, Debug)]
+pub struct Mode {
+    /// The mode's name.
+    pub name: String,
+    /// The rows of M.
+    pub matrix: Vec<Row>,
+    /// The guards that end it, in the file's order.
+    pub until: Vec<Until>,
+    /// The guards whose crossings are counted, in the file's order.
+    pub watch: Vec<Watch>,
+}
+
+/// A guard that ends its mode where it becomes positive.
+#[derive(Clone, Debug)]
+pub struct Until {
+    /// The event's name.
+    pub name: String,
+    /// The guard, negative inside the mode.
+    pub guard: Row,
+    /// The rows of R.
+    pub reset: Vec<Row>,
+    /// The modes that may follow: the first whose condition holds does.
+    pub next: Vec<Successor>,
+}
+
+/// A mode that may follow an event.
+#[derive(Clone, Debug)]
+pub struct Successor {
+    /// The condition: that the first of this row's value and derivatives that is not zero is
+    /// positive.
+    pub when: Option<Row>,
+    /// The index of the mode.
+    pub mode: usize,
+}
+
+/// A guard whose crossings are counted.
+#[derive(Clone, Debug)]
+pub struct Watch {
+    /// The event's name.
+    pub name: String,
+    /// The guard.
+    pub guard: Row,
+    /// The crossings that are events.
+    pub direction: Direction,
+}
+
+/// The direction in which a watched guard has to cross zero for an event.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// The guard crosses from negative to positive.
+    Rising,
+    /// The guard crosses from positive to negative.
+    Falling,
+    /// Both directions count.
+    Both,
+}
+
+/// The point at which a run begins.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StartPoint {
+    /// The index of the mode.
+    pub mode: usize,
+    /// The time.
+    pub time: RBig,
+    /// Each state as coefficients of cos theta, sin theta and 1 at that time.
+    pub state: Vec<[RBig; 3]>,
+}
+
+impl System {
+    /// Reads a system from the text of its file; `file` is its name in errors.
+    ///
+    /// # Errors
+    /// What is not accepted, with file and line.
+    pub fn parse(file: &str, text: &str) -> Result<Self, SystemError> {
+        SystemFile::read(file, text)?.system()
+    }
+
+    /// Number of entries of z.
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.states.len() + if self.forcing.is_some() { 3 } else { 1 }
+    }
+
+    /// The index of the mode of this name.
+    #[must_use]
+    pub fn mode(&self, name: &str) -> Option<usize> {
+        self.modes.iter().position(|mode| mode.name == name)
+    }
+
+    /// The system that runs back in time: its elapsed time is the one that has gone back. Only
+    /// watched guards and the boundaries of modes mean anything in it.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        let mut reversed = self.clone();
+        for mode in &mut reversed.modes {
+            for row in &mut mode.matrix {
+                for entry in row {
+                    *entry = -std::mem::take(entry);
+                }
+            }
+        }
+        if let Some(forcing) = &mut reversed.forcing {
+            forcing.omega = -std::mem::take(&mut forcing.omega);
+        }
+        reversed
+    }
+}

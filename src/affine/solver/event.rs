@@ -1,0 +1,87 @@
+//! Events of a run, and how it can end.
+
+use crate::affine::arithmetic::clock::Time;
+
+/// What happens at an event of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum What<T> {
+    /// The run begins.
+    Start,
+    /// The mode of this index ends by its `until` of this index.
+    Until(usize, usize),
+    /// The `watch` of the second index is crossed in the mode of the first.
+    Watch(usize, usize),
+    /// The run ends.
+    End(Ending<T>),
+}
+
+/// How a run ends. An ending that has no instant of its own, as all but the first and the third,
+/// has the time and the state of the last event, watched ones included, or of the start.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Ending<T> {
+    /// The horizon is reached.
+    Horizon,
+    /// Infinitely many impacts follow, and come to an end between these times after the last.
+    Accumulation(T, T),
+    /// A backward run reaches the boundary of its mode.
+    LeavesDomain,
+    /// The run makes no progress: too many events lie in one instant.
+    NoProgress,
+    /// A mode is entered where one of its guards is positive already.
+    BeyondGuard,
+    /// The arithmetic has no digits left to decide what comes next, or that takes too much work.
+    Undecided,
+}
+
+/// An event of a run.
+#[derive(Debug)]
+pub struct Event<T> {
+    /// What happens.
+    pub what: What<T>,
+    /// The time.
+    pub time: Time<T>,
+    /// The state just after it.
+    pub state: Vec<T>,
+    /// The mode just after it.
+    pub mode: usize,
+    /// Bounds of the errors, in a run that follows them.
+    pub errors: Option<Errors>,
+}
+
+impl<T: Clone> Clone for Event<T> {
+    fn clone(&self) -> Self {
+        Self {
+            what: self.what.clone(),
+            time: self.time.clone(),
+            state: self.state.clone(),
+            mode: self.mode,
+            errors: self.errors.clone(),
+        }
+    }
+
+    /// Reuses the memory of the state.
+    #[inline]
+    fn clone_from(&mut self, other: &Self) {
+        self.what.clone_from(&other.what);
+        self.time.clone_from(&other.time);
+        self.state.clone_from(&other.state);
+        self.mode = other.mode;
+        self.errors.clone_from(&other.errors);
+    }
+}
+
+/// Bounds of the errors of an event's time and state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Errors {
+    /// The error of the time.
+    pub time: f64,
+    /// The error of each state.
+    pub state: Vec<f64>,
+}
+
+impl Errors {
+    /// Whether all of them are bounds.
+    pub(in crate::affine) fn are_finite(&self) -> bool {
+        self.time.is_finite() && self.state.iter().all(|it| it.is_finite())
+    }
+}

@@ -1,0 +1,212 @@
+//! A system made ready to run in one arithmetic.
+//!
+//! The solver has each mode's closed form and guards in the numbers of that arithmetic. What runs
+//! have learned of the system is kept for the runs that follow: its structural zeros in [`pool`],
+//! and the starts that they had in [`start_cache`]. [`event`] says what a run gives out. Read this
+//! file first, then `event`.
+
+pub mod event;
+pub mod pool;
+mod start_cache;
+
+use crate::affine::arithmetic::clock::{Clock, Time};
+use crate::affine::arithmetic::real::BigReal;
+use crate::affine::arithmetic::vector::{Vector, rounded};
+use crate::affine::closed_form::bound;
+use crate::affine::closed_form::flow::ModeFlow;
+use crate::affine::guards::row::ModalRow;
+use crate::affine::modal;
+use crate::affine::model::system::{LARGEST_DIMENSION, Mode, Row, Successor, System};
+use crate::affine::zeros::graph::Structure;
+use crate::numeric::number::Number;
+use event::Event;
+use pool::Known;
+
+/// A piecewise-affine system in closed form, in an arithmetic of one or two words.
+#[derive(Clone, Debug)]
+pub struct Solver<T> {
+    pub(super) system: System,
+    pub(super) modes: Vec<SolverMode<T>>,
+    pub(super) clock: Option<Clock<T>>,
+    pub(super) known: Known<T>,
+    pub(super) backward: bool,
+}
+
+/// One of its modes.
+#[derive(Clone, Debug)]
+pub(super) struct SolverMode<T> {
+    pub flow: ModeFlow<T>,
+    /// The mode's matrix M.
+    pub matrix: Vec<Vector<T>>,
+    /// The guards of `until`, then those of `watch`.
+    pub guards: Vec<ModalRow<T>>,
+    /// The resets of `until`.
+    pub resets: Vec<Vec<Vector<T>>>,
+    /// The entries that each reset changes, with their rows.
+    pub changes: Vec<Vec<Change<T>>>,
+    /// The conditions of the successors of each `until`, in the co-ordinates of their modes.
+    pub conditions: Vec<Vec<Option<ModalRow<T>>>>,
+}
+
+/// An entry of z that a reset changes, and the factors of the entries before it.
+pub(super) type Change<T> = (usize, Vec<(usize, T)>);
+
+/// Why a system cannot be made ready.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unprepared {
+    /// The name of the system, whose structural zeros cannot be told.
+    pub system: String,
+}
+
+impl std::fmt::Display for Unprepared {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "the structural zeros of {} cannot be told", self.system)
+    }
+}
+
+impl std::error::Error for Unprepared {}
+
+impl<T: Number> Solver<T> {
+    /// Decomposes the matrix of each mode.
+    ///
+    /// # Errors
+    /// A system whose structural zeros cannot be told.
+    pub fn new(system: &System) -> Result<Self, Unprepared> {
+        Self::prepared(system.clone(), false)
+    }
+
+    /// A solver that runs back in time: its times decrease, only watched guards are events, and it
+    /// ends where the guard of an `until` would become positive.
+    ///
+    /// # Errors
+    /// A system whose structural zeros cannot be told.
+    pub fn backward(system: &System) -> Result<Self, Unprepared> {
+        Self::prepared(system.reversed(), true)
+    }
+
+    fn prepared(system: System, backward: bool) -> Result<Self, Unprepared> {
+        let mut blocks = Vec::new();
+        for mode in &system.modes {
+            let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale);
+            blocks.push(bound::ordered(blocks_of_mode));
+        }
+        let structure = Structure::of(&system);
+        let structure = structure.ok_or_else(|| Unprepared { system: system.name.clone() })?;
+        let flows: Vec<ModeFlow<T>> = blocks.iter().map(|it| ModeFlow::of(it)).collect();
+        let row = |row: &Row, mode: usize| ModalRow::of(row, &flows[mode].blocks, &blocks[mode]);
+        let mode = |(n, mode): (usize, &Mode)| {
+            let until = mode.until.iter().map(|it| &it.guard);
+            let guards: Vec<_> = until.chain(mode.watch.iter().map(|it| &it.guard)).collect();
+            let guard = |guard: &&Row| {
+                let twin = guards.iter().position(|it| it == guard).unwrap_or_default();
+                ModalRow { twin, ..row(guard, n) }
+            };
+            let conditions = mode.until.iter().map(|until| {
+                let condition = |it: &Successor| it.when.as_ref().map(|when| row(when, it.mode));
+                until.next.iter().map(condition).collect()
+            });
+            let resets = mode.until.iter().map(|it| it.reset.iter().map(numbers).collect());
+            SolverMode {
+                flow: flows[n].clone(),
+                matrix: mode.matrix.iter().map(numbers).collect(),
+                guards: guards.iter().map(guard).collect(),
+                resets: resets.collect(),
+                changes: mode.until.iter().map(|it| changes(&it.reset)).collect(),
+                conditions: conditions.collect(),
+            }
+        };
+        let modes = system.modes.iter().enumerate().map(mode).collect();
+        let clock = system.forcing.as_ref().map(Clock::of);
+        Ok(Self { modes, clock, known: Known::of(structure), backward, system })
+    }
+
+    /// The state at a time in the segment that an event of a run of this solver begins.
+    #[must_use]
+    pub fn state_at(&self, event: &Event<T>, time: &Time<T>) -> Vec<T> {
+        let Time { high, low } = time.since(&event.time);
+        let [elapsed, rest] = [high, low].map(|it| self.directed(it));
+        let flow = &self.modes[event.mode].flow;
+        let modal = flow.modal(&self.complete(&event.state, &event.time));
+        let mut state = flow.state_shortly_after(&flow.at(&modal, elapsed), rest).to_vec();
+        state.truncate(self.system.states.len());
+        state
+    }
+
+    /// The system; that of a backward run has its signs reversed.
+    #[must_use]
+    pub fn system(&self) -> &System {
+        &self.system
+    }
+
+    /// A difference of times as the time that a run takes for it, or the other way round: they
+    /// have different signs where runs go back.
+    #[inline]
+    pub(super) fn directed(&self, time: T) -> T {
+        if self.backward { -time } else { time }
+    }
+
+    /// The states at a time with cos theta, sin theta and 1 appended.
+    pub(super) fn complete(&self, states: &[T], time: &Time<T>) -> Vector<T> {
+        let mut state = [T::zero(); LARGEST_DIMENSION];
+        state[..states.len()].copy_from_slice(states);
+        let (sin, cos) = self.sin_cos(time);
+        self.append(&mut state, sin, cos);
+        state
+    }
+
+    /// Sine and cosine of the forcing angle at a time; 0 and 1 where nothing is forced.
+    #[inline]
+    pub(super) fn sin_cos(&self, time: &Time<T>) -> (T, T) {
+        match &self.clock {
+            Some(clock) if self.backward => {
+                let time = Time { high: -time.high, low: -time.low };
+                clock.sin_cos(&time)
+            }
+            Some(clock) => clock.sin_cos(time),
+            None => (T::zero(), T::one()),
+        }
+    }
+
+    /// Appends cos theta, sin theta and 1 to the states, which come first.
+    #[inline]
+    pub(super) fn append(&self, state: &mut Vector<T>, sin: T, cos: T) {
+        let (states, dimension) = (self.system.states.len(), self.system.dimension());
+        state[dimension - 1] = T::one();
+        if dimension > states + 1 {
+            state[states] = cos;
+            state[states + 1] = sin;
+        }
+    }
+
+    /// What the rounding of time does to cos theta and sin theta, as errors of z.
+    pub(super) fn phase_roundings(&self, time: &Time<T>) -> [f64; LARGEST_DIMENSION] {
+        let mut errors = [0.0; LARGEST_DIMENSION];
+        if let Some(clock) = &self.clock {
+            let states = self.system.states.len();
+            errors[states..states + 2].fill(clock.rounding(time));
+        }
+        errors
+    }
+}
+
+/// A row in the arithmetic.
+pub(super) fn numbers<T: Number>(row: &Row) -> Vector<T> {
+    let mut vector = [T::zero(); LARGEST_DIMENSION];
+    for (entry, number) in vector.iter_mut().zip(row) {
+        *entry = rounded(&BigReal::of(number));
+    }
+    vector
+}
+
+/// The rows of a reset that are not those of the identity, without their zeros.
+fn changes<T: Number>(reset: &[Row]) -> Vec<Change<T>> {
+    let kept = |n: usize, row: &Row| {
+        row.iter().enumerate().all(|(k, it)| if k == n { it.is_one() } else { it.is_zero() })
+    };
+    let factors = |row: &Row| {
+        let there = row.iter().enumerate().filter(|(_, it)| !it.is_zero());
+        there.map(|(k, it)| (k, rounded(&BigReal::of(it)))).collect()
+    };
+    let changed = reset.iter().enumerate().filter(|(n, row)| !kept(*n, row));
+    changed.map(|(n, row)| (n, factors(row))).collect()
+}

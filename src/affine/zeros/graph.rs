@@ -1,0 +1,231 @@
+//! The structural zeros of a run: which of them hold in which mode, and where its events lead.
+//!
+//! What is zero at the entry of a segment depends on the events that led there, not on numbers. A
+//! run therefore walks through a small graph, whose nodes are modes with their spaces of zeros;
+//! each is worked out once.
+
+use super::residue::{Residue, Residues, residues, row_times};
+use super::space::Zeros;
+use crate::affine::model::system::{Mode, Row, Successor, System, Until};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// At this many nodes all are forgotten: a system that counts its own events has a new one at each.
+const MOST_NODES: usize = 4096;
+
+/// A mode's rows modulo primes.
+#[derive(Clone, Debug)]
+struct ModeResidues {
+    matrix: Vec<Residues>,
+    /// The guards of `until`, then those of `watch`.
+    guards: Vec<Residues>,
+    resets: Vec<Vec<Residues>>,
+    /// The conditions of each event's successors, with their modes.
+    next: Vec<Vec<(Option<Residues>, usize)>>,
+}
+
+/// An event: the `until` that ends the mode, all guards that are zero there, as bits, and whether
+/// it is at the instant at which the mode was entered.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Firing {
+    pub until: usize,
+    pub guards: u64,
+    pub at_entry: bool,
+}
+
+/// A mode that is entered with certain zeros.
+#[derive(Clone, Debug)]
+pub struct Node {
+    pub mode: usize,
+    zeros: Zeros,
+    /// What stays zero along the segment.
+    lasting: Zeros,
+    /// For each guard: the order of its first derivative that is not a structural zero at entry;
+    /// none if it stays zero.
+    pub multiplicities: Arc<[Option<usize>]>,
+    /// The arrivals that were asked for: few, and looked up at each event.
+    arrivals: Vec<(Firing, Arrival)>,
+    ties: Vec<(u64, bool, u64)>,
+}
+
+/// What an event leads to.
+#[derive(Clone, Debug)]
+pub struct Arrival {
+    /// For each successor: the order of its condition's first derivative that is not a structural
+    /// zero; none if there is none, or no condition.
+    pub orders: Arc<[Option<usize>]>,
+    /// Whether the event multiplies the rate of its guard by a negative factor and leaves it at
+    /// zero.
+    pub impact: bool,
+    after: Zeros,
+    nodes: Vec<Option<usize>>,
+}
+
+/// The graph.
+#[derive(Clone, Debug, Default)]
+pub struct Structure {
+    modes: Vec<ModeResidues>,
+    nodes: Vec<Node>,
+    known: HashMap<(usize, Zeros), usize>,
+}
+
+impl Structure {
+    /// The graph of a system, without a node; none if a coefficient has no residue.
+    pub fn of(system: &System) -> Option<Self> {
+        let modes = system.modes.iter().map(ModeResidues::of).collect::<Option<_>>()?;
+        Some(Self { modes, nodes: Vec::new(), known: HashMap::new() })
+    }
+
+    #[inline]
+    pub fn node(&self, node: usize) -> &Node {
+        &self.nodes[node]
+    }
+
+    /// The node of a start, which may be one that is known.
+    pub fn at_start(&mut self, mode: usize, zeros: &Zeros, known: Option<usize>) -> usize {
+        let same = |node: &usize| {
+            self.nodes.get(*node).is_some_and(|it| it.mode == mode && it.zeros == *zeros)
+        };
+        known.filter(same).unwrap_or_else(|| self.intern(mode, zeros.clone()))
+    }
+
+    /// The guards that are zero at an event because others are.
+    #[inline]
+    pub fn tied(&mut self, node: usize, guards: u64, at_entry: bool) -> u64 {
+        let node = &mut self.nodes[node];
+        let known = node.ties.iter().find(|it| (it.0, it.1) == (guards, at_entry));
+        if let Some((.., tied)) = known {
+            return *tied;
+        }
+        let rows = &self.modes[node.mode].guards;
+        let zeros = with_rows(node.zeros_at(at_entry), rows, guards);
+        let also = |n: &usize| zeros.contains(&rows[*n]);
+        let tied = (0..rows.len()).filter(also).fold(guards, |mask, n| mask | 1 << n);
+        node.ties.push((guards, at_entry, tied));
+        tied
+    }
+
+    /// What an event leads to.
+    #[inline]
+    pub fn arrival(&mut self, node: usize, firing: Firing) -> &mut Arrival {
+        let Self { modes, nodes, .. } = self;
+        let node = &mut nodes[node];
+        let known = node.arrivals.iter().position(|(it, _)| *it == firing);
+        let at = known.unwrap_or_else(|| {
+            node.arrivals.push((firing, arrived(modes, node, firing)));
+            node.arrivals.len() - 1
+        });
+        &mut node.arrivals[at].1
+    }
+
+    /// The node that follows an event by the successor of this index.
+    #[inline]
+    pub fn enter(&mut self, node: usize, firing: Firing, successor: usize) -> usize {
+        let mode = self.modes[self.nodes[node].mode].next[firing.until][successor].1;
+        let arrival = self.arrival(node, firing);
+        if let Some(known) = arrival.nodes[successor] {
+            return known;
+        }
+        let after = arrival.after.clone();
+        if self.nodes.len() >= MOST_NODES {
+            self.nodes.clear();
+            self.known.clear();
+            return self.intern(mode, after);
+        }
+        let next = self.intern(mode, after);
+        self.arrival(node, firing).nodes[successor] = Some(next);
+        next
+    }
+
+    fn intern(&mut self, mode: usize, zeros: Zeros) -> usize {
+        if let Some(known) = self.known.get(&(mode, zeros.clone())) {
+            return *known;
+        }
+        let ModeResidues { matrix, guards, .. } = &self.modes[mode];
+        let multiplicity = |guard: &Residues| zeros.multiplicity(guard, matrix);
+        let node = Node {
+            mode,
+            lasting: zeros.invariant(matrix),
+            multiplicities: guards.iter().map(multiplicity).collect(),
+            zeros: zeros.clone(),
+            arrivals: Vec::new(),
+            ties: Vec::new(),
+        };
+        self.nodes.push(node);
+        self.known.insert((mode, zeros), self.nodes.len() - 1);
+        self.nodes.len() - 1
+    }
+}
+
+impl Node {
+    /// What is zero just before an event: at the instant of entry all that is zero there.
+    fn zeros_at(&self, entry: bool) -> &Zeros {
+        if entry { &self.zeros } else { &self.lasting }
+    }
+}
+
+fn arrived(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
+    let own = &modes[node.mode];
+    let zeros = with_rows(node.zeros_at(firing.at_entry), &own.guards, firing.guards);
+    let after = zeros.after(&own.resets[firing.until]);
+    let next = &own.next[firing.until];
+    let order = |(when, mode): &(Option<Residues>, usize)| {
+        when.as_ref().and_then(|row| after.multiplicity(row, &modes[*mode].matrix))
+    };
+    Arrival {
+        orders: next.iter().map(order).collect(),
+        impact: is_impact(own, firing.until, &zeros, &after),
+        nodes: vec![None; next.len()],
+        after,
+    }
+}
+
+fn with_rows(zeros: &Zeros, guards: &[Residues], fired: u64) -> Zeros {
+    let mut zeros = zeros.clone();
+    for (_, guard) in guards.iter().enumerate().filter(|(n, _)| fired >> n & 1 == 1) {
+        zeros.insert(guard);
+    }
+    zeros
+}
+
+/// h+ = 0 and h'+ = -e h' with the guard h; and all other changes are multiples of h'.
+fn is_impact(own: &ModeResidues, until: usize, zeros: &Zeros, after: &Zeros) -> bool {
+    let (guard, reset) = (&own.guards[until], &own.resets[until]);
+    let rate = row_times(guard, &own.matrix);
+    let changed = row_times(&rate, reset);
+    let proportional = |row: &Residues| zeros.contains(row) || zeros.ratio(row, &rate).is_some();
+    let jump = |(n, row): (usize, &Residues)| {
+        let mut jump = row.clone();
+        jump[n] = jump[n].minus(Residue::ONE);
+        jump
+    };
+    after.contains(guard)
+        && !zeros.contains(&rate)
+        && !zeros.contains(&changed)
+        && proportional(&changed)
+        && reset.iter().enumerate().map(jump).all(|row| proportional(&row))
+}
+
+impl ModeResidues {
+    fn of(mode: &Mode) -> Option<Self> {
+        let until = mode.until.iter().map(|it| &it.guard);
+        let guards = until.chain(mode.watch.iter().map(|it| &it.guard)).map(|it| residues(it));
+        let next = |until: &Until| {
+            let one = |it: &Successor| match &it.when {
+                Some(row) => residues(row).map(|row| (Some(row), it.mode)),
+                None => Some((None, it.mode)),
+            };
+            until.next.iter().map(one).collect()
+        };
+        Some(Self {
+            matrix: matrix(&mode.matrix)?,
+            guards: guards.collect::<Option<_>>()?,
+            resets: mode.until.iter().map(|it| matrix(&it.reset)).collect::<Option<_>>()?,
+            next: mode.until.iter().map(next).collect::<Option<_>>()?,
+        })
+    }
+}
+
+fn matrix(rows: &[Row]) -> Option<Vec<Residues>> {
+    rows.iter().map(|it| residues(it)).collect()
+}

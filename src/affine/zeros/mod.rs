@@ -1,0 +1,10 @@
+//! What is zero by the model, whatever rounded numbers say.
+//!
+//! A guard may be zero at the entry of a segment because of the events that led there, as the gap
+//! is after an impact. [`space`] is the space of all rows that are zero so, and [`graph`] follows
+//! it from event to event. Whether a row belongs to it is decided by [`residue`], in exact
+//! arithmetic modulo two primes. Read `space` first, then `graph`.
+
+pub mod graph;
+pub mod residue;
+pub mod space;
