@@ -113,8 +113,18 @@ pub fn coefficients<T: Real>(left: &[T; 4], right: &[T; 4], length: T) -> Coeffi
     let seventh = length * length.same(1.0 / 7.0);
     let square = seventh * length * length.same(1.0 / 6.0);
     let cube = square * (length * length.same(1.0 / 5.0));
-    let [a, b, c, d] = next_to_an_end(left, [seventh, square, cube]);
-    let [h, g, f, e] = next_to_an_end(right, [-seventh, square, -cube]);
+    let scaled = |[value, slope, bend, third]: [T; 4], [seventh, square, cube]: [T; 3]| {
+        [value, slope * seventh, bend * square, third * cube]
+    };
+    interpolant(scaled(*left, [seventh, square, cube]), scaled(*right, [-seventh, square, -cube]))
+}
+
+/// The coefficients from the derivatives at both ends times L/7, L^2/42 and L^3/210, L being the
+/// length, negative at the right end.
+#[inline(always)]
+pub fn interpolant<T: Real>(left: [T; 4], right: [T; 4]) -> Coefficients<T> {
+    let [a, b, c, d] = next_to_an_end(left);
+    let [h, g, f, e] = next_to_an_end(right);
     // Degree seven, raised to eight.
     let pairs = [
         [a, h],
@@ -122,14 +132,12 @@ pub fn coefficients<T: Real>(left: &[T; 4], right: &[T; 4], length: T) -> Coeffi
         [mixed(b, c, 0.75), mixed(g, f, 0.75)],
         [mixed(c, d, 0.625), mixed(f, e, 0.625)],
     ];
-    (pairs, length.same(0.5) * (d + e))
+    (pairs, d.same(0.5) * (d + e))
 }
 
-/// The four coefficients of degree seven next to an end, with the powers of the length there.
+/// The four coefficients of degree seven next to an end, from value and scaled derivatives there.
 #[inline(always)]
-fn next_to_an_end<T: Real>(orders: &[T; 4], [seventh, square, cube]: [T; 3]) -> [T; 4] {
-    let [value, slope, bend, third] = *orders;
-    let (first, second, third) = (slope * seventh, bend * square, third * cube);
+fn next_to_an_end<T: Real>([value, first, second, third]: [T; 4]) -> [T; 4] {
     [
         value,
         value + first,
@@ -178,7 +186,7 @@ impl Excess {
 }
 
 /// The coefficients from left to right.
-pub fn in_order([a, b, c, d]: [[f64; 2]; 4], middle: f64) -> [f64; 9] {
+pub fn in_order<T: Real>([a, b, c, d]: [[T; 2]; 4], middle: T) -> [T; 9] {
     [a[0], b[0], c[0], d[0], middle, d[1], c[1], b[1], a[1]]
 }
 

@@ -1,8 +1,9 @@
 //! Whether a guard stays negative on a piece, by the Bernstein coefficients of a polynomial that
-//! lies above it: the same theorem as in `crossing/certificate.rs`, in any arithmetic.
+//! lies above it, in any arithmetic: the theorem and the interpolant are those of
+//! [`crate::crossing::certificate`].
 
 use crate::affine::arithmetic::vector::unit;
-use crate::crossing::certificate::MIDDLE;
+use crate::crossing::certificate::{MIDDLE, in_order, interpolant};
 use crate::numeric::number::Number;
 use crate::numeric::real::Real;
 use smallvec::SmallVec;
@@ -68,7 +69,13 @@ pub(super) fn judge<T: Number>(
     slack: f64,
     zeros: usize,
 ) -> Judged {
-    let mut hull = interpolant(ends, lengths);
+    let Lengths { seventh, sixth, fifth, .. } = *lengths;
+    let [left, right] = ends;
+    let (pairs, middle) = interpolant(
+        scaled(left, [seventh, sixth, fifth]),
+        scaled(right, [-seventh, -sixth, -fifth]),
+    );
+    let mut hull = in_order(pairs, middle);
     if eighth != 0.0 {
         hull[4] = hull[4] + lengths.middle * T::exact(eighth);
     }
@@ -99,33 +106,12 @@ pub(super) fn judge<T: Number>(
     Judged::Open(clear_share(&hull, slack, zeros))
 }
 
-/// The coefficients of the polynomial of degree seven that shares value and three derivatives at
-/// both ends, raised to degree eight.
+/// Value and derivatives at an end, each times its share of the length: factor by factor, because
+/// powers of a short length may underflow where derivatives are large.
 #[inline]
-fn interpolant<T: Number>(ends: &[[T; 4]; 2], lengths: &Lengths<T>) -> Hull<T> {
-    let Lengths { seventh, sixth, fifth, .. } = *lengths;
-    let [left, right] = ends;
-    let [a, b, c, d] = next_to_an_end(left, [seventh, sixth, fifth]);
-    let [h, g, f, e] = next_to_an_end(right, [-seventh, -sixth, -fifth]);
-    let seventh = [a, b, c, d, e, f, g, h];
-    let mut hull = [a; 9];
-    hull[8] = h;
-    for n in 1..8 {
-        let share = T::exact(n as f64 * 0.125);
-        hull[n] = seventh[n] + share * (seventh[n - 1] - seventh[n]);
-    }
-    hull
-}
-
-/// The four coefficients of degree seven that belong to an end.
-#[inline]
-fn next_to_an_end<T: Number>(orders: &[T; 4], [seventh, sixth, fifth]: [T; 3]) -> [T; 4] {
+fn scaled<T: Number>(orders: &[T; 4], [seventh, sixth, fifth]: [T; 3]) -> [T; 4] {
     let [value, slope, bend, third] = *orders;
-    let first = slope * seventh;
-    let second = bend * seventh * sixth;
-    let third = third * seventh * sixth * fifth;
-    let (two, three) = (T::exact(2.0), T::exact(3.0));
-    [value, value + first, value + two * first + second, value + three * (first + second) + third]
+    [value, slope * seventh, bend * seventh * sixth, third * seventh * sixth * fifth]
 }
 
 /// Whether all coefficients are negative by more than rounding. With zeros at the left end those
