@@ -10,8 +10,8 @@ pub struct Begun {
     pub state: State,
 }
 
-/// The constants of Eq. (15): C1 and C2 by Eq. (16), and by Eq. (17) alpha to delta with what they
-/// are taken from.
+/// The constants of Eq. (15): C1 by Eq. (16), C2 by Eq. (17), and alpha to delta, which follow
+/// them, with what they are taken from.
 #[derive(Clone, Copy, Debug)]
 pub struct Phases {
     pub c1: f64,

@@ -6,7 +6,7 @@ use clap::Command;
 use percuss_validation::cli::command;
 
 /// Each verb with flags that make it complete; a flag under test takes the place of its own pair.
-const VERBS: [(&str, &[(&str, &str)]); 25] = [
+const VERBS: &[(&str, &[(&str, &str)])] = &[
     ("simulate", &[("--periods", "1")]),
     ("poincare", &[("--transient", "1"), ("--periods", "1")]),
     ("lyapunov", &[("--transient", "1"), ("--periods", "1")]),

@@ -7,7 +7,7 @@ use crate::failure::Failure;
 use regex::Regex;
 use std::sync::OnceLock;
 
-static ENGINES: [&dyn Engine; 18] = [
+static ENGINES: &[&dyn Engine] = &[
     &Exact,
     &diffsol::BDF,
     &diffsol::TR_BDF2,
