@@ -1,10 +1,11 @@
 //! The guards of the three phases written down from the equations of motion.
 
 use crate::ball::Ball;
-use crate::functions::{exp, exp_less_1, sin_cos};
+use crate::damping::Damping;
+use crate::functions::sin_cos;
 use crate::guard::{Free, Guard, energy};
-use percuss::insides::angle;
-use percuss::{Parameters, TwoWord};
+use percuss::insides::{Motion, angle};
+use percuss::{Instant, Parameters, TwoWord};
 
 /// What the guards of a model have in common.
 pub struct Frame {
@@ -13,33 +14,11 @@ pub struct Frame {
     g: Ball,
     xi: Ball,
     omega: Ball,
-    pub(crate) phi: Ball,
+    phi: Ball,
     /// Forced oscillation of the trial force: its parts with cosine and sine of the forcing angle.
     steady: [Ball; 2],
     damping: Damping,
 }
-
-/// How the free oscillation in contact goes.
-#[derive(Clone, Copy)]
-pub(crate) enum Damping {
-    Under {
-        nu: Ball,
-    },
-    Critical,
-    /// Over-damped but not far above: spread is 2 sqrt(xi^2 - 1), slow is 1/(xi + spread/2).
-    Above {
-        slow: Ball,
-        spread: Ball,
-    },
-    /// Far above: the two exponentials apart.
-    Far {
-        slow: Ball,
-        fast: Ball,
-    },
-}
-
-/// From here on the free oscillation is taken apart into two exponentials.
-const FAR: f64 = 1.25;
 
 impl Frame {
     /// Encloses the model's constants for these parameters, which are taken exactly.
@@ -58,53 +37,30 @@ impl Frame {
     }
 }
 
-impl Damping {
-    fn new(xi: f64) -> Self {
-        let (one, x) = (Ball::ONE, Ball::exact(xi));
-        let discriminant = (one - x) * (one + x);
-        if xi < 1.0 {
-            return Self::Under { nu: discriminant.sqrt() };
-        }
-        if xi == 1.0 {
-            return Self::Critical;
-        }
-        let root = (-discriminant).sqrt();
-        let fast = x + root;
-        let slow = one / fast;
-        if xi < FAR {
-            Self::Above { slow, spread: root.scaled(2.0) }
-        } else {
-            Self::Far { slow, fast }
-        }
-    }
-
-    /// The solutions C and S of x'' + 2 xi x' + x = 0 with C = 1, C' = 0 and S = 0, S' = 1 at the
-    /// start.
-    pub(crate) fn fundamental(&self, xi: Ball, d: Ball) -> (Ball, Ball) {
-        match *self {
-            Self::Under { nu } => {
-                let (sin, cos) = sin_cos(nu * d);
-                let shrunk = exp(-(xi * d));
-                let s = shrunk * sin / nu;
-                (shrunk * cos + xi * s, s)
-            }
-            Self::Critical => {
-                let shrunk = exp(-d);
-                (shrunk * (Ball::ONE + d), shrunk * d)
-            }
-            Self::Above { slow, spread } => {
-                let lasting = exp(-(slow * d));
-                let s = -(lasting * exp_less_1(-(spread * d)) / spread);
-                (lasting + slow * s, s)
-            }
-            Self::Far { .. } => (Ball::ZERO, Ball::ZERO),
-        }
-    }
-}
-
 impl Frame {
+    /// Encloses the guard of a phase that begins at this instant.
+    #[must_use]
+    pub fn guard(&self, motion: &Motion<'_>, entry: &Instant) -> Guard {
+        let angle = Ball::words(entry.angle_two_word()) + self.phi;
+        let (sin, cos) = sin_cos(angle);
+        match motion {
+            Motion::NoContact(flight) => {
+                let [p, y, q] = [flight.entry.p, flight.entry.y, flight.entry.q].map(Ball::exact);
+                self.flight([p, y, q], flight.surface.map(Ball::exact), angle, (sin, cos))
+            }
+            Motion::Contact(contact) => {
+                let (offset, y) = (Ball::exact(contact.offset), Ball::exact(contact.entry.y));
+                self.contact([offset, y], Ball::exact(contact.reference), angle, (sin, cos))
+            }
+            Motion::Progression(slip) => {
+                let (w, closing) = (Ball::exact(slip.drift_rate), Ball::exact(slip.closing));
+                self.slip([w, closing], angle, sin)
+            }
+        }
+    }
+
     /// h = p - g - q, with p'' = F and q' = -q/(2 xi).
-    pub(crate) fn flight(
+    fn flight(
         &self,
         [p, y, q]: [Ball; 3],
         surface: Option<Ball>,
@@ -134,7 +90,7 @@ impl Frame {
     }
 
     /// w = y - q' with y' = F - 1, where the slider's velocity q' decays from `closing`.
-    pub(crate) fn slip(&self, [w, closing]: [Ball; 2], angle: Ball, sin: Ball) -> Guard {
+    fn slip(&self, [w, closing]: [Ball; 2], angle: Ball, sin: Ball) -> Guard {
         let speed = self.a / self.omega;
         Guard {
             parabola: [w + closing - speed * sin, self.b - Ball::ONE, Ball::ZERO],
@@ -152,7 +108,7 @@ impl Frame {
 
     /// f less its reference: b, a forced oscillation, and a free one from f and f' = 2 xi (F - f) +
     /// y.
-    pub(crate) fn contact(
+    fn contact(
         &self,
         [offset, y]: [Ball; 2],
         reference: Ball,

@@ -8,10 +8,8 @@
 //! f64 values, and the forcing angle in its two words.
 
 use crate::ball::Ball;
-use crate::frame::{Damping, Frame};
+use crate::damping::Damping;
 use crate::functions::{INVERSE_FACTORIALS, exp, sin_cos};
-use percuss::Instant;
-use percuss::insides::Motion;
 
 /// Derivatives in an expansion, that of order zero included.
 pub const ORDERS: usize = 12;
@@ -74,27 +72,6 @@ pub struct Expansion {
 }
 
 impl Guard {
-    /// Encloses the guard of a phase that begins at this instant.
-    #[must_use]
-    pub fn new(frame: &Frame, motion: &Motion<'_>, entry: &Instant) -> Self {
-        let angle = Ball::words(entry.angle_two_word()) + frame.phi;
-        let (sin, cos) = sin_cos(angle);
-        match motion {
-            Motion::NoContact(flight) => {
-                let [p, y, q] = [flight.entry.p, flight.entry.y, flight.entry.q].map(Ball::exact);
-                frame.flight([p, y, q], flight.surface.map(Ball::exact), angle, (sin, cos))
-            }
-            Motion::Contact(contact) => {
-                let (offset, y) = (Ball::exact(contact.offset), Ball::exact(contact.entry.y));
-                frame.contact([offset, y], Ball::exact(contact.reference), angle, (sin, cos))
-            }
-            Motion::Progression(slip) => {
-                let (w, closing) = (Ball::exact(slip.drift_rate), Ball::exact(slip.closing));
-                frame.slip([w, closing], angle, sin)
-            }
-        }
-    }
-
     /// Expanded around a time after the entry.
     #[must_use]
     pub fn at(&self, d: Ball) -> Expansion {

@@ -1,8 +1,9 @@
-//! The switches of the f64 solver, proved again in interval arithmetic: see docs/ROUNDING.md.
+//! The events of the f64 solver, proved again in interval arithmetic: see docs/ROUNDING.md.
 
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "a NaN must prove nothing")]
 
 pub mod ball;
+mod damping;
 mod end;
 pub mod frame;
 pub mod functions;

@@ -66,7 +66,7 @@ impl<'a> Found<'a> {
     /// The exact guard.
     #[must_use]
     pub fn guard(&self, frame: &Frame) -> Guard {
-        Guard::new(frame, &self.segment.motion(), &self.segment.entry().instant)
+        frame.guard(&self.segment.motion(), &self.segment.entry().instant)
     }
 
     /// The error of the f64 guard at a share of the phase, in units of eps times its largest term.
