@@ -11,6 +11,7 @@
 //! always decides, up to rounding.
 
 use crate::crossing::{Corridor, Proof, ThresholdEnds};
+use crate::flow::Point;
 use crate::numeric::real::Real;
 
 /// 8! C(8, 4): the middle Bernstein coefficient of s^4 (1 - s)^4/8! is its inverse, and all others
@@ -32,6 +33,13 @@ pub struct Piece {
 }
 
 impl Piece {
+    /// The guard of a phase between two evaluations.
+    #[inline(always)]
+    pub fn between(left: &Point<f64>, right: &Point<f64>, eighth: (f64, f64)) -> Self {
+        let length = right.elapsed - left.elapsed;
+        Self { left: left.guard.orders, right: right.guard.orders, length, eighth }
+    }
+
     /// Checks all Bernstein coefficients against the corridor, with `slack` for rounding.
     #[inline(always)]
     pub fn verdict(&self, corridor: &Corridor, ends: ThresholdEnds, slack: f64) -> Proof {

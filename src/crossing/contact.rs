@@ -231,12 +231,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
         let split = self.split(left);
         let free = self.free_eighth(left, &split);
         let eighth = self.eighth(free);
-        let whole = Piece {
-            left: left.guard.orders,
-            right: right.guard.orders,
-            length,
-            eighth: (-eighth, eighth),
-        };
+        let whole = Piece::between(left, right, (-eighth, eighth));
         let verdict = self.near(whole.verdict(&corridor, ends, slack), room, [left, right]);
         if verdict != Proof::Open {
             return verdict;
@@ -263,12 +258,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Contact<f64, C> {
     }
 
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
-        let piece = Piece {
-            left: left.guard.orders,
-            right: right.guard.orders,
-            length: right.elapsed - left.elapsed,
-            eighth: (0.0, 0.0),
-        };
+        let piece = Piece::between(left, right, (0.0, 0.0));
         if piece.length * self.fastest_rate() > 4.0 {
             return left.elapsed + 0.5 * piece.length;
         }

@@ -161,12 +161,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
         let length = right.elapsed - left.elapsed;
         let Constants { omega, rate, .. } = *self.constants.borrow();
         if length * rate <= PULLING && length * omega <= LONGEST_ANGLE {
-            let piece = Piece {
-                left: left.guard.orders,
-                right: right.guard.orders,
-                length,
-                eighth: (0.0, self.eighth_most(left)),
-            };
+            let piece = Piece::between(left, right, (0.0, self.eighth_most(left)));
             let verdict = piece.verdict(&self.corridor(), ends, slack);
             if verdict != Proof::Open || length * omega < 0.5 * LONGEST_ANGLE {
                 return verdict;
@@ -183,13 +178,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for NoContact<f64, C> {
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         let (from, to) = (left.elapsed, right.elapsed);
         self.slow_envelope().division(from, to, PULLING).unwrap_or_else(|| {
-            let piece = Piece {
-                left: left.guard.orders,
-                right: right.guard.orders,
-                length: to - from,
-                eighth: (0.0, 0.0),
-            };
-            piece.worst_place(from, &self.corridor())
+            Piece::between(left, right, (0.0, 0.0)).worst_place(from, &self.corridor())
         })
     }
 

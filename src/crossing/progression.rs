@@ -102,12 +102,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
         let length = right.elapsed - left.elapsed;
         let Constants { omega, rate, .. } = *self.constants.borrow();
         if length * rate <= PUSHING && length * omega <= LONGEST_ANGLE {
-            let piece = Piece {
-                left: left.guard.orders,
-                right: right.guard.orders,
-                length,
-                eighth: (self.eighth_least(left), 0.0),
-            };
+            let piece = Piece::between(left, right, (self.eighth_least(left), 0.0));
             let verdict = piece.verdict(&self.corridor(), ends, slack);
             if verdict != Proof::Open || length * omega < 0.5 * LONGEST_ANGLE {
                 return verdict;
@@ -127,13 +122,7 @@ impl<C: Borrow<Constants<f64>>> Guarded for Progression<f64, C> {
     fn divide(&self, left: &Point<f64>, right: &Point<f64>) -> f64 {
         let (from, to) = (left.elapsed, right.elapsed);
         self.slow_envelope().division(from, to, PUSHING).unwrap_or_else(|| {
-            let piece = Piece {
-                left: left.guard.orders,
-                right: right.guard.orders,
-                length: to - from,
-                eighth: (0.0, 0.0),
-            };
-            piece.worst_place(from, &self.corridor())
+            Piece::between(left, right, (0.0, 0.0)).worst_place(from, &self.corridor())
         })
     }
 
