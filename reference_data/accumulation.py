@@ -8,7 +8,7 @@ from crossing import Undecided
 from modal import identity
 from structural import Space
 
-WORTH_TRYING = 4  # times the limit: an estimate above it is not worth a proof
+WORTH_PROVING = 4  # times the limit: an estimate above it is not worth a proof
 ENLARGEMENTS = 40
 LIMIT = arb(2) ** -30  # of the time scale
 
@@ -46,7 +46,7 @@ class Tube:
 
     def __init__(self, event, e: fmpq, matrix: fmpq_mat, z: arb_mat, jumps: list):
         self.e, self.z, self.jumps, self.matrix = arb(e), z, jumps, arb_mat(matrix)
-        self.force = arb_mat(event.guard * matrix * matrix)
+        self.acceleration = arb_mat(event.guard * matrix * matrix)
         self.speed = -(arb_mat(event.guard * matrix) * z)[0, 0]
         self.box = z
 
@@ -56,10 +56,10 @@ class Tube:
 
     def remaining(self):
         """(enclosure of the time left, sum of all speeds of arrival), if the box holds the rest."""
-        force = (self.force * self.box)[0, 0]
-        if not force > 0:
+        acceleration = (self.acceleration * self.box)[0, 0]
+        if not acceleration > 0:
             return None
-        least, most = force.lower(), force.upper()
+        least, most = acceleration.lower(), acceleration.upper()
         spread = (most / least).sqrt()
         ratio = self.e * spread
         if not ratio < 1:
@@ -77,7 +77,7 @@ class Tube:
         ]
 
     def settle(self) -> Remaining | None:
-        """Enlarges the box until it holds what it says of itself."""
+        """Enlarges the box until it holds the motion that its own bounds allow."""
         radii = [arb(0)] * self.z.nrows()
         for _ in range(ENLARGEMENTS):
             self.box = self.widened(radii)
@@ -105,10 +105,10 @@ def accumulation(event, mode, matrix: fmpq_mat, space: Space, z: arb_mat, unit: 
     rate, rows = event.guard * matrix, [row_of(change, i) for i in range(size)]
     jumps = [proportion(row, rate, space) for row in rows]
     tube = Tube(event, e, matrix, z, jumps)
-    if None in jumps or not promising(tube, unit):
+    if None in jumps or not worth_proving(tube, unit):
         return None
     remaining = tube.settle()
-    if remaining is None or not quiet(event, mode, tube.box, stays):
+    if remaining is None or not nothing_else_fires(event, mode, tube.box, stays):
         return None
     if remaining.most > LIMIT * unit:
         return None
@@ -117,12 +117,12 @@ def accumulation(event, mode, matrix: fmpq_mat, space: Space, z: arb_mat, unit: 
     return remaining
 
 
-def promising(tube: Tube, unit: arb) -> bool:
+def worth_proving(tube: Tube, unit: arb) -> bool:
     found = tube.remaining()
-    return found is not None and bool(found[0].most < WORTH_TRYING * LIMIT * unit)
+    return found is not None and bool(found[0].most < WORTH_PROVING * LIMIT * unit)
 
 
-def quiet(event, mode, box: arb_mat, stays) -> bool:
+def nothing_else_fires(event, mode, box: arb_mat, stays) -> bool:
     """Over the box: all other guards of `until` negative, and every successor the same mode."""
     others = [other for other in mode.until if other is not event and not stays(other)]
     if not all((arb_mat(other.guard) * box)[0, 0] < 0 for other in others):

@@ -112,11 +112,11 @@ def surface_motion(case: Case, m, angle, state):
     return enter(m, angle, state, CONTACT if certain(force < 1, force > 1) else PROGRESSION, None)
 
 
-def enter(m, angle, state, token, force):
-    """The motion of phase `token` entered on the surface with the trial force known, or None."""
-    if token == NO_CONTACT:
+def enter(m, angle, state, phase, force):
+    """The motion of phase `phase` entered on the surface with the trial force known, or None."""
+    if phase == NO_CONTACT:
         return NoContact(m, angle, state, zeros=2)
-    if token == CONTACT:
+    if phase == CONTACT:
         return Contact(m, angle, state, force)
     return Progression(m, angle, state, zeros=int(force == 1))
 

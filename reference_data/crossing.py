@@ -69,7 +69,7 @@ def verdict(guard, left: arb, right: arb) -> str:
             return CLEAR
         if at_right > 0:
             return RISES
-    envelope = derivatives(guard.trend, left, right)[0] + guard.amplitude
+    envelope = derivatives(guard.slow_part, left, right)[0] + guard.amplitude
     return CLEAR if envelope < 0 else UNCLEAR
 
 

@@ -18,34 +18,34 @@ import manifest
 from case import Case
 from crossing import Undecided
 from tables import DIGITS, heading, row
-from trajectory import legs
+from trajectory import segments_of
 
 HERE = Path(__file__).resolve().parent
 SAMPLES_PER_PERIOD = 8
 FIRST_BITS, LAST_BITS = 256, 1 << 14
 
 
-def event_rows(case: Case, motions: list):
+def event_rows(case: Case, segments: list):
     """Row 0 is the start, the last one the horizon, whose phase is `end`."""
     tau = case.start_tau()
-    for index, leg in enumerate(motions):
-        yield row(index, leg.motion.token, leg.begins, tau + leg.begins, leg.motion.entry)
-    elapsed = leg.begins + leg.lasts
-    yield row(len(motions), "end", elapsed, tau + elapsed, leg.motion.state(leg.lasts))
+    for index, segment in enumerate(segments):
+        yield row(index, segment.motion.phase, segment.begins, tau + segment.begins, segment.motion.entry)
+    elapsed = segment.begins + segment.lasts
+    yield row(len(segments), "end", elapsed, tau + elapsed, segment.motion.state(segment.lasts))
 
 
-def sample_rows(case: Case, motions: list):
+def sample_rows(case: Case, segments: list):
     """Rows at start + k periods / 8, up to and including the horizon."""
     tau, span, spacing = case.start_tau(), case.span(), case.period() / SAMPLES_PER_PERIOD
     periods, index, current = case.horizon.get("periods"), 0, 0
     while index <= SAMPLES_PER_PERIOD * periods if periods is not None else index * spacing <= span:
         elapsed = index * spacing
-        while current + 1 < len(motions) and not elapsed < motions[current + 1].begins:
-            if not elapsed > motions[current + 1].begins:
+        while current + 1 < len(segments) and not elapsed < segments[current + 1].begins:
+            if not elapsed > segments[current + 1].begins:
                 raise Undecided("sample at a switch")
             current += 1
-        leg = motions[current]
-        yield row(index, leg.motion.token, elapsed, tau + elapsed, leg.motion.state(elapsed - leg.begins))
+        segment = segments[current]
+        yield row(index, segment.motion.phase, elapsed, tau + elapsed, segment.motion.state(elapsed - segment.begins))
         index += 1
 
 
@@ -55,8 +55,8 @@ def tables(case: Case):
     while bits <= LAST_BITS:
         ctx.prec = bits
         try:
-            motions = list(legs(case))
-            return bits, list(event_rows(case, motions)), list(sample_rows(case, motions))
+            segments = list(segments_of(case))
+            return bits, list(event_rows(case, segments)), list(sample_rows(case, segments))
         except Undecided:
             bits *= 2
     raise RuntimeError(f"{case.name}: undecided at {LAST_BITS} bits")

@@ -114,7 +114,7 @@ def first_rise(m, phase, states, length):
     rises = []
     for i, (leads_to, _) in enumerate(polynomials[0]):
         coefficients = [p[i][1] for p in polynomials][::-1]
-        times = knots(coefficients, length)
+        times = evaluation_times(coefficients, length)
         values = [mp.polyval(coefficients, d) for d in times]
         if values[0] >= 0:
             raise ArithmeticError(f"the guard to {leads_to} is above zero and was not seen to rise")
@@ -124,8 +124,8 @@ def first_rise(m, phase, states, length):
     return min(rises)[::-1] if rises else None
 
 
-def knots(coefficients, length) -> list:
-    """Where to look at a guard: an even grid and, so that no light touch is stepped over, its maxima."""
+def evaluation_times(coefficients, length) -> list:
+    """Times at which a guard is evaluated: an even grid and, because of light touches, its maxima."""
     just_passed = abs(coefficients[-1]) < ENTRY_ZERO
     grid = [length * j / GRID for j in range(int(just_passed), GRID + 1)]
     order = len(coefficients) - 1
@@ -158,7 +158,7 @@ def start(case: Case):
 
 
 def impact(m, state) -> str:
-    """Which contact phase the mass enters when it meets the slider."""
+    """The phase, contact or progression, that the mass enters when it meets the slider."""
     x, y, z, v = state
     return CONTACT if 2 * m["xi"] * y + z - v < 1 else PROGRESSION
 

@@ -21,7 +21,15 @@ from mpmath import mp, mpf
 
 import manifest
 from generate_events import HERE, select
-from generate_pieces import AGREEMENT, DIGITS, TRUNCATION, WORKING_DIGITS, knots, read, root
+from generate_pieces import (
+    AGREEMENT,
+    DIGITS,
+    TRUNCATION,
+    WORKING_DIGITS,
+    evaluation_times,
+    read,
+    root,
+)
 from generate_systems import CASES, SYSTEMS
 
 ORDER = 48
@@ -120,7 +128,7 @@ class Model:
         return [*(self.at(text, unit) - constant for unit in units), constant]
 
     def guard(self, text: str) -> list:
-        """The coefficients of what is positive where a condition holds."""
+        """The coefficients of a row that is positive where a condition holds."""
         sides = re.fullmatch(r"(.*)([<>])(.*)", text)
         left, right = self.row(sides[1]), self.row(sides[3])
         sign = 1 if sides[2] == ">" else -1
@@ -199,7 +207,8 @@ class Guard:
         if self.rest is None or len(self.rest) < 2:
             return []
         turned = [-c for c in self.rest]
-        times = sorted({mpf(0), *knots(self.rest, length), *knots(turned, length)})
+        both = [evaluation_times(guard, length) for guard in (self.rest, turned)]
+        times = sorted({mpf(0), *both[0], *both[1]})
         values, found = [mp.polyval(self.rest, d) for d in times], []
         for a, b, low, high in zip(values, values[1:], times, times[1:], strict=False):
             if a < 0 <= b:
@@ -209,8 +218,8 @@ class Guard:
         return sorted(found)
 
 
-class Walk:
-    """The motion of a model, step by step."""
+class Integration:
+    """The run of a model, integrated step by step."""
 
     def __init__(self, model: Model):
         self.model, self.elapsed = model, mpf(0)
@@ -219,14 +228,14 @@ class Walk:
     def rows(self, count: int):
         """(event, mode, elapsed, z) of the start and of the first `count` events."""
         yield "", self.mode, self.elapsed, self.z
-        yield from islice(self.happenings(), count)
+        yield from islice(self.events(), count)
 
-    def happenings(self):
+    def events(self):
         yield from self.fire_at_once()
         while True:
             coefficients = series(self.model.matrix(self.mode), self.z)
             length = step_length(coefficients)
-            watches, until, first = self.look(coefficients, length)
+            watches, until, first = self.crossings_on_step(coefficients, length)
             elapsed = self.elapsed
             for when, name in watches:
                 self.move(coefficients, elapsed, when)
@@ -242,7 +251,7 @@ class Walk:
         self.z = [mp.polyval(c[::-1], d) for c in zip(*coefficients, strict=True)]
         self.elapsed = elapsed + d
 
-    def look(self, coefficients: list, length) -> tuple:
+    def crossings_on_step(self, coefficients: list, length) -> tuple:
         """(watched crossings up to the first until, that until, its time) on one step."""
         mode, untils, watches = self.model.modes[self.mode], [], []
         for event in mode.get("until", []):
@@ -292,9 +301,9 @@ class Walk:
 
 def table_rows(model: Model, count: int):
     """The rows in the columns of the event table, without growth."""
-    walk = Walk(model)
-    for index, (event, mode, elapsed, z) in enumerate(walk.rows(count)):
-        clock = walk.clock - elapsed if model.backward else walk.clock + elapsed
+    integration = Integration(model)
+    for index, (event, mode, elapsed, z) in enumerate(integration.rows(count)):
+        clock = integration.clock - elapsed if model.backward else integration.clock + elapsed
         numbers = [elapsed, clock, *z[: len(model.states)]]
         yield ",".join([str(index), event, mode, *map(cell, numbers)])
 

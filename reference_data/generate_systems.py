@@ -61,15 +61,15 @@ def sample_rows(case: SystemCase, run: Run):
         elapsed = arb(spacing * index)
         if not elapsed < run.elapsed.ball:
             return
-        while current + 1 < len(run.legs) and run.legs[current + 1].begins.ball < elapsed:
+        while current + 1 < len(run.segments) and run.segments[current + 1].begins.ball < elapsed:
             current += 1
-        leg = run.legs[current]
-        exponential = run.flow(leg.place.mode).matrix_at(elapsed - leg.begins.ball)
-        z = exponential * leg.place.z
-        states = run.growth.of_states(exponential * run.growth.lift(leg.place.z))
+        segment = run.segments[current]
+        exponential = run.flow(segment.state.mode).matrix_at(elapsed - segment.begins.ball)
+        z = exponential * segment.state.z
+        states = run.growth.of_states(exponential * run.growth.lift(segment.state.z))
         numbers = cells([elapsed, case.clock(elapsed), *entries(case, z)])
-        growth = map(growth_cell, run.growth.measured(None, states, leg.sources)[1:])
-        yield ",".join([str(index), leg.place.mode, *numbers, *growth])
+        growth = map(growth_cell, run.growth.measured(None, states, segment.sensitivities)[1:])
+        yield ",".join([str(index), segment.state.mode, *numbers, *growth])
 
 
 def check_sample_margins(case: SystemCase, run: Run, spacing: fmpq) -> None:

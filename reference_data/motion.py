@@ -4,8 +4,8 @@ Every formula is written once, in the time `d` elapsed since the phase began, an
 alike on numbers (`arb`), on intervals (wide `arb` balls) and on Taylor series (`arb_series`).
 
 A *guard* is negative inside its phase and ends the phase where it rises to zero. It is kept as
-a trend plus one harmonic of known amplitude, because the trend alone, raised by that amplitude,
-bounds the guard over long times.
+a slow part plus one harmonic of known amplitude: the slow part raised by that amplitude, its slow
+envelope, bounds the guard over long times.
 """
 
 from dataclasses import dataclass
@@ -38,16 +38,16 @@ class State(NamedTuple):
 
 @dataclass
 class Guard:
-    """Negative inside the phase. `zeros` counts the derivatives, from the 0th, that are known to vanish on entry."""
+    """A guard, negative inside its phase. `zeros` derivatives, from the 0th, vanish on entry."""
 
     leads_to: str
-    trend: Callable
+    slow_part: Callable
     harmonic: Callable
     amplitude: arb
     zeros: int
 
     def value(self, d):
-        return self.trend(d) + self.harmonic(d)
+        return self.slow_part(d) + self.harmonic(d)
 
 
 def trial_force(m: Parameters, state: State):
@@ -70,7 +70,7 @@ def on_surface(m: Parameters, state: State, force=None) -> State:
 class Motion:
     """One phase, entered at the forcing angle `angle` = omega tau + phi in `entry`."""
 
-    token: str
+    phase: str
     guards: tuple
 
     def __init__(self, m: Parameters, angle: arb, entry: State):
@@ -83,18 +83,18 @@ class Motion:
 
 
 class Ballistic(Motion):
-    """The mass under F_ext and a constant `load`: what flight and progression have in common."""
+    """The mass under F_ext and a constant `load`, which no contact and progression share."""
 
     load: int
 
-    def velocity_trend(self, d):
+    def velocity_slow_part(self, d):
         m = self.m
         return self.entry.y - m.a / m.omega * self.sine + (m.b + self.load) * d
 
     def velocity_harmonic(self, d):
         return self.m.a / self.m.omega * self.forcing(d)[0]
 
-    def travel_trend(self, d):
+    def travel_slow_part(self, d):
         m = self.m
         mean_velocity = self.entry.y - m.a / m.omega * self.sine
         return mean_velocity * d + (m.b + self.load) / 2 * d * d + m.a / m.omega**2 * self.cosine
@@ -103,10 +103,10 @@ class Ballistic(Motion):
         return -self.m.a / self.m.omega**2 * self.forcing(d)[1]
 
     def velocity(self, d):
-        return self.velocity_trend(d) + self.velocity_harmonic(d)
+        return self.velocity_slow_part(d) + self.velocity_harmonic(d)
 
     def travel(self, d):
-        return self.travel_trend(d) + self.travel_harmonic(d)
+        return self.travel_slow_part(d) + self.travel_harmonic(d)
 
     def decay(self, d):
         """exp(-d/(2 xi)), the creep of the unloaded or steadily loaded slider."""
@@ -116,15 +116,15 @@ class Ballistic(Motion):
 class NoContact(Ballistic):
     """Eq. (14). The guard is the negative gap h = p - q - g."""
 
-    token, load = NO_CONTACT, 0
+    phase, load = NO_CONTACT, 0
 
     def __init__(self, m, angle, entry, zeros):
         """`zeros`: 2 after separation (h = h' = 0), 1 on the surface with f < 0, otherwise 0."""
         super().__init__(m, angle, entry)
-        self.guards = (Guard("impact", self.gap_trend, self.travel_harmonic, m.a / m.omega**2, zeros),)
+        self.guards = (Guard("impact", self.gap_slow_part, self.travel_harmonic, m.a / m.omega**2, zeros),)
 
-    def gap_trend(self, d):
-        return self.entry.p - self.m.g + self.travel_trend(d) - self.entry.q * self.decay(d)
+    def gap_slow_part(self, d):
+        return self.entry.p - self.m.g + self.travel_slow_part(d) - self.entry.q * self.decay(d)
 
     def state(self, d) -> State:
         e = self.entry
@@ -134,18 +134,18 @@ class NoContact(Ballistic):
 class Progression(Ballistic):
     """Eqs. (18) and (20). The guard is 1 - f, which has the sign of -v'."""
 
-    token, load = PROGRESSION, -1
+    phase, load = PROGRESSION, -1
 
     def __init__(self, m, angle, entry, zeros):
         """`zeros`: 1 where the phase begins by f rising to 1, 0 after an impact with f > 1."""
         super().__init__(m, angle, entry)
         amplitude = 2 * m.xi * m.a / m.omega
-        self.guards = (Guard(CONTACT, self.surplus_trend, self.surplus_harmonic, amplitude, zeros),)
+        self.guards = (Guard(CONTACT, self.deficit_slow_part, self.deficit_harmonic, amplitude, zeros),)
 
-    def surplus_trend(self, d):
-        return (1 - self.entry.q) * self.decay(d) - 2 * self.m.xi * self.velocity_trend(d)
+    def deficit_slow_part(self, d):
+        return (1 - self.entry.q) * self.decay(d) - 2 * self.m.xi * self.velocity_slow_part(d)
 
-    def surplus_harmonic(self, d):
+    def deficit_harmonic(self, d):
         return -2 * self.m.xi * self.velocity_harmonic(d)
 
     def state(self, d) -> State:
@@ -162,7 +162,7 @@ class Contact(Motion):
     C' = -S and S' = C - 2 xi S; only they depend on which side of critical damping xi lies.
     """
 
-    token = CONTACT
+    phase = CONTACT
 
     def __init__(self, m, angle, entry, force=None):
         """`force`: the trial force where it is known on entry to be 0 or 1."""
@@ -173,8 +173,8 @@ class Contact(Motion):
         self.free_y = entry.y + m.omega * forced.imag
         amplitude = abs(self.response) * (1 + (2 * m.xi * m.omega) ** 2).sqrt()
         self.guards = (
-            Guard(PROGRESSION, self.excess_trend, self.excess_harmonic, amplitude, int(force == 1)),
-            Guard(NO_CONTACT, self.pull_trend, self.pull_harmonic, amplitude, int(force == 0)),
+            Guard(PROGRESSION, self.excess_slow_part, self.excess_harmonic, amplitude, int(force == 1)),
+            Guard(NO_CONTACT, self.release_slow_part, self.release_harmonic, amplitude, int(force == 0)),
         )
 
     def basis(self, d):
@@ -200,8 +200,8 @@ class Contact(Motion):
         real, imaginary = self.response.real, self.response.imag
         return real * cosine - imaginary * sine, -self.m.omega * (real * sine + imaginary * cosine)
 
-    def excess_trend(self, d):
-        """f - 1 without its harmonic."""
+    def excess_slow_part(self, d):
+        """The slow part of f - 1."""
         q, y = self.free(d)
         return 2 * self.m.xi * y + q + (self.m.b - 1)
 
@@ -209,11 +209,11 @@ class Contact(Motion):
         q, y = self.forced(d)
         return 2 * self.m.xi * y + q
 
-    def pull_trend(self, d):
-        """-f without its harmonic."""
-        return -1 - self.excess_trend(d)
+    def release_slow_part(self, d):
+        """The slow part of -f."""
+        return -1 - self.excess_slow_part(d)
 
-    def pull_harmonic(self, d):
+    def release_harmonic(self, d):
         return -self.excess_harmonic(d)
 
     def state(self, d) -> State:

@@ -16,7 +16,7 @@ from structural import Space
 from system_file import Event
 
 
-class Moment(NamedTuple):
+class Time(NamedTuple):
     """A time: a ball, and the rational number itself where it is known."""
 
     ball: arb
@@ -26,10 +26,10 @@ class Moment(NamedTuple):
     def of(cls, exact: fmpq):
         return cls(arb(exact), exact)
 
-    def plus(self, other: "Moment") -> "Moment":
+    def plus(self, other: "Time") -> "Time":
         if self.exact is None or other.exact is None:
-            return Moment(self.ball + other.ball, None)
-        return Moment.of(self.exact + other.exact)
+            return Time(self.ball + other.ball, None)
+        return Time.of(self.exact + other.exact)
 
 
 @dataclass
@@ -45,19 +45,19 @@ class Guard:
     exact: fmpq_poly | None
 
     def wanted(self, rising: bool) -> bool:
-        """Is a crossing of this direction an event?"""
+        """Whether a crossing in this direction is an event."""
         return self.event.direction in ("both", "rising" if rising else "falling")
 
 
 class Crossing(NamedTuple):
     """Everything that happens at one instant of a segment, in the order of the file."""
 
-    time: Moment
+    time: Time
     watches: list
     untils: list
 
 
-def crossings(guards: list, space: Space, span: Moment, first_step: arb):
+def crossings(guards: list, space: Space, span: Time, first_step: arb):
     """The crossings of a segment up to the first `until`, or to the end of the span.
 
     `space` holds what stays zero along the segment.
@@ -85,7 +85,7 @@ def joined(batch: list, guards: list, space: Space):
         yield Crossing(first[0], watches, [guard for guard in ordered if not guard.event.watched])
 
 
-def later(a: Moment, b: Moment) -> bool:
+def later(a: Time, b: Time) -> bool:
     return a.exact is not None and b.exact is not None and a.exact > b.exact
 
 
@@ -98,7 +98,7 @@ def together(a: tuple, b: tuple, space: Space) -> bool:
     return a[1] is b[1] or space.with_rows([b[1].event.guard]).holds(a[1].event.guard)
 
 
-def swept(guards: list, span: Moment, first_step: arb):
+def swept(guards: list, span: Time, first_step: arb):
     """Batches of roots (time, guard), one a step, each batch after the one before."""
     smallest = first_step * arb(2) ** -(ctx.prec // 2)
     left, end, step, entering = arb(0), span.ball.upper(), first_step, True
@@ -113,7 +113,7 @@ def swept(guards: list, span: Moment, first_step: arb):
             if step < smallest:
                 raise Undecided("crossing") from None
             continue
-        yield [(Moment(root, None), guard) for root, guard in found]
+        yield [(Time(root, None), guard) for root, guard in found]
         left, step, entering = right, 2 * step, False
 
 
@@ -147,7 +147,7 @@ def step_roots(guard: Guard, left: arb, right: arb) -> list:
     return [(refine(guard, left, right), guard)]
 
 
-def rational(guards: list, span: Moment):
+def rational(guards: list, span: Time):
     """All roots of odd order of rational polynomials within the span, as one batch."""
     found = []
     for guard in guards:
@@ -157,7 +157,7 @@ def rational(guards: list, span: Moment):
     yield found
 
 
-def within(root: Moment, span: Moment) -> bool:
+def within(root: Time, span: Time) -> bool:
     """Does a root lie after the entry and not beyond the span?"""
     if root.exact is not None and span.exact is not None:
         return root.exact > 0 and root.exact <= span.exact
@@ -173,14 +173,14 @@ def polynomial_roots(polynomial: fmpq_poly):
         return
     for factor, multiplicity in polynomial.factor()[1]:
         if factor.degree() == 1:
-            yield Moment.of(-factor[0] / factor[1]), multiplicity
+            yield Time.of(-factor[0] / factor[1]), multiplicity
             continue
         for root, _ in factor.numer().complex_roots():
             if root.imag == 0:
-                yield Moment(root.real, None), multiplicity
+                yield Time(root.real, None), multiplicity
 
 
-def rises(polynomial: fmpq_poly, root: Moment, order: int) -> bool:
+def rises(polynomial: fmpq_poly, root: Time, order: int) -> bool:
     for _ in range(order):
         polynomial = polynomial.derivative()
     value = evaluated(polynomial, root.ball if root.exact is None else root.exact)

@@ -56,7 +56,7 @@ class Mode:
 
 @dataclass
 class System:
-    """What a system file says with its parameters put in."""
+    """A system file's content with its parameters put in."""
 
     name: str
     states: list

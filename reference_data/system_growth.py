@@ -12,8 +12,8 @@ from modal import identity
 from system_file import System
 
 
-class Passing:
-    """What an event does to small changes of the state: all gradients at one event.
+class EventDerivative:
+    """The gradients at an event: what the event does to small changes of the state.
 
     `before` is z just before the event, which has the guard row `guard` in a mode with matrix
     `matrix`; `reset` leads to a mode with matrix `following`. Where the guard's rate is
@@ -62,11 +62,13 @@ class Growth:
         """Changes at the end of a segment by those at its start, both at fixed time."""
         return self.with_theta(self.of_states(exponential * self.lift(z)))
 
-    def passing(self, guard: fmpq_mat, matrix, reset, following, before, shared=None) -> Passing:
+    def event_derivative(
+        self, guard: fmpq_mat, matrix, reset, following, before, shared=None
+    ) -> EventDerivative:
         rational = (arb_mat(part) for part in (guard, matrix, reset, following))
-        return Passing(self, *rational, before, shared)
+        return EventDerivative(self, *rational, before, shared)
 
-    def measured(self, time, states: arb_mat, sources: list) -> list:
+    def measured(self, time, states: arb_mat, sensitivities: list) -> list:
         """Growth of the time and of each state, given their gradients by the present state."""
         rows = [None if time is None else [time[0, j] for j in range(self.width)]]
         rows += [[states[i, j] for j in range(self.width)] for i in range(self.count)]
@@ -74,8 +76,8 @@ class Growth:
         found = []
         for row, unit in zip(rows, units, strict=True):
             largest = arb(1)
-            for source in sources if row is not None else []:
-                largest = largest.max(self.at_least_one(arb_mat([row]) * source, unit))
+            for sensitivity in sensitivities if row is not None else []:
+                largest = largest.max(self.at_least_one(arb_mat([row]) * sensitivity, unit))
             found.append(largest)
         return found
 
@@ -86,10 +88,10 @@ class Growth:
         return arb(1) if square < 1 else square.max(arb(1)).sqrt()
 
 
-def distinct(sources: list) -> list:
-    """The sources without repetitions, as orders of simultaneous events often make them."""
+def distinct(sensitivities: list) -> list:
+    """The sensitivities without repetitions, as orders of simultaneous events often make them."""
     kept = []
-    for source in sources:
-        if not any(source.overlaps(other) for other in kept):
-            kept.append(source)
+    for sensitivity in sensitivities:
+        if not any(sensitivity.overlaps(other) for other in kept):
+            kept.append(sensitivity)
     return kept

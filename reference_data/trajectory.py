@@ -11,24 +11,24 @@ from motion import CONTACT, NO_CONTACT, PROGRESSION, Motion, on_surface, trial_f
 FIRST_STEP = arb(1) / 8
 
 
-class Leg(NamedTuple):
-    """One phase. `begins` and `lasts` are times; the last leg lasts until the horizon."""
+class Segment(NamedTuple):
+    """One phase. `begins` and `lasts` are times; the last segment lasts until the horizon."""
 
     motion: Motion
     begins: arb
     lasts: arb
 
 
-def legs(case: Case) -> Iterator[Leg]:
+def segments_of(case: Case) -> Iterator[Segment]:
     motion, begins, span = start_motion(case), arb(0), case.span()
     while True:
         remaining = span - begins
         crossing = first_crossing(motion.guards, remaining, FIRST_STEP / (1 + motion.m.omega))
         if crossing is None:
-            yield Leg(motion, begins, remaining)
+            yield Segment(motion, begins, remaining)
             return
         guard, lasts = crossing
-        yield Leg(motion, begins, lasts)
+        yield Segment(motion, begins, lasts)
         motion = next_motion(motion, guard, lasts)
         begins = begins + lasts
 

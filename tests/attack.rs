@@ -158,8 +158,8 @@ fn complaint(segment: &Segment, last_v: f64) -> Option<String> {
     (next.v() < last_v).then(|| format!("drift falls from {last_v} to {}", next.v()))
 }
 
-/// Runs a case; the beats between segments tell the watch that it is alive.
-fn attack(seed: u64, beat: &mpsc::Sender<u64>) -> Option<String> {
+/// Runs a case; the messages between segments tell the watch that it is alive.
+fn attack(seed: u64, progress: &mpsc::Sender<u64>) -> Option<String> {
     let (parameters, start) = Chance::case(seed);
     let model = Model::new(parameters).ok()?;
     let entry = model.start(&start).ok()?;
@@ -169,7 +169,7 @@ fn attack(seed: u64, beat: &mpsc::Sender<u64>) -> Option<String> {
     let horizon = entry.instant.after_periods((periods * 1e3) as u64, 1000);
     let mut last_v = entry.v();
     for (n, segment) in model.trajectory(entry).until(horizon).take(SEGMENTS).enumerate() {
-        let _ = beat.send(seed);
+        let _ = progress.send(seed);
         if let Some(complaint) = complaint(&segment, last_v) {
             return Some(format!("segment {n}, {}: {complaint}", segment.phase()));
         }
@@ -183,20 +183,20 @@ fn no_accepted_input_breaks_the_solver() {
     let mut complaints = Vec::new();
     let mut next = 0;
     while next < CASES && complaints.len() < 10 {
-        let (beat, pulse) = mpsc::channel();
+        let (progress, reports) = mpsc::channel();
         let (report, found) = mpsc::channel();
         let from = next;
         std::thread::spawn(move || {
             for seed in from..CASES {
-                let _ = beat.send(seed);
-                if let Some(complaint) = attack(seed, &beat) {
+                let _ = progress.send(seed);
+                if let Some(complaint) = attack(seed, &progress) {
                     let _ = report.send((seed, complaint));
                 }
             }
         });
         let mut last = from;
         let trouble = loop {
-            match pulse.recv_timeout(A_SEGMENT) {
+            match reports.recv_timeout(A_SEGMENT) {
                 Ok(seed) => last = seed,
                 Err(mpsc::RecvTimeoutError::Timeout) => break Some("hangs"),
                 Err(mpsc::RecvTimeoutError::Disconnected) if last + 1 < CASES => {

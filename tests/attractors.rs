@@ -62,7 +62,7 @@ fn the_attractors_of_fig_7() {
 const PERIODS: u64 = 36_000;
 
 /// An orbit by following it from one of its strobes, and its exponent from errors carried along;
-/// chaos by an exponent over another stretch.
+/// chaos by an exponent over another part of the run.
 fn confirmed(map: &StrobeMap, attractor: &Attractor) {
     let first = attractor.points[0];
     let from = map.entry(first).unwrap();
@@ -165,7 +165,7 @@ fn regimes_beyond_the_papers() {
     assert!((table1.attractors[0].drift_per_period - 13.910_576).abs() < 1e-5);
 }
 
-/// Next to a flip an orbit attracts too slowly to be told: its starts are unresolved, and not
+/// Next to a flip an orbit attracts too slowly to be recognised: its starts are unresolved, and not
 /// called something else.
 #[test]
 fn what_cannot_be_told_is_unresolved() {

@@ -52,7 +52,7 @@ fn values<T: Number>(point: &Point<T>) -> [T; 4] {
     [p, y, q, point.drift]
 }
 
-/// What errors of a state are measured by: (1 + |value|) times growth.
+/// The unit of a state's errors: (1 + |value|) times growth.
 ///
 /// In a contact both are those of the moment. Without contact and in progression p, y and v may
 /// have been far away in the meantime (they have a quadratic and a linear part, and at omega = 0.01

@@ -1,4 +1,4 @@
-//! What a switch costs, and that endless phases are said to be so at once.
+//! The cost of a switch, and that endless phases are recognised at once.
 
 use percuss::{Counters, Endless, Exit, Model, Parameters, Segment, Start};
 
@@ -10,7 +10,7 @@ fn first(parameters: Parameters, start: &Start) -> (Segment, Counters) {
 }
 
 /// omega, xi and the evaluations a switch allowed: one next to the guess, from which a series leads
-/// to the root. The rest is measured (1.06 at most) with room for another stretch of a chaotic run:
+/// to the root. The rest is measured (1.06 at most) with room for another part of a chaotic run:
 /// guesses that lead past an earlier crossing or too far from theirs for the series, and near
 /// misses, which a certificate decides by a division at the crest. Where the run is periodic there
 /// are none.
@@ -59,7 +59,7 @@ fn flights_stay_cheap_as_the_static_force_vanishes() {
                 (segment.duration() - expected).abs() <= periods + 1e-9 * expected,
                 "{parameters:?}"
             );
-            // Independent of b; before the leap over the calm stretch was right it grew like 1/b.
+            // Independent of b; a wrong step over the time without crossings let it grow like 1/b.
             assert!(
                 counters.evaluations <= 150,
                 "{} evaluations at {parameters:?}",

@@ -159,8 +159,8 @@ fn slip(parameters: &Parameters, draw: &mut Draw, crest: Crest) -> (Parameters, 
     graze::slip(parameters, draw.between(-0.5, 1.0), crest)
 }
 
-fn hop(parameters: &Parameters, _: &mut Draw, crest: Crest) -> (Parameters, Start) {
-    graze::hop(parameters, crest)
+fn flight_from_surface(parameters: &Parameters, _: &mut Draw, crest: Crest) -> (Parameters, Start) {
+    graze::flight_from_surface(parameters, crest)
 }
 
 fn weak(draw: &mut Draw) -> Parameters {
@@ -180,12 +180,22 @@ fn stiff(draw: &mut Draw) -> Parameters {
 }
 
 const GRAZES: [Grazes; 14] = [
-    Grazes { name: "hops", model: usual, plant: hop, counts: [2970, 10479, 3855, 376] },
-    Grazes { name: "hops, fast forcing", model: fast, plant: hop, counts: [3061, 12456, 4453, 64] },
     Grazes {
-        name: "hops, slow slider",
+        name: "flights from the surface",
+        model: usual,
+        plant: flight_from_surface,
+        counts: [2970, 10479, 3855, 376],
+    },
+    Grazes {
+        name: "flights from the surface, fast forcing",
+        model: fast,
+        plant: flight_from_surface,
+        counts: [3061, 12456, 4453, 64],
+    },
+    Grazes {
+        name: "flights from the surface, slow slider",
         model: stiff,
-        plant: hop,
+        plant: flight_from_surface,
         counts: [3033, 11297, 5538, 244],
     },
     Grazes { name: "flights", model: usual, plant: flight, counts: [3027, 7692, 2230, 224] },

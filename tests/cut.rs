@@ -1,4 +1,4 @@
-//! Where a horizon cuts a run: at the entry, and next to a switch.
+//! Horizons that cut a run at an entry or next to a switch.
 
 use percuss::TwoWord;
 use percuss::{Exit, Model, Parameters, Start, Step};
@@ -66,7 +66,7 @@ fn steps_are_what_iterating_gives() {
     assert!(run.step().is_none());
 }
 
-/// A mass that is pushed by nothing.
+/// A mass without any force on it.
 fn drifting(p: f64, y: f64) -> (Model, percuss::Entry) {
     let parameters = Parameters { a: 0.0, b: 0.0, g: 0.0, ..Parameters::default() };
     let model = Model::new(parameters).unwrap();

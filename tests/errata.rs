@@ -19,7 +19,7 @@ const DRAWS: usize = 2000;
 /// (a/omega^2 = 30) and at tau = 100, and lose 1/(2 xi) = 50 times more next to resonance.
 const ROUNDING: f64 = 1e-10;
 
-/// What counts as a contradiction: far above rounding.
+/// The smallest difference that counts as a contradiction: far above rounding.
 const PLAIN_TO_SEE: f64 = 1e-3;
 
 /// One unit of the last digit printed in Table 1, and what it becomes within one row.

@@ -19,7 +19,7 @@ mod trajectory_csv;
 use percuss::{Model, Parameters, Start};
 use std::error::Error;
 
-/// What a program writes, as text.
+/// The text that an example program writes.
 fn text(write: impl FnOnce(&mut Vec<u8>) -> Result<(), Box<dyn Error>>) -> String {
     let mut out = Vec::new();
     write(&mut out).unwrap();

@@ -1,5 +1,5 @@
-//! What users of the library meet beside the runs themselves: horizons in time and in forcing
-//! periods, names, and serialized parameters.
+//! The library's interface beside the runs themselves: horizons in time and in forcing periods,
+//! names, and serialized parameters.
 
 use percuss::dynamics::{attractor, continuation};
 use percuss::{Endless, Exit, InputError, Instant, Model, Parameter, Parameters, Phase, Start};
@@ -100,6 +100,10 @@ fn names_are_read_back() {
     }
     for kind in continuation::BifurcationKind::ALL {
         assert_eq!(kind.to_string().parse(), Ok(kind));
+    }
+    #[cfg(feature = "affine")]
+    for direction in percuss::affine::Direction::ALL {
+        assert_eq!(direction.to_string().parse(), Ok(direction));
     }
     #[cfg(feature = "lanes")]
     for set in percuss::lanes::Instructions::available() {

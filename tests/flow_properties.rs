@@ -1,4 +1,4 @@
-//! What any exact flow of the model must satisfy, whatever its formulas.
+//! Properties that any exact flow of the model has, whatever its formulas.
 
 use crate::support::original::Equations;
 use percuss::{Entry, Exit, Instant, Model, Parameters, Phase, Segment, Start, State};
@@ -187,7 +187,7 @@ proptest! {
     }
 }
 
-/// The slope of the guard that ends this segment.
+/// The slope of the guard that ends a segment, at the crossing.
 fn crossing_slope(model: &Model, segment: &Segment, next: &Entry) -> f64 {
     let two_xi = 2.0 * model.parameters().xi;
     let State { y, q, .. } = next.state;

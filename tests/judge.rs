@@ -50,24 +50,24 @@ struct Agreement {
     worst: f64,
 }
 
-/// How far apart the two may put the end of a segment: both know the guard to a few eps of its
-/// terms, which is that over its slope in time.
+/// The distance that both solvers' ends of a segment may have: both know the guard to a few eps of
+/// its terms, which is that over its slope in time.
 fn room(model: &Model, segment: &Segment, next: &Entry) -> f64 {
     let Parameters { a, b, xi, omega, g, .. } = *model.parameters();
     let (from, to) = (segment.entry().state, next.state);
     let (d, rate, two_xi) = (segment.duration(), 0.5 / xi, 2.0 * xi);
     let force = model.force(&next.instant)[0];
-    let swing = a * (0.5 * d * d).min((2.0 + omega * d) / (omega * omega));
+    let displacement = a * (0.5 * d * d).min((2.0 + omega * d) / (omega * omega));
     let (terms, slope) = match segment.phase() {
         Phase::NoContact => {
-            let lift = 0.5 * b.abs() * d * d + swing;
+            let lift = 0.5 * b.abs() * d * d + displacement;
             let start = from.p.abs() + g + from.q.abs() + (from.y * d).abs();
             (start + lift, to.y + rate * to.q)
         }
         Phase::Contact => {
             let parts = 1.0 + b.abs() + from.q.abs() + two_xi * from.y.abs() + from.y.abs();
             let f = two_xi * to.y + to.q;
-            (parts + swing.min(a / two_xi), two_xi * (force - f) + to.y)
+            (parts + displacement.min(a / two_xi), two_xi * (force - f) + to.y)
         }
         Phase::Progression => {
             let parts = from.y.abs() + rate * (1.0 - from.q).abs();

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 /// A package of the workspace.
 struct Package {
-    /// Where its sources are.
+    /// The folder of the package's sources.
     sources: &'static str,
     /// Its rooms, folders or files directly in `sources`: each may use those before it.
     rooms: &'static [&'static str],
-    /// How many uses of one file by another there are at least.
+    /// The least number of uses of one file by another.
     least_uses: usize,
 }
 

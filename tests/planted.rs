@@ -9,7 +9,7 @@
 use crate::support::draw::{
     Setting, Tally, count, first_segment, log, margin, runner, setting, state,
 };
-use crate::support::plant::{Finding, examine, flight, hop, steep, wave};
+use crate::support::plant::{Finding, examine, flight, flight_from_surface, harmonic, steep};
 use percuss::{Exit, Parameters, Phase, Start};
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseError;
@@ -60,7 +60,7 @@ fn flights_that_nearly_graze_are_decided() {
         let size = flight(&parameters, aim(&parameters, v, d, 0.0, 0.0), d).size;
         let start = aim(&parameters, v, d, margin * size, 0.0);
         let guard = |t: f64| flight(&parameters, start, t);
-        prop_assume!(b + a * wave(&parameters, d).force < -0.05 * a);
+        prop_assume!(b + a * harmonic(&parameters, d).force < -0.05 * a);
         let Some((segment, ..)) = first_segment(parameters, state(start[0], start[1], start[2]))
         else {
             return Err(TestCaseError::reject("start not accepted"));
@@ -110,7 +110,7 @@ fn touches_within_the_rounding_are_counted_and_passed() {
 }
 
 #[test]
-fn hops_after_separation_are_recovered() {
+fn flights_after_separation_are_recovered() {
     let tally = Tally::default();
     let strategy = (setting(), log(1e-3, 1e1));
     let test = |((xi, omega, periods, phi, u, _), a): (Setting, f64)| {
@@ -118,10 +118,12 @@ fn hops_after_separation_are_recovered() {
         let mut parameters = Parameters { a, b: a * (u - 0.5), xi, omega, g: 0.02, phi };
         parameters.b = parameters.b.min(a / (1.0 + periods * periods));
         // h is linear in the velocity at separation.
-        let (unit, rest) =
-            (hop(&Parameters { a: 0.0, b: 0.0, ..parameters }, 1.0, d), hop(&parameters, 0.0, d));
+        let (unit, rest) = (
+            flight_from_surface(&Parameters { a: 0.0, b: 0.0, ..parameters }, 1.0, d),
+            flight_from_surface(&parameters, 0.0, d),
+        );
         let y = -rest.excess / unit.excess;
-        let guard = |t: f64| hop(&parameters, y, t);
+        let guard = |t: f64| flight_from_surface(&parameters, y, t);
         let at = guard(d);
         prop_assume!(y.abs() < 1e6 && at.slope > 0.0);
         let bend = a + parameters.b.abs() + y.abs() / (2.0 * xi);
@@ -173,11 +175,11 @@ fn impacts_choose_the_phase_by_their_force() {
     assert!(tally.recovered.get() > 1500);
 }
 
-/// Strong damping, slow forcing: the trial force follows its steady part and dips below zero by a
+/// Strong damping, slow forcing: the trial force follows its steady part and falls below zero by a
 /// little, once a period. Its derivatives must not be made by the stiff equations of motion, which
-/// multiply the rounding of f by 2 xi each: the dip would drown in them.
+/// multiply the rounding of f by 2 xi each: the excursion would be lost in them.
 #[test]
-fn shallow_dips_under_strong_damping_are_met() {
+fn short_separations_under_strong_damping_are_found() {
     let strategy = (log(2.0, 1e4), log(1e-4, 0.3), log(1e-9, 1e-2), 0.1..0.4_f64, 0.0..0.5_f64);
     let test = |(xi, omega, depth, a, early): (f64, f64, f64, f64, f64)| {
         // f - b = a Re(H exp(i (omega tau + phi))), q - b = a Re(R exp(..)), with R = 1/P.
@@ -199,10 +201,14 @@ fn shallow_dips_under_strong_damping_are_met() {
         let Some((segment, counters, _)) = first_segment(parameters, start) else {
             return Err(TestCaseError::reject("start not accepted"));
         };
-        let dips = ((depth - 1.0).acos() - from) / omega;
+        let falls = ((depth - 1.0).acos() - from) / omega;
         let width = (2.0 * depth).sqrt() / omega;
         let room = 0.02 * width + 1e-3 / omega * depth.sqrt();
-        prop_assert!((segment.duration() - dips).abs() < room, "{} for {dips}", segment.duration());
+        prop_assert!(
+            (segment.duration() - falls).abs() < room,
+            "{} for {falls}",
+            segment.duration()
+        );
         prop_assert!(counters.evaluations < 100, "{counters:?}");
         Ok(())
     };

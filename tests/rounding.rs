@@ -1,4 +1,4 @@
-//! What the proofs in interval arithmetic (docs/ROUNDING.md) have found.
+//! The results of the proofs in interval arithmetic (docs/ROUNDING.md).
 
 use percuss::insides::Motion;
 use percuss::{Model, Parameters, Start};

@@ -46,7 +46,7 @@ impl Planted {
         }
     }
 
-    /// How far the trial force of a contact is above the threshold after this time, by integration.
+    /// The height of a contact's trial force above the threshold after this time, by integration.
     fn above(&self, time: f64) -> f64 {
         let Self { parameters, y, threshold, .. } = *self;
         let equations = Equations { phase: Phase::Contact, parameters };
@@ -63,7 +63,7 @@ impl Planted {
     /// The trial force leaves the threshold to the side of the sign, and the solver's run with it,
     /// if the derivative is large: after this share of the fastest time that is far above any
     /// rounding, and the next derivative still does little. What rounding makes of the first
-    /// moments, a hop of 1e-14, is over by then.
+    /// moments, a flight of 1e-14, is over by then.
     fn leaves_to_its_side(&self, share: f64) {
         let Parameters { xi, omega, .. } = self.parameters;
         let time = share / omega.max(1.0).max(2.0 * xi);
@@ -77,7 +77,7 @@ impl Planted {
     }
 }
 
-/// What is free at a start.
+/// The free numbers of a start.
 struct Free {
     xi: f64,
     omega: f64,
@@ -102,7 +102,7 @@ impl Free {
     }
 
     /// The harmonic part of the force and its first two derivatives.
-    fn wave(&self) -> [f64; 3] {
+    fn harmonic(&self) -> [f64; 3] {
         let (sin, cos) = libm::sincos(self.phi);
         let Self { a, omega, .. } = *self;
         [a * cos, -(a * omega * sin), -(a * omega * omega * cos)]
@@ -116,7 +116,7 @@ impl Free {
 
     /// f' = 2 xi (F - f) + y has the sign.
     fn first(&self, b: f64) -> Planted {
-        let pull = b + self.wave()[0] - self.threshold;
+        let pull = b + self.harmonic()[0] - self.threshold;
         let terms = 2.0 * self.xi * (self.a + b.abs() + self.threshold);
         self.planted(b, self.sign * self.size * terms - 2.0 * self.xi * pull)
     }
@@ -147,7 +147,7 @@ impl Free {
 
     /// f' = 0 and f'' has this value, by b and y.
     fn without_first(&self, second: f64) -> Planted {
-        let [force, rate, _] = self.wave();
+        let [force, rate, _] = self.harmonic();
         let pull = second - 2.0 * self.xi * rate;
         self.planted(self.threshold + pull - force, -2.0 * self.xi * pull)
     }

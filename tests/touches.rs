@@ -13,7 +13,7 @@ const EPS: f64 = f64::EPSILON;
 /// Touches of each kind.
 const TOUCHES: u64 = 100;
 
-/// What the first phase of a run is and counts, and whether it ends by a switch within so many
+/// The first phase of a run, with its count of undecidable touches and of switches within some
 /// periods.
 struct First {
     undecidable: u64,
@@ -59,11 +59,11 @@ fn parabolas_are_decided_outside_the_rounding_room_and_counted_inside() {
     }
 }
 
-/// A damped swing of the trial force from rest, whose first crest touches 1 or whose first trough
-/// touches 0.
+/// A damped oscillation of the trial force from rest, whose first crest touches 1 or whose first
+/// trough touches 0.
 ///
-/// f'' + 2 xi f' + f = b; from f' = 0 it swings to b + (b - f0) exp(-pi xi/nu).
-fn swing(draw: &mut Draw, top: bool) -> First {
+/// f'' + 2 xi f' + f = b; from f' = 0 its first extremum is b + (b - f0) exp(-pi xi/nu).
+fn damped_oscillation(draw: &mut Draw, top: bool) -> First {
     let xi = draw.decades(1e-3, 0.5);
     let f0 = if top { draw.between(0.05, 0.5) } else { draw.between(0.5, 0.95) };
     let left = libm::exp(-PI * xi / (1.0 - xi * xi).sqrt());
@@ -76,11 +76,11 @@ fn swing(draw: &mut Draw, top: bool) -> First {
 }
 
 #[test]
-fn swings_of_the_trial_force_that_touch_a_threshold_are_counted() {
+fn oscillations_of_the_trial_force_that_touch_a_threshold_are_counted() {
     let mut draw = Draw(41);
     for top in [false, true] {
         for _ in 0..TOUCHES {
-            let First { undecidable, switches, phase } = swing(&mut draw, top);
+            let First { undecidable, switches, phase } = damped_oscillation(&mut draw, top);
             assert_eq!(phase, Phase::Contact);
             assert!(undecidable > 0 && switches == 0, "{undecidable} {switches}");
         }

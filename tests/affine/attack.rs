@@ -164,7 +164,7 @@ proptest! {
     }
 }
 
-/// How far above its beginning a guard's level is, as a share of its size.
+/// The height of a guard's level above its beginning, as a share of its size.
 fn above() -> impl Strategy<Value = f64> {
     prop_oneof![Just(1e-9), Just(1e-6), Just(1e-3), 0.01..2.0_f64]
 }
@@ -232,8 +232,8 @@ fn what_never_ends_is_passed_in_few_pieces() {
     }
 }
 
-/// The rate of a decay whose factor in a guard is 1e300 overflows where it is told by two norms.
-/// The other guard crosses later, and must not be told to be the first.
+/// The rate of a decay whose factor in a guard is 1e300 overflows where it is computed from two
+/// norms. The other guard crosses later, and must not be taken for the first.
 #[test]
 fn a_rate_that_overflows_is_none() {
     let text = r#"

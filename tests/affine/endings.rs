@@ -1,4 +1,4 @@
-//! Where the endings are that have no instant of their own.
+//! The times of endings that have no instant of their own.
 
 use super::{enclosed, events, names, system};
 use crate::double_double::DoubleDouble;

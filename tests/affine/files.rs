@@ -1,4 +1,4 @@
-//! What is wrong in a system's file is said with its line, and with what is accepted.
+//! Errors in a system's file are reported with their line, and with what is accepted.
 
 use super::BALL;
 use percuss::affine::{System, SystemFile};
@@ -36,7 +36,7 @@ fn each_mistake_is_named_with_its_line() {
         ("0 > x", "0 >= x", "a condition is accepted as `left > right`"),
         ("0 > x", "x", "a condition is accepted as"),
         ("x = 0\", \"v = -e*v", "x = 0\", \"x = 1", "x is assigned twice"),
-        ("\"both\"", "\"up\"", "\"up\" is no direction: rising, falling or both is"),
+        ("\"both\"", "\"up\"", "\"up\" is no direction: accepted are rising, falling, both"),
         ("\"touched\"", "\"impact\"", "the event \"impact\" is there twice"),
         ("v = 1\n", "", "the state v is missing in [start]"),
         ("v = 1\n", "v = \"x\"\n", "x is a state"),

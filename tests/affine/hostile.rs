@@ -6,7 +6,7 @@ use crate::double_double::DoubleDouble;
 use percuss::affine::{Event, SearchWork, Solver, System};
 use percuss::number::Number;
 
-/// What a search of one guard may take from one event to the next.
+/// The largest number of pieces in a search of one guard from one event to the next.
 const MOST_PIECES: u64 = 1 << 18;
 
 fn in_form(parameters: &str, equations: &str, guard: &str, reset: &str, start: &str) -> System {

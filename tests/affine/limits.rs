@@ -19,12 +19,12 @@ fn watched(states: &str, equations: &str, guard: &str, start: &str) -> System {
 fn ends_undecided(system: &System, all: &[Event<DoubleDouble>]) {
     let shown = names(system, all);
     assert_eq!(shown.last().map(String::as_str), Some("undecided"), "{shown:?}");
-    let told = |it: &Event<DoubleDouble>| {
+    let is_finite = |it: &Event<DoubleDouble>| {
         let errors = it.errors.as_ref().unwrap();
         let states = it.state.iter().map(|it| it.words().0).chain(errors.state.iter().copied());
         states.chain([errors.time]).all(f64::is_finite)
     };
-    assert!(all.iter().all(told), "{all:?}");
+    assert!(all.iter().all(is_finite), "{all:?}");
 }
 
 #[test]
@@ -150,7 +150,8 @@ fn a_forced_run_in_one_word_keeps_its_digits_far_from_time_zero() {
     }
 }
 
-/// Five eigenvalues within 1e-9 of one another: whether they are told apart or not, the run is.
+/// Five eigenvalues within 1e-9 of one another: whether they are kept apart or not, the run is
+/// not refused.
 #[test]
 fn eigenvalues_that_nearly_coincide_are_no_reason_to_refuse() {
     let rates =

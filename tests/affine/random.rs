@@ -14,7 +14,7 @@ use std::fmt::Write;
 const UNTIL: f64 = 20.0;
 const EVENTS: usize = 60;
 
-/// What a check has met.
+/// The counts of what a check has compared.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Met {
     /// Events that were compared.
@@ -209,7 +209,7 @@ pub fn system(seed: u64) -> String {
     )
 }
 
-/// What an event is, in any arithmetic.
+/// The kind and the indices of an event, in any arithmetic.
 fn kind<T>(event: &Event<T>) -> (u8, usize, usize) {
     match &event.what {
         What::Start => (0, 0, 0),

@@ -57,8 +57,8 @@ fn the_last_step_is_short_for_the_state() {
     }
 }
 
-/// What f64 rounds of a guard whose factors are 1e6 is more than its crest is above zero: the run
-/// says that it leaves this open.
+/// The rounding error in f64 of a guard whose factors are 1e6 is larger than the height of its
+/// crest above zero: the run reports that it leaves the crossing open.
 #[test]
 fn a_crest_within_rounding_is_counted() {
     let mut met = Met::default();

@@ -7,8 +7,8 @@ use percuss::number::Number;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// How many roundings an event may be off, amplified by its growth: a segment takes some ten, and
-/// the worst of all tables is 4.5.
+/// The largest error of an event in roundings, amplified by its growth: a segment takes some ten,
+/// and the worst of all tables is 4.5.
 const ROUNDINGS: f64 = 16.0;
 
 struct Table {
@@ -199,9 +199,10 @@ fn time_errors(system: &System, table: &Table) -> Vec<f64> {
 /// The mean is 1.2 and the worst 15. Each of three changes for the worse raised it by a third to
 /// four fifths: to add each entry of a nilpotent matrix to its co-ordinate by itself, to do so with
 /// all powers of the time, and to leave out the rest of the way to a crossing, by the value of its
-/// guard. Left out is relay-chatter-fine, whose errors are one walk of 179 steps in a direction
-/// without restoring force: where it ends is chance. Over a thousand starts beside its own, 0.0001
-/// apart, its mean is 430 roundings, or 409 where crossings are not told by Taylor polynomials.
+/// guard. Left out is relay-chatter-fine, whose errors are a random walk of 179 steps in a
+/// direction without restoring force: where it ends is chance. Over a thousand starts beside its
+/// own, 0.0001 apart, its mean is 430 roundings, or 409 where crossings are not proved by Taylor
+/// polynomials.
 #[test]
 fn times_are_good_to_two_roundings() {
     let all = cases().into_iter().filter(|(case, _)| case != "relay-chatter-fine");

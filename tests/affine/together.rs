@@ -6,15 +6,18 @@ use crate::double_double::DoubleDouble;
 use percuss::affine::{Direction, Rational, Solver, System, SystemFile, Watch, What};
 use percuss::number::Number;
 
-/// How many random systems are run, and how many of their events are compared.
+/// The number of random systems that are run.
 const SYSTEMS: u64 = 60;
+
+/// The number of a system's events that are compared, at most.
 const EVENTS: usize = 60;
 
-/// How far: later than this many have come to rest, where rounding hides what guards do.
+/// The horizon: at later times many systems have come to rest, where rounding hides the signs of
+/// guards.
 const UNTIL: f64 = 5.0;
 
-/// How far crossings may be apart that are the same: far above what 106 bits leave after so many
-/// events, and far below the distance of two that are not.
+/// The largest distance of two crossings that are the same: far above what 106 bits leave after so
+/// many events, and far below the distance of two that are not.
 const ROOM: f64 = 1e-9;
 
 #[test]

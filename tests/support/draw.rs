@@ -1,4 +1,4 @@
-//! What the planted tests draw from, and what they count.
+//! The strategies and the counters of the planted tests.
 
 use super::plant::Finding;
 use percuss::{Counters, Model, Parameters, Segment, Start, Trajectory};
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 pub type Outcome = Result<(), TestCaseError>;
 
-/// What became of the cases of one test.
+/// The outcomes of the cases of one test, counted.
 #[derive(Default)]
 pub struct Tally {
     pub recovered: Cell<u32>,

@@ -6,12 +6,12 @@
 use libm::{cos, exp, sin};
 use percuss::{Parameters, Start};
 
-/// What a start is planted for.
+/// The crest of a guard for which a start is planted.
 #[derive(Clone, Copy, Debug)]
 pub struct Crest {
-    /// When the guard is highest, after the start at the angle phi.
+    /// The time from the start, at the angle phi, to the crest.
     pub elapsed: f64,
-    /// How far above its threshold it is then.
+    /// The height of the crest above the guard's threshold.
     pub above: f64,
 }
 
@@ -22,12 +22,13 @@ fn start(parameters: &Parameters, p: f64, y: f64, q: f64) -> Start {
     Start { p, y, q: Some(q), ..Start::default() }
 }
 
-/// What the harmonic force adds to a velocity within a time d, and to a displacement.
+/// The harmonic force's parts in the velocity and the displacement after a time d.
 fn harmonic(parameters: &Parameters, d: f64) -> (f64, f64) {
     let Parameters { a, omega, phi, .. } = *parameters;
     let impulse = (a / omega) * (sin(omega * d + phi) - sin(phi));
-    let swing = (a / (omega * omega)) * (cos(phi) - omega * d * sin(phi) - cos(omega * d + phi));
-    (impulse, swing)
+    let displacement =
+        (a / (omega * omega)) * (cos(phi) - omega * d * sin(phi) - cos(omega * d + phi));
+    (impulse, displacement)
 }
 
 /// A flight from a slider at q: h = p0 - g - q exp(-d/(2 xi)) + y0 d + b d^2/2 + (a/omega^2)
@@ -36,9 +37,9 @@ pub fn flight(parameters: &Parameters, q: f64, crest: Crest) -> Start {
     let Parameters { b, xi, g, .. } = *parameters;
     let (d, rate) = (crest.elapsed, 0.5 / xi);
     let lag = q * exp(-rate * d);
-    let (impulse, swing) = harmonic(parameters, d);
+    let (impulse, displacement) = harmonic(parameters, d);
     let y = -(b * d + impulse + rate * lag);
-    let p = crest.above + g + lag - y * d - 0.5 * b * d * d - swing;
+    let p = crest.above + g + lag - y * d - 0.5 * b * d * d - displacement;
     start(parameters, p, y, q)
 }
 
@@ -61,12 +62,12 @@ pub fn contact(parameters: &Parameters, falls: bool, crest: Crest) -> Start {
     let (x, x_rate) = (threshold - level, -rate);
     // The free part, backwards from the crest.
     let nu = (1.0 - xi * xi).sqrt();
-    let quarter = (x_rate + xi * x) / nu;
+    let quadrature = (x_rate + xi * x) / nu;
     let (s, c) = (sin(nu * d), cos(nu * d));
-    let (swing, turn) = (x * c - quarter * s, x * s + quarter * c);
+    let (free, free_quadrature) = (x * c - quadrature * s, x * s + quadrature * c);
     let (level, rate) = forced(0.0);
-    let force = level + exp(xi * d) * swing;
-    let force_rate = rate + exp(xi * d) * (nu * turn - xi * swing);
+    let force = level + exp(xi * d) * free;
+    let force_rate = rate + exp(xi * d) * (nu * free_quadrature - xi * free);
     let y = force_rate - 2.0 * xi * (b + a * cos(phi) - force);
     let q = force - 2.0 * xi * y;
     start(parameters, q + g, y, q)
@@ -90,17 +91,17 @@ pub fn slip(parameters: &Parameters, closing: f64, crest: Crest) -> (Parameters,
 /// A flight off the surface, the slider's q0 = -2 xi y0, and the static force with which h is
 /// highest at its threshold at the crest: h = y0 2 xi (exp(-z) - 1 + z) + b d^2/2 + (a/omega^2)
 /// (cos phi - omega d sin phi - cos(omega d + phi)) with z = d/(2 xi).
-pub fn hop(parameters: &Parameters, crest: Crest) -> (Parameters, Start) {
+pub fn flight_from_surface(parameters: &Parameters, crest: Crest) -> (Parameters, Start) {
     let Parameters { xi, g, .. } = *parameters;
     let d = crest.elapsed;
     let z = 0.5 * d / xi;
     let (sink, sink_rate) = (2.0 * xi * (exp(-z) - 1.0 + z), 1.0 - exp(-z));
     let (lift, lift_rate) = (0.5 * d * d, d);
-    let (swing_rate, swing) = harmonic(parameters, d);
+    let (forced_rate, forced) = harmonic(parameters, d);
     // h = above and h' = 0 in y0 and b.
     let determinant = sink * lift_rate - lift * sink_rate;
-    let y = ((crest.above - swing) * lift_rate + lift * swing_rate) / determinant;
-    let b = (-sink * swing_rate - sink_rate * (crest.above - swing)) / determinant;
+    let y = ((crest.above - forced) * lift_rate + lift * forced_rate) / determinant;
+    let b = (-sink * forced_rate - sink_rate * (crest.above - forced)) / determinant;
     let q = -2.0 * xi * y;
     let parameters = Parameters { b, ..*parameters };
     (parameters, start(&parameters, q + g, y, q))

@@ -1,4 +1,4 @@
-//! What the tests share.
+//! Modules that several tests use.
 
 pub mod draw;
 pub mod draws;

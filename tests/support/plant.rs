@@ -17,7 +17,7 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// Below this the excess is rounding.
+    /// The size below which the excess is rounding.
     pub fn noise(&self) -> f64 {
         ROUNDINGS * f64::EPSILON * self.size
     }
@@ -57,13 +57,13 @@ fn relaxed(z: f64) -> f64 {
 
 /// The harmonic force and its first and second integral over d for unit amplitude, with the sizes
 /// of their terms.
-pub struct Wave {
+pub struct Harmonic {
     pub force: f64,
     pub impulse: [f64; 2],
     pub displacement: [f64; 2],
 }
 
-pub fn wave(p: &Parameters, d: f64) -> Wave {
+pub fn harmonic(p: &Parameters, d: f64) -> Harmonic {
     let omega = p.omega;
     let (s, c) = p.phi.sin_cos();
     let angle = omega * d;
@@ -75,7 +75,7 @@ pub fn wave(p: &Parameters, d: f64) -> Wave {
     let sin_less_x = sin_less_x + low * cos_less_1;
     let impulse = (s * cos_less_1 + c * sin) / omega;
     let displacement = -(c * cos_less_1 - s * sin_less_x) / (omega * omega);
-    Wave {
+    Harmonic {
         force: c + (c * cos_less_1 - s * sin),
         impulse: [impulse, (sin.abs() - cos_less_1) / omega],
         displacement: [displacement, (sin_less_x.abs() - cos_less_1) / (omega * omega)],
@@ -85,7 +85,7 @@ pub fn wave(p: &Parameters, d: f64) -> Wave {
 /// h of a flight from p, y, q with the mass away from the slider.
 pub fn flight(p: &Parameters, [p0, y0, q0]: [f64; 3], d: f64) -> Guard {
     let rate = 0.5 / p.xi;
-    let Wave { impulse, displacement, .. } = wave(p, d);
+    let Harmonic { impulse, displacement, .. } = harmonic(p, d);
     let lag = q0 * (-rate * d).exp();
     let lift = 0.5 * p.b * d * d;
     let start = (p0 - p.g) - lag;
@@ -97,9 +97,9 @@ pub fn flight(p: &Parameters, [p0, y0, q0]: [f64; 3], d: f64) -> Guard {
 }
 
 /// h of a flight after separation at velocity y0, in units that do not cancel.
-pub fn hop(p: &Parameters, y0: f64, d: f64) -> Guard {
+pub fn flight_from_surface(p: &Parameters, y0: f64, d: f64) -> Guard {
     let rate = 0.5 / p.xi;
-    let Wave { impulse, displacement, .. } = wave(p, d);
+    let Harmonic { impulse, displacement, .. } = harmonic(p, d);
     let sink = 2.0 * p.xi * y0 * relaxed(rate * d);
     let lift = 0.5 * p.b * d * d;
     Guard {
@@ -112,7 +112,7 @@ pub fn hop(p: &Parameters, y0: f64, d: f64) -> Guard {
 /// -w of a progression from y, q.
 pub fn slip(p: &Parameters, [y0, q0]: [f64; 2], d: f64) -> Guard {
     let rate = 0.5 / p.xi;
-    let Wave { force, impulse, .. } = wave(p, d);
+    let Harmonic { force, impulse, .. } = harmonic(p, d);
     let closing = (1.0 - q0) * rate;
     let lag = closing * (-rate * d).exp();
     let push = (p.b - 1.0) * d;
@@ -138,7 +138,7 @@ pub fn contact(p: &Parameters, [y0, q0]: [f64; 2], d: f64, side: Option<Side>) -
     let [_, y, q, _] = equations.integrate(p.phi, [0.0, y0, q0, 0.0], d);
     let two_xi = 2.0 * p.xi;
     let f = two_xi * y + q;
-    let rate = two_xi * (p.b + p.a * wave(p, d).force - f) + y;
+    let rate = two_xi * (p.b + p.a * harmonic(p, d).force - f) + y;
     let side = side.unwrap_or(if f >= 0.5 { Side::Rises } else { Side::Falls });
     let (excess, slope) = if side == Side::Rises { (f - 1.0, rate) } else { (-f, -rate) };
     // Errors of the integration: an eps of the largest part per step, added up as a random walk.
@@ -199,7 +199,7 @@ pub fn examine(
     Ok(if found < planted { Finding::Earlier } else { Finding::Later })
 }
 
-/// How steep a crossing must be to be told from a graze: its parabola's crest outside the noise.
+/// Whether a crossing is too steep to be a graze: its parabola's crest outside the noise.
 pub fn steep(at: &Guard, bend: f64) -> bool {
     at.slope * at.slope > 8.0 * at.noise() * bend
 }

@@ -11,7 +11,7 @@ use dashu_ratio::RBig;
 pub struct Time<T> {
     /// The time, rounded.
     pub high: T,
-    /// What rounding left.
+    /// The rounding error of `high`.
     pub low: T,
 }
 
@@ -42,14 +42,14 @@ impl<T: Number> Time<T> {
         sum(high, low + self.low)
     }
 
-    /// How much later this time is than another: rounded, and what rounding left.
+    /// The time from another time to this one, in two words.
     #[must_use]
     #[inline]
     pub(in crate::affine) fn since(&self, other: &Self) -> Self {
         self.after(-other.high).after(-other.low)
     }
 
-    /// The time, rounded to one number.
+    /// This time, rounded to one number.
     #[must_use]
     #[inline]
     pub fn value(&self) -> T {
@@ -57,7 +57,7 @@ impl<T: Number> Time<T> {
     }
 }
 
-/// A sum and what rounding took from it.
+/// A sum of two numbers and its rounding error.
 #[inline]
 fn sum<T: Number>(a: T, b: T) -> Time<T> {
     let high = a + b;
@@ -70,8 +70,8 @@ impl<T: Number> Clock<T> {
         Self { omega: Time::of(&forcing.omega), phi: Time::of(&forcing.phi) }
     }
 
-    /// How far the arithmetic may have theta from the truth at a time: omega, times and their sums
-    /// are rounded to 106 bits, whether those are one number or two.
+    /// A bound of the rounding error of theta at a time: omega, times and their sums are rounded to
+    /// 106 bits, whether those are one number or two.
     #[inline]
     pub fn rounding(&self, time: &Time<T>) -> f64 {
         const UNIT: f64 = f64::EPSILON * f64::EPSILON;

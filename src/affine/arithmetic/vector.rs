@@ -4,7 +4,7 @@ use super::real::BigReal;
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::numeric::number::Number;
 
-/// What underflow takes from a number at most, in a few operations; nothing in f64 is smaller than
+/// A bound of the error that underflow makes in a few operations; nothing in f64 is smaller than
 /// one 64th of it.
 pub const UNDERFLOW: f64 = f64::from_bits(64);
 
@@ -23,21 +23,22 @@ pub fn unit<T: Number>() -> f64 {
     if T::TERMS <= <f64 as Number>::TERMS { HALF } else { HALF * HALF * 4.0 }
 }
 
-/// What rounding does to a sum of as many products as a mode has co-ordinates, in sizes of what it
-/// is summed from: a rounding for each product and sum, one for the factors, five for the closed
-/// form of a co-ordinate, and one for the rest of the way to a crossing.
+/// A bound of the rounding error of a sum of as many products as a mode has co-ordinates, relative
+/// to the sum of its terms' sizes: a rounding for each product and sum, one for the factors, five
+/// for the closed form of a co-ordinate, and one for the rest of the way to a crossing.
 #[inline]
 pub fn sum_rounding<T: Number>(dimension: usize) -> f64 {
     (dimension + 7) as f64 * unit::<T>()
 }
 
-/// What rounding does to a sum of co-ordinates that were sums themselves, at an entry.
+/// A bound of the rounding error of a sum of co-ordinates at an entry, where they are sums
+/// themselves, relative to the sum of its terms' sizes.
 #[inline]
-pub fn twice_summed<T: Number>(dimension: usize) -> f64 {
+pub fn twice_summed_rounding<T: Number>(dimension: usize) -> f64 {
     2.0 * sum_rounding::<T>(dimension)
 }
 
-/// Sine and cosine of an angle to which `low` is added, from those of the angle.
+/// Sine and cosine of an angle plus a small `low`, from those of the angle.
 #[inline]
 pub fn turned<T: Number>((sin, cos): (T, T), low: T) -> (T, T) {
     /// Up to here the square of what is added is below rounding.
@@ -71,9 +72,9 @@ pub fn add_product<T: Number, const N: usize>(sums: &mut [T; N], vector: &[T], f
     }
 }
 
-/// Whether all entries are numbers, and their sum is: nothing is told by what has overflowed.
+/// Whether all entries, and their sum, are finite: what has overflowed proves nothing.
 #[inline]
-pub fn is_told<T: Number>(entries: &[T]) -> bool {
+pub fn all_finite<T: Number>(entries: &[T]) -> bool {
     let mut sum = 0.0;
     for entry in entries {
         sum += entry.to_f64();
@@ -122,9 +123,10 @@ fn scaled_norm<T: Number>(entries: &[T]) -> f64 {
     euclidean(entries.iter().map(|it| it.to_f64()))
 }
 
-/// A root to some per cent: by a division of the logarithm that a number's bits are.
+/// A root of any degree, good to some per cent: the bits of a number are nearly its logarithm,
+/// which is divided.
 #[inline]
-pub fn root(value: f64, degree: usize) -> f64 {
+pub fn approximate_root(value: f64, degree: usize) -> f64 {
     const ONE: u64 = 1.0_f64.to_bits();
     if value == 0.0 || value == f64::INFINITY || value.is_nan() {
         return value;

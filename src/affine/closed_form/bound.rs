@@ -11,26 +11,26 @@ use crate::affine::arithmetic::real::BigReal;
 use crate::affine::arithmetic::vector::{UNDERFLOW, euclidean};
 use crate::affine::modal::{self, Kind};
 
-/// How many derivatives of a row are held, its value included.
+/// The number of derivatives of a row that are kept, its value included.
 pub const ORDERS: usize = 17;
 
 /// Room for the rounding of a norm.
 const OUTWARD: f64 = 1.0 + 1e-12;
 
-/// What is known of a block's part in a derivative at later times.
+/// How a block's part in a row's derivatives may grow at later times.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Later {
-    /// One negative eigenvalue: the part keeps its sign and decays.
-    Fading,
-    /// It never exceeds the norms.
-    Steady,
-    /// The part and its derivatives are polynomials of the time.
+pub enum BlockGrowth {
+    /// A block with one negative eigenvalue: its part keeps its sign and decays.
+    Decaying,
+    /// A part that never exceeds the norms.
+    Bounded,
+    /// A part that is a polynomial of the time, as its derivatives are.
     Polynomial,
-    /// It grows at most at this rate.
+    /// A part that grows at most at this exponential rate.
     Growing(f64),
 }
 
-impl Later {
+impl BlockGrowth {
     pub fn of(block: &modal::Block) -> Self {
         let never_grows = |rate: &BigReal| *rate <= BigReal::zero();
         match &block.kind {
@@ -39,12 +39,12 @@ impl Later {
             Kind::Nilpotent(rate) if rate.is_zero() && nilpotent(block, rate).1 <= 8 => {
                 Self::Polynomial
             }
-            Kind::Real(rate) if never_grows(rate) => Self::Fading,
-            Kind::Pair(rate, _) if never_grows(rate) => Self::Steady,
-            Kind::Nilpotent(rate) if never_grows(rate) => Self::Steady,
-            _ => match growth(block) {
+            Kind::Real(rate) if never_grows(rate) => Self::Decaying,
+            Kind::Pair(rate, _) if never_grows(rate) => Self::Bounded,
+            Kind::Nilpotent(rate) if never_grows(rate) => Self::Bounded,
+            _ => match positive_logarithmic_norm(block) {
                 rate if rate > 0.0 => Self::Growing(rate),
-                _ => Self::Steady,
+                _ => Self::Bounded,
             },
         }
     }
@@ -53,14 +53,14 @@ impl Later {
     #[inline]
     pub fn bound(self, norms: &[f64; ORDERS], order: usize, length: f64) -> f64 {
         match self {
-            Self::Fading | Self::Steady => norms[order],
+            Self::Decaying | Self::Bounded => norms[order],
             Self::Growing(rate) => norms[order] * growth_by(rate * length),
             Self::Polynomial => polynomial(&norms[order..], length),
         }
     }
 }
 
-/// A bound of exp(x): up to 1, where it is most often asked for, a parabola.
+/// An upper bound of exp(x): up to x = 1, where it is most often asked for, a parabola.
 #[inline]
 fn growth_by(x: f64) -> f64 {
     /// (exp(x) - 1 - x)/x^2 increases, and is e - 2 at 1.
@@ -83,7 +83,7 @@ fn polynomial(norms: &[f64], length: f64) -> f64 {
 }
 
 /// A bound of a block's logarithmic norm, not negative.
-fn growth(block: &modal::Block) -> f64 {
+fn positive_logarithmic_norm(block: &modal::Block) -> f64 {
     if let Kind::Real(rate) | Kind::Pair(rate, _) = &block.kind {
         return rate.to_f64().max(0.0);
     }
@@ -116,7 +116,7 @@ pub fn norms(block: &modal::Block, parts: &[Vec<BigReal>]) -> [f64; ORDERS] {
         let Some((matrix, index, rate)) = &decay else { return norm(part) };
         let next = |last: &Vec<BigReal>| Some(modal::row_times(last, matrix));
         let powers = std::iter::successors(Some(part.clone()), next).take(*index);
-        powers.enumerate().map(|(j, row)| norm(&row) * summit(j, *rate)).sum::<f64>()
+        powers.enumerate().map(|(j, row)| norm(&row) * largest_term(j, *rate)).sum::<f64>()
     };
     std::array::from_fn(|k| {
         let is_zero = parts[k].iter().all(BigReal::is_zero);
@@ -125,7 +125,7 @@ pub fn norms(block: &modal::Block, parts: &[Vec<BigReal>]) -> [f64; ORDERS] {
 }
 
 /// The maximum of s^j exp(-rate s)/j!.
-fn summit(j: usize, rate: f64) -> f64 {
+fn largest_term(j: usize, rate: f64) -> f64 {
     (1..=j).map(|n| j as f64 / (std::f64::consts::E * rate * n as f64)).product::<f64>() * OUTWARD
 }
 
@@ -133,11 +133,11 @@ fn norm(part: &[BigReal]) -> f64 {
     euclidean(part.iter().map(BigReal::to_f64))
 }
 
-/// The fastest first; last those that nothing bounds for ever.
+/// Sorts blocks by their speed, the fastest first and those without a bound for all times last.
 pub fn ordered(mut blocks: Vec<modal::Block>) -> Vec<modal::Block> {
-    let speed = |block: &modal::Block| match Later::of(block) {
-        Later::Fading | Later::Steady => modal::norm(&block.matrix),
-        Later::Polynomial | Later::Growing(_) => -1.0,
+    let speed = |block: &modal::Block| match BlockGrowth::of(block) {
+        BlockGrowth::Decaying | BlockGrowth::Bounded => modal::norm(&block.matrix),
+        BlockGrowth::Polynomial | BlockGrowth::Growing(_) => -1.0,
     };
     blocks.sort_by(|a, b| speed(b).total_cmp(&speed(a)));
     blocks

@@ -1,6 +1,6 @@
 //! The closed form of a mode: z(t) = exp(M t) z, block by block.
 
-use super::bound::Later;
+use super::bound::BlockGrowth;
 use super::modal_state::ModalState;
 use super::motion::BlockMotion;
 use crate::affine::arithmetic::real::BigReal;
@@ -17,33 +17,33 @@ use std::ops::Range;
 pub struct ModeFlow<T> {
     pub dimension: usize,
     pub blocks: Vec<FlowBlock<T>>,
-    /// How long a bound may be asked for: a growing block grows by at most e.
+    /// The longest time for which bounds are asked: a growing block grows by at most e in it.
     pub longest: f64,
-    /// How fast the co-ordinates of any block move at most ([`modal::Block::speed`]).
+    /// The largest speed of the blocks ([`modal::Block::speed`]).
     pub speed: f64,
     /// The matrix W of all blocks, by columns.
     to_modal: Vec<Vector<T>>,
     /// The matrix W of all blocks, rounded to f64, by columns; and the sizes of its entries.
     to_modal_rounded: Vec<Vector<f64>>,
     to_modal_sizes: Vec<Vector<f64>>,
-    /// The first co-ordinates of pairs that turn.
+    /// The first co-ordinate of each block that rotates.
     turning: Vec<usize>,
     /// The matrix X of all blocks, by columns.
     from_modal: Vec<Vector<T>>,
-    /// How far the entries of X and of W may be off, by columns.
+    /// Bounds of the errors of the entries of X and of W, by columns.
     off: [Vec<Vector<f64>>; 2],
 }
 
-/// A block of modal co-ordinates that move by themselves.
+/// A block of modal co-ordinates, which move independently of other blocks.
 #[derive(Clone, Debug)]
 pub struct FlowBlock<T> {
     pub at: usize,
     pub size: usize,
-    /// How fast its co-ordinates move at most ([`modal::Block::speed`]).
+    /// The block's speed ([`modal::Block::speed`]).
     speed: f64,
     motion: BlockMotion<T>,
-    /// What is known of it at all later times.
-    pub later: Later,
+    /// How the block's parts in rows may grow.
+    pub growth: BlockGrowth,
 }
 
 impl<T: Number> ModeFlow<T> {
@@ -72,8 +72,9 @@ impl<T: Number> ModeFlow<T> {
             off.extend(rows.iter().cloned());
             flow.blocks.push(FlowBlock::of(block, at));
         }
-        let rate =
-            |block: &FlowBlock<T>| if let Later::Growing(rate) = block.later { rate } else { 0.0 };
+        let rate = |block: &FlowBlock<T>| {
+            if let BlockGrowth::Growing(rate) = block.growth { rate } else { 0.0 }
+        };
         flow.speed = flow.blocks.iter().map(|it| it.speed).fold(0.0, f64::max);
         flow.longest = 1.0 / flow.blocks.iter().map(rate).fold(0.0, f64::max);
         flow.to_modal = transposed(&to_modal);
@@ -87,27 +88,27 @@ impl<T: Number> ModeFlow<T> {
         flow
     }
 
-    /// The modal co-ordinates of a state alone.
+    /// The modal co-ordinates of a state, without their sizes.
     #[inline]
     pub fn co_ordinates(&self, z: &Vector<T>) -> Vector<T> {
         times(&self.to_modal, z)
     }
 
-    /// The modal co-ordinates of a state.
+    /// The modal co-ordinates of a state, with their sizes.
     #[inline]
     pub fn modal(&self, z: &Vector<T>) -> ModalState<T> {
         let mut modal = ModalState::default();
-        self.take(&mut modal, z);
+        self.set_modal(&mut modal, z);
         modal
     }
 
-    /// Makes a place hold the modal co-ordinates of a state.
+    /// Overwrites modal co-ordinates by those of a state.
     #[inline]
-    pub fn take(&self, modal: &mut ModalState<T>, z: &Vector<T>) {
+    pub fn set_modal(&self, modal: &mut ModalState<T>, z: &Vector<T>) {
         match self.dimension {
-            0..=4 => self.take_in::<4>(modal, z),
-            5..=8 => self.take_in::<8>(modal, z),
-            _ => self.take_in::<LARGEST_DIMENSION>(modal, z),
+            0..=4 => self.set_modal_in::<4>(modal, z),
+            5..=8 => self.set_modal_in::<8>(modal, z),
+            _ => self.set_modal_in::<LARGEST_DIMENSION>(modal, z),
         }
         for at in &self.turning {
             let norm = modal.sizes[*at] + modal.sizes[at + 1];
@@ -116,7 +117,7 @@ impl<T: Number> ModeFlow<T> {
     }
 
     #[inline(always)]
-    fn take_in<const ROWS: usize>(&self, modal: &mut ModalState<T>, z: &Vector<T>) {
+    fn set_modal_in<const ROWS: usize>(&self, modal: &mut ModalState<T>, z: &Vector<T>) {
         let (mut sums, mut sizes) = ([T::zero(); ROWS], [0.0; ROWS]);
         for ((column, own), entry) in self.to_modal.iter().zip(&self.to_modal_sizes).zip(z) {
             add_product(&mut sums, column, *entry);
@@ -126,7 +127,7 @@ impl<T: Number> ModeFlow<T> {
         modal.sizes[..ROWS].copy_from_slice(&sizes);
     }
 
-    /// Modal co-ordinates of which no rounding is counted so far.
+    /// Modal co-ordinates whose sizes are their own, because no rounding error is counted so far.
     #[inline]
     pub fn exact(&self, y: &Vector<T>) -> ModalState<T> {
         let mut modal = ModalState { y: *y, sizes: y.map(|it| it.to_f64().abs()) };
@@ -137,11 +138,11 @@ impl<T: Number> ModeFlow<T> {
         modal
     }
 
-    /// Modal co-ordinates of which no rounding is counted so far but that of the blocks that are
-    /// polynomials of the time.
+    /// Modal co-ordinates whose sizes are their own, but for blocks that are polynomials of the
+    /// time: their rounding errors so far are counted.
     pub fn polynomial_sizes(&self, modal: &ModalState<T>) -> ModalState<T> {
         let mut own = self.exact(&modal.y);
-        for block in self.blocks.iter().filter(|it| it.later == Later::Polynomial) {
+        for block in self.blocks.iter().filter(|it| it.growth == BlockGrowth::Polynomial) {
             own.sizes[block.range()].copy_from_slice(&modal.sizes[block.range()]);
         }
         own
@@ -153,8 +154,8 @@ impl<T: Number> ModeFlow<T> {
         times(&self.from_modal, y)
     }
 
-    /// The sizes of what each entry of the state is summed from, where the modal co-ordinates have
-    /// sizes.
+    /// For each entry of a state, the sum of the sizes of its terms, from the sizes of the modal
+    /// co-ordinates.
     pub fn sizes(&self, y: &Vector<f64>) -> [f64; LARGEST_DIMENSION] {
         let mut sizes = [0.0; LARGEST_DIMENSION];
         for (column, entry) in self.from_modal.iter().zip(y) {
@@ -164,14 +165,14 @@ impl<T: Number> ModeFlow<T> {
         sizes
     }
 
-    /// How far each entry of the state may be off because the matrix X is, where the modal
-    /// co-ordinates have sizes.
+    /// Bounds of the errors that the error of the matrix X makes in the entries of a state, from
+    /// the sizes of its modal co-ordinates.
     pub fn state_off(&self, y: &Vector<f64>) -> Vector<f64> {
         times(&self.off[0], y)
     }
 
-    /// What rounding may do to a state where it is taken to modal co-ordinates: the states that
-    /// belong to the error of each of them.
+    /// Bounds of the rounding errors of a state's modal co-ordinates, each as the state that
+    /// belongs to it.
     pub fn entry_roundings(&self, z: &Vector<T>, unit: f64) -> Vec<Vector<f64>> {
         let margin = (self.dimension + 2) as f64 * unit;
         let error = |(n, column): (usize, &Vector<T>)| {
@@ -221,7 +222,7 @@ impl<T: Number> ModeFlow<T> {
                 }
                 _ => continue,
             };
-            block.motion.nudge(&mut later.y[block.range()], derivatives, time);
+            block.motion.taylor_step(&mut later.y[block.range()], derivatives, time);
         }
         self.state(&later.y)
     }
@@ -230,13 +231,13 @@ impl<T: Number> ModeFlow<T> {
     #[inline]
     pub fn norms<U: Number>(&self, y: &Vector<U>) -> Vector<f64> {
         let mut norms = [0.0; LARGEST_DIMENSION];
-        self.measure(&mut norms, y);
+        self.set_norms(&mut norms, y);
         norms
     }
 
-    /// Makes a place hold the norms of each block's co-ordinates; beyond the blocks it stays.
+    /// Overwrites the norms of each block's co-ordinates; entries beyond the blocks stay.
     #[inline]
-    pub fn measure<U: Number>(&self, norms: &mut Vector<f64>, y: &Vector<U>) {
+    pub fn set_norms<U: Number>(&self, norms: &mut Vector<f64>, y: &Vector<U>) {
         for (place, block) in norms.iter_mut().zip(&self.blocks) {
             *place = norm(&y[block.range()]);
         }
@@ -252,7 +253,7 @@ impl<T: Number> ModeFlow<T> {
         later
     }
 
-    /// What underflow may do to each block's modal co-ordinates at most: to zeros nothing.
+    /// Bounds of the errors that underflow makes in each block's modal co-ordinates: none in zeros.
     pub fn underflow(&self, y: &Vector<T>) -> Vector<f64> {
         let lost = |norm: f64| if norm > 0.0 { 4.0 * UNDERFLOW * (1.0 + norm) } else { 0.0 };
         self.norms(y).map(lost)
@@ -275,7 +276,7 @@ impl<T: Number> ModeFlow<T> {
 }
 
 impl<T: Number> FlowBlock<T> {
-    /// Its co-ordinates.
+    /// The indices of the block's co-ordinates.
     #[inline]
     pub fn range(&self) -> Range<usize> {
         self.at..self.at + self.size
@@ -283,8 +284,8 @@ impl<T: Number> FlowBlock<T> {
 
     fn of(block: &modal::Block, at: usize) -> Self {
         let motion = BlockMotion::of(block, at);
-        let (size, later) = (block.matrix.len(), Later::of(block));
-        Self { at, size, speed: block.speed(), motion, later }
+        let (size, growth) = (block.matrix.len(), BlockGrowth::of(block));
+        Self { at, size, speed: block.speed(), motion, growth }
     }
 }
 

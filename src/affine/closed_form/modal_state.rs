@@ -1,4 +1,4 @@
-//! Modal co-ordinates with what rounding may do to them.
+//! Modal co-ordinates, with the sizes to which their rounding errors are proportional.
 
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::model::system::LARGEST_DIMENSION;

@@ -1,6 +1,6 @@
-//! How the modal co-ordinates of a block move: exp(B t) y.
+//! The motion of a block's modal co-ordinates: exp(B t) y.
 
-use super::nilpotent::{Chain, nilpotent};
+use super::nilpotent::{SparseTriangular, nilpotent};
 use crate::affine::arithmetic::real::BigReal;
 use crate::affine::arithmetic::vector::{Vector, rounded, turned, unit, vector};
 use crate::affine::modal::{self, Kind};
@@ -32,14 +32,14 @@ pub(super) enum BlockMotion<T> {
         matrix: Vec<Vector<T>>,
         powers: usize,
         /// The entries of the matrix that are not zero, where its rows have an order.
-        chain: Option<Chain<T>>,
+        triangular: Option<SparseTriangular<T>>,
     },
-    Cluster(Box<Powers<T>>),
+    Cluster(Box<PowerTables<T>>),
 }
 
-/// exp(B t) by tables: t = step (d_0 + 16 d_1 + ...) + rest.
+/// Tables of powers, which give exp(B t): t = step (d_0 + 16 d_1 + ...) + rest.
 #[derive(Clone, Debug)]
-pub(super) struct Powers<T> {
+pub(super) struct PowerTables<T> {
     step: f64,
     /// exp(B step 16^j d) for d from 1 to 15.
     tables: Vec<Vec<Vec<Vector<T>>>>,
@@ -52,7 +52,7 @@ fn words<T: Number>(value: &BigReal) -> SplitNumber<T> {
         let (high, low) = value.words();
         return SplitNumber { high: T::exact(high), low: T::exact(low) };
     }
-    // What is left beyond an arithmetic of two words is not resolved by it either.
+    // An arithmetic of two words does not resolve what is left beyond them.
     SplitNumber { high: rounded(value), low: T::zero() }
 }
 
@@ -74,16 +74,16 @@ impl<T: Number> BlockMotion<T> {
                 if index <= 1 && rate.is_zero() {
                     return Self::Still;
                 }
-                let (rate, chain) = (nonzero(rate), Chain::of(&matrix, at));
+                let (rate, triangular) = (nonzero(rate), SparseTriangular::of(&matrix, at));
                 let matrix = matrix.iter().map(|row| vector(row)).collect();
-                Self::Nilpotent { rate, matrix, powers: index - 1, chain }
+                Self::Nilpotent { rate, matrix, powers: index - 1, triangular }
             }
-            Kind::Cluster => Self::Cluster(Box::new(Powers::of(&block.matrix))),
+            Kind::Cluster => Self::Cluster(Box::new(PowerTables::of(&block.matrix))),
         }
     }
 
-    /// By what co-ordinates that decay, and only turn beside that, have become smaller a time later
-    /// at least; 1 for others.
+    /// An upper bound of the factor by which the norm of co-ordinates that only decay and rotate
+    /// shrinks in a time; 1 for other blocks.
     pub fn decay(&self, time: f64) -> f64 {
         /// Room for the rounding of the exponential and of its exponent.
         const OUTWARD: f64 = 1.0 + 1e-9;
@@ -127,10 +127,10 @@ impl<T: Number> BlockMotion<T> {
                     sizes[next] *= factor;
                 }
             }
-            Self::Nilpotent { rate, matrix, powers, chain } => {
-                match chain {
-                    Some(chain) => {
-                        chain.advance(*powers, y, sizes, time);
+            Self::Nilpotent { rate, matrix, powers, triangular } => {
+                match triangular {
+                    Some(triangular) => {
+                        triangular.advance(*powers, y, sizes, time);
                         sizes[own.clone()].iter_mut().for_each(|size| *size *= TWICE);
                     }
                     None => {
@@ -147,8 +147,8 @@ impl<T: Number> BlockMotion<T> {
     }
 }
 
-/// By what the sizes of Horner's sums are raised, because five roundings a power are more than
-/// those of a sum.
+/// The factor by which the sizes of Horner's sums are raised, because five roundings a power are
+/// more than those of a sum.
 const TWICE: f64 = 2.0;
 
 /// `y = exp(B time) y` by so many terms of the Taylor series, in Horner's scheme, and the sizes of
@@ -213,7 +213,7 @@ fn decay<T: Number>(rate: Option<SplitNumber<T>>, time: T, y: &mut [T], sizes: &
     sizes.iter_mut().for_each(|size| *size *= factor);
 }
 
-/// A product with a rate, and what rounding took from it.
+/// The product of a rate and a time, with its rounding error.
 #[inline]
 fn product<T: Number>(rate: SplitNumber<T>, time: T) -> (T, T) {
     let high = rate.high * time;
@@ -233,19 +233,19 @@ fn circular<T: Number>(frequency: SplitNumber<T>, time: T) -> (T, T) {
     turned(high.sin_cos(), low)
 }
 
-/// A sixth, rounded up, of how far rounding may have a phase off in units of it: a frequency is
-/// rounded to 2^-106, its product with a time by four times that. Sizes are counted in at least six
-/// roundings where they are used.
+/// A sixth, rounded up, of the relative rounding error of a phase: a frequency is rounded to
+/// 2^-106, its product with a time by four times that. Sizes are counted in at least six roundings
+/// where they are used.
 const PHASE: f64 = 0.25 * f64::EPSILON * f64::EPSILON;
 
-/// A factor, raised by what the rounding of its exponent or angle, a rate times a time, adds in
-/// units of the arithmetic.
+/// A factor, raised by the rounding error of its exponent or angle, a rate times a time, in units
+/// of the arithmetic.
 #[inline]
 fn raised<T: Number>(factor: T, rate: &SplitNumber<T>, time: T) -> f64 {
     factor.to_f64() * (1.0 + PHASE / unit::<T>() * (rate.high * time).to_f64().abs())
 }
 
-impl<T: Number> Powers<T> {
+impl<T: Number> PowerTables<T> {
     /// Tables up to 16^13 steps: f64 holds each smaller number of them.
     const LEVELS: usize = 13;
     const MOST_STEPS: f64 = (1_u64 << (4 * Self::LEVELS)) as f64;
@@ -281,7 +281,7 @@ impl<T: Number> Powers<T> {
         chosen.filter_map(|(table, digit)| Some(&table[digit.checked_sub(1)?]))
     }
 
-    /// How many steps of the tables a time has.
+    /// The number of the tables' steps in a time.
     #[inline]
     fn steps(&self, time: f64) -> f64 {
         libm::floor(time / self.step).max(0.0)
@@ -293,7 +293,7 @@ impl<T: Number> Powers<T> {
     fn advance(&self, y: &mut [T], sizes: &mut [f64], time: T) {
         let steps = self.steps(time.to_f64());
         if steps >= Self::MOST_STEPS {
-            // Nothing is told of so long a time.
+            // So long a time is beyond the tables.
             return y.fill(T::exact(f64::NAN));
         }
         let rest = time - T::exact(steps * self.step);
@@ -314,9 +314,9 @@ impl<T: Number> Powers<T> {
         taylor(&self.matrix, self.terms(rest.to_f64()), y, sizes, rest);
     }
 
-    /// How many terms of the series exp(B rest) the last digit needs: a co-ordinate that is much
-    /// smaller than the others is moved by each of them after at most as many products as there are
-    /// others, and what follows is relative to that.
+    /// The number of terms of the series exp(B rest) that the last digit needs: a co-ordinate that
+    /// is much smaller than the others is moved by each of them after at most as many products as
+    /// there are others, and what follows is relative to that.
     #[inline]
     fn terms(&self, rest: f64) -> usize {
         /// Couplings of different sizes.

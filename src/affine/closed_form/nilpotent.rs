@@ -1,4 +1,4 @@
-//! How co-ordinates move whose matrix is nilpotent, but for a rate: by a polynomial of the time.
+//! The motion of co-ordinates whose matrix is nilpotent, but for a rate: a polynomial of the time.
 //!
 //! In the co-ordinates of such a block most entries of the matrix are zero, because each entry of
 //! the state follows one other or two. Where the rows have an order in which none follows one
@@ -10,25 +10,27 @@ use crate::affine::modal;
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::numeric::number::Number;
 
-/// What is left of a zero after the products of a nilpotent matrix, relative to its norm: 2^-300.
+/// The rounding that products of a nilpotent matrix leave of a zero, relative to the matrix's norm:
+/// 2^-300.
 const NOTHING: f64 = 4.909093465297727e-91;
 
-/// A matrix of which each row, in this order, is made of rows that come later.
+/// A strictly upper triangular matrix in some order of its rows, of which only the entries that are
+/// not zero are kept.
 #[derive(Clone, Debug)]
-pub(super) struct Chain<T> {
-    rows: Vec<ChainRow<T>>,
+pub(super) struct SparseTriangular<T> {
+    rows: Vec<SparseRow<T>>,
 }
 
-/// A row that is not zero: its place in the vector, and its entries that are not zero.
+/// A row of the triangular matrix: its place in the vector, and its entries that are not zero.
 #[derive(Clone, Debug)]
-struct ChainRow<T> {
+struct SparseRow<T> {
     to: usize,
-    entries: Vec<ChainEntry<T>>,
+    entries: Vec<SparseEntry<T>>,
 }
 
-/// An entry, with its column as a place in the vector.
+/// An entry of the triangular matrix, with its column as a place in the vector.
 #[derive(Clone, Copy, Debug)]
-struct ChainEntry<T> {
+struct SparseEntry<T> {
     from: usize,
     factor: T,
     size: f64,
@@ -40,9 +42,9 @@ pub(super) fn nilpotent(block: &modal::Block, rate: &BigReal) -> (Vec<Vec<BigRea
     for (n, row) in matrix.iter_mut().enumerate() {
         row[n] = &row[n] - rate;
     }
-    let beside = modal::norm(&block.matrix).max(modal::norm(&matrix));
+    let size = modal::norm(&block.matrix).max(modal::norm(&matrix));
     let nothing = |power: &Vec<Vec<BigReal>>, k: usize| {
-        modal::norm(power) <= NOTHING * libm::pow(beside, k as f64)
+        modal::norm(power) <= NOTHING * libm::pow(size, k as f64)
     };
     let powers = modal::multiples(&matrix, matrix.len());
     let index = powers.iter().enumerate().position(|(k, power)| nothing(power, k + 1));
@@ -50,18 +52,18 @@ pub(super) fn nilpotent(block: &modal::Block, rate: &BigReal) -> (Vec<Vec<BigRea
     (matrix, index)
 }
 
-impl<T: Number> Chain<T> {
-    /// The matrix of a block whose co-ordinates begin at a place of the vector; none if its rows
-    /// have no such order.
+impl<T: Number> SparseTriangular<T> {
+    /// The matrix of a block whose co-ordinates begin at a place of the vector; none if no order of
+    /// its rows makes it triangular.
     pub fn of(matrix: &[Vec<BigReal>], at: usize) -> Option<Self> {
         let follows = |row: &usize, other: &usize| !matrix[*row][*other].is_zero();
         let mut left: Vec<usize> = (0..matrix.len()).collect();
         let mut rows = Vec::new();
         while !left.is_empty() {
-            // One that no other row, nor itself, is made of.
+            // A row on which no other row, nor itself, depends.
             let is_first = |row: &usize| !left.iter().any(|other| follows(other, row));
             let first = left.remove(left.iter().position(is_first)?);
-            rows.push(ChainRow::of(&matrix[first], first, at));
+            rows.push(SparseRow::of(&matrix[first], first, at));
         }
         rows.retain(|row| !row.entries.is_empty());
         Some(Self { rows })
@@ -93,17 +95,17 @@ impl<T: Number> Chain<T> {
     }
 }
 
-impl<T: Number> ChainRow<T> {
+impl<T: Number> SparseRow<T> {
     fn of(row: &[BigReal], n: usize, at: usize) -> Self {
         let there = row.iter().enumerate().filter(|(_, entry)| !entry.is_zero());
         let entry = |(column, entry): (usize, &BigReal)| {
             let factor = rounded::<T>(entry);
-            ChainEntry { from: at + column, factor, size: factor.to_f64().abs() }
+            SparseEntry { from: at + column, factor, size: factor.to_f64().abs() }
         };
         Self { to: at + n, entries: there.map(entry).collect() }
     }
 
-    /// Its entry of the vector becomes what it was at the start and a multiple of the row's
+    /// Sets the row's entry of the vector to its value at the start plus a multiple of the row's
     /// product.
     #[inline(always)]
     fn advance(
@@ -165,14 +167,14 @@ mod tests {
         #[test]
         fn a_chain_moves_as_its_powers_do(matrix in matrix(), time in 0.0..3.0_f64) {
             let at = 5;
-            let Some(chain) = Chain::of(&big(&matrix), at) else {
+            let Some(triangular) = SparseTriangular::of(&big(&matrix), at) else {
                 return Err(TestCaseError::fail("the rows have an order"));
             };
             let (mut y, mut sizes) = ([7.0; LARGEST_DIMENSION], [3.0; LARGEST_DIMENSION]);
             let start = [0.5, -1.5, 2.0, 1.25];
             y[at..at + 4].copy_from_slice(&start);
             sizes[at..at + 4].copy_from_slice(&start.map(f64::abs));
-            chain.advance(3, &mut y, &mut sizes, time);
+            triangular.advance(3, &mut y, &mut sizes, time);
             let expected = summed(&matrix, start, time);
             let size = summed(&matrix.map(|row| row.map(f64::abs)), start.map(f64::abs), time);
             for n in 0..4 {
@@ -187,6 +189,6 @@ mod tests {
     #[test]
     fn a_circle_is_no_chain() {
         let matrix = [[1.0, -1.0], [1.0, -1.0]].map(|row| row.map(BigReal::exact).to_vec());
-        assert!(Chain::<f64>::of(&matrix, 0).is_none());
+        assert!(SparseTriangular::<f64>::of(&matrix, 0).is_none());
     }
 }

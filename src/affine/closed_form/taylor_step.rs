@@ -1,5 +1,5 @@
-//! The last step to a crossing, so short that a block's co-ordinates need no exponential: one of
-//! their derivatives or two do.
+//! The last step to a crossing, so short that one or two derivatives of a block's co-ordinates
+//! replace the exponential.
 
 use super::motion::BlockMotion;
 use crate::affine::arithmetic::vector::{Vector, dot};
@@ -9,7 +9,7 @@ use crate::numeric::number::Number;
 impl<T: Number> BlockMotion<T> {
     /// The co-ordinates a short time later, by so many of their derivatives.
     #[inline]
-    pub fn nudge(&self, y: &mut [T], derivatives: usize, time: T) {
+    pub fn taylor_step(&self, y: &mut [T], derivatives: usize, time: T) {
         match self {
             Self::Still => {}
             Self::Real { rate } => {
@@ -19,32 +19,40 @@ impl<T: Number> BlockMotion<T> {
             Self::Pair { rate, frequency } => {
                 let frequency = frequency.high;
                 let rate = rate.map_or(T::zero(), |it| it.high);
-                nudged([y[0], y[1]], y, derivatives, time, |[a, b]| {
+                add_taylor_terms([y[0], y[1]], y, derivatives, time, |[a, b]| {
                     [rate * a + frequency * b, rate * b - frequency * a]
                 });
             }
             Self::Nilpotent { rate, matrix, .. } => {
                 let rate = rate.map_or(T::zero(), |it| it.high);
-                nudged_by(matrix, rate, y, derivatives, time);
+                taylor_step_by(matrix, rate, y, derivatives, time);
             }
-            Self::Cluster(powers) => nudged_by(&powers.matrix, T::zero(), y, derivatives, time),
+            Self::Cluster(powers) => {
+                taylor_step_by(&powers.matrix, T::zero(), y, derivatives, time)
+            }
         }
     }
 }
 
-/// [`BlockMotion::nudge`] for a block that is the sum of a matrix and a rate.
+/// A [`BlockMotion::taylor_step`] of a block that is the sum of a matrix and a rate.
 #[inline]
-fn nudged_by<T: Number>(matrix: &[Vector<T>], rate: T, y: &mut [T], derivatives: usize, time: T) {
+fn taylor_step_by<T: Number>(
+    matrix: &[Vector<T>],
+    rate: T,
+    y: &mut [T],
+    derivatives: usize,
+    time: T,
+) {
     match y.len() {
-        2 => nudged_in::<T, 2>(matrix, rate, y, derivatives, time),
-        3 => nudged_in::<T, 3>(matrix, rate, y, derivatives, time),
-        4 => nudged_in::<T, 4>(matrix, rate, y, derivatives, time),
-        _ => nudged_in::<T, LARGEST_DIMENSION>(matrix, rate, y, derivatives, time),
+        2 => taylor_step_in::<T, 2>(matrix, rate, y, derivatives, time),
+        3 => taylor_step_in::<T, 3>(matrix, rate, y, derivatives, time),
+        4 => taylor_step_in::<T, 4>(matrix, rate, y, derivatives, time),
+        _ => taylor_step_in::<T, LARGEST_DIMENSION>(matrix, rate, y, derivatives, time),
     }
 }
 
 #[inline(always)]
-fn nudged_in<T: Number, const LENGTH: usize>(
+fn taylor_step_in<T: Number, const LENGTH: usize>(
     matrix: &[Vector<T>],
     rate: T,
     y: &mut [T],
@@ -54,7 +62,7 @@ fn nudged_in<T: Number, const LENGTH: usize>(
     let count = y.len();
     let mut start = [T::zero(); LENGTH];
     start[..count].copy_from_slice(y);
-    nudged(start, y, derivatives, time, |last| {
+    add_taylor_terms(start, y, derivatives, time, |last| {
         let mut next = [T::zero(); LENGTH];
         for n in 0..count {
             next[n] = dot(&matrix[n], &last, count) + rate * last[n];
@@ -65,7 +73,7 @@ fn nudged_in<T: Number, const LENGTH: usize>(
 
 /// Adds the first terms of a Taylor series, each derivative from the one before it.
 #[inline(always)]
-fn nudged<T: Number, const LENGTH: usize>(
+fn add_taylor_terms<T: Number, const LENGTH: usize>(
     start: [T; LENGTH],
     y: &mut [T],
     derivatives: usize,

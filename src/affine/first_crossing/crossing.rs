@@ -13,26 +13,26 @@ use crate::numeric::number::Number;
 const TERMS: usize = 8;
 
 /// A crossing that is proved to be the only one shortly after a point.
-struct Rising<T> {
+struct GuardCrossing<T> {
     /// The number of the guard.
     guard: usize,
-    /// When it is, after the point, by a Taylor polynomial.
+    /// The time from the point to the crossing, by a Taylor polynomial.
     after: T,
     /// The size of the last step towards the polynomial's root.
     change: f64,
-    /// How long after the point it is at most.
+    /// An upper bound of the time from the point to the crossing.
     within: f64,
     /// The guard's rate at the point; half of it is the least that it has before `within`.
     slope: f64,
-    /// What rounding may do to the time.
+    /// A bound of the rounding error of the crossing's time.
     error: f64,
 }
 
 /// The first crossing of all guards.
 pub(super) struct FirstCrossing<T> {
-    /// When it is, by Taylor polynomials.
+    /// The time of the crossing, by Taylor polynomials.
     pub time: T,
-    /// Between which times its first guard is proved to cross.
+    /// The two times between which the first guard is proved to cross.
     pub between: [T; 2],
     /// The guards that cross within what rounding may do, as bits.
     pub guards: u64,
@@ -40,7 +40,7 @@ pub(super) struct FirstCrossing<T> {
 
 impl<T: Number> GuardedSegment<'_, T> {
     /// The first crossing shortly after a point, if it is proved to be one. Guards that have
-    /// passed are not looked at before their time.
+    /// passed are not examined before their time.
     #[inline]
     pub(super) fn rising(
         &self,
@@ -49,7 +49,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         passed: &Passed<T>,
         work: &mut SearchWork,
     ) -> Option<FirstCrossing<T>> {
-        let mut all: PerGuard<Rising<T>> = PerGuard::new();
+        let mut all: PerGuard<GuardCrossing<T>> = PerGuard::new();
         for (n, track) in live(tracks).filter(|(n, _)| !passed.has(*n, at.time)) {
             all.extend(self.rises(n, track, at));
         }
@@ -63,12 +63,12 @@ impl<T: Number> GuardedSegment<'_, T> {
         let end = at.time + T::exact(first.within);
         let is_open = |n: usize| all.iter().all(|it| it.guard != n) && !passed.has(n, end);
         for (n, track) in live(tracks).filter(|(n, _)| is_open(*n)) {
-            let excess = self.excess(n, track, at, first.within);
-            let below = excess <= 4.0 * at.slack[n];
+            let bound = self.upper_bound(n, track, at, first.within);
+            let below = bound <= 4.0 * at.slack[n];
             if !below {
                 return None;
             }
-            if excess >= -at.slack[n] {
+            if bound >= -at.slack[n] {
                 work.doubt(n);
             }
         }
@@ -78,10 +78,15 @@ impl<T: Number> GuardedSegment<'_, T> {
         Some(FirstCrossing { time: at.time + first.after, between, guards })
     }
 
-    /// Whether a guard crosses together with the first, within what rounding may do. Where
-    /// polynomials hide which is first, nothing is told.
+    /// Whether a guard crosses together with the first, within rounding errors; none where the
+    /// polynomials' remainders hide which is first.
     #[inline]
-    fn is_tied(&self, at: &GuardedPoint<T>, first: &Rising<T>, other: &Rising<T>) -> Option<bool> {
+    fn is_tied(
+        &self,
+        at: &GuardedPoint<T>,
+        first: &GuardCrossing<T>,
+        other: &GuardCrossing<T>,
+    ) -> Option<bool> {
         if first.guard == other.guard {
             return Some(true);
         }
@@ -94,10 +99,10 @@ impl<T: Number> GuardedSegment<'_, T> {
         (hidden <= error).then_some(gap <= error)
     }
 
-    /// What the rest of a guard's Taylor series, and steps that were not taken, may do to the time
-    /// of a crossing.
+    /// A bound of the error of a crossing's time by the remainder of the guard's Taylor series and
+    /// by Newton steps that were not taken.
     #[inline]
-    fn truncation(&self, at: &GuardedPoint<T>, it: &Rising<T>) -> f64 {
+    fn truncation(&self, at: &GuardedPoint<T>, it: &GuardCrossing<T>) -> f64 {
         let row = &self.rows[it.guard];
         let terms = terms(row);
         let next = row.bound(terms, &at.norms, it.within);
@@ -107,7 +112,7 @@ impl<T: Number> GuardedSegment<'_, T> {
 
     /// Whether a guard rises through zero once, shortly after a point, and when.
     #[inline]
-    fn rises(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> Option<Rising<T>> {
+    fn rises(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> Option<GuardCrossing<T>> {
         let orders = outward(&at.orders[n], track);
         let slack = at.slack[n];
         let [value, slope, bend, third] = orders.map(Number::to_f64);
@@ -127,8 +132,8 @@ impl<T: Number> GuardedSegment<'_, T> {
         let (after, change) = self.root(n, track, at);
         // Where terms of the slope cancel, their rounding is more than that of the value.
         let moved = within * (slope_off + within * (0.5 * bend_off + within * third_off / 6.0));
-        let (is_told, error) = (after.to_f64().is_finite(), 2.0 * (slack + moved) / slope);
-        is_told.then_some(Rising { guard: n, after, change, within, slope, error })
+        let (is_finite, error) = (after.to_f64().is_finite(), 2.0 * (slack + moved) / slope);
+        is_finite.then_some(GuardCrossing { guard: n, after, change, within, slope, error })
     }
 
     /// The time to a root of a guard's Taylor polynomial that is near a point, and the last step
@@ -145,12 +150,12 @@ impl<T: Number> GuardedSegment<'_, T> {
         }
         for (k, term) in all[..last].iter_mut().enumerate() {
             if !orders[k].to_f64().is_finite() {
-                // It is a first guess, which fewer terms give as well.
+                // Fewer terms give a first guess as well.
                 break;
             }
             *term = orders[k] * T::inverse_factorial(k);
         }
-        let (mut step, mut change) = (T::exact(reverted(&first)), f64::INFINITY);
+        let (mut step, mut change) = (T::exact(series_reversion(&first)), f64::INFINITY);
         for _ in 0..2 {
             let (mut value, mut slope) = (T::zero(), T::zero());
             for term in all[..last].iter().rev() {
@@ -163,15 +168,21 @@ impl<T: Number> GuardedSegment<'_, T> {
         (step, change)
     }
 
-    /// What rounding may have done to the value and three derivatives of a guard.
+    /// Bounds of the rounding errors of the value and three derivatives of a guard.
     #[inline]
     fn order_roundings(&self, n: usize, at: &GuardedPoint<T>) -> [f64; 4] {
         self.rows[n].order_sizes::<4>(&at.modal.sizes).map(|size| self.margin * size)
     }
 
-    /// A bound of a guard over a short time after a point.
+    /// An upper bound of a guard over a short time after a point.
     #[inline]
-    pub(super) fn excess(&self, n: usize, track: &Track, at: &GuardedPoint<T>, within: f64) -> f64 {
+    pub(super) fn upper_bound(
+        &self,
+        n: usize,
+        track: &Track,
+        at: &GuardedPoint<T>,
+        within: f64,
+    ) -> f64 {
         let [value, slope, bend, third] = outward(&at.orders[n], track).map(Number::to_f64);
         let fourth = self.rows[n].bound(4, &at.norms, within);
         let [_, slope_off, bend_off, third_off] = self.order_roundings(n, at);
@@ -180,7 +191,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let rest = rest + 0.5 * bend_off + within * third_off / 6.0;
         match track.zeros {
             0 => value + within * (slope.max(0.0) + within * rest),
-            // It has left zero for the inside, and does not come back so soon.
+            // The guard has left zero for the inside, and does not return so soon.
             1 if slope + within * rest < 0.0 => f64::NEG_INFINITY,
             _ => f64::INFINITY,
         }
@@ -196,7 +207,7 @@ fn terms<T>(row: &ModalRow<T>) -> usize {
 /// The step to the root of a cubic that is near zero, by the series of its inverse to the third
 /// order: what a cubic tells of a guard is no more than that.
 #[inline]
-fn reverted<T: Number>(orders: &[T; 4]) -> f64 {
+fn series_reversion<T: Number>(orders: &[T; 4]) -> f64 {
     let [value, slope, bend, third] = orders.map(Number::to_f64);
     let inverse = 1.0 / slope;
     let step = -value * inverse;

@@ -11,22 +11,22 @@ use smallvec::SmallVec;
 /// Bernstein coefficients of degree eight.
 type Hull<T> = [T; 9];
 
-/// The narrowest part of a piece that is looked at without an evaluation.
+/// The narrowest part of a piece that is examined without an evaluation.
 const NARROWEST: f64 = 1.0 / 65_536.0;
 
 /// The distance to a root at which the search of a place before it ends, relative to the root:
 /// Newton's method does the rest.
 const NEAR: f64 = 1e-2;
 
-/// What is known of a guard on a piece.
+/// The sign of a guard on a piece, as far as it is proved.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Judged {
-    /// It stays negative.
-    Clear,
-    /// It comes as near to zero as rounding goes, all over the piece, and no further.
+pub(super) enum SignOnPiece {
+    /// The guard stays negative on the whole piece.
+    Negative,
+    /// The guard is zero to rounding all over the piece, and never above that.
     Touch,
-    /// It stays negative on this share of the piece; nothing is proved about the rest.
-    Open(f64),
+    /// The guard stays negative on this share of the piece; nothing is proved about the rest.
+    NegativeUntil(f64),
 }
 
 /// A piece's length, and the quotients of it that all guards need. They are in the arithmetic
@@ -57,18 +57,18 @@ impl<T: Number> Lengths<T> {
     }
 }
 
-/// Judges a guard from its orders at both ends, a bound of its eighth derivative, a line above what
-/// is not in the orders, what rounding may do to its values, and the number of its orders that are
-/// exactly zero at the left end.
+/// The sign of a guard on a piece from its orders at both ends, a bound of its eighth derivative, a
+/// line above what is not in the orders, a bound of the rounding of its values, and the number of
+/// its orders that are exactly zero at the left end.
 #[inline]
-pub(super) fn judge<T: Number>(
+pub(super) fn sign_on_piece<T: Number>(
     ends: &[[T; 4]; 2],
     lengths: &Lengths<T>,
     eighth: f64,
     [from, to]: [f64; 2],
     slack: f64,
     zeros: usize,
-) -> Judged {
+) -> SignOnPiece {
     let Lengths { seventh, sixth, fifth, .. } = *lengths;
     let [left, right] = ends;
     let (pairs, middle) = interpolant(
@@ -87,27 +87,27 @@ pub(super) fn judge<T: Number>(
     }
     let [mut sum, mut size, mut top] = [0.0_f64, 0.0, f64::NEG_INFINITY];
     for entry in hull.map(Number::to_f64) {
-        // Unlike the largest of them, a sum has what is no number.
+        // Unlike the maximum, the sum keeps NaN.
         sum += entry.abs();
         size = size.larger(entry.abs());
         top = top.larger(entry);
     }
     if !(sum + slack).is_finite() {
-        return Judged::Open(0.0);
+        return SignOnPiece::NegativeUntil(0.0);
     }
     let slack = slack + 16.0 * unit::<T>() * size;
     let stays_below = top < -slack || zeros > 0 && is_clear(&hull, slack, zeros);
     if stays_below {
-        return Judged::Clear;
+        return SignOnPiece::Negative;
     }
     if size <= 64.0 * slack && top <= slack {
-        return Judged::Touch;
+        return SignOnPiece::Touch;
     }
-    Judged::Open(clear_share(&hull, slack, zeros))
+    SignOnPiece::NegativeUntil(clear_share(&hull, slack, zeros))
 }
 
-/// Value and derivatives at an end, each times its share of the length: factor by factor, because
-/// powers of a short length may underflow where derivatives are large.
+/// The value and derivatives at an end of a piece, each times its factor of the length: factor by
+/// factor, because powers of a short length may underflow where derivatives are large.
 #[inline]
 fn scaled<T: Number>(orders: &[T; 4], [seventh, sixth, fifth]: [T; 3]) -> [T; 4] {
     let [value, slope, bend, third] = *orders;
@@ -154,8 +154,8 @@ fn clear_share<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> f64 {
     1.0
 }
 
-/// Where a hull whose coefficients change their sign once, upward, is still negative: by Descartes'
-/// rule there is one root, and it is beyond.
+/// A share of a piece on which a hull is negative whose coefficients change their sign once,
+/// upward: by Descartes' rule it has one root, which is beyond the share.
 #[inline]
 fn simple_root<T: Number>(hull: &Hull<T>, slack: f64, zeros: usize) -> Option<f64> {
     let hull = hull.map(|it| (it + T::exact(slack)).to_f64());

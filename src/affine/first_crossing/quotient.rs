@@ -1,4 +1,4 @@
-//! A guard's Taylor polynomial, and what it proves.
+//! Proofs by a guard's Taylor polynomial: that the guard stays negative, or crosses zero once.
 //!
 //! A guard that begins with z zeros is s^z q, and q has its sign for s > 0. With the polynomial of
 //! q, a bound of what is left of its series, and a bound of what rounding does:
@@ -14,57 +14,62 @@ use crate::numeric::real::Real;
 /// On both sides of a root, as a share of its time, a quotient has to rise steadily, at most.
 pub(super) const WINDOW: f64 = 1.0 / 16.0;
 
-/// By how many roundings of f64 a sum of powers, or a Bernstein coefficient, is off at most, in
-/// sizes of what it is summed from: 2N additions and products, twice.
+/// The rounding error in f64 of a sum of powers, or of a Bernstein coefficient, relative to the sum
+/// of its terms' sizes: 2N additions and products, twice.
 const ROUNDINGS: f64 = 4.0 * ORDERS as f64 * f64::EPSILON;
 
 /// Room for the rounding of a remainder.
 const OUTWARD: f64 = 1.0 + 1e-12;
 
 /// A guard after a point, divided by the power of the time with which it begins; N is the number of
-/// derivatives that are looked at, the value and the one that is bounded included.
+/// derivatives that are used, the value and the one that is bounded included.
 pub(super) struct Quotient<const N: usize> {
-    /// The exponent of that power, at most two.
+    /// The number of zeros with which the guard begins: the exponent of the power, at most two.
     zeros: usize,
-    /// The coefficients of its polynomial. The last is zero: its place is that of the remainder.
+    /// The coefficients of the quotient's Taylor polynomial. The last is zero: its place is that of
+    /// the remainder.
     coefficients: [f64; N],
-    /// The sizes of what they are summed from.
+    /// The sums of the sizes of the coefficients' terms.
     sizes: [f64; N],
-    /// What rounding does to a coefficient, relative to its size.
+    /// A bound of the rounding error of a coefficient, relative to the coefficient's size.
     margin: f64,
-    /// What rounding did to the guard's value, where that is not zero.
+    /// A bound of the rounding error of the guard's value, if the guard begins with no zero.
     slack: f64,
-    /// What underflow takes from a coefficient at most.
+    /// A bound of the error that underflow makes in a coefficient.
     lost: f64,
 }
 
-/// What is beside a polynomial near a root.
+/// A function that is added to a quotient's polynomial, near a root of the sum.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Beside {
-    /// Its value at the root.
+pub(super) struct AddedTerm {
+    /// The function's value at the root.
     pub value: f64,
-    /// Its slope there, times the root.
+    /// The function's slope at the root, times the root.
     pub slope: f64,
-    /// A bound of its second derivative in the largest window, times the square of the root.
+    /// A bound of the function's second derivative in the largest window, times the square of the
+    /// root.
     pub bend: f64,
-    /// By what rounding has its value and its slope off.
+    /// Bounds of the rounding errors of the function's value and slope.
     pub off: [f64; 2],
 }
 
-impl Beside {
-    /// The polynomial stands alone.
-    pub const NOTHING: Self = Self { value: 0.0, slope: 0.0, bend: 0.0, off: [0.0; 2] };
+impl AddedTerm {
+    /// The function that is zero everywhere.
+    pub const ZERO: Self = Self { value: 0.0, slope: 0.0, bend: 0.0, off: [0.0; 2] };
 }
 
 impl<const N: usize> Quotient<N> {
-    /// What a sum of powers is at the end of the largest window, relative to its value at the root,
-    /// at most.
+    /// An upper bound of a sum of powers at the end of the largest window, relative to its value at
+    /// the root.
     const WIDER: f64 = power(1.0 + WINDOW, N - 1);
 
-    /// What the terms count in the slope, the second and the third derivative, times powers of the
-    /// time.
+    /// The factors of the terms in the slope, times the time.
     pub const SLOPE: [f64; N] = falling(1);
+
+    /// The factors of the terms in the second derivative, times the square of the time.
     pub const BEND: [f64; N] = falling(2);
+
+    /// The factors of the terms in the third derivative, times the cube of the time.
     const THIRD: [f64; N] = falling(3);
 
     /// The inverses of the binomial coefficients.
@@ -107,33 +112,34 @@ impl<const N: usize> Quotient<N> {
         (value * slope / (slope * slope - value * bend), slope)
     }
 
-    /// Where the quotient is negative at first and crosses zero once near the root of its
-    /// polynomial: how near, as a share of the root.
+    /// The distance from the root of the polynomial, as a share of the root, within which the
+    /// quotient crosses zero once and before which it is negative; none if that is not proved.
     #[inline]
     pub fn crosses(&self, root: f64, last: f64) -> Option<f64> {
-        let (room, before) = self.rises(root, last, &Beside::NOTHING)?;
+        let (room, before) = self.rises(root, last, &AddedTerm::ZERO)?;
         self.is_negative(before, last).then_some(room)
     }
 
-    /// Where the quotient and what is beside it have one zero at most, because their sum rises, and
-    /// cross it if they are negative before: how near a root, as a share of it, and before when.
+    /// The distance from a root, as a share of it, within which the sum of the quotient and a
+    /// function has one zero at most, because the sum rises; and the time before which the sum has
+    /// to be negative to cross there. None if that is not proved.
     #[inline]
-    pub fn rises(&self, root: f64, last: f64, beside: &Beside) -> Option<(f64, f64)> {
+    pub fn rises(&self, root: f64, last: f64, added: &AddedTerm) -> Option<(f64, f64)> {
         let powers = powers(root);
         let terms = self.terms(&powers);
-        let value = sum(&terms) + beside.value;
-        let slope = sum(&weighted(&terms, &Self::SLOPE)) + beside.slope;
+        let value = sum(&terms) + added.value;
+        let slope = sum(&weighted(&terms, &Self::SLOPE)) + added.slope;
         let bend = sum(&weighted(&terms, &Self::BEND));
         let third = sum(&weighted(&terms.map(f64::abs), &Self::THIRD));
         let remainder = Self::WIDER * self.remainder(last, &powers);
         let rounding = Self::WIDER * self.rounding(&powers);
-        let open = value.abs() + remainder + rounding + beside.off[0];
+        let open = value.abs() + remainder + rounding + added.off[0];
         let room = 2.0 * open / slope + 8.0 * f64::EPSILON;
         let window = 2.0 * room;
         // The remainder is r/s^z with |r'| <= (N - 1) |r|/s, and each power has at most N - 2 times
         // its error in its slope.
-        let change = window * (bend.abs() + 0.5 * window * Self::WIDER * third + beside.bend)
-            + beside.off[1]
+        let change = window * (bend.abs() + 0.5 * window * Self::WIDER * third + added.bend)
+            + added.off[1]
             + (N + self.zeros) as f64 * remainder
             + N as f64 * rounding;
         let is_proved = slope > 0.0 && change < 0.5 * slope && window < WINDOW;
@@ -146,7 +152,7 @@ impl<const N: usize> Quotient<N> {
         let powers = powers(time);
         let hull = self.hull(&powers, last);
         let highest = -self.rounding(&powers);
-        // What is no number is not less.
+        // Comparisons with NaN are false.
         hull.iter().all(|it| *it < highest)
     }
 
@@ -180,7 +186,7 @@ impl<const N: usize> Quotient<N> {
         factor * last * powers[N - 1 - self.zeros]
     }
 
-    /// What rounding does to the polynomial up to a time.
+    /// A bound of the rounding error of the polynomial up to a time.
     #[inline]
     pub fn rounding(&self, powers: &[f64; N]) -> f64 {
         let lost = self.lost * N as f64 * powers[N - 1].larger(1.0);
@@ -237,7 +243,7 @@ pub(super) fn sum<const N: usize>(terms: &[f64; N]) -> f64 {
     (sums[0] + sums[1]) + (sums[2] + sums[3])
 }
 
-/// The factors k, k (k - 1), ... of so many derivatives of the powers.
+/// The factors k, k (k - 1), ... of the powers' derivatives of this order.
 const fn falling<const N: usize>(order: usize) -> [f64; N] {
     let mut factors = [1.0; N];
     let mut n = 0;
@@ -311,9 +317,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(20_000))]
 
-        /// Whatever the last coefficient's sign, a crossing that is told is the only one up to it.
+        /// Whatever the last coefficient's sign, a proved crossing is the only one up to it.
         #[test]
-        fn a_crossing_that_is_told_is_the_first((powers, zeros, rough) in guard()) {
+        fn a_proved_crossing_is_the_first((powers, zeros, rough) in guard()) {
             let quotient = quotient(&powers, zeros);
             let Some(root) = quotient.root(rough) else { return Ok(()) };
             let last = powers[8].abs() * FACTORIAL;
@@ -326,9 +332,9 @@ mod tests {
             }
         }
 
-        /// What is told to stay negative is so.
+        /// A quotient that is proved to stay negative does.
         #[test]
-        fn what_is_told_to_stay_negative_is_so((powers, zeros, time) in guard()) {
+        fn what_is_proved_negative_is_so((powers, zeros, time) in guard()) {
             if quotient(&powers, zeros).is_negative(time, powers[8].abs() * FACTORIAL) {
                 for n in 0..=1000 {
                     let time = time * f64::from(n) / 1000.0;
@@ -338,7 +344,7 @@ mod tests {
         }
     }
 
-    /// Without a bound of the rest nothing is told.
+    /// Without a bound of the rest nothing is proved.
     #[test]
     fn what_overflows_tells_nothing() {
         let quotient = quotient(&[-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0], 0);

@@ -1,4 +1,4 @@
-//! A guard's Taylor polynomial beside a decay, and what the two prove.
+//! Proofs by a guard's Taylor polynomial plus a decaying exponential, which no polynomial follows.
 //!
 //! Where a guard's fastest block is one decay E exp(-r s), no polynomial follows it beyond some of
 //! its decay times, but the rest of the guard may be slow. The polynomial of that rest is the one
@@ -10,37 +10,37 @@
 //!   the end of the time.
 //! - All derivatives of a decay are largest, in size, at the beginning of a window.
 
-use super::quotient::{Beside, Quotient, WINDOW, powers, root_by, sum, weighted};
+use super::quotient::{AddedTerm, Quotient, WINDOW, powers, root_by, sum, weighted};
 use crate::numeric::exponential::exp;
 
-/// By what a decay may be off, relative to itself, because its rate and its exponent are rounded:
-/// beyond the exponent 745 it is zero.
+/// The relative error of a decaying exponential by the rounding of its rate and its exponent:
+/// beyond the exponent 745 the exponential is zero.
 const OFF: f64 = 1e-9;
 
-/// The decay, positive outside as the guard is.
+/// The decaying term of a guard, with the sign that makes the guard positive outside its mode.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Fading {
-    /// Its value at the point.
+pub(super) struct Decay {
+    /// The term's value at the point.
     pub value: f64,
-    /// Its rate.
+    /// The rate at which the term decays.
     pub rate: f64,
 }
 
-/// A guard that begins with no zero: the Taylor polynomial of its rest, and its decay. What
-/// rounding did to the value of the guard, which `rest` has, includes the decay.
-pub(super) struct FadingQuotient<const N: usize> {
+/// A guard that begins with no zero, as the Taylor polynomial of its `rest` plus a decaying term.
+/// The rounding error of the guard's value, which `rest` holds, includes that of the decay.
+pub(super) struct QuotientWithDecay<const N: usize> {
     pub rest: Quotient<N>,
-    pub fading: Fading,
+    pub decay: Decay,
 }
 
-impl Fading {
-    /// Its value at a time.
+impl Decay {
+    /// The term's value at a time.
     #[inline]
     fn at(&self, time: f64) -> f64 {
         self.value * fallen(self.rate * time)
     }
 
-    /// Raises Bernstein coefficients up to a time by what lies above it.
+    /// Adds an upper bound of the term up to a time to Bernstein coefficients.
     #[inline]
     fn raise<const N: usize>(&self, hull: &mut [f64; N], time: f64) {
         let degree = (N - 1) as f64;
@@ -62,12 +62,12 @@ impl Fading {
 /// exp(-x) for an x that is not negative; what is no number stays so.
 #[inline]
 fn fallen(x: f64) -> f64 {
-    /// From here on it is below half of the smallest number.
+    /// An exponent from which on the exponential is below half of the smallest number.
     const GONE: f64 = 746.0;
     if x >= GONE { 0.0 } else { exp(-x) }
 }
 
-impl<const N: usize> FadingQuotient<N> {
+impl<const N: usize> QuotientWithDecay<N> {
     /// The root of the polynomial and the decay, from a rough one, by Halley's method; none where
     /// the sum does not rise from there.
     #[inline]
@@ -79,27 +79,27 @@ impl<const N: usize> FadingQuotient<N> {
     #[inline]
     pub fn step(&self, root: f64) -> (f64, f64) {
         let terms = self.rest.terms(&powers(root));
-        let (decay, turn) = (self.fading.at(root), self.fading.rate * root);
+        let (decay, turn) = (self.decay.at(root), self.decay.rate * root);
         let value = sum(&terms) + decay;
         let slope = sum(&weighted(&terms, &Quotient::<N>::SLOPE)) - turn * decay;
         let bend = 0.5 * (sum(&weighted(&terms, &Quotient::<N>::BEND)) + turn * turn * decay);
         (value * slope / (slope * slope - value * bend), slope)
     }
 
-    /// Where the guard is negative at first and crosses zero once near a root: how near, as a share
-    /// of the root. See [`Quotient::crosses`], to which the decay is added.
+    /// The distance from a root, as a share of the root, within which the guard crosses zero once
+    /// and before which it is negative: [`Quotient::crosses`], with the decay added.
     #[inline]
     pub fn crosses(&self, root: f64, last: f64) -> Option<f64> {
-        let (decay, turn) = (self.fading.at(root), self.fading.rate * root);
-        let most = self.fading.at((1.0 - WINDOW) * root).abs() * (1.0 + OFF);
+        let (decay, turn) = (self.decay.at(root), self.decay.rate * root);
+        let most = self.decay.at((1.0 - WINDOW) * root).abs() * (1.0 + OFF);
         let off = OFF * decay.abs();
-        let beside = Beside {
+        let added = AddedTerm {
             value: decay,
             slope: -turn * decay,
             bend: turn * turn * most,
             off: [off, turn * off],
         };
-        let (room, before) = self.rest.rises(root, last, &beside)?;
+        let (room, before) = self.rest.rises(root, last, &added)?;
         self.is_negative(before, last).then_some(room)
     }
 
@@ -109,9 +109,9 @@ impl<const N: usize> FadingQuotient<N> {
     pub fn is_negative(&self, time: f64, last: f64) -> bool {
         let powers = powers(time);
         let mut hull = self.rest.hull(&powers, last);
-        self.fading.raise(&mut hull, time);
+        self.decay.raise(&mut hull, time);
         let highest = -self.rest.rounding(&powers);
-        // What is no number is not less.
+        // Comparisons with NaN are false.
         hull.iter().all(|it| *it < highest)
     }
 }
@@ -128,26 +128,26 @@ mod tests {
     #[derive(Clone, Debug)]
     struct Guard {
         powers: [f64; 9],
-        fading: Fading,
+        decay: Decay,
     }
 
     impl Guard {
         fn value(&self, time: f64) -> f64 {
             let polynomial = self.powers.iter().rev().fold(0.0, |sum, it| sum * time + it);
-            polynomial + self.fading.value * (-self.fading.rate * time).exp()
+            polynomial + self.decay.value * (-self.decay.rate * time).exp()
         }
 
         /// The guard as all but the last power and its bound tell it.
-        fn quotient(&self) -> (FadingQuotient<9>, f64) {
+        fn quotient(&self) -> (QuotientWithDecay<9>, f64) {
             let (mut orders, mut factorial) = ([0.0; 9], 1.0);
             for (k, (order, power)) in orders.iter_mut().zip(self.powers).take(8).enumerate() {
                 *order = power * factorial;
                 factorial *= (k + 1) as f64;
             }
-            let slack = 4.0 * f64::EPSILON * (self.fading.value.abs() + orders[0].abs());
+            let slack = 4.0 * f64::EPSILON * (self.decay.value.abs() + orders[0].abs());
             let sizes = orders.map(f64::abs);
             let rest = Quotient::of([&orders, &sizes], 0, f64::EPSILON, [slack, 0.0]);
-            (FadingQuotient { rest, fading: self.fading }, self.powers[8].abs() * FACTORIAL)
+            (QuotientWithDecay { rest, decay: self.decay }, self.powers[8].abs() * FACTORIAL)
         }
     }
 
@@ -167,7 +167,7 @@ mod tests {
                 powers.copy_from_slice(&coefficients);
                 powers[0] = -begin - value.max(0.0);
                 powers[1] += slope;
-                (Guard { powers, fading: Fading { value, rate } }, rough)
+                (Guard { powers, decay: Decay { value, rate } }, rough)
             },
         )
     }
@@ -175,9 +175,9 @@ mod tests {
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(40_000))]
 
-        /// A crossing that is told is the only one up to it, and is between its ends.
+        /// A crossing that is proved is the only one up to it, and is between its ends.
         #[test]
-        fn a_crossing_that_is_told_is_the_first((guard, rough) in guard()) {
+        fn a_proved_crossing_is_the_first((guard, rough) in guard()) {
             let (quotient, last) = guard.quotient();
             let Some(root) = quotient.root(rough) else { return Ok(()) };
             let Some(room) = quotient.crosses(root, last) else { return Ok(()) };
@@ -191,9 +191,10 @@ mod tests {
             }
         }
 
-        /// What is told to stay negative is so, wherever the decay has a crest with the rest.
+        /// A guard that is proved to stay negative does, wherever the decay makes a crest with the
+        /// rest.
         #[test]
-        fn what_is_told_to_stay_negative_is_so((guard, time) in guard()) {
+        fn what_is_proved_negative_is_so((guard, time) in guard()) {
             let (quotient, last) = guard.quotient();
             if quotient.is_negative(time, last) {
                 for n in 0..=1000 {
@@ -205,8 +206,8 @@ mod tests {
             }
         }
 
-        /// A guard whose crest comes just above zero is not told to stay negative, whether it is a
-        /// decay below a motion that falls or above one that rises.
+        /// A guard whose crest comes just above zero is not proved to stay negative, whether it is
+        /// a decay below a motion that falls or above one that rises.
         #[test]
         fn a_crest_above_zero_is_not_told_negative(
             (guard, time) in guard(), above in prop_oneof![1e-12..1e-9_f64, 1e-9..1e-3_f64],
@@ -214,7 +215,7 @@ mod tests {
             let mut guard = guard;
             let values = (0..=1000).map(|n| guard.value(time * f64::from(n) / 1000.0));
             let crest = values.fold(f64::NEG_INFINITY, f64::max);
-            let size = guard.powers[0].abs() + crest.abs() + guard.fading.value.abs();
+            let size = guard.powers[0].abs() + crest.abs() + guard.decay.value.abs();
             guard.powers[0] += above * size - crest;
             let (quotient, last) = guard.quotient();
             prop_assert!(!quotient.is_negative(time, last));
@@ -222,25 +223,25 @@ mod tests {
     }
 
     /// The decay makes the guard rise at 1, but no longer soon after; what the polynomial leaves
-    /// open, 0.035 s^8, holds it below zero for ever. So no crossing is told near 1.
+    /// open, 0.035 s^8, holds it below zero for ever. So no crossing is proved near 1.
     #[test]
     fn a_rise_that_the_decay_ends_is_no_crossing() {
         let rate = 16.0_f64;
-        let fading = Fading { value: -rate.exp(), rate };
-        let guard = Guard { powers: [13.0, -12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.035], fading };
+        let decay = Decay { value: -rate.exp(), rate };
+        let guard = Guard { powers: [13.0, -12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.035], decay };
         assert!((1..4000).all(|n| guard.value(f64::from(n) * 0.001) < 0.0));
         let (quotient, last) = guard.quotient();
         assert!(quotient.is_negative(0.94, last) && quotient.crosses(1.0, last).is_none());
         assert!(quotient.crosses(1.0, 0.0).is_some());
     }
 
-    /// A decay that holds a guard down and one that lifts it: where the sum crosses is told to some
-    /// digits, and to stay negative only a time before that.
+    /// A decay that holds a guard down and one that lifts it: the crossing of the sum is proved to
+    /// some digits, and the guard to stay negative only up to a time before that.
     #[test]
-    fn a_decay_beside_a_drift_is_told() {
+    fn a_decay_with_a_drift_is_proved() {
         let drift = |begin: f64, slope: f64, value: f64| Guard {
             powers: [begin, slope, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-            fading: Fading { value, rate: 8.0 },
+            decay: Decay { value, rate: 8.0 },
         };
         for guard in [drift(-3.0, 4.0, -2.0), drift(-1.5, 1.5, 1.0)] {
             let (quotient, last) = guard.quotient();
@@ -251,16 +252,16 @@ mod tests {
             assert!(quotient.is_negative(0.9 * root, last));
             assert!(!quotient.is_negative(high, last));
         }
-        // It begins above zero.
+        // The guard begins above zero.
         let (quotient, last) = drift(-0.999, 1.0, 1.0).quotient();
         assert!(!quotient.is_negative(0.5, last));
     }
 
-    /// Without a bound of the rest, or of the decay, nothing is told.
+    /// Without a bound of the rest, or of the decay, nothing is proved.
     #[test]
     fn what_overflows_tells_nothing() {
         let powers = [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let guard = |value, rate| Guard { powers, fading: Fading { value, rate } }.quotient().0;
+        let guard = |value, rate| Guard { powers, decay: Decay { value, rate } }.quotient().0;
         let known = guard(0.1, 20.0);
         assert!(known.crosses(1.0, 0.0).is_some() && known.is_negative(0.8, 0.0));
         for last in [f64::INFINITY, f64::NAN] {

@@ -1,4 +1,5 @@
-//! How far a guard is looked at in one piece, and what of it is only enclosed there.
+//! The length of a piece on which a guard's sign is proved, and the blocks that are only enclosed
+//! there.
 //!
 //! A piece is as long as the eighth derivative allows (`hull.rs`). Of blocks that move much faster
 //! than the rest and are small relative to the guard, only bounds are used: a part exp(-r s) c is
@@ -6,9 +7,9 @@
 //! What is left is slow, and pieces of it are long. Where that leaves only a constant, the piece
 //! has no end.
 
-use super::hull::{self, Judged, Lengths};
-use crate::affine::arithmetic::vector::{Vector, root};
-use crate::affine::closed_form::bound::Later;
+use super::hull::{self, Lengths, SignOnPiece};
+use crate::affine::arithmetic::vector::{Vector, approximate_root};
+use crate::affine::closed_form::bound::BlockGrowth;
 use crate::affine::guards::point::{Ends, GuardedPoint, GuardedSegment};
 use crate::affine::guards::row::{ModalRow, RowPart};
 use crate::affine::guards::track::{Track, outward};
@@ -32,19 +33,19 @@ const SMALLEST: f64 = 1e-3;
 /// Room for the rounding of a part.
 const OUTWARD: f64 = 1.0 + 1e-12;
 
-/// How far a guard is looked at.
+/// The lengths of pieces on which a guard's sign may be proved.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Reach {
-    /// How many of the blocks are only enclosed.
+    /// The number of blocks, the fastest first, that are only enclosed.
     cut: usize,
-    /// How far that goes.
+    /// The length of a piece with these blocks enclosed.
     pub length: f64,
-    /// How far a piece with all blocks goes.
+    /// The length of a piece with no block enclosed.
     whole: f64,
 }
 
 impl<T: Number> GuardedSegment<'_, T> {
-    /// How far a guard is looked at from a point.
+    /// The length of a guard's next piece, from a point on.
     #[inline]
     pub(super) fn reach(
         &self,
@@ -71,16 +72,16 @@ impl<T: Number> GuardedSegment<'_, T> {
         reach
     }
 
-    /// Judges a guard on a piece.
+    /// The sign of a guard on a piece.
     #[inline]
-    pub(super) fn judge(
+    pub(super) fn sign_on_piece(
         &self,
         n: usize,
         track: &Track,
         reach: &Reach,
         ends: &Ends<T>,
         lengths: &Lengths<T>,
-    ) -> Judged {
+    ) -> SignOnPiece {
         let Ends { left, right, .. } = ends;
         let row = &self.rows[n];
         let length = lengths.length.to_f64();
@@ -92,26 +93,26 @@ impl<T: Number> GuardedSegment<'_, T> {
         if cut == 0 {
             let orders = [outward(&left.orders[n], track), outward(&right.orders[n], track)];
             let eighth = eighth(row, track, left, 0, length);
-            return hull::judge(&orders, lengths, eighth, [0.0; 2], slack, track.zeros);
+            return hull::sign_on_piece(&orders, lengths, eighth, [0.0; 2], slack, track.zeros);
         }
         let raise = raise(row, track, ends, cut);
         let from = row.first_column(cut);
         let orders = [left, right].map(|it| outward(&row.first_orders(&it.modal.y, from), track));
         let eighth = eighth(row, track, left, cut, length);
-        hull::judge(&orders, lengths, eighth, raise, slack, track.zeros)
+        hull::sign_on_piece(&orders, lengths, eighth, raise, slack, track.zeros)
     }
 
-    /// The sizes of what derivatives are summed from, as far as a coefficient of a hull has them:
+    /// The sum of the sizes of the derivatives' terms, as far as a coefficient of a hull has them:
     /// the third and fourth have most, 3/7 L, L^2/14 and L^3/210 of the first three.
     #[inline]
     fn derivatives(&self, row: &ModalRow<T>, at: &GuardedPoint<T>, cut: usize, length: f64) -> f64 {
         let size = |part: &RowPart| {
-            // Nothing comes of zeros, even where a factor of theirs overflows.
+            // Zeros contribute nothing, even where their factors overflow.
             let sizes: f64 = at.modal.sizes[self.flow.blocks[part.block].range()].iter().sum();
             if sizes == 0.0 {
                 return 0.0;
             }
-            let norm = |k: usize| sizes * part.later.bound(&part.norms, k, length);
+            let norm = |k: usize| sizes * part.growth.bound(&part.norms, k, length);
             let slope = 3.0 / 7.0 * norm(1);
             (slope + length * (norm(2) / 14.0 + length * norm(3) / 210.0)) * length
         };
@@ -119,7 +120,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     }
 }
 
-/// Leaves as many blocks to their enclosures as lets a piece be longest.
+/// Encloses as many blocks as make the piece longest.
 #[inline]
 fn enclose<T: Number>(
     row: &ModalRow<T>,
@@ -133,16 +134,16 @@ fn enclose<T: Number>(
     let (mut value, mut best) = (begin, rests[0]);
     for (k, part) in row.parts.iter().enumerate() {
         let own = part_of(row, part, track, &left.modal.y);
-        value += match part.later {
-            Later::Fading => own.max(0.0) - own,
-            Later::Steady => part.norms[0] * left.norms[part.block] - own,
-            Later::Polynomial | Later::Growing(_) => break,
+        value += match part.growth {
+            BlockGrowth::Decaying => own.max(0.0) - own,
+            BlockGrowth::Bounded => part.norms[0] * left.norms[part.block] - own,
+            BlockGrowth::Polynomial | BlockGrowth::Growing(_) => break,
         };
         let rest = if k + 1 < row.parts.len() { rests[k + 1] } else { 0.0 };
         let is_constant = || row.parts[k + 1..].iter().all(|it| it.norms[1] == 0.0);
         let share = if rest == 0.0 && is_constant() { CLOSE } else { LEFT };
         if value > share * begin {
-            if part.later == Later::Fading && rest < MUCH * best {
+            if part.growth == BlockGrowth::Decaying && rest < MUCH * best {
                 let from = row.first_column(k + 1);
                 let slope = track.outward * row.first_orders(&left.modal.y, from)[1].to_f64();
                 let length = held_back(-own, part.norms[1] / part.norms[0], value, slope);
@@ -153,7 +154,7 @@ fn enclose<T: Number>(
             break;
         }
         if rest < MUCH * best {
-            let length = root(REMAINDER * MIDDLE * -value / rest, 8).min(longest);
+            let length = approximate_root(REMAINDER * MIDDLE * -value / rest, 8).min(longest);
             if length > reach.length {
                 best = rest;
                 (reach.cut, reach.length) = (k + 1, length);
@@ -162,8 +163,9 @@ fn enclose<T: Number>(
     }
 }
 
-/// How long a decay at a rate keeps a guard below zero that is `value` and rises without it: until
-/// it is twice as large as the rest has become. The next piece is short relative to the decay time.
+/// The time for which a decaying term keeps a guard below zero that is `value` and rises without
+/// it: until it is twice as large as the rest has become. The next piece is short relative to the
+/// decay time.
 #[inline]
 fn held_back(decay: f64, rate: f64, value: f64, slope: f64) -> f64 {
     let until = |rest: f64| libm::log(decay / (2.0 * rest)) / rate;
@@ -171,7 +173,7 @@ fn held_back(decay: f64, rate: f64, value: f64, slope: f64) -> f64 {
     if length > 0.0 { until(value.abs() + length * slope.abs()) } else { 0.0 }
 }
 
-/// Bounds of the eighth derivative of all blocks from each on.
+/// For each block, a bound of the eighth derivative of its part and of all later ones.
 #[inline]
 fn eighths<T: Number>(row: &ModalRow<T>, left: &GuardedPoint<T>, longest: f64) -> Vector<f64> {
     let mut rests = [0.0; LARGEST_DIMENSION];
@@ -194,8 +196,9 @@ fn eighth<T: Number>(
 ) -> f64 {
     let mut sum = 0.0;
     for part in &row.parts[cut..] {
-        // An even derivative of a decay has its sign.
-        let falls = part.later == Later::Fading && part_of(row, part, track, &left.modal.y) <= 0.0;
+        // An even derivative of a decay has the sign of the decay.
+        let falls =
+            part.growth == BlockGrowth::Decaying && part_of(row, part, track, &left.modal.y) <= 0.0;
         if !falls {
             sum += part.bound(8, length, &left.norms);
         }
@@ -203,16 +206,16 @@ fn eighth<T: Number>(
     sum * OUTWARD
 }
 
-/// What the first blocks add to a guard on a piece at most, at its ends; between them it is below
-/// the straight line.
+/// Upper bounds of the first blocks' part in a guard at both ends of a piece; between them the part
+/// is below the straight line.
 #[inline]
 fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize) -> [f64; 2] {
     let mut raise = [0.0; 2];
     for part in &row.parts[..cut] {
         let [from, to] = [&ends.left, &ends.right].map(|it| part_of(row, part, track, &it.modal.y));
-        let own = match part.later {
-            Later::Fading if from > 0.0 => [from * OUTWARD, to * OUTWARD],
-            Later::Fading => [to / OUTWARD; 2],
+        let own = match part.growth {
+            BlockGrowth::Decaying if from > 0.0 => [from * OUTWARD, to * OUTWARD],
+            BlockGrowth::Decaying => [to / OUTWARD; 2],
             _ => [part.norms[0] * ends.left.norms[part.block] * OUTWARD; 2],
         };
         raise = [raise[0] + own[0], raise[1] + own[1]];
@@ -220,7 +223,7 @@ fn raise<T: Number>(row: &ModalRow<T>, track: &Track, ends: &Ends<T>, cut: usize
     raise
 }
 
-/// What a block adds to the value of a guard.
+/// The part of a block in the value of a guard.
 #[inline]
 pub(super) fn part_of<T: Number>(
     row: &ModalRow<T>,
@@ -245,15 +248,16 @@ fn polynomial_reach(orders: &[f64; 4], zeros: usize, slack: f64) -> f64 {
     }
     let rise = if value < -slack { rise([value, slope, 0.5 * bend]) } else { f64::INFINITY };
     let by_slope = GROWTH * size / slope.abs();
-    let by_bend = root(GROWTH * size / bend.abs(), 2);
-    let by_third = root(GROWTH * size / third.abs(), 3);
+    let by_bend = approximate_root(GROWTH * size / bend.abs(), 2);
+    let by_third = approximate_root(GROWTH * size / third.abs(), 3);
     (1.25 * rise).min(by_slope).min(by_bend).min(by_third)
 }
 
-/// Where a parabola that is negative at zero rises through zero; infinite where it does not.
+/// The root at which a parabola that is negative at zero rises through zero; infinite if it does
+/// not.
 #[inline]
 pub(super) fn rise([value, slope, bend]: [f64; 3]) -> f64 {
-    // In the form that does not cancel.
+    // The form of the root in which nothing cancels.
     let divisor = slope + (slope * slope - 4.0 * value * bend).sqrt();
     if divisor > 0.0 { -2.0 * value / divisor } else { f64::INFINITY }
 }
@@ -272,6 +276,6 @@ fn length(orders: &[f64; 4], eighth: f64, zeros: usize, size: impl Fn() -> f64) 
     let [value, slope, bend, _] = orders.map(f64::abs);
     let smallest = SMALLEST * size();
     let by_value = if zeros > 0 { smallest } else { value.max(smallest) };
-    let by_slope = if zeros > 1 { 0.0 } else { root(0.5 * room * slope, 7) };
-    root(room * by_value, 8).max(by_slope).max(root(0.125 * room * bend, 6))
+    let by_slope = if zeros > 1 { 0.0 } else { approximate_root(0.5 * room * slope, 7) };
+    approximate_root(room * by_value, 8).max(by_slope).max(approximate_root(0.125 * room * bend, 6))
 }

@@ -1,24 +1,25 @@
 //! The first crossing of a mode's guards.
 //!
 //! Where Taylor polynomials prove the first crossing from a point on (`taylor.rs` and
-//! `taylor_with_decay.rs`), nothing else is looked at. Otherwise a segment is passed in pieces. On
-//! each the Bernstein coefficients of a polynomial that lies above the guard show that it stays
-//! negative, or up to where it does. There a crossing is searched (`crossing.rs`). What shows
-//! neither is looked at in shorter pieces. See the page docs/ROUNDING.md for what rounding may
+//! `taylor_with_decay.rs`), nothing else is evaluated. Otherwise a segment is passed in pieces. On
+//! each the Bernstein coefficients of a polynomial that lies above the guard prove that it stays
+//! negative, or up to which time it does. From there a crossing is searched (`crossing.rs`). A
+//! piece on which neither is proved is divided. See the page docs/ROUNDING.md for what rounding may
 //! take.
 //!
-//! What is generic is compiled by the crate that uses it, which may do so in many units without
-//! optimising across them; so what runs at every event is marked to be inlined, here and in the
-//! modules that this one uses.
+//! Generic functions are compiled by the crate that uses them, which may do so in many units
+//! without optimising across them; so those that run at every event are marked to be inlined, here
+//! and in the modules that this one uses.
 
 use super::crossing::FirstCrossing;
-use super::hull::{Judged, Lengths};
+use super::hull::{Lengths, SignOnPiece};
 use super::reach::Reach;
-use super::taylor::Misses;
+use super::taylor::FailedAttempts;
 use crate::affine::arithmetic::vector::unit;
 use crate::affine::guards::point::{Ends, GuardedPoint, GuardedSegment, Passed, PerGuard};
 use crate::affine::guards::track::{SearchWork, Track, live};
 use crate::numeric::number::Number;
+use std::ops::ControlFlow;
 
 /// The largest number of pieces from one event to the next, of all guards together: about a
 /// second's work in 106 bits. A mode of many guards has [`FEWEST_PIECES`] nevertheless.
@@ -28,16 +29,16 @@ const FEWEST_PIECES: u64 = 1 << 14;
 /// A piece that has to be divided counts as this many more.
 const OPEN: u64 = 8;
 
-/// How a search ends.
+/// The outcome of a search for the first crossing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Found {
+pub enum SearchOutcome {
     /// No guard crosses before the limit.
-    Nothing,
+    NoCrossing,
     /// The first crossing is the left end: all guards that cross there within what rounding may do,
     /// as bits.
     Crossing(u64),
     /// The search takes too much work.
-    Lost,
+    GivenUp,
 }
 
 impl<T: Number> GuardedSegment<'_, T> {
@@ -48,34 +49,31 @@ impl<T: Number> GuardedSegment<'_, T> {
         tracks: &mut [Track],
         ends: &mut Ends<T>,
         limit: T,
-        misses: &mut Misses,
+        failed_attempts: &mut FailedAttempts,
         work: &mut SearchWork,
-    ) -> Found {
+    ) -> SearchOutcome {
         let mut most = f64::INFINITY;
         let span = [ends.left.time, limit];
-        // After a crossing that is only watched the piece that it is in goes on.
+        // After a crossing of a watched guard the piece in which it lies is continued.
         let mut is_ahead = ends.left.time < ends.passed.until;
         let guards = live(tracks).count().max(1) as u64;
         let mut work_left = (MOST_PIECES / guards).max(FEWEST_PIECES);
         while work_left > 0 {
             work_left -= 1;
             if ends.left.time >= limit {
-                return Found::Nothing;
+                return SearchOutcome::NoCrossing;
             }
             if work.undecidable > 0 && self.follows_errors() {
-                return Found::Lost;
+                return SearchOutcome::GivenUp;
             }
-            self.measure(&mut ends.left);
-            let crossing = self
-                .first_by_taylor(tracks, &ends.left, misses, work)
-                .or_else(|| self.first_beside_a_decay(tracks, &ends.left, misses, work));
-            if let Some(crossing) = crossing {
+            self.measure_norms(&mut ends.left);
+            if let Some(crossing) = self.first_proved(tracks, &ends.left, failed_attempts, work) {
                 return self.settled_by(&crossing, tracks, ends, span, work);
             }
             let known = if is_ahead { ends.passed.guards } else { 0 };
             let reaches = self.reaches(tracks, &ends.left, known);
             if !is_ahead && !self.look_ahead(tracks, ends, &reaches, limit, most, work) {
-                return Found::Lost;
+                return SearchOutcome::GivenUp;
             }
             is_ahead = false;
             let length = (ends.right.time - ends.left.time).to_f64();
@@ -87,23 +85,55 @@ impl<T: Number> GuardedSegment<'_, T> {
                 continue;
             };
             work_left = work_left.saturating_sub(OPEN);
-            let left = &ends.left;
-            let is_told = |n: usize| (left.orders[n][0].to_f64().abs() + left.slack[n]).is_finite();
-            if !live(tracks).all(|(n, _)| is_told(n)) {
-                // Where numbers overflow, nothing is told.
-                return Found::Lost;
+            match self.after_open_piece(tracks, ends, share, span, work) {
+                ControlFlow::Break(outcome) => return outcome,
+                ControlFlow::Continue(factor) => most = factor * length,
             }
-            if !self.shortened(tracks, ends, share, work) {
-                most = 64.0 * length;
-                continue;
-            }
-            self.measure(&mut ends.left);
-            if let Some(crossing) = self.rising(tracks, &ends.left, &ends.passed, work) {
-                return self.settled_by(&crossing, tracks, ends, span, work);
-            }
-            most = 0.25 * length;
         }
-        Found::Lost
+        SearchOutcome::GivenUp
+    }
+
+    /// The first crossing after a point that Taylor polynomials prove, of whole guards or of guards
+    /// without a decaying term.
+    #[inline]
+    fn first_proved(
+        &self,
+        tracks: &[Track],
+        left: &GuardedPoint<T>,
+        failed_attempts: &mut FailedAttempts,
+        work: &mut SearchWork,
+    ) -> Option<FirstCrossing<T>> {
+        self.first_by_taylor(tracks, left, failed_attempts, work)
+            .or_else(|| self.first_by_taylor_with_decay(tracks, left, failed_attempts, work))
+    }
+
+    /// Searches for a crossing after the share of a piece on which all guards are proved negative.
+    /// Unless that ends the search, gives the next piece's largest length, relative to this one's.
+    #[inline]
+    fn after_open_piece(
+        &self,
+        tracks: &mut [Track],
+        ends: &mut Ends<T>,
+        share: f64,
+        span: [T; 2],
+        work: &mut SearchWork,
+    ) -> ControlFlow<SearchOutcome, f64> {
+        let left = &ends.left;
+        let is_finite = |n: usize| (left.orders[n][0].to_f64().abs() + left.slack[n]).is_finite();
+        if !live(tracks).all(|(n, _)| is_finite(n)) {
+            // Values that overflow prove nothing.
+            return ControlFlow::Break(SearchOutcome::GivenUp);
+        }
+        if !self.shortened(tracks, ends, share, work) {
+            return ControlFlow::Continue(64.0);
+        }
+        self.measure_norms(&mut ends.left);
+        match self.rising(tracks, &ends.left, &ends.passed, work) {
+            Some(crossing) => {
+                ControlFlow::Break(self.settled_by(&crossing, tracks, ends, span, work))
+            }
+            None => ControlFlow::Continue(0.25),
+        }
     }
 
     /// Brings the left end on by the clear share of a piece, if any. A piece of which nothing is
@@ -123,7 +153,7 @@ impl<T: Number> GuardedSegment<'_, T> {
             self.evaluate(&mut ends.left, to, work);
             clear_zeros(tracks);
         } else if (end - from).to_f64() <= 8.0 * unit::<T>() * end.to_f64() {
-            // What happens within rounding is a touch.
+            // A crossing within rounding is a touch.
             work.undecidable += 1;
             ends.step();
             clear_zeros(tracks);
@@ -142,14 +172,14 @@ impl<T: Number> GuardedSegment<'_, T> {
         ends: &mut Ends<T>,
         span: [T; 2],
         work: &mut SearchWork,
-    ) -> Found {
+    ) -> SearchOutcome {
         match self.settled(tracks, &mut ends.left, crossing, span, work) {
-            true => Found::Crossing(crossing.guards),
-            false => Found::Nothing,
+            true => SearchOutcome::Crossing(crossing.guards),
+            false => SearchOutcome::NoCrossing,
         }
     }
 
-    /// How far each guard is looked at from a point, but for those of which all is known.
+    /// The length of the next piece for each guard from a point on, but for the guards in `known`.
     #[inline]
     fn reaches(&self, tracks: &[Track], left: &GuardedPoint<T>, known: u64) -> PerGuard<Reach> {
         let longest = self.flow.longest;
@@ -187,7 +217,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         if end <= left.time {
             return false;
         }
-        // A sum with infinity is no number in two words.
+        // In two words a sum with infinity is NaN.
         let inside = end < limit;
         if !inside {
             end = limit;
@@ -212,8 +242,8 @@ impl<T: Number> GuardedSegment<'_, T> {
         }
     }
 
-    /// The share of a piece on which all guards are proved to stay negative; none if it is all of
-    /// it.
+    /// The share of a piece on which all guards are proved to stay negative; none if they do on the
+    /// whole piece.
     #[inline]
     fn clear_share(
         &self,
@@ -230,10 +260,12 @@ impl<T: Number> GuardedSegment<'_, T> {
                 guards |= 1 << n;
                 continue;
             }
-            match self.judge(n, track, &reaches[n], ends, &lengths) {
-                Judged::Clear => guards |= 1 << n,
-                Judged::Touch => work.doubt(n),
-                Judged::Open(open) => share = Some(share.map_or(open, |it| it.min(open))),
+            match self.sign_on_piece(n, track, &reaches[n], ends, &lengths) {
+                SignOnPiece::Negative => guards |= 1 << n,
+                SignOnPiece::Touch => work.doubt(n),
+                SignOnPiece::NegativeUntil(open) => {
+                    share = Some(share.map_or(open, |it| it.min(open)))
+                }
             }
         }
         ends.passed = Passed { guards, until };

@@ -6,20 +6,20 @@ use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
 use crate::affine::guards::track::{SearchWork, Track, outward};
 use crate::numeric::number::Number;
 
-/// Between which times a root is, and the size of the last step towards it.
+/// Two times between which a root is, and the size of the last step towards it.
 struct Bracket<T> {
     low: T,
     high: T,
     last: f64,
 }
 
-/// What comes next on the way to a root.
+/// The next step towards a root.
 enum Next<T> {
-    /// The guard is evaluated at a time.
+    /// An evaluation of the guard at a time.
     Evaluate(T),
-    /// The root is a step away that needs no evaluation.
+    /// A last step to the root, without an evaluation.
     Step(T),
-    /// Rounding shows no better time.
+    /// No step, because rounding shows no better time.
     Nothing,
 }
 
@@ -29,7 +29,7 @@ impl<T: Number> Bracket<T> {
         (self.low + self.high) * T::exact(0.5)
     }
 
-    /// Whether a time is inside, and no end.
+    /// Whether a time is inside the bracket, and not at an end of it.
     #[inline]
     fn holds(&self, time: T) -> bool {
         self.low < time && time < self.high
@@ -64,21 +64,21 @@ impl<T: Number> GuardedSegment<'_, T> {
             next = match self.next_to_root(n, &tracks[n], point, &mut bracket) {
                 Next::Evaluate(time) => time,
                 Next::Step(step) => {
-                    point.later = step;
+                    point.to_crossing = step;
                     return point.time + step <= limit + room;
                 }
                 Next::Nothing => break,
             };
         }
-        point.later = remaining(&point.orders[n]);
-        if point.time + point.later < from {
-            point.later = from - point.time;
+        point.to_crossing = remaining(&point.orders[n]);
+        if point.time + point.to_crossing < from {
+            point.to_crossing = from - point.time;
         }
         point.time <= limit + room
     }
 
-    /// What comes next on the way from a point to a guard's root. Newton's steps are taken while
-    /// they shrink and stay where the root is proved to be; elsewhere that is halved.
+    /// The next step from a point towards a guard's root. Newton's steps are taken while they
+    /// shrink and stay where the root is proved to be; elsewhere that is halved.
     #[inline]
     fn next_to_root(
         &self,
@@ -87,7 +87,8 @@ impl<T: Number> GuardedSegment<'_, T> {
         point: &GuardedPoint<T>,
         bracket: &mut Bracket<T>,
     ) -> Next<T> {
-        /// Beyond this share of a point's time a cubic does not tell the rest to the last digit.
+        /// The share of a point's time beyond which a cubic does not give the step to the last
+        /// digit.
         const FAR: f64 = 1e-4;
         // A value within a few roundings of its terms shows no better time.
         let noise = 4.0 * unit::<T>() * self.rows[n].size(&point.modal.y);
@@ -110,7 +111,7 @@ impl<T: Number> GuardedSegment<'_, T> {
             return Next::Nothing;
         }
         if !(size < 0.25 * bracket.last && bracket.holds(better)) {
-            // Steps that do not shrink are rounding, where that can be what the value is.
+            // Steps that do not shrink come from rounding, where the value may be rounding alone.
             better = bracket.middle();
             if value.abs() <= 4.0 * point.slack[n] || !bracket.holds(better) {
                 return Next::Nothing;
@@ -139,7 +140,7 @@ impl<T: Number> GuardedSegment<'_, T> {
     }
 }
 
-/// The rest of the way to a root, where that is so short that a cubic tells it.
+/// The step from a point to a root, where it is so short that a cubic gives it; zero elsewhere.
 #[inline]
 fn remaining<T: Number>(orders: &[T; 4]) -> T {
     /// The share by which the slope may change.

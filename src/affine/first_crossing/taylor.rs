@@ -8,68 +8,71 @@
 use super::crossing::FirstCrossing;
 use super::quotient::{Quotient, WINDOW};
 use super::reach::rise;
-use crate::affine::arithmetic::vector::{LOST, root};
+use crate::affine::arithmetic::vector::{LOST, approximate_root};
 use crate::affine::closed_form::bound::ORDERS;
 use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
 use crate::affine::guards::track::{SearchWork, Track, live, outward};
 use crate::numeric::number::Number;
 
-/// The numbers of derivatives that are looked at, the value and the one that is bounded included.
+/// The smaller number of derivatives that are used, the value and the one that is bounded included.
 pub(super) const FEW: usize = 9;
+
+/// The larger number of derivatives that are used.
 pub(super) const ALL: usize = ORDERS;
 
-/// Up to this share of what a guard begins with, the remainder after [`FEW`] derivatives leaves
-/// some digits of the root.
+/// The largest share of a guard's leading term at which the remainder after [`FEW`] derivatives
+/// leaves some digits of the root.
 pub(super) const LITTLE: f64 = 1e-3;
 
-/// Beyond this share the derivatives after [`FEW`] give so many more digits of the root that one
-/// evaluation is enough.
+/// The share of a guard's leading term beyond which the derivatives after [`FEW`] give so many more
+/// digits of the root that one evaluation is enough.
 pub(super) const NOTHING: f64 = 1e-7;
 
-/// Beyond this share even [`ALL`] derivatives prove nothing.
+/// The share of a guard's leading term beyond which even [`ALL`] derivatives prove nothing.
 const MUCH: f64 = 10.0;
 
-/// How often the polynomials were looked at in a mode since they last proved a crossing: of whole
-/// guards at its entry and later, and beside a decay at its entry and later. Whether they do is
-/// mostly the same at each entry, and a vain attempt costs as much as an evaluation or two.
+/// For each kind of Taylor polynomials, the number of attempts in a mode since they last proved a
+/// crossing: of whole guards at the entry and later, and of guards without a decaying term at the
+/// entry and later. Success is mostly the same at each entry, and a failed attempt costs as much as
+/// an evaluation or two.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Misses([u8; 4]);
+pub struct FailedAttempts([u8; 4]);
 
-/// What is looked at.
+/// The Taylor polynomials by which a first crossing is to be proved.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Looked {
+pub(super) enum Attempt {
     /// The polynomials of whole guards.
-    Whole,
-    /// Those of what is left beside a decay.
-    Beside,
+    WholeGuards,
+    /// The polynomials of guards without their decaying term.
+    WithoutDecay,
 }
 
-impl Misses {
+impl FailedAttempts {
     const MOST: u8 = 2;
-    /// The pauses after so many, of whole guards and beside a decay, which is seldom worth a second
-    /// look where it was not worth one.
+    /// The pauses after so many failures, in attempts: those without a decaying term seldom succeed
+    /// where they once failed.
     const PAUSE: [u8; 2] = [16, 64];
 
-    /// Whether to look at them: at first, and after a pause once more.
+    /// Whether an attempt is to be made: at first, and once more after a pause.
     #[inline]
-    pub(super) fn are_few(&mut self, looked: Looked, is_later: bool) -> bool {
-        let count = &mut self.0[Self::at(looked, is_later)];
+    pub(super) fn is_due(&mut self, attempt: Attempt, is_later: bool) -> bool {
+        let count = &mut self.0[Self::at(attempt, is_later)];
         *count += 1;
-        if *count > Self::MOST + Self::PAUSE[looked as usize] {
+        if *count > Self::MOST + Self::PAUSE[attempt as usize] {
             *count = Self::MOST;
         }
         *count <= Self::MOST
     }
 
-    /// A crossing is proved.
+    /// Sets the count of failures to zero, because a crossing is proved.
     #[inline]
-    pub(super) fn forget(&mut self, looked: Looked, is_later: bool) {
-        self.0[Self::at(looked, is_later)] = 0;
+    pub(super) fn reset(&mut self, attempt: Attempt, is_later: bool) {
+        self.0[Self::at(attempt, is_later)] = 0;
     }
 
     #[inline]
-    fn at(looked: Looked, is_later: bool) -> usize {
-        2 * looked as usize + usize::from(is_later)
+    fn at(attempt: Attempt, is_later: bool) -> usize {
+        2 * attempt as usize + usize::from(is_later)
     }
 }
 
@@ -81,11 +84,11 @@ impl<T: Number> GuardedSegment<'_, T> {
         &self,
         tracks: &[Track],
         at: &GuardedPoint<T>,
-        misses: &mut Misses,
+        failed_attempts: &mut FailedAttempts,
         work: &mut SearchWork,
     ) -> Option<FirstCrossing<T>> {
         let is_later = at.time > T::zero();
-        if self.follows_errors() || !misses.are_few(Looked::Whole, is_later) {
+        if self.follows_errors() || !failed_attempts.is_due(Attempt::WholeGuards, is_later) {
             return None;
         }
         let (n, rough) = nearest(tracks, at)?;
@@ -104,7 +107,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         } else {
             return None;
         };
-        misses.forget(Looked::Whole, is_later);
+        failed_attempts.reset(Attempt::WholeGuards, is_later);
         work.pieces += 1;
         Some(crossing)
     }
@@ -136,7 +139,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         Some(FirstCrossing { time: time(1.0), between, guards })
     }
 
-    /// Brings the time of a crossing nearer to where all derivatives of its guard have it.
+    /// Improves the time of a crossing by all derivatives of its guard.
     #[inline]
     fn refine(&self, n: usize, at: &GuardedPoint<T>, crossing: &mut FirstCrossing<T>) {
         let orders = self.rows[n].rounded_orders::<ALL>(&at.modal.y, 0);
@@ -159,7 +162,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         at: &GuardedPoint<T>,
         length: f64,
     ) -> bool {
-        if self.excess(n, track, at, length) < -4.0 * at.slack[n] {
+        if self.upper_bound(n, track, at, length) < -4.0 * at.slack[n] {
             return true;
         }
         if track.zeros > 2 {
@@ -169,7 +172,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         self.quotient::<N>(n, track, at).is_negative(length, last)
     }
 
-    /// A guard that begins with at most two zeros.
+    /// The quotient of a guard that begins with at most two zeros.
     #[inline]
     fn quotient<const N: usize>(
         &self,
@@ -212,8 +215,8 @@ pub(super) fn rough_root<T: Number>(track: &Track, orders: &[T; 4]) -> f64 {
     }
 }
 
-/// Where a cubic that is negative at zero has about become positive: by its quadratic, or where
-/// that stays negative, its last root. Infinite, or no number, where there is none.
+/// A time at which a cubic that is negative at zero has about become positive: by its quadratic, or
+/// where that stays negative, its last root. Infinite, or no number, where there is none.
 #[inline]
 pub(super) fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
     const STEPS: usize = 4;
@@ -228,7 +231,8 @@ pub(super) fn positive_root([value, slope, bend, third]: [f64; 4]) -> f64 {
     }
     // From above all roots Newton's method falls to the last one.
     let share = |of: f64| (-of).max(0.0) / third;
-    let mut at = 1.1 * (root(share(value), 3) + root(share(slope), 2) + share(bend));
+    let mut at =
+        1.1 * (approximate_root(share(value), 3) + approximate_root(share(slope), 2) + share(bend));
     for _ in 0..STEPS {
         let cubic = value + at * (slope + at * (bend + at * third));
         at -= cubic / (slope + at * (2.0 * bend + 3.0 * at * third));

@@ -1,4 +1,4 @@
-//! The first crossing after a point, proved by the Taylor polynomials of guards beside a decay.
+//! The first crossing after a point, proved by guards' Taylor polynomials plus a decaying term.
 //!
 //! Where a mode is entered, its fastest motion is often one decay, which no polynomial follows for
 //! as long as the segment lasts. The rest of the guard is slow: its polynomial, and the decay
@@ -6,9 +6,11 @@
 
 use super::crossing::FirstCrossing;
 use super::quotient::{Quotient, WINDOW};
-use super::quotient_with_decay::{Fading, FadingQuotient};
+use super::quotient_with_decay::{Decay, QuotientWithDecay};
 use super::reach::part_of;
-use super::taylor::{ALL, FEW, LITTLE, Looked, Misses, NOTHING, positive_root, rough_root};
+use super::taylor::{
+    ALL, Attempt, FEW, FailedAttempts, LITTLE, NOTHING, positive_root, rough_root,
+};
 use crate::affine::arithmetic::vector::LOST;
 use crate::affine::guards::point::{GuardedPoint, GuardedSegment};
 use crate::affine::guards::track::{SearchWork, Track, live, outward};
@@ -18,42 +20,48 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// The first crossing after a point, if the polynomials there and a decay prove it. Runs that
     /// follow their errors are left to the search, which counts what errors leave open.
     #[inline]
-    pub(super) fn first_beside_a_decay(
+    pub(super) fn first_by_taylor_with_decay(
         &self,
         tracks: &[Track],
         at: &GuardedPoint<T>,
-        misses: &mut Misses,
+        failed_attempts: &mut FailedAttempts,
         work: &mut SearchWork,
     ) -> Option<FirstCrossing<T>> {
         if !self.has_decay || self.follows_errors() {
             return None;
         }
         let is_later = at.time > T::zero();
-        let begins_below = |(n, track): (usize, &Track)| self.decay(n, track, at).is_some();
-        if !live(tracks).any(begins_below) || !misses.are_few(Looked::Beside, is_later) {
+        let begins_below = |(n, track): (usize, &Track)| self.decay_rate(n, track, at).is_some();
+        if !live(tracks).any(begins_below)
+            || !failed_attempts.is_due(Attempt::WithoutDecay, is_later)
+        {
             return None;
         }
-        let crossing = self.first_beside(tracks, at)?;
-        misses.forget(Looked::Beside, is_later);
+        let crossing = self.nearest_proved_with_decay(tracks, at)?;
+        failed_attempts.reset(Attempt::WithoutDecay, is_later);
         work.pieces += 1;
         Some(crossing)
     }
 
-    /// What [`Self::first_beside_a_decay`] finds; not inlined, because modes without a decay would
-    /// pay for it in registers.
+    /// The crossing of [`Self::first_by_taylor_with_decay`]; not inlined, because modes without a
+    /// decay would pay for it in registers.
     #[inline(never)]
-    fn first_beside(&self, tracks: &[Track], at: &GuardedPoint<T>) -> Option<FirstCrossing<T>> {
-        let (n, rough, lead) = self.nearest_beside(tracks, at)?;
+    fn nearest_proved_with_decay(
+        &self,
+        tracks: &[Track],
+        at: &GuardedPoint<T>,
+    ) -> Option<FirstCrossing<T>> {
+        let (n, rough, lead) = self.nearest_with_decay(tracks, at)?;
         let power = |sum: f64| (1..FEW).fold(sum, |sum, k| sum * rough / k as f64);
         let rest = power(self.rest_bound(n, FEW - 1, at, rough));
         // More derivatives would make longer chains of sums than the evaluation that they save.
-        let is_told = rest <= LITTLE * lead;
-        if !is_told {
+        let is_small = rest <= LITTLE * lead;
+        if !is_small {
             return None;
         }
-        let mut crossing = self.proved_beside(n, tracks, at, rough)?;
+        let mut crossing = self.proved_with_decay(n, tracks, at, rough)?;
         if rest > NOTHING * lead {
-            self.refine_beside(n, &tracks[n], at, &mut crossing);
+            self.refine_with_decay(n, &tracks[n], at, &mut crossing);
         }
         Some(crossing)
     }
@@ -61,19 +69,24 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// The rate of the decay of a guard that begins with no zero. Near a structural zero at the
     /// entry the co-ordinates do not tell the guard, but its series there does.
     #[inline]
-    fn decay(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> Option<f64> {
+    fn decay_rate(&self, n: usize, track: &Track, at: &GuardedPoint<T>) -> Option<f64> {
         let begins_below = track.zeros == 0 && !self.is_by_series(n, at.time.to_f64());
-        self.rows[n].decay.filter(|_| begins_below)
+        self.rows[n].decay_rate.filter(|_| begins_below)
     }
 
-    /// The guard whose first terms beside its decay suggest the earliest root after a point, that
-    /// root, and the size of what it begins with there. None if it has no decay.
+    /// The guard whose first terms, without its decaying term, suggest the earliest root after a
+    /// point, that root, and the size of the guard's rest at the point; none if the guard has no
+    /// decaying term.
     #[inline]
-    fn nearest_beside(&self, tracks: &[Track], at: &GuardedPoint<T>) -> Option<(usize, f64, f64)> {
+    fn nearest_with_decay(
+        &self,
+        tracks: &[Track],
+        at: &GuardedPoint<T>,
+    ) -> Option<(usize, f64, f64)> {
         let mut nearest = None;
         let mut earliest = f64::INFINITY;
         for (n, track) in live(tracks) {
-            let (root, found) = match self.decay(n, track, at) {
+            let (root, found) = match self.decay_rate(n, track, at) {
                 Some(_) => {
                     let row = &self.rows[n];
                     let orders = row.first_orders(&at.modal.y, row.first_column(1));
@@ -93,14 +106,14 @@ impl<T: Number> GuardedSegment<'_, T> {
     /// A guard's crossing near a rough root, if so many derivatives of its rest prove that it is
     /// the first.
     #[inline]
-    fn proved_beside(
+    fn proved_with_decay(
         &self,
         n: usize,
         tracks: &[Track],
         at: &GuardedPoint<T>,
         rough: f64,
     ) -> Option<FirstCrossing<T>> {
-        let guard = self.beside::<FEW>(n, &tracks[n], at)?;
+        let guard = self.quotient_with_decay::<FEW>(n, &tracks[n], at)?;
         let after = guard.root(rough)?;
         let room = guard.crosses(after, self.rest_bound(n, FEW - 1, at, (1.0 + WINDOW) * after))?;
         let end = (1.0 + room) * after;
@@ -111,7 +124,7 @@ impl<T: Number> GuardedSegment<'_, T> {
                 continue;
             }
             let stays_negative = self.stays_negative::<FEW>(other, track, at, end)
-                || self.beside::<FEW>(other, track, at).is_some_and(|guard| {
+                || self.quotient_with_decay::<FEW>(other, track, at).is_some_and(|guard| {
                     guard.is_negative(end, self.rest_bound(other, FEW - 1, at, end))
                 });
             if !stays_negative {
@@ -123,16 +136,16 @@ impl<T: Number> GuardedSegment<'_, T> {
         Some(FirstCrossing { time: time(1.0), between, guards })
     }
 
-    /// Brings the time of a crossing nearer to where all derivatives of its guard's rest have it.
+    /// Improves the time of a crossing by all derivatives of its guard's rest.
     #[inline]
-    fn refine_beside(
+    fn refine_with_decay(
         &self,
         n: usize,
         track: &Track,
         at: &GuardedPoint<T>,
         crossing: &mut FirstCrossing<T>,
     ) {
-        let Some(guard) = self.beside::<ALL>(n, track, at) else { return };
+        let Some(guard) = self.quotient_with_decay::<ALL>(n, track, at) else { return };
         let root = (crossing.time - at.time).to_f64();
         let better = crossing.time - T::exact(guard.step(root).0 * root);
         let [low, high] = crossing.between;
@@ -141,25 +154,25 @@ impl<T: Number> GuardedSegment<'_, T> {
         }
     }
 
-    /// A guard beside its decay.
+    /// The quotient of a guard's rest and its decaying term.
     #[inline]
-    fn beside<const N: usize>(
+    fn quotient_with_decay<const N: usize>(
         &self,
         n: usize,
         track: &Track,
         at: &GuardedPoint<T>,
-    ) -> Option<FadingQuotient<N>> {
-        let (rate, row) = (self.decay(n, track, at)?, &self.rows[n]);
+    ) -> Option<QuotientWithDecay<N>> {
+        let (rate, row) = (self.decay_rate(n, track, at)?, &self.rows[n]);
         let value = part_of(row, &row.parts[0], track, &at.modal.y);
         let [mut orders, sizes] = row.orders_and_sizes::<N>(&at.modal, row.first_column(1));
         orders.iter_mut().for_each(|order| *order *= track.outward);
         let lost = LOST * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
         let errors = [at.slack[n], lost];
         let rest = Quotient::of([&orders, &sizes], 0, self.margin, errors);
-        Some(FadingQuotient { rest, fading: Fading { value, rate } })
+        Some(QuotientWithDecay { rest, decay: Decay { value, rate } })
     }
 
-    /// A bound of a derivative of what a guard is beside its decay.
+    /// A bound of a derivative of a guard without its decaying term.
     #[inline]
     fn rest_bound(&self, n: usize, order: usize, at: &GuardedPoint<T>, length: f64) -> f64 {
         /// Room for the rounding of a sum.

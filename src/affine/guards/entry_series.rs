@@ -2,22 +2,22 @@
 //! the zeros are left out.
 
 use super::row::ModalRow;
-use crate::affine::arithmetic::vector::{Vector, root, unit};
-use crate::affine::closed_form::bound::{Later, ORDERS};
+use crate::affine::arithmetic::vector::{Vector, approximate_root, unit};
+use crate::affine::closed_form::bound::{BlockGrowth, ORDERS};
 use crate::affine::closed_form::modal_state::ModalState;
 use crate::numeric::number::Number;
 
-/// A guard's Taylor coefficients at entry, with the sizes of what they are summed from.
-pub(super) struct GuardSeries<T> {
+/// A guard's Taylor coefficients at entry, with the sums of the sizes of their terms.
+pub(super) struct EntrySeries<T> {
     coefficients: [T; ORDERS],
     sizes: [f64; ORDERS],
 }
 
-/// What the series of a segment's guards are made from.
-pub(super) struct SeriesEntry<T> {
+/// The entry of a segment, from which the Taylor series of its guards are computed.
+pub(super) struct SegmentEntry<T> {
     /// The entry's co-ordinates, without the rounding of those that are no polynomials.
     pub modal: ModalState<T>,
-    /// The norms of the sizes of all.
+    /// The norms of each block's sizes.
     pub norms: Vector<f64>,
     /// The time up to which the series are asked for.
     pub until: f64,
@@ -29,9 +29,9 @@ pub(super) fn has_series(zeros: usize) -> bool {
     0 < zeros && zeros < ORDERS
 }
 
-impl<T: Number> GuardSeries<T> {
+impl<T: Number> EntrySeries<T> {
     /// The series of a guard that begins with so many zeros; zero where it has none.
-    pub fn of(row: &ModalRow<T>, zeros: usize, entry: &SeriesEntry<T>) -> Self {
+    pub fn of(row: &ModalRow<T>, zeros: usize, entry: &SegmentEntry<T>) -> Self {
         let (mut coefficients, mut sizes) = ([T::zero(); ORDERS], [0.0; ORDERS]);
         if !has_series(zeros) {
             return Self { coefficients, sizes };
@@ -41,9 +41,9 @@ impl<T: Number> GuardSeries<T> {
             coefficients[k] = value * T::inverse_factorial(k);
             sizes[k] = size * f64::inverse_factorial(k);
         }
-        // What rounding did to the entry moves as the co-ordinates do: how large the derivatives of
-        // a fast block are does not matter, because that decays.
-        let others = row.parts.iter().filter(|it| it.later != Later::Polynomial);
+        // Rounding errors of the entry move as the co-ordinates do: large derivatives of a fast
+        // block do not matter, because its errors decay.
+        let others = row.parts.iter().filter(|it| it.growth != BlockGrowth::Polynomial);
         let moved: f64 = others.map(|it| it.bound(zeros, entry.until, &entry.norms)).sum();
         sizes[zeros] += moved * f64::inverse_factorial(zeros);
         Self { coefficients, sizes }
@@ -67,7 +67,8 @@ impl<T: Number> GuardSeries<T> {
     }
 }
 
-/// The products of the numbers beyond each up to the last order, which f64 holds exactly.
+/// For each order, the product of the integers above it up to the last order, which f64 holds
+/// exactly.
 const FACTORS: [f64; ORDERS] = {
     let mut factors = [1.0; ORDERS];
     let mut n = ORDERS - 1;
@@ -78,8 +79,8 @@ const FACTORS: [f64; ORDERS] = {
     factors
 };
 
-/// Up to which time a guard's series without its last order is good to the last digit: `lead` is
-/// the first derivative that is not zero, `last` a bound of the last.
+/// The time up to which a guard's series without its last order is good to the last digit: `lead`
+/// is the first derivative that is not zero, `last` a bound of the last.
 #[inline]
 pub(super) fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64 {
     if last == 0.0 {
@@ -87,5 +88,5 @@ pub(super) fn series_limit<T: Number>(lead: f64, zeros: usize, last: f64) -> f64
     }
     let order = ORDERS - 1;
     let power = unit::<T>() * lead * FACTORS[zeros] / last;
-    0.9 * root(power, order - zeros)
+    0.9 * approximate_root(power, order - zeros)
 }

@@ -1,4 +1,4 @@
-//! What errors that were made before a segment may do to a guard along it.
+//! Bounds of the errors of a guard along a segment that were made before it.
 
 use super::row::ModalRow;
 use crate::affine::arithmetic::vector::Vector;
@@ -9,7 +9,7 @@ use crate::numeric::number::Number;
 /// The factor by which bounds are raised against rounding in f64.
 pub const OUTWARD: f64 = 1.0 + 1e-9;
 
-/// What the errors at the entry of a segment do to a row along it.
+/// Bounds of a row's error along a segment, by the errors at the segment's entry.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct InheritedError {
     /// Bounds of value and derivatives at entry, of the blocks that are polynomials of the time: so
@@ -20,8 +20,8 @@ pub struct InheritedError {
 }
 
 impl InheritedError {
-    /// A bound of it at a time, which is not negative. Between two times it is at most the larger
-    /// of theirs, because decays and polynomials of positive terms are convex.
+    /// A bound of the row's error at a time, which is not negative. Between two times it is at most
+    /// the larger of theirs, because decays and polynomials of positive terms are convex.
     pub fn by<T: Number>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>, time: f64) -> f64 {
         let polynomial =
             (1..ORDERS).rev().fold(0.0, |sum, k| (sum + self.orders[k]) * time / k as f64);

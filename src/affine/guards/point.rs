@@ -1,10 +1,10 @@
 //! A segment's guards at an instant, evaluated from the entry's modal co-ordinates.
 
-use super::entry_series::{GuardSeries, SeriesEntry, has_series, series_limit};
+use super::entry_series::{EntrySeries, SegmentEntry, has_series, series_limit};
 use super::inherited_error::InheritedError;
 use super::row::ModalRow;
 use super::track::{SearchWork, Track};
-use crate::affine::arithmetic::vector::{UNDERFLOW, Vector, sum_rounding, twice_summed};
+use crate::affine::arithmetic::vector::{UNDERFLOW, Vector, sum_rounding, twice_summed_rounding};
 use crate::affine::closed_form::bound::ORDERS;
 use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::closed_form::modal_state::ModalState;
@@ -14,29 +14,30 @@ use smallvec::SmallVec;
 use std::cell::OnceCell;
 use std::ops::Range;
 
-/// Up to this many guards need no heap memory.
+/// The number of guards up to which no heap memory is needed.
 const INLINE: usize = 4;
 
-/// One thing for each guard.
+/// A list with one entry for each guard of a mode.
 pub type PerGuard<T> = SmallVec<[T; INLINE]>;
 
-/// A segment, with all that its guards have at its entry.
+/// A segment with its guards, and with everything about them that is fixed at its entry.
 pub struct GuardedSegment<'a, T> {
     pub flow: &'a ModeFlow<T>,
     pub rows: &'a [ModalRow<T>],
     pub entry: ModalState<T>,
-    /// What rounding does to a guard, in sizes of what it is summed from.
+    /// The rounding error of a guard, relative to the sum of its terms' sizes.
     pub margin: f64,
-    /// What errors do along the segment, where they are followed.
+    /// The guards' errors along the segment, where errors are followed.
     followed: Option<Box<FollowedErrors>>,
     /// Up to this time guards that begin with a structural zero are evaluated by their Taylor
     /// series at entry; negative where none does.
     pub early: f64,
-    /// The series, once they are asked for.
-    series: OnceCell<Vec<GuardSeries<T>>>,
-    /// How many orders of each guard are structural zeros at entry.
+    /// The guards' Taylor series at entry, once they are asked for.
+    series: OnceCell<Vec<EntrySeries<T>>>,
+    /// The number of each guard's derivatives that are structural zeros at entry, the value
+    /// included.
     zeros: PerGuard<usize>,
-    /// The blocks that a guard which can cross is made of.
+    /// The blocks that have a part in a guard which can cross, as bits.
     blocks: u16,
     /// Whether the fastest block of a guard which can cross is one decay.
     pub has_decay: bool,
@@ -44,11 +45,11 @@ pub struct GuardedSegment<'a, T> {
     norms: Vector<f64>,
 }
 
-/// What errors do to the guards along a segment; boxed, because most runs do not follow them.
+/// The guards' errors along a segment; boxed, because most runs do not follow errors.
 struct FollowedErrors {
-    /// What errors made before the segment do to each guard.
+    /// For each guard, the errors that were made before the segment.
     inherited: Vec<InheritedError>,
-    /// What underflow may do to each block.
+    /// Bounds of the errors that underflow makes in each block.
     lost: Vector<f64>,
 }
 
@@ -56,17 +57,17 @@ struct FollowedErrors {
 #[derive(Clone, Debug)]
 pub struct GuardedPoint<T> {
     pub time: T,
-    /// How much later a guard is zero, by its value and slope here: a time that rounding hides in
-    /// the values of guards.
-    pub later: T,
-    /// The modal co-ordinates; those of blocks that no guard is made of are the entry's.
+    /// The time from here to the zero of a guard, by its value and slope here: rounding of `time`
+    /// would lose it.
+    pub to_crossing: T,
+    /// The modal co-ordinates; those of blocks without a part in any guard are the entry's.
     pub modal: ModalState<T>,
-    /// The norms of each block's co-ordinates, once [`GuardedSegment::measure`] was asked for them.
+    /// The norms of each block's co-ordinates, after [`GuardedSegment::measure_norms`].
     pub norms: Vector<f64>,
     is_measured: bool,
     /// The value and three derivatives of each guard.
     pub orders: PerGuard<[T; 4]>,
-    /// What rounding may have done to each value.
+    /// Bounds of the rounding errors of the guards' values.
     pub slack: PerGuard<f64>,
 }
 
@@ -88,8 +89,8 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         }
     }
 
-    /// Enters a mode with the co-ordinates of `entry`. Their own rounding is counted in their
-    /// sizes, or among the errors that are followed.
+    /// Enters a mode with the co-ordinates of `entry`, whose rounding errors are counted in their
+    /// sizes or among the errors that are followed.
     #[inline]
     pub fn enter(
         &mut self,
@@ -99,7 +100,8 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         inherited: Option<Vec<InheritedError>>,
     ) {
         (self.flow, self.rows, self.blocks) = (flow, rows, 0);
-        let margin = if inherited.is_some() { sum_rounding::<T> } else { twice_summed::<T> };
+        let margin =
+            if inherited.is_some() { sum_rounding::<T> } else { twice_summed_rounding::<T> };
         self.margin = margin(flow.dimension);
         self.followed = inherited.map(|it| {
             let lost = flow.underflow(&self.entry.y);
@@ -113,15 +115,15 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
             self.zeros.push(if track.live { track.zeros } else { ORDERS });
             if track.live {
                 self.blocks |= rows[n].blocks;
-                self.has_decay |= rows[n].decay.is_some();
+                self.has_decay |= rows[n].decay_rate.is_some();
                 early |= track.zeros > 0;
             }
         }
-        flow.measure(&mut self.norms, &self.entry.y);
+        flow.set_norms(&mut self.norms, &self.entry.y);
         self.early = if early { self.series_limit() } else { -1.0 };
     }
 
-    /// Up to which time the series of these guards are good without their last order.
+    /// The time up to which the series of all guards are good without their last order.
     #[inline]
     fn series_limit(&self) -> f64 {
         let longest = self.flow.longest;
@@ -136,15 +138,15 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
 
     /// The guards' Taylor series at entry.
     #[inline]
-    fn series(&self) -> &[GuardSeries<T>] {
+    fn series(&self) -> &[EntrySeries<T>] {
         self.series.get_or_init(|| {
-            let entry = SeriesEntry {
+            let entry = SegmentEntry {
                 modal: self.flow.polynomial_sizes(&self.entry),
                 norms: self.flow.norms(&self.entry.sizes),
                 until: self.early,
             };
             let guards = self.rows.iter().zip(&self.zeros);
-            guards.map(|(row, zeros)| GuardSeries::of(row, *zeros, &entry)).collect()
+            guards.map(|(row, zeros)| EntrySeries::of(row, *zeros, &entry)).collect()
         })
     }
 
@@ -166,17 +168,18 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
                 slack[n] = 0.0;
             }
         }
-        self.inherit(0..self.rows.len(), point);
+        self.add_inherited(0..self.rows.len(), point);
     }
 
     /// Evaluates the closed form, as far as guards need it.
     #[inline]
     pub fn evaluate(&self, point: &mut GuardedPoint<T>, time: T, work: &mut SearchWork) {
-        self.go_to(point, time, work);
+        self.advance_to(point, time, work);
         self.fill_all(point);
     }
 
-    /// Evaluates the closed form and one guard; what others have in the point is not of its time.
+    /// Evaluates the closed form and one guard; the point's values of other guards are not of its
+    /// time.
     #[inline]
     pub fn evaluate_guard(
         &self,
@@ -185,17 +188,17 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         time: T,
         work: &mut SearchWork,
     ) {
-        self.go_to(point, time, work);
+        self.advance_to(point, time, work);
         let by_series = self.is_by_series(n, time.to_f64());
         let series_at = by_series.then_some(time);
         (point.orders[n], point.slack[n]) = self.guard(n, point, series_at);
-        self.inherit(n..n + 1, point);
+        self.add_inherited(n..n + 1, point);
     }
 
     /// Evaluates all guards of a point at the crossing of one of them.
     #[inline]
     pub fn at_crossing(&self, point: &mut GuardedPoint<T>, work: &mut SearchWork) {
-        let time = point.time + point.later;
+        let time = point.time + point.to_crossing;
         if time == point.time {
             self.fill_all(point);
         } else {
@@ -204,14 +207,14 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
     }
 
     #[inline]
-    fn go_to(&self, point: &mut GuardedPoint<T>, time: T, work: &mut SearchWork) {
+    fn advance_to(&self, point: &mut GuardedPoint<T>, time: T, work: &mut SearchWork) {
         work.evaluations += 1;
         point.start(self);
         point.time = time;
         self.flow.advance(&mut point.modal, time, self.blocks);
     }
 
-    /// All guards of a point whose co-ordinates are there.
+    /// Evaluates all guards of a point whose co-ordinates are evaluated already.
     #[inline]
     fn fill_all(&self, point: &mut GuardedPoint<T>) {
         let time = point.time;
@@ -221,7 +224,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
             let evaluated = self.guard(n, point, is_by_series(n).then_some(time));
             (point.orders[n], point.slack[n]) = evaluated;
         }
-        self.inherit(0..self.rows.len(), point);
+        self.add_inherited(0..self.rows.len(), point);
     }
 
     /// Whether a guard is summed from its series at a time: where it begins with a structural zero,
@@ -231,29 +234,29 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         self.zeros[n] > 0 && time <= self.early
     }
 
-    /// How many orders of a guard at entry are left out of its value at a time, because they are
-    /// zeros by the model.
+    /// The number of a guard's Taylor terms at entry that are left out of its value at a time,
+    /// because they are structural zeros.
     pub fn zeros_by_series(&self, n: usize, time: f64) -> usize {
         if self.is_by_series(n, time) { self.zeros[n] } else { 0 }
     }
 
     /// Works out the norms of a point's blocks.
     #[inline]
-    pub fn measure(&self, point: &mut GuardedPoint<T>) {
+    pub fn measure_norms(&self, point: &mut GuardedPoint<T>) {
         if !point.is_measured {
-            self.flow.measure(&mut point.norms, &point.modal.y);
+            self.flow.set_norms(&mut point.norms, &point.modal.y);
             point.is_measured = true;
         }
     }
 
-    /// Evaluates the blocks of a point that no guard is made of.
+    /// Evaluates the blocks of a point that have no part in any guard.
     #[inline]
     pub fn complete(&self, point: &mut GuardedPoint<T>) {
         self.flow.advance(&mut point.modal, point.time, !self.blocks);
     }
 
-    /// Value and three derivatives of a guard, and what rounding may have done to the value: from
-    /// the co-ordinates, or from its Taylor series at a time.
+    /// Value and three derivatives of a guard, and a bound of the value's rounding error: from the
+    /// co-ordinates, or from its Taylor series at a time.
     #[inline]
     fn guard(&self, n: usize, at: &GuardedPoint<T>, series_at: Option<T>) -> ([T; 4], f64) {
         if self.zeros[n] == ORDERS {
@@ -267,15 +270,15 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         (orders, self.margin * size)
     }
 
-    /// In a run that follows its errors, adds what they do to guards.
+    /// Adds the inherited errors to guards, in a run that follows its errors.
     #[inline(always)]
-    fn inherit(&self, guards: Range<usize>, point: &mut GuardedPoint<T>) {
+    fn add_inherited(&self, guards: Range<usize>, point: &mut GuardedPoint<T>) {
         if let Some(followed) = &self.followed {
-            self.add_followed(followed, guards, point);
+            self.add_followed_errors(followed, guards, point);
         }
     }
 
-    fn add_followed(
+    fn add_followed_errors(
         &self,
         followed: &FollowedErrors,
         guards: Range<usize>,
@@ -295,7 +298,7 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
         self.followed.is_some()
     }
 
-    /// What errors made before the segment may do to a guard at a time.
+    /// A bound of the error of a guard at a time by errors that were made before the segment.
     #[inline]
     pub fn inherited_by(&self, n: usize, time: T) -> f64 {
         self.followed.as_ref().map_or(0.0, |followed| {
@@ -305,10 +308,10 @@ impl<'a, T: Number> GuardedSegment<'a, T> {
 }
 
 impl<T: Number> GuardedPoint<T> {
-    /// The co-ordinates of a segment's entry.
+    /// Sets the point to a segment's entry.
     #[inline]
     fn start(&mut self, segment: &GuardedSegment<'_, T>) {
-        (self.time, self.later, self.is_measured) = (T::zero(), T::zero(), false);
+        (self.time, self.to_crossing, self.is_measured) = (T::zero(), T::zero(), false);
         self.modal.copy(&segment.entry, segment.flow.dimension);
     }
 
@@ -327,7 +330,7 @@ impl<T: Number> Default for GuardedPoint<T> {
     fn default() -> Self {
         Self {
             time: T::zero(),
-            later: T::zero(),
+            to_crossing: T::zero(),
             modal: ModalState::default(),
             norms: [0.0; LARGEST_DIMENSION],
             is_measured: false,
@@ -342,12 +345,12 @@ impl<T: Number> Default for GuardedPoint<T> {
 pub struct Ends<T> {
     pub left: GuardedPoint<T>,
     pub right: GuardedPoint<T>,
-    /// What is proved of guards from the left end on.
+    /// The guards that are proved to stay negative from the left end on.
     pub passed: Passed<T>,
 }
 
 /// Guards, as bits, that stay negative up to a time: the right end of the last piece that was
-/// looked at.
+/// evaluated.
 #[derive(Clone, Copy, Debug)]
 pub struct Passed<T> {
     pub guards: u64,
@@ -368,7 +371,7 @@ impl<T: Number> Passed<T> {
 }
 
 impl<T: Number> Ends<T> {
-    /// Goes on to the right end.
+    /// Makes the right end the left one of the next piece.
     #[inline]
     pub fn step(&mut self) {
         std::mem::swap(&mut self.left, &mut self.right);

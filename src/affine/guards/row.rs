@@ -3,7 +3,7 @@
 
 use crate::affine::arithmetic::real::BigReal;
 use crate::affine::arithmetic::vector::{UNDERFLOW, Vector, add_product, vector};
-use crate::affine::closed_form::bound::{self, Later, ORDERS};
+use crate::affine::closed_form::bound::{self, BlockGrowth, ORDERS};
 use crate::affine::closed_form::flow::FlowBlock;
 use crate::affine::closed_form::modal_state::ModalState;
 use crate::affine::modal;
@@ -17,27 +17,27 @@ pub struct ModalRow<T> {
     pub twin: usize,
     /// The row's derivatives.
     pub orders: Vec<Vector<T>>,
-    /// How many of them there are up to the last that is not zero.
+    /// The number of derivatives up to the last that is not zero.
     pub last: usize,
-    /// The co-ordinates that it is made of, in their order.
+    /// The co-ordinates that have a part in the row, in their order.
     pub columns: Vec<RowColumn<T>>,
-    /// The blocks that it is made of, in their order.
+    /// The blocks that have a part in the row, in their order.
     pub parts: Vec<RowPart>,
     /// The blocks of `parts`, a bit each.
     pub blocks: u16,
-    /// The rate of the first of `parts`, the fastest, if that is one decay.
-    pub decay: Option<f64>,
+    /// The rate of the first of `parts`, the fastest, if it is a single decaying exponential.
+    pub decay_rate: Option<f64>,
 }
 
 /// A co-ordinate's factors in a row.
 #[derive(Clone, Copy, Debug)]
 pub struct RowColumn<T> {
     pub at: usize,
-    /// The part of each order: of the value and of its derivatives.
+    /// The factors in the value and in its derivatives.
     pub orders: [T; ORDERS],
-    /// The size of the part of the value.
+    /// The size of the factor in the value.
     size: f64,
-    /// How far that part may be off.
+    /// A bound of the error of the factor in the value.
     off: f64,
 }
 
@@ -48,10 +48,10 @@ pub struct RowPart {
     pub block: usize,
     /// The first column of the block and the one after its last, among those of the row.
     pub columns: (usize, usize),
-    /// What is known of the block at all later times.
-    pub later: Later,
-    /// The norms of the derivatives' parts, and of what they become where the block's co-ordinates
-    /// only turn and decay.
+    /// How the block's part may grow.
+    pub growth: BlockGrowth,
+    /// The norms of the block's rows in the derivatives, for all times at which its co-ordinates
+    /// only rotate and decay.
     pub norms: [f64; ORDERS],
 }
 
@@ -69,19 +69,26 @@ impl<T: Number> ModalRow<T> {
         let is_there = |order: &Vector<T>| order.iter().any(|it| *it != T::zero());
         let last = orders.iter().rposition(is_there).map_or(0, |it| it + 1);
         let (columns, parts_of_row) = (Vec::new(), Vec::new());
-        let mut modal =
-            Self { twin: 0, orders, last, columns, parts: parts_of_row, blocks: 0, decay: None };
+        let mut modal = Self {
+            twin: 0,
+            orders,
+            last,
+            columns,
+            parts: parts_of_row,
+            blocks: 0,
+            decay_rate: None,
+        };
         for (n, (block, part)) in blocks.iter().zip(&parts).enumerate() {
             let norms = bound::norms(block, part);
             if norms.iter().any(|it| *it > 0.0) {
                 modal.add_part(n, &flow[n], norms, |j| off(&row, block, j));
             }
         }
-        modal.decay = modal.parts.first().and_then(RowPart::decay);
+        modal.decay_rate = modal.parts.first().and_then(RowPart::decay_rate);
         modal
     }
 
-    /// Adds the part of a block, whose co-ordinates' factors may be off by so much.
+    /// Adds the part of a block; `off` bounds the errors of the factors of its co-ordinates.
     fn add_part(
         &mut self,
         n: usize,
@@ -99,7 +106,7 @@ impl<T: Number> ModalRow<T> {
             }
         }
         let columns = (first, self.columns.len());
-        self.parts.push(RowPart { block: n, columns, later: block.later, norms });
+        self.parts.push(RowPart { block: n, columns, growth: block.growth, norms });
         self.blocks |= 1 << n;
     }
 
@@ -120,7 +127,7 @@ impl<T: Number> ModalRow<T> {
         sums
     }
 
-    /// The sums of the sizes of what the first orders are summed from.
+    /// For each of the first orders, the sum of the sizes of its terms.
     #[inline]
     pub fn order_sizes<const N: usize>(&self, sizes: &Vector<f64>) -> [f64; N] {
         let mut sums = [0.0; N];
@@ -153,7 +160,7 @@ impl<T: Number> ModalRow<T> {
         sums
     }
 
-    /// Value and three derivatives, and the sum of the sizes of what the value is summed from.
+    /// Value and three derivatives, and the sum of the sizes of the value's terms.
     #[inline]
     pub fn sized_orders(&self, ModalState { y, sizes }: &ModalState<T>) -> ([T; 4], f64) {
         let (mut sums, mut size) = ([T::zero(); 4], 0.0);
@@ -165,8 +172,7 @@ impl<T: Number> ModalRow<T> {
         (sums, size)
     }
 
-    /// The first orders, and the sums of the sizes of what they are summed from, in f64, from a
-    /// column on.
+    /// The first orders and the sums of their terms' sizes, in f64, from a column on.
     #[inline(always)]
     pub fn orders_and_sizes<const N: usize>(
         &self,
@@ -196,19 +202,19 @@ impl<T: Number> ModalRow<T> {
         sum * (1.0 + 1e-12)
     }
 
-    /// The sum of the sizes of what the row's value is summed from.
+    /// The sum of the sizes of the terms of the row's value.
     #[inline]
     pub fn size<U: Number>(&self, y: &Vector<U>) -> f64 {
         self.columns.iter().map(|it| it.size * y[it.at].to_f64().abs()).sum()
     }
 
-    /// How far the row's value may be off because its factors are, where the co-ordinates have
-    /// sizes.
+    /// A bound of the error of the row's value by the errors of its factors, from the sizes of the
+    /// co-ordinates.
     pub fn off(&self, y: &Vector<f64>) -> f64 {
         self.columns.iter().map(|it| it.off * y[it.at]).sum()
     }
 
-    /// A derivative, and the sum of the sizes of what it is summed from.
+    /// A derivative, and the sum of the sizes of its terms.
     #[inline]
     pub fn order(&self, order: usize, ModalState { y, sizes }: &ModalState<T>) -> (T, f64) {
         let row = &self.orders[order];
@@ -224,10 +230,10 @@ impl<T: Number> ModalRow<T> {
 impl RowPart {
     /// The rate of a decay: the quotient of two norms, unless they have lost digits to underflow or
     /// have overflown.
-    fn decay(&self) -> Option<f64> {
+    fn decay_rate(&self) -> Option<f64> {
         const RANGE: std::ops::Range<f64> = 1e-250..1e250;
-        let is_told = self.norms[..2].iter().all(|norm| RANGE.contains(norm));
-        let is_decay = self.later == Later::Fading && is_told;
+        let is_in_range = self.norms[..2].iter().all(|norm| RANGE.contains(norm));
+        let is_decay = self.growth == BlockGrowth::Decaying && is_in_range;
         is_decay.then(|| self.norms[1] / self.norms[0])
     }
 
@@ -236,14 +242,14 @@ impl RowPart {
     #[inline]
     pub fn bound(&self, order: usize, length: f64, sizes: &Vector<f64>) -> f64 {
         let size = sizes[self.block];
-        let norm = if size == 0.0 { 0.0 } else { self.later.bound(&self.norms, order, length) };
-        // Nothing comes of zeros, even where a factor of theirs overflows; what is not zero does
-        // not vanish, because a derivative without a bound would be taken for a polynomial's.
+        let norm = if size == 0.0 { 0.0 } else { self.growth.bound(&self.norms, order, length) };
+        // Zeros contribute nothing, even where their factors overflow. A bound that is not zero is
+        // kept from underflow, because derivatives bounded by zero are taken for a polynomial's.
         if norm == 0.0 { 0.0 } else { (norm * size).max(UNDERFLOW) }
     }
 }
 
-/// How far a row's factor of a block's co-ordinate may be off.
+/// A bound of the error of a row's factor of a block's co-ordinate.
 fn off(row: &[BigReal], block: &modal::Block, j: usize) -> f64 {
     row.iter().zip(&block.off[0]).map(|(it, off)| it.to_f64().abs() * off[j]).sum()
 }

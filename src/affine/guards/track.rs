@@ -1,24 +1,24 @@
-//! A guard as a search follows it, and what a search costs.
+//! The state of a guard in a search, and the cost of a search.
 
 use crate::numeric::number::Number;
 
-/// What is known of a guard at the left end of what is searched.
+/// The state of a guard at the left end of the time that is searched.
 #[derive(Clone, Copy, Debug)]
 pub struct Track {
     /// 1 where a crossing rises, -1 where it falls: the guard times this is negative inside.
     pub outward: f64,
-    /// How many derivatives, the value included, are zero at the left end.
+    /// The number of the guard's derivatives, the value included, that are zero at the left end.
     pub zeros: usize,
-    /// Whether it can cross at all.
+    /// Whether the guard can cross at all.
     pub live: bool,
 }
 
-/// What a search has cost.
+/// The cost of a search, or of a run's searches so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SearchWork {
     /// Evaluations of the closed form.
     pub evaluations: u64,
-    /// Pieces that were certified.
+    /// Pieces of segments on which the guards' signs were to be proved.
     pub pieces: u64,
     /// Touches, entries, conditions and ties that rounding does not decide.
     pub undecidable: u64,
@@ -36,7 +36,7 @@ impl SearchWork {
     }
 }
 
-/// Value and derivatives of a guard, positive outside.
+/// Value and derivatives of a guard, with the sign that makes it positive outside its mode.
 #[inline]
 pub fn outward<T: Number>(orders: &[T; 4], track: &Track) -> [T; 4] {
     if track.outward < 0.0 { orders.map(|it| -it) } else { *orders }

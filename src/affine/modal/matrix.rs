@@ -4,7 +4,7 @@ use crate::affine::arithmetic::real::BigReal;
 
 pub type BigMatrix = Vec<Vec<BigReal>>;
 
-/// What is left of a zero after elimination, relative to what was there: 2^-320.
+/// The rounding that elimination leaves of a zero, relative to the largest entry: 2^-320.
 const NOTHING: isize = -320;
 
 pub fn identity(size: usize) -> BigMatrix {
@@ -79,7 +79,7 @@ pub fn null_space(matrix: &BigMatrix, nullity: usize) -> Option<BigMatrix> {
     Some(columns)
 }
 
-/// The largest entry that is left, with its row and column.
+/// The largest entry that is not eliminated yet, with its row and column.
 fn pivot(rows: &BigMatrix, step: usize) -> Option<(BigReal, usize, usize)> {
     let mut best: Option<(BigReal, usize, usize)> = None;
     for (at, row) in rows.iter().enumerate().skip(step) {

@@ -31,17 +31,17 @@ const CLOSE: f64 = 0.125;
 /// over such a time their exponentials are nearly alike.
 const SLOW: f64 = 0.05;
 
-/// What rounding leaves of a zero of a block, relative to what its largest entry is summed from:
-/// 2^-500. It is far above the last of the bits.
+/// The rounding that is left of a zero of a block, relative to the terms of the block's largest
+/// entry: 2^-500. It is far above the last of the bits.
 const NOTHING: isize = -500;
 
-/// Room for the growth of what is left where a block's columns and rows are off: 2^40.
+/// A factor for the growth of residuals by the errors of a block's columns and rows: 2^40.
 const ROOM: isize = 40;
 
 /// Entries of a mode whose sizes differ by less than this power of two are left as they are.
 const ALIKE: isize = 100;
 
-/// How a block moves.
+/// The kind of a block, by its eigenvalues.
 #[derive(Clone, Debug)]
 pub(super) enum Kind {
     /// One simple real eigenvalue.
@@ -49,13 +49,13 @@ pub(super) enum Kind {
     /// One pair of simple eigenvalues: rate and frequency; B = ((rate, frequency), (-frequency,
     /// rate)).
     Pair(BigReal, BigReal),
-    /// One real eigenvalue, and B less it is nilpotent.
+    /// One multiple real eigenvalue r, for which B - r is nilpotent.
     Nilpotent(BigReal),
     /// Eigenvalues that are close to each other.
     Cluster,
 }
 
-/// A block.
+/// A block of a mode's matrix, with its columns X, its rows W and its own matrix B.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     pub kind: Kind,
@@ -65,13 +65,13 @@ pub(super) struct Block {
     pub rows: BigMatrix,
     /// The matrix B.
     pub matrix: BigMatrix,
-    /// How far the entries of X and of W may be off.
+    /// Bounds of the errors of the entries of X and of W.
     pub off: [Vec<Vec<f64>>; 2],
 }
 
 impl Block {
-    /// How fast the co-ordinates move at most, relative to their sizes as they are and to the
-    /// largest part of a state that each of them makes: where a basis keeps couplings small, some
+    /// The largest rate at which the co-ordinates move, relative to their sizes and to the largest
+    /// part of a state that each of them makes: where a basis keeps couplings small, some
     /// co-ordinates are large beside what they add to a state.
     pub fn speed(&self) -> f64 {
         let largest = |n: usize| {
@@ -130,7 +130,7 @@ fn unscaled(mut block: Block, scales: &[isize]) -> Block {
     block
 }
 
-/// The sum over all blocks of the sizes of X W: to which entries what is off in one of them leads.
+/// The sum over all blocks of the sizes of X W, by which an error in one entry spreads to others.
 fn spread(blocks: &[Block]) -> Vec<Vec<f64>> {
     let sizes = |it: &BigMatrix| -> Vec<Vec<f64>> {
         it.iter().map(|row| row.iter().map(|it| it.to_f64().abs()).collect()).collect()
@@ -146,7 +146,7 @@ fn spread(blocks: &[Block]) -> Vec<Vec<f64>> {
     spread
 }
 
-/// A product of matrices that are not negative, in which nothing comes of zeros.
+/// A product of matrices that are not negative, in which zero times infinity is zero.
 fn spread_by(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
     let width = b.first().map_or(0, Vec::len);
     let entry = |row: &Vec<f64>, j: usize| {
@@ -156,8 +156,8 @@ fn spread_by(a: &[Vec<f64>], b: &[Vec<f64>]) -> Vec<Vec<f64>> {
     a.iter().map(|row| (0..width).map(|j| entry(row, j)).collect()).collect()
 }
 
-/// A block with how far its columns and rows may be off: what is left of M X - X B and of W M - B W
-/// comes from parts in other blocks, divided by the distance of their eigenvalues.
+/// A block with bounds of the errors of its columns and rows: the residuals M X - X B and W M - B W
+/// come from parts in other blocks, and are divided by the distance of their eigenvalues.
 fn measured(mut block: Block, matrix: &BigMatrix, time_scale: f64, spread: &[Vec<f64>]) -> Block {
     let Block { columns, rows, matrix: inner, .. } = &block;
     let nearest = (CLOSE * norm(inner)).max(SLOW / time_scale);
@@ -178,7 +178,7 @@ fn whole(matrix: &BigMatrix) -> Block {
     Block { kind: Kind::Cluster, columns: unit.clone(), rows: unit, matrix: matrix.clone(), off }
 }
 
-/// Eigenvalues that are chained by small distances.
+/// Clusters of eigenvalues, in each of which small distances connect all members.
 fn clusters(roots: Vec<Eigenvalue>, time_scale: f64) -> Vec<Vec<Eigenvalue>> {
     let mut clusters: Vec<Vec<Eigenvalue>> = Vec::new();
     for root in roots {
@@ -225,8 +225,8 @@ fn block(matrix: &BigMatrix, cluster: &[Eigenvalue], time_scale: f64) -> Option<
     Some(of_several.and_then(|it| triangular(it, cluster, time_scale)).unwrap_or(block))
 }
 
-/// What rounding may have made of a zero of a block's matrix W M X at most, from how far W M is off
-/// that matrix times W.
+/// A bound of the rounding that is left of a zero of a block's matrix W M X, from the difference of
+/// W M and that matrix times W.
 fn noise(matrix: &BigMatrix, [columns, rows]: [&BigMatrix; 2], inner: &BigMatrix) -> BigReal {
     let sizes = |it: &BigMatrix| -> BigMatrix {
         it.iter().map(|row| row.iter().map(BigReal::abs).collect()).collect()
@@ -265,7 +265,7 @@ fn scales(exact: &[Row]) -> Vec<isize> {
             let others = || (0..exact.len()).filter(|k| *k != n);
             let row = others().filter_map(|k| Some(powers[n][k]? + scales[k] - scales[n])).max();
             let column = others().filter_map(|k| Some(powers[k][n]? + scales[n] - scales[k])).max();
-            // An entry that nothing moves, as 1, or that moves nothing has one side alone.
+            // An entry on which no other depends, or that as 1 depends on none, has one side alone.
             scales[n] += match (row, column) {
                 (Some(row), Some(column)) => (row - column) / 2,
                 (Some(row), None) => row,
@@ -289,7 +289,7 @@ fn factor(matrix: &BigMatrix, root: &Eigenvalue) -> BigMatrix {
     shifted(&product(matrix, &shifted(matrix, &twice)), &root.value.norm_square())
 }
 
-/// The block in the form of its kind.
+/// The block in the form of the kind that its eigenvalues have.
 fn named(mut block: Block, cluster: &[Eigenvalue]) -> Block {
     let [root] = cluster else { return block };
     if root.is_real() {
@@ -316,7 +316,8 @@ fn rotation([[p, q], [r, s]]: [[&BigReal; 2]; 2], root: &Eigenvalue) -> BigMatri
     }
 }
 
-/// A pair's block in the co-ordinates of its rotation.
+/// The block of a pair of eigenvalues, in co-ordinates in which it only rotates and decays or
+/// grows.
 fn rotating(block: &Block, root: &Eigenvalue) -> Option<Block> {
     let (rate, frequency) = (&root.value.re, &root.value.im);
     let turned = rotation([0, 1].map(|i| [0, 1].map(|j| &block.matrix[i][j])), root);

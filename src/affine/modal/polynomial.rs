@@ -20,7 +20,7 @@ impl Eigenvalue {
         self.value.im.is_zero()
     }
 
-    /// Dimensions that it accounts for, with its conjugate.
+    /// The number of dimensions of the eigenvalue's space, with that of its conjugate.
     pub fn dimensions(&self) -> usize {
         self.multiplicity * if self.is_real() { 1 } else { 2 }
     }
@@ -96,7 +96,7 @@ fn trimmed(mut polynomial: Polynomial) -> Polynomial {
     polynomial
 }
 
-/// The quotient and the remainder.
+/// The quotient and the remainder of a division of polynomials.
 fn divided(polynomial: &Polynomial, divisor: &Polynomial) -> (Polynomial, Polynomial) {
     let mut rest = polynomial.clone();
     let Some(leading) = divisor.last() else { return (Vec::new(), rest) };

@@ -19,27 +19,28 @@ const OF_THE_SPREAD: f64 = 1.0 / 16.0;
 /// Couplings below this part of the fastest rate are small enough.
 const OF_THE_FASTEST: f64 = 1.0 / 1024.0;
 
-/// What is left of a zero of the triangular matrix, relative to its largest entry: 2^-300.
+/// The rounding that is left of a zero of the triangular matrix, relative to its largest entry:
+/// 2^-300.
 const NOTHING: isize = -300;
 
 /// A coupling that is smaller than this part of the largest would be among the roundings of others
 /// in another basis, while an eigenvalue's direction may hang on it.
 const FAINT: f64 = 1e-14;
 
-/// Vectors whose directions are less apart than this loses digits.
+/// The largest condition number of a basis: beyond it too many digits are lost.
 const SKEWED: f64 = 100.0;
 
-/// Co-ordinates of one eigenvalue in the triangular matrix.
+/// The place of one eigenvalue's co-ordinates in the triangular matrix.
 #[derive(Clone, Copy)]
 struct Place {
     at: usize,
     size: usize,
-    /// Whether its matrix is a rate and a rotation.
+    /// Whether the eigenvalue's diagonal block is a rate and a rotation.
     rotates: bool,
 }
 
-/// The block in such co-ordinates; none where its own have so small a norm already, or precision
-/// does not tell the spaces.
+/// The block in quasi-triangular co-ordinates; none if its logarithmic norm is small already, or if
+/// the precision does not separate the invariant spaces.
 pub(super) fn triangular(block: &Block, cluster: &[Eigenvalue], time_scale: f64) -> Option<Block> {
     let wanted = wanted(cluster, time_scale);
     let decays = cluster.iter().all(|it| it.value.re < BigReal::zero());
@@ -139,8 +140,8 @@ fn least(matrix: &BigMatrix) -> f64 {
     sizes.filter(|it| *it > 0.0).fold(f64::INFINITY, f64::min)
 }
 
-/// How much rounding the co-ordinates on a basis may cost, whatever the units of its vectors and of
-/// their entries: the largest sum of what a vector's entries become one by one.
+/// A condition number of a basis, whatever the units of its vectors and of their entries: the
+/// largest sum of what a vector's entries become one by one.
 fn condition(basis: &BigMatrix) -> Option<f64> {
     let back = inverse(basis)?;
     let costs = transposed(basis).into_iter().zip(&back).map(|(column, row)| {
@@ -176,8 +177,8 @@ fn in_basis(block: &Block, basis: &BigMatrix) -> Option<Block> {
     })
 }
 
-/// Makes zeros of what rounding has left below the blocks of a triangular matrix; none where more
-/// than that stands there.
+/// Sets the rounding below the diagonal blocks of a triangular matrix to zero; none if larger
+/// entries stand there.
 fn clear_below(matrix: &mut BigMatrix, places: &[Place]) -> Option<()> {
     let nothing = BigReal::exact(norm(matrix)).scaled(NOTHING);
     for place in places {
@@ -224,7 +225,7 @@ fn units(matrix: &BigMatrix, places: &[Place], small: f64) -> Option<Vec<isize>>
         let power = smaller(whole, small)?;
         powers.push(power);
         if width == 2 {
-            // Two axes of a pair that hardly turns are told apart by what couples them.
+            // The two axes of a pair that hardly rotates have different units, by their couplings.
             let [forth, back] = [size(at, at + 1), size(at + 1, at)];
             let own = if rotates { 0 } else { smaller(forth, small.max((forth * back).sqrt()))? };
             powers.push(power + own);

@@ -23,7 +23,7 @@ impl fmt::Display for SystemError {
 
 impl std::error::Error for SystemError {}
 
-/// A text with its file's name.
+/// The text of a file, with the file's name.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Source<'a> {
     pub file: &'a str,
@@ -49,7 +49,7 @@ impl Source<'_> {
         SystemError::at(&self.place(span), what)
     }
 
-    /// What the TOML reader says, with the line that it means.
+    /// The message of the TOML reader, with the line of the file that it means.
     fn explained(&self, message: &str, span: &Range<usize>) -> String {
         let message = match message.strip_prefix("missing field `") {
             Some(key) => missing(key.trim_end_matches('`')),
@@ -64,7 +64,7 @@ impl Source<'_> {
     }
 }
 
-/// What to say of a key that is missing.
+/// The message for a key that is missing.
 fn missing(key: &str) -> String {
     let accepted = match key {
         "schema" => "1",

@@ -12,7 +12,7 @@ const LARGEST_EXPONENT: usize = 64;
 
 const DECIMAL: &str = "a decimal is not accepted here: write it into [parameters]";
 
-/// What a name in an expression means.
+/// The names that an expression may use, with their values.
 pub(super) trait Scope {
     /// The value of a name; an error says why it has none.
     fn value(&mut self, name: &str) -> Result<Form, String>;

@@ -1,4 +1,5 @@
-//! The tables of a `*.system.toml`, as they are written; docs/SYSTEM_FORMAT.md has the format.
+//! The tables of a `*.system.toml` before their meaning is checked; docs/SYSTEM_FORMAT.md has the
+//! format.
 
 use super::error::{Source, SystemError};
 use dashu_ratio::RBig;
@@ -103,7 +104,7 @@ pub(super) struct WatchTable {
     pub direction: Option<Spanned<String>>,
 }
 
-/// The tables of another file that replace a system's.
+/// The tables of another file that replace those of a system.
 #[derive(Deserialize)]
 struct Replacing {
     #[serde(default)]

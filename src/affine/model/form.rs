@@ -20,7 +20,7 @@ impl Form {
         Self(vec![RBig::ZERO; states + 3])
     }
 
-    /// A number.
+    /// The constant form of a number.
     pub fn number(states: usize, value: RBig) -> Self {
         Self::unit(states, states + 2).times_number(&value)
     }
@@ -32,13 +32,13 @@ impl Form {
         form
     }
 
-    /// The number that it is, if it has neither states nor cos theta or sin theta.
+    /// The number that the form is, if it has neither states nor cos theta or sin theta.
     pub fn constant(&self) -> Option<&RBig> {
         let (last, others) = self.0.split_last()?;
         others.iter().all(RBig::is_zero).then_some(last)
     }
 
-    /// Whether a state is in it.
+    /// Whether the form depends on a state.
     pub fn has_states(&self) -> bool {
         let states = self.0.len() - 3;
         self.0[..states].iter().any(|it| !it.is_zero())
@@ -59,7 +59,7 @@ impl Form {
         Self(self.0.iter().map(|it| it * factor).collect())
     }
 
-    /// `self * other`, one of which is a number.
+    /// The product `self * other`, one factor of which is a number.
     pub fn times(&self, other: &Self) -> Result<Self, String> {
         match (self.constant(), other.constant()) {
             (_, Some(factor)) => Ok(self.times_number(factor)),
@@ -70,7 +70,7 @@ impl Form {
         }
     }
 
-    /// `self / divisor`, which is a number.
+    /// The quotient `self / divisor` by a number.
     pub fn over(&self, divisor: &Self) -> Result<Self, String> {
         match divisor.constant() {
             Some(divisor) if divisor.is_zero() => Err("a division by zero".to_owned()),
@@ -99,12 +99,12 @@ impl Form {
         Ok(Self::number(self.0.len() - 3, power))
     }
 
-    /// Refuses coefficients that are too long to be meant.
+    /// Refuses coefficients of too many bits.
     pub fn check_size(&self) -> Result<(), String> {
         self.0.iter().try_for_each(check_size)
     }
 
-    /// Refuses coefficients that f64 does not hold.
+    /// Refuses coefficients beyond the range of f64.
     pub fn check_range(&self) -> Result<(), String> {
         let lengths = |it: &RBig| (it.numerator().bit_len(), it.denominator().bit_len());
         let far =

@@ -5,8 +5,11 @@
 
 use super::error::SystemError;
 use super::file::SystemFile;
+use crate::unknown_name::UnknownName;
 use dashu_ratio::RBig;
 use std::collections::BTreeMap;
+use std::fmt;
+use std::str::FromStr;
 
 /// A row of exact coefficients, one for each entry of z.
 pub type Row = Vec<RBig>;
@@ -45,13 +48,13 @@ pub const TROUBLE: [&str; 19] = [
 pub struct System {
     /// The system's name.
     pub name: String,
-    /// What it is for, in one sentence, or nothing.
+    /// The purpose of the system, in one sentence, or nothing.
     pub why: String,
-    /// The kinds of trouble that it makes.
+    /// The kinds of trouble that the system makes, of those in [`TROUBLE`].
     pub trouble: Vec<String>,
     /// The publication or program that the system is from, or nothing.
     pub source: String,
-    /// The values of its parameters.
+    /// The values of the system's parameters.
     pub parameters: BTreeMap<String, f64>,
     /// The names of the states.
     pub states: Vec<String>,
@@ -76,14 +79,14 @@ pub struct Forcing {
     pub phi: RBig,
 }
 
-/// One of the system's modes.
+/// A mode of a system: its motion, with the guards that end it and those that are watched.
 #[derive(Clone, Debug)]
 pub struct Mode {
     /// The mode's name.
     pub name: String,
-    /// The rows of M.
+    /// The rows of the mode's matrix M.
     pub matrix: Vec<Row>,
-    /// The guards that end it, in the file's order.
+    /// The guards that end the mode, in the file's order.
     pub until: Vec<Until>,
     /// The guards whose crossings are counted, in the file's order.
     pub watch: Vec<Watch>,
@@ -96,7 +99,7 @@ pub struct Until {
     pub name: String,
     /// The guard, negative inside the mode.
     pub guard: Row,
-    /// The rows of R.
+    /// The rows of the reset's matrix R.
     pub reset: Vec<Row>,
     /// The modes that may follow: the first whose condition holds does.
     pub next: Vec<Successor>,
@@ -119,7 +122,7 @@ pub struct Watch {
     pub name: String,
     /// The guard.
     pub guard: Row,
-    /// The crossings that are events.
+    /// The direction in which a crossing is an event.
     pub direction: Direction,
 }
 
@@ -130,8 +133,37 @@ pub enum Direction {
     Rising,
     /// The guard crosses from positive to negative.
     Falling,
-    /// Both directions count.
+    /// The guard crosses in either direction.
     Both,
+}
+
+impl Direction {
+    /// All directions.
+    pub const ALL: [Self; 3] = [Self::Rising, Self::Falling, Self::Both];
+
+    /// The name used in the files of systems.
+    #[must_use]
+    pub const fn as_str(self) -> &'static str {
+        match self {
+            Self::Rising => "rising",
+            Self::Falling => "falling",
+            Self::Both => "both",
+        }
+    }
+}
+
+impl fmt::Display for Direction {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(self.as_str())
+    }
+}
+
+impl FromStr for Direction {
+    type Err = UnknownName;
+
+    fn from_str(name: &str) -> Result<Self, Self::Err> {
+        UnknownName::find("direction", &Self::ALL, Self::as_str, name)
+    }
 }
 
 /// The point at which a run begins.

@@ -16,8 +16,9 @@ use crate::numeric::number::Number;
 const LEFT: f64 = 1.0 / (1u64 << 30) as f64;
 
 impl<T: Number> Run<'_, T> {
-    /// The times after the impact just passed between which infinitely many others end, if
-    /// that is proved and near. `before` is the state just before it, in the mode's co-ordinates.
+    /// Bounds of the time from the impact just passed to the limit at which impacts accumulate, if
+    /// that is proved and near. `before` is the state just before the impact, in the mode's
+    /// co-ordinates.
     pub(super) fn accumulation(
         &mut self,
         mode: usize,
@@ -56,7 +57,7 @@ impl<T: Number> Run<'_, T> {
                 return None;
             }
         }
-        let orders = self.structure.arrival(self.node, firing).orders.clone();
+        let orders = self.graph.arrival(self.node, firing).orders.clone();
         let conditions = &self.solver.modes[mode].conditions[firing.until];
         for (condition, order) in conditions.iter().zip(orders.iter().copied()).take(successor + 1)
         {
@@ -76,9 +77,9 @@ impl<T: Number> Run<'_, T> {
         proved.then_some((earliest, latest))
     }
 
-    /// The bounds with what errors, followed or not, may do to the rate of departure.
+    /// Widens the bounds by the errors of the rate of departure, in a run that follows its errors.
     fn widened(&self, earliest: T, latest: T, gap: &ModalRow<T>, rate: f64) -> (T, T) {
-        let flow = &self.solver.modes[self.structure.node(self.node).mode].flow;
+        let flow = &self.solver.modes[self.graph.node(self.node).mode].flow;
         let inherited = self.enclosure.as_ref().map_or(0.0, |it| it.of_row(flow, gap, 1));
         let (_, size) = gap.order(1, &self.segment.entry);
         let share = 4.0 * (inherited + 32.0 * unit::<T>() * size) / rate;

@@ -1,11 +1,11 @@
-//! How a run begins: at a start, with the errors that the start has.
+//! The beginning of a run: its start, with the errors of the start where they are followed.
 
 use super::Run;
 use super::enclosure::Enclosure;
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::real::BigReal;
 use crate::affine::arithmetic::vector::{Vector, rounded, unit};
-use crate::affine::first_crossing::taylor::Misses;
+use crate::affine::first_crossing::taylor::FailedAttempts;
 use crate::affine::guards::point::{Ends, GuardedSegment};
 use crate::affine::guards::track::SearchWork;
 use crate::affine::model::system::{LARGEST_DIMENSION, StartPoint};
@@ -17,7 +17,7 @@ use std::collections::VecDeque;
 impl<T: Number> Solver<T> {
     /// A run from a start up to a time.
     ///
-    /// It is none for a start whose structural zeros cannot be told.
+    /// None for a start whose structural zeros cannot be decided.
     pub fn run(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
         let mut run = self.at_start(start, until)?;
         run.begin(None);
@@ -27,7 +27,7 @@ impl<T: Number> Solver<T> {
     /// A run that follows its own errors: each event has bounds of them, and what they leave open
     /// ends the run as undecided.
     ///
-    /// It is none for a start whose structural zeros cannot be told.
+    /// None for a start whose structural zeros cannot be decided.
     pub fn run_enclosed(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
         let mut run = self.at_start(start, until)?;
         // Three products and two sums an entry; sine and cosine are good to two units.
@@ -51,27 +51,27 @@ impl<T: Number> Solver<T> {
 
     /// A run whose first segment is not entered yet.
     fn at_start(&self, start: &StartPoint, until: T) -> Option<Run<'_, T>> {
-        let mut structure = self.known.lend();
-        let begun = structure.begun(&self.system, start, || self.worked_out(start))?;
+        let mut graph = self.pool.lend();
+        let begin = graph.run_start(&self.system, start, || self.time_and_state(start))?;
         let mode = start.mode;
         let first =
-            Event { what: What::Start, time: begun.time, state: Vec::new(), mode, errors: None };
+            Event { what: What::Start, time: begin.time, state: Vec::new(), mode, errors: None };
         Some(Run {
             solver: self,
-            structure,
+            graph,
             work: SearchWork::default(),
             horizon: until,
-            node: begun.node,
-            entered: begun.time,
-            state: begun.state,
+            node: begin.node,
+            entered: begin.time,
+            state: begin.state,
             tracks: Vec::new(),
             ends: Ends::default(),
             segment: GuardedSegment::before(&self.modes[mode].flow, &self.modes[mode].guards),
-            misses: vec![Misses::default(); self.modes.len()],
+            failed_attempts: vec![FailedAttempts::default(); self.modes.len()],
             restitution: None,
             at_entry: 0,
             tie: None,
-            at_once: 0,
+            events_in_instant: 0,
             queue: VecDeque::new(),
             decided: 0,
             ended: false,
@@ -81,8 +81,8 @@ impl<T: Number> Solver<T> {
         })
     }
 
-    /// Time and state of a start.
-    fn worked_out(&self, start: &StartPoint) -> (Time<T>, Vector<T>) {
+    /// The time and the state of a start, rounded to the arithmetic.
+    fn time_and_state(&self, start: &StartPoint) -> (Time<T>, Vector<T>) {
         let time = Time::of(&start.time);
         let (sin, cos) = self.sin_cos(&time);
         let mut states = [T::zero(); LARGEST_DIMENSION];

@@ -20,12 +20,13 @@ impl<T: Number> Run<'_, T> {
         events.into_iter().flatten().collect()
     }
 
-    /// The guards of these bits are crossed.
+    /// Passes the crossing of the guards with these bits: watched ones become events, and an
+    /// `until` ends the mode.
     pub(super) fn crossed(&mut self, guards: u64) {
-        let mode = self.structure.node(self.node).mode;
+        let mode = self.graph.node(self.node).mode;
         let until = self.solver.system.modes[mode].until.len();
-        let Some((time, state)) = self.here() else { return self.end(Ending::Undecided) };
-        let tied = self.structure.tied(self.node, guards & guards.wrapping_neg(), false);
+        let Some((time, state)) = self.present() else { return self.end(Ending::Undecided) };
+        let tied = self.graph.tied(self.node, guards & guards.wrapping_neg(), false);
         if guards & !tied != 0 {
             self.work.undecidable += 1;
             self.tie = Some((mode, guards));
@@ -50,7 +51,7 @@ impl<T: Number> Run<'_, T> {
             (self.entered, self.state, self.enclosure) = (time, state, errors);
             return self.end(Ending::LeavesDomain);
         }
-        let guards = self.structure.tied(self.node, guards, false);
+        let guards = self.graph.tied(self.node, guards, false);
         let until = ending.trailing_zeros() as usize;
         self.enclosure = errors;
         self.fire(Firing { until, guards, at_entry: false }, time, state);
@@ -76,7 +77,7 @@ impl<T: Number> Run<'_, T> {
             y: point.modal.y,
             elapsed: point.time,
             state: *state,
-            // The guard is off zero by what was computed, and by what rounding did to that.
+            // The guard differs from zero by its computed value and by the rounding error of that.
             slack: (point.slack[first] - inherited).max(0.0)
                 + point.orders[first][0].to_f64().abs()
                 + LAST_WORD,

@@ -1,4 +1,4 @@
-//! How far a run may be from the truth: the errors that rounding has made, carried along.
+//! Bounds of a run's errors: rounding errors are carried along the run.
 //!
 //! Errors of the state and of the time are kept as columns, each with a factor between -1 and 1
 //! that is not known. The flow and the derivative of an event (its saltation) act on each column;
@@ -6,7 +6,7 @@
 //! are too many, the smallest are replaced by a box. So errors that cancel do so here.
 
 use crate::affine::arithmetic::vector::{UNDERFLOW, Vector, dot, sum_rounding};
-use crate::affine::closed_form::bound::{Later, ORDERS};
+use crate::affine::closed_form::bound::{BlockGrowth, ORDERS};
 use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::closed_form::modal_state::ModalState;
 use crate::affine::guards::inherited_error::{InheritedError, OUTWARD};
@@ -14,29 +14,29 @@ use crate::affine::guards::row::ModalRow;
 use crate::affine::model::system::LARGEST_DIMENSION;
 use crate::numeric::number::Number;
 
-/// Columns beyond this are made a box.
+/// The largest number of columns; beyond it the smallest are replaced by a box.
 const MOST_COLUMNS: usize = 160;
 
-/// How many of the largest stay columns then.
+/// The number of the largest columns that are kept then.
 const KEPT: usize = 80;
 
-/// What is lost where the last word of a number underflows.
+/// A bound of the error where the last word of a number underflows.
 pub(super) const LAST_WORD: f64 = 1e-280;
 
-/// An error of z and of the time.
+/// An error of z and of the time, up to an unknown factor between -1 and 1.
 #[derive(Clone, Copy, Debug)]
 struct ErrorColumn {
     state: [f64; LARGEST_DIMENSION],
     time: f64,
 }
 
-/// The errors of a state and its time.
+/// The errors of a state and its time, as a sum of columns.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Enclosure {
     columns: Vec<ErrorColumn>,
 }
 
-/// What the errors at an event follow from.
+/// A crossing, with everything from which the errors at it follow.
 pub(super) struct EnclosedCrossing<'a, T> {
     pub flow: &'a ModeFlow<T>,
     pub matrix: &'a [Vector<T>],
@@ -46,10 +46,11 @@ pub(super) struct EnclosedCrossing<'a, T> {
     pub elapsed: T,
     /// The state at the crossing.
     pub state: Vector<T>,
-    /// What rounding may have done to the guard.
+    /// A bound of the rounding error of the guard.
     pub slack: f64,
     pub unit: f64,
-    /// How many of the guard's orders at entry were taken for the zeros that they are by the model.
+    /// The number of the guard's derivatives at entry that were taken for zero, because they are
+    /// structural zeros.
     pub zeros: usize,
 }
 
@@ -66,7 +67,7 @@ impl<T: Number> EnclosedCrossing<'_, T> {
 }
 
 impl Enclosure {
-    /// Errors of each entry of a state by themselves.
+    /// Independent errors of the entries of a state.
     pub fn of(errors: &[f64]) -> Self {
         let mut enclosure = Self::default();
         enclosure.add_box(errors);
@@ -89,14 +90,14 @@ impl Enclosure {
         self.sum(|column| dot(&row, &flow.modal_rounded(&column.state), flow.dimension))
     }
 
-    /// What the errors do to a row at any time after the entry.
+    /// Bounds of the error of a row at any time after the entry.
     pub fn along<T: Number>(&self, flow: &ModeFlow<T>, row: &ModalRow<T>) -> InheritedError {
         let mut sums = InheritedError::default();
         for column in &self.columns {
             let own = flow.modal_rounded(&column.state);
             let (norms, mut orders) = (flow.norms(&own), [0.0; ORDERS]);
             for part in &row.parts {
-                if part.later != Later::Polynomial {
+                if part.growth != BlockGrowth::Polynomial {
                     sums.norms[part.block] += norms[part.block] * OUTWARD;
                     continue;
                 }
@@ -150,7 +151,7 @@ impl Enclosure {
         self
     }
 
-    /// The errors at a crossing, before its reset.
+    /// The errors at a crossing, before the reset of the event.
     pub fn at_crossing<T: Number>(&self, crossing: &EnclosedCrossing<'_, T>) -> Self {
         let EnclosedCrossing { flow, guard, y, .. } = crossing;
         let order = |k: usize| dot(&guard.orders[k], y, flow.dimension).to_f64();
@@ -196,14 +197,14 @@ impl Enclosure {
         errors
     }
 
-    /// Adds what rounding does where a segment is entered.
+    /// Adds the rounding errors of a segment's entry.
     pub fn add_entry<T: Number>(&mut self, flow: &ModeFlow<T>, state: &Vector<T>, unit: f64) {
         let roundings = flow.entry_roundings(state, unit).into_iter();
         let there = roundings.filter(|state| state.iter().any(|it| *it != 0.0));
         self.columns.extend(there.map(|state| ErrorColumn { state, time: 0.0 }));
     }
 
-    /// Adds an error to each entry by itself.
+    /// Adds independent errors of the entries.
     pub fn add_box(&mut self, errors: &[f64]) {
         for (n, error) in errors.iter().enumerate().filter(|(_, error)| **error > 0.0) {
             let mut state = [0.0; LARGEST_DIMENSION];
@@ -227,12 +228,12 @@ impl Enclosure {
     }
 }
 
-/// M z in f64.
+/// The rates M z of a state, in f64.
 fn rates<T: Number>(flow: &ModeFlow<T>, matrix: &[Vector<T>], state: &Vector<T>) -> Vec<f64> {
     matrix.iter().map(|row| dot(row, state, flow.dimension).to_f64()).collect()
 }
 
-/// What rounding does to states that move at M z for a time: terms of a rate may cancel.
+/// Bounds of the rounding errors of states that move at M z for a time: terms of a rate may cancel.
 fn rate_roundings<T: Number>(matrix: &[Vector<T>], state: &Vector<T>, time: f64) -> Vec<f64> {
     let margin = sum_rounding::<T>(matrix.len()) + f64::EPSILON * f64::EPSILON;
     let moved = |row: &Vector<T>| margin * product_size(row, state) * time;
@@ -244,7 +245,7 @@ fn product_size<T: Number>(row: &Vector<T>, state: &Vector<T>) -> f64 {
     row.iter().zip(state).map(|(a, b)| (a.to_f64() * b.to_f64()).abs()).sum()
 }
 
-/// What the flow's second derivative does over a time.
+/// Bounds of the change of a state by the flow's second derivative over a time.
 fn bends<T: Number>(matrix: &[Vector<T>], rates: &[f64], time: f64) -> Vec<f64> {
     let size = |row: &Vector<T>| {
         let terms = row.iter().zip(rates).map(|(a, b)| (a.to_f64() * b).abs());
@@ -254,7 +255,7 @@ fn bends<T: Number>(matrix: &[Vector<T>], rates: &[f64], time: f64) -> Vec<f64> 
 }
 
 impl ErrorColumn {
-    /// The error where the crossing is later by `delay`.
+    /// Moves the error to a crossing that is later by `delay`.
     fn delayed(&mut self, delay: f64, rates: &[f64]) {
         for (entry, rate) in self.state.iter_mut().zip(rates) {
             *entry += rate * delay;
@@ -263,7 +264,7 @@ impl ErrorColumn {
     }
 }
 
-/// What rounding may have done to each entry of a state that is evaluated a time after its
+/// Bounds of the rounding errors of a state's entries, where it is evaluated a time after its
 /// segment's entry.
 pub(super) fn roundings<T: Number>(
     flow: &ModeFlow<T>,
@@ -275,7 +276,7 @@ pub(super) fn roundings<T: Number>(
     let (now, off) = (flow.sizes(&later), flow.state_off(&later));
     let before = flow.sizes(&entry.sizes);
     std::array::from_fn(|n| {
-        // What is made of zeros stays zero.
+        // Sums of zeros stay zero.
         let lost = if before[n] > 0.0 || now[n] > 0.0 { LAST_WORD } else { 0.0 };
         margin * now[n] + off[n] + lost + UNDERFLOW * before[n]
     })

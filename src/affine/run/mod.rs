@@ -13,9 +13,9 @@ mod enclosure;
 mod transition;
 
 use crate::affine::arithmetic::clock::Time;
-use crate::affine::arithmetic::vector::{Vector, is_told, twice_summed, unit};
-use crate::affine::first_crossing::search::Found;
-use crate::affine::first_crossing::taylor::Misses;
+use crate::affine::arithmetic::vector::{Vector, all_finite, twice_summed_rounding, unit};
+use crate::affine::first_crossing::search::SearchOutcome;
+use crate::affine::first_crossing::taylor::FailedAttempts;
 use crate::affine::guards::point::{Ends, GuardedSegment, Passed};
 use crate::affine::guards::track::{SearchWork, Track};
 use crate::affine::solver::event::{Ending, Errors, Event, What};
@@ -29,35 +29,35 @@ use std::collections::VecDeque;
 /// A run of a solver, as an iterator over its events; the last one is an [`Ending`].
 pub struct Run<'a, T> {
     solver: &'a Solver<T>,
-    structure: Loan<'a, T>,
+    graph: Loan<'a, T>,
     work: SearchWork,
     horizon: T,
     node: usize,
     /// The time at which the segment was entered, and the state there.
     entered: Time<T>,
     state: Vector<T>,
-    /// Each guard, with the place from which its search goes on.
+    /// The state of each guard in the search.
     tracks: Vec<Track>,
     ends: Ends<T>,
     segment: GuardedSegment<'a, T>,
-    /// How the search by Taylor polynomials fares in each mode.
-    misses: Vec<Misses>,
+    /// For each mode, the failed attempts to prove a crossing by Taylor polynomials.
+    failed_attempts: Vec<FailedAttempts>,
     /// The coefficient of restitution of an impact, from its fastest occurrence.
     restitution: Option<Restitution<T>>,
-    /// Guards that fire at the instant of entry.
+    /// The guards that fire at the instant of entry, as bits.
     at_entry: u64,
     /// The mode and the guards of the last crossing whose order rounding left open.
     tie: Option<(usize, u64)>,
-    at_once: u32,
+    events_in_instant: u32,
     queue: VecDeque<Event<T>>,
-    /// How many of them came before anything that rounding left open.
+    /// The number of queued events that came before anything that rounding left open.
     decided: usize,
     ended: bool,
     /// The errors at the entry of the segment, where they are followed.
     enclosure: Option<Enclosure>,
     /// The start, with the errors that it has before the rounding of its modal co-ordinates.
     start: Event<T>,
-    /// The event that was given out last, or the start.
+    /// The last event that the iterator returned, or the start.
     last: Event<T>,
 }
 
@@ -70,21 +70,20 @@ struct Restitution<T> {
     pub quotient: T,
 }
 
-impl<T: Number> Run<'_, T> {
-    /// The start, as an event at which nothing happens but that the run begins.
+impl<'a, T: Number> Run<'a, T> {
+    /// The start, as an event of the kind [`What::Start`].
     #[must_use]
     pub fn start(&self) -> Event<T> {
         self.start.clone()
     }
 
-    /// What the run has cost so far.
+    /// The cost of the run's searches so far.
     #[must_use]
     pub fn work(&self) -> SearchWork {
         self.work
     }
 
-    /// The time that the search has come to: no event lies between the last one and it but those
-    /// given out.
+    /// The time up to which the run has searched: all events before it have been returned.
     #[must_use]
     #[inline]
     pub fn searched(&self) -> Time<T> {
@@ -95,10 +94,10 @@ impl<T: Number> Run<'_, T> {
     #[must_use]
     pub fn doubtful(&self) -> Option<What<T>> {
         let guard = self.work.doubtful.filter(|_| self.enclosure.is_some())?;
-        Some(self.what(self.structure.node(self.node).mode, guard))
+        Some(self.what(self.graph.node(self.node).mode, guard))
     }
 
-    /// How the run has ended, when it has.
+    /// The ending of a run that has ended.
     #[must_use]
     pub fn ending(&self) -> Option<&Ending<T>> {
         match &self.queue.back().unwrap_or(&self.last).what {
@@ -114,14 +113,14 @@ impl<T: Number> Run<'_, T> {
         /// Room for the bounds of derivatives.
         const LARGEST: f64 = 1e280;
         let within = |it: &T| it.to_f64().abs() <= LARGEST;
-        let is_large = || self.here().is_none_or(|(_, state)| !state.iter().all(within));
+        let is_large = || self.present().is_none_or(|(_, state)| !state.iter().all(within));
         self.ending() == Some(&Ending::Undecided) && is_large()
     }
 
     /// The event of the present mode whose guard was positive at its entry, in a run that ended so.
     #[must_use]
     pub fn beyond(&self) -> Option<What<T>> {
-        let node = self.structure.node(self.node);
+        let node = self.graph.node(self.node);
         let is_beyond = |n: &usize| {
             self.at_entry >> n & 1 == 1 && node.multiplicities.get(*n) == Some(&Some(0))
         };
@@ -130,7 +129,7 @@ impl<T: Number> Run<'_, T> {
         guard.map(|guard| self.what(node.mode, guard))
     }
 
-    /// The event of a mode that a guard makes.
+    /// The event that a guard of a mode makes.
     fn what(&self, mode: usize, guard: usize) -> What<T> {
         match guard.checked_sub(self.solver.system.modes[mode].until.len()) {
             Some(watch) => What::Watch(mode, watch),
@@ -142,27 +141,35 @@ impl<T: Number> Run<'_, T> {
         self.tracks[guard].live
     }
 
-    /// Begins the segment of the present node: looks at each guard's first derivative that is not a
-    /// structural zero.
+    /// Enters the mode of the present node with the present state.
     fn enter(&mut self) {
-        let node = self.structure.node(self.node);
-        let mode = node.mode;
         let solver = self.solver;
+        let mode = self.graph.node(self.node).mode;
         let solver_mode = &solver.modes[mode];
         let flow = &solver_mode.flow;
-        let until = solver.system.modes[mode].until.len();
-        flow.take(&mut self.segment.entry, &self.state);
-        // An entry of the state that is none makes all of them none.
-        if !is_told(&self.segment.entry.y[..flow.dimension]) {
+        flow.set_modal(&mut self.segment.entry, &self.state);
+        // One entry of the state that is not finite makes all co-ordinates meaningless.
+        if !all_finite(&self.segment.entry.y[..flow.dimension]) {
             return self.end(Ending::Undecided);
         }
-        let margin = twice_summed::<T>(flow.dimension);
+        if let Some(ending) = self.track_guards(mode, solver_mode) {
+            self.end(ending);
+        }
+        self.begin_segment(solver_mode);
+    }
+
+    /// Tracks each guard of a mode, by its first derivative at entry that is not a structural zero,
+    /// and finds the guards that fire at once. A guard that is positive at entry may end the run.
+    #[inline]
+    fn track_guards(&mut self, mode: usize, solver_mode: &SolverMode<T>) -> Option<Ending<T>> {
+        let SolverMode { flow, guards, .. } = solver_mode;
+        let node = self.graph.node(self.node);
+        let until = self.solver.system.modes[mode].until.len();
+        let margin = twice_summed_rounding::<T>(flow.dimension);
         self.tracks.clear();
         self.at_entry = 0;
         let mut ending = None;
-        for (n, (row, order)) in
-            solver_mode.guards.iter().zip(node.multiplicities.iter()).enumerate()
-        {
+        for (n, (row, order)) in guards.iter().zip(node.multiplicities.iter()).enumerate() {
             let Some(order) = *order else {
                 self.tracks.push(Track { outward: 1.0, zeros: 0, live: false });
                 continue;
@@ -182,25 +189,29 @@ impl<T: Number> Run<'_, T> {
             if n < until && value > 0.0 {
                 if order == 0 && !doubtful {
                     ending = ending.or(Some(Ending::BeyondGuard));
-                } else if solver.backward {
+                } else if self.solver.backward {
                     ending = ending.or(Some(Ending::LeavesDomain));
                 }
                 self.at_entry |= 1 << n;
             }
         }
-        if let Some(ending) = ending {
-            self.end(ending);
-        }
+        ending
+    }
+
+    /// Begins a segment of a mode with the tracked guards, and with the errors that are followed.
+    #[inline]
+    fn begin_segment(&mut self, solver_mode: &'a SolverMode<T>) {
+        let SolverMode { flow, guards, .. } = solver_mode;
         if let Some(errors) = &mut self.enclosure {
-            // The rounding of the entry is followed from here on.
+            // From here on the rounding of the entry is among the errors that are followed.
             errors.add_entry(flow, &self.state, unit::<T>());
             self.segment.entry = flow.exact(&self.segment.entry.y);
         }
         let inherited = self
             .enclosure
             .as_ref()
-            .map(|errors| solver_mode.guards.iter().map(|row| errors.along(flow, row)).collect());
-        self.segment.enter(flow, &solver_mode.guards, &self.tracks, inherited);
+            .map(|errors| guards.iter().map(|row| errors.along(flow, row)).collect());
+        self.segment.enter(flow, guards, &self.tracks, inherited);
         self.segment.begin(&mut self.ends.left);
         self.ends.passed = Passed::none();
     }
@@ -225,7 +236,7 @@ impl<T: Number> Run<'_, T> {
     #[inline]
     fn event(&self, what: What<T>, time: Time<T>, state: &Vector<T>) -> Event<T> {
         let states = self.solver.system.states.len();
-        let mode = self.structure.node(self.node).mode;
+        let mode = self.graph.node(self.node).mode;
         Event { what, time, state: state[..states].to_vec(), mode, errors: None }
     }
 
@@ -235,38 +246,38 @@ impl<T: Number> Run<'_, T> {
         Errors { time: enclosure.time() + rounding, state: enclosure.state()[..states].to_vec() }
     }
 
-    /// Goes on to the next event.
+    /// Searches for the next event, and queues the events of its instant.
     fn advance(&mut self) {
         if self.at_entry != 0 {
-            let guards = self.structure.tied(self.node, self.at_entry, true);
+            let guards = self.graph.tied(self.node, self.at_entry, true);
             let until = self.at_entry.trailing_zeros() as usize;
             self.fire(Firing { until, guards, at_entry: true }, self.entered, self.state);
             return;
         }
-        let mode = self.structure.node(self.node).mode;
-        let Time { high: limit, low: rest } = self.ahead();
+        let mode = self.graph.node(self.node).mode;
+        let Time { high: limit, low: rest } = self.time_left();
         let (segment, ends) = (&self.segment, &mut self.ends);
-        let misses = &mut self.misses[mode];
-        match segment.first(&mut self.tracks, ends, limit, misses, &mut self.work) {
-            Found::Lost => self.end(Ending::Undecided),
-            Found::Nothing => {
+        let failed_attempts = &mut self.failed_attempts[mode];
+        match segment.first(&mut self.tracks, ends, limit, failed_attempts, &mut self.work) {
+            SearchOutcome::GivenUp => self.end(Ending::Undecided),
+            SearchOutcome::NoCrossing => {
                 let is_ahead = limit > T::zero();
                 let [limit, rest] = if is_ahead { [limit, rest] } else { [T::zero(); 2] };
                 segment.evaluate(&mut ends.left, limit, &mut self.work);
                 segment.complete(&mut ends.left);
-                ends.left.later = rest;
+                ends.left.to_crossing = rest;
                 self.at_horizon(mode, limit);
             }
-            Found::Crossing(guards) => {
+            SearchOutcome::Crossing(guards) => {
                 segment.complete(&mut ends.left);
                 self.crossed(guards);
             }
         }
     }
 
-    /// The run ends a time after the entry.
+    /// Ends the run at its horizon, a time after the entry.
     fn at_horizon(&mut self, mode: usize, limit: T) {
-        let Some((time, state)) = self.here() else { return self.end(Ending::Undecided) };
+        let Some((time, state)) = self.present() else { return self.end(Ending::Undecided) };
         (self.entered, self.state) = (time, state);
         if limit > T::zero() {
             // The time since an entry long before is rounded; the horizon is not.
@@ -284,29 +295,29 @@ impl<T: Number> Run<'_, T> {
         self.end(Ending::Horizon);
     }
 
-    /// Time that is left until the horizon: rounded, and what rounding left.
+    /// The time until the horizon, in two words.
     #[inline]
-    fn ahead(&self) -> Time<T> {
+    fn time_left(&self) -> Time<T> {
         let Time { high, low } = Time { high: self.horizon, low: T::zero() }.since(&self.entered);
         Time { high: self.solver.directed(high), low: self.solver.directed(low) }
     }
 
-    /// Time and state where the search has come to; none where the state has overflowed.
+    /// Time and state at which the search has arrived; none where the state has overflowed.
     #[inline]
-    fn here(&self) -> Option<(Time<T>, Vector<T>)> {
+    fn present(&self) -> Option<(Time<T>, Vector<T>)> {
         let point = &self.ends.left;
         let mut time = self.searched();
-        let mode = self.structure.node(self.node).mode;
+        let mode = self.graph.node(self.node).mode;
         let flow = &self.solver.modes[mode].flow;
-        let mut state = if point.later == T::zero() {
+        let mut state = if point.to_crossing == T::zero() {
             flow.state(&point.modal.y)
         } else {
-            time = time.after(self.solver.directed(point.later));
-            flow.state_shortly_after(&point.modal, point.later)
+            time = time.after(self.solver.directed(point.to_crossing));
+            flow.state_shortly_after(&point.modal, point.to_crossing)
         };
         let (sin, cos) = self.solver.sin_cos(&time);
         self.solver.append(&mut state, sin, cos);
-        is_told(&state[..self.solver.system.states.len()]).then_some((time, state))
+        all_finite(&state[..self.solver.system.states.len()]).then_some((time, state))
     }
 }
 
@@ -324,8 +335,8 @@ impl<T: Number> Iterator for Run<'_, T> {
             }
             self.decided = 0;
             self.advance();
-            // What errors may have decided is no event of an enclosed run, nor is one whose errors
-            // have no bounds.
+            // An enclosed run has no event that errors may have decided, and none without bounds of
+            // its errors.
             let is_bounded = |it: &Event<T>| it.errors.as_ref().is_none_or(Errors::are_finite);
             let unbounded = self.queue.iter().position(|it| !is_bounded(it));
             let is_open = self.work.undecidable > 0 || unbounded.is_some();

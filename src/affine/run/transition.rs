@@ -1,31 +1,33 @@
-//! From an `until` to the next segment: the reset, the successor, and what ends a run there.
+//! The transition from an `until` to the next segment: the reset, the successor, and the endings of
+//! a run there.
 
 use super::Run;
 use crate::affine::arithmetic::clock::Time;
-use crate::affine::arithmetic::vector::{Vector, twice_summed, unit};
+use crate::affine::arithmetic::vector::{Vector, twice_summed_rounding, unit};
 use crate::affine::solver::event::{Ending, What};
 use crate::affine::zeros::graph::Firing;
 use crate::numeric::number::Number;
 
-/// How many events of `until` one instant may have.
+/// The largest number of `until` events in one instant.
 const MOST_AT_ONCE: u32 = 64;
 
 impl<T: Number> Run<'_, T> {
-    /// An `until` ends the mode: reset, successor, and the entry of the next segment.
+    /// Ends the mode by an `until`: resets the state, chooses the successor and enters the next
+    /// segment.
     pub(super) fn fire(&mut self, firing: Firing, time: Time<T>, before: Vector<T>) {
         let solver = self.solver;
-        let mode = self.structure.node(self.node).mode;
-        self.at_once = if firing.at_entry { self.at_once + 1 } else { 1 };
+        let mode = self.graph.node(self.node).mode;
+        self.events_in_instant = if firing.at_entry { self.events_in_instant + 1 } else { 1 };
         let mut state = before;
         for (n, factors) in &solver.modes[mode].changes[firing.until] {
             let terms = factors.iter().map(|(k, factor)| *factor * before[*k]);
             state[*n] = terms.fold(T::zero(), |sum, term| sum + term);
         }
         let successor = self.successor(mode, firing, &state);
-        let arrival = self.structure.arrival(self.node, firing);
+        let arrival = self.graph.arrival(self.node, firing);
         let impact = arrival.impact;
         let from = self.node;
-        let next = self.structure.enter(from, firing, successor);
+        let next = self.graph.enter(from, firing, successor);
         self.node = next;
         (self.entered, self.state) = (time, state);
         let mut event = self.event(What::Until(mode, firing.until), time, &self.state);
@@ -50,7 +52,7 @@ impl<T: Number> Run<'_, T> {
                 return self.end(Ending::Accumulation(earliest, latest));
             }
         }
-        if self.at_once >= MOST_AT_ONCE {
+        if self.events_in_instant >= MOST_AT_ONCE {
             self.end(Ending::NoProgress);
         }
     }
@@ -59,7 +61,7 @@ impl<T: Number> Run<'_, T> {
     #[inline]
     fn successor(&mut self, mode: usize, firing: Firing, state: &Vector<T>) -> usize {
         let solver = self.solver;
-        let orders = &self.structure.arrival(self.node, firing).orders;
+        let orders = &self.graph.arrival(self.node, firing).orders;
         let conditions = &solver.modes[mode].conditions[firing.until];
         let next = &solver.system.modes[mode].until[firing.until].next;
         for (n, (condition, order)) in conditions.iter().zip(orders.iter()).enumerate() {
@@ -72,7 +74,7 @@ impl<T: Number> Run<'_, T> {
             let flow = &solver.modes[next[n].mode].flow;
             let (value, size) = condition.order(order, &flow.modal(state));
             let value = value.to_f64();
-            let mut slack = twice_summed::<T>(flow.dimension) * size;
+            let mut slack = twice_summed_rounding::<T>(flow.dimension) * size;
             if let Some(errors) = &self.enclosure {
                 // The errors before the reset bound those after it for all that follows here.
                 let reset = &solver.modes[mode].resets[firing.until];

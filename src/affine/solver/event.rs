@@ -1,8 +1,8 @@
-//! Events of a run, and how it can end.
+//! The events of a run, and its endings.
 
 use crate::affine::arithmetic::clock::Time;
 
-/// What happens at an event of a run.
+/// The kind of an event of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum What<T> {
     /// The run begins.
@@ -15,13 +15,13 @@ pub enum What<T> {
     End(Ending<T>),
 }
 
-/// How a run ends. An ending that has no instant of its own, as all but the first and the third,
-/// has the time and the state of the last event, watched ones included, or of the start.
+/// The ending of a run. An ending that has no instant of its own, as all but the first and the
+/// third, has the time and the state of the last event, watched ones included, or of the start.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Ending<T> {
     /// The horizon is reached.
     Horizon,
-    /// Infinitely many impacts follow, and come to an end between these times after the last.
+    /// Impacts accumulate: their limit lies between these two times after the last event.
     Accumulation(T, T),
     /// A backward run reaches the boundary of its mode.
     LeavesDomain,
@@ -29,20 +29,21 @@ pub enum Ending<T> {
     NoProgress,
     /// A mode is entered where one of its guards is positive already.
     BeyondGuard,
-    /// The arithmetic has no digits left to decide what comes next, or that takes too much work.
+    /// The arithmetic has too few digits to decide which event is next, or the search for it takes
+    /// too much work.
     Undecided,
 }
 
 /// An event of a run.
 #[derive(Debug)]
 pub struct Event<T> {
-    /// What happens.
+    /// The kind of event.
     pub what: What<T>,
-    /// The time.
+    /// The time of the event.
     pub time: Time<T>,
-    /// The state just after it.
+    /// The state just after the event.
     pub state: Vec<T>,
-    /// The mode just after it.
+    /// The index of the mode just after the event.
     pub mode: usize,
     /// Bounds of the errors, in a run that follows them.
     pub errors: Option<Errors>,
@@ -73,14 +74,14 @@ impl<T: Clone> Clone for Event<T> {
 /// Bounds of the errors of an event's time and state.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Errors {
-    /// The error of the time.
+    /// A bound of the error of the time.
     pub time: f64,
-    /// The error of each state.
+    /// For each state, a bound of its error.
     pub state: Vec<f64>,
 }
 
 impl Errors {
-    /// Whether all of them are bounds.
+    /// Whether all bounds are finite.
     pub(in crate::affine) fn are_finite(&self) -> bool {
         self.time.is_finite() && self.state.iter().all(|it| it.is_finite())
     }

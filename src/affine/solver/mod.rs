@@ -1,4 +1,4 @@
-//! A system made ready to run in one arithmetic.
+//! A solver: a system prepared for runs in one arithmetic.
 //!
 //! The solver has each mode's closed form and guards in the numbers of that arithmetic. What runs
 //! have learned of the system is kept for the runs that follow: its structural zeros in [`pool`],
@@ -17,10 +17,10 @@ use crate::affine::closed_form::flow::ModeFlow;
 use crate::affine::guards::row::ModalRow;
 use crate::affine::modal;
 use crate::affine::model::system::{LARGEST_DIMENSION, Mode, Row, Successor, System};
-use crate::affine::zeros::graph::Structure;
+use crate::affine::zeros::graph::ZeroGraph;
 use crate::numeric::number::Number;
 use event::Event;
-use pool::Known;
+use pool::Pool;
 
 /// A piecewise-affine system in closed form, in an arithmetic of one or two words.
 #[derive(Clone, Debug)]
@@ -28,21 +28,21 @@ pub struct Solver<T> {
     pub(super) system: System,
     pub(super) modes: Vec<SolverMode<T>>,
     pub(super) clock: Option<Clock<T>>,
-    pub(super) known: Known<T>,
+    pub(super) pool: Pool<T>,
     pub(super) backward: bool,
 }
 
-/// One of its modes.
+/// A mode prepared for runs in one arithmetic.
 #[derive(Clone, Debug)]
 pub(super) struct SolverMode<T> {
     pub flow: ModeFlow<T>,
     /// The mode's matrix M.
     pub matrix: Vec<Vector<T>>,
-    /// The guards of `until`, then those of `watch`.
+    /// The mode's guards: those of `until`, then those of `watch`.
     pub guards: Vec<ModalRow<T>>,
-    /// The resets of `until`.
+    /// The matrices of the resets of `until`.
     pub resets: Vec<Vec<Vector<T>>>,
-    /// The entries that each reset changes, with their rows.
+    /// For each reset, the entries of z that it changes, with their rows.
     pub changes: Vec<Vec<Change<T>>>,
     /// The conditions of the successors of each `until`, in the co-ordinates of their modes.
     pub conditions: Vec<Vec<Option<ModalRow<T>>>>,
@@ -51,26 +51,26 @@ pub(super) struct SolverMode<T> {
 /// An entry of z that a reset changes, and the factors of the entries before it.
 pub(super) type Change<T> = (usize, Vec<(usize, T)>);
 
-/// Why a system cannot be made ready.
+/// The error of a system that cannot be prepared, because its structural zeros cannot be decided.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unprepared {
-    /// The name of the system, whose structural zeros cannot be told.
+    /// The name of the system.
     pub system: String,
 }
 
 impl std::fmt::Display for Unprepared {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "the structural zeros of {} cannot be told", self.system)
+        write!(f, "the structural zeros of {} cannot be decided", self.system)
     }
 }
 
 impl std::error::Error for Unprepared {}
 
 impl<T: Number> Solver<T> {
-    /// Decomposes the matrix of each mode.
+    /// Prepares a system for runs: decomposes the matrix of each mode.
     ///
     /// # Errors
-    /// A system whose structural zeros cannot be told.
+    /// A system whose structural zeros cannot be decided.
     pub fn new(system: &System) -> Result<Self, Unprepared> {
         Self::prepared(system.clone(), false)
     }
@@ -79,7 +79,7 @@ impl<T: Number> Solver<T> {
     /// ends where the guard of an `until` would become positive.
     ///
     /// # Errors
-    /// A system whose structural zeros cannot be told.
+    /// A system whose structural zeros cannot be decided.
     pub fn backward(system: &System) -> Result<Self, Unprepared> {
         Self::prepared(system.reversed(), true)
     }
@@ -90,8 +90,8 @@ impl<T: Number> Solver<T> {
             let blocks_of_mode = modal::blocks(&mode.matrix, system.time_scale);
             blocks.push(bound::ordered(blocks_of_mode));
         }
-        let structure = Structure::of(&system);
-        let structure = structure.ok_or_else(|| Unprepared { system: system.name.clone() })?;
+        let graph = ZeroGraph::of(&system);
+        let graph = graph.ok_or_else(|| Unprepared { system: system.name.clone() })?;
         let flows: Vec<ModeFlow<T>> = blocks.iter().map(|it| ModeFlow::of(it)).collect();
         let row = |row: &Row, mode: usize| ModalRow::of(row, &flows[mode].blocks, &blocks[mode]);
         let mode = |(n, mode): (usize, &Mode)| {
@@ -117,7 +117,7 @@ impl<T: Number> Solver<T> {
         };
         let modes = system.modes.iter().enumerate().map(mode).collect();
         let clock = system.forcing.as_ref().map(Clock::of);
-        Ok(Self { modes, clock, known: Known::of(structure), backward, system })
+        Ok(Self { modes, clock, pool: Pool::of(graph), backward, system })
     }
 
     /// The state at a time in the segment that an event of a run of this solver begins.
@@ -132,7 +132,7 @@ impl<T: Number> Solver<T> {
         state
     }
 
-    /// The system; that of a backward run has its signs reversed.
+    /// The system that is solved; a backward solver has the [reversed](System::reversed) one.
     #[must_use]
     pub fn system(&self) -> &System {
         &self.system
@@ -178,7 +178,8 @@ impl<T: Number> Solver<T> {
         }
     }
 
-    /// What the rounding of time does to cos theta and sin theta, as errors of z.
+    /// Bounds of the errors that the rounding of the time makes in cos theta and sin theta, as
+    /// errors of z.
     pub(super) fn phase_roundings(&self, time: &Time<T>) -> [f64; LARGEST_DIMENSION] {
         let mut errors = [0.0; LARGEST_DIMENSION];
         if let Some(clock) = &self.clock {

@@ -1,88 +1,88 @@
-//! What runs have learned of a system, kept for the runs that follow: its graph of structural
-//! zeros, and the starts that they had.
+//! A pool of what runs have computed of a system, for the runs that follow: the graph of its
+//! structural zeros, and their starts.
 
-use super::start_cache::{RunStart, Starts};
+use super::start_cache::{RunStart, StartCache};
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::model::system::{StartPoint, System};
-use crate::affine::zeros::graph::Structure;
+use crate::affine::zeros::graph::ZeroGraph;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Arc, Mutex};
 
-/// How many graphs are kept: one for each thread that runs the system.
+/// The largest number of graphs in the pool: one for each thread that runs the system.
 const MOST: usize = 64;
 
-/// What runs have learned and no run uses at present.
+/// A pool of the graphs and starts that no run uses at present.
 #[derive(Clone, Debug)]
-pub struct Known<T> {
-    /// The graph that nothing has been learned of.
-    blank: Structure,
-    learned: Arc<Mutex<Vec<Learned<T>>>>,
+pub struct Pool<T> {
+    /// A graph without nodes, for runs that find the pool empty.
+    blank: ZeroGraph,
+    returned: Arc<Mutex<Vec<PooledCaches<T>>>>,
 }
 
-/// What the runs of one thread have learned.
+/// The graph and the starts that a run takes from the pool and returns.
 #[derive(Clone, Debug)]
-struct Learned<T> {
-    structure: Structure,
-    starts: Starts<T>,
+struct PooledCaches<T> {
+    graph: ZeroGraph,
+    starts: StartCache<T>,
 }
 
-/// The graph that a run uses, and gives back.
+/// A graph and starts on loan to a run, which returns them to the pool when it is dropped.
 #[derive(Debug)]
 pub struct Loan<'a, T> {
-    own: Learned<T>,
-    known: &'a Known<T>,
+    own: PooledCaches<T>,
+    pool: &'a Pool<T>,
 }
 
-impl<T> Known<T> {
-    pub fn of(blank: Structure) -> Self {
-        Self { blank, learned: Arc::default() }
+impl<T> Pool<T> {
+    pub fn of(blank: ZeroGraph) -> Self {
+        Self { blank, returned: Arc::default() }
     }
 
-    /// A graph for a run.
+    /// Lends a graph and starts to a run.
     pub fn lend(&self) -> Loan<'_, T> {
-        let learned = self.learned.lock().ok().and_then(|mut all| all.pop());
-        let blank = || Learned { structure: self.blank.clone(), starts: Starts::default() };
-        Loan { own: learned.unwrap_or_else(blank), known: self }
+        let learned = self.returned.lock().ok().and_then(|mut all| all.pop());
+        let blank = || PooledCaches { graph: self.blank.clone(), starts: StartCache::default() };
+        Loan { own: learned.unwrap_or_else(blank), pool: self }
     }
 }
 
 impl<T: Copy> Loan<'_, T> {
-    /// What a run begins with, as [`Starts::begun`] has it.
-    pub fn begun(
+    /// The node, time and state of a start, by [`StartCache::run_start`].
+    pub fn run_start(
         &mut self,
         system: &System,
         point: &StartPoint,
-        worked_out: impl FnOnce() -> (Time<T>, Vector<T>),
+        time_and_state: impl FnOnce() -> (Time<T>, Vector<T>),
     ) -> Option<RunStart<T>> {
-        let Learned { structure, starts } = &mut self.own;
-        starts.begun(system, structure, point, worked_out)
+        let PooledCaches { graph, starts } = &mut self.own;
+        starts.run_start(system, graph, point, time_and_state)
     }
 }
 
 impl<T> Drop for Loan<'_, T> {
     fn drop(&mut self) {
-        if let Ok(mut all) = self.known.learned.lock()
+        if let Ok(mut all) = self.pool.returned.lock()
             && all.len() < MOST
         {
-            let structure = std::mem::take(&mut self.own.structure);
+            let graph = std::mem::take(&mut self.own.graph);
             let starts = std::mem::take(&mut self.own.starts);
-            all.push(Learned { structure, starts });
+            all.push(PooledCaches { graph, starts });
         }
     }
 }
 
 impl<T> Deref for Loan<'_, T> {
-    type Target = Structure;
+    type Target = ZeroGraph;
     #[inline]
-    fn deref(&self) -> &Structure {
-        &self.own.structure
+    fn deref(&self) -> &ZeroGraph {
+        &self.own.graph
     }
 }
 
 impl<T> DerefMut for Loan<'_, T> {
     #[inline]
-    fn deref_mut(&mut self) -> &mut Structure {
-        &mut self.own.structure
+    fn deref_mut(&mut self) -> &mut ZeroGraph {
+        &mut self.own.graph
     }
 }

@@ -1,34 +1,34 @@
-//! The starts of runs, with what follows from a start alone: it is exact arithmetic, which would
-//! take longer than the events of a short run.
+//! A cache of the starts of runs, with their nodes, times and states: exact arithmetic computes
+//! these, and would take longer than the events of a short run.
 
 use crate::affine::arithmetic::clock::Time;
 use crate::affine::arithmetic::vector::Vector;
 use crate::affine::model::system::{StartPoint, System};
-use crate::affine::zeros::graph::Structure;
+use crate::affine::zeros::graph::ZeroGraph;
 use crate::affine::zeros::residue::residues;
-use crate::affine::zeros::space::{Zeros, kernel};
+use crate::affine::zeros::space::{ZeroSpace, kernel};
 use dashu_ratio::RBig;
 
-/// How many starts are kept: those of the last runs.
+/// The largest number of starts in the cache.
 const MOST: usize = 8;
 
-/// The starts of the last runs.
+/// A cache of the starts of the last runs.
 #[derive(Clone, Debug)]
-pub(super) struct Starts<T> {
-    known: Vec<KnownStart<T>>,
-    /// The one that the next new start replaces, once there are [`MOST`].
+pub(super) struct StartCache<T> {
+    entries: Vec<CachedStart<T>>,
+    /// The index of the start that the next new one replaces, once there are [`MOST`].
     oldest: usize,
 }
 
-/// A start that a run had.
+/// A start of an earlier run, with everything that follows from it.
 #[derive(Clone, Debug)]
-struct KnownStart<T> {
+struct CachedStart<T> {
     point: StartPoint,
-    zeros: Zeros,
-    begun: RunStart<T>,
+    zeros: ZeroSpace,
+    run_start: RunStart<T>,
 }
 
-/// What a run begins with.
+/// The node, time and state at which a run begins.
 #[derive(Clone, Copy, Debug)]
 pub struct RunStart<T> {
     /// The node of the graph of structural zeros.
@@ -37,47 +37,48 @@ pub struct RunStart<T> {
     pub state: Vector<T>,
 }
 
-impl<T> Default for Starts<T> {
+impl<T> Default for StartCache<T> {
     fn default() -> Self {
-        Self { known: Vec::new(), oldest: 0 }
+        Self { entries: Vec::new(), oldest: 0 }
     }
 }
 
-impl<T: Copy> Starts<T> {
-    /// What a run from a start begins with; time and state are worked out where the start is new.
-    /// None if its structural zeros cannot be told.
-    pub fn begun(
+impl<T: Copy> StartCache<T> {
+    /// The node, time and state of a start; `time_and_state` is called if the start is new. None if
+    /// the start's structural zeros cannot be decided.
+    pub fn run_start(
         &mut self,
         system: &System,
-        structure: &mut Structure,
+        graph: &mut ZeroGraph,
         point: &StartPoint,
-        worked_out: impl FnOnce() -> (Time<T>, Vector<T>),
+        time_and_state: impl FnOnce() -> (Time<T>, Vector<T>),
     ) -> Option<RunStart<T>> {
-        if let Some(known) = self.known.iter_mut().find(|it| it.point == *point) {
+        if let Some(known) = self.entries.iter_mut().find(|it| it.point == *point) {
             // A graph that has grown too large has lost its nodes.
-            known.begun.node = structure.at_start(point.mode, &known.zeros, Some(known.begun.node));
-            return Some(known.begun);
+            known.run_start.node =
+                graph.at_start(point.mode, &known.zeros, Some(known.run_start.node));
+            return Some(known.run_start);
         }
         let zeros = zeros_at_start(system, point)?;
-        let node = structure.at_start(point.mode, &zeros, None);
-        let (time, state) = worked_out();
-        let begun = RunStart { node, time, state };
-        self.keep(KnownStart { point: point.clone(), zeros, begun });
-        Some(begun)
+        let node = graph.at_start(point.mode, &zeros, None);
+        let (time, state) = time_and_state();
+        let run_start = RunStart { node, time, state };
+        self.keep(CachedStart { point: point.clone(), zeros, run_start });
+        Some(run_start)
     }
 
-    fn keep(&mut self, start: KnownStart<T>) {
-        if self.known.len() < MOST {
-            self.known.push(start);
+    fn keep(&mut self, start: CachedStart<T>) {
+        if self.entries.len() < MOST {
+            self.entries.push(start);
         } else {
-            self.known[self.oldest] = start;
+            self.entries[self.oldest] = start;
             self.oldest = (self.oldest + 1) % MOST;
         }
     }
 }
 
 /// The left kernel of the start's coefficients over cos theta, sin theta and 1.
-fn zeros_at_start(system: &System, start: &StartPoint) -> Option<Zeros> {
+fn zeros_at_start(system: &System, start: &StartPoint) -> Option<ZeroSpace> {
     let zero_angle = match &system.forcing {
         Some(forcing) => (&forcing.omega * &start.time + &forcing.phi).is_zero(),
         None => true,
@@ -97,7 +98,7 @@ fn zeros_at_start(system: &System, start: &StartPoint) -> Option<Zeros> {
         };
         residues(&row)
     };
-    let mut zeros = Zeros::default();
+    let mut zeros = ZeroSpace::default();
     for row in kernel(rows.iter().map(row).collect::<Option<_>>()?) {
         zeros.insert(&row);
     }

@@ -1,23 +1,24 @@
-//! The structural zeros of a run: which of them hold in which mode, and where its events lead.
+//! The graph of a system's structural zeros: its nodes are modes with the zeros that hold at their
+//! entry, and its edges are events.
 //!
-//! What is zero at the entry of a segment depends on the events that led there, not on numbers. A
-//! run therefore walks through a small graph, whose nodes are modes with their spaces of zeros;
-//! each is worked out once.
+//! The structural zeros at the entry of a segment depend on the events that led there, not on
+//! numbers. A run therefore follows a path in a small graph, each node of which is computed once.
 
 use super::residue::{Residue, Residues, residues, row_times};
-use super::space::Zeros;
+use super::space::ZeroSpace;
 use crate::affine::model::system::{Mode, Row, Successor, System, Until};
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// At this many nodes all are forgotten: a system that counts its own events has a new one at each.
+/// The number of nodes at which all are discarded: a system that counts its own events has a new
+/// node at each of them.
 const MOST_NODES: usize = 4096;
 
 /// A mode's rows modulo primes.
 #[derive(Clone, Debug)]
 struct ModeResidues {
     matrix: Vec<Residues>,
-    /// The guards of `until`, then those of `watch`.
+    /// The mode's guards: those of `until`, then those of `watch`.
     guards: Vec<Residues>,
     resets: Vec<Vec<Residues>>,
     /// The conditions of each event's successors, with their modes.
@@ -33,22 +34,22 @@ pub struct Firing {
     pub at_entry: bool,
 }
 
-/// A mode that is entered with certain zeros.
+/// A node of the graph: a mode with the space of structural zeros at its entry.
 #[derive(Clone, Debug)]
 pub struct Node {
     pub mode: usize,
-    zeros: Zeros,
-    /// What stays zero along the segment.
-    lasting: Zeros,
+    zeros: ZeroSpace,
+    /// The structural zeros that last along the segment.
+    lasting: ZeroSpace,
     /// For each guard: the order of its first derivative that is not a structural zero at entry;
     /// none if it stays zero.
     pub multiplicities: Arc<[Option<usize>]>,
-    /// The arrivals that were asked for: few, and looked up at each event.
+    /// The arrivals that were asked for: there are few, and each event searches the list.
     arrivals: Vec<(Firing, Arrival)>,
     ties: Vec<(u64, bool, u64)>,
 }
 
-/// What an event leads to.
+/// The consequences of an event for the structural zeros.
 #[derive(Clone, Debug)]
 pub struct Arrival {
     /// For each successor: the order of its condition's first derivative that is not a structural
@@ -57,19 +58,19 @@ pub struct Arrival {
     /// Whether the event multiplies the rate of its guard by a negative factor and leaves it at
     /// zero.
     pub impact: bool,
-    after: Zeros,
+    after: ZeroSpace,
     nodes: Vec<Option<usize>>,
 }
 
-/// The graph.
+/// The graph of a system's structural zeros, as far as runs have explored it.
 #[derive(Clone, Debug, Default)]
-pub struct Structure {
+pub struct ZeroGraph {
     modes: Vec<ModeResidues>,
     nodes: Vec<Node>,
-    known: HashMap<(usize, Zeros), usize>,
+    known: HashMap<(usize, ZeroSpace), usize>,
 }
 
-impl Structure {
+impl ZeroGraph {
     /// The graph of a system, without a node; none if a coefficient has no residue.
     pub fn of(system: &System) -> Option<Self> {
         let modes = system.modes.iter().map(ModeResidues::of).collect::<Option<_>>()?;
@@ -81,15 +82,15 @@ impl Structure {
         &self.nodes[node]
     }
 
-    /// The node of a start, which may be one that is known.
-    pub fn at_start(&mut self, mode: usize, zeros: &Zeros, known: Option<usize>) -> usize {
+    /// The node of a start: `known` if that is still the start's node.
+    pub fn at_start(&mut self, mode: usize, zeros: &ZeroSpace, known: Option<usize>) -> usize {
         let same = |node: &usize| {
             self.nodes.get(*node).is_some_and(|it| it.mode == mode && it.zeros == *zeros)
         };
         known.filter(same).unwrap_or_else(|| self.intern(mode, zeros.clone()))
     }
 
-    /// The guards that are zero at an event because others are.
+    /// The guards that are zero at an event because the given ones are, which are included.
     #[inline]
     pub fn tied(&mut self, node: usize, guards: u64, at_entry: bool) -> u64 {
         let node = &mut self.nodes[node];
@@ -105,7 +106,7 @@ impl Structure {
         tied
     }
 
-    /// What an event leads to.
+    /// The consequences of an event at a node, computed once.
     #[inline]
     pub fn arrival(&mut self, node: usize, firing: Firing) -> &mut Arrival {
         let Self { modes, nodes, .. } = self;
@@ -137,7 +138,7 @@ impl Structure {
         next
     }
 
-    fn intern(&mut self, mode: usize, zeros: Zeros) -> usize {
+    fn intern(&mut self, mode: usize, zeros: ZeroSpace) -> usize {
         if let Some(known) = self.known.get(&(mode, zeros.clone())) {
             return *known;
         }
@@ -158,8 +159,8 @@ impl Structure {
 }
 
 impl Node {
-    /// What is zero just before an event: at the instant of entry all that is zero there.
-    fn zeros_at(&self, entry: bool) -> &Zeros {
+    /// The structural zeros just before an event: at the instant of entry those of the entry.
+    fn zeros_at(&self, entry: bool) -> &ZeroSpace {
         if entry { &self.zeros } else { &self.lasting }
     }
 }
@@ -180,7 +181,7 @@ fn arrived(modes: &[ModeResidues], node: &Node, firing: Firing) -> Arrival {
     }
 }
 
-fn with_rows(zeros: &Zeros, guards: &[Residues], fired: u64) -> Zeros {
+fn with_rows(zeros: &ZeroSpace, guards: &[Residues], fired: u64) -> ZeroSpace {
     let mut zeros = zeros.clone();
     for (_, guard) in guards.iter().enumerate().filter(|(n, _)| fired >> n & 1 == 1) {
         zeros.insert(guard);
@@ -189,7 +190,7 @@ fn with_rows(zeros: &Zeros, guards: &[Residues], fired: u64) -> Zeros {
 }
 
 /// h+ = 0 and h'+ = -e h' with the guard h; and all other changes are multiples of h'.
-fn is_impact(own: &ModeResidues, until: usize, zeros: &Zeros, after: &Zeros) -> bool {
+fn is_impact(own: &ModeResidues, until: usize, zeros: &ZeroSpace, after: &ZeroSpace) -> bool {
     let (guard, reset) = (&own.guards[until], &own.resets[until]);
     let rate = row_times(guard, &own.matrix);
     let changed = row_times(&rate, reset);

@@ -1,4 +1,4 @@
-//! What is zero by the model, whatever rounded numbers say.
+//! Structural zeros: values that are zero by the model, whatever rounded numbers say.
 //!
 //! A guard may be zero at the entry of a segment because of the events that led there, as the gap
 //! is after an impact. [`space`] is the space of all rows that are zero so, and [`graph`] follows

@@ -8,7 +8,7 @@ use dashu_int::ops::UnsignedAbs;
 use dashu_int::{IBig, UBig};
 use dashu_ratio::RBig;
 
-/// Residues have fewer bits.
+/// The number of bits of a residue, at most.
 const BITS: u32 = 61;
 
 /// The two largest primes below 2^61, which is 1 modulo the first and 31 modulo the second.
@@ -18,7 +18,7 @@ const PRIMES: [u64; 2] = [(1 << BITS) - 1, (1 << BITS) - 31];
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Residue([u64; 2]);
 
-/// A row of them.
+/// A row of rational numbers modulo both primes.
 pub type Residues = Vec<Residue>;
 
 impl Residue {
@@ -42,13 +42,13 @@ impl Residue {
         Some(Self(residues))
     }
 
-    /// Whether it is zero modulo both primes.
+    /// Whether the number is zero modulo both primes.
     pub fn is_zero(self) -> bool {
         self.0 == [0; 2]
     }
 
-    /// Whether it is zero modulo one prime and not modulo the other, which does not happen unless
-    /// a prime is unlucky.
+    /// Whether the number is zero modulo one prime and not modulo the other, which does not happen
+    /// unless a prime is unlucky.
     pub fn is_unlucky(self) -> bool {
         (self.0[0] == 0) != (self.0[1] == 0)
     }

@@ -1,15 +1,15 @@
-//! Structural zeros: the space K of rows r for which r z = 0 is known from the model, not from
+//! The space K of structural zeros: the rows r for which r z = 0 is known from the model, not from
 //! numbers.
 
 use super::residue::{Residue, Residues, row_times};
 
 /// A space of rows, in its reduced echelon form, which is unique.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
-pub struct Zeros {
+pub struct ZeroSpace {
     rows: Vec<Residues>,
 }
 
-impl Zeros {
+impl ZeroSpace {
     /// Whether a row belongs to the space.
     pub fn contains(&self, row: &[Residue]) -> bool {
         self.reduced(row).iter().all(|it| it.is_zero())
@@ -69,8 +69,7 @@ impl Zeros {
         None
     }
 
-    /// Where two rows are a multiple of each other modulo the space, the factor in first = factor *
-    /// second.
+    /// The factor in first = factor * second modulo the space, if there is one.
     pub fn ratio(&self, first: &[Residue], second: &[Residue]) -> Option<Residue> {
         let (mut first, second) = (self.reduced(first), self.reduced(second));
         let pivot = pivot(&second)?;
@@ -79,7 +78,8 @@ impl Zeros {
         first.iter().all(|it| it.is_zero()).then_some(factor)
     }
 
-    /// A row less the combination of the space's rows that its pivots' columns ask for.
+    /// A row modulo the space: less the combination of the space's rows that makes its pivot
+    /// columns zero.
     fn reduced(&self, row: &[Residue]) -> Residues {
         let mut row = row.to_vec();
         for own in &self.rows {

@@ -1,6 +1,6 @@
 //! The orbit of twice the period that branches off at a flip.
 
-use super::follow::BranchWalk;
+use super::follow::BranchFollower;
 use super::point::{BranchTangent, ContinuationPoint, FamilyCurve};
 use super::{Bifurcation, Branch, Family};
 use crate::dynamics::linear::{IDENTITY, adjugate, norm};
@@ -46,7 +46,7 @@ impl Doubling {
         let curve = FamilyCurve::new(family, from, to);
         let doubled = curve.doubled(flip)?;
         let criticality = curve.criticality(flip, &doubled)?;
-        let branch = BranchWalk::new(curve, from, to, told).branch(doubled);
+        let branch = BranchFollower::new(curve, from, to, told).branch(doubled);
         Some(Self { criticality, branch })
     }
 }

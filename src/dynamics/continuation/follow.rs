@@ -1,4 +1,4 @@
-//! Step control: how a branch is followed, and what is met on the way.
+//! Step control: follows a branch and notes the bifurcations between its points.
 
 use super::corner::Corner;
 use super::locate::Located;
@@ -17,8 +17,8 @@ const TURN: f64 = 0.95;
 /// The largest relative change of the multipliers' sum and products in a step.
 const CHANGE: f64 = 0.3;
 
-/// A branch being followed.
-pub(super) struct BranchWalk<'a> {
+/// A branch that is being followed, as far as it is computed.
+pub(super) struct BranchFollower<'a> {
     curve: FamilyCurve,
     /// The value at which the parameter begins.
     from: f64,
@@ -29,7 +29,7 @@ pub(super) struct BranchWalk<'a> {
     bifurcations: Vec<Bifurcation>,
 }
 
-impl<'a> BranchWalk<'a> {
+impl<'a> BranchFollower<'a> {
     pub(super) fn new(
         curve: FamilyCurve,
         from: f64,

@@ -45,7 +45,7 @@ use super::strobe::StrobePoint;
 use crate::unknown_name::UnknownName;
 pub use doubling::{Criticality, Doubling};
 pub use family::Family;
-use follow::BranchWalk;
+use follow::BranchFollower;
 use point::{BranchTangent, FamilyCurve};
 use std::fmt;
 use std::str::FromStr;
@@ -201,7 +201,7 @@ impl Branch {
             rate: curve.unit * (to - from).signum(),
         };
         let first = curve.point(from, iterate, &towards);
-        Ok(BranchWalk::new(curve, from, to, told).branch(first))
+        Ok(BranchFollower::new(curve, from, to, told).branch(first))
     }
 
     /// Whether the branch was followed to the value that was asked for.

@@ -6,15 +6,16 @@ use crate::affine::model::expression::{condition, expression};
 use crate::affine::model::file::{ModeTable, SystemFile, UntilTable, WatchTable};
 use crate::affine::model::form::Form;
 use crate::affine::model::system::{Direction, LARGEST_COUNT, Mode, Row, Successor, Until, Watch};
+use crate::unknown_name::UnknownName;
 use dashu_ratio::RBig;
 use std::collections::{BTreeMap, BTreeSet};
 use toml::Spanned;
 
-/// How runs end, which is what no event may be called.
+/// The names of a run's endings, which no event may have.
 const ENDINGS: [&str; 6] =
     ["end", "accumulation", "leaves-domain", "no-progress", "beyond-guard", "undecided"];
 
-/// What the tables of a mode need beside the names.
+/// A reader of a mode's tables, with all that they refer to but the names of expressions.
 pub(super) struct ModeReader<'a> {
     pub(super) file: &'a SystemFile,
     pub(super) places: &'a BTreeMap<String, usize>,
@@ -67,7 +68,7 @@ impl ModeReader<'_> {
         Ok(())
     }
 
-    /// The rows of M that belong to the states.
+    /// The rows of the mode's matrix M that belong to the states.
     fn rates(&self, names: &mut Names, table: &ModeTable) -> Result<Vec<Row>, SystemError> {
         let mut rates = BTreeMap::new();
         for equation in table.equations.get_ref() {
@@ -86,7 +87,7 @@ impl ModeReader<'_> {
         }
     }
 
-    /// `x' = ...`, or without the prime: the state's index, and the row.
+    /// Reads `x' = ...`, or without the prime `x = ...`: the state's index, and the row.
     fn assignment(
         &self,
         names: &mut Names,
@@ -183,16 +184,11 @@ impl ModeReader<'_> {
     }
 
     fn watch(&self, names: &mut Names, table: &WatchTable) -> Result<Watch, SystemError> {
-        let direction = match table.direction.as_ref().map(|it| (it.get_ref().as_str(), it.span()))
-        {
-            None | Some(("rising", _)) => Direction::Rising,
-            Some(("falling", _)) => Direction::Falling,
-            Some(("both", _)) => Direction::Both,
-            Some((other, span)) => {
-                let what = format!("{other:?} is no direction: rising, falling or both is");
-                return Err(self.file.error(&span, &what));
-            }
+        let read = |text: &Spanned<String>| {
+            let direction = text.get_ref().parse();
+            direction.map_err(|it: UnknownName| self.file.error(&text.span(), &it.to_string()))
         };
+        let direction = table.direction.as_ref().map_or(Ok(Direction::Rising), read)?;
         let guard = self.guard(names, &table.guard)?;
         Ok(Watch { name: table.name.get_ref().clone(), guard, direction })
     }

@@ -1,4 +1,4 @@
-//! What the names of a file's expressions mean.
+//! The values of the names in a file's expressions.
 
 use crate::affine::model::error::SystemError;
 use crate::affine::model::expression::{Scope, expression, is_name};
@@ -15,7 +15,7 @@ const RESERVED: [&str; 4] = ["cos", "sin", "omega", "phi"];
 /// Keys of a start beside the states.
 const OF_A_START: [&str; 2] = ["t", "mode"];
 
-/// What the names of a file's expressions mean.
+/// The names that a file's expressions may use, with their values.
 pub(super) struct Names<'a> {
     file: &'a SystemFile,
     pub(super) states: Vec<String>,
@@ -23,18 +23,18 @@ pub(super) struct Names<'a> {
     values: BTreeMap<String, Form>,
     /// The `[let]`s that are being read, to see a circle.
     open: Vec<String>,
-    /// What an expression may be of here.
+    /// The kinds of names that the expression being read may use.
     pub(super) accepts: Accepts,
 }
 
-/// What an expression may be of.
+/// The kinds of names that an expression may use.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Accepts {
-    /// States, cos, sin and what is constant.
+    /// States, cos, sin and constants.
     States,
-    /// Cos, sin and what is constant, as at a start.
+    /// Cos, sin and constants, as at a start.
     Forcing,
-    /// What is constant alone.
+    /// Constants only.
     Constants,
 }
 
