@@ -4,10 +4,10 @@
 use crate::ball::Ball;
 use crate::guard::Expansion;
 use crate::hull::Piecewise;
-use crate::proof::{GRANTED, Verdict, Walk};
+use crate::proof::{GRANTED, Verdict, CorridorProof};
 use percuss::insides::crossing::Corridor;
 
-impl Walk<'_> {
+impl CorridorProof<'_> {
     /// What is true of a reported end that no earlier crossing forestalls.
     pub fn crossing(&self, residual: Ball, at_end: &Expansion) -> Verdict {
         let slack = self.claim.slack;

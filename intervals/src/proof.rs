@@ -78,30 +78,30 @@ pub fn examine(guard: &Guard, claim: &Claim) -> Verdict {
     let threshold = if claim.rises { claim.corridor.high } else { claim.corridor.low };
     let residual = at_end.whole[0] - Ball::exact(threshold);
     let origin = guard.at(Ball::ZERO);
-    let walk = Walk { guard, claim, end, origin: &origin };
-    match walk.run() {
+    let proof = CorridorProof { guard, claim, end, origin: &origin };
+    match proof.run() {
         Ok(()) => {
             // A phase may be so short that its series knows more about its end.
             let from_start = origin.value_after(end) - Ball::exact(threshold);
             let narrow = from_start.width() < residual.width();
-            walk.crossing(if narrow { from_start } else { residual }, &at_end)
+            proof.crossing(if narrow { from_start } else { residual }, &at_end)
         }
-        Err(until) => walk
+        Err(until) => proof
             .excursion(until, &at_end)
             .map_or(Verdict::Open { until }, |(at, excess)| Verdict::Earlier { at, excess }),
     }
 }
 
-/// A proof under way.
-pub(crate) struct Walk<'a> {
+/// A proof that a guard stays in its corridor up to the reported end.
+pub(crate) struct CorridorProof<'a> {
     guard: &'a Guard,
     pub claim: &'a Claim,
     end: Ball,
     origin: &'a Expansion,
 }
 
-impl Walk<'_> {
-    /// Proves the way up to the end, or says how far it came.
+impl CorridorProof<'_> {
+    /// Proves that the guard stays inside up to the end, or returns how far the proof came.
     fn run(&self) -> Result<(), f64> {
         let mut from = 0.0;
         let mut length = f64::INFINITY;

@@ -1,5 +1,5 @@
-//! What an integrator is given of a system: the equations of each mode, the guards at which modes
-//! end, and what follows there.
+//! The interface through which an integrator sees a system: the equations of each mode, the guards
+//! at which modes end, and the mode and state after an event.
 //!
 //! The types of states, guards and modes belong to the system, so that a system whose dimension is
 //! known beforehand is integrated on arrays of that size, and one whose dimension is read from a
@@ -83,7 +83,7 @@ pub trait Equations: Copy {
     fn rates(&self, mode: Self::Mode, t: f64, u: &[f64]) -> Self::Guards;
 
     /// The mode that begins where a guard has risen to zero, with the state put where it belongs.
-    fn switch(
+    fn after_event(
         &self,
         mode: Self::Mode,
         guard: usize,

@@ -40,7 +40,7 @@ impl Stroke {
     }
 }
 
-/// A white sheet on which a [`super::Drawing`] draws.
+/// A white canvas for a [`super::Drawing`].
 #[derive(Debug)]
 pub struct Canvas {
     size: (u32, u32),

@@ -56,7 +56,7 @@ pub fn read(path: &Path) -> Result<Vec<Program>, FileError> {
     parse(&path.display().to_string(), &text, folder)
 }
 
-/// The known shortcomings of the programs that a file names: those of the file that it names for
+/// The expected failures of the programs that a file names: those of the file that it names for
 /// them, if it does.
 ///
 /// # Errors

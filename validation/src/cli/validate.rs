@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let pool = long_work::pool(threads)?;
     let steps = suite::size(all.len(), &engines, &scope) + wrong.count();
     let bar = long_work::bar(steps as u64, "rows");
-    // Together, so that no thread waits for the last of the rows.
+    // Together, so that no thread is idle while the last rows run.
     let (rows, findings) = pool.install(|| {
         rayon::join(
             || suite::run(&all, &engines, &scope, &defaults, &|| bar.inc(1)),

@@ -36,7 +36,7 @@ pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_name
         true => "; many are counted by system here and named by --rows and in report.html",
         false => "",
     };
-    let title = format!("fails on (known shortcomings; ! is a failure that nothing excuses{all}):");
+    let title = format!("fails on (expected failures; ! marks an unexpected one{all}):");
     format!("{}{lines}\n", wrapped(&title))
 }
 

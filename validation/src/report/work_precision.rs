@@ -85,7 +85,9 @@ fn note(report: &Report, summaries: &[EngineSummary]) -> String {
     };
     let apart: Vec<_> = report.engines.iter().zip(summaries).flat_map(of_engine).collect();
     let why = match one_case {
-        true => "these runs missed or invented events, or are scored for a part of the events only",
+        true => {
+            "these runs have missed or spurious events, or are scored for a part of the events only"
+        }
         false => "fewer than nine tenths of their rows were run",
     };
     let hollow = match apart.len() {
@@ -96,7 +98,7 @@ fn note(report: &Report, summaries: &[EngineSummary]) -> String {
     let infinite = match one_case {
         true => "",
         false => {
-            "A run without a result, and for event times one that missed or invented an event, \
+            "A run without a result, and for event times one that has a missed or a spurious event, \
              counts as infinitely wrong."
         }
     };

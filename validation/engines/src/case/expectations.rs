@@ -1,4 +1,4 @@
-//! What a case file says of engines: bounds and known shortcomings.
+//! What a case file says of engines: bounds and expected failures.
 
 use super::bound::{Bound, NamePattern, Quantity, Shortcoming, Statistic};
 use super::located::{FileError, FileText};

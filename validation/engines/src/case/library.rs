@@ -150,7 +150,7 @@ pub fn defaults() -> Result<Defaults, FileError> {
     Ok(Defaults { shortcomings, ..read_bounds("bounds.toml", BOUNDS)? })
 }
 
-/// The known shortcomings in a file of their own, as of engines that are not of this program.
+/// The expected failures in a file of their own, as of engines that are not of this program.
 ///
 /// # Errors
 /// [`FileError`] for a file that cannot be read or understood.

@@ -56,8 +56,8 @@ regimes! {
     OverDamped = "over-damped",
     /// The forcing has nearly the frequency of the elastic contact.
     ResonanceInContact = "resonance in contact",
-    /// A small damping ratio, at which relaxation is fast: one of several.
-    StiffnessLadder = "stiffness ladder",
+    /// One of a series of falling damping ratios, at which the slider's relaxation is stiff.
+    StiffnessSeries = "stiffness ladder",
     /// The start lies on two thresholds at once.
     DegenerateStart = "degenerate start",
     /// The start lies late in time, where a time in one number has lost digits.

@@ -170,7 +170,7 @@ impl Equations for Oscillator {
         if phase == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
     }
 
-    fn switch(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
+    fn after_event(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
         let mut state = *u;
         let (next, imposed) = successor(phase, guard, self.trial_force(u));
         if let Some(force) = imposed {

@@ -106,7 +106,7 @@ impl<E: Equations> Moment<E> {
 
     /// The mode that begins where a guard has ended this one.
     fn after(&self, equations: &E, t: f64, guard: usize, state: &E::State) -> Self {
-        let (mode, state) = equations.switch(self.mode, guard, t, state);
+        let (mode, state) = equations.after_event(self.mode, guard, t, state);
         let entered = equations.enter(Some((self.mode, guard)), mode, t, &state);
         Self { t, began: t, mode, state, entered }
     }
@@ -116,7 +116,7 @@ impl<E: Equations> Moment<E> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum StretchEnd<S> {
     /// A guard has risen to zero.
-    Switch { t: f64, guard: usize, state: S },
+    Event { t: f64, guard: usize, state: S },
     /// The mode goes on.
     Inside { t: f64, state: S },
 }
@@ -142,7 +142,7 @@ pub(crate) fn join<E: Equations>(
     let goes_on = |now: &Moment<E>| now.entered.fires.is_some() || span - now.t > SHORTEST * span;
     while goes_on(&now) && !meter.has_seen_enough(now.t) {
         let ended = match now.entered.fires {
-            Some(guard) => StretchEnd::Switch { t: now.t, guard, state: now.state },
+            Some(guard) => StretchEnd::Event { t: now.t, guard, state: now.state },
             None => stretch(&now, &mut sampler)?,
         };
         for crossing in sampler.counted.drain(..) {
@@ -153,12 +153,12 @@ pub(crate) fn join<E: Equations>(
         }
         now = match ended {
             StretchEnd::Inside { t, state } => Moment { t, state, ..now },
-            StretchEnd::Switch { t, state, .. } if equations.leaves_domain() => {
+            StretchEnd::Event { t, state, .. } if equations.leaves_domain() => {
                 now = Moment { t, state, ..now };
                 outcome.ended = Ended::LeavesDomain;
                 break;
             }
-            StretchEnd::Switch { t, guard, state } => {
+            StretchEnd::Event { t, guard, state } => {
                 meter.events(outcome.events.len())?;
                 meter.phase_ended(t);
                 let next = now.after(equations, t, guard, &state);

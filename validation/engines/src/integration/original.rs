@@ -113,7 +113,7 @@ impl Equations for OriginalOscillator {
         if phase == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
     }
 
-    fn switch(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
+    fn after_event(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
         let [_, y, mut z, v] = *u;
         let (next, imposed) = successor(phase, guard, self.contact_force(u));
         if let Some(force) = imposed {
@@ -152,8 +152,8 @@ mod tests {
             bounded.jacobian_product(phase, &state, &mut expected);
             assert!(near(original.reported(&du), expected), "{phase:?}");
             for guard in 0..GUARDS {
-                let (next, there) = original.switch(phase, guard, 0.7, &u);
-                let (expected, state) = bounded.switch(phase, guard, 0.7, &state);
+                let (next, there) = original.after_event(phase, guard, 0.7, &u);
+                let (expected, state) = bounded.after_event(phase, guard, 0.7, &state);
                 assert_eq!(next, expected);
                 assert!(near(original.reported(&there), state), "{phase:?} {guard}");
             }

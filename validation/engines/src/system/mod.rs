@@ -7,8 +7,8 @@
 
 mod affine;
 pub(crate) mod by_hand;
-mod chain;
 mod checked;
+mod derivative_rows;
 mod given;
 mod numbers;
 mod problem;

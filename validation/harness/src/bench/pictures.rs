@@ -62,7 +62,7 @@ fn left_out_note(count: usize, of: usize) -> String {
         return String::new();
     }
     format!(
-        "Left out are {count} of {of} settings, whose runs miss or invent events, err by more than \
+        "Left out are {count} of {of} settings, whose runs have missed or spurious events, err by more than \
          {SCORED_ERROR:e} or give no result; their reasons are in bench.json."
     )
 }

@@ -1,6 +1,6 @@
 //! What a `bench` holds: the keys of `bench.json`.
 
-use super::contest::{Finisher, exact, most_accurate};
+use super::contest::{SettingResult, exact, most_accurate};
 use super::damping::DampingPoint;
 use super::equal_accuracy::{AccuracyPoint, Basis, COMPARABLE, LOOSE, TIGHT, time_at};
 use super::floor::Floors;
@@ -158,7 +158,7 @@ pub struct Damped {
 /// What was measured.
 pub struct Measurement<'a> {
     /// The cases and who ran on each.
-    pub contests: &'a [(CaseEntry, Vec<Finisher>)],
+    pub contests: &'a [(CaseEntry, Vec<SettingResult>)],
     /// The floor.
     pub floors: &'a Floors,
     /// The lengths.
@@ -192,12 +192,12 @@ impl Bench {
     }
 }
 
-fn rows(case: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
-    let unit = exact(finishers).map(|it| it.series.clone()).unwrap_or_default();
-    let comparable = exact(finishers).map_or(0.0, |it| COMPARABLE * it.score.state_error);
-    let row = |it: &Finisher| {
+fn rows(case: &CaseEntry, results: &[SettingResult]) -> Vec<BenchRow> {
+    let unit = exact(results).map(|it| it.series.clone()).unwrap_or_default();
+    let comparable = exact(results).map_or(0.0, |it| COMPARABLE * it.score.state_error);
+    let row = |it: &SettingResult| {
         let timed = it.result.as_ref().ok();
-        let best = most_accurate(finishers, it.name).is_some_and(|best| std::ptr::eq(best, it));
+        let best = most_accurate(results, it.name).is_some_and(|best| std::ptr::eq(best, it));
         BenchRow {
             case: case.case.clone(),
             engine: it.name.to_owned(),
@@ -221,7 +221,7 @@ fn rows(case: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
             why: it.result.as_ref().err().map(ToString::to_string),
         }
     };
-    at_equal_accuracy(finishers.iter().map(row).collect(), comparable)
+    at_equal_accuracy(results.iter().map(row).collect(), comparable)
 }
 
 /// Reads each engine's work-precision curve at [`LOOSE`], at [`TIGHT`] and at errors comparable to
@@ -243,7 +243,7 @@ fn at_equal_accuracy(mut rows: Vec<BenchRow>, comparable: f64) -> Vec<BenchRow> 
 }
 
 fn damped(point: &DampingPoint) -> Vec<Damped> {
-    let row = |it: &Finisher| {
+    let row = |it: &SettingResult| {
         let timed = it.result.as_ref().ok();
         Damped {
             xi: point.xi,
@@ -254,5 +254,5 @@ fn damped(point: &DampingPoint) -> Vec<Damped> {
             why: it.result.as_ref().err().map(ToString::to_string),
         }
     };
-    point.finishers.iter().map(row).collect()
+    point.results.iter().map(row).collect()
 }

@@ -96,7 +96,7 @@ fn figures(case: &TimedCase, halves: &[Floors; 2], i: usize) -> Result<Figures, 
     let mut timed = enter(exact(), case, Accuracy::Exact)?;
     timed.call()?;
     let cost = |half: &Floors| {
-        let cost = half.switches.get(i).cloned();
+        let cost = half.events.get(i).cloned();
         cost.unwrap_or_else(|| Err(Failure::new("not timed")))
     };
     let [first, second] = [cost(&halves[0])?, cost(&halves[1])?];

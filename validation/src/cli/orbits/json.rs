@@ -55,7 +55,7 @@ pub(crate) struct Followed {
     pub(crate) parameters: ParametersJson,
     pub(crate) period: Option<u32>,
     #[serde(flatten)]
-    pub(crate) course: BranchJson,
+    pub(crate) branch: BranchJson,
     /// The doubled orbit, where `--doubled` asks for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) doubled: Option<Option<Doubled>>,
@@ -76,7 +76,7 @@ pub(crate) struct Doubled {
     pub(crate) criticality: &'static str,
     pub(crate) period: u32,
     #[serde(flatten)]
-    pub(crate) course: BranchJson,
+    pub(crate) branch: BranchJson,
 }
 
 #[derive(Serialize)]

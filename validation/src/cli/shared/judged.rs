@@ -207,7 +207,7 @@ impl JudgedFlags {
         Ok(cases)
     }
 
-    /// The bounds and known shortcomings that apply.
+    /// The bounds and expected failures that apply.
     pub(in crate::cli) fn defaults(&self) -> Result<Defaults> {
         Ok(match self.chosen.cases {
             Some(_) => case::defaults_of_own_cases()?,

@@ -1,8 +1,8 @@
 //! Which rows get a picture of their first wrong event.
 
 use super::EventPicture;
-use super::course::picture;
 use super::mismatch::EventMismatch;
+use super::scene::picture;
 use super::system;
 use crate::case::{Case, Given};
 use crate::engine::{Engine, Limits, OscillatorTask, SampleGrid};

@@ -1,7 +1,7 @@
 //! The first wrong event of a row of a piecewise-affine system, and its picture.
 
-use super::course::{Scene, SceneCurve, in_order, telling};
 use super::scales::Scales;
+use super::scene::{Scene, SceneCurve, in_order, telling};
 use super::{EventPicture, MismatchKind, View};
 use crate::engine::{Engine, Equations, GuardSample, Limits, Outcome, Task, Watched, contain};
 use crate::score::{EventNames, Matching, Measures, Verdict, WINDOW};
@@ -135,7 +135,7 @@ pub(super) fn picture(
     let PreparedSystem { task, truth, case, .. } = prepared;
     let system = task.system.system();
     let (mode, event) = it.event;
-    let guard = Guard::of(task, it.event)?;
+    let guard = EventGuard::of(task, it.event)?;
     let scales = Scales::around((it.at, it.reach), mean_step, prepared.period(), task.span);
     let instants = scales.all_instants();
     let states = SystemTruth::states(case, &instants)?;
@@ -193,7 +193,7 @@ pub(super) fn picture(
 }
 
 /// The guard whose zero is an event.
-struct Guard {
+struct EventGuard {
     row: Row,
     mode: usize,
     /// The guards of its mode that belong to the event, each with the sign with which it is looked
@@ -201,7 +201,7 @@ struct Guard {
     looked: Vec<(usize, f64)>,
 }
 
-impl Guard {
+impl EventGuard {
     fn of(task: &Task, (mode, event): (usize, usize)) -> Option<Self> {
         let own = task.system.system().modes.get(mode)?;
         let equations = Affine::of(&task.system);

@@ -39,7 +39,7 @@ struct Page<'a> {
     failures: Vec<view::FailureView>,
     more_failures: usize,
     ranking: Vec<ranking::RankedLine>,
-    scope: &'a scope::Scope,
+    scope: &'a scope::ReportScope,
     recall_columns: usize,
     grazing: view::GrazingTable,
     trouble: view::TroubleTable,
@@ -65,7 +65,7 @@ impl Exporter for Html {
         let summaries = summary::engines(report);
         let names: Vec<_> = report.engines.iter().map(|it| (it.name, it.library)).collect();
         let looks = looks(&names);
-        let scope = scope::Scope::of(report, evidence);
+        let scope = scope::ReportScope::of(report, evidence);
         let (failures, more_failures) = view::failures(report);
         let page = Page {
             report,

@@ -7,7 +7,7 @@ use super::super::{CASES_FLAG, CaseNote, OSCILLATOR, Report, ReportEvidence};
 const FEW_NAMES: usize = 6;
 
 /// What the page says of the cases as a whole.
-pub(super) struct Scope {
+pub(super) struct ReportScope {
     /// Whether a case of the paper's oscillator is among them.
     pub oscillator: bool,
     /// Whether a case of another system is among them.
@@ -24,7 +24,7 @@ pub(super) struct Scope {
     pub state_error_briefly: String,
 }
 
-impl Scope {
+impl ReportScope {
     pub fn of(report: &Report, evidence: &ReportEvidence) -> Self {
         let notes = &evidence.cases;
         let systems = systems(notes);

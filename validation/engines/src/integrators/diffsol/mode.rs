@@ -70,7 +70,7 @@ impl<E: Equations> DiffsolRun<'_, E> {
                     let rising = self.rising(from.mode, root, &state, guard);
                     if let Some(guard) = rising.iter().copied().find(|it| self.ends(from, *it)) {
                         sampler.take(root, state_at)?;
-                        return Ok(StretchEnd::Switch { t: root, guard, state });
+                        return Ok(StretchEnd::Event { t: root, guard, state });
                     }
                     for guard in rising {
                         if !is_known(from, root, guard, sampler) {

@@ -16,7 +16,7 @@ use crate::equations::{Equations, Numbers};
 use crate::failure::Failure;
 use crate::integration::{
     CubicEnd, GuardSearch, Integration, Meter, Moment, Oscillator, Sampler, StretchEnd, join,
-    longest_of_period, longest_step, walk,
+    locate_at_step_ends, longest_of_period, longest_step,
 };
 use crate::integrators::pins;
 use crate::system::Mode;
@@ -157,7 +157,9 @@ where
             last.0 = until;
         }
         let search = GuardSearch::new(self.integration.equations, from, self.meter);
-        walk(search, from, points, sampler, |left, _, t| self.again(from.mode, left, t))
+        locate_at_step_ends(search, from, points, sampler, |left, _, t| {
+            self.again(from.mode, left, t)
+        })
     }
 
     /// The state at `t` by another integration from a point before it, in one step if that will do.

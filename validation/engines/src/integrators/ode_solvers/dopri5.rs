@@ -94,7 +94,7 @@ where
         };
         sampler.take(t, state_at)?;
         run.step = 0.0;
-        Ok(StretchEnd::Switch { t, guard, state: state_at(t)? })
+        Ok(StretchEnd::Event { t, guard, state: state_at(t)? })
     })
 }
 

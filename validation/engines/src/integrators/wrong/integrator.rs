@@ -91,7 +91,7 @@ impl Engine for Faulty {
             run.step = 0.0;
             detection.before = Some(from.mode);
             let state = detection.state_at(&stretch, from.mode, t)?;
-            Ok(StretchEnd::Switch { t, guard, state })
+            Ok(StretchEnd::Event { t, guard, state })
         })?;
         Ok(outcome.into())
     }

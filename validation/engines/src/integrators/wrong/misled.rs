@@ -120,9 +120,9 @@ impl Equations for Misled<'_> {
         self.sound.rates(mode, t, u)
     }
 
-    fn switch(&self, mode: usize, guard: usize, t: f64, u: &Values) -> (usize, Values) {
+    fn after_event(&self, mode: usize, guard: usize, t: f64, u: &Values) -> (usize, Values) {
         self.memory.before.borrow_mut().push(*u);
-        self.sound.switch(mode, guard, t, u)
+        self.sound.after_event(mode, guard, t, u)
     }
 
     fn ends(&self, mode: usize, guard: usize) -> bool {

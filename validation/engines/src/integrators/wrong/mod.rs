@@ -6,26 +6,26 @@
 //!
 //! They never run beside the others; the power test runs them and asks which bounds notice. Four
 //! are the exact solver on something slightly different; the others are a plain solver that walks
-//! along the closed forms ([`walk`]), which without a fault stays within the bounds it is held to.
+//! along the closed forms ([`stepper`]), which without a fault stays within the bounds it is held to.
 
 mod altered;
 mod closed;
 mod integrator;
 mod misled;
 mod printed;
+mod stepper;
 mod systems;
 mod ties;
-mod walk;
 
 use crate::engine::Engine;
 use altered::{Alteration, Altered};
 pub use closed::Closed;
 use integrator::{Faulty, IntegratorFault};
 use misled::SystemFault;
+use stepper::{ClosedFormStepper, StepperFault};
 pub use systems::COOLDOWN;
 use systems::FaultyOnSystems;
 use ties::LastFirst;
-use walk::{WalkFault, WrongWalk};
 
 /// A wrong engine and what is wrong with it.
 #[derive(Clone, Copy)]
@@ -37,18 +37,25 @@ pub struct WrongEngine {
 }
 
 /// The walking solver without a fault: the control of the power test.
-pub static CONTROL: &dyn Engine = &WrongWalk { name: "walk-control", fault: WalkFault::None };
+pub static CONTROL: &dyn Engine =
+    &ClosedFormStepper { name: "stepper-control", fault: StepperFault::None };
 
 /// How rarely an engine drops an event.
 pub const DROPPED: [u64; 2] = [100, 1000];
 
 static WRONG: [WrongEngine; 9] = [
     WrongEngine {
-        engine: &WrongWalk { name: "wrong-dropped-100", fault: WalkFault::Dropped(DROPPED[0]) },
+        engine: &ClosedFormStepper {
+            name: "wrong-dropped-100",
+            fault: StepperFault::Dropped(DROPPED[0]),
+        },
         fault: "every hundredth event is dropped",
     },
     WrongEngine {
-        engine: &WrongWalk { name: "wrong-dropped-1000", fault: WalkFault::Dropped(DROPPED[1]) },
+        engine: &ClosedFormStepper {
+            name: "wrong-dropped-1000",
+            fault: StepperFault::Dropped(DROPPED[1]),
+        },
         fault: "every thousandth event is dropped",
     },
     WrongEngine {
@@ -64,15 +71,15 @@ static WRONG: [WrongEngine; 9] = [
         fault: "Eq. (20) as printed, with + before the exponential",
     },
     WrongEngine {
-        engine: &WrongWalk { name: "wrong-arctan", fault: WalkFault::Arctangent },
+        engine: &ClosedFormStepper { name: "wrong-arctan", fault: StepperFault::Arctangent },
         fault: "Eqs. (15) to (17) as printed, with arctan for beta and delta",
     },
     WrongEngine {
-        engine: &WrongWalk { name: "wrong-sign-change", fault: WalkFault::SignChange },
+        engine: &ClosedFormStepper { name: "wrong-sign-change", fault: StepperFault::SignChange },
         fault: "guards are looked at only where a step ends, for a change of sign",
     },
     WrongEngine {
-        engine: &WrongWalk { name: "wrong-impact", fault: WalkFault::ContactAtImpact },
+        engine: &ClosedFormStepper { name: "wrong-impact", fault: StepperFault::ContactAtImpact },
         fault: "every impact goes into contact, none straight into progression",
     },
     WrongEngine {

@@ -56,7 +56,7 @@ impl Engine for FaultyOnSystems {
             let taken = if uncut { end_of_step(&stretch.ends, t) } else { t };
             sampler.take(taken, |t| stretch.at(t))?;
             run.step = 0.0;
-            Ok(StretchEnd::Switch { t, guard, state: stretch.at(t)? })
+            Ok(StretchEnd::Event { t, guard, state: stretch.at(t)? })
         })?;
         if self.slip == SystemFault::StateBefore {
             memory.put_back(&mut outcome, &integration);

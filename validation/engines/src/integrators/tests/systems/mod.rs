@@ -39,7 +39,7 @@ impl AskedRun<'_> {
 
     /// The events by the closed form.
     fn truth(&self, step: f64) -> Vec<truth::TrueEvent> {
-        truth::Walked::new(self.system, step).run(self.mode, self.state, self.span).0
+        truth::SteppedClosedForm::new(self.system, step).run(self.mode, self.state, self.span).0
     }
 }
 

@@ -54,7 +54,7 @@ pub(super) fn value(row: &AugmentedRow, x: &[f64], [cos, sin]: [f64; 2]) -> (f64
 
 /// A row with its derivatives in one mode.
 #[derive(Clone, Debug)]
-pub(super) struct Chain {
+pub(super) struct DerivativeRows {
     pub(super) rows: Vec<AugmentedRow>,
 }
 
@@ -66,7 +66,7 @@ pub(super) struct Leading {
     pub(super) positive: bool,
 }
 
-impl Chain {
+impl DerivativeRows {
     /// As many derivatives as z has entries: if these are zero, all are.
     pub(super) fn new(row: AugmentedRow, motion: &ModeMatrix) -> Self {
         let next = |row: &AugmentedRow| Some(motion.derivative(row));
