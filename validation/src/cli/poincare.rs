@@ -1,12 +1,12 @@
 //! `poincare`: a stroboscopic section, as a table, an array or a picture.
 
 use super::note;
-use super::shared::endless::notice;
 use super::shared::format::OutputFlags;
 use super::shared::long_work::{self, Bar};
 use super::shared::model::ModelFlags;
 use super::shared::parse::{self, MAX_PERIODS};
 use super::shared::progress::Progress;
+use super::shared::terminal::endless_notice;
 use crate::case::Problem;
 use crate::number::shortest;
 use crate::picture::{self, Figure, Layer, Plot};
@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
         return Ok(false);
     }
     if let Some(endless) = Section::endless_at(&problem.model, &last) {
-        note(&notice(endless));
+        note(&endless_notice(endless));
     }
     Ok(true)
 }

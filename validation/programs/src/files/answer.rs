@@ -1,7 +1,7 @@
 //! An answer in files, as the reply of a program would say it.
 
+use super::rows::sample_times;
 use super::table::{Cells, EVENTS, SAMPLES, Table};
-use super::times::sample_times;
 use crate::answer::{AnswerPart, Wrong, checked};
 use crate::text::plain;
 use crate::wire::{BoundedList, Count, EndedBy, EventReply, RunReply, StateReply};
@@ -51,7 +51,7 @@ pub(super) fn answer(
     )
 }
 
-/// What a file of events tells.
+/// The content of a file of events.
 #[derive(Default)]
 struct Told {
     events: Vec<EventReply>,

@@ -12,9 +12,10 @@ use crate::truth::SystemTruth;
 /// An event that is wrong, and which events of truth and engine are the same.
 pub(super) struct SystemMismatch {
     kind: MismatchKind,
-    /// When, since the start.
+    /// The time of the event, since the start.
     at: f64,
-    /// How far it is to what it is confused with: the next event on its own side, or its partner.
+    /// The distance to the event that it may be confused with: the next one of the same run, or its
+    /// partner in the other.
     reach: f64,
     /// The mode in which it lies, and its number there.
     event: (usize, usize),
@@ -132,7 +133,7 @@ pub(super) fn picture(
     it: &SystemMismatch,
     (engine, mean_step, limits): (&dyn Engine, f64, &Limits),
 ) -> Option<EventPicture> {
-    let PreparedSystem { task, truth, case, .. } = prepared;
+    let PreparedSystem { task, case, .. } = prepared;
     let system = task.system.system();
     let (mode, event) = it.event;
     let guard = EventGuard::of(task, it.event)?;
@@ -142,6 +143,35 @@ pub(super) fn picture(
     let watched = Watched { window: scales.window(), instants: instants.clone() };
     let again = Task { watched: Some(watched), ..task.clone() };
     let outcome = contain(|| engine.run(&again, row.accuracy, limits)).ok()?;
+    let scene = scene(prepared, it, &guard, &outcome, (&instants, &states));
+    let views: Vec<View> = scales.spans.iter().map(|span| scene.view(*span)).collect();
+    let event = system.event_name(mode, event)?;
+    Some(EventPicture {
+        case: row.case.clone(),
+        engine: row.engine.to_owned(),
+        tolerance: row.accuracy.tolerance(),
+        step: row.accuracy.step(),
+        kind: it.kind,
+        title: it.title(prepared, event),
+        guard: format!("guard of {event}"),
+        modes: system.modes.iter().map(|mode| mode.name.clone()).collect(),
+        centre: it.at,
+        telling: telling(&views),
+        views,
+    })
+}
+
+/// The true run and the engine's run around an event, from the true states and the outcome of the
+/// engine's run at the same instants.
+fn scene(
+    prepared: &PreparedSystem,
+    it: &SystemMismatch,
+    guard: &EventGuard,
+    outcome: &Outcome,
+    (instants, states): (&[f64], &[Vec<f64>]),
+) -> Scene {
+    let PreparedSystem { task, truth, .. } = prepared;
+    let system = task.system.system();
     let of_states = |states: &mut dyn Iterator<Item = &[f64]>| -> Vec<f64> {
         instants.iter().zip(states).map(|(t, state)| guard.value(task, *t, state)).collect()
     };
@@ -153,7 +183,7 @@ pub(super) fn picture(
     let name = |mode: usize| system.modes.get(mode).map(|it| it.name.clone()).unwrap_or_default();
     let rows = truth.events.iter().enumerate();
     let own = outcome.events.iter().enumerate();
-    let scene = Scene {
+    Scene {
         at: it.at,
         first: name(task.mode),
         truth: SceneCurve {
@@ -173,23 +203,8 @@ pub(super) fn picture(
         },
         steps: trace.map(|trace| trace.steps.clone()).unwrap_or_default(),
         looks: in_order(looks.filter_map(|look| guard.of_look(look))),
-        instants: instants.clone(),
-    };
-    let views: Vec<View> = scales.spans.iter().map(|span| scene.view(*span)).collect();
-    let event = system.event_name(mode, event)?;
-    Some(EventPicture {
-        case: row.case.clone(),
-        engine: row.engine.to_owned(),
-        tolerance: row.accuracy.tolerance(),
-        step: row.accuracy.step(),
-        kind: it.kind,
-        title: it.title(prepared, event),
-        guard: format!("guard of {event}"),
-        modes: system.modes.iter().map(|mode| mode.name.clone()).collect(),
-        centre: it.at,
-        telling: telling(&views),
-        views,
-    })
+        instants: instants.to_vec(),
+    }
 }
 
 /// The guard whose zero is an event.

@@ -155,7 +155,7 @@ fn bounds(row: &ReportRow, texts: &mut Texts) -> Vec<Value> {
     row.bounds.iter().map(&mut bound).collect()
 }
 
-/// What a quantity is called where its key does not say it.
+/// The name of a quantity whose key does not say it.
 fn in_words(quantity: &str) -> &str {
     match quantity {
         "events spurious" => "spurious events",

@@ -7,7 +7,6 @@
 
 mod command;
 mod data;
-mod horizons;
 mod ranking;
 mod scope;
 mod view;
@@ -43,7 +42,7 @@ struct Page<'a> {
     recall_columns: usize,
     grazing: view::GrazingTable,
     trouble: view::TroubleTable,
-    horizons: Vec<horizons::HorizonLine>,
+    horizons: Vec<ranking::HorizonLine>,
     power: view::PowerTable,
     colours: String,
     style: &'static str,
@@ -78,7 +77,7 @@ impl Exporter for Html {
             recall_columns: summaries.iter().map(|it| it.settings.len()).max().unwrap_or(0),
             grazing: view::grazing(report, evidence),
             trouble: view::trouble(report, evidence),
-            horizons: horizons::horizons(report),
+            horizons: ranking::horizons(report),
             power: view::power(evidence),
             colours: view::colours(&looks),
             style: STYLE,
