@@ -1,6 +1,6 @@
-//! What an event of a piecewise-affine system costs, of each system inside the program; and of the
+//! The cost of an event of each piecewise-affine system inside the program, and of the
 //! oscillator beside its own solver, as the quotient of interleaved rounds. The evaluations and
-//! pieces an event are printed with each.
+//! pieces per event are printed with each.
 //!
 //! `cargo bench -p percuss-validation --bench affine`. For exploration.
 

@@ -1,4 +1,4 @@
-//! The switches of the f64 solver, proved again in interval arithmetic: see docs/ROUNDING.md.
+//! The events of the f64 solver, proved again in interval arithmetic: see docs/ROUNDING.md.
 
 #![allow(clippy::neg_cmp_op_on_partial_ord, reason = "a NaN must prove nothing")]
 

@@ -165,7 +165,7 @@ fn comments_are_at_most_100_columns_wide() {
         let text = std::fs::read_to_string(&path).expect("the source is text");
         let lines = text.lines().enumerate().filter(|(_, line)| {
             let begins = |mark: &&str| line.trim_start().starts_with(mark);
-            marks.iter().any(|it| begins(it)) && line.chars().count() > WIDTH
+            marks.iter().any(begins) && line.chars().count() > WIDTH
         });
         wide.extend(lines.map(|(n, _)| format!("{}:{}", path.display(), n + 1)));
     }

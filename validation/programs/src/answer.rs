@@ -6,12 +6,13 @@ use percuss_engines::system::Mode;
 use std::fmt;
 use std::time::Duration;
 
-/// How far beyond the horizon, relative to the whole run, rounding may put an event.
+/// The distance beyond the horizon at which rounding may put an event, relative to the whole run.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// How much longer than the wait for its answer a run may say it took: two clocks differ by less.
+/// The time by which a run's reported time may exceed the wait for its answer: two clocks differ by
+/// less.
 const CLOCKS: Duration = Duration::from_millis(10);
 
-/// What is wrong with an answer, and where.
+/// An error in an answer, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Wrong {
     pub(crate) part: AnswerPart,

@@ -55,7 +55,7 @@ fn is_unexpected(report: &Report, it: &Ranked, case: &str) -> bool {
     report.results.iter().filter(own).any(unexpected)
 }
 
-/// How many cases of a system there are, on how many an engine fails, and on how many unexcused.
+/// The number of cases of a system, of those that an engine fails, and of unexpected failures.
 #[derive(Clone, Copy, Default)]
 struct SystemCount {
     all: usize,

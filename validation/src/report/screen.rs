@@ -1,4 +1,4 @@
-//! What `validate` prints: which integrator can be trusted with events, and where each fails.
+//! The summary that `validate` prints: the ranking of integrators on events, and where each fails.
 //!
 //! A terminal shows the last lines, so the ranking and the failures stand there and the details
 //! above them. Every line fits [`WIDTH`](super::WIDTH) columns.

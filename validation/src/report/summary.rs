@@ -30,7 +30,7 @@ pub(super) struct SettingSummary {
     /// Whether the figures may stand beside those of other engines: over most of the rows, or, of
     /// one row, over all events of the truth and no others.
     pub is_comparable: bool,
-    /// What they are over, in words.
+    /// The rows over which the figures are taken, in words.
     pub of: String,
     pub failed: usize,
     pub expected: usize,

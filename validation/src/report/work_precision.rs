@@ -11,7 +11,7 @@ use crate::picture::{Axis, AxisScale, Curve, Curves, Marker, Stroke};
 /// More hollow points than these are counted instead of named.
 const FEW_POINTS: usize = 8;
 
-/// Which error is shown, in words and as a figure.
+/// An error that is shown: its words and its figure.
 type Shown = (&'static str, fn(&SettingSummary) -> f64);
 
 impl Palette {
@@ -75,7 +75,7 @@ fn logarithmic(label: &str) -> Axis {
     Axis { label: label.to_owned(), scale: AxisScale::Logarithmic }
 }
 
-/// What the hollow points are, and what counts as infinitely wrong.
+/// The note on hollow points and on runs that count as infinitely wrong.
 fn note(report: &Report, summaries: &[EngineSummary]) -> String {
     let one_case = report.number_of_cases() == 1;
     let of_engine = |(engine, summary): (&EngineEntry, &EngineSummary)| {

@@ -89,7 +89,7 @@ fn bench_record() {
     let text = std::fs::read_to_string(&path).expect("read");
     let lines: Vec<Value> = text.lines().map(json).collect();
     lines.iter().for_each(|line| assert_valid("bench-record.schema.json", line));
-    // Appended to, and a row a workload each time.
+    // Appended to, and one row per workload each time.
     assert_eq!(lines.len(), 2 * (table.lines().count() - 1));
     assert!(lines.iter().all(|line| line["percuss"] == env!("CARGO_PKG_VERSION")));
     let picture = folder.path().join("history.png").display().to_string();

@@ -1,4 +1,4 @@
-//! The regimes that cases stand for.
+//! The regimes of motion that cases stand for.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -6,12 +6,12 @@ use std::fmt;
 /// Regimes with their names in case files.
 macro_rules! regimes {
     ($($(#[$doc:meta])* $regime:ident = $name:literal,)*) => {
-        /// The regime that a case stands for.
+        /// The regime of motion that a case stands for.
         #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(from = "String", into = "String")]
         pub enum Regime {
             $($(#[$doc])* $regime,)*
-            /// A regime that percuss has no word for.
+            /// A regime that percuss does not know.
             Other(String),
         }
 

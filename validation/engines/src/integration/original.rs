@@ -2,7 +2,7 @@
 //!
 //! Displacements of the mass, of the slider's top and of its bottom are integrated as they are,
 //! unbounded; p = x - v and q = z - v are formed only for the scores. That the same bounded motion
-//! and the same drift come out is the paper's decoupling, tested. At a switch x and z move onto the
+//! and the same drift come out is the paper's decoupling, tested. At an event x and z move onto the
 //! surface and v stays, as in the bounded co-ordinates.
 
 use super::field::{Coordinates, GUARDS, count, settle, successor};
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
     use crate::integration::field::Oscillator;
 
-    /// Eq. (10) turns one set of equations into the other, in every phase and at every switch.
+    /// Eq. (10) turns one set of equations into the other, in every phase and at every event.
     #[test]
     fn the_transformation_decouples() {
         let parameters = Parameters::default();

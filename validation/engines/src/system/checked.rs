@@ -42,7 +42,7 @@ pub(super) struct Guard {
     pub(super) chain: DerivativeRows,
 }
 
-/// What follows where a mode ends.
+/// The reset and the successors at the end of a mode.
 #[derive(Clone, Debug)]
 pub(super) struct ModeEnd {
     /// The matrix R of z+ = R z.
@@ -54,7 +54,7 @@ pub(super) struct ModeEnd {
 pub(super) struct Successor {
     pub(super) when: Option<DerivativeRows>,
     pub(super) mode: usize,
-    /// Which derivatives of `when`, and of the guards of the mode, the event's guard makes zero.
+    /// The derivatives of `when`, and of the guards of the mode, that the event's guard makes zero.
     pub(super) when_zeros: u16,
     pub(super) zeros: Vec<u16>,
 }
@@ -113,7 +113,7 @@ impl CheckedSystem {
         Ok(Self { backward: true, ..Self::new(self.system.backward())? })
     }
 
-    /// The system as it was given.
+    /// The system before the checks.
     #[must_use]
     pub fn system(&self) -> &System {
         &self.system

@@ -1,4 +1,4 @@
-//! What is refused, and what is known of a system before it is run.
+//! Systems that are refused, and facts that are known before a system is run.
 
 use super::*;
 use crate::equations::{Equations, Numbers};

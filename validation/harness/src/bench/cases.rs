@@ -1,4 +1,5 @@
-//! The cases that are timed where none are named, and those of other systems in docs/PERFORMANCE.md.
+//! The cases that are timed where none are named, and those of other systems in
+//! docs/PERFORMANCE.md.
 
 /// Every regime whose dearest engine takes a second at most: what is left out (`resonance`,
 /// `slow-forcing`) keeps explicit integrators busy for minutes, and `-c` asks for it.

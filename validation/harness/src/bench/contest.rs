@@ -31,9 +31,9 @@ pub struct Timed {
     pub work: Work,
     /// The best time of each round, ns per forcing period.
     pub series: RoundTimes,
-    /// The harness's share of the time: one less the median over the rounds of one round's quotient,
-    /// the engine's part alone ([`super::library_part`]) over the whole run. A share that is next to
-    /// nothing may come out below zero.
+    /// The harness's share of the time: one less the median over the rounds of one round's
+    /// quotient, the engine's part alone ([`super::library_part`]) over the whole run. A share that
+    /// is next to nothing may come out below zero.
     pub harness_share: Option<f64>,
 }
 

@@ -21,7 +21,7 @@ const BUDGET: u64 = 5_000_000;
 
 /// Something that can be timed on a case.
 pub trait Contestant: Sync {
-    /// What the contestant says of itself: its name, its library, how its accuracy is chosen.
+    /// The contestant's declaration: its name, its library, and how its accuracy is chosen.
     fn declaration(&self) -> Declaration;
 
     /// Made ready for a case; nothing of this is timed.

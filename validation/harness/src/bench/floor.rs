@@ -37,8 +37,8 @@ pub struct Cost {
     pub series: RoundTimes,
 }
 
-/// Evaluates one sine-cosine pair and one exponential of libm. This is kept as a fixed reference for
-/// all versions, although the solver now uses its own tables.
+/// Evaluates one sine-cosine pair and one exponential of libm. This is kept as a fixed reference
+/// for all versions, although the solver now uses its own tables.
 #[must_use]
 pub fn transcendental(angle: f64) -> f64 {
     let (sin, cos) = libm::sincos(angle);

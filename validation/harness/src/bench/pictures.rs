@@ -133,7 +133,7 @@ fn damping(bench: &Bench) -> Curves {
 const MARKERS: [Marker; 5] =
     [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::Nabla];
 
-/// What a unit of each workload has cost, version by version.
+/// The cost of a unit of each workload, version by version.
 #[must_use]
 pub fn history(history: &History) -> Curves {
     let mut versions: Vec<&HistoryRecord> = Vec::new();

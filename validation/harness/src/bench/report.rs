@@ -1,4 +1,4 @@
-//! What a `bench` holds: the keys of `bench.json`.
+//! The keys of `bench.json`.
 
 use super::contest::{SettingResult, exact, most_accurate};
 use super::damping::DampingPoint;
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// A whole bench.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Bench {
-    /// The format's number, and what was run where.
+    /// The number of the format, and the build and machine.
     #[serde(flatten)]
     pub build: Build,
     /// Interleaved rounds.
@@ -23,9 +23,9 @@ pub struct Bench {
     pub cases: Vec<CaseEntry>,
     /// A row for each case, contestant and setting.
     pub results: Vec<BenchRow>,
-    /// What one evaluation costs at the least.
+    /// The least cost of one closed-form evaluation.
     pub floor: Floor,
-    /// What the exact solver takes for an event of each case's run.
+    /// The exact solver's time per event on each case.
     pub events: Vec<EventCost>,
     /// Cost against length; empty where only some cases were asked for.
     pub length: Vec<Length>,
@@ -61,9 +61,9 @@ pub struct BenchRow {
     pub most_accurate: bool,
     /// Whether it errs at most [`COMPARABLE`] times as much as the exact solver here.
     pub comparable: bool,
-    /// Whether its steps are chosen by a tolerance.
+    /// Whether a tolerance chooses the engine's steps.
     pub adaptive: bool,
-    /// Why there is no time.
+    /// The reason why there is no time.
     pub why: Option<String>,
 }
 
@@ -78,7 +78,7 @@ impl BenchRow {
         }
     }
 
-    /// How many times as long as the exact solver its engine takes on this basis.
+    /// The engine's time over the exact solver's, on the given basis.
     #[must_use]
     pub fn ratio(&self, basis: Basis) -> Option<f64> {
         match basis {
@@ -110,7 +110,7 @@ pub struct Floor {
     pub independent_ns: f64,
 }
 
-/// What the exact solver takes for an event of a case's run, everything that is timed divided by
+/// The exact solver's time for an event of a case's run: everything that is timed divided by
 /// its events.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
@@ -143,7 +143,7 @@ impl EventCost {
     }
 }
 
-/// A contestant at one xi.
+/// A contestant at one damping ratio xi.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
 pub struct Damped {
@@ -155,7 +155,7 @@ pub struct Damped {
     pub why: Option<String>,
 }
 
-/// What was measured.
+/// The measurements from which a bench is made.
 pub struct Measurement<'a> {
     /// The cases and who ran on each.
     pub contests: &'a [(CaseEntry, Vec<SettingResult>)],
@@ -163,7 +163,7 @@ pub struct Measurement<'a> {
     pub floors: &'a Floors,
     /// The lengths.
     pub length: Vec<Length>,
-    /// What was measured at each damping ratio.
+    /// The results at each damping ratio.
     pub damping: &'a [DampingPoint],
 }
 

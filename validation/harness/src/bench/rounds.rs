@@ -98,7 +98,7 @@ pub fn time_interleaved(
         for i in order {
             if let Ok(series) = &mut results[i]
                 && round < benchmarks[i].rounds()
-                && !has_rounds_enough(series, round)
+                && !has_enough_rounds(series, round)
             {
                 let best = best_of(benchmarks[i], &mut calls[i], pace);
                 match best {
@@ -114,7 +114,7 @@ pub fn time_interleaved(
 
 /// Whether a benchmark is left out of a round: a call that is so long meets the quiet and the busy
 /// moments of a machine alike, and three rounds tell as much as ten.
-fn has_rounds_enough(series: &RoundTimes, round: usize) -> bool {
+fn has_enough_rounds(series: &RoundTimes, round: usize) -> bool {
     const LONG: f64 = 5e7;
     const ENOUGH: usize = 3;
     round >= ENOUGH && series.best() > LONG

@@ -19,9 +19,9 @@ use streams::{OutputLine, Streams};
 /// The longest line that is read: an answer of so many events and samples as are accepted is
 /// shorter.
 const MOST_LINE: usize = 32 << 20;
-/// How long a program may take to say that it waits for the next request.
+/// The time within which a program has to say that it waits for the next request.
 const READY: Duration = Duration::from_secs(10);
-/// How long a program whose output has ended may take to end itself.
+/// The time within which a program whose output has ended has to end itself.
 const EXIT_WAIT: Duration = Duration::from_millis(500);
 
 /// A program that runs. It is ended, with all that it has started, when this is dropped.

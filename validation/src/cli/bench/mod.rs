@@ -52,7 +52,7 @@ pub(super) struct Arguments {
     long: bool,
 }
 
-/// What there is between versions.
+/// The subcommands of `bench`.
 #[derive(Subcommand)]
 enum Other {
     Record(record::Arguments),

@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })
 }
 
-/// What the file holds, untouched: old lines stay as they were written.
+/// The bytes of the file: old lines stay as they were written.
 fn raw(path: &Path) -> Result<String> {
     match std::fs::read_to_string(path) {
         Ok(text) => Ok(text),

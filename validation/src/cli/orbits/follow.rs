@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     Ok(if why.is_none() { DONE } else { OUT_OF_BOUNDS })
 }
 
-/// Whether a person is told of what goes on.
+/// Whether progress and notes are shown.
 #[derive(Clone, Copy)]
 pub(crate) enum Reporting<'a> {
     /// Shares that are done are told, and what a scan has found.

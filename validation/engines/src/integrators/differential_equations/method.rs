@@ -37,7 +37,7 @@ fn power_of_ratio(h: f64) -> f64 {
 /// The distance from a power of the ratio, in powers, that counts as rounding.
 const RATIO_ROUNDING: f64 = 1e-9;
 
-/// How a state inside a step is had.
+/// The source of states inside a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum Inside {
     /// States inside a step come from the library's interpolant.
@@ -94,7 +94,7 @@ pub(in super::super) trait LibraryMethod {
     }
 }
 
-/// How a state inside a step is had, where that is a function of the method.
+/// The source of states inside a step, for methods with a function of their own.
 macro_rules! inside {
     (Again) => {
         fn again<E: Equations<State: State<f64>>>(

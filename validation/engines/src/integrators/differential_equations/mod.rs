@@ -18,8 +18,9 @@
 //!   ([`method::Inside`]).
 //! - Events of methods that integrate again inside a step are located from step ends
 //!   (`integration/step_ends.rs`), like those of ode_solvers: guards are evaluated at the ends of
-//!   steps, and inside only where the ends show a crossing or a peak. Evaluating them at eight instants of every step cost `dop853` five times
-//!   the right-hand sides and found no further event.
+//!   steps, and inside only where the ends show a crossing or a peak. Evaluating them at eight
+//!   instants of every step cost `dop853` five times the right-hand sides and found no further
+//!   event.
 //! - `radau5` chooses its steps from fixed ratios ([`method`]): the library reuses a factorisation
 //!   that belongs to another step, which otherwise spoils a step here and there by thousands of
 //!   tolerances.

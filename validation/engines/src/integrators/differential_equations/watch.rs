@@ -50,7 +50,7 @@ impl<'a, M: LibraryMethod, E: Equations<State: State<f64>>> StepWatch<'a, M, E> 
         Self { field, looks, tolerance, span, sampler, last, ended, method }
     }
 
-    /// How the stretch ended, once the library has come back.
+    /// The ending of the stretch, once the library has returned.
     pub(super) fn ended(
         self,
         solved: Result<(), Failure>,

@@ -39,7 +39,7 @@ const TINY: f64 = 1e-10;
 pub(in super::super) struct Dop853 {
     pub(super) name: &'static str,
     pub(super) role: Role,
-    /// Whether time is one more state.
+    /// Whether time is integrated as one more state.
     pub(super) clock: bool,
 }
 
@@ -101,7 +101,7 @@ impl Engine for Dop853 {
     }
 }
 
-/// Runs an integration on vectors of so many dimensions.
+/// Runs an integration on vectors of dimension `D`.
 fn run<E: Equations, D: Dim>(
     integration: &Integration<'_, E>,
     [clock, heun]: [bool; 2],

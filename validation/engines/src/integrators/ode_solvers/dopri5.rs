@@ -72,7 +72,7 @@ impl<E: Coordinates> Engine for Dopri5<E> {
     }
 }
 
-/// Runs an integration on vectors of so many dimensions.
+/// Runs an integration on vectors of dimension `D`.
 fn run<E: Equations, D: Dim>(
     integration: &Integration<'_, E>,
     accuracy: Accuracy,

@@ -59,7 +59,7 @@ impl Engine for Rk4 {
     }
 }
 
-/// Runs an integration on vectors of so many dimensions.
+/// Runs an integration on vectors of dimension `D`.
 fn run<E: Equations, D: Dim>(
     integration: &Integration<'_, E>,
     accuracy: Accuracy,

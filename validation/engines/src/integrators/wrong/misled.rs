@@ -7,7 +7,7 @@ use crate::integration::Integration;
 use crate::system::{Affine, Values};
 use std::cell::{Cell, RefCell};
 
-/// What is wrong.
+/// The fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SystemFault {
     None,
@@ -25,7 +25,7 @@ pub(super) enum SystemFault {
     MissesAtStart,
     /// States in a step that an event cuts short are those of the whole step.
     UncutOutput,
-    /// An event has the state before its reset.
+    /// An event is reported with the state before its reset.
     StateBefore,
     /// Only the first of the events in one instant is noticed.
     OneAtOnce,
@@ -33,7 +33,7 @@ pub(super) enum SystemFault {
     Cooldown,
 }
 
-/// What a faulty run keeps in mind.
+/// The memory of a faulty run.
 #[derive(Default)]
 pub(super) struct Memory {
     /// A guard that went past zero without being noticed, until it is inside again.

@@ -183,7 +183,7 @@ impl Scan<'_> {
     }
 }
 
-/// How a guard depends on p, y and q, but for its sign.
+/// The gradient of a guard with respect to p, y and q, but for its sign.
 fn gradient(phase: Phase, parameters: &Parameters) -> [f64; 3] {
     match phase {
         Phase::NoContact => [1.0, 0.0, 1.0],
