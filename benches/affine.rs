@@ -1,6 +1,6 @@
-//! What an event of a piecewise-affine system costs, of each system inside the program; and of the
+//! The cost of an event of each piecewise-affine system inside the program, and of the
 //! oscillator beside its own solver, as the quotient of interleaved rounds. The evaluations and
-//! pieces an event are printed with each.
+//! pieces per event are printed with each.
 //!
 //! `cargo bench -p percuss-validation --bench affine`. For exploration.
 
@@ -13,7 +13,7 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use percuss::affine::{Solver, System, SystemFile};
 use percuss::{Model, Parameters, Start};
-use percuss_validation::bench::rounds::{PACE, Plain, race};
+use percuss_validation::bench::rounds::{PACE, Plain, time_interleaved};
 use percuss_validation::systems::{SYSTEMS, named};
 use std::hint::black_box;
 
@@ -89,7 +89,7 @@ fn beside_its_own_solver(_: &mut Criterion) {
             let times = segments.map(|segment| model.time(&segment.entry().instant));
             black_box(times.fold(0.0, f64::max));
         });
-        let times = race(&mut [&mut affine, &mut own], ROUNDS, PACE, &|| ());
+        let times = time_interleaved(&mut [&mut affine, &mut own], ROUNDS, PACE, &|| ());
         let times: Vec<_> = times.into_iter().map(|it| it.expect("no check")).collect();
         let mut events = solver.run(start, f64::MAX).expect("a start");
         let count = events.by_ref().take(EVENTS).count() as f64;

@@ -1,4 +1,4 @@
-//! What one evaluation of each phase's closed form costs, and of its derivative.
+//! The cost of one evaluation of each phase's closed form, and of its derivative.
 //!
 //! `cargo bench -p percuss-validation --bench closed_forms`. For exploration.
 

@@ -1,4 +1,4 @@
-//! What a switch costs in an ensemble: by each instruction set that the processor has, on one core
+//! The cost of an event in an ensemble: by each instruction set that the processor has, on one core
 //! and in one interleaved run, beside the scalar solver; and two threads beside two processes.
 //!
 //! `cargo bench -p percuss-validation --bench ensembles`. Of every round the quotients are taken,
@@ -26,11 +26,11 @@ const REGIMES: [(f64, f64); 7] =
 const STARTS: usize = 256;
 const PERIODS: u32 = 100;
 const ROUNDS: usize = 9;
-/// How long two threads and two processes work in each round.
+/// The time for which two threads and two processes work in each round.
 const SPELL: Duration = Duration::from_millis(500);
 const PROCESS: &str = "--process";
 
-/// Counts what passes.
+/// Counts the events of a run.
 struct EventCounter {
     left: u32,
     switches: u64,
@@ -68,7 +68,7 @@ impl Ensemble {
         Self { model: self.model, starts: self.starts.repeat(2) }
     }
 
-    /// Follows all starts; the number of switches.
+    /// Follows all starts and returns the number of events.
     fn run(&self, by: Instructions) -> u64 {
         let (counts, _) = follow_by(by, self.starts.len(), |number| {
             let entry = self.starts[number];
@@ -79,14 +79,14 @@ impl Ensemble {
         counts.iter().map(|count| count.switches).sum()
     }
 
-    /// Nanoseconds a switch.
+    /// Nanoseconds per event.
     fn cost(&self, by: Instructions) -> f64 {
         let clock = Instant::now();
         let switches = self.run(by);
         clock.elapsed().as_secs_f64() * 1e9 / switches as f64
     }
 
-    /// Switches a second while a spell lasts.
+    /// Events per second during a spell.
     fn throughput(&self) -> f64 {
         let clock = Instant::now();
         let mut switches = 0;
@@ -110,7 +110,7 @@ fn one_core(ensemble: &Ensemble) {
     for (k, set) in sets.iter().enumerate() {
         let (cost, gain) = (costs(k).median(), costs(0).ratio_to(&costs(k)));
         println!(
-            "  {:8} {cost:6.1} ns a switch, {gain:.2} times the scalar throughput",
+            "  {:8} {cost:6.1} ns per event, {gain:.2} times the scalar throughput",
             set.as_str()
         );
     }

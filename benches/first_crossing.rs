@@ -1,6 +1,6 @@
-//! What a switch costs: guessed and certified, and by plain one-sided stepping (the judge), beside
+//! The cost of an event: guessed and certified, and by plain one-sided stepping (the judge), beside
 //! the floor: the sine, cosine and exponential of one closed-form evaluation, each waiting for the
-//! last as in one trajectory, and independent. The evaluations a switch are printed with each
+//! last as in one trajectory, and independent. The evaluations per event are printed with each
 //! regime, so that one run tells the quotients.
 //!
 //! `cargo bench -p percuss-validation --bench first_crossing`. For exploration: numbers of a noisy
@@ -54,7 +54,7 @@ fn switches(criterion: &mut Criterion) {
         let mut run = model.trajectory(model.start(&Start::default()).expect("rest is a start"));
         let count = run.by_ref().take(SWITCHES).count();
         let evaluations = run.counters().evaluations as f64 / count as f64;
-        println!("{name}: {evaluations:.3} evaluations a switch");
+        println!("{name}: {evaluations:.3} evaluations per event");
         group.bench_function(BenchmarkId::new("certified", &name), |bencher| {
             bencher.iter(|| black_box(segments(&model).take(SWITCHES).last()));
         });

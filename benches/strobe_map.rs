@@ -1,4 +1,4 @@
-//! What the strobe map costs: its image, its derivative, and a periodic orbit by Newton's method.
+//! The cost of the strobe map: its image, its derivative, and a periodic orbit by Newton's method.
 //!
 //! `cargo bench -p percuss-validation --bench strobe_map`. For exploration.
 

@@ -1,4 +1,4 @@
-//! What a run costs: its switches alone, and with states between them.
+//! The cost of a run: its events alone, and with states between them.
 //!
 //! `cargo bench -p percuss-validation --bench trajectory`. For exploration.
 

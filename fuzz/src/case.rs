@@ -9,11 +9,11 @@ pub struct Case {
     pub start: Start,
     /// Length of the run in forcing periods, before it is cut to what the check allows.
     pub periods: f64,
-    /// What the case is drawn from.
+    /// The family that the case is drawn from.
     pub family: Family,
 }
 
-/// What a case is drawn from.
+/// The families of cases.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
     /// Every accepted model, from every start.

@@ -1,4 +1,4 @@
-//! What every run must satisfy, whatever the input.
+//! The properties that every run must have, whatever the input.
 
 use crate::double_double::{DoubleDouble, UNIT};
 use crate::{Case, Family};
@@ -13,7 +13,7 @@ const SEGMENTS: usize = 20;
 const LONGEST: f64 = 200.0;
 
 /// Rounding allowed in what is compared, in units of eps times the terms that went into it: the
-/// closed forms claim 10 eps for a phase of at most one forcing period, and a switch adds as much.
+/// closed forms claim 10 eps for a phase of at most one forcing period, and an event adds as much.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
 
 /// What products that underflow may lose of a state: the smallest normal number times a/omega^2 <=
@@ -29,12 +29,12 @@ const JUDGE_EVALUATIONS: usize = 2000;
 /// One case in so many of those drawn from everything is judged.
 const ONE_IN: u64 = 16;
 
-/// What a switch may be off in units of what rounding of the guard moves it by: the search allows
-/// itself as much again, and the guards of the two arithmetics differ by some roundings of the
-/// parameters' products.
+/// How far an event may be off, in units of what rounding of the guard moves it by: the search
+/// allows itself as much again, and the guards of the two arithmetics differ by some roundings of
+/// the parameters' products.
 const WIDTHS: f64 = 8.0;
 
-/// What was met.
+/// The counts of what the runs met.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// Phases passed.
@@ -148,7 +148,7 @@ fn without_horizon(
     Ok(())
 }
 
-/// Holds a phase to what 106 bits decide.
+/// Compares the end of a phase with the decision of 106 bits.
 fn judge(
     model: &Model,
     segment: &Segment,
@@ -173,7 +173,7 @@ fn judge(
         }
         (Exit::Switch(_) | Exit::Undecidable, _) => false,
         (_, OneSidedEnd::Clear) => true,
-        // The horizon may fall into what rounding moves the switch by.
+        // The horizon may fall into what rounding moves the event by.
         (_, OneSidedEnd::Crossing { elapsed, width, .. }) => elapsed > left - WIDTHS * width,
     };
     tally.decided += 1;
@@ -218,7 +218,7 @@ impl History {
         let angle = entry.instant.angle();
         ensure!((0.0..=std::f64::consts::TAU).contains(&angle), "angle {angle:e}");
 
-        // The limit of the search, up to where the phase ends or is cut; a switch next to the
+        // The limit of the search, up to where the phase ends or is cut; an event next to the
         // horizon is looked for twice.
         let omega = model.parameters().omega;
         let clear = duration.min(periods * model.period()) + 0.2 / omega;
@@ -266,7 +266,7 @@ impl History {
         // What y was rounded to in an earlier phase it keeps.
         self.speed = self.speed.max(self.speed_terms(segment, elapsed, y));
         let over = p - (q + g);
-        // At the switch f is known to the rounding of its terms, up to 1; h' = f/(2 xi) passes it
+        // At the event f is known to the rounding of its terms, up to 1; h' = f/(2 xi) passes it
         // on as long as q has not died out.
         let passed_on = (elapsed / two_xi).min(1.0);
         let room = ROUNDING * (place + passed_on) + UNDERFLOW;

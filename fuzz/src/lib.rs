@@ -1,4 +1,4 @@
-//! What the fuzz targets run: bytes decoded into a case over the whole accepted ranges, and the
+//! The work of the fuzz targets: bytes decoded into a case over the whole accepted ranges, and the
 //! checks a run must pass. A library, so that a case can be replayed without libFuzzer.
 
 mod case;

@@ -29,10 +29,10 @@ const UNDERFLOW: f64 = 1e-290;
 impl Ball {
     /// Zero, exactly.
     pub const ZERO: Self = Self::exact(0.0);
-    /// One, exactly.
+    /// The number one, without any error.
     pub const ONE: Self = Self::exact(1.0);
 
-    /// This number, exactly.
+    /// The ball of one number, without any error.
     #[inline]
     #[must_use]
     pub const fn exact(value: f64) -> Self {
@@ -74,7 +74,7 @@ impl Ball {
         ((self.high.abs() + self.low.abs()) + self.radius) * GROW
     }
 
-    /// How far apart its bounds are: for decisions that prove nothing.
+    /// The distance of the bounds, for decisions that prove nothing.
     #[must_use]
     pub const fn width(self) -> f64 {
         self.radius
@@ -93,7 +93,7 @@ impl Ball {
         (self.high, (self.low.abs() + self.radius) * GROW)
     }
 
-    /// Whether it is the one number zero.
+    /// Whether the ball is the number zero alone.
     #[must_use]
     pub const fn is_exactly_zero(self) -> bool {
         self.high == 0.0 && self.low == 0.0 && self.radius == 0.0
@@ -171,7 +171,7 @@ impl Ball {
         Self { radius, ..root }
     }
 
-    /// Its square.
+    /// The square of the ball.
     #[must_use]
     pub fn square(self) -> Self {
         self * self

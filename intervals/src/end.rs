@@ -4,11 +4,11 @@
 use crate::ball::Ball;
 use crate::guard::Expansion;
 use crate::hull::Piecewise;
-use crate::proof::{GRANTED, Verdict, Walk};
+use crate::proof::{CorridorProof, GRANTED, Verdict};
 use percuss::insides::crossing::Corridor;
 
-impl Walk<'_> {
-    /// What is true of a reported end that no earlier crossing forestalls.
+impl CorridorProof<'_> {
+    /// The verdict on a reported end before which there is no crossing.
     pub fn crossing(&self, residual: Ball, at_end: &Expansion) -> Verdict {
         let slack = self.claim.slack;
         let outwards = if self.claim.rises { residual } else { -residual };

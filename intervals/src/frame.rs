@@ -7,7 +7,7 @@ use crate::guard::{Free, Guard, energy};
 use percuss::insides::{Motion, angle};
 use percuss::{Instant, Parameters, TwoWord};
 
-/// What the guards of a model have in common.
+/// The constants that the guards of a model share.
 pub struct Frame {
     a: Ball,
     b: Ball,

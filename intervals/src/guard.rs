@@ -33,7 +33,7 @@ pub(crate) enum Free {
 
 /// The guard of one phase.
 pub struct Guard {
-    /// Its value at the entry and its derivatives.
+    /// The guard's polynomial part: its value at the entry and its derivatives.
     pub(crate) parabola: [Ball; 3],
     /// What cosine and sine of the forcing angle are multiplied by.
     pub(crate) harmonic: [Ball; 2],
@@ -54,16 +54,16 @@ pub struct Guard {
 
 /// The guard around some place.
 pub struct Expansion {
-    /// Its derivatives without the quick exponential.
+    /// The derivatives of the guard without the quick exponential.
     pub smooth: [Ball; ORDERS],
-    /// Its derivatives.
+    /// The derivatives of the guard.
     pub whole: [Ball; ORDERS],
     /// Bounds of its derivatives of the order after those, from here on, without the quick one and
     /// with it.
     pub bounds: [f64; 2],
     /// The quick exponential.
     pub quick: Ball,
-    /// Its rate of decay.
+    /// The rate of decay of the quick exponential.
     pub rate: Ball,
     /// Value and derivatives of the parabola.
     pub parabola: [Ball; 3],
@@ -161,17 +161,17 @@ fn power(x: Ball, n: usize) -> Ball {
 }
 
 impl Expansion {
-    /// The guard so much later, by its series.
+    /// The guard's value after a time `length`, by its series.
     pub(crate) fn value_after(&self, length: Ball) -> Ball {
         self.series_after(0, length)
     }
 
-    /// Its slope.
+    /// The guard's slope after a time `length`, by its series.
     pub(crate) fn slope_after(&self, length: Ball) -> Ball {
         self.series_after(1, length)
     }
 
-    /// How far the guard is then from where it is now.
+    /// The change of the guard over a time `length`.
     pub(crate) fn change_after(&self, length: Ball) -> Ball {
         let mut from_zero = self.whole;
         from_zero[0] = Ball::ZERO;

@@ -62,7 +62,7 @@ fn terms(orders: &[Ball; ORDERS], bound: f64, length: Ball) -> ([Ball; ORDERS + 
     (terms, (Ball::exact(bound) * power * SHARES[ORDERS]).size())
 }
 
-/// Between what all coefficients must lie.
+/// The bounds of all coefficients.
 pub(crate) struct Between {
     pub low: f64,
     pub high: f64,

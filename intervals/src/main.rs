@@ -1,5 +1,5 @@
-//! `percuss-intervals [SWITCHES] [SEED] [REGIME]` prints a table of proofs, a row a regime. It
-//! exits with 1 if a switch is contradicted, or if of those that the solver decided more than one
+//! `percuss-intervals [SWITCHES] [SEED] [REGIME]` prints a table of proofs, one row per regime. It
+//! exits with 1 if an event is contradicted, or if of those that the solver decided more than one
 //! in ten thousand are open.
 
 use percuss_intervals::regimes::{Chance, REGIMES, Regime};

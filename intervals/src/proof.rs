@@ -14,48 +14,48 @@ use crate::hull::{Between, Piecewise, holds};
 use percuss::TwoWord;
 use percuss::insides::crossing::Corridor;
 
-/// What is claimed about a phase.
+/// The solver's claim about a phase.
 #[derive(Clone, Copy, Debug)]
 pub struct Claim {
-    /// It lasts so long.
+    /// The duration of the phase.
     pub duration: TwoWord,
-    /// Where its guard stays.
+    /// The corridor in which the guard stays.
     pub corridor: Corridor,
-    /// Through which threshold it leaves.
+    /// Whether the guard leaves through the upper threshold.
     pub rises: bool,
-    /// What the solver grants to its rounding at the end.
+    /// The slack that the solver grants to its rounding at the end.
     pub slack: f64,
 }
 
-/// What the intervals say about a claim.
+/// The verdict of interval arithmetic on a claim.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Verdict {
     /// Proved.
     Confirmed {
-        /// How far the guard is from its threshold at the reported end, in units of the slack.
+        /// The guard's distance from its threshold at the reported end, in units of the slack.
         residual: f64,
     },
     /// Not proved, and not refuted.
     Open {
-        /// Up to where there is no crossing.
+        /// The time up to which there is no crossing.
         until: f64,
     },
     /// Refuted: the guard is certainly outside earlier than the slack explains.
     Earlier {
-        /// There.
+        /// The time at which the guard is outside.
         at: f64,
-        /// By so much at least, in units of the slack.
+        /// The least distance from the threshold, in units of the slack.
         excess: f64,
     },
     /// Refuted: at the reported end the guard is certainly further from its threshold than it may
     /// be.
     Elsewhere {
-        /// By so much at least, in units of the slack.
+        /// The least distance from the threshold, in units of the slack.
         residual: f64,
     },
     /// Refuted: around the reported end the guard certainly stays inside.
     Absent {
-        /// How close it comes, in units of the slack.
+        /// The least distance from the threshold, in units of the slack.
         crest: f64,
     },
 }
@@ -64,13 +64,13 @@ pub enum Verdict {
 /// the solver accepts one slack in what it computes, and that errs by less than another.
 pub const GRANTED: f64 = 2.0;
 
-/// Pieces after which a phase is left undecided.
+/// The number of pieces after which a phase is left undecided.
 const MOST_PIECES: usize = 4000;
 
 /// The longest piece, in units of the inverse of the guard's pace.
 const LONGEST: f64 = 4.0;
 
-/// The claim examined.
+/// The verdict on a claim.
 #[must_use]
 pub fn examine(guard: &Guard, claim: &Claim) -> Verdict {
     let end = Ball::words(claim.duration);
@@ -78,30 +78,30 @@ pub fn examine(guard: &Guard, claim: &Claim) -> Verdict {
     let threshold = if claim.rises { claim.corridor.high } else { claim.corridor.low };
     let residual = at_end.whole[0] - Ball::exact(threshold);
     let origin = guard.at(Ball::ZERO);
-    let walk = Walk { guard, claim, end, origin: &origin };
-    match walk.run() {
+    let proof = CorridorProof { guard, claim, end, origin: &origin };
+    match proof.run() {
         Ok(()) => {
             // A phase may be so short that its series knows more about its end.
             let from_start = origin.value_after(end) - Ball::exact(threshold);
             let narrow = from_start.width() < residual.width();
-            walk.crossing(if narrow { from_start } else { residual }, &at_end)
+            proof.crossing(if narrow { from_start } else { residual }, &at_end)
         }
-        Err(until) => walk
+        Err(until) => proof
             .excursion(until, &at_end)
             .map_or(Verdict::Open { until }, |(at, excess)| Verdict::Earlier { at, excess }),
     }
 }
 
-/// A proof under way.
-pub(crate) struct Walk<'a> {
+/// A proof that a guard stays in its corridor up to the reported end.
+pub(crate) struct CorridorProof<'a> {
     guard: &'a Guard,
     pub claim: &'a Claim,
     end: Ball,
     origin: &'a Expansion,
 }
 
-impl Walk<'_> {
-    /// Proves the way up to the end, or says how far it came.
+impl CorridorProof<'_> {
+    /// Proves that the guard stays inside up to the end, or returns how far the proof came.
     fn run(&self) -> Result<(), f64> {
         let mut from = 0.0;
         let mut length = f64::INFINITY;
@@ -277,7 +277,7 @@ impl Walk<'_> {
     }
 }
 
-/// How long a piece may be.
+/// The largest lengths of a piece.
 struct Reach {
     longest: f64,
     /// With the quick exponential in its series.

@@ -1,4 +1,4 @@
-//! Where switches are taken from: the paper's cases, the corners around them, and near grazes.
+//! The runs whose events are examined: the paper's cases, the corners around them, and near grazes.
 
 use percuss::{Exit, Model, Parameters, Start};
 
@@ -6,7 +6,7 @@ use percuss::{Exit, Model, Parameters, Start};
 pub struct Chance(u64);
 
 impl Chance {
-    /// That begins with this seed.
+    /// A generator that begins with the given seed.
     #[must_use]
     pub const fn new(seed: u64) -> Self {
         Self(seed)
@@ -38,15 +38,15 @@ impl Chance {
     }
 }
 
-/// How a run is begun.
+/// The parameters and the start of a run.
 pub type Run = (Parameters, Start);
 
 /// A family of runs.
 #[derive(Clone, Copy)]
 pub struct Regime {
-    /// What it is called.
+    /// The name of the regime.
     pub name: &'static str,
-    /// Its share of the switches.
+    /// The regime's share of the events.
     pub share: f64,
     /// Phases followed in one run.
     pub phases: usize,
@@ -54,7 +54,7 @@ pub struct Regime {
     pub draw: fn(&mut Chance) -> Vec<Run>,
 }
 
-/// All of them.
+/// All regimes.
 pub const REGIMES: [Regime; 17] = [
     regime("chaos, xi = 0.01", 0.15, 2000, |it| it.run(Parameters::default())),
     regime("omega and xi of Fig. 7", 0.10, 2000, |it| {
@@ -206,7 +206,7 @@ impl Chance {
     }
 }
 
-/// How long the first phase lasts.
+/// The duration of the first phase.
 fn first_length(parameters: Parameters, start: &Start) -> Option<f64> {
     let model = Model::new(parameters).ok()?;
     let entry = model.start(start).ok()?;

@@ -1,4 +1,4 @@
-//! Switches of the solver examined one by one, and counted.
+//! Events of the solver, examined one by one and counted.
 
 use crate::ball::Ball;
 use crate::frame::Frame;
@@ -9,13 +9,13 @@ use percuss::insides::Motion;
 use percuss::insides::crossing::{Guarded, slack};
 use percuss::{Exit, Model, Phase, Segment};
 
-/// Examples kept of a regime's switches that were not proved.
+/// The number of examples kept of a regime's events that were not proved.
 const MOST_EXAMPLES: usize = 20;
 
-/// What became of the switches of a regime.
+/// The counts of proved, open and contradicted events of a regime.
 #[derive(Clone, Debug, Default)]
 pub struct Tally {
-    /// Switches examined.
+    /// The number of events examined.
     pub switches: u64,
     /// Proved.
     pub confirmed: u64,
@@ -25,26 +25,26 @@ pub struct Tally {
     pub open: u64,
     /// Refuted.
     pub contradicted: u64,
-    /// Phases without a switch.
+    /// The number of phases without an event.
     pub endless: u64,
-    /// The largest distance of a proved switch's guard from its threshold, in units of the slack.
+    /// The largest distance of a proved event's guard from its threshold, in units of the slack.
     pub residual: f64,
     /// The largest error of a guard inside its phase, in units of eps times its largest term.
     pub rounding: f64,
-    /// The first switches that were not proved, in words.
+    /// The first events that were not proved, in words.
     pub examples: Vec<String>,
 }
 
-/// A switch as the solver found it.
+/// An event as the solver found it.
 pub struct Found<'a> {
-    /// The phase that it ends.
+    /// The phase that the event ends.
     pub segment: &'a Segment,
-    /// What is claimed.
+    /// The solver's claim about the phase.
     pub claim: Claim,
 }
 
 impl<'a> Found<'a> {
-    /// The claim of a phase that ends by a switch.
+    /// The claim of a phase that ends at an event.
     #[must_use]
     pub fn new(segment: &'a Segment) -> Option<Self> {
         let Exit::Switch(next) = segment.exit() else { return None };
@@ -95,7 +95,7 @@ fn evaluated<G: Guarded>(phase: &G, elapsed: f64) -> [f64; 2] {
 }
 
 impl Tally {
-    /// So many switches of a regime.
+    /// Examines the given number of events of a regime.
     #[must_use]
     pub fn of(regime: &Regime, switches: u64, chance: &mut Chance) -> Self {
         let mut tally = Self::default();
@@ -134,7 +134,7 @@ impl Tally {
         }
     }
 
-    /// Counts a switch; a verdict that is to be looked at comes back.
+    /// Counts an event and returns a verdict that is to be looked at.
     fn count(
         &mut self,
         found: &Found<'_>,
@@ -206,6 +206,6 @@ impl Tally {
     }
 }
 
-/// What stands over the rows.
+/// The header of the table.
 pub const HEADER: &str = "regime                            switches confirmed undecidable \
                           not confirmed contradicted residual rounding";

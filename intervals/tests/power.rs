@@ -12,8 +12,8 @@ use percuss_intervals::proof::{Claim, GRANTED, Verdict, examine};
 use percuss_intervals::regimes::{Chance, REGIMES};
 use percuss_intervals::tally::{Found, Tally};
 
-/// What a switch of every regime in turn is used for.
-fn every_switch(runs: usize, mut look: impl FnMut(&Parameters, &Found<'_>)) {
+/// Examines the events of every regime in turn.
+fn every_event(runs: usize, mut look: impl FnMut(&Parameters, &Found<'_>)) {
     for (number, regime) in REGIMES.iter().enumerate() {
         let mut chance = Chance::new(77 + number as u64);
         for _ in 0..runs {
@@ -77,12 +77,12 @@ fn switches_of_all_regimes_are_confirmed() {
     assert!(total.holds() && total.switches >= 19_000, "{}", total.row("all"));
 }
 
-/// The closed form goes on after the switch: where it crosses again a solver that passes crossings
+/// The closed form goes on after the event: where it crosses again a solver that passes crossings
 /// would land.
 #[test]
 fn a_later_root_is_refuted() {
     let mut refuted = 0;
-    every_switch(6, |parameters, found| {
+    every_event(6, |parameters, found| {
         let Some((root, height)) = later_root(found) else { return };
         // An excursion that rounding hides is no fault.
         if height <= 4.0 * GRANTED * found.claim.slack {
@@ -101,7 +101,7 @@ fn a_later_root_is_refuted() {
 #[test]
 fn a_root_that_is_off_is_refuted() {
     let (mut refuted, mut passed) = (0, 0);
-    every_switch(4, |parameters, found| {
+    every_event(4, |parameters, found| {
         let (frame, duration) = (Frame::new(parameters), found.claim.duration);
         let guard = found.guard(&frame);
         for share in [1e-9, -1e-9] {
@@ -128,7 +128,7 @@ fn a_root_that_is_off_is_refuted() {
 #[test]
 fn other_parameters_are_refuted() {
     let (mut refuted, mut passed) = (0, 0);
-    every_switch(4, |parameters, found| {
+    every_event(4, |parameters, found| {
         let other = Parameters { xi: parameters.xi * (1.0 + 1e-9), ..*parameters };
         match examine(&found.guard(&Frame::new(&other)), &found.claim) {
             Verdict::Confirmed { .. } => passed += 1,

@@ -32,7 +32,7 @@ const LONGEST: usize = 4;
 
 /// What a motion does in the long run.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Regime {
+enum DriftRegime {
     /// Neither progression nor chaos.
     Resting,
     /// Progression, with this period or, from [`LONGEST`] on, a longer one.
@@ -44,15 +44,15 @@ enum Regime {
     Undecided,
 }
 
-const REGIMES: [(Regime, &str, Colour); 8] = [
-    (Regime::Resting, "no progression", Colour(222, 222, 222)),
-    (Regime::Periodic(1), "period 1", Colour(120, 185, 235)),
-    (Regime::Periodic(2), "period 2", Colour(20, 75, 150)),
-    (Regime::Periodic(3), "period 3", Colour(0, 158, 115)),
-    (Regime::Periodic(LONGEST), "period 4+", Colour(160, 20, 80)),
-    (Regime::Chaotic, "chaos", Colour(230, 120, 30)),
-    (Regime::Endless, "endless phase", Colour(20, 10, 40)),
-    (Regime::Undecided, "undecided", Colour(250, 236, 150)),
+const REGIMES: [(DriftRegime, &str, Colour); 8] = [
+    (DriftRegime::Resting, "no progression", Colour(222, 222, 222)),
+    (DriftRegime::Periodic(1), "period 1", Colour(120, 185, 235)),
+    (DriftRegime::Periodic(2), "period 2", Colour(20, 75, 150)),
+    (DriftRegime::Periodic(3), "period 3", Colour(0, 158, 115)),
+    (DriftRegime::Periodic(LONGEST), "period 4+", Colour(160, 20, 80)),
+    (DriftRegime::Chaotic, "chaos", Colour(230, 120, 30)),
+    (DriftRegime::Endless, "endless phase", Colour(20, 10, 40)),
+    (DriftRegime::Undecided, "undecided", Colour(250, 236, 150)),
 ];
 
 /// Colours of the drift: none, and five steps up to the largest.
@@ -108,7 +108,7 @@ fn main() -> Result<()> {
         _ => SHADES[0],
     };
     let colour =
-        |regime: Regime| REGIMES.iter().find(|it| it.0 == regime).map_or(SHADES[0], |it| it.2);
+        |regime: DriftRegime| REGIMES.iter().find(|it| it.0 == regime).map_or(SHADES[0], |it| it.2);
     let names = (1..=5).map(|k| format!("up to {}", two_digits(steps[k])));
     let key = names.zip(&SHADES[1..]).map(|(name, colour)| entry(&name, *colour));
     let axes = [Parameter::Omega, parameter].map(|it| picture::symbol(it).to_owned());
@@ -175,7 +175,7 @@ fn periods(sweep: &mut MergedSweep, motions: usize) -> Result<Vec<usize>> {
     Ok((0..motions).map(period).collect())
 }
 
-fn regimes(sweep: &mut MergedSweep, drift: &[f64], periods: &[usize]) -> Result<Vec<Regime>> {
+fn regimes(sweep: &mut MergedSweep, drift: &[f64], periods: &[usize]) -> Result<Vec<DriftRegime>> {
     let exponents = sweep.f8("exponents_per_period")?;
     let errors = sweep.f8("standard_error")?;
     let endless: Vec<i32> = sweep.array("endless")?;
@@ -184,12 +184,12 @@ fn regimes(sweep: &mut MergedSweep, drift: &[f64], periods: &[usize]) -> Result<
         let (largest, error) = (exponents[3 * at], errors[3 * at]);
         match endless[at] {
             // The mass never returns, or the slider never stops.
-            0 | 1 => Regime::Endless,
-            _ if undecidable[at] != 0 => Regime::Undecided,
-            _ if largest > ERRORS * error => Regime::Chaotic,
-            _ if drift[at] <= NO_DRIFT => Regime::Resting,
-            _ if largest > -ERRORS * error => Regime::Undecided,
-            _ => Regime::Periodic(periods[at].min(LONGEST)),
+            0 | 1 => DriftRegime::Endless,
+            _ if undecidable[at] != 0 => DriftRegime::Undecided,
+            _ if largest > ERRORS * error => DriftRegime::Chaotic,
+            _ if drift[at] <= NO_DRIFT => DriftRegime::Resting,
+            _ if largest > -ERRORS * error => DriftRegime::Undecided,
+            _ => DriftRegime::Periodic(periods[at].min(LONGEST)),
         }
     };
     Ok((0..drift.len()).map(regime).collect())

@@ -43,33 +43,33 @@ impl Engine for Heun {
         let step = accuracy.step().ok_or_else(|| Failure::new("needs a step"))?;
         let step = step * task.shortest_time();
         let equations = Affine::of(&task.system);
-        let mut walk = HeunRun { equations, work: Work::default() };
+        let mut heun = HeunRun { equations, work: Work::default() };
         let mut outcome = Outcome::default();
         let (mut t, mut mode, mut state) = (0.0, task.mode, task.state);
         let mut entered = equations.enter(None, mode, t, &state);
         while t < task.span || entered.fires.is_some() {
-            if walk.work.rhs_evaluations > limits.calls || outcome.events.len() > limits.events {
+            if heun.work.rhs_evaluations > limits.calls || outcome.events.len() > limits.events {
                 return Err(Failure::beyond_limits(format!("gave up at {t}")));
             }
             let whole = step.min(task.span - t);
             let found = entered.fires.map(|guard| (guard, 0.0));
-            let found = found.or_else(|| walk.first_rise(mode, t, &state, whole));
+            let found = found.or_else(|| heun.first_rise(mode, t, &state, whole));
             let length = found.map_or(whole, |(_, length)| length);
             let due = |time: &&f64| **time <= t + length;
             while let Some(time) = task.samples.get(outcome.samples.len()).filter(due) {
-                outcome.samples.push(walk.step(mode, t, &state, time - t));
+                outcome.samples.push(heun.step(mode, t, &state, time - t));
             }
-            state = walk.step(mode, t, &state, length);
+            state = heun.step(mode, t, &state, length);
             t = if length < task.span - t { t + length } else { task.span };
-            walk.work.steps += 1;
+            heun.work.steps += 1;
             if let Some((guard, _)) = found {
                 let before = mode;
-                (mode, state) = equations.switch(before, guard, t, &state);
+                (mode, state) = equations.after_event(before, guard, t, &state);
                 entered = equations.enter(Some((before, guard)), mode, t, &state);
                 outcome.events.push(Event { event: guard, mode, elapsed: t, state });
             }
         }
-        (outcome.end, outcome.ended_at, outcome.work) = (state, t, walk.work);
+        (outcome.end, outcome.ended_at, outcome.work) = (state, t, heun.work);
         outcome.samples.resize(task.samples.len(), state);
         Ok(outcome)
     }

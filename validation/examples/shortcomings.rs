@@ -60,7 +60,7 @@ fn main() -> Result<()> {
     }
     let whys = present(&file, &systems, &reported, &mut defects)?;
     println!(
-        "# Known shortcomings of engines on the cases inside the binary, row by row: case, tolerance (or"
+        "# Expected failures of engines on the cases inside the binary, row by row: case, tolerance (or"
     );
     println!(
         "# negative step), quantity, statistic, least and largest value of the figure that is out of bounds."

@@ -1,5 +1,5 @@
 //! Puts the table of systems by engines into docs/FINDINGS.md: how many rows of each system each
-//! engine passes, passes but for known shortcomings, and fails.
+//! engine passes, passes but for expected failures, and fails.
 //!
 //! ```sh
 //! cargo run --release -- validate --out target/quick

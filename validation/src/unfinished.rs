@@ -37,7 +37,7 @@ impl Drop for Name {
 }
 
 impl Unfinished {
-    /// Makes one in a folder.
+    /// Makes a temporary file in a folder.
     pub(crate) fn new(builder: &Builder, folder: &Path) -> io::Result<Self> {
         signals::watch();
         // Known from the moment it exists.
@@ -48,7 +48,7 @@ impl Unfinished {
         Ok(Self { file, name: Name(path) })
     }
 
-    /// Gives it its own name.
+    /// Gives the file its final name.
     pub(crate) fn finish(self, target: &Path) -> io::Result<()> {
         self.kept(|file| file.persist(target))
     }

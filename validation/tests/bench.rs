@@ -26,7 +26,7 @@ fn exact_solver() -> &'static dyn Engine {
     all()[0]
 }
 
-/// Faults that a run of a few dozen switches shows; a dropped hundredth or a digit lost after 1e8
+/// Faults that a run of a few dozen events shows; a dropped hundredth or a digit lost after 1e8
 /// cycles need longer ones.
 const SHOWN: [&str; 5] = ["wrong-omega", "wrong-xi", "wrong-drift", "wrong-arctan", "wrong-impact"];
 
@@ -40,16 +40,16 @@ fn a_wrong_answer_has_no_time() {
     assert_eq!(engines.len(), 2 + SHOWN.len());
     let asked: Vec<(&dyn Contestant, Accuracy)> =
         engines.iter().map(|it| (it as &dyn Contestant, Accuracy::Exact)).collect();
-    let finishers = contest_at(&case, &asked, 2, &|| ());
-    for finisher in &finishers[..2] {
-        let timed = finisher.result.as_ref().expect("it is right");
+    let results = contest_at(&case, &asked, 2, &|| ());
+    for result in &results[..2] {
+        let timed = result.result.as_ref().expect("it is right");
         assert_eq!(timed.series.0.len(), 2);
-        assert!(timed.score.state_error < 1e-9, "{finisher:?}");
+        assert!(timed.score.state_error < 1e-9, "{result:?}");
     }
-    for finisher in &finishers[2..] {
-        let failure = finisher.result.as_ref().expect_err("it is wrong");
-        assert!(failure.reason.starts_with("wrong: "), "{finisher:?}");
-        assert!(most_accurate(&finishers, finisher.name).is_none());
+    for result in &results[2..] {
+        let failure = result.result.as_ref().expect_err("it is wrong");
+        assert!(failure.reason.starts_with("wrong: "), "{result:?}");
+        assert!(most_accurate(&results, result.name).is_none());
     }
 }
 
@@ -72,15 +72,15 @@ fn system_cases() -> Vec<TimedSystemCase> {
     SYSTEMS.iter().map(|it| TimedSystemCase::of(named(it), &library).expect("a case")).collect()
 }
 
-/// Every system is raced, and the exact solver's answers are right: its own part is the same run.
+/// Every system is timed, and the exact solver's answers are right: its own part is the same run.
 #[test]
 fn the_exact_solver_is_right_on_every_system() {
     let timed_cases = system_cases();
-    let mut raced: Vec<_> = timed_cases.iter().map(|it| it.problem.exact.name.as_str()).collect();
-    raced.sort_unstable();
-    raced.dedup();
+    let mut timed: Vec<_> = timed_cases.iter().map(|it| it.problem.exact.name.as_str()).collect();
+    timed.sort_unstable();
+    timed.dedup();
     let all: Vec<_> = percuss_validation::systems::SYSTEMS.iter().map(|it| it.0).collect();
-    assert_eq!(raced, all);
+    assert_eq!(timed, all);
     for case in &timed_cases {
         let found = system_contest(case, &[&EnteredEngine(exact_solver())], 1, &|| ());
         let timed = found[0].result.as_ref().unwrap_or_else(|it| panic!("{}: {it}", case.name));

@@ -98,7 +98,7 @@ const STEP: f64 = 1e-11;
 /// carry STEP^2 times a third derivative, which grows with the cube of the growth.
 const DIFFERENCE: f64 = 1e-10;
 
-/// tau, p, y, q and v of every switch of a run in 106 bits.
+/// tau, p, y, q and v of every event of a run in 106 bits.
 fn events(
     case: &Case,
     entry: &Entry,
@@ -115,7 +115,7 @@ fn events(
     rows.collect()
 }
 
-/// The derivatives of every switch's row with respect to the start, by the solver's products.
+/// The derivatives of every event's row with respect to the start, by the solver's products.
 fn derivatives(segments: impl Iterator<Item = Segment>) -> Vec<Matrix> {
     let mut source = IDENTITY;
     let mut all = Vec::new();
@@ -124,7 +124,7 @@ fn derivatives(segments: impl Iterator<Item = Segment>) -> Vec<Matrix> {
         let switch = segment.switch_derivative().expect("a switch ends it");
         source = product(&segment.variation(segment.duration()), &source);
         let mut rows = product(&switch.state, &source);
-        // The first row of a switch is its time's.
+        // The first row of an event is its time's.
         rows[ANGLE] = times(&switch.time, &source);
         all.push(rows);
         source = product(&segment.saltation(), &source);

@@ -108,8 +108,8 @@ fn it_is_an_engine_of_every_verb() {
     let listed = text(&example(&["engines", "--format", "csv"]).stdout);
     assert!(listed.lines().any(|line| line.starts_with("heun,an example,1.0.0,")), "{listed}");
     assert_eq!(listed.lines().count(), 2 + integrators::all().len());
-    let raced = example(&["bench", "-e", "^heun$", "-c", "^impact-into", "--rounds", "1"]);
-    assert!(text(&raced.stdout).contains("heun"), "{}", text(&raced.stderr));
+    let timed = example(&["bench", "-e", "^heun$", "-c", "^impact-into", "--rounds", "1"]);
+    assert!(text(&timed.stdout).contains("heun"), "{}", text(&timed.stderr));
 }
 
 /// A baseline in which the engine was ten times as accurate.

@@ -92,10 +92,10 @@ fn the_control_passes_where_the_faults_do_not() {
         all.flat_map(|it| it.gates.into_values()).map(|trip| trip.failed).sum()
     };
     let usual = failed(control);
-    let walking = wrong().iter().filter(|it| it.engine.declaration().method.contains("steps"));
-    let walking: Vec<_> = walking.copied().collect();
-    assert_eq!(walking.len(), 5);
-    for wrong in walking {
+    let stepping = wrong().iter().filter(|it| it.engine.declaration().method.contains("steps"));
+    let stepping: Vec<_> = stepping.copied().collect();
+    assert_eq!(stepping.len(), 5);
+    for wrong in stepping {
         let name = wrong.engine.declaration().name;
         assert!(failed(wrong) > usual, "{name} fails no more than the control: {usual}");
     }

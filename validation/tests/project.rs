@@ -67,7 +67,7 @@ fn the_readmes_blocks_are_what_their_commands_print() {
 }
 
 /// The block of the bench is written by the commands that docs/LONG_TESTS.md names; times are not
-/// asserted. It must be of the cases that are raced today.
+/// asserted. It must be of the cases that are timed today.
 #[test]
 fn the_readmes_bench_is_of_todays_cases() {
     let readme = read("README.md");
@@ -108,7 +108,7 @@ fn the_readmes_summary_is_of_todays_suite() {
 /// A file that was made from a report of the quick suite lacks what that suite does not ask for:
 /// the tolerances between its three, and most restarts.
 #[test]
-fn the_known_shortcomings_are_those_of_the_full_suite() {
+fn the_expected_failures_are_those_of_the_full_suite() {
     let file: toml::Table = toml::from_str(&read("validation/shortcomings.toml")).expect("TOML");
     let cases = Cases::embedded().expect("the cases are read");
     let systems: Vec<&str> = cases.systems.iter().map(|case| case.name.as_str()).collect();

@@ -16,7 +16,7 @@ const HALF_A_DIGIT: f64 = 0.5e-24;
 const READING: f64 = 16.0 * UNIT;
 
 /// k of |error| <= k u (1 + |value| + time) growth events, beyond the tables' own rounding, with
-/// u = 2^-106. Ten-odd roundings a switch would let it be ten; 0.13 is reached, where 25 digits do
+/// u = 2^-106. Ten-odd roundings per event would let it be ten; 0.13 is reached, where 25 digits do
 /// not hide it.
 const ROUNDINGS: f64 = 1.0;
 

@@ -34,7 +34,7 @@ const fn spoiled(name: &'static str, change: fn(&mut OscillatorOutcome)) -> Spoi
 }
 
 /// Two events that are not there, from this time on.
-fn invent(outcome: &mut OscillatorOutcome, at: usize, elapsed: f64) {
+fn add_spurious(outcome: &mut OscillatorOutcome, at: usize, elapsed: f64) {
     let event = |phase, elapsed| Event { event: 0, mode: phase, elapsed, state: [0.0; 4] };
     let pair = [event(Phase::Contact, elapsed), event(Phase::NoContact, elapsed + 1e-9)];
     outcome.events.splice(at..at, pair);
@@ -45,13 +45,13 @@ static FAILS: [Spoiled; 7] = [
     spoiled("exact-nan-sample", |it| it.samples[9][1] = f64::NAN),
     spoiled("exact-nan-event", |it| it.events[3].state[0] = f64::NAN),
     spoiled("exact-samples-late", |it| it.samples.rotate_left(1)),
-    spoiled("exact-invents-in-the-middle", |it| {
+    spoiled("exact-spurious-in-the-middle", |it| {
         let elapsed = it.events[4].elapsed + 1e-6;
-        invent(it, 5, elapsed);
+        add_spurious(it, 5, elapsed);
     }),
-    spoiled("exact-invents-at-the-end", |it| {
+    spoiled("exact-spurious-at-the-end", |it| {
         let elapsed = it.events.last().map_or(0.0, |last| last.elapsed) + 1e-6;
-        invent(it, it.events.len(), elapsed);
+        add_spurious(it, it.events.len(), elapsed);
     }),
     spoiled("exact-drops-the-last", |it| {
         it.events.pop();

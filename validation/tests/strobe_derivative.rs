@@ -187,7 +187,7 @@ fn the_map_has_a_corner_at_a_graze_and_no_square_root() {
         let slope = impact.switch_derivative().unwrap().time[P].abs();
         if let Some((rest_before, slope_before)) = last {
             // A hundred times closer: what is left of the contact shrinks tenfold, as the impact's
-            // speed does, and the switch time's derivative grows as much.
+            // speed does, and the event time's derivative grows as much.
             assert!((7.0..14.0).contains(&(rest_before / rest)), "{rest_before:e} {rest:e}");
             assert!((7.0..14.0).contains(&(slope / slope_before)), "{slope_before:e} {slope:e}");
         }

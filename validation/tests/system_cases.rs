@@ -58,7 +58,7 @@ fn name(folder: &Path) -> String {
 }
 
 #[test]
-fn the_exact_solver_misses_nothing_and_invents_nothing() {
+fn the_exact_solver_has_no_missed_and_no_spurious_events() {
     let summary = stdout(&["validate", "-e", "^exact$", "-c", "^(ball|relay|spheres|plastic|c5)-"]);
     let counts = summary.lines().find(|line| line.contains(" rows: ")).expect("the counts");
     assert!(

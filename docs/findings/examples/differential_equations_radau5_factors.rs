@@ -11,8 +11,8 @@ impl ODE<f64, [f64; 2]> for Forced {
     }
 }
 
-/// Steps on a ladder of ratios so large that no matrices are kept from one step to the next.
-fn rungs(h: f64) -> f64 {
+/// The largest step of a fixed ratio: so large that no matrices are kept from one step to the next.
+fn power_of_ratio(h: f64) -> f64 {
     1.25f64.powf((h.ln() / 1.25f64.ln() + 1e-9).floor())
 }
 
@@ -35,6 +35,6 @@ fn errors(tolerance: f64, filter: fn(f64) -> f64) -> String {
 fn main() {
     for tolerance in [1e-6, 1e-8, 1e-10] {
         println!("tolerance {tolerance:.0e}: a step adds {} tolerances", errors(tolerance, |h| h));
-        println!("    on a ladder of steps {}", errors(tolerance, rungs));
+        println!("    with steps of fixed ratios {}", errors(tolerance, power_of_ratio));
     }
 }

@@ -4,37 +4,37 @@ function paint(canvas, points, axes, color) {
   const scale = window.devicePixelRatio || 1;
   const [width, height] = [canvas.clientWidth, canvas.clientHeight];
   [canvas.width, canvas.height] = [width * scale, height * scale];
-  const pen = canvas.getContext("2d");
-  pen.scale(scale, scale);
+  const context = canvas.getContext("2d");
+  context.scale(scale, scale);
   const [left, right, top, bottom] = [52, 10, 8, 40];
   const [w, h] = [width - left - right, height - top - bottom];
-  pen.font = "12px system-ui, sans-serif";
-  pen.strokeStyle = ink("--line");
-  pen.fillStyle = ink("--muted");
-  pen.textAlign = "center";
+  context.font = "12px system-ui, sans-serif";
+  context.strokeStyle = ink("--line");
+  context.fillStyle = ink("--muted");
+  context.textAlign = "center";
   for (const [share, label] of axes[0].ticks) {
-    pen.beginPath();
-    pen.moveTo(left + w * share, top);
-    pen.lineTo(left + w * share, top + h);
-    pen.stroke();
-    pen.fillText(label, left + w * share, top + h + 16);
+    context.beginPath();
+    context.moveTo(left + w * share, top);
+    context.lineTo(left + w * share, top + h);
+    context.stroke();
+    context.fillText(label, left + w * share, top + h + 16);
   }
-  pen.textAlign = "right";
+  context.textAlign = "right";
   for (const [share, label] of axes[1].ticks) {
-    pen.beginPath();
-    pen.moveTo(left, top + h * (1 - share));
-    pen.lineTo(left + w, top + h * (1 - share));
-    pen.stroke();
-    pen.fillText(label, left - 6, top + h * (1 - share) + 4);
+    context.beginPath();
+    context.moveTo(left, top + h * (1 - share));
+    context.lineTo(left + w, top + h * (1 - share));
+    context.stroke();
+    context.fillText(label, left - 6, top + h * (1 - share) + 4);
   }
-  pen.textAlign = "center";
-  pen.fillStyle = ink("--ink");
-  pen.fillText("p", left + w / 2, height - 6);
-  pen.fillText("y", 10, top + h / 2);
-  pen.fillStyle = color;
+  context.textAlign = "center";
+  context.fillStyle = ink("--ink");
+  context.fillText("p", left + w / 2, height - 6);
+  context.fillText("y", 10, top + h / 2);
+  context.fillStyle = color;
   for (const [p, y] of points) {
     if (p === null || y === null) continue;
-    pen.fillRect(left + w * axes[0].place(p) - 0.6, top + h * (1 - axes[1].place(y)) - 0.6, 1.3, 1.3);
+    context.fillRect(left + w * axes[0].place(p) - 0.6, top + h * (1 - axes[1].place(y)) - 0.6, 1.3, 1.3);
   }
 }
 

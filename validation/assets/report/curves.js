@@ -19,12 +19,12 @@ const eventsOf = (i) => `${columns.events_matched?.[i] ?? 0} of ${columns.events
 
 // What the points are over, and which of them are hollow.
 function workNote(note) {
-  if (note) return `${note.regime ? `${note.regime}. ` : ""}${note.why ?? ""} Hollow, not joined: runs that missed or invented events, or that are scored for a part of the truth's events only.`;
+  if (note) return `${note.regime ? `${note.regime}. ` : ""}${note.why ?? ""} Hollow, not joined: runs with missed or spurious events, or that are scored for a part of the truth's events only.`;
   const apart = data.engines.flatMap((engine) => (engine.settings ?? []).filter((it) => it.runs && !it.is_comparable).map((it) => `${engine.name} ${it.setting} (${it.of})`));
   const only = data.cases.length === 1;
-  const why = only ? "these runs missed or invented events, or are scored for a part of the truth's events only" : "fewer than nine tenths of their rows were run, so that these medians are over other cases";
+  const why = only ? "these runs have missed or spurious events, or are scored for a part of the truth's events only" : "fewer than nine tenths of their rows were run, so that these medians are over other cases";
   const hollow = apart.length ? ` Hollow, not joined: ${why}: ${apart.join(", ")}.` : "";
-  const first = only ? "Each point is a run's largest error against its cost." : "Each point is the median over the cases of a run's largest error, against the median cost of a run; a run without a result, and for event times one that missed or invented an event, counts as infinitely wrong.";
+  const first = only ? "Each point is a run's largest error against its cost." : "Each point is the median over the cases of a run's largest error, against the median cost of a run; a run without a result, and for event times one that has a missed or a spurious event, counts as infinitely wrong.";
   return first + hollow;
 }
 

@@ -35,8 +35,8 @@ function along(view, values, t) {
 }
 
 // Phases or modes as a band: the one that holds at the left edge, and those that begin in the view.
-function band(svg, modes, course, [left, top, width, height], place) {
-  const begins = [{ t: -Infinity, phase: course.phase }, ...course.events];
+function band(svg, modes, trajectory, [left, top, width, height], place) {
+  const begins = [{ t: -Infinity, phase: trajectory.phase }, ...trajectory.events];
   begins.forEach((it, k) => {
     const from = Math.max(left, place(it.t));
     const to = k + 1 < begins.length ? place(begins[k + 1].t) : left + width;
@@ -83,14 +83,14 @@ function eventChart(host, picture, view, height = 330) {
     svg.append(drawn("line", { x1: left, x2: left + w, y1: y(0), y2: y(0), class: "threshold" }));
     svg.append(drawn("line", { x1: x(0), x2: x(0), y1: top, y2: top + h, class: "wrong", "stroke-dasharray": "3 3" }));
     svg.append(drawn("rect", { class: "frame", x: left, y: top, width: w, height: h }));
-    [["truth", view.truth, 4], ["engine", view.engine, 22]].forEach(([name, course, at]) => {
-      band(svg, picture.modes, course, [left, at, w, 15], x);
+    [["truth", view.truth, 4], ["engine", view.engine, 22]].forEach(([name, trajectory, at]) => {
+      band(svg, picture.modes, trajectory, [left, at, w, 15], x);
       svg.append(drawn("text", { x: left - 7, y: at + 12, "text-anchor": "end" }, name));
     });
-    const curve = (course, style) => {
-      const n = course.values.length;
+    const curve = (trajectory, style) => {
+      const n = trajectory.values.length;
       if (n < 2) return;
-      const known = course.values.map((v, k) => [view.from + ((view.to - view.from) * k) / (n - 1), v]).filter(([, v]) => v !== null);
+      const known = trajectory.values.map((v, k) => [view.from + ((view.to - view.from) * k) / (n - 1), v]).filter(([, v]) => v !== null);
       const d = known.map(([t, v], k) => `${k ? "L" : "M"}${x(t).toFixed(1)},${y(v).toFixed(1)}`).join("");
       svg.append(drawn("path", { d, fill: "none", style, "stroke-linejoin": "round" }));
     };

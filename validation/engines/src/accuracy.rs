@@ -1,12 +1,12 @@
-//! How accurate an engine is asked to be.
+//! The accuracy that an engine is asked for.
 
 use crate::failure::Failure;
 use percuss::Parameters;
 
-/// How an engine's accuracy is chosen.
+/// The way in which an engine's accuracy is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Stepping {
-    /// There is nothing to choose: closed forms are exact.
+    /// Closed forms are exact: no accuracy is chosen.
     Exact,
     /// A tolerance sets the accuracy.
     Adaptive,
@@ -24,7 +24,7 @@ pub enum Stepping {
     },
 }
 
-/// What is chosen.
+/// The tolerance or the step that is chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Accuracy {
     /// The run is as accurate as rounding allows.
@@ -36,7 +36,7 @@ pub enum Accuracy {
 }
 
 impl Accuracy {
-    /// The tolerance, where there is one.
+    /// The tolerance, for engines whose accuracy is chosen by a tolerance.
     #[must_use]
     pub fn tolerance(self) -> Option<f64> {
         match self {
@@ -45,7 +45,7 @@ impl Accuracy {
         }
     }
 
-    /// The step, where there is one.
+    /// The step, for engines with fixed steps.
     #[must_use]
     pub fn step(self) -> Option<f64> {
         match self {

@@ -1,5 +1,5 @@
-//! What an integrator is given of a system: the equations of each mode, the guards at which modes
-//! end, and what follows there.
+//! The interface through which an integrator sees a system: the equations of each mode, the guards
+//! at which modes end, and the mode and state after an event.
 //!
 //! The types of states, guards and modes belong to the system, so that a system whose dimension is
 //! known beforehand is integrated on arrays of that size, and one whose dimension is read from a
@@ -12,7 +12,7 @@ pub trait Numbers: Copy + Debug + Default + PartialEq + AsRef<[f64]> + AsMut<[f6
     /// Holds a copy of these numbers.
     fn of(values: &[f64]) -> Self;
 
-    /// One number so many times; arrays have a length of their own.
+    /// The same value `count` times; arrays have a length of their own.
     fn all(count: usize, value: f64) -> Self;
 }
 
@@ -29,15 +29,15 @@ where
     }
 }
 
-/// What stands in place of a guard that a mode does not have.
+/// The value in place of a guard that a mode does not have.
 pub(crate) const NO_GUARD: f64 = -1.0;
 
-/// What is known of a mode at its entry.
+/// Guards of a mode that are known to be zero, or to end the mode, at its entry.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Entered {
-    /// The guards that are zero there, a bit each.
+    /// The guards that are zero at the entry, one bit per guard.
     pub zeros: u64,
-    /// The guard that ends the mode where it begins.
+    /// The guard that ends the mode at its entry.
     pub fires: Option<usize>,
 }
 
@@ -57,17 +57,17 @@ pub trait Equations: Copy {
     type Mode: Copy + PartialEq + Debug;
     /// The states, as many as the system has.
     type State: Numbers;
-    /// Values of the guards of one mode.
+    /// The values of the guards of one mode.
     type Guards: Numbers;
 
-    /// How many states there are.
+    /// The number of states.
     fn dimension(&self) -> usize;
 
     /// How many guards the mode with the most of them has; as many are asked of a library that
     /// wants their number beforehand.
     fn most_guards(&self) -> usize;
 
-    /// How many guards a mode has.
+    /// The number of guards of a mode.
     fn count(&self, mode: Self::Mode) -> usize;
 
     /// The right-hand side.
@@ -82,8 +82,8 @@ pub trait Equations: Copy {
     /// The guards' rates by the equations of motion.
     fn rates(&self, mode: Self::Mode, t: f64, u: &[f64]) -> Self::Guards;
 
-    /// The mode that begins where a guard has risen to zero, with the state put where it belongs.
-    fn switch(
+    /// The mode and the state after the event at which a guard has risen to zero.
+    fn after_event(
         &self,
         mode: Self::Mode,
         guard: usize,
@@ -96,12 +96,13 @@ pub trait Equations: Copy {
         true
     }
 
-    /// Which of its mode's events a guard belongs to.
+    /// The event of its mode that a guard belongs to.
     fn event(&self, _mode: Self::Mode, guard: usize) -> usize {
         guard
     }
 
-    /// What is known of a mode that begins in a state, after a guard of another or at the start.
+    /// The guards that are known at the entry of a mode, after an event of another mode or at the
+    /// start.
     fn enter(
         &self,
         _after: Option<(Self::Mode, usize)>,
@@ -120,7 +121,7 @@ pub trait Equations: Copy {
         false
     }
 
-    /// A state in the co-ordinates that are compared.
+    /// A state in the co-ordinates that are compared with the truth.
     fn reported(&self, u: &Self::State) -> Self::State {
         *u
     }

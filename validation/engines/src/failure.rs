@@ -4,14 +4,14 @@
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{reason}")]
 pub struct Failure {
-    /// The reason, in one line.
+    /// The reason, as one line of text.
     pub reason: String,
     /// Whether the run was given up because it took more calls or time than it was allowed.
     pub is_beyond_limits: bool,
 }
 
 impl Failure {
-    /// A failure for this reason.
+    /// A failure with the given reason.
     pub fn new(reason: impl std::fmt::Display) -> Self {
         let reason = reason.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
         Self { reason, is_beyond_limits: false }

@@ -1,4 +1,4 @@
-//! The scoreboard: a line an engine, its default set-up beside the expert's.
+//! The scoreboard: one line per engine, its default set-up beside the expert's.
 
 use super::read::{EngineJson, ReportJson, RowJson};
 use anyhow::{Result, bail};

@@ -1,8 +1,8 @@
-//! Which program this is, and where it runs.
+//! The build of this program and the machine that runs it.
 
 use serde::{Deserialize, Serialize};
 
-/// What every report and every file of a bench begins with.
+/// The build information at the beginning of every report and of every file of a bench.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Build {
     /// The format's number.
@@ -13,9 +13,9 @@ pub struct Build {
     pub commit: Option<String>,
     /// The compiler.
     pub rustc: String,
-    /// The processor that runs it.
+    /// The processor that runs the program.
     pub cpu: String,
-    /// The processor it was compiled for.
+    /// The processor for which the program was compiled.
     #[serde(skip)]
     pub target_cpu: String,
 }

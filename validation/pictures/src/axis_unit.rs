@@ -1,4 +1,5 @@
-//! What an axis counts in, so that its labels stay short: powers of ten, from a round value on.
+//! The units of an axis, chosen so that its labels stay short: powers of ten, from a round value
+//! on.
 
 use super::axes::around;
 use super::font;

@@ -13,7 +13,7 @@ use percuss::dynamics::attractor::Label;
 pub struct BasinMap {
     /// The parameters for which the basins were found.
     pub title: String,
-    /// How it was made, and what is assumed.
+    /// A note on how the picture was made, and on what is assumed.
     pub note: String,
     /// The ranges of p and of y, from and to.
     pub window: [[f64; 2]; 2],
@@ -29,7 +29,7 @@ pub struct BasinMap {
 /// An attractor in a basin picture.
 #[derive(Clone, Debug)]
 pub struct ShownAttractor {
-    /// What it is, for the key.
+    /// The name in the key.
     pub name: String,
     /// The attractor's colours, by their place in a palette of [`BASIN_COLOURS`].
     pub colour: usize,

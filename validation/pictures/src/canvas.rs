@@ -1,4 +1,4 @@
-//! Where plotters draws: its shapes become the text of an SVG.
+//! A canvas for plotters, whose shapes become the text of an SVG.
 //!
 //! Some things are written beside it, because plotters' SVG has no words for them: what a group
 //! says of its shapes (dashes, sharp edges, a turn), the outlines of letters, which have curves and
@@ -15,7 +15,7 @@ use std::fmt::{self, Write};
 /// A place in pixels, from the left and from the top.
 pub(super) type At = (f64, f64);
 
-/// How a line is broken.
+/// The dash pattern of a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Stroke {
     /// The line is whole.
@@ -40,7 +40,7 @@ impl Stroke {
     }
 }
 
-/// A white sheet on which a [`super::Drawing`] draws.
+/// A white canvas for a [`super::Drawing`].
 #[derive(Debug)]
 pub struct Canvas {
     size: (u32, u32),
@@ -48,7 +48,7 @@ pub struct Canvas {
     letters: Letters,
 }
 
-/// How a picture has its text.
+/// The form of text in a picture.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Letters {
     /// Text, which can be searched and is shown in a font of the viewer.

@@ -1,4 +1,4 @@
-//! What parameters a picture belongs to, in the paper's notation.
+//! The parameters of a picture, in the paper's notation.
 
 use percuss::{Parameter, Parameters};
 

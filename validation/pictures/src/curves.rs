@@ -25,7 +25,7 @@ pub struct Curve {
     pub marker: Option<Marker>,
     /// The line's width in pixels.
     pub width: f64,
-    /// How the line is broken.
+    /// The dash pattern of the line.
     pub stroke: Stroke,
     /// The curve's points; those that are not finite are left out.
     pub points: Vec<(f64, f64)>,
@@ -36,9 +36,9 @@ pub struct Curve {
 /// A picture of curves.
 #[derive(Clone, Debug)]
 pub struct Curves {
-    /// What it shows.
+    /// The title of the picture.
     pub title: String,
-    /// How to read it, below the title, where that is not plain.
+    /// A note on how to read the picture, below the title.
     pub note: String,
     /// The horizontal axis.
     pub x: Axis,

@@ -15,13 +15,13 @@ use percuss::Phase;
 pub struct Encounter {
     /// The title, which says whose event it is.
     pub title: String,
-    /// What is wrong with it.
+    /// The error of the event, in words.
     pub subtitle: String,
     /// The engine's name.
     pub engine: String,
     /// The engine's colour.
     pub colour: Colour,
-    /// What is drawn against time.
+    /// The name of the guard that is drawn against time.
     pub guard: String,
     /// The time from which times are counted.
     pub centre: f64,
@@ -51,9 +51,9 @@ pub struct TimeStretch {
 pub struct Trail {
     /// Values of the guard, evenly spread over the stretch.
     pub values: Vec<f64>,
-    /// What holds where the stretch begins.
+    /// The phase or mode at the beginning of the stretch.
     pub stage: Stage,
-    /// When each later one begins, which it is, and whether both runs have that event.
+    /// The time at which each later stage begins, the stage, and whether both runs have that event.
     pub events: Vec<(f64, Stage, bool)>,
 }
 

@@ -3,7 +3,7 @@
 use super::canvas::{At, Canvas, TextSide};
 use super::{axes, palette};
 
-/// How an axis runs.
+/// The scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AxisScale {
     /// Evenly.
@@ -15,9 +15,9 @@ pub enum AxisScale {
 /// An axis and its name.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// What it shows.
+    /// The name of the quantity on the axis.
     pub label: String,
-    /// How it runs.
+    /// The scale of the axis.
     pub scale: AxisScale,
 }
 

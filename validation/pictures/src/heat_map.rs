@@ -9,7 +9,7 @@ const LABEL: u32 = 330;
 const MARGIN: u32 = 24;
 const TEXT: f64 = 19.0;
 
-/// What a cell's colour says.
+/// The meaning of a cell's colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tint {
     /// All is right.
@@ -20,14 +20,14 @@ pub enum Tint {
     Poor,
     /// Wrong.
     Bad,
-    /// There is nothing to say.
+    /// The cell has no colour.
     None,
 }
 
 /// A cell.
 #[derive(Clone, Debug)]
 pub struct HeatCell {
-    /// What stands in it.
+    /// The text in the cell.
     pub text: String,
     /// The cell's tint.
     pub tint: Tint,
@@ -36,9 +36,9 @@ pub struct HeatCell {
 /// A table of cells.
 #[derive(Clone, Debug)]
 pub struct HeatMap {
-    /// What it shows.
+    /// The title of the picture.
     pub title: String,
-    /// How to read it.
+    /// A note on how to read the picture.
     pub note: String,
     /// Names of the columns; cells may go beyond them.
     pub columns: Vec<String>,

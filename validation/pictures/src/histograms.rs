@@ -20,14 +20,14 @@ pub struct HistogramRow {
     pub colour: Colour,
     /// Edges of the bins as exponents of ten, one more than counts.
     pub edges: Vec<f64>,
-    /// What is in each bin.
+    /// The count of each bin.
     pub counts: Vec<u64>,
 }
 
 /// A picture of histograms.
 #[derive(Clone, Debug)]
 pub struct Histograms {
-    /// What it shows.
+    /// The title of the picture.
     pub title: String,
     /// The axis's name.
     pub label: String,

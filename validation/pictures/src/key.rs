@@ -18,7 +18,7 @@ impl<'a> KeyItem<'a> {
     }
 }
 
-/// How the entries of a key stand.
+/// The layout of a key.
 #[derive(Clone, Copy)]
 pub(super) enum KeyLayout {
     /// The entries stand beside each other.

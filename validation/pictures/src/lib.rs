@@ -64,12 +64,12 @@ impl DrawError {
 /// A picture: its file's name, and the file.
 pub type Picture = (String, Vec<u8>);
 
-/// Something that can be drawn.
+/// A picture that can be drawn on a canvas.
 pub trait Drawing {
     /// Width and height, in pixels.
     fn size(&self) -> (u32, u32);
 
-    /// Draws on a canvas of that size.
+    /// Draws on a canvas of the picture's size.
     fn draw(&self, canvas: &mut Canvas);
 }
 

@@ -5,14 +5,14 @@ use super::colour::Colour;
 use percuss_engines::engine::Colours;
 use percuss_engines::integrators;
 
-/// How an engine is drawn.
+/// The colour and marker in which an engine is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Look {
     /// The colour on white.
     pub light: Colour,
     /// The colour on black.
     pub dark: Colour,
-    /// The shape of its points.
+    /// The marker of the points.
     pub marker: Marker,
 }
 

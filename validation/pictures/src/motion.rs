@@ -25,7 +25,7 @@ pub struct DrawnMotion {
 /// A figure of a point.
 type Measure = fn(&[f64; 5]) -> f64;
 
-/// What one panel shows, and where.
+/// The content and the place of one panel.
 struct MotionPanel {
     below: &'static str,
     beside: &'static str,

@@ -2,7 +2,7 @@
 
 use super::canvas::At;
 
-/// How far a line may move, in pixels.
+/// The largest distance by which a line may move, in pixels.
 const TOLERANCE: f64 = 0.1;
 
 /// The line through some of its places that passes all others within a tenth of a pixel, by the

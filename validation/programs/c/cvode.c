@@ -11,7 +11,7 @@
  * - A guard that is zero where a mode begins has the sign that it has just after it, until it has
  *   moved away by more than the tolerance hides: CVODE's first steps are small, and what the
  *   corrector leaves is found as another root after each of them. Where a flight is lower than the
- *   tolerance this invents impacts (docs/FINDINGS_LANGUAGES.md, CVODE near an accumulation).
+ *   tolerance this gives spurious impacts (docs/FINDINGS_LANGUAGES.md, CVODE near an accumulation).
  * - What follows an event is told by the first derivative that is not zero.
  * - There is no limit on steps between outputs.
  * - Adams has a fixed-point iteration, which its problems are meant for. */

@@ -6,41 +6,42 @@ use percuss_engines::system::Mode;
 use std::fmt;
 use std::time::Duration;
 
-/// How far beyond the horizon, relative to the whole run, rounding may put an event.
+/// The distance beyond the horizon at which rounding may put an event, relative to the whole run.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
-/// How much longer than the wait for its answer a run may say it took: two clocks differ by less.
+/// The time by which a run's reported time may exceed the wait for its answer: two clocks differ by
+/// less.
 const CLOCKS: Duration = Duration::from_millis(10);
 
-/// What is wrong with an answer, and where.
+/// An error in an answer, with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Wrong {
-    pub(crate) place: Place,
+    pub(crate) part: AnswerPart,
     pub(crate) what: String,
 }
 
-/// A place in an answer.
+/// The part of an answer that an error is in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Place {
+pub(crate) enum AnswerPart {
     Run,
     End,
     Event(usize),
     Sample(usize),
 }
 
-impl Place {
+impl AnswerPart {
     fn wrong(self, what: impl Into<String>) -> Wrong {
-        Wrong { place: self, what: what.into() }
+        Wrong { part: self, what: what.into() }
     }
 }
 
 impl fmt::Display for Wrong {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let what = &self.what;
-        match self.place {
-            Place::Run => f.write_str(what),
-            Place::End => write!(f, "its end {what}"),
-            Place::Event(n) => write!(f, "event {n} {what}"),
-            Place::Sample(n) => write!(f, "sample {n} {what}"),
+        match self.part {
+            AnswerPart::Run => f.write_str(what),
+            AnswerPart::End => write!(f, "its end {what}"),
+            AnswerPart::Event(n) => write!(f, "event {n} {what}"),
+            AnswerPart::Sample(n) => write!(f, "sample {n} {what}"),
         }
     }
 }
@@ -60,10 +61,10 @@ pub(crate) fn checked(
     let ended = ended(reply, task)?;
     let events = events(&reply.events.0, task, limits)?;
     let ended_at = ended_at(reply, ended, &events, task)?;
-    has_states(reply.end.0.len(), size, Place::End)?;
+    has_states(reply.end.0.len(), size, AnswerPart::End)?;
     let mut samples = Vec::with_capacity(asked);
     for (n, sample) in reply.samples.0.iter().enumerate() {
-        has_states(sample.0.len(), size, Place::Sample(n))?;
+        has_states(sample.0.len(), size, AnswerPart::Sample(n))?;
         samples.push(sample.0);
     }
     let early = ended != Ended::Horizon && samples.len() < asked;
@@ -72,7 +73,7 @@ pub(crate) fn checked(
     }
     if samples.len() != asked {
         let what = format!("gave {} samples where {asked} were asked for", samples.len());
-        return Err(Place::Run.wrong(what));
+        return Err(AnswerPart::Run.wrong(what));
     }
     Ok(Outcome {
         events,
@@ -89,7 +90,9 @@ pub(crate) fn checked(
 fn ended(reply: &RunReply, task: &Task) -> Result<Ended, Wrong> {
     let ended = Ended::from(reply.ended);
     if ended == Ended::LeavesDomain && !task.system.is_backward() {
-        return Err(Place::Run.wrong("ended with leaves-domain, which only runs back in time do"));
+        return Err(
+            AnswerPart::Run.wrong("ended with leaves-domain, which only runs back in time do")
+        );
     }
     Ok(ended)
 }
@@ -104,33 +107,33 @@ fn ended_at(reply: &RunReply, ended: Ended, events: &[Event], task: &Task) -> Re
         return Ok(time.min(task.span));
     }
     let what = format!("ended at {time:?}; accepted is {last:?} to {:?}", task.span);
-    Err(Place::Run.wrong(what))
+    Err(AnswerPart::Run.wrong(what))
 }
 
-fn has_states(given: usize, size: usize, place: Place) -> Result<(), Wrong> {
+fn has_states(given: usize, size: usize, part: AnswerPart) -> Result<(), Wrong> {
     if given == size {
         return Ok(());
     }
-    Err(place.wrong(format!("has {given} states; accepted are {size}")))
+    Err(part.wrong(format!("has {given} states; accepted are {size}")))
 }
 
 fn events(replies: &[EventReply], task: &Task, limits: &Limits) -> Result<Vec<Event>, Wrong> {
     if replies.len() > limits.events {
         let what = format!("gave {} events; accepted are {}", replies.len(), limits.events);
-        return Err(Place::Run.wrong(what));
+        return Err(AnswerPart::Run.wrong(what));
     }
     let latest = task.span * (1.0 + ROUNDING);
     let (mut mode, mut before) = (task.mode, 0.0);
     let mut events = Vec::with_capacity(replies.len());
     for (n, reply) in replies.iter().enumerate() {
-        let said = |what: String| Place::Event(n).wrong(what);
+        let said = |what: String| AnswerPart::Event(n).wrong(what);
         let time = reply.time;
         if !(before..=latest).contains(&time) {
             return Err(said(format!("is at {time:?}; accepted is {before:?} to {:?}", task.span)));
         }
-        let (event, next) = (place(reply.event.0), place(reply.mode.0));
+        let (event, next) = (part(reply.event.0), part(reply.mode.0));
         follows(&task.system.system().modes, (mode, event, next), task).map_err(said)?;
-        has_states(reply.state.0.len(), task.state.len(), Place::Event(n))?;
+        has_states(reply.state.0.len(), task.state.len(), AnswerPart::Event(n))?;
         let elapsed = time.min(task.span);
         events.push(Event { event, mode: next, elapsed, state: reply.state.0 });
         (mode, before) = (next, time);
@@ -138,7 +141,7 @@ fn events(replies: &[EventReply], task: &Task, limits: &Limits) -> Result<Vec<Ev
     Ok(events)
 }
 
-fn place(count: u64) -> usize {
+fn part(count: u64) -> usize {
     usize::try_from(count).unwrap_or(usize::MAX)
 }
 
@@ -181,7 +184,9 @@ fn work(reply: &RunReply, limits: &Limits) -> Result<Work, Wrong> {
     };
     let calls = work.rhs_evaluations.saturating_add(work.jacobian_evaluations);
     if calls > limits.calls {
-        return Err(Place::Run.wrong(format!("took {calls} calls; accepted are {}", limits.calls)));
+        return Err(
+            AnswerPart::Run.wrong(format!("took {calls} calls; accepted are {}", limits.calls))
+        );
     }
     Ok(work)
 }
@@ -190,7 +195,7 @@ fn own_time(reply: &RunReply, took: Duration) -> Result<Option<Duration>, Wrong>
     let Some(own) = reply.own_ns else { return Ok(None) };
     let most = took + took / 100 + CLOCKS;
     if !(0.0..=most.as_nanos() as f64).contains(&own) {
-        return Err(Place::Run.wrong(format!(
+        return Err(AnswerPart::Run.wrong(format!(
             "says that it took {own} ns of its own; accepted is 0 to the {} that its answer took",
             took.as_nanos()
         )));

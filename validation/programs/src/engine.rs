@@ -17,15 +17,15 @@ pub enum NotStarted {
     Unavailable {
         /// The program's name.
         program: String,
-        /// What is missing.
+        /// The reason why the program cannot run.
         why: String,
     },
-    /// It did something wrong.
+    /// The program did something wrong.
     #[error("{program}: {why}")]
     Failed {
         /// The program's name.
         program: String,
-        /// What it did.
+        /// The reason of the failure.
         why: String,
     },
 }
@@ -45,7 +45,7 @@ pub struct ProgramEngine {
     runs: Runs,
 }
 
-/// What makes the runs of an engine.
+/// The source of the runs of an engine.
 enum Runs {
     Set { pool: Arc<Pool>, set_up: SetUp },
     None(NotStarted),

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 use toml::Spanned;
 
-/// How long a program may take for an answer where the file does not say.
+/// The default time within which a program has to answer.
 const USUAL_TIMEOUT: f64 = 60.0;
 /// The longest time that a file may give a program for an answer.
 const LONGEST_TIMEOUT: f64 = 86_400.0;
-/// What a program, a set-up or an engine in files may be called.
+/// The accepted names of programs, set-ups and engines in files.
 pub const NAMES: &str =
     "a name of 1 to 40 characters: lower-case letters, digits, '-', '_', '.', '+'";
 
@@ -19,9 +19,9 @@ pub const NAMES: &str =
 pub struct Program {
     /// The program's name, with which the names of its engines begin.
     pub name: String,
-    /// The command that starts it: a program and its arguments.
+    /// The command that starts the program, with its arguments.
     pub command: Vec<String>,
-    /// How long it may take for an answer.
+    /// The time within which the program has to answer.
     pub timeout: Duration,
     /// The folder in which it is started, which is that of the file.
     pub folder: PathBuf,
@@ -56,7 +56,7 @@ pub fn read(path: &Path) -> Result<Vec<Program>, FileError> {
     parse(&path.display().to_string(), &text, folder)
 }
 
-/// The known shortcomings of the programs that a file names: those of the file that it names for
+/// The expected failures of the programs that a file names: those of the file that it names for
 /// them, if it does.
 ///
 /// # Errors

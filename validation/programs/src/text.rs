@@ -1,4 +1,4 @@
-//! What programs write, made fit for one line of a report.
+//! Text that programs write, made fit for one line of a report.
 
 /// The most characters of a program's own words in a reason.
 const MOST: usize = 200;

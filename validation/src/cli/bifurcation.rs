@@ -1,11 +1,11 @@
 //! `bifurcation`: a brute-force diagram, as a table or a picture.
 
 use super::note;
-use super::shared::endless::words;
 use super::shared::format::OutputFlags;
 use super::shared::long_work;
 use super::shared::model::ModelFlags;
 use super::shared::parse::{self, MAX_PERIODS, Typed};
+use super::shared::terminal::endless_words;
 use crate::number::shortest;
 use crate::picture::{self, Figure, Layer, Plot};
 use anyhow::{Result, anyhow, bail};
@@ -185,7 +185,7 @@ fn tell_endless(steps: &[DiagramStep]) {
         let values = format!("{} of {} values", ended.len(), steps.len());
         note(&format!(
             "at {values} the run ends in a phase without end (first: {})",
-            words(*first)
+            endless_words(*first)
         ));
     }
 }

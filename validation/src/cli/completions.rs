@@ -1,4 +1,4 @@
-//! `completions`: what a shell asks when the tabulator key is pressed.
+//! `completions`: prints shell completion scripts.
 
 use super::command;
 use super::shared::output::Destination;

@@ -2,12 +2,12 @@
 
 use super::note;
 use super::orbits::Format;
-use super::shared::endless::notice;
 use super::shared::format::OutputFlags;
 use super::shared::long_work;
 use super::shared::model::{ModelFlags, ParametersJson};
 use super::shared::parse::{self, MAX_PERIODS};
 use super::shared::progress::Progress;
+use super::shared::terminal::endless_notice;
 use crate::case::Problem;
 use anyhow::Result;
 use clap::Args;
@@ -65,7 +65,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
              same flags shows the phase",
         );
     } else if let Some(endless) = found.endless {
-        note(&notice(endless));
+        note(&endless_notice(endless));
     }
     Ok(!found.undecidable)
 }

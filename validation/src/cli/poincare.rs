@@ -1,12 +1,12 @@
 //! `poincare`: a stroboscopic section, as a table, an array or a picture.
 
 use super::note;
-use super::shared::endless::notice;
 use super::shared::format::OutputFlags;
 use super::shared::long_work::{self, Bar};
 use super::shared::model::ModelFlags;
 use super::shared::parse::{self, MAX_PERIODS};
 use super::shared::progress::Progress;
+use super::shared::terminal::endless_notice;
 use crate::case::Problem;
 use crate::number::shortest;
 use crate::picture::{self, Figure, Layer, Plot};
@@ -58,10 +58,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
     }
     let destination = arguments.output.destination();
     let bar = long_work::run_bar(destination.is_terminal());
-    let course = ShownCourse::new(arguments, &problem);
-    let progress = course.progress(bar);
+    let section = ShownSection::new(arguments, &problem);
+    let progress = section.progress(bar);
     let (mut last, mut count) = (problem.entry, 0);
-    let strobes = course.strobes(&progress).inspect(|strobe| (last, count) = (*strobe, count + 1));
+    let strobes = section.strobes(&progress).inspect(|strobe| (last, count) = (*strobe, count + 1));
     destination.write(|out| match format {
         Format::Csv => write_csv(strobes, out),
         Format::Npy => write_npy(strobes, arguments.periods, out),
@@ -73,7 +73,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<bool> {
         return Ok(false);
     }
     if let Some(endless) = Section::endless_at(&problem.model, &last) {
-        note(&notice(endless));
+        note(&endless_notice(endless));
     }
     Ok(true)
 }
@@ -86,15 +86,15 @@ fn undecidable(points: u64) -> String {
     )
 }
 
-/// A motion and the part of it that is shown.
-struct ShownCourse<'a> {
+/// A run and the part of it whose stroboscopic section is shown.
+struct ShownSection<'a> {
     problem: &'a Problem,
     first: Instant,
     end: Instant,
     count: u64,
 }
 
-impl<'a> ShownCourse<'a> {
+impl<'a> ShownSection<'a> {
     fn new(arguments: &Arguments, problem: &'a Problem) -> Self {
         let start = problem.entry.instant;
         let first = start.after_periods(arguments.transient, 1).first_at_angle(arguments.section);

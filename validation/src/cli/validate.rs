@@ -11,13 +11,13 @@ use crate::integrators;
 use crate::integrators::{WrongEngine, WrongWay};
 use crate::power::{self, Finding, Standard};
 use crate::report::{Report, ReportEvidence, RowPlace, event_pictures};
-use crate::suite::{self, Suite, SuiteScope};
+use crate::suite::{self, Scored, Suite, SuiteScope};
 use anyhow::{Result, bail};
 use clap::Args;
 use rayon::prelude::*;
 use regex::Regex;
 
-/// Hold every engine against the truth on every case
+/// Compare every engine with the reference solution on every case
 #[derive(Args)]
 pub(super) struct Arguments {
     /// How much to run
@@ -54,7 +54,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     let pool = long_work::pool(threads)?;
     let steps = suite::size(all.len(), &engines, &scope) + wrong.count();
     let bar = long_work::bar(steps as u64, "rows");
-    // Together, so that no thread waits for the last of the rows.
+    // Together, so that no thread is idle while the last rows run.
     let (rows, findings) = pool.install(|| {
         rayon::join(
             || suite::run(&all, &engines, &scope, &defaults, &|| bar.inc(1)),
@@ -66,19 +66,7 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
         bail!("{} rows were made where {asked} were asked for", rows.len());
     }
     bar.finish_and_clear();
-    let evidence = ReportEvidence::gather(
-        (&cases.oscillator, &cases.systems),
-        &rows,
-        &findings,
-        judged.chosen.cases.is_none(),
-    );
-    let (folders, replayed) = (judged.folders(), cases.replayed.clone());
-    let mut evidence = ReportEvidence { folders, replayed, ..evidence };
-    if judged.out.is_some() {
-        evidence.events = pool.install(|| {
-            event_pictures((&cases.oscillator, &cases.systems), &rows, arguments.suite)
-        });
-    }
+    let mut evidence = pool.install(|| evidence(arguments, &cases, &rows, &findings));
     let report = Report::new(arguments.suite, &engines, &rows);
     let asked = |it: &RowPlace<'_>| {
         accepts(&arguments.engine, it.engine)
@@ -92,7 +80,26 @@ pub(super) fn run(arguments: &Arguments, threads: Option<u16>) -> Result<u8> {
     Ok(if unnoticed(&findings) { OUT_OF_BOUNDS } else { code })
 }
 
-/// The suite, as far as tolerances are chosen.
+/// Everything that the report shows beside its rows.
+fn evidence(
+    arguments: &Arguments,
+    cases: &PreparedCases,
+    rows: &[Scored],
+    findings: &[Finding],
+) -> ReportEvidence {
+    let judged = &arguments.judged;
+    let prepared = (&cases.oscillator[..], &cases.systems[..]);
+    let embedded = judged.chosen.cases.is_none();
+    let evidence = ReportEvidence::gather(prepared, rows, findings, embedded);
+    let events = match judged.out {
+        Some(_) => event_pictures(prepared, rows, arguments.suite),
+        None => evidence.events,
+    };
+    let (folders, replayed) = (judged.folders(), cases.replayed.clone());
+    ReportEvidence { folders, replayed, events, ..evidence }
+}
+
+/// The suite at the tolerances that were chosen.
 fn scope(arguments: &Arguments) -> Result<SuiteScope> {
     let all = SuiteScope::from(arguments.suite);
     let is_other = |it: &&parse::Typed<f64>| !all.tolerances().contains(&it.value);
@@ -127,7 +134,7 @@ impl WrongEngines {
         self.anywhere.len() + self.on_systems.len()
     }
 
-    /// What the gates make of them.
+    /// Runs the wrong engines against all gates.
     fn examine(
         &self,
         cases: &PreparedCases,

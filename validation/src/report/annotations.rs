@@ -1,6 +1,6 @@
 //! Failures as annotations on a run of the public CI service, which reads them off the log.
 //!
-//! The service shows a handful of annotations a step and drops the rest, so there is one a case.
+//! The service shows a few annotations per step and drops the rest, so there is one per case.
 
 use super::{Report, ReportEvidence, ReportRow};
 use crate::score::Verdict;

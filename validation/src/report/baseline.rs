@@ -4,7 +4,7 @@ use super::{Report, ReportRow};
 use crate::number::brief;
 use serde::Deserialize;
 
-/// What is read of an earlier `report.json`.
+/// An earlier `report.json`, as far as it is compared.
 #[derive(Debug, Deserialize)]
 pub struct Baseline {
     schema: u32,
@@ -43,14 +43,14 @@ pub struct RowPlace<'a> {
     pub step: Option<f64>,
 }
 
-/// What a comparison with a baseline says, a line each.
+/// The result of a comparison with a baseline, one line per finding.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Compared {
-    /// Rows that got worse, each with how.
+    /// Rows that got worse, with the reason.
     pub worse: Vec<String>,
     /// Rows of the baseline that were asked for and not made.
     pub gone: Vec<String>,
-    /// Rows that both reports have.
+    /// The number of rows in both reports.
     pub common: usize,
 }
 

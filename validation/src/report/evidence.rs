@@ -1,4 +1,4 @@
-//! What a report shows beside its rows: distributions, curves and clouds that a row has no room
+//! The parts of a report beside its rows: distributions, curves and clouds that a row has no room
 //! for.
 //!
 //! Any part may be empty; the report then says that it was not run.
@@ -29,9 +29,9 @@ pub struct ReportEvidence {
     pub grazes: Vec<GrazeRow>,
     /// Poincare sections of the exact solver and of direct integration.
     pub sections: Vec<SectionPair>,
-    /// Deliberately wrong engines, and what noticed them.
+    /// Deliberately wrong engines, with the gates that caught them.
     pub faults: Vec<FaultRow>,
-    /// What got worse than in the baseline, a line each.
+    /// Rows that got worse than in the baseline, one line per row.
     pub worse: Vec<String>,
     /// Flags with their folders, and other words, that a command needs to repeat a row on the same
     /// data.
@@ -40,14 +40,14 @@ pub struct ReportEvidence {
     pub events: Vec<EventPicture>,
 }
 
-/// What a case says of itself.
+/// The description of a case in the report.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct CaseNote {
     /// The case's name.
     pub name: String,
     /// The file it stands in, as seen from the repository's root for cases inside the binary.
     pub file: String,
-    /// The text of that file.
+    /// The text of the case's file.
     pub toml: String,
     /// The system whose case it is; `oscillator` for the paper's.
     pub system: String,
@@ -57,7 +57,7 @@ pub struct CaseNote {
     pub regime: String,
     /// The kinds of trouble that a system's case makes; none of the oscillator's.
     pub trouble: Vec<String>,
-    /// Why it is here.
+    /// The reason for the case.
     pub why: String,
     /// How far the gap's first maximum reaches beyond the surface (negative: stays short of it).
     pub margin: Option<f64>,
@@ -82,7 +82,7 @@ pub struct ErrorGrowth {
     pub lambda_per_period: Option<f64>,
 }
 
-/// How the errors of one engine's restarts are distributed.
+/// The distribution of the errors of one engine's restarts.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct RestartHistogram {
     /// The case whose attractor the states lie on.
@@ -95,11 +95,11 @@ pub struct RestartHistogram {
     pub edges: Vec<f64>,
     /// Runs in each bin.
     pub counts: Vec<u64>,
-    /// What the errors are counted in, in words.
+    /// The unit of the errors, in words.
     pub unit: String,
 }
 
-/// What an engine made of a near miss or a light touch.
+/// An engine's result on a near miss or a light touch.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct GrazeRow {
     /// The case.
@@ -110,9 +110,9 @@ pub struct GrazeRow {
     pub engine: String,
     /// The engine's tolerance, where it has one.
     pub tolerance: Option<f64>,
-    /// Events of the truth that it does not have.
+    /// The number of missed events.
     pub missed: usize,
-    /// Events that the truth does not have.
+    /// The number of spurious events.
     pub spurious: usize,
 }
 
@@ -127,7 +127,7 @@ pub struct SectionPair {
     pub exact: Vec<[f64; 2]>,
     /// The points of a direct integration.
     pub direct: Vec<[f64; 2]>,
-    /// The engine that integrated.
+    /// The engine that made the direct run.
     pub direct_engine: String,
     /// Distances between the two: name, value, limit.
     pub distances: Vec<(String, f64, f64)>,
@@ -138,9 +138,9 @@ pub struct SectionPair {
 pub struct FaultRow {
     /// The engine.
     pub engine: String,
-    /// What is wrong with it.
+    /// The fault, in words.
     pub fault: String,
-    /// The checks it was held against: name, whether it was caught, and the figure that tells.
+    /// The gates that were applied: name, whether the fault was caught, and the figure that tells.
     pub gates: Vec<(String, bool, String)>,
 }
 

@@ -36,7 +36,7 @@ pub(super) fn failing_cases(report: &Report, evidence: &ReportEvidence, all_name
         true => "; many are counted by system here and named by --rows and in report.html",
         false => "",
     };
-    let title = format!("fails on (known shortcomings; ! is a failure that nothing excuses{all}):");
+    let title = format!("fails on (expected failures; ! marks an unexpected one{all}):");
     format!("{}{lines}\n", wrapped(&title))
 }
 
@@ -55,7 +55,7 @@ fn is_unexpected(report: &Report, it: &Ranked, case: &str) -> bool {
     report.results.iter().filter(own).any(unexpected)
 }
 
-/// How many cases of a system there are, on how many an engine fails, and on how many unexcused.
+/// The number of cases of a system, of those that an engine fails, and of unexpected failures.
 #[derive(Clone, Copy, Default)]
 struct SystemCount {
     all: usize,

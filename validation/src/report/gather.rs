@@ -105,7 +105,7 @@ fn restarts(row: &Scored, measures: &Measures) -> Option<RestartHistogram> {
     })
 }
 
-/// What a distance of two sections is called where people read it.
+/// The name of a distance of two sections in words.
 fn in_words(name: &str) -> String {
     let (kind, of) = match name {
         "drift" => return "mean drift".to_owned(),

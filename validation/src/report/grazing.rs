@@ -5,10 +5,10 @@ use super::{Report, ReportEvidence};
 use crate::score::Verdict;
 use std::collections::BTreeMap;
 
-/// What became of one touch or miss.
+/// The result of an engine on one touch or miss.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Seen {
-    /// All events there are, and no other.
+    /// All events were found, and no other.
     Right,
     /// Events were missed.
     Missed,
@@ -20,7 +20,7 @@ pub(super) enum Seen {
     Nothing,
 }
 
-/// What was seen at each setting.
+/// The result at each setting.
 pub(super) type Touches = Vec<(String, Seen)>;
 
 /// Engines by margins; in each cell what was seen from the coarse to the fine settings.

@@ -1,4 +1,4 @@
-//! `junit.xml`: a suite a case, a test a row, for services that show test results.
+//! `junit.xml`: one suite per case, one test per row, for services that show test results.
 
 use super::{Exporter, Report, ReportEvidence, ReportRow};
 use crate::score::Verdict;

@@ -29,7 +29,7 @@ mod work_precision;
 
 pub use annotations::{annotations, under_the_service};
 pub use baseline::{Baseline, Compared, RowPlace};
-pub use event::{EventMark, EventPicture, MismatchKind, View, ViewCourse, event_pictures};
+pub use event::{EventMark, EventPicture, MismatchKind, View, ViewTrajectory, event_pictures};
 pub use evidence::{
     CASES_FLAG, CaseNote, ErrorGrowth, FaultRow, GrazeRow, OSCILLATOR, ReportEvidence,
     RestartHistogram, SectionPair,

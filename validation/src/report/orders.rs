@@ -8,11 +8,11 @@ use crate::score::Spread;
 pub struct Order {
     /// The engine.
     pub engine: &'static str,
-    /// What its authors state.
+    /// The order that the method's authors state.
     pub claimed: u32,
     /// The median over the cases.
     pub found: f64,
-    /// How many cases have settings enough.
+    /// The number of cases with enough settings.
     pub cases: usize,
 }
 

@@ -80,7 +80,7 @@ fn drawn<D: Drawing + Sync>(
     Ok(files?.into_iter().flatten().collect())
 }
 
-/// What belongs to each case, in the order of its first appearance.
+/// The items of each case, in the order of their first appearance.
 fn by_case<T>(all: &[T], case: fn(&T) -> &String) -> impl Iterator<Item = (&str, Vec<&T>)> {
     let mut names: Vec<&str> = Vec::new();
     for it in all {
@@ -119,7 +119,7 @@ impl Palette {
         self.looks.iter().find(|(name, _)| name == engine).map(|(_, look)| look)
     }
 
-    /// A picture a unit: errors in different units share no axis.
+    /// One picture per unit: errors in different units share no axis.
     fn restarts(&self, case: &str, runs: &[&RestartHistogram]) -> Vec<(String, Histograms)> {
         let mut units: Vec<&str> = Vec::new();
         for run in runs {

@@ -117,7 +117,7 @@ fn one(engine: &'static str, rows: Vec<(&Scored, &ReportRow)>) -> (Ranked, bool)
     (ranked, exact)
 }
 
-/// What one row counts for: nothing where nothing could be judged.
+/// The counts of one row: zero if nothing could be judged.
 struct Counted {
     found: usize,
     checked: usize,

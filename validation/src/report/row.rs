@@ -1,4 +1,4 @@
-//! What a report holds: the keys of `report.json`.
+//! The keys of `report.json`.
 
 use super::ranking::{Ranked, ranking};
 use crate::engine::{Declaration, Engine, Work};
@@ -13,10 +13,10 @@ use std::time::Duration;
 /// A whole report.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
-    /// The format's number, and what was run where.
+    /// The number of the format, and the build and machine.
     #[serde(flatten)]
     pub build: Build,
-    /// How much was run.
+    /// The suite that was run.
     pub suite: Suite,
     /// The engines that were run.
     pub engines: Vec<EngineEntry>,
@@ -24,16 +24,16 @@ pub struct Report {
     pub results: Vec<ReportRow>,
     /// The engines by how many of all events they find; exact ones come first, as the reference.
     pub ranking: Vec<Ranked>,
-    /// How many rows came to which verdict.
+    /// The number of rows per verdict.
     pub summary: Summary,
 }
 
-/// An engine as it declares itself.
+/// An engine's declaration, as the report has it.
 #[derive(Clone, Debug, Serialize)]
 pub struct EngineEntry {
     /// The engine's name.
     pub name: &'static str,
-    /// The library it is of.
+    /// The library that the engine belongs to.
     pub library: &'static str,
     /// The library's version.
     pub version: String,
@@ -46,7 +46,7 @@ pub struct EngineEntry {
     pub order: Option<u32>,
 }
 
-/// How many rows came to which verdict.
+/// The number of rows per verdict.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub struct Summary {
@@ -96,7 +96,7 @@ pub struct ReportRow {
     /// How much of it the errors of the events' times explain to first order.
     pub drift_error_by_event_times: f64,
     pub valid_periods: f64,
-    /// How long runs from many states in chaos stay right.
+    /// The valid horizons of runs from many states in chaos.
     pub valid_horizon: Option<ValidHorizons>,
     /// Errors of the restart test in units of error x (1 + |value|) x growth.
     pub restart: Option<RestartFigures>,
@@ -143,9 +143,9 @@ pub struct ValidHorizons {
 /// A distance of two sections.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Distance {
-    /// What was measured.
+    /// The measured distance.
     pub value: f64,
-    /// What reference runs hardly ever reach.
+    /// The limit, which reference runs hardly ever reach.
     pub limit: f64,
 }
 
@@ -165,7 +165,7 @@ impl Report {
         }
     }
 
-    /// How many cases were run.
+    /// The number of cases that were run.
     #[must_use]
     pub fn number_of_cases(&self) -> usize {
         self.results.chunk_by(|a, b| a.case == b.case).count()

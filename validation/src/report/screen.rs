@@ -1,4 +1,4 @@
-//! What `validate` prints: which integrator can be trusted with events, and where each fails.
+//! The summary that `validate` prints: the ranking of integrators on events, and where each fails.
 //!
 //! A terminal shows the last lines, so the ranking and the failures stand there and the details
 //! above them. Every line fits [`WIDTH`](super::WIDTH) columns.
@@ -75,7 +75,7 @@ fn ranking_table(report: &Report) -> String {
          scored counts as not found. median, worst: event-time error in units of tolerance x growth x \
          events so far (eps for exact, the step's own error for fixed steps). rhs: right-hand sides \
          per event at an error of {COMPARED_AT:e}, which decides between equals. fail: cases, of {}, \
-         known shortcomings included; an event of a graze that a method's own error hides is \
+         expected failures included; an event of a graze that a method's own error hides is \
          undecidable, no failure. exact is the reference.",
         report.number_of_cases()
     );

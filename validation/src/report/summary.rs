@@ -20,7 +20,7 @@ pub(super) struct EngineSummary {
 /// The figures of one engine at one setting over all cases. A typical figure is the median over the
 /// cases of the row's largest error; a run without a result counts as infinitely wrong, so that
 /// failing on hard cases does not look like accuracy. So does, for the times of events, one of
-/// several runs that missed or invented an event: what it found are the easier ones.
+/// several runs with a missed or a spurious event: what it found are the easier ones.
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct SettingSummary {
     pub setting: String,
@@ -30,7 +30,7 @@ pub(super) struct SettingSummary {
     /// Whether the figures may stand beside those of other engines: over most of the rows, or, of
     /// one row, over all events of the truth and no others.
     pub is_comparable: bool,
-    /// What they are over, in words.
+    /// The rows over which the figures are taken, in words.
     pub of: String,
     pub failed: usize,
     pub expected: usize,

@@ -1,9 +1,9 @@
-//! Which engine stands which kind of trouble: the events of systems' cases, kind by kind.
+//! How each engine copes with each kind of difficulty, by the events of systems' cases.
 
 use super::{Ranked, Report, ReportEvidence, ReportRow};
 use crate::score::Verdict;
 
-/// What an engine made of the cases of one kind of trouble.
+/// An engine's events on the cases of one kind of trouble.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct TroubleCell {
     /// The truth's events that were scored.
@@ -40,7 +40,7 @@ impl TroubleCell {
 pub(super) struct Trouble {
     /// The engines with their ranks.
     pub engines: Vec<(&'static str, usize)>,
-    /// A kind of trouble, how many cases are of it, and a cell an engine.
+    /// A kind of trouble, the number of its cases, and one cell per engine.
     pub lines: Vec<(String, usize, Vec<TroubleCell>)>,
 }
 

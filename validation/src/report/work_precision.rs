@@ -11,7 +11,7 @@ use crate::picture::{Axis, AxisScale, Curve, Curves, Marker, Stroke};
 /// More hollow points than these are counted instead of named.
 const FEW_POINTS: usize = 8;
 
-/// Which error is shown, in words and as a figure.
+/// An error that is shown: its words and its figure.
 type Shown = (&'static str, fn(&SettingSummary) -> f64);
 
 impl Palette {
@@ -75,7 +75,7 @@ fn logarithmic(label: &str) -> Axis {
     Axis { label: label.to_owned(), scale: AxisScale::Logarithmic }
 }
 
-/// What the hollow points are, and what counts as infinitely wrong.
+/// The note on hollow points and on runs that count as infinitely wrong.
 fn note(report: &Report, summaries: &[EngineSummary]) -> String {
     let one_case = report.number_of_cases() == 1;
     let of_engine = |(engine, summary): (&EngineEntry, &EngineSummary)| {
@@ -85,7 +85,9 @@ fn note(report: &Report, summaries: &[EngineSummary]) -> String {
     };
     let apart: Vec<_> = report.engines.iter().zip(summaries).flat_map(of_engine).collect();
     let why = match one_case {
-        true => "these runs missed or invented events, or are scored for a part of the events only",
+        true => {
+            "these runs have missed or spurious events, or are scored for a part of the events only"
+        }
         false => "fewer than nine tenths of their rows were run",
     };
     let hollow = match apart.len() {
@@ -96,7 +98,7 @@ fn note(report: &Report, summaries: &[EngineSummary]) -> String {
     let infinite = match one_case {
         true => "",
         false => {
-            "A run without a result, and for event times one that missed or invented an event, \
+            "A run without a result, and for event times one that has a missed or a spurious event, \
              counts as infinitely wrong."
         }
     };

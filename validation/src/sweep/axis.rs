@@ -1,4 +1,4 @@
-//! What varies in a sweep.
+//! The parameters that vary in a sweep.
 
 use percuss::{Parameter, Parameters};
 use serde::{Deserialize, Serialize};
@@ -8,13 +8,13 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct SweepAxis {
-    /// What varies.
+    /// The parameter that varies.
     pub parameter: Parameter,
     /// The first value.
     pub from: f64,
     /// The last value, which may be the smaller one.
     pub to: f64,
-    /// How many values, both ends included.
+    /// The number of values, both ends included.
     pub steps: u32,
 }
 

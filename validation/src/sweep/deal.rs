@@ -1,4 +1,4 @@
-//! Which shard computes which tiles.
+//! The distribution of tiles over shards.
 //!
 //! The costliest tile goes first, each to the shard that has least so far (Graham 1969: the longest
 //! shard then takes at most 4/3 of the shortest possible, if costs are known). Ties go by number,
@@ -12,13 +12,13 @@ use std::collections::BinaryHeap;
 pub struct Deal {
     /// The tiles of all shards, one shard after the other, each in order.
     tiles: Vec<u64>,
-    /// Where the tiles of each shard end.
+    /// The end of each shard's tiles.
     ends: Vec<usize>,
     cost_of: Vec<u64>,
 }
 
 impl Deal {
-    /// Deals tiles of these costs to so many shards.
+    /// Deals tiles of the given costs to a number of shards.
     pub fn new(costs: &[u64], shards: u32) -> Self {
         let mut order: Vec<usize> = (0..costs.len()).collect();
         order.sort_by_key(|tile| (Reverse(costs[*tile]), *tile));
@@ -47,7 +47,7 @@ impl Deal {
         &self.tiles[from..self.ends[shard]]
     }
 
-    /// What a shard costs.
+    /// The cost of a shard.
     pub fn cost_of(&self, shard: u32) -> u64 {
         self.cost_of[shard as usize]
     }

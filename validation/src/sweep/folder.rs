@@ -51,7 +51,7 @@ pub(super) struct Lock {
 }
 
 impl ComputedBy {
-    /// This program, here.
+    /// The build of this program on this machine.
     #[must_use]
     pub fn this() -> Self {
         let build = provenance::this();
@@ -135,12 +135,12 @@ impl Folder {
         }
     }
 
-    /// What the pilot has left, if anything.
+    /// The pilot's file, if there is one.
     pub(super) fn read_pilot(&self) -> Option<Vec<u8>> {
         fs::read(self.path.join(PILOT)).ok()
     }
 
-    /// Keeps what the pilot has counted.
+    /// Writes the costs that the pilot has counted.
     pub(super) fn write_pilot(&self, bytes: &[u8]) -> Result<()> {
         let written = self.put(PILOT, OTHERS, &[bytes], Unfinished::finish);
         written.map_err(|error| self.unwritable(PILOT, &error))
@@ -247,7 +247,7 @@ fn readable(builder: &mut tempfile::Builder<'_, '_>) {
 }
 
 impl Lock {
-    /// Whether it was free.
+    /// Whether the lock was free.
     pub(super) const fn is_ours(&self) -> bool {
         self.file.is_some()
     }

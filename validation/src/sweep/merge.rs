@@ -43,7 +43,7 @@ pub struct Merge<'a> {
 }
 
 impl NotMerged {
-    /// What is said of a folder in which nothing was begun.
+    /// The error for a folder in which no shard was begun.
     #[must_use]
     pub fn not_begun(plan: &Plan) -> Self {
         Self((0..plan.shards).map(|shard| (shard, Damage::Missing)).collect())

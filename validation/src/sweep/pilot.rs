@@ -19,7 +19,7 @@ const ALONG: u32 = 8;
 /// cost as much as the tile.
 const APART: u32 = 4;
 
-/// What the pilot has counted.
+/// The costs that the pilot run has counted.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct PilotCosts {
     plan: String,

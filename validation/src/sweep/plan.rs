@@ -80,7 +80,7 @@ impl Plan {
         file.check(folder).map_err(|error| anyhow!("--plan {shown}: {error}"))
     }
 
-    /// How many points the axes span.
+    /// The number of points of the axes.
     #[must_use]
     pub fn points(&self) -> u64 {
         self.axes.iter().map(|axis| u64::from(axis.steps)).product()

@@ -31,7 +31,7 @@ pub trait SweepObserver: Sync {
     fn doubled(&self, shard: u32);
     /// Says how many tiles are to be done.
     fn begun(&self, tiles: u64);
-    /// One more is.
+    /// One more tile is computed.
     fn tile(&self);
 }
 

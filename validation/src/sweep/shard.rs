@@ -12,26 +12,26 @@ use std::io::{self, BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 /// The first line of a shard's file.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ShardHead {
-    /// What the shard is one of.
+    /// The identity of the sweep that the shard belongs to.
     pub identity: Identity,
     /// The shard's number, from 0.
     pub shard: u32,
-    /// Seconds that it took.
+    /// The seconds that the shard took.
     pub seconds: f64,
     /// The tiles, in order, and how many bytes each has.
     pub tiles: Vec<(u64, u64)>,
 }
 
-/// What must be the same of all shards that are joined.
+/// The values that must be the same in all shards that are joined.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Identity {
     /// The format's number.
     pub schema: u32,
     /// The plan's hash.
     pub plan: String,
-    /// The hash of what the tiles were dealt by.
+    /// The hash of the costs by which tiles were dealt to shards.
     pub deal: String,
-    /// What computed it.
+    /// The program that computed the shard.
     pub program: ComputedBy,
 }
 
@@ -44,12 +44,12 @@ pub struct Shard {
     from: u64,
 }
 
-/// Why a shard's file cannot be used.
+/// The reason why a shard's file cannot be used.
 #[derive(Debug)]
 pub enum Damage {
-    /// There is no file.
+    /// The shard has no file.
     Missing,
-    /// What is wrong with it.
+    /// The shard's file is damaged, in the way that the text says.
     Damaged(String),
 }
 
@@ -173,7 +173,7 @@ impl TileLocation {
 }
 
 impl Identity {
-    /// What differs from another.
+    /// The first difference from another identity.
     fn difference(&self, other: &Self) -> &'static str {
         if self.plan != other.plan {
             "it is of another plan"

@@ -6,7 +6,7 @@ use std::fs::File;
 use std::io::{BufReader, BufWriter, Read, Seek, Write};
 use std::path::Path;
 
-/// What the numbers of an array are.
+/// The type of an array's numbers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NumberType {
     /// Numbers of 64 bits, f8.
@@ -21,7 +21,7 @@ pub enum NumberType {
 pub struct Spool {
     /// The arrays' name.
     pub name: String,
-    /// What their numbers are.
+    /// The type of the numbers.
     pub kind: NumberType,
     /// The largest length along each dimension.
     pub shape: Vec<usize>,
@@ -88,7 +88,7 @@ pub struct SpoolReader {
 
 /// A number of an array.
 pub trait ArrayNumber: Copy {
-    /// What stands where there is no number.
+    /// The value in place of a missing number.
     const NONE: Self;
     /// Reads the next number.
     fn read(file: &mut impl Read) -> std::io::Result<Self>;

@@ -1,26 +1,26 @@
-//! How far a sweep is.
+//! The state of a sweep.
 
 use super::plan::Plan;
 use super::run::Sweep;
 use super::shard::Damage;
 
-/// What is known of a shard.
+/// The state of a shard.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ShardState {
     /// The shard is finished, and its file is whole.
     Done,
-    /// Some process computes it.
+    /// Some process computes the shard.
     Running,
     /// No one has begun it, or whoever did is gone.
     Missing,
-    /// There is a file that cannot be used; why.
+    /// The shard's file cannot be used, for the given reason.
     Damaged(String),
 }
 
 /// The states of all shards of a sweep.
 #[derive(Clone, Debug)]
 pub struct SweepStatus {
-    /// A state a shard, in order.
+    /// The state of each shard, in order.
     pub shards: Vec<ShardState>,
     /// Expected seconds to the end, as long as so many run as do now, or one where none does; none
     /// before the first shard is done.

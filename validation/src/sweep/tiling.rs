@@ -1,4 +1,4 @@
-//! How a plan's points are cut into tiles, the pieces that are dealt to shards.
+//! Cuts a plan's points into tiles, the pieces that are dealt to shards.
 //!
 //! A tile is one of the blocks of a large point, or some small points in a row: as many as keep the
 //! number of tiles, and with it the memory of a merge, within bounds. What a point gives does not
@@ -34,7 +34,7 @@ impl Tiling {
         Self { points, blocks, together }
     }
 
-    /// How many tiles there are.
+    /// The number of tiles.
     pub const fn count(&self) -> u64 {
         self.points.div_ceil(self.together) * self.blocks as u64
     }

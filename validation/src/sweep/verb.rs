@@ -1,4 +1,4 @@
-//! What a verb does at the points of a sweep.
+//! The work of a verb at the points of a sweep.
 
 use super::{Array, SweepPoint};
 use anyhow::Result;

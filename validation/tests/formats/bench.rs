@@ -32,19 +32,19 @@ fn bench() {
     assert_eq!(exact[0]["ratio_to_exact"], 1.0);
     assert_eq!(exact[0]["tolerance"], Value::Null);
     // A decade of tolerance a row; one of them is its most accurate.
-    let ladder = of("impact-into-progression", "ode_solvers-dopri5");
-    assert_eq!(ladder.len(), 12);
-    assert_eq!(ladder.iter().filter(|row| row["most_accurate"] == true).count(), 1);
+    let decades = of("impact-into-progression", "ode_solvers-dopri5");
+    assert_eq!(decades.len(), 12);
+    assert_eq!(decades.iter().filter(|row| row["most_accurate"] == true).count(), 1);
     // The same work-precision curve on every row of an engine; the exact solver is its own unit at
     // any error.
     for key in ["ratio_at_1e-6", "ratio_at_1e-9", "ratio_at_comparable_error"] {
-        assert!(ladder.iter().all(|row| row[key] == ladder[0][key]), "{key}");
+        assert!(decades.iter().all(|row| row[key] == decades[0][key]), "{key}");
         assert_eq!(exact[0][key], 1.0);
     }
     // Dearer at a smaller error, and at most what the settings around it take.
-    let ratio = |key: &str| ladder[0][key].as_f64().expect("its curve reaches it");
+    let ratio = |key: &str| decades[0][key].as_f64().expect("its curve reaches it");
     assert!(ratio("ratio_at_1e-6") <= ratio("ratio_at_1e-9"));
-    let accurate = ladder.iter().filter(|row| row["state_error_max"].as_f64() <= Some(1e-9));
+    let accurate = decades.iter().filter(|row| row["state_error_max"].as_f64() <= Some(1e-9));
     let least = accurate.filter_map(|row| row["ratio_to_exact"].as_f64()).reduce(f64::min);
     assert!(Some(ratio("ratio_at_1e-9")) <= least);
     // What the harness adds can be told of every engine that is right somewhere; its search for
@@ -89,7 +89,7 @@ fn bench_record() {
     let text = std::fs::read_to_string(&path).expect("read");
     let lines: Vec<Value> = text.lines().map(json).collect();
     lines.iter().for_each(|line| assert_valid("bench-record.schema.json", line));
-    // Appended to, and a row a workload each time.
+    // Appended to, and one row per workload each time.
     assert_eq!(lines.len(), 2 * (table.lines().count() - 1));
     assert!(lines.iter().all(|line| line["percuss"] == env!("CARGO_PKG_VERSION")));
     let picture = folder.path().join("history.png").display().to_string();

@@ -5,7 +5,7 @@ use percuss_validation::provenance::Build;
 use percuss_validation::report::{
     CaseNote, EngineEntry, ErrorGrowth, EventMark, EventPicture, FaultRow, GrazeRow, MismatchKind,
     Ranked, Report, ReportEvidence, ReportRow, RestartHistogram, SectionPair, Summary, Units,
-    ValidHorizons, View, ViewCourse,
+    ValidHorizons, View, ViewTrajectory,
 };
 use percuss_validation::score::{Spread, Verdict};
 use percuss_validation::suite::Suite;
@@ -275,12 +275,12 @@ fn view(half: f64) -> View {
     View {
         from: -half,
         to: half,
-        truth: ViewCourse {
+        truth: ViewTrajectory {
             phase: "no-contact".to_owned(),
             events,
             values: instants().map(touch).collect(),
         },
-        engine: ViewCourse { phase: "no-contact".to_owned(), events: Vec::new(), values },
+        engine: ViewTrajectory { phase: "no-contact".to_owned(), events: Vec::new(), values },
         steps: vec![-0.6 * half, 0.2 * half, 0.8 * half],
         looks: vec![[-0.6 * half, touch(0.6 * half)], [0.8 * half, f64::NAN]],
     }

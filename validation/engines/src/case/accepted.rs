@@ -1,4 +1,4 @@
-//! What is accepted under each name, for errors.
+//! The accepted values of each flag and key, for error messages.
 
 use percuss::{InputError, Model, Parameter, Parameters, Start};
 
@@ -24,7 +24,7 @@ fn of_parameter(parameter: Parameter) -> Option<&'static str> {
     range(parameter.set(Parameters::default(), f64::NAN).check())
 }
 
-/// The range of one number of a start.
+/// The accepted range of one number of a start.
 fn of_start(name: &str) -> Option<&'static str> {
     let mut start = Start::default();
     match name {

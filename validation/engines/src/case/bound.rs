@@ -1,10 +1,10 @@
-//! What is expected of an engine on a case.
+//! The bounds and expected failures of engines on a case.
 
 use crate::accuracy::Accuracy;
 use regex::Regex;
 use std::fmt;
 
-/// What a bound is about.
+/// The quantity that a bound limits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Quantity {
@@ -38,7 +38,7 @@ pub enum Quantity {
     /// unit x (1 + size) x growth, where the size is that of the value, or of the largest state so
     /// far in a piecewise-affine system.
     RestartError,
-    /// Restarts that gave no result.
+    /// The number of restarts without a result.
     RestartsFailed,
     /// Whether the run gave no result (0 or 1).
     RunsFailed,
@@ -85,7 +85,7 @@ impl Quantity {
         matches!(self, Self::EventTimeError | Self::StateError | Self::RestartError)
     }
 
-    /// Whether a bound on it is a lower limit.
+    /// Whether a bound on the quantity is a lower limit.
     #[must_use]
     pub const fn is_to_be_large(self) -> bool {
         matches!(self, Self::ValidPeriods | Self::ValidGain)
@@ -98,11 +98,11 @@ impl Quantity {
 pub enum Statistic {
     /// The median.
     Median,
-    /// 99 % are at most this.
+    /// The 99th percentile.
     Q99,
     /// The largest.
     Max,
-    /// The one number there is.
+    /// The only value of a quantity that has no distribution.
     Value,
 }
 
@@ -111,12 +111,12 @@ pub enum Statistic {
 pub enum NamePattern {
     /// The one name. Thousands of rows say theirs, and a comparison costs less than an expression.
     Exactly(String),
-    /// The names that an expression matches.
+    /// The names that a regular expression matches.
     Matching(Regex),
 }
 
 impl NamePattern {
-    /// Whether something is said of this name.
+    /// Whether the pattern includes a name.
     #[must_use]
     pub fn includes(&self, name: &str) -> bool {
         match self {
@@ -135,14 +135,14 @@ impl fmt::Display for NamePattern {
     }
 }
 
-/// A limit, and why it is that.
+/// A limit with its reason.
 #[derive(Clone, Debug)]
 pub struct Bound {
-    /// Engines it is for.
+    /// The engines to which this applies.
     pub engine: NamePattern,
-    /// The tolerances or steps it is for; all where none is given.
+    /// The tolerances or steps to which this applies; all where none is given.
     pub at: Vec<Accuracy>,
-    /// What is bounded.
+    /// The quantity that is bounded.
     pub quantity: Quantity,
     /// The statistic of the quantity.
     pub statistic: Statistic,
@@ -159,9 +159,9 @@ pub struct Bound {
 pub struct Shortcoming {
     /// Cases it is for, where it does not stand in one.
     pub case: Option<NamePattern>,
-    /// Engines it is for.
+    /// The engines to which this applies.
     pub engine: NamePattern,
-    /// The tolerances or steps it is for; all where none is given.
+    /// The tolerances or steps to which this applies; all where none is given.
     pub at: Vec<Accuracy>,
     /// The quantity that is out of bounds.
     pub quantity: Quantity,

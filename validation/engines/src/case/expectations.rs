@@ -1,4 +1,4 @@
-//! What a case file says of engines: bounds and known shortcomings.
+//! The bounds and expected failures in a case file.
 
 use super::bound::{Bound, NamePattern, Quantity, Shortcoming, Statistic};
 use super::located::{FileError, FileText};
@@ -13,18 +13,18 @@ struct BoundsFile {
     bounds: Vec<BoundTable>,
 }
 
-/// What is expected of engines on every case, after what the case says itself.
+/// The bounds and expected failures on every case, which come after the case's own.
 #[derive(Clone, Debug, Default)]
 pub struct Defaults {
     /// Bounds on the oscillator's cases, after the case's own.
     pub bounds: Vec<Bound>,
     /// Bounds on cases of other systems, after the case's own.
     pub of_systems: Vec<Bound>,
-    /// Shortcomings that show on many cases.
+    /// Expected failures on many cases.
     pub shortcomings: Vec<Shortcoming>,
 }
 
-/// One number, or a list of numbers.
+/// A key's value that is one number or a list of numbers.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "accepted is a number or a list of numbers")]
 enum Several {
@@ -76,7 +76,7 @@ pub(super) fn read_bounds(file: &str, text: &str) -> Result<Defaults, FileError>
     Ok(Defaults { bounds, of_systems, shortcomings: Vec::new() })
 }
 
-/// The tolerances and steps that are named.
+/// The tolerances and steps that a bound names.
 fn accuracies(tolerance: Option<Several>, step: Option<Several>) -> Vec<Accuracy> {
     let numbers = |several: Option<Several>| match several {
         None => Vec::new(),

@@ -1,4 +1,4 @@
-//! Where cases come from: inside the binary, or a folder.
+//! Reads cases from inside the binary or from a folder.
 
 use super::Case;
 use super::bound::Shortcoming;
@@ -141,7 +141,7 @@ fn is_case(path: &Path) -> bool {
     name.ends_with(".toml") && !name.ends_with(".system.toml")
 }
 
-/// What is expected on every case inside the binary, after what the case says itself.
+/// The bounds and expected failures on cases inside the binary, which come after a case's own.
 ///
 /// # Errors
 /// [`FileError`]; a test shows that there is none.
@@ -150,7 +150,7 @@ pub fn defaults() -> Result<Defaults, FileError> {
     Ok(Defaults { shortcomings, ..read_bounds("bounds.toml", BOUNDS)? })
 }
 
-/// The known shortcomings in a file of their own, as of engines that are not of this program.
+/// The expected failures in a file of their own, as of engines that are not of this program.
 ///
 /// # Errors
 /// [`FileError`] for a file that cannot be read or understood.

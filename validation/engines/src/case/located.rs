@@ -1,4 +1,4 @@
-//! Errors that say where: which flag, or which field of which file on which line.
+//! Error messages that name the flag, or the file, line and field, at fault.
 
 use super::accepted::accepted;
 use percuss::InputError;
@@ -7,7 +7,7 @@ use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 
-/// An error in a file, in one line.
+/// An error in a file, as one line of text.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct FileError(pub String);
@@ -70,7 +70,7 @@ pub fn read_text(path: &Path) -> Result<String, FileError> {
     })
 }
 
-/// A text with its file's name, for errors.
+/// A text with the name of its file, for error messages.
 pub(super) struct FileText<'a> {
     pub(super) file: &'a str,
     pub(super) text: &'a str,
@@ -85,13 +85,13 @@ impl FileText<'_> {
         format!("{}:{}", self.file, line_of(self.text, item.span().start))
     }
 
-    /// A key's value that is out of range.
+    /// The error for a value of a key that is out of range.
     pub(super) fn refused<T>(&self, key: &str, item: &Spanned<T>) -> FileError {
         let accepted = accepted(key).unwrap_or("a value in its range");
         self.error(item, &format!("{key} = {} is not accepted: {accepted}", self.typed(item)))
     }
 
-    /// A value as it stands in the file.
+    /// The text of a value, as the file has it.
     pub(super) fn typed<T>(&self, item: &Spanned<T>) -> &str {
         self.text.get(item.span()).unwrap_or_default()
     }
@@ -151,7 +151,7 @@ fn wrong_type(text: &str, span: Range<usize>, expected: &str) -> String {
     format!("{} {value} is not accepted: {expected}", key.trim())
 }
 
-/// Everything on one line.
+/// The text with its line breaks replaced by spaces.
 pub(crate) fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

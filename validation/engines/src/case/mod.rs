@@ -32,7 +32,7 @@ use percuss::{Parameters, Start};
 /// The end of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Horizon {
-    /// This many forcing periods after the start.
+    /// The run ends this many forcing periods after the start.
     Periods(u32),
     /// The run ends at this time tau.
     Until(f64),
@@ -43,13 +43,13 @@ pub enum Horizon {
 pub struct Case {
     /// Name, as in `-c` and in the reference data's file names.
     pub name: String,
-    /// The file it stands in; beginning with `cases/` where that is inside the binary.
+    /// The path of the case's file; it begins with `cases/` for a case inside the binary.
     pub file: String,
-    /// The text of that file.
+    /// The text of the case's file.
     pub text: String,
-    /// The regime it stands for.
+    /// The regime that the case stands for.
     pub regime: Regime,
-    /// Why it is here.
+    /// The reason for the case.
     pub why: String,
     /// The margin of a near miss or light touch: how far the gap's first maximum reaches beyond the
     /// surface (negative: stays short of it), units of displacement.
@@ -60,9 +60,9 @@ pub struct Case {
     pub start: Start,
     /// The horizon, after the start.
     pub horizon: Horizon,
-    /// What is asked of engines beyond the run itself.
+    /// The tests of engines on this case beyond its own run.
     pub probed: ProbedCase,
-    /// Bounds of this case; they come before the default ones.
+    /// The bounds of this case, which come before the default bounds.
     pub bounds: Vec<Bound>,
     /// Expected failures of engines, with their reasons.
     pub shortcomings: Vec<Shortcoming>,

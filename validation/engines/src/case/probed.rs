@@ -1,4 +1,4 @@
-//! What a case asks of engines beyond its own run.
+//! The tests that a case asks for beyond its own run.
 
 use super::located::{FileError, FileText};
 use serde::Deserialize;
@@ -7,7 +7,7 @@ use toml::Spanned;
 /// The longest run from which a valid horizon is read, in forcing periods.
 const LONGEST: i64 = 1000;
 
-/// What is asked on a case beyond its own run, which is asked of the exact solver in any case.
+/// The tests on a case beyond its own run; the exact solver always takes all of them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ProbedCase {
     /// Whether integrators and wrong engines too restart from states on its attractor and, where

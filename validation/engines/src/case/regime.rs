@@ -1,4 +1,4 @@
-//! The regimes that cases stand for.
+//! The regimes of motion that cases stand for.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -6,12 +6,12 @@ use std::fmt;
 /// Regimes with their names in case files.
 macro_rules! regimes {
     ($($(#[$doc:meta])* $regime:ident = $name:literal,)*) => {
-        /// The regime that a case stands for.
+        /// The regime of motion that a case stands for.
         #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
         #[serde(from = "String", into = "String")]
         pub enum Regime {
             $($(#[$doc])* $regime,)*
-            /// A regime that percuss has no word for.
+            /// A regime that percuss does not know.
             Other(String),
         }
 
@@ -56,8 +56,8 @@ regimes! {
     OverDamped = "over-damped",
     /// The forcing has nearly the frequency of the elastic contact.
     ResonanceInContact = "resonance in contact",
-    /// A small damping ratio, at which relaxation is fast: one of several.
-    StiffnessLadder = "stiffness ladder",
+    /// One of a series of falling damping ratios, at which the slider's relaxation is stiff.
+    StiffnessSeries = "stiffness ladder",
     /// The start lies on two thresholds at once.
     DegenerateStart = "degenerate start",
     /// The start lies late in time, where a time in one number has lost digits.

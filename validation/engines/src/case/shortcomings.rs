@@ -1,4 +1,4 @@
-//! `shortcomings.toml`: known shortcomings of engines on the cases inside the binary, row by row.
+//! `shortcomings.toml`: expected failures of engines on the cases inside the binary, row by row.
 
 use super::bound::{NamePattern, Quantity, Shortcoming, Statistic};
 use super::located::{FileError, FileText};
@@ -25,7 +25,7 @@ struct DefectTable {
 /// Case, tolerance (or negative step), quantity, statistic, least and largest value.
 type KnownRow = (String, f64, Quantity, Statistic, f64, f64);
 
-/// Reads the known shortcomings.
+/// Reads the expected failures.
 pub(super) fn read_shortcomings(file: &str, text: &str) -> Result<Vec<Shortcoming>, FileError> {
     let source = FileText { file, text };
     let wire: KnownFile = source.parse()?;

@@ -20,13 +20,13 @@ const MOST_SAMPLES: i64 = 100_000;
 pub struct SystemCase {
     /// Name, as in `-c` and in the reference data's file names.
     pub name: String,
-    /// The file it stands in; beginning with `cases/` where that is inside the binary.
+    /// The path of the case's file; it begins with `cases/` for a case inside the binary.
     pub file: String,
-    /// The text of that file.
+    /// The text of the case's file.
     pub text: String,
-    /// Why it is here.
+    /// The reason for the case.
     pub why: String,
-    /// The kinds of trouble that it makes.
+    /// The kinds of trouble that the case makes for integrators.
     pub trouble: Vec<String>,
     /// The system with the case's parameters and start.
     pub system: System,
@@ -36,7 +36,7 @@ pub struct SystemCase {
     pub backward: bool,
     /// The number of instants after the start at which the state is tabulated.
     pub samples: u32,
-    /// Bounds of this case; they come before the default ones.
+    /// The bounds of this case, which come before the default bounds.
     pub bounds: Vec<Bound>,
     /// Expected failures of engines, with their reasons.
     pub shortcomings: Vec<Shortcoming>,

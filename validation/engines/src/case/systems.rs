@@ -29,7 +29,7 @@ systems![
     "watched-impact-oscillator",
 ];
 
-/// The text of the system of this name.
+/// The text of the system file of the given name.
 #[must_use]
 pub fn named(name: &str) -> Option<&'static str> {
     SYSTEMS.iter().find(|(own, _)| *own == name).map(|(_, text)| *text)

@@ -194,7 +194,7 @@ pub fn parse_case(file: &str, text: &str) -> Result<Case, FileError> {
 }
 
 impl FileText<'_> {
-    /// Refuses a name that is none of a file.
+    /// Refuses a name that cannot be the name of a file.
     pub(super) fn plain_name(&self, name: &Spanned<String>) -> Result<(), FileError> {
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
         if !name.get_ref().is_empty() && name.get_ref().chars().all(plain) {

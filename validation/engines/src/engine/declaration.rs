@@ -1,11 +1,11 @@
-//! What an engine says of itself: all that the rest of the program has to know about it.
+//! An engine's declaration: everything that the rest of the program has to know about the engine.
 
 use crate::accuracy::Stepping;
 
 /// The name of the exact solver, with which the names of all exact engines begin and no other.
 pub const REFERENCE: &str = "exact";
 
-/// How an engine finds its events.
+/// The way in which an engine locates events.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Location {
@@ -17,10 +17,10 @@ pub enum Location {
     Harness,
 }
 
-/// What an engine is run for beside its rows. Each role includes those before it.
+/// In which tests beyond ordinary rows the engine takes part. Each role includes those before it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Role {
-    /// The engine has its rows, and nothing else.
+    /// The engine takes part in ordinary rows only.
     Rows,
     /// `bench` also measures what the engine's work costs against the damping ratio.
     Damping,
@@ -39,16 +39,16 @@ pub enum Colours {
 }
 
 impl Colours {
-    /// The family of engines that are not percuss's own.
+    /// The colours of all engines that are not part of percuss.
     pub const OTHERS: Self = Self::Hues(282.0, 336.0);
 }
 
-/// What an engine says of itself.
+/// An engine's declaration of its method and its abilities.
 #[derive(Clone, Debug)]
 pub struct Declaration {
     /// The engine's name, as in `-e`.
     pub name: &'static str,
-    /// The library it is of.
+    /// The library that the engine belongs to.
     pub library: &'static str,
     /// The library's version, which is pinned.
     pub version: String,
@@ -57,14 +57,14 @@ pub struct Declaration {
     /// The order of convergence that the method's authors state. Methods of variable order and
     /// closed forms have none.
     pub order: Option<u32>,
-    /// How it finds events.
+    /// The way in which the engine locates events.
     pub events: Location,
-    /// Whether it has dense output of its own.
+    /// Whether the method has dense output of its own.
     pub dense_output: bool,
-    /// How its accuracy is chosen.
+    /// The way in which the engine's accuracy is chosen.
     pub stepping: Stepping,
-    /// What it is run for beside its rows.
+    /// The tests beyond ordinary rows in which the engine takes part.
     pub role: Role,
-    /// The colours it is drawn in.
+    /// The colours in which the engine is drawn.
     pub colours: Colours,
 }

@@ -1,16 +1,16 @@
-//! How much a run may cost: a library that hangs, diverges or panics yields a row with its reason.
+//! The limits of a run: a library that hangs, diverges or panics yields a row with its reason.
 
 use crate::failure::Failure;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::time::Duration;
 
-/// How much a run may cost.
+/// The limits beyond which a run is given up.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     /// Right-hand sides, Jacobian products and guards together.
     pub calls: u64,
-    /// The events found so far.
+    /// The largest number of events.
     pub events: usize,
     /// The last resort: results must not depend on it.
     pub wall: Duration,

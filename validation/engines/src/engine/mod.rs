@@ -1,7 +1,8 @@
-//! What an engine is: anything that can run a piecewise-affine system and say when its modes begin.
+//! The interface of an engine: anything that can run a piecewise-affine system and report its
+//! events.
 //!
-//! This room holds the trait, what an engine is asked ([`Task`]), what it answers ([`Outcome`]),
-//! and what it says of itself ([`Declaration`]).
+//! The module holds the trait, the task of an engine ([`Task`]), its answer ([`Outcome`]), and
+//! its declaration ([`Declaration`]).
 //!
 //! Add one by implementing [`Engine`] in a file of its own in the room `integrators` and naming it
 //! in that room's `registry.rs`. An engine takes plain f64 slices, because the libraries disagree
@@ -40,7 +41,7 @@ pub struct Event<M = usize, S = Values> {
     /// The place of the event among those of its mode: those that end the mode come first, then
     /// those that are only counted, in the order in which the system names them.
     pub event: usize,
-    /// The mode that begins; the one that goes on where the event is only counted.
+    /// The mode that begins; for an event that ends no mode, the mode that goes on.
     pub mode: M,
     /// Time since the start.
     pub elapsed: f64,
@@ -48,13 +49,13 @@ pub struct Event<M = usize, S = Values> {
     pub state: S,
 }
 
-/// How a run ended, in the words of `docs/SYSTEM_FORMAT.md`.
+/// The ending of a run, in the words of `docs/SYSTEM_FORMAT.md`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ended {
     /// The run reached its horizon, or the end of what is watched.
     #[default]
     Horizon,
-    /// So many events lay in one instant that the run makes no progress.
+    /// The run stopped because too many events fell on one instant.
     NoProgress,
     /// Infinitely many impacts follow in a time that is enclosed.
     Accumulation,
@@ -62,16 +63,16 @@ pub enum Ended {
     LeavesDomain,
     /// A mode was entered where one of its guards is positive already.
     BeyondGuard,
-    /// The arithmetic has no digits left to decide what comes next.
+    /// The arithmetic has no digits left to decide the next event.
     Undecided,
 }
 
-/// What a run costs.
+/// The counted work of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Work {
     /// Right-hand sides; for the exact solver closed-form evaluations.
     pub rhs_evaluations: u64,
-    /// Jacobians, or products with one.
+    /// Evaluations of the Jacobian, or of products with the Jacobian.
     pub jacobian_evaluations: u64,
     /// Linear systems solved, each a forward and a back substitution; none in explicit methods.
     pub linear_solves: u64,
@@ -79,7 +80,7 @@ pub struct Work {
     pub steps: u64,
 }
 
-/// A run that was made.
+/// The result of a run.
 #[derive(Clone, Debug)]
 pub struct Outcome<M = usize, S = Values> {
     /// The events in the order of their times.
@@ -88,16 +89,16 @@ pub struct Outcome<M = usize, S = Values> {
     pub samples: Vec<S>,
     /// The state at the run's end.
     pub end: S,
-    /// How it ended.
+    /// The ending of the run.
     pub ended: Ended,
-    /// When it ended, since the start.
+    /// The time at which the run ended, since the start.
     pub ended_at: f64,
-    /// What it cost.
+    /// The counted work of the run.
     pub work: Work,
-    /// What the integrator says it took, where it runs in a program of its own: the rest of the
-    /// run's time went into starting that program and speaking with it.
+    /// The time that the integrator itself reports, where it runs in a program of its own: the rest
+    /// of the run's time went into starting that program and speaking with it.
     pub own_time: Option<Duration>,
-    /// What was recorded of it, where the task asks for that and the engine can.
+    /// The recording of the run, where the task asks for one and the engine can record.
     pub trace: Option<Trace<M>>,
 }
 
@@ -124,7 +125,7 @@ pub type OscillatorEvent = Event<Phase, [f64; 4]>;
 
 /// Something that can run a system with modes from a start to a horizon.
 pub trait Engine: Sync {
-    /// What it is.
+    /// The engine's declaration.
     fn declaration(&self) -> Declaration;
 
     /// The language that its library is written in, with its version where it is not Rust.
@@ -132,7 +133,7 @@ pub trait Engine: Sync {
         "Rust"
     }
 
-    /// Whether it can run here; the reason if not.
+    /// Whether the engine can run on this machine; the reason if not.
     ///
     /// # Errors
     /// Why it cannot.
@@ -140,7 +141,7 @@ pub trait Engine: Sync {
         Ok(())
     }
 
-    /// Whether it runs this system.
+    /// Whether the engine can run the system of a task.
     ///
     /// # Errors
     /// Why it does not, as a row without a result says it.

@@ -8,9 +8,9 @@ use percuss::{Instant, Parameters, Phase, TwoWord};
 /// Instants at which the state is compared: `k / per_period` forcing periods after the start.
 #[derive(Clone, Copy, Debug)]
 pub struct SampleGrid {
-    /// Instants a forcing period.
+    /// The number of instants per forcing period.
     pub per_period: u32,
-    /// How many, the start included.
+    /// The number of instants, the start included.
     pub count: usize,
 }
 
@@ -32,11 +32,12 @@ pub struct OscillatorTask {
     pub horizon: Instant,
     /// Time from start to horizon.
     pub span: f64,
-    /// When the state is compared.
+    /// The instants at which the state is compared.
     pub grid: SampleGrid,
-    /// Events in the engine's life before this run: a fault may strike every hundredth.
+    /// Events in the engine's life before this run: a fault may drop every hundredth event.
     pub events_before: u64,
-    /// What is recorded beside the result; such a run ends when that is done.
+    /// The recording that is wanted beside the result; such a run ends when the recording is
+    /// complete.
     pub watched: Option<Watched>,
 }
 

@@ -15,9 +15,9 @@ use std::sync::Arc;
 const MODES: [Phase; 3] = [Phase::NoContact, Phase::Contact, Phase::Progression];
 /// p, y, q and v.
 const STATES: usize = 4;
-/// Where cos theta stands in a row.
+/// The place of the coefficient of cos theta in a row.
 const COS: usize = STATES;
-/// Where 1 stands in a row.
+/// The place of the constant term in a row.
 const ONE: usize = STATES + 2;
 
 /// The oscillator as a system; `angle` is omega tau + phi at the start.
@@ -84,7 +84,7 @@ fn row(entries: &[(usize, f64)]) -> Row {
     by_hand::row(STATES, entries)
 }
 
-/// The row of one state.
+/// The row that selects one state.
 fn state(place: usize) -> Row {
     by_hand::state(STATES, place)
 }
@@ -141,7 +141,7 @@ impl From<OscillatorOutcome> for Outcome {
 }
 
 impl OscillatorOutcome {
-    /// What came of a system's run, as that of the oscillator.
+    /// The outcome of a system's run as an outcome of the oscillator.
     ///
     /// # Errors
     /// A mode or a state that the oscillator does not have, or an end before the horizon.
@@ -166,7 +166,7 @@ impl OscillatorOutcome {
     }
 }
 
-/// The phase that a mode is.
+/// The phase of the oscillator that a mode stands for.
 fn phase(mode: usize) -> Result<Phase, Failure> {
     MODES.get(mode).copied().ok_or_else(|| Failure::new(format!("no phase is {mode}")))
 }

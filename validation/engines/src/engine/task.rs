@@ -18,9 +18,10 @@ pub struct Task {
     pub state: Values,
     /// Time from the start to the horizon.
     pub span: f64,
-    /// When the state is compared, in times since the start and in ascending order.
+    /// The instants at which the state is compared, since the start, in ascending order.
     pub samples: Vec<f64>,
-    /// What is recorded beside the result; such a run ends when that is done.
+    /// The recording that is wanted beside the result; such a run ends when the recording is
+    /// complete.
     pub watched: Option<Watched>,
     /// The system with exact coefficients, which the exact solver wants to have.
     pub exact: Option<Arc<SystemProblem>>,

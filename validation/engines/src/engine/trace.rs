@@ -1,8 +1,8 @@
-//! What a run is seen to do inside a window of time: its steps, its guards and its states.
+//! A recording of a run in a time window: its steps, its guards and its states.
 //!
 //! Nothing is recorded unless a task asks for it, so that a run which is scored costs nothing more.
 
-/// What a task wants recorded, in times since its start.
+/// The window and the instants that a task wants recorded, in times since its start.
 #[derive(Clone, Debug)]
 pub struct Watched {
     /// The window of time, from and to: steps and guards outside are not recorded.
@@ -11,20 +11,20 @@ pub struct Watched {
     pub instants: Vec<f64>,
 }
 
-/// A guard as a search for events saw it.
+/// One evaluation of a guard by a search for events.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GuardSample<M = usize> {
     /// Time of the evaluation, since the start.
     pub t: f64,
-    /// The mode whose guard it is.
+    /// The mode to which the guard belongs.
     pub mode: M,
-    /// Which of the mode's guards.
+    /// The number of the guard in its mode.
     pub guard: usize,
     /// The guard's value, which is negative inside the mode.
     pub value: f64,
 }
 
-/// What was recorded.
+/// The recording of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Trace<M = usize> {
     /// Ends of accepted steps, since the start, in ascending order; a step in which a mode ends

@@ -2,7 +2,7 @@
 
 use crate::equations::Numbers;
 
-/// A time and the state at it.
+/// A time and the state at that time.
 pub(crate) type CubicEnd<S> = (f64, S);
 
 /// The cubic through two states with their derivatives.
@@ -27,7 +27,7 @@ impl<S: Numbers> Cubic<S> {
         Self { left, right, slopes }
     }
 
-    /// Whether this is where it begins.
+    /// Whether the cubic begins at time `t`.
     pub(crate) fn begins_at(&self, t: f64) -> bool {
         self.left.0 == t
     }

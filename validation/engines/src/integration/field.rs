@@ -1,9 +1,9 @@
-//! The differential equations of the three phases, their guards and their switches, as an
+//! The differential equations of the three phases, their guards and their events, as an
 //! integrator's user writes them: Eqs. (11) to (13) on plain slices (p, y, q, v).
 //!
 //! Guards are negative inside a phase and rise to zero where it ends. A crossing counts only if the
 //! guard rises there: separation begins with a double zero of the gap, which rounding turns into a
-//! crossing in either direction. At a switch the state is put on the surface that the switch
+//! crossing in either direction. At an event the state is put on the surface that the event
 //! defines (p = q + g, and q = 0 or 1 - 2 xi y where the trial force is known), always by moving q
 //! and p, because y = (1 - q)/(2 xi) would multiply what is left of the error by 1/(2 xi).
 
@@ -14,7 +14,8 @@ use percuss::{Parameters, Phase};
 /// Number of guards; a phase that has one leaves the other at -1.
 pub const GUARDS: usize = 2;
 
-/// How far from its surface rounding may put the beginning of a phase, relative to displacements.
+/// The distance from its surface at which rounding may put the beginning of a phase, relative to
+/// displacements.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
 
 /// The oscillator in some co-ordinates.
@@ -37,14 +38,14 @@ pub(crate) trait Coordinates:
     fn of_bounded(&self, state: &[f64; 4]) -> [f64; 4];
 }
 
-/// Which of a phase's guards has ended it, by the phase that follows.
+/// The number of the guard that has ended a phase, given the phase that follows.
 #[must_use]
 pub fn event_between(phase: Phase, next: Phase) -> usize {
     usize::from(phase == Phase::Contact && next == Phase::NoContact)
 }
 
-/// How many guards a phase has: the gap in flight; the trial force at 1 and at 0 in contact; the
-/// trial force at 1 in progression.
+/// The number of guards of a phase: the gap in flight; the trial force at 1 and at 0 in contact;
+/// the trial force at 1 in progression.
 pub(crate) fn count(phase: Phase) -> usize {
     if phase == Phase::Contact { GUARDS } else { 1 }
 }
@@ -170,7 +171,7 @@ impl Equations for Oscillator {
         if phase == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
     }
 
-    fn switch(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
+    fn after_event(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
         let mut state = *u;
         let (next, imposed) = successor(phase, guard, self.trial_force(u));
         if let Some(force) = imposed {

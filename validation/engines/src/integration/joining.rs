@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 /// told by these.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Times {
-    /// The forcing period, or what stands for it.
+    /// The forcing period, or the time that stands for one.
     pub(crate) period: f64,
     /// The shortest turn of an oscillation.
     pub(crate) turn: f64,
@@ -28,7 +28,7 @@ pub(crate) struct Integration<'a, E: Equations> {
     pub(crate) mode: E::Mode,
     pub(crate) state: E::State,
     pub(crate) span: f64,
-    /// When the state is taken.
+    /// The instants at which the state is taken.
     pub(crate) samples: Vec<f64>,
     pub(crate) times: Times,
     pub(crate) watched: Option<&'a Watched>,
@@ -81,11 +81,11 @@ impl<'a> Integration<'a, Affine<'a>> {
 pub(crate) struct Moment<E: Equations> {
     /// Time since the start.
     pub(crate) t: f64,
-    /// When the mode began.
+    /// The time at which the mode began.
     pub(crate) began: f64,
     pub(crate) mode: E::Mode,
     pub(crate) state: E::State,
-    /// What is known of the mode's entry.
+    /// The guards that are known at the mode's entry.
     pub(crate) entered: Entered,
 }
 
@@ -106,18 +106,18 @@ impl<E: Equations> Moment<E> {
 
     /// The mode that begins where a guard has ended this one.
     fn after(&self, equations: &E, t: f64, guard: usize, state: &E::State) -> Self {
-        let (mode, state) = equations.switch(self.mode, guard, t, state);
+        let (mode, state) = equations.after_event(self.mode, guard, t, state);
         let entered = equations.enter(Some((self.mode, guard)), mode, t, &state);
         Self { t, began: t, mode, state, entered }
     }
 }
 
-/// How a stretch of one mode ended.
+/// The ending of a stretch of one mode.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum StretchEnd<S> {
     /// A guard has risen to zero.
-    Switch { t: f64, guard: usize, state: S },
-    /// The mode goes on.
+    Event { t: f64, guard: usize, state: S },
+    /// The stretch ended without an event, and the mode goes on.
     Inside { t: f64, state: S },
 }
 
@@ -142,23 +142,18 @@ pub(crate) fn join<E: Equations>(
     let goes_on = |now: &Moment<E>| now.entered.fires.is_some() || span - now.t > SHORTEST * span;
     while goes_on(&now) && !meter.has_seen_enough(now.t) {
         let ended = match now.entered.fires {
-            Some(guard) => StretchEnd::Switch { t: now.t, guard, state: now.state },
+            Some(guard) => StretchEnd::Event { t: now.t, guard, state: now.state },
             None => stretch(&now, &mut sampler)?,
         };
-        for crossing in sampler.counted.drain(..) {
-            meter.events(outcome.events.len())?;
-            let event = equations.event(now.mode, crossing.guard);
-            let state = equations.reported(&crossing.state);
-            outcome.events.push(Event { event, mode: now.mode, elapsed: crossing.t, state });
-        }
+        record_counted(equations, now.mode, (&mut sampler, meter), &mut outcome)?;
         now = match ended {
             StretchEnd::Inside { t, state } => Moment { t, state, ..now },
-            StretchEnd::Switch { t, state, .. } if equations.leaves_domain() => {
+            StretchEnd::Event { t, state, .. } if equations.leaves_domain() => {
                 now = Moment { t, state, ..now };
                 outcome.ended = Ended::LeavesDomain;
                 break;
             }
-            StretchEnd::Switch { t, guard, state } => {
+            StretchEnd::Event { t, guard, state } => {
                 meter.events(outcome.events.len())?;
                 meter.phase_ended(t);
                 let next = now.after(equations, t, guard, &state);
@@ -185,12 +180,28 @@ pub(crate) fn join<E: Equations>(
     Ok(outcome)
 }
 
-/// So many events in one instant end a run.
+/// Moves the crossings of guards that do not end the mode from the sampler to the outcome.
+fn record_counted<E: Equations>(
+    equations: &E,
+    mode: E::Mode,
+    (sampler, meter): (&mut Sampler<E::State>, &Meter<E::Mode>),
+    outcome: &mut Outcome<E::Mode, E::State>,
+) -> Result<(), Failure> {
+    for crossing in sampler.counted.drain(..) {
+        meter.events(outcome.events.len())?;
+        let event = equations.event(mode, crossing.guard);
+        let state = equations.reported(&crossing.state);
+        outcome.events.push(Event { event, mode, elapsed: crossing.t, state });
+    }
+    Ok(())
+}
+
+/// The number of events in one instant that ends a run.
 const MOST_AT_ONCE: u32 = 64;
 /// Events that are no further apart than this, relative to their time, lie in one instant.
 const ONE_INSTANT: f64 = 8.0 * f64::EPSILON;
 
-/// The events of one instant, counted.
+/// A count of the events that lie in one instant.
 #[derive(Default)]
 struct SimultaneousEvents {
     last: f64,
@@ -198,7 +209,7 @@ struct SimultaneousEvents {
 }
 
 impl SimultaneousEvents {
-    /// Counts an event; whether it is one too many in its instant.
+    /// Counts an event and returns whether too many events lie in its instant.
     fn is_crowded(&mut self, t: f64) -> bool {
         self.count = if t - self.last <= ONE_INSTANT * t { self.count + 1 } else { 1 };
         self.last = t;

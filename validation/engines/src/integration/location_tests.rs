@@ -49,8 +49,8 @@ impl Equations for Made {
     fn rates(&self, _: Phase, t: f64, _: &[f64]) -> [f64; GUARDS] {
         [(self.rate)(t), -(self.rate)(t)]
     }
-    fn switch(&self, phase: Phase, guard: usize, t: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
-        self.oscillator.switch(phase, guard, t, u)
+    fn after_event(&self, phase: Phase, guard: usize, t: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
+        self.oscillator.after_event(phase, guard, t, u)
     }
     fn settle(&self, entered: Entered, u: &[f64], guards: &mut [f64; GUARDS]) {
         self.oscillator.settle(entered, u, guards);

@@ -27,7 +27,7 @@ pub(crate) struct Meter<M = Phase> {
     told: Option<ToldCrossings>,
 }
 
-/// How often the clock is looked at, in calls.
+/// The number of calls between two readings of the clock.
 const CLOCK_EVERY: u64 = 4096;
 
 impl<M: Copy> Meter<M> {
@@ -163,14 +163,14 @@ impl<M: Copy> Meter<M> {
         self.recorder.get().is_some_and(|recorder| recorder.is_over(t))
     }
 
-    /// Hands over what was recorded.
+    /// Moves the recording into the outcome.
     pub(crate) fn hand_over<S>(&self, outcome: &mut Outcome<M, S>) {
         if let Some(recorder) = self.recorder.get() {
             recorder.hand_over(outcome);
         }
     }
 
-    /// What was counted.
+    /// The counted work so far.
     pub(crate) fn work(&self) -> Work {
         Work {
             rhs_evaluations: self.rhs.get(),

@@ -14,7 +14,7 @@ mod original;
 mod recorder;
 mod sampler;
 mod script;
-mod walk;
+mod step_ends;
 
 pub(crate) use cubic::{Cubic, CubicEnd};
 pub(crate) use field::Coordinates;
@@ -27,4 +27,4 @@ pub(crate) use original::OriginalOscillator;
 pub(crate) use sampler::{CountedCrossing, Sampler};
 pub(crate) use script::GuardRise;
 pub use script::Script;
-pub(crate) use walk::{Walk, longest_of_period, longest_step, walk};
+pub(crate) use step_ends::{StepEnds, locate_at_step_ends, longest_of_period, longest_step};

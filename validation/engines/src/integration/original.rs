@@ -2,7 +2,7 @@
 //!
 //! Displacements of the mass, of the slider's top and of its bottom are integrated as they are,
 //! unbounded; p = x - v and q = z - v are formed only for the scores. That the same bounded motion
-//! and the same drift come out is the paper's decoupling, tested. At a switch x and z move onto the
+//! and the same drift come out is the paper's decoupling, tested. At an event x and z move onto the
 //! surface and v stays, as in the bounded co-ordinates.
 
 use super::field::{Coordinates, GUARDS, count, settle, successor};
@@ -113,7 +113,7 @@ impl Equations for OriginalOscillator {
         if phase == Phase::Contact { [rate, -rate] } else { [-rate, 0.0] }
     }
 
-    fn switch(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
+    fn after_event(&self, phase: Phase, guard: usize, _: f64, u: &[f64; 4]) -> (Phase, [f64; 4]) {
         let [_, y, mut z, v] = *u;
         let (next, imposed) = successor(phase, guard, self.contact_force(u));
         if let Some(force) = imposed {
@@ -132,7 +132,7 @@ mod tests {
     use super::*;
     use crate::integration::field::Oscillator;
 
-    /// Eq. (10) turns one set of equations into the other, in every phase and at every switch.
+    /// Eq. (10) turns one set of equations into the other, in every phase and at every event.
     #[test]
     fn the_transformation_decouples() {
         let parameters = Parameters::default();
@@ -152,8 +152,8 @@ mod tests {
             bounded.jacobian_product(phase, &state, &mut expected);
             assert!(near(original.reported(&du), expected), "{phase:?}");
             for guard in 0..GUARDS {
-                let (next, there) = original.switch(phase, guard, 0.7, &u);
-                let (expected, state) = bounded.switch(phase, guard, 0.7, &state);
+                let (next, there) = original.after_event(phase, guard, 0.7, &u);
+                let (expected, state) = bounded.after_event(phase, guard, 0.7, &state);
                 assert_eq!(next, expected);
                 assert!(near(original.reported(&there), state), "{phase:?} {guard}");
             }

@@ -1,4 +1,4 @@
-//! What a run is seen to do, recorded while it is made.
+//! Records the steps and guard evaluations of a run while it is made.
 
 use crate::engine::{GuardSample, Outcome, Trace, Watched};
 use std::cell::RefCell;
@@ -39,7 +39,7 @@ impl<M> Recorder<M> {
         }
     }
 
-    /// Notes one guard.
+    /// Records one evaluation of a guard.
     pub(crate) fn look(&self, look: GuardSample<M>) {
         let looks = &mut self.trace.borrow_mut().looks;
         if self.holds(look.t) && looks.len() < MOST {
@@ -52,7 +52,7 @@ impl<M> Recorder<M> {
         t > self.window[1]
     }
 
-    /// Hands over what was recorded.
+    /// Moves the recording into the outcome.
     pub(crate) fn hand_over<S>(&self, outcome: &mut Outcome<M, S>) {
         outcome.trace = Some(self.trace.take());
     }

@@ -1,6 +1,6 @@
 //! States on the grid, taken as a run passes their times, and crossings that are only counted.
 
-/// A crossing that ends nothing.
+/// A crossing of a guard that does not end its mode.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CountedCrossing<S> {
     pub(crate) t: f64,
@@ -8,7 +8,7 @@ pub(crate) struct CountedCrossing<S> {
     pub(crate) state: S,
 }
 
-/// Collects what a run passes on its way.
+/// Collects the samples and the counted crossings of a run.
 pub(crate) struct Sampler<S> {
     times: Vec<f64>,
     taken: Vec<S>,

@@ -29,7 +29,7 @@ pub struct Script(Rc<AnswerLines>);
 #[derive(Debug)]
 struct AnswerLines {
     crossings: Vec<GuardRise>,
-    /// Whether a run has asked for them.
+    /// Whether a run has asked for the crossings.
     read: Cell<bool>,
 }
 
@@ -64,14 +64,14 @@ pub(crate) struct ToldCrossings {
 }
 
 impl ToldCrossings {
-    /// What the run that begins on this thread is told; nothing as a rule.
+    /// The crossings that the run which begins on this thread is given; none as a rule.
     pub(crate) fn here() -> Option<Self> {
         let script = SCRIPT.with_borrow(Clone::clone)?;
         script.0.read.set(true);
         Some(Self { script, next: Cell::new(0) })
     }
 
-    /// The next crossing, if it is not after `end`.
+    /// The next crossing up to `end`.
     pub(crate) fn up_to(&self, end: f64) -> Option<GuardRise> {
         let next = self.next.get();
         let found = self.script.0.crossings.get(next).copied().filter(|it| it.t <= end)?;

@@ -1,7 +1,7 @@
 //! A system's equations as integrators are given them.
 
-use super::chain::{Leading, value};
 use super::checked::{CheckedMode, Successor};
+use super::derivative_rows::{Leading, value};
 use super::numbers::Guards;
 use super::{CheckedSystem, Values};
 use crate::equations::{Entered, Equations, NO_GUARD, Numbers};
@@ -108,7 +108,7 @@ impl Equations for Affine<'_> {
     }
 
     #[inline(never)]
-    fn switch(&self, mode: usize, guard: usize, t: f64, u: &Values) -> (usize, Values) {
+    fn after_event(&self, mode: usize, guard: usize, t: f64, u: &Values) -> (usize, Values) {
         let forcing = self.forcing(t);
         let reset = &self.mode(mode).until[guard].reset;
         let mut state = *u;

@@ -32,7 +32,7 @@ pub(crate) fn row(size: usize, entries: &[(usize, f64)]) -> Row {
     row
 }
 
-/// The row of one state.
+/// The row that selects one state.
 pub(crate) fn state(size: usize, place: usize) -> Row {
     row(size, &[(place, 1.0)])
 }

@@ -1,7 +1,7 @@
 //! A system that is whole: every row of the right length, every successor there, and what an
 //! integrator wants to know beforehand computed once.
 
-use super::chain::{AugmentedRow, Chain, ModeMatrix, value};
+use super::derivative_rows::{AugmentedRow, DerivativeRows, ModeMatrix, value};
 use super::spectrum::{Rates, spectrum};
 use super::{Direction, MOST_GUARDS, MOST_STATES, Mode, Row, System, Until};
 use crate::failure::Failure;
@@ -39,10 +39,10 @@ pub(super) struct CheckedMode {
 pub(super) struct Guard {
     pub(super) event: usize,
     pub(super) ends: bool,
-    pub(super) chain: Chain,
+    pub(super) chain: DerivativeRows,
 }
 
-/// What follows where a mode ends.
+/// The reset and the successors at the end of a mode.
 #[derive(Clone, Debug)]
 pub(super) struct ModeEnd {
     /// The matrix R of z+ = R z.
@@ -52,9 +52,9 @@ pub(super) struct ModeEnd {
 
 #[derive(Clone, Debug)]
 pub(super) struct Successor {
-    pub(super) when: Option<Chain>,
+    pub(super) when: Option<DerivativeRows>,
     pub(super) mode: usize,
-    /// Which derivatives of `when`, and of the guards of the mode, the event's guard makes zero.
+    /// The derivatives of `when`, and of the guards of the mode, that the event's guard makes zero.
     pub(super) when_zeros: u16,
     pub(super) zeros: Vec<u16>,
 }
@@ -113,7 +113,7 @@ impl CheckedSystem {
         Ok(Self { backward: true, ..Self::new(self.system.backward())? })
     }
 
-    /// The system as it was given.
+    /// The system before the checks.
     #[must_use]
     pub fn system(&self) -> &System {
         &self.system
@@ -194,7 +194,7 @@ fn motion(system: &System, mode: &Mode) -> ModeMatrix {
 }
 
 fn guards(mode: &Mode, motion: &ModeMatrix) -> Vec<Guard> {
-    let chain = |row: &AugmentedRow| Chain::new(*row, motion);
+    let chain = |row: &AugmentedRow| DerivativeRows::new(*row, motion);
     let until = mode.until.iter().enumerate();
     let until =
         until.map(|(event, it)| Guard { event, ends: true, chain: chain(&wide(&it.guard)) });
@@ -231,8 +231,8 @@ fn passage(until: &Until, motions: &[ModeMatrix], guards: &[Vec<Guard>]) -> Mode
     }
     let guard = wide(&until.guard);
     let successor = |(when, mode): &(Option<Row>, usize)| {
-        let when = when.as_ref().map(|row| Chain::new(wide(row), &motions[*mode]));
-        let zeros_of = |chain: &Chain| chain.zeros_after(&guard, &reset, size);
+        let when = when.as_ref().map(|row| DerivativeRows::new(wide(row), &motions[*mode]));
+        let zeros_of = |chain: &DerivativeRows| chain.zeros_after(&guard, &reset, size);
         Successor {
             when_zeros: when.as_ref().map_or(0, zeros_of),
             zeros: guards[*mode].iter().map(|it| zeros_of(&it.chain)).collect(),

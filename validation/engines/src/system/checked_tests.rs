@@ -1,4 +1,4 @@
-//! What is refused, and what is known of a system before it is run.
+//! Systems that are refused, and facts that are known before a system is run.
 
 use super::*;
 use crate::equations::{Equations, Numbers};
@@ -48,7 +48,7 @@ fn a_detachment_begins_a_flight_with_a_triple_zero() {
     // The angle at which the table lets go, but for an error that rounding does not make.
     let t = (TAU - 0.64_f64.acos() - 1e-9) / 1.25;
     let equations = Affine::of(&checked);
-    let (mode, state) = equations.switch(1, 0, t, &Values::of(&[0.0, 0.0]));
+    let (mode, state) = equations.after_event(1, 0, t, &Values::of(&[0.0, 0.0]));
     let entered = equations.enter(Some((1, 0)), mode, t, &state);
     assert!(mode == 0 && entered.is_zero(0) && entered.fires.is_none(), "{entered:?}");
     // Without the event it is not known, and the ball seems to be past the table's threshold.

@@ -7,8 +7,8 @@
 
 mod affine;
 pub(crate) mod by_hand;
-mod chain;
 mod checked;
+mod derivative_rows;
 mod given;
 mod numbers;
 mod problem;
@@ -27,11 +27,11 @@ pub type Row = Vec<f64>;
 pub struct System {
     /// The system's name.
     pub name: String,
-    /// The names of its states.
+    /// The names of the states.
     pub states: Vec<String>,
-    /// What each state is divided by before any norm.
+    /// The scale of each state, by which it is divided before any norm.
     pub scales: Vec<f64>,
-    /// What times are divided by before any comparison.
+    /// The time scale, by which times are divided before any comparison.
     pub time_scale: f64,
     /// The forcing's angular frequency; zero where the system is not forced, negative in a system
     /// that is run back in time.
@@ -47,13 +47,13 @@ pub struct System {
 pub struct Mode {
     /// The mode's name.
     pub name: String,
-    /// The matrix A, a row a state.
+    /// The matrix A, one row per state.
     pub a: Vec<Vec<f64>>,
     /// The matrix B: what cos theta and sin theta add to each state's rate.
     pub b: Vec<[f64; 2]>,
     /// The vector c.
     pub c: Vec<f64>,
-    /// The events that end it, in the file's order.
+    /// The events that end the mode, in the order of the file.
     pub until: Vec<Until>,
     /// The events that are only counted, in the file's order.
     pub watch: Vec<Watch>,
@@ -73,14 +73,14 @@ pub struct Until {
     pub next: Vec<(Option<Row>, usize)>,
 }
 
-/// An event that is only counted.
+/// An event that does not end its mode.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Watch {
     /// The event's name.
     pub name: String,
     /// The guard.
     pub guard: Row,
-    /// The crossings that count.
+    /// The crossing direction that makes an event.
     pub direction: Direction,
 }
 
@@ -97,7 +97,7 @@ pub enum Direction {
 }
 
 impl Direction {
-    /// Its name in files and messages.
+    /// The direction's name in files and messages.
     #[must_use]
     pub const fn as_str(self) -> &'static str {
         match self {

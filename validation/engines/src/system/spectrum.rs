@@ -3,7 +3,7 @@
 //!
 //! Only the size of steps depends on these: a few digits are enough.
 
-/// What is known of a matrix's eigenvalues.
+/// The rates and frequencies that follow from a matrix's eigenvalues.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Rates {
     /// The largest modulus.

@@ -1,4 +1,5 @@
-//! Which cases are raced where none are named, and which of other systems docs/PERFORMANCE.md has.
+//! The cases that are timed where none are named, and those of other systems in
+//! docs/PERFORMANCE.md.
 
 /// Every regime whose dearest engine takes a second at most: what is left out (`resonance`,
 /// `slow-forcing`) keeps explicit integrators busy for minutes, and `-c` asks for it.
@@ -14,7 +15,7 @@ pub const USUAL: [&str; 12] = [
     // an impact that drives the slider at once, and forcing far from the contact's own frequency
     "impact-into-progression",
     "fast-forcing",
-    // the stiffness ladder
+    // falling damping ratios
     "stiff-xi-0-3",
     "stiff-xi-0-003",
     "stiff-xi-0-001",

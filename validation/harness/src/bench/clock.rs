@@ -4,7 +4,7 @@
 
 use std::time::Duration;
 
-/// Time since it was started.
+/// A stopwatch that reads the time since its start.
 #[derive(Clone, Copy, Debug)]
 pub struct Stopwatch {
     began: Duration,

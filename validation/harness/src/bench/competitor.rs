@@ -15,12 +15,12 @@ pub fn times(ratio: f64) -> String {
 /// The closest competitor of the exact solver on a case.
 #[derive(Clone, Debug)]
 pub struct ClosestCompetitor<'a> {
-    /// What the engines are compared at.
+    /// The basis on which engines are compared.
     pub basis: Basis,
     /// The adaptive engine that takes least: its most accurate setting, or its fastest setting
     /// whose error is at most that of the basis.
     pub row: &'a BenchRow,
-    /// How many times as long the competitor takes as the exact solver.
+    /// The competitor's time over the exact solver's.
     pub ratio: f64,
 }
 
@@ -98,7 +98,7 @@ mod tests {
         }
     }
 
-    /// Two events a period.
+    /// Two events per period.
     fn bench(ratio: f64, events: usize) -> Bench {
         let exact = row("exact", 320.0, 1.0, 1e-15);
         let engine = row("an-engine", 320.0 * ratio, ratio, 1e-12);

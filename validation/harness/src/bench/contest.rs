@@ -1,22 +1,22 @@
-//! One case, all contestants: who answers rightly at which setting, and how fast.
+//! All contestants on one case: which settings give the right answer, and how fast.
 
 use super::contestant::{Contestant, settings as settings_of};
-use super::rounds::{Benchmark, PACE, RoundTimes, race};
+use super::rounds::{Benchmark, PACE, RoundTimes, time_interleaved};
 use super::timed::ContestEntry;
 use super::timed_case::{Score, TimedCase};
 use super::timed_system_case::TimedSystemCase;
 use crate::engine::{Accuracy, Declaration, Failure, REFERENCE, Stepping, Work};
 
-/// A contestant at a setting, and what came of it.
+/// A contestant at one setting, with its score and its times.
 #[derive(Clone, Debug)]
-pub struct Finisher {
-    /// The contestant.
+pub struct SettingResult {
+    /// The name of the contestant.
     pub name: &'static str,
-    /// The library it is of.
+    /// The library that the contestant belongs to.
     pub library: &'static str,
-    /// How it chooses its steps.
+    /// How the contestant chooses its steps.
     pub stepping: Stepping,
-    /// What it was asked for.
+    /// The tolerance or the step that was asked for.
     pub setting: Accuracy,
     /// Score and times, or why there are none: a wrong answer has no time.
     pub result: Result<Timed, Failure>,
@@ -25,52 +25,52 @@ pub struct Finisher {
 /// A right answer and its times.
 #[derive(Clone, Debug)]
 pub struct Timed {
-    /// How good the answer is.
+    /// The errors of the answer.
     pub score: Score,
-    /// What the run counted.
+    /// The evaluations and steps that the run counted.
     pub work: Work,
-    /// The best time of each round, ns a forcing period.
+    /// The best time of each round, ns per forcing period.
     pub series: RoundTimes,
-    /// What share of the time is the harness's own: one less the median over the rounds of that
-    /// round's quotient, the engine's part alone ([`super::library_part`]) over the whole run. A
-    /// share that is next to nothing may come out below zero.
+    /// The harness's share of the time: one less the median over the rounds of one round's
+    /// quotient, the engine's part alone ([`super::library_part`]) over the whole run. A share that
+    /// is next to nothing may come out below zero.
     pub harness_share: Option<f64>,
 }
 
-/// Races all contestants at all their settings.
+/// Times all contestants at all their settings in interleaved rounds.
 pub fn contest(
     case: &TimedCase,
     contestants: &[&dyn Contestant],
     rounds: usize,
     done: &dyn Fn(),
-) -> Vec<Finisher> {
+) -> Vec<SettingResult> {
     let settings = |it: &&dyn Contestant| settings_of(it.declaration().stepping);
     let asked = contestants.iter().flat_map(|it| settings(it).into_iter().map(move |s| (*it, s)));
     contest_at(case, &asked.collect::<Vec<_>>(), rounds, done)
 }
 
-/// Races contestants at the settings given.
+/// Times contestants at the settings given in interleaved rounds.
 pub fn contest_at(
     case: &TimedCase,
     asked: &[(&dyn Contestant, Accuracy)],
     rounds: usize,
     done: &dyn Fn(),
-) -> Vec<Finisher> {
+) -> Vec<SettingResult> {
     let entered = asked.iter().map(|(contestant, setting)| {
-        let entry = qualified(*contestant, case, *setting);
+        let entry = prepared(*contestant, case, *setting);
         done();
-        Entrant { declaration: contestant.declaration(), setting: *setting, entry }
+        PreparedRun { declaration: contestant.declaration(), setting: *setting, entry }
     });
-    raced(entered.collect(), case.periods(), rounds, done)
+    timed_runs(entered.collect(), case.periods(), rounds, done)
 }
 
-/// Races the contestants that run the case's system, at all their settings.
+/// Times the contestants that run the case's system, at all their settings, in interleaved rounds.
 pub fn system_contest(
     case: &TimedSystemCase,
     contestants: &[&dyn Contestant],
     rounds: usize,
     done: &dyn Fn(),
-) -> Vec<Finisher> {
+) -> Vec<SettingResult> {
     let (able, others): (Vec<&dyn Contestant>, Vec<&dyn Contestant>) =
         contestants.iter().copied().partition(|it| it.takes(case));
     (0..size(&others, rounds)).for_each(|_| done());
@@ -79,13 +79,18 @@ pub fn system_contest(
     let entered = asked.map(|(contestant, setting)| {
         let entry = contestant.enter_system(case, setting).and_then(right);
         done();
-        Entrant { declaration: contestant.declaration(), setting, entry }
+        PreparedRun { declaration: contestant.declaration(), setting, entry }
     });
-    raced(entered.collect(), case.periods(), rounds, done)
+    timed_runs(entered.collect(), case.periods(), rounds, done)
 }
 
-/// Races the contestants whose first answer was right.
-fn raced(mut all: Vec<Entrant<'_>>, periods: f64, rounds: usize, done: &dyn Fn()) -> Vec<Finisher> {
+/// Times the contestants whose first answer was right.
+fn timed_runs(
+    mut all: Vec<PreparedRun<'_>>,
+    periods: f64,
+    rounds: usize,
+    done: &dyn Fn(),
+) -> Vec<SettingResult> {
     let places = 2 * all.len();
     let mut benchmarks: Vec<&mut dyn Benchmark> = Vec::new();
     for ContestEntry { timed, library_part } in
@@ -96,11 +101,11 @@ fn raced(mut all: Vec<Entrant<'_>>, periods: f64, rounds: usize, done: &dyn Fn()
             benchmarks.push(&mut **part);
         }
     }
-    // Those that are out take no time; their share of the work is done.
+    // A contestant without a right answer takes no time; its share of the progress is done.
     (0..rounds * (places - benchmarks.len())).for_each(|_| done());
-    let mut raced = race(&mut benchmarks, rounds, PACE, done).into_iter();
-    let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced")));
-    let mut result = |entry: Result<ContestEntry<'_>, Failure>| {
+    let mut times = time_interleaved(&mut benchmarks, rounds, PACE, done).into_iter();
+    let mut next = || times.next().unwrap_or_else(|| Err(Failure::new("not timed")));
+    let mut timed = |entry: Result<ContestEntry<'_>, Failure>| {
         let ContestEntry { timed, library_part } = entry?;
         let (whole, library_part) = (next(), library_part.map(|_| next()));
         let whole = whole?;
@@ -110,22 +115,22 @@ fn raced(mut all: Vec<Entrant<'_>>, periods: f64, rounds: usize, done: &dyn Fn()
         let harness_share = share.filter(|it| it.is_finite());
         Ok(Timed { score: timed.score()?, work: timed.work(), series, harness_share })
     };
-    let finisher = |Entrant { declaration, setting, entry }| {
+    let result = |PreparedRun { declaration, setting, entry }| {
         let Declaration { name, library, stepping, .. } = declaration;
-        Finisher { name, library, stepping, setting, result: result(entry) }
+        SettingResult { name, library, stepping, setting, result: timed(entry) }
     };
-    all.into_iter().map(finisher).collect()
+    all.into_iter().map(result).collect()
 }
 
-/// A contestant at a setting, if its answer is right.
-struct Entrant<'a> {
+/// A contestant made ready at a setting, or why it is not timed.
+struct PreparedRun<'a> {
     declaration: Declaration,
     setting: Accuracy,
     entry: Result<ContestEntry<'a>, Failure>,
 }
 
-/// The contestants that are timed: those whose answer is right.
-fn qualified<'a>(
+/// A contestant made ready to be timed: only one whose answer is right is.
+fn prepared<'a>(
     contestant: &'a dyn Contestant,
     case: &'a TimedCase,
     setting: Accuracy,
@@ -135,14 +140,14 @@ fn qualified<'a>(
     Ok(ContestEntry { library_part: contestant.library_part(case, setting)?, ..entry })
 }
 
-/// A contestant whose answer is right.
+/// The entry itself, if its answer is right.
 fn right(mut entry: ContestEntry<'_>) -> Result<ContestEntry<'_>, Failure> {
     entry.timed.call()?;
     entry.timed.score()?;
     Ok(entry)
 }
 
-/// How much work a contest is, for progress.
+/// The number of progress steps of a contest.
 #[must_use]
 pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
     let settings: usize =
@@ -150,18 +155,18 @@ pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
     (settings * (2 * rounds + 1)) as u64
 }
 
-/// The exact solver's row, which all others are held against.
+/// The exact solver's result, with which all others are compared.
 #[must_use]
-pub fn exact(finishers: &[Finisher]) -> Option<&Timed> {
-    let own = finishers.iter().find(|it| it.stepping == Stepping::Exact && it.name == REFERENCE);
+pub fn exact(results: &[SettingResult]) -> Option<&Timed> {
+    let own = results.iter().find(|it| it.stepping == Stepping::Exact && it.name == REFERENCE);
     own?.result.as_ref().ok()
 }
 
 /// Each contestant's most accurate setting: the right answer with the least error.
 #[must_use]
-pub fn most_accurate<'a>(finishers: &'a [Finisher], name: &str) -> Option<&'a Finisher> {
+pub fn most_accurate<'a>(results: &'a [SettingResult], name: &str) -> Option<&'a SettingResult> {
     let error =
-        |it: &&Finisher| it.result.as_ref().map_or(f64::INFINITY, |it| it.score.state_error);
-    let own = finishers.iter().filter(|it| it.name == name && it.result.is_ok());
+        |it: &&SettingResult| it.result.as_ref().map_or(f64::INFINITY, |it| it.score.state_error);
+    let own = results.iter().filter(|it| it.name == name && it.result.is_ok());
     own.min_by(|a, b| error(a).total_cmp(&error(b)))
 }

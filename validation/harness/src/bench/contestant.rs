@@ -21,7 +21,7 @@ const BUDGET: u64 = 5_000_000;
 
 /// Something that can be timed on a case.
 pub trait Contestant: Sync {
-    /// What the contestant says of itself: its name, its library, how its accuracy is chosen.
+    /// The contestant's declaration: its name, its library, and how its accuracy is chosen.
     fn declaration(&self) -> Declaration;
 
     /// Made ready for a case; nothing of this is timed.
@@ -41,14 +41,14 @@ pub trait Contestant: Sync {
     /// Why it does not run there, or is not the same run then.
     fn library_part<'a>(
         &'a self,
-        _course: &'a TimedCase,
+        _case: &'a TimedCase,
         _setting: Accuracy,
     ) -> Result<Option<Box<dyn Benchmark + 'a>>, Failure> {
         Ok(None)
     }
 
     /// Whether it runs the system of a case.
-    fn takes(&self, _course: &TimedSystemCase) -> bool {
+    fn takes(&self, _case: &TimedSystemCase) -> bool {
         false
     }
 
@@ -59,7 +59,7 @@ pub trait Contestant: Sync {
     /// Why it does not run there.
     fn enter_system<'a>(
         &'a self,
-        _course: &'a TimedSystemCase,
+        _case: &'a TimedSystemCase,
         _setting: Accuracy,
     ) -> Result<ContestEntry<'a>, Failure> {
         Err(Failure::new("it runs the oscillator alone"))
@@ -121,7 +121,7 @@ pub fn enter<'a>(
     engine.available().map_err(Failure::new)?;
     let task = Task::of_oscillator(&case.task)?;
     within_budget(least_work(engine, &task, setting))?;
-    Ok(Box::new(EngineHeat { engine, case, task, setting, answer: Outcome::default() }))
+    Ok(Box::new(EngineBenchmark { engine, case, task, setting, answer: Outcome::default() }))
 }
 
 /// Refuses a run that takes more right-hand sides than it may.
@@ -135,7 +135,7 @@ fn within_budget(least: f64) -> Result<(), Failure> {
     Ok(())
 }
 
-struct EngineHeat<'a> {
+struct EngineBenchmark<'a> {
     engine: &'a dyn Engine,
     case: &'a TimedCase,
     task: Task,
@@ -143,7 +143,7 @@ struct EngineHeat<'a> {
     answer: Outcome,
 }
 
-impl Benchmark for EngineHeat<'_> {
+impl Benchmark for EngineBenchmark<'_> {
     fn call(&mut self) -> Result<(), Failure> {
         let Self { engine, task, setting, .. } = self;
         self.answer = contain(|| engine.run(task, *setting, &limits()))?;
@@ -155,7 +155,7 @@ impl Benchmark for EngineHeat<'_> {
     }
 }
 
-impl TimedRun for EngineHeat<'_> {
+impl TimedRun for EngineBenchmark<'_> {
     fn score(&self) -> Result<Score, Failure> {
         self.case.score(&OscillatorOutcome::of_system(self.answer.clone())?)
     }

@@ -1,14 +1,15 @@
-//! What a run costs against xi: the slider relaxes in 2 xi, which an explicit method has to follow
-//! step by step, an implicit one at the price of linear systems, and a closed form not at all.
+//! The cost of a run against xi: the slider relaxes in a time 2 xi, which an explicit method has to
+//! follow step by step, an implicit one at the price of linear systems, and a closed form not at
+//! all.
 
-use super::contest::{Finisher, contest_at};
+use super::contest::{SettingResult, contest_at};
 use super::contestant::Contestant;
 use super::timed_case::TimedCase;
 use crate::engine::{Accuracy, Failure, Role, Stepping};
 use percuss::Parameters;
 
 const XI: [f64; 9] = [1.0, 0.3, 0.1, 0.03, 0.01, 0.003, 0.001, 3e-4, 1e-4];
-/// The forcing frequency of the cases of the stiffness ladder.
+/// The forcing frequency of the cases with falling damping ratios.
 const OMEGA: f64 = 1.2;
 const PERIODS: u64 = 20;
 /// A tolerance at which most engines are right to the end, and stability limits their steps.
@@ -19,11 +20,11 @@ const TOLERANCE: f64 = 1e-9;
 pub struct DampingPoint {
     /// The damping ratio.
     pub xi: f64,
-    /// What came of it.
-    pub finishers: Vec<Finisher>,
+    /// The results of all engines at this damping ratio.
+    pub results: Vec<SettingResult>,
 }
 
-/// Races a few engines of every library, and the exact solver, at falling damping ratios xi.
+/// Times a few engines of every library, and the exact solver, at falling damping ratios xi.
 ///
 /// # Errors
 /// [`Failure`] for a run that 106 bits do not decide.
@@ -36,12 +37,12 @@ pub fn over_xi(
     let point = |xi: f64| {
         let parameters = Parameters { xi, omega: OMEGA, ..Parameters::default() };
         let case = TimedCase::from_rest(parameters, PERIODS)?;
-        Ok(DampingPoint { xi, finishers: contest_at(&case, &asked, rounds, done) })
+        Ok(DampingPoint { xi, results: contest_at(&case, &asked, rounds, done) })
     };
     XI.into_iter().map(point).collect()
 }
 
-/// How much work that is, for progress.
+/// The number of progress steps of [`over_xi`].
 #[must_use]
 pub fn size(contestants: &[&dyn Contestant], rounds: usize) -> u64 {
     (XI.len() * asked(contestants).len() * (rounds + 1)) as u64

@@ -6,7 +6,7 @@
 //! curve where the error is at most E. A curve is never extended: one that stays above E has no
 //! such time, and one whose loosest setting errs less than E already has that setting's own.
 
-/// What the engines are compared at.
+/// The basis on which engines are compared.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Basis {
     /// Each engine at its most accurate setting.
@@ -31,7 +31,7 @@ pub const LOOSE: f64 = 1e-6;
 /// Every basis, in the order of tables.
 pub const BASES: [Basis; 4] = [Basis::MostAccurate, Basis::Comparable, Basis::Tight, Basis::Loose];
 
-/// What a right answer errs, and its time in any unit.
+/// The error of a right answer, and its time in any unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AccuracyPoint {
     /// The largest error.

@@ -1,22 +1,21 @@
-//! What one evaluation of a closed form costs at the least: the latency of its sine, cosine and
-//! exponential.
+//! The least cost of one evaluation of a closed form: its sine, cosine and exponential.
 //!
-//! An event needs one evaluation: the state at the root. It is timed in the same rounds as the
-//! workloads, as a dependent chain (each evaluation waits for the last, as in one run) and with
-//! independent evaluations (as in many runs side by side).
+//! An event needs one evaluation: the state at the root. The evaluation is timed in the same rounds
+//! as the workloads, for its dependent-chain latency (each evaluation needs the result of the one
+//! before, as in one run) and with independent evaluations (as in many runs side by side).
 
-use super::rounds::{Benchmark, Plain, RoundPace, RoundTimes, race};
+use super::rounds::{Benchmark, Plain, RoundPace, RoundTimes, time_interleaved};
 use super::workload::{Repeated, Workload};
 use crate::engine::Failure;
 use std::hint::black_box;
 
-/// Units of work a call.
+/// Units of work per call.
 const UNITS: u64 = 2000;
 
-/// Short batches, many of them: nothing else runs so briefly.
+/// Many short batches: no other benchmark runs so briefly.
 const PACE: RoundPace = RoundPace { batch: 0.5e6, batches: 5 };
 
-/// What an evaluation costs at the least, and what a switch costs in the same rounds.
+/// The least cost of an evaluation, and the cost of an event in the same rounds.
 #[derive(Clone, Debug)]
 pub struct Floors {
     /// Dependent-chain latency, ns: each evaluation waits for the result of the one before.
@@ -24,29 +23,29 @@ pub struct Floors {
     /// Reciprocal throughput, ns: no evaluation waits for another.
     pub independent: RoundTimes,
     /// The cost of each workload, in the order in which the workloads were given.
-    pub switches: Vec<Result<Cost, Failure>>,
+    pub events: Vec<Result<Cost, Failure>>,
 }
 
-/// What a workload costs.
+/// The cost of one workload.
 #[derive(Clone, Debug)]
 pub struct Cost {
     /// The workload's name.
     pub name: String,
-    /// Closed-form evaluations a unit.
+    /// Closed-form evaluations per unit of work.
     pub evaluations: f64,
-    /// The best time of each round, ns a unit.
+    /// The best time of each round, ns per unit of work.
     pub series: RoundTimes,
 }
 
-/// Times one sine-cosine pair and one exponential of libm, against which any version is held: the
-/// solver has its sines from a table of its own by now.
+/// Evaluates one sine-cosine pair and one exponential of libm. This is kept as a fixed reference
+/// for all versions, although the solver now uses its own tables.
 #[must_use]
 pub fn transcendental(angle: f64) -> f64 {
     let (sin, cos) = libm::sincos(angle);
     1.0 + 0.5 * sin * libm::exp(-cos.abs())
 }
 
-/// Races the floor and the workloads.
+/// Times the floor and the workloads in interleaved rounds.
 ///
 /// # Errors
 /// Never for a floor that can be computed.
@@ -70,8 +69,8 @@ pub fn floors(
     benchmarks.extend(repeated.iter_mut().map(|it| it as &mut dyn Benchmark));
     let per_unit =
         |series: RoundTimes| RoundTimes(series.0.iter().map(|it| it / UNITS as f64).collect());
-    let mut raced = race(&mut benchmarks, rounds, PACE, done).into_iter();
-    let mut next = || raced.next().unwrap_or_else(|| Err(Failure::new("not raced"))).map(per_unit);
+    let mut times = time_interleaved(&mut benchmarks, rounds, PACE, done).into_iter();
+    let mut next = || times.next().unwrap_or_else(|| Err(Failure::new("not timed"))).map(per_unit);
     let (chained, independent) = (next()?, next()?);
     let mut cost = |workload: &dyn Workload| {
         let series = next()?;
@@ -81,11 +80,11 @@ pub fn floors(
     Ok(Floors {
         chained,
         independent,
-        switches: workloads.iter().map(|it| cost(it.as_ref())).collect(),
+        events: workloads.iter().map(|it| cost(it.as_ref())).collect(),
     })
 }
 
-/// How much work that is, for progress.
+/// The number of progress steps of [`floors`].
 #[must_use]
 pub fn size(workloads: usize, rounds: usize) -> u64 {
     ((workloads + 2) * rounds) as u64

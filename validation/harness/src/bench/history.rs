@@ -20,31 +20,31 @@ pub struct HistoryRecord {
     pub commit: Option<String>,
     /// The compiler.
     pub rustc: String,
-    /// The processor it was compiled for.
+    /// The processor for which the program was compiled.
     pub target_cpu: String,
     /// The processor it ran on.
     pub cpu: String,
     /// The workload.
     pub bench: String,
-    /// Instructions a unit, where they were counted.
+    /// Instructions per unit, where they were counted.
     pub instructions: Option<f64>,
-    /// The least time a unit, ns.
+    /// The least time per unit, ns.
     pub best_ns: f64,
-    /// The median over the rounds of the best time a unit, ns.
+    /// The median over the rounds of the best time per unit, ns.
     pub median_ns: f64,
     /// The least time of the chained floor in the same rounds, ns.
     pub floor_ns: f64,
-    /// Floors a unit: the quotient of least times in the first half of the rounds.
+    /// Floors per unit: the quotient of least times in the first half of the rounds.
     pub floors: f64,
-    /// Floors a unit in the second half of the rounds: the quotient of least times.
+    /// Floors per unit in the second half of the rounds: the quotient of least times.
     pub floors_again: f64,
-    /// Closed-form evaluations a switch.
+    /// Closed-form evaluations per event.
     pub evaluations_per_switch: f64,
     /// max(|dp|, |dy|, |dq|) of the case's run.
     pub state_error_max: f64,
 }
 
-/// What was measured of a workload.
+/// The measured figures of a workload.
 #[derive(Clone, Copy, Debug)]
 #[allow(missing_docs, reason = "as in `Record`")]
 pub struct Figures {
@@ -92,7 +92,7 @@ impl HistoryRecord {
         self.percuss == version || self.commit.as_ref().is_some_and(is_commit)
     }
 
-    /// Whether both are of the same build.
+    /// Whether two records belong to the same build.
     #[must_use]
     pub fn is_with(&self, other: &Self) -> bool {
         (&self.percuss, &self.commit) == (&other.percuss, &other.commit)

@@ -11,7 +11,7 @@ use std::process::{Command, Stdio};
 const LITTLE: u64 = 2_000;
 const MUCH: u64 = 22_000;
 
-/// Instructions a unit of a workload.
+/// Instructions per unit of a workload.
 ///
 /// # Errors
 /// Valgrind is not installed, or gives no count.

@@ -1,4 +1,5 @@
-//! What a run costs against its length: its time is proportional to it, its memory constant.
+//! The cost of a run against its length: the time is proportional to the length, the memory
+//! constant.
 //!
 //! A chaotic run of a million periods has no truth to be held to. A stable orbit has: after any
 //! multiple of its period the motion is where it began. So every length that is timed is checked
@@ -20,7 +21,7 @@ const LEAST: f64 = 2e7;
 /// Rounding a period, damped by the orbit's multipliers, adds up to no more than this.
 const CLOSED: f64 = 1e-12;
 
-/// A length of run with its time and error.
+/// The time and the error of a run of one length.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 #[allow(missing_docs, reason = "the keys of bench.json, explained in its schema")]
 pub struct Length {
@@ -46,7 +47,7 @@ pub fn lengths(long: bool, done: &dyn Fn()) -> Result<Vec<Length>, Failure> {
     LENGTHS.into_iter().chain(LONG.into_iter().filter(|_| long)).map(length).collect()
 }
 
-/// How many lengths that are, for progress.
+/// The number of progress steps of the measurement.
 #[must_use]
 pub fn size(long: bool) -> u64 {
     (LENGTHS.len() + if long { LONG.len() } else { 0 }) as u64

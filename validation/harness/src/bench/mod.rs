@@ -14,7 +14,6 @@ pub mod contestant;
 pub mod damping;
 pub mod equal_accuracy;
 pub mod floor;
-mod grid;
 pub mod history;
 pub mod instructions;
 pub mod lanes;

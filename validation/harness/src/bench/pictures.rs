@@ -62,7 +62,7 @@ fn left_out_note(count: usize, of: usize) -> String {
         return String::new();
     }
     format!(
-        "Left out are {count} of {of} settings, whose runs miss or invent events, err by more than \
+        "Left out are {count} of {of} settings, whose runs have missed or spurious events, err by more than \
          {SCORED_ERROR:e} or give no result; their reasons are in bench.json."
     )
 }
@@ -133,7 +133,7 @@ fn damping(bench: &Bench) -> Curves {
 const MARKERS: [Marker; 5] =
     [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond, Marker::Nabla];
 
-/// What a unit of each workload has cost, version by version.
+/// The cost of a unit of each workload, version by version.
 #[must_use]
 pub fn history(history: &History) -> Curves {
     let mut versions: Vec<&HistoryRecord> = Vec::new();

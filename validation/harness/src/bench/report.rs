@@ -1,6 +1,6 @@
-//! What a `bench` holds: the keys of `bench.json`.
+//! The keys of `bench.json`.
 
-use super::contest::{Finisher, exact, most_accurate};
+use super::contest::{SettingResult, exact, most_accurate};
 use super::damping::DampingPoint;
 use super::equal_accuracy::{AccuracyPoint, Basis, COMPARABLE, LOOSE, TIGHT, time_at};
 use super::floor::Floors;
@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 /// A whole bench.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Bench {
-    /// The format's number, and what was run where.
+    /// The number of the format, and the build and machine.
     #[serde(flatten)]
     pub build: Build,
     /// Interleaved rounds.
@@ -23,9 +23,9 @@ pub struct Bench {
     pub cases: Vec<CaseEntry>,
     /// A row for each case, contestant and setting.
     pub results: Vec<BenchRow>,
-    /// What one evaluation costs at the least.
+    /// The least cost of one closed-form evaluation.
     pub floor: Floor,
-    /// What the exact solver takes for an event of each case's run.
+    /// The exact solver's time per event on each case.
     pub events: Vec<EventCost>,
     /// Cost against length; empty where only some cases were asked for.
     pub length: Vec<Length>,
@@ -61,9 +61,9 @@ pub struct BenchRow {
     pub most_accurate: bool,
     /// Whether it errs at most [`COMPARABLE`] times as much as the exact solver here.
     pub comparable: bool,
-    /// Whether its steps are chosen by a tolerance.
+    /// Whether a tolerance chooses the engine's steps.
     pub adaptive: bool,
-    /// Why there is no time.
+    /// The reason why there is no time.
     pub why: Option<String>,
 }
 
@@ -78,7 +78,7 @@ impl BenchRow {
         }
     }
 
-    /// How many times as long as the exact solver its engine takes on this basis.
+    /// The engine's time over the exact solver's, on the given basis.
     #[must_use]
     pub fn ratio(&self, basis: Basis) -> Option<f64> {
         match basis {
@@ -110,7 +110,7 @@ pub struct Floor {
     pub independent_ns: f64,
 }
 
-/// What the exact solver takes for an event of a case's run, everything that is timed divided by
+/// The exact solver's time for an event of a case's run: everything that is timed divided by
 /// its events.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
@@ -143,7 +143,7 @@ impl EventCost {
     }
 }
 
-/// A contestant at one xi.
+/// A contestant at one damping ratio xi.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
 pub struct Damped {
@@ -155,15 +155,15 @@ pub struct Damped {
     pub why: Option<String>,
 }
 
-/// What was measured.
+/// The measurements from which a bench is made.
 pub struct Measurement<'a> {
     /// The cases and who ran on each.
-    pub contests: &'a [(CaseEntry, Vec<Finisher>)],
+    pub contests: &'a [(CaseEntry, Vec<SettingResult>)],
     /// The floor.
     pub floors: &'a Floors,
     /// The lengths.
     pub length: Vec<Length>,
-    /// What was measured at each damping ratio.
+    /// The results at each damping ratio.
     pub damping: &'a [DampingPoint],
 }
 
@@ -192,12 +192,12 @@ impl Bench {
     }
 }
 
-fn rows(case: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
-    let unit = exact(finishers).map(|it| it.series.clone()).unwrap_or_default();
-    let comparable = exact(finishers).map_or(0.0, |it| COMPARABLE * it.score.state_error);
-    let row = |it: &Finisher| {
+fn rows(case: &CaseEntry, results: &[SettingResult]) -> Vec<BenchRow> {
+    let unit = exact(results).map(|it| it.series.clone()).unwrap_or_default();
+    let comparable = exact(results).map_or(0.0, |it| COMPARABLE * it.score.state_error);
+    let row = |it: &SettingResult| {
         let timed = it.result.as_ref().ok();
-        let best = most_accurate(finishers, it.name).is_some_and(|best| std::ptr::eq(best, it));
+        let best = most_accurate(results, it.name).is_some_and(|best| std::ptr::eq(best, it));
         BenchRow {
             case: case.case.clone(),
             engine: it.name.to_owned(),
@@ -221,7 +221,7 @@ fn rows(case: &CaseEntry, finishers: &[Finisher]) -> Vec<BenchRow> {
             why: it.result.as_ref().err().map(ToString::to_string),
         }
     };
-    at_equal_accuracy(finishers.iter().map(row).collect(), comparable)
+    at_equal_accuracy(results.iter().map(row).collect(), comparable)
 }
 
 /// Reads each engine's work-precision curve at [`LOOSE`], at [`TIGHT`] and at errors comparable to
@@ -243,7 +243,7 @@ fn at_equal_accuracy(mut rows: Vec<BenchRow>, comparable: f64) -> Vec<BenchRow> 
 }
 
 fn damped(point: &DampingPoint) -> Vec<Damped> {
-    let row = |it: &Finisher| {
+    let row = |it: &SettingResult| {
         let timed = it.result.as_ref().ok();
         Damped {
             xi: point.xi,
@@ -254,5 +254,5 @@ fn damped(point: &DampingPoint) -> Vec<Damped> {
             why: it.result.as_ref().err().map(ToString::to_string),
         }
     };
-    point.finishers.iter().map(row).collect()
+    point.results.iter().map(row).collect()
 }

@@ -10,23 +10,23 @@ use super::clock::Stopwatch;
 use crate::engine::Failure;
 use crate::score::Spread;
 
-/// Something that can be timed.
+/// A piece of work that can be called, timed and checked.
 pub trait Benchmark {
-    /// Does the work once; this is what is timed.
+    /// Does the work once. Only this call is timed.
     ///
     /// # Errors
-    /// Why it could not.
+    /// Why the work could not be done.
     fn call(&mut self) -> Result<(), Failure>;
 
     /// Whether the last call's answer was right. Not timed.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// What is wrong with the answer.
     fn check(&mut self) -> Result<(), Failure> {
         Ok(())
     }
 
-    /// The number of rounds in which it takes part at most.
+    /// The largest number of rounds in which the benchmark takes part.
     fn rounds(&self) -> usize {
         usize::MAX
     }
@@ -42,12 +42,12 @@ impl<F: FnMut()> Benchmark for Plain<F> {
     }
 }
 
-/// How long and how many the batches of a round are.
+/// The length and the number of the batches of a round.
 #[derive(Clone, Copy, Debug)]
 pub struct RoundPace {
     /// The least time of a batch, ns: calls are repeated until they fill it.
     pub batch: f64,
-    /// Batches a round; one where a call fills several on its own.
+    /// Batches per round; one where a single call fills several.
     pub batches: u32,
 }
 
@@ -72,15 +72,16 @@ impl RoundTimes {
         self.0.iter().copied().fold(f64::NAN, f64::min)
     }
 
-    /// The median over the rounds of that round's quotient.
+    /// The median over the rounds of the quotient of the two times in one round.
     #[must_use]
     pub fn ratio_to(&self, other: &Self) -> f64 {
         Spread::of(self.0.iter().zip(&other.0).map(|(own, other)| own / other).collect()).median
     }
 }
 
-/// Races them; one that fails, or whose answer is wrong in any batch, has no times.
-pub fn race(
+/// Times all benchmarks in interleaved rounds. A benchmark that fails, or whose answer is wrong in
+/// any batch, has no times.
+pub fn time_interleaved(
     benchmarks: &mut [&mut dyn Benchmark],
     rounds: usize,
     pace: RoundPace,
@@ -97,7 +98,7 @@ pub fn race(
         for i in order {
             if let Ok(series) = &mut results[i]
                 && round < benchmarks[i].rounds()
-                && !has_rested(series, round)
+                && !has_enough_rounds(series, round)
             {
                 let best = best_of(benchmarks[i], &mut calls[i], pace);
                 match best {
@@ -111,16 +112,16 @@ pub fn race(
     results
 }
 
-/// Whether a benchmark sits this round out: a call that is so long meets the quiet and the busy
+/// Whether a benchmark is left out of a round: a call that is so long meets the quiet and the busy
 /// moments of a machine alike, and three rounds tell as much as ten.
-fn has_rested(series: &RoundTimes, round: usize) -> bool {
+fn has_enough_rounds(series: &RoundTimes, round: usize) -> bool {
     const LONG: f64 = 5e7;
     const ENOUGH: usize = 3;
     round >= ENOUGH && series.best() > LONG
 }
 
-/// The best batch of a round, ns a call; `calls` is how many fill a batch, found in the first
-/// round.
+/// The best batch of a round, ns per call. `calls` is the number of calls that fill a batch, found
+/// in the first round.
 fn best_of(
     benchmark: &mut dyn Benchmark,
     calls: &mut u32,
@@ -141,7 +142,7 @@ fn best_of(
     Ok(best / f64::from(*calls))
 }
 
-/// Calls that fill a batch.
+/// The number of calls that fill a batch.
 fn filling(benchmark: &mut dyn Benchmark, least: f64) -> Result<u32, Failure> {
     const MOST: u32 = 1 << 20;
     let mut calls = 1;
@@ -178,7 +179,7 @@ mod tests {
         assert_eq!(drifting.ratio_to(&RoundTimes(vec![2.0, 1.0, 3.0])), 2.0);
     }
 
-    /// Right until its `last` check.
+    /// A benchmark whose answer is right until its `last` check.
     struct FaultyBenchmark {
         checks: u32,
         last: u32,
@@ -196,11 +197,11 @@ mod tests {
     }
 
     #[test]
-    fn a_racer_that_answers_wrongly_in_any_batch_has_no_times() {
+    fn a_benchmark_that_answers_wrongly_in_any_batch_has_no_times() {
         let pace = RoundPace { batch: 1e4, batches: 2 };
         let (mut right, mut late) =
             (FaultyBenchmark { checks: 0, last: u32::MAX }, FaultyBenchmark { checks: 0, last: 3 });
-        let results = race(&mut [&mut right, &mut late], 4, pace, &|| ());
+        let results = time_interleaved(&mut [&mut right, &mut late], 4, pace, &|| ());
         assert!(results[0].as_ref().is_ok_and(|series| series.0.len() == 4), "{results:?}");
         assert_eq!(results[1], Err(Failure::new("wrong")));
         assert!(right.checks >= 4 && late.checks == 3);

@@ -1,11 +1,11 @@
-//! What a bench says in brief: the cost of an event, and the closest competitor on each case.
+//! The summary of a bench: the cost of an event, and the closest competitor on each case.
 
 use super::competitor::{closest_competitor, errs_least, times};
 use super::equal_accuracy::BASES;
-use super::grid::{plain, shown};
 use super::report::{Bench, BenchRow};
 use crate::engine::REFERENCE;
 use crate::number::brief;
+use comfy_table::{CellAlignment, Table, presets};
 
 /// The exact solver's cost on each case, and its closest competitors at their most accurate and at
 /// equal accuracy. README.md holds it.
@@ -29,7 +29,7 @@ pub fn summary(bench: &Bench) -> String {
     text
 }
 
-/// What the exact solver takes for an event of each case.
+/// The exact solver's time per event on each case.
 fn events(bench: &Bench) -> String {
     let mut table = plain([
         "exact",
@@ -95,4 +95,24 @@ pub(super) fn figure(value: Option<f64>, show: impl Fn(f64) -> String) -> String
 /// A share in whole per cent.
 pub(super) fn share(value: f64) -> String {
     format!("{}%", (100.0 * value).round() + 0.0)
+}
+
+/// A table without lines under the given header.
+pub(super) fn plain<const N: usize>(header: [&str; N]) -> Table {
+    let mut table = Table::new();
+    table.load_preset(presets::NOTHING);
+    table.set_header(header);
+    table
+}
+
+/// The table as text; columns from `from` on are aligned to the right.
+pub(super) fn shown(mut table: Table, from: usize) -> String {
+    for column in table.column_iter_mut().skip(from) {
+        column.set_cell_alignment(CellAlignment::Right);
+    }
+    for column in table.column_iter_mut() {
+        column.set_padding((0, 2));
+    }
+    let lines: Vec<_> = table.to_string().lines().map(|line| line.trim_end().to_owned()).collect();
+    lines.join("\n") + "\n"
 }

@@ -30,16 +30,16 @@ pub fn system_entry<'a>(
             // Events at the entry of a mode are not located, so that not every run can be told.
             told(answer.clone(), run).ok().flatten()
         };
-    Ok(ContestEntry { timed: Box::new(SystemHeat { run, case, answer }), library_part })
+    Ok(ContestEntry { timed: Box::new(SystemBenchmark { run, case, answer }), library_part })
 }
 
-struct SystemHeat<'a, F> {
+struct SystemBenchmark<'a, F> {
     run: F,
     case: &'a TimedSystemCase,
     answer: Outcome,
 }
 
-impl<F: Fn() -> Result<Outcome, Failure>> Benchmark for SystemHeat<'_, F> {
+impl<F: Fn() -> Result<Outcome, Failure>> Benchmark for SystemBenchmark<'_, F> {
     fn call(&mut self) -> Result<(), Failure> {
         self.answer = contain(&self.run)?;
         Ok(())
@@ -50,7 +50,7 @@ impl<F: Fn() -> Result<Outcome, Failure>> Benchmark for SystemHeat<'_, F> {
     }
 }
 
-impl<F: Fn() -> Result<Outcome, Failure>> TimedRun for SystemHeat<'_, F> {
+impl<F: Fn() -> Result<Outcome, Failure>> TimedRun for SystemBenchmark<'_, F> {
     fn score(&self) -> Result<Score, Failure> {
         self.case.score(&self.answer)
     }

@@ -1,9 +1,8 @@
-//! The tables for people.
+//! The tables that `bench` prints.
 
 use super::competitor::times;
-use super::grid::{plain, shown};
 use super::report::{Bench, BenchRow};
-use super::summary::{figure, share, summary};
+use super::summary::{figure, plain, share, shown, summary};
 use crate::number::brief;
 
 /// Each engine at its most accurate setting, cost against length, what an event costs, and how far

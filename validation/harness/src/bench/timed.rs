@@ -1,4 +1,4 @@
-//! What is timed: a run, and beside it the engine's own part of it.
+//! Timed runs, each with the engine's own part of the run beside the whole.
 
 use super::rounds::Benchmark;
 use super::timed_case::Score;
@@ -11,13 +11,13 @@ pub trait TimedRun: Benchmark {
         1.0
     }
 
-    /// How good the last call's answer is.
+    /// The errors of the last call's answer.
     ///
     /// # Errors
     /// What is wrong with it.
     fn score(&self) -> Result<Score, Failure>;
 
-    /// What the last call counted.
+    /// The counted work of the last call.
     fn work(&self) -> Work;
 }
 
@@ -25,6 +25,6 @@ pub trait TimedRun: Benchmark {
 pub struct ContestEntry<'a> {
     /// The whole run.
     pub timed: Box<dyn TimedRun + 'a>,
-    /// The part of it that is not the harness's.
+    /// The engine's own part of the run, without the harness's.
     pub library_part: Option<Box<dyn Benchmark + 'a>>,
 }

@@ -1,5 +1,5 @@
-//! What contestants run: a case from its start to its horizon, with the truth that answers are held
-//! to.
+//! The runs of contestants: a case from its start to its horizon, with the truth that answers are
+//! held to.
 
 use crate::case::{Case, FileError, Given};
 use crate::engine::{Failure, OscillatorEvent, OscillatorOutcome, OscillatorTask, SampleGrid};
@@ -9,7 +9,7 @@ use crate::truth::{Library, Truth, TruthRow};
 use percuss::{Parameters, Start};
 use serde::{Deserialize, Serialize};
 
-/// A case that is timed.
+/// The description of a timed case.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 #[allow(missing_docs, reason = "the keys are explained in the schema")]
 pub struct CaseEntry {
@@ -32,7 +32,7 @@ impl CaseEntry {
 pub struct TimedCase {
     /// The name of the case.
     pub name: String,
-    /// The regime it stands for.
+    /// The regime that the case stands for.
     pub regime: String,
     /// The run. It asks for no samples: events and the end are the answer.
     pub task: OscillatorTask,
@@ -40,12 +40,12 @@ pub struct TimedCase {
     pub truth: Truth,
 }
 
-/// How good a right answer is.
+/// The errors of a right answer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Score {
     /// max(|dp|, |dy|, |dq|) over the events, each at its own time, and the end of the run.
     pub state_error: f64,
-    /// Largest error of a switch's time.
+    /// The largest error of an event time.
     pub event_time_error: f64,
     /// |dv| at the end.
     pub drift_error: f64,
@@ -99,7 +99,7 @@ impl TimedCase {
         })
     }
 
-    /// What a bench says of the case.
+    /// The case's entry in `bench.json`.
     #[must_use]
     pub fn entry(&self) -> CaseEntry {
         CaseEntry {
@@ -116,7 +116,7 @@ impl TimedCase {
         self.task.span / self.task.problem.model.period()
     }
 
-    /// How good an answer is, if it is right: every switch there in its order and none besides, and
+    /// How good an answer is, if it is right: every event there in its order and none besides, and
     /// no error beyond the 1e-3 at which runs count as lost.
     ///
     /// # Errors

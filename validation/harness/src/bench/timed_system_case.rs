@@ -51,7 +51,7 @@ impl TimedSystemCase {
         self.task.span / self.task.system.period()
     }
 
-    /// What a bench says of the case.
+    /// The case's entry in `bench.json`.
     #[must_use]
     pub fn entry(&self) -> CaseEntry {
         CaseEntry {

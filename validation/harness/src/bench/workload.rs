@@ -1,4 +1,4 @@
-//! The exact solver's work a switch, apart from any engine's: what is recorded, and what two
+//! The exact solver's work per event, apart from any engine's: what is recorded, and what two
 //! binaries are compared by.
 //!
 //! Work of another kind is one more [`Workload`], named in [`all`].
@@ -21,12 +21,12 @@ pub trait Workload {
     fn run(&self, units: u64) -> Result<u64, Failure>;
 }
 
-/// Events of a case's run, followed beyond its horizon; one that ends is begun again.
-pub struct Switches<'a> {
+/// Events of a case's run, followed beyond its horizon; a run that ends is begun again.
+pub struct CaseEvents<'a> {
     case: &'a TimedCase,
 }
 
-impl Workload for Switches<'_> {
+impl Workload for CaseEvents<'_> {
     fn name(&self) -> String {
         format!("switches/{}", self.case.name)
     }
@@ -35,7 +35,7 @@ impl Workload for Switches<'_> {
         let problem = &self.case.task.problem;
         let (mut done, mut evaluations) = (0, 0);
         while done < units {
-            let counters = switches(&problem.model, problem.entry, units - done);
+            let counters = follow_events(&problem.model, problem.entry, units - done);
             if counters.switches == 0 {
                 return Err(Failure::new("its first phase never ends: there is no event to time"));
             }
@@ -47,7 +47,7 @@ impl Workload for Switches<'_> {
 }
 
 /// Follows a run for this many events, or to its end.
-fn switches(model: &Model, entry: Entry, most: u64) -> Counters {
+fn follow_events(model: &Model, entry: Entry, most: u64) -> Counters {
     let mut run = model.trajectory(black_box(entry));
     while run.counters().switches < most {
         match run.step() {
@@ -61,7 +61,8 @@ fn switches(model: &Model, entry: Entry, most: u64) -> Counters {
 /// The workloads of these cases.
 #[must_use]
 pub fn all(timed_cases: &[TimedCase]) -> Vec<Box<dyn Workload + '_>> {
-    let own = timed_cases.iter().map(|case| Box::new(Switches { case }) as Box<dyn Workload + '_>);
+    let own =
+        timed_cases.iter().map(|case| Box::new(CaseEvents { case }) as Box<dyn Workload + '_>);
     own.collect()
 }
 

@@ -18,7 +18,7 @@ use crate::suite::{CaseRun, Extent, Prepared};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 
-/// A group of bounds that say the same thing.
+/// A group of bounds that test the same property.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Gate {
@@ -28,16 +28,16 @@ pub enum Gate {
     EventErrors,
     /// Errors on the fixed sample, drift included.
     StateErrors,
-    /// How long runs in chaos stay right.
+    /// The valid horizons of runs in chaos.
     ValidHorizon,
-    /// Errors after one passage from states on the attractor.
+    /// Errors after restarts from states on the attractor.
     Restart,
     /// Distance of the sections in chaos.
     Attractor,
 }
 
 impl Gate {
-    /// All of them, in the order of the report.
+    /// All gates, in the order of the report.
     pub const ALL: [Self; 6] = [
         Self::Events,
         Self::EventErrors,
@@ -78,34 +78,34 @@ impl Gate {
     }
 }
 
-/// What a gate did about a fault.
+/// On how many cases a gate was applied to a fault, and caught it.
 #[derive(Clone, Debug, Default)]
 pub struct Trip {
-    /// Cases on which it was held against the engine.
+    /// The number of cases on which the gate was applied to the engine.
     pub held: usize,
-    /// Cases on which a bound of it failed.
+    /// The number of cases on which a bound of the gate failed.
     pub failed: usize,
-    /// The failure on the first of them.
+    /// The failure on the first of those cases.
     pub detail: String,
 }
 
-/// What was found about a wrong engine.
+/// The result of the power test for one wrong engine.
 #[derive(Clone, Debug)]
 pub struct Finding {
     /// The engine's name, with its tolerance where it has one.
     pub engine: String,
-    /// What is wrong with it.
+    /// The fault, in words.
     pub fault: &'static str,
-    /// The gates.
+    /// The result of each gate.
     pub gates: BTreeMap<Gate, Trip>,
-    /// Cases on which it gave no result at all.
+    /// The number of cases on which the engine gave no result.
     pub without_result: usize,
-    /// Cases on which a bound failed.
+    /// The names of the cases on which a bound failed.
     pub failed_on: Vec<String>,
     /// The way of running a case in which its fault shows, if it is one; the cases above are then
     /// those that are run in that way.
     pub way: Option<Way>,
-    /// How many cases are not run in that way, and on which of them a bound failed.
+    /// The number of cases that are not run in that way, and those of them on which a bound failed.
     pub elsewhere: (usize, Vec<String>),
 }
 
@@ -159,12 +159,12 @@ impl Finding {
     }
 }
 
-/// How wrong engines are held: the name whose bounds are taken, and the unit of error.
+/// The standard for wrong engines: the name whose bounds are taken, and the unit of error.
 #[derive(Clone, Copy, Debug)]
 pub struct Standard {
     /// The engine whose bounds are taken.
     pub engine: &'static str,
-    /// What that engine is asked for.
+    /// The accuracy that the engine is asked for.
     pub accuracy: Accuracy,
     /// The unit of error of the engine.
     pub unit: f64,
@@ -197,7 +197,7 @@ impl Standard {
         }
     }
 
-    /// How much is asked of a wrong engine.
+    /// The extent of the tests of a wrong engine.
     fn extent(&self, case: &crate::case::Case) -> Extent {
         if self.accuracy == Accuracy::Exact {
             Extent::of_wrong(case)

@@ -1,4 +1,4 @@
-//! Where the attractors of Fig. 7 come from and go to: the bifurcations that Section 5 names.
+//! The bifurcations that Section 5 names, in which the attractors of Fig. 7 appear and vanish.
 
 use super::attractors::{described, found, map, of_period};
 use super::brute::{bracket, settled};
@@ -30,7 +30,7 @@ const REST: u64 = 300_000;
 const REPEATS: f64 = 1e-4;
 /// Width of the intervals found by brute force.
 const WIDTH: f64 = 2e-5;
-/// What the integrator is asked for.
+/// The tolerance of the integrator.
 const TOLERANCE: f64 = 1e-10;
 
 pub(super) fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
@@ -213,7 +213,7 @@ fn disappears(work: &ItemWork<'_>, four: &Attractor) -> Result<Claim, Failure> {
     Ok(claim)
 }
 
-/// How many attractors there are besides period four and the strangest one.
+/// The attractors besides period four and the strangest one.
 fn others(omega: f64) -> Result<Vec<Attractor>, Failure> {
     let mut all = found(omega)?;
     let strange = all

@@ -1,27 +1,27 @@
-//! A claim of the paper beside what we find.
+//! A claim of the paper beside our result.
 
 use super::paper::Paper;
 use crate::engine::Failure;
 use serde::{Deserialize, Serialize};
 
-/// How a claim stands.
+/// The verdict on a claim of the paper.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ClaimVerdict {
-    /// Our computation says the same.
+    /// Our computation agrees with the paper.
     Reproduced,
-    /// It says something else.
+    /// Our computation differs from the paper.
     Differs,
-    /// It cannot tell, for a stated reason.
+    /// Our computation cannot decide the claim, for a stated reason.
     NotDetermined,
 }
 
-/// How something was found, and what.
+/// A method and its finding.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ClaimEvidence {
     /// The method, with its settings.
     pub method: String,
-    /// What it gave.
+    /// The finding.
     pub finding: String,
 }
 
@@ -30,20 +30,20 @@ pub struct ClaimEvidence {
 pub struct Claim {
     /// The claim's name.
     pub id: String,
-    /// What the paper says.
+    /// The paper's statement.
     pub paper: String,
-    /// What we find.
+    /// Our result.
     pub computed: String,
-    /// How it stands.
+    /// The verdict on the claim.
     pub verdict: ClaimVerdict,
-    /// Why, and what is assumed.
+    /// The reason for the verdict, and the assumptions.
     pub note: String,
     /// Methods and their findings.
     pub evidence: Vec<ClaimEvidence>,
 }
 
 impl Claim {
-    /// A claim with what we find.
+    /// A claim of the paper with our result.
     ///
     /// # Errors
     /// An id that the paper's side does not have.
@@ -80,7 +80,7 @@ impl Claim {
 }
 
 impl ClaimVerdict {
-    /// Reproduced if all that was checked holds.
+    /// The verdict `reproduced` if everything that was checked holds.
     #[must_use]
     pub const fn of(holds: bool) -> Self {
         if holds { Self::Reproduced } else { Self::Differs }

@@ -100,7 +100,7 @@ impl Stable {
     }
 }
 
-/// How many different points a step shows, up to some.
+/// The number of different points of a step, up to a limit.
 fn count(step: &DiagramStep) -> usize {
     let mut kept: Vec<&StrobePoint> = Vec::new();
     for point in &step.points {

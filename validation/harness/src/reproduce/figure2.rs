@@ -9,7 +9,7 @@ use crate::picture::{Figure, Layer, MotionPiece, Plot, Stroke, caption};
 use percuss::Phase;
 
 const PERIODS: u64 = 12;
-/// Points a forcing period.
+/// Points per forcing period.
 const POINTS: f64 = 600.0;
 /// Rounding of the sampled drift, in units of eps: it is one sum of two words.
 const ROUNDINGS: f64 = 4.0;

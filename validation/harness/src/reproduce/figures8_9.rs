@@ -14,7 +14,7 @@ use percuss::dynamics::strobe::StrobeMap;
 /// Points of the strange attractors' sections.
 const POINTS: u64 = 20_000;
 const TRANSIENT: u64 = 200;
-/// Points a forcing period of the phase planes.
+/// Points per forcing period of the phase planes.
 const PER_PERIOD: f64 = 200.0;
 
 /// One of the two figures.

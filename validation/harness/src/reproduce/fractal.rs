@@ -19,7 +19,7 @@ const BOX: u32 = 5;
 /// Standard errors by which an exponent must be below one.
 const ERRORS: f64 = 4.0;
 
-/// What is measured at one frequency.
+/// The measurements at one frequency.
 struct FrequencyMeasured {
     omega: f64,
     uncertainty: Uncertainty,

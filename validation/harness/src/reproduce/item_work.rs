@@ -1,4 +1,4 @@
-//! What an item works with, and what it leaves.
+//! The input and the results of one item of the reproduction.
 
 use super::claim::Claim;
 use super::paper::Paper;
@@ -8,7 +8,7 @@ use percuss::{Entry, Model, Parameters, Start};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-/// How large the pictures and grids are.
+/// The size of the pictures and grids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 pub enum Size {
     /// Minutes.
@@ -17,11 +17,11 @@ pub enum Size {
     Full,
 }
 
-/// What every item is given.
+/// The folder, size and progress that every item works with.
 pub struct ItemWork<'a> {
     /// The paper's side.
     pub paper: Paper,
-    /// How large.
+    /// The size of pictures and grids.
     pub size: Size,
     /// Tells of progress: to be called as often as the item has parts, whenever one is done.
     pub step: &'a (dyn Fn() + Sync),
@@ -57,7 +57,7 @@ impl ItemWork<'_> {
 /// A picture of more marks is no SVG.
 const MOST_SVG_POINTS: usize = 20_000;
 
-/// What an item has found.
+/// The results of an item.
 #[derive(Clone, Debug, Default)]
 pub struct Findings {
     /// Claims settled.

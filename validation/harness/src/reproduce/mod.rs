@@ -33,7 +33,7 @@ use crate::engine::Failure;
 pub struct Item {
     /// The item's name.
     pub id: &'static str,
-    /// The claims that it settles.
+    /// The claims that the item settles.
     pub claims: &'static [&'static str],
     /// The number of steps, of about a second each, in which it tells of its progress.
     pub parts: u32,
@@ -43,7 +43,7 @@ pub struct Item {
 }
 
 impl Item {
-    /// Computes it.
+    /// Computes the item's pictures, data and claims.
     ///
     /// # Errors
     /// What could not be computed, and why.
@@ -51,7 +51,7 @@ impl Item {
         (self.run)(work)
     }
 
-    /// Whether it is called so, or settles a claim that is.
+    /// Whether the item, or a claim that it settles, has the given name.
     #[must_use]
     pub fn answers_to(&self, id: &str) -> bool {
         self.id == id || self.claims.contains(&id)

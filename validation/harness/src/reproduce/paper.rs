@@ -23,7 +23,7 @@ pub struct PrintedRow {
     pub q: f64,
 }
 
-/// A claim as the paper makes it.
+/// A claim with the values that the paper prints.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Printed {
@@ -31,21 +31,21 @@ pub struct Printed {
     pub says: String,
     /// A printed number.
     pub value: Option<f64>,
-    /// Half a unit of its last printed digit.
+    /// Half a unit of the last printed digit of the value.
     pub within: Option<f64>,
-    /// Whether the paper calls it approximate.
+    /// Whether the paper calls the value approximate.
     #[serde(default)]
     pub approximate: bool,
     /// Periods of the periodic attractors, in forcing periods.
     #[serde(default)]
     pub periods: Vec<u32>,
-    /// How many chaotic attractors there are.
+    /// The number of chaotic attractors.
     pub chaotic: Option<usize>,
-    /// How many attractors there are.
+    /// The number of attractors.
     pub attractors: Option<usize>,
 }
 
-/// All that the paper says.
+/// The paper's claims and printed values.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Paper {
@@ -88,7 +88,7 @@ impl Printed {
 pub const TABLE_1_UNIT: f64 = 1e-5;
 
 impl Paper {
-    /// Reads it.
+    /// Reads the paper's claims from the file inside the binary.
     ///
     /// # Errors
     /// A fault in the file; a test shows that there is none.
@@ -96,7 +96,7 @@ impl Paper {
         toml::from_str(FILE).map_err(|error| Failure::new(format!("paper.toml: {error}")))
     }
 
-    /// What it says of one claim.
+    /// The paper's statement of one claim.
     ///
     /// # Errors
     /// A claim that it does not make; a test shows that there is none.

@@ -1,5 +1,5 @@
-//! What a user of a moling rig wants to see and the paper does not show: the progression rate
-//! against the forcing frequency and against the static force.
+//! Beyond the paper, for users of a moling rig: the progression rate against the forcing frequency
+//! and against the static force.
 
 use super::item_work::{Findings, ItemWork};
 use super::paper::chaotic_model;
@@ -17,7 +17,7 @@ const REPEATS: f64 = 1e-6;
 /// The longest period that is told from chaos.
 const LONGEST: usize = 32;
 
-/// How the motion is, by its strobes.
+/// The kind of a motion, judged by its strobes.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum ProgressionRegime {
     Still,

@@ -22,9 +22,9 @@ pub struct Graze {
     /// The event that a crossing there would be; `None` in the oscillator, where any other phase
     /// that begins is one.
     pub event: Option<usize>,
-    /// Whether a crossing there ends the mode.
+    /// Whether a crossing at the graze ends the mode.
     pub ends: bool,
-    /// How many events a touch makes: two where the mode is left and entered again.
+    /// The number of events that a touch makes: two where the mode is left and entered again.
     pub makes: usize,
 }
 

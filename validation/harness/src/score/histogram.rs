@@ -1,4 +1,4 @@
-//! How errors are distributed over the powers of two.
+//! Histograms of errors over the powers of two.
 
 /// Counts of errors by the whole part of their binary logarithm.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Serialize)]
@@ -15,7 +15,7 @@ const LOWEST: i32 = -10;
 const BINS: usize = 64;
 
 impl Histogram {
-    /// Counts errors that are not negative.
+    /// The histogram of non-negative errors.
     #[must_use]
     pub fn of(errors: &[f64]) -> Self {
         let mut counts = vec![0; BINS];

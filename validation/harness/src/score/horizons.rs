@@ -18,7 +18,7 @@ pub struct ValidHorizon {
 pub struct Horizons {
     /// The valid horizons, one run after the other.
     pub runs: Vec<ValidHorizon>,
-    /// Runs that gave no result.
+    /// The number of runs without a result.
     pub failed: usize,
     /// The horizons that were reached.
     pub valid: Spread,

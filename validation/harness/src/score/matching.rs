@@ -1,4 +1,4 @@
-//! Which events of the engine are which of the truth's.
+//! Matches an engine's events to the true events.
 
 use super::occurrence::Occurrence;
 

@@ -6,12 +6,12 @@ use super::probed::ProbeResults;
 use super::statistics::Spread;
 use crate::case::{Quantity, Statistic};
 
-/// What a run measured, up to the scored horizon.
+/// The measures of a run up to the scored horizon.
 #[derive(Clone, Debug)]
 pub struct Measures {
     /// The scored horizon, in forcing periods.
     pub horizon_periods: f64,
-    /// Whether that is the case's whole horizon.
+    /// Whether the scored horizon is the case's whole horizon.
     pub whole: bool,
     /// The truth's events on the case's whole horizon.
     pub total: usize,
@@ -21,7 +21,7 @@ pub struct Measures {
     pub sampled: usize,
     /// The truth's events before the scored horizon.
     pub expected: usize,
-    /// Events that are matched, of the `expected` ones.
+    /// The number of matched events, of the `expected` ones.
     pub matched: usize,
     /// The engine's events, as matching sees them.
     pub found: Vec<Occurrence>,
@@ -46,7 +46,7 @@ pub struct Measures {
     pub event_constant: f64,
     /// Largest error of the sample's states in these units; NaN where no sample is scored.
     pub state_constant: f64,
-    /// What was asked beyond the run itself.
+    /// The results of the tests beyond the run itself.
     pub probed: ProbeResults,
 }
 

@@ -15,7 +15,7 @@ pub struct Mismatch {
     lost: Vec<usize>,
     /// Indices of the engine's spurious events, beyond the scored horizon too.
     extra: Vec<usize>,
-    /// How many of the truth's events are before the scored horizon.
+    /// The number of true events before the scored horizon.
     expected: usize,
     /// Indices of the engine's events that are before it, or matched to one that is.
     counted: Vec<usize>,

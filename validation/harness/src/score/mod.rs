@@ -1,4 +1,4 @@
-//! Scores: what an engine's run is worth against the truth.
+//! Scores: an engine's run compared with the truth.
 //!
 //! Everything is measured up to the scored horizon, which is fixed from the truth and the engine's
 //! unit of error alone ([`RunGrowth`]): a miss before it counts, nothing after it does.

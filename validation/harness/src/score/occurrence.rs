@@ -4,7 +4,7 @@ use crate::engine::OscillatorEvent;
 use crate::truth::TruthRow;
 use percuss::Phase;
 
-/// When an event is, and which it is.
+/// The time and the identity of an event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Occurrence {
     /// Time since the start.

@@ -5,7 +5,7 @@
 //! over several settings is the order in practice: a method below the order it claims is shown as
 //! such.
 
-/// What a setting leads to: steps taken, error reached.
+/// The number of steps and the error of a run at one setting.
 pub type OrderPoint = (f64, f64);
 
 /// Errors below this are rounding, above [`LARGEST`] no convergence yet.

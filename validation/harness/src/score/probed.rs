@@ -1,10 +1,10 @@
-//! What was asked of an engine beyond the run of a case itself, and how it did.
+//! The results of the tests of an engine beyond the run of a case itself.
 
 use super::attractor::Comparison;
 use super::horizons::Horizons;
 use super::restart_figures::Restart;
 
-/// What the probes gave for one engine.
+/// The results of the probes of one engine.
 #[derive(Clone, Debug, Default)]
 pub struct ProbeResults {
     /// The restart test.

@@ -4,7 +4,7 @@ use super::histogram::Histogram;
 use super::statistics::Spread;
 use std::collections::BTreeMap;
 
-/// How far one run is off at its end.
+/// The error of one run at its end.
 #[derive(Clone, Copy, Debug)]
 pub struct RestartError {
     /// The largest error of the state in units of error x (1 + |value|) x growth.
@@ -44,7 +44,7 @@ pub struct Restart {
     pub absolute: Spread,
     /// `units` of the runs with this many events, and how many these are.
     pub by_events: BTreeMap<usize, (usize, Spread)>,
-    /// How `units` are distributed.
+    /// The distribution of `units`.
     pub histogram: Histogram,
 }
 
@@ -55,7 +55,7 @@ pub(super) struct RestartResult {
     pub(super) impact: bool,
     /// The events of the true run.
     pub(super) events: usize,
-    /// How far the engine is off; none where it gave no result.
+    /// The engine's error; none without a result.
     pub(super) error: Option<RestartError>,
 }
 

@@ -11,7 +11,7 @@ use serde::Serialize;
 /// A run that has a result, with what tells whether its events are decidable.
 #[derive(Clone, Copy)]
 pub struct ScoredRun<'a> {
-    /// What was measured.
+    /// The measures of the run.
     pub measures: &'a Measures,
     /// The truth's events.
     pub truth: &'a [Occurrence],
@@ -75,13 +75,13 @@ impl Verdict {
 /// A bound with the figure it was held against.
 #[derive(Clone, Debug, Serialize)]
 pub struct Checked {
-    /// What is bounded.
+    /// The quantity that is bounded.
     pub quantity: Quantity,
     /// The statistic of the quantity that is bounded.
     pub statistic: Statistic,
     /// The limit.
     pub limit: f64,
-    /// What was measured, without the events that a graze excuses; NaN where nothing was.
+    /// The measured figure, without the events that a graze excuses; NaN if nothing was measured.
     pub value: f64,
     /// The class of the bound: pass, undecidable, not-scored, fail, or known (expected failure).
     pub verdict: Verdict,

@@ -5,7 +5,7 @@ use super::scored::{Checked, ScoredRun, Verdict};
 use crate::case::Shortcoming;
 use crate::number::brief;
 
-/// What became of an expected failure on a row.
+/// The state of an expected failure on a row.
 pub(super) enum Answer {
     /// The figure lies in the stated range; the reason of the failure.
     Shows(String),

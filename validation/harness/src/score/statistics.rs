@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-/// How a set of errors is spread; all NaN where there is none.
+/// Statistics of a set of errors; all NaN for an empty set.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
     /// The median.
     pub median: f64,
-    /// 99 % are at most this.
+    /// The 99th percentile.
     pub q99: f64,
     /// The largest.
     pub max: f64,

@@ -58,20 +58,20 @@ impl RowJudgement {
     }
 }
 
-/// What is judged.
+/// The case, engine and accuracy of a row that is judged.
 #[derive(Clone, Copy, Debug)]
 pub struct Subject<'a> {
     /// The case's name.
     pub case: &'a str,
     /// The engine's name.
     pub engine: &'a str,
-    /// What the engine was asked for.
+    /// The accuracy that the engine was asked for.
     pub accuracy: Accuracy,
-    /// The unit in which its errors are counted.
+    /// The unit in which the engine's errors are counted.
     pub unit: f64,
 }
 
-/// What is expected of a subject.
+/// The bounds and expected failures that apply to a subject.
 #[derive(Clone, Copy)]
 pub struct Expected<'a> {
     /// Bounds in order: the first for a quantity and statistic counts.
@@ -79,7 +79,7 @@ pub struct Expected<'a> {
     /// Bounds of classes of methods alone, whose constants decide which grazes are undecidable:
     /// what a case allows besides excuses no event.
     pub of_classes: &'a [Bound],
-    /// Failures that are expected of engines.
+    /// The expected failures of engines.
     pub shortcomings: &'a [&'a Shortcoming],
 }
 

@@ -24,7 +24,7 @@ pub struct Prepared {
     pub case: Case,
     /// The case's truth.
     pub truth: Truth,
-    /// How errors grow along it.
+    /// The growth of errors along the true run.
     pub growth: RunGrowth,
     /// The places at which the case's guards come close to a threshold.
     pub grazes: Vec<Graze>,
@@ -48,7 +48,7 @@ pub trait CaseRun: Sync {
     /// The parameters of its model.
     fn parameters(&self) -> Vec<(&str, f64)>;
 
-    /// The kinds of trouble that it makes.
+    /// The kinds of trouble that the case makes for integrators.
     fn trouble(&self) -> &[String] {
         &[]
     }
@@ -66,7 +66,7 @@ pub trait CaseRun: Sync {
         least_work(engine, self.asked(), accuracy)
     }
 
-    /// What a run may cost before it is given up.
+    /// The limits beyond which a run is given up.
     fn limits(&self, suite: Suite) -> Limits {
         suite.limits()
     }
@@ -83,21 +83,21 @@ pub trait CaseRun: Sync {
         suite: Suite,
     ) -> Result<Measured, Failure>;
 
-    /// A measured run as it is judged.
+    /// The measured run in the form in which it is judged.
     fn as_run<'a>(&'a self, measures: &'a Measures) -> ScoredRun<'a>;
 }
 
-/// A run that was measured.
+/// A run with its measures.
 pub struct Measured {
-    /// What was measured.
+    /// The measures of the run.
     pub measures: Measures,
-    /// What the engine answered.
+    /// The engine's answer.
     pub answered: Answered,
     /// Wall time.
     pub wall: Duration,
 }
 
-/// What an engine answered.
+/// An engine's answer.
 #[derive(Clone, Debug)]
 pub enum Answered {
     /// A run of the oscillator.
@@ -107,7 +107,7 @@ pub enum Answered {
 }
 
 impl Answered {
-    /// What the run cost.
+    /// The counted work of the run.
     #[must_use]
     pub const fn work(&self) -> Work {
         match self {
@@ -116,7 +116,7 @@ impl Answered {
         }
     }
 
-    /// What the integrator says it took, where it runs in a program of its own.
+    /// The time that the integrator itself reports, where it runs in a program of its own.
     #[must_use]
     pub const fn own_time(&self) -> Option<Duration> {
         match self {
@@ -135,7 +135,7 @@ impl Answered {
     }
 }
 
-/// How a run ended.
+/// The ending of a run.
 #[derive(Clone, Debug)]
 pub enum Status {
     /// The run has a result.
@@ -144,28 +144,28 @@ pub enum Status {
     Failed(Failure),
     /// The engine is not installed.
     Unavailable,
-    /// It would have cost more than the suite's budget.
+    /// The run was left out: its cost is beyond the suite's budget.
     NotRun,
 }
 
-/// A row of the report with what was measured.
+/// A row of the report with its measures.
 #[derive(Clone, Debug)]
 pub struct Scored {
     /// The case's name.
     pub case: String,
     /// The engine's name.
     pub engine: &'static str,
-    /// What the engine is run for beside its rows.
+    /// The tests beyond ordinary rows in which the engine takes part.
     pub role: Role,
-    /// What it was asked for.
+    /// The accuracy that the engine was asked for.
     pub accuracy: Accuracy,
     /// The row's unit of error.
     pub unit: f64,
     /// The truth's events on the case's horizon, with an ending that an engine has to find.
     pub events: usize,
-    /// The kinds of trouble that the case makes.
+    /// The kinds of trouble that the case makes for integrators.
     pub trouble: Vec<String>,
-    /// How it ended.
+    /// The ending of the run.
     pub status: Status,
     /// Wall time.
     pub wall: Duration,
@@ -313,7 +313,7 @@ pub fn probes_any(engines: &[&'static dyn Engine], scope: &SuiteScope) -> bool {
     })
 }
 
-/// How many rows [`run`] makes.
+/// The number of rows that [`run`] makes.
 #[must_use]
 pub fn size(cases: usize, engines: &[&'static dyn Engine], scope: &SuiteScope) -> usize {
     cases * engines.iter().map(|engine| accuracies(*engine, scope).len()).sum::<usize>()
@@ -323,7 +323,28 @@ fn accuracies(engine: &dyn Engine, scope: &SuiteScope) -> Vec<Accuracy> {
     scope.accuracies(engine.declaration().stepping)
 }
 
-/// Runs one engine on one case, and judges what it answers.
+/// The reason why an engine does not run on a case, if there is one.
+fn not_run(
+    case: &dyn CaseRun,
+    engine: &dyn Engine,
+    accuracy: Accuracy,
+    suite: Suite,
+) -> Option<(Status, Verdict, String)> {
+    if let Err(reason) = engine.available() {
+        return Some((Status::Unavailable, Verdict::Unavailable, reason));
+    }
+    if let Err(reason) = engine.takes(case.asked()) {
+        return Some((Status::NotRun, Verdict::NotRun, reason.to_owned()));
+    }
+    let (least, budget) = (case.least_work(engine, accuracy), suite.budget());
+    (least > budget).then(|| {
+        let reason =
+            format!("at least {} right-hand sides, the budget is {}", brief(least), brief(budget));
+        (Status::NotRun, Verdict::NotRun, reason)
+    })
+}
+
+/// Runs one engine on one case, and judges its answer.
 #[must_use]
 pub fn one(
     case: &dyn CaseRun,
@@ -349,17 +370,8 @@ pub fn one(
     let without = |status, verdict, why: String| {
         row(status, Duration::ZERO, RowJudgement::without_result(verdict, why))
     };
-    if let Err(reason) = engine.available() {
-        return without(Status::Unavailable, Verdict::Unavailable, reason);
-    }
-    if let Err(reason) = engine.takes(case.asked()) {
-        return without(Status::NotRun, Verdict::NotRun, reason.to_owned());
-    }
-    let (least, budget) = (case.least_work(engine, accuracy), suite.budget());
-    if least > budget {
-        let reason =
-            format!("at least {} right-hand sides, the budget is {}", brief(least), brief(budget));
-        return without(Status::NotRun, Verdict::NotRun, reason);
+    if let Some((status, verdict, reason)) = not_run(case, engine, accuracy, suite) {
+        return without(status, verdict, reason);
     }
     let subject = Subject { case: case.name(), engine: declaration.name, accuracy, unit };
     let (own_bounds, own_shortcomings) = case.expectations();

@@ -1,4 +1,4 @@
-//! What is run: the whole matrix, and the probes beyond it.
+//! Runs the matrix of cases, engines and settings, and the probes beyond it.
 
 mod matrix;
 mod probes;

@@ -124,7 +124,7 @@ impl Probes {
         }
         let budget = suite.budget() / work_a_period.max(1.0);
         let affordable = Extent {
-            restarts: restarts(suite).min((budget / PERIODS_A_RESTART) as usize).max(FEWEST),
+            restarts: restarts(suite).min((budget / PERIODS_PER_RESTART) as usize).max(FEWEST),
             horizons: 0,
             attractor: self.long_run() <= budget,
         };
@@ -136,7 +136,7 @@ impl Probes {
     }
 }
 
-/// How much is asked.
+/// The number of restarts and runs that a probe asks for.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Extent {
     /// Restarts, at most.
@@ -148,7 +148,7 @@ pub struct Extent {
 }
 
 impl Extent {
-    /// What is asked of an engine that is wrong on purpose.
+    /// The tests of an engine that is wrong on purpose.
     #[must_use]
     pub fn of_wrong(case: &Case) -> Self {
         let listed = case.probed.integrators;
@@ -156,7 +156,7 @@ impl Extent {
         Self { restarts, horizons: HORIZONS_OF_WRONG, attractor: listed }
     }
 
-    /// What is asked of an integrator with a fault: the same, from fewer restarts.
+    /// The tests of an integrator with a fault: those of a wrong engine, with fewer restarts.
     #[must_use]
     pub fn of_faulty(case: &Case) -> Self {
         let wrong = Self::of_wrong(case);
@@ -185,7 +185,7 @@ fn horizons(case: &Case, problem: &Problem) -> Result<Option<HorizonTest>, FileE
 }
 
 /// A restart takes about this many forcing periods.
-const PERIODS_A_RESTART: f64 = 4.0;
+const PERIODS_PER_RESTART: f64 = 4.0;
 /// Restarts that are made whatever they cost.
 const FEWEST: usize = 100;
 

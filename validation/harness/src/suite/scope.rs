@@ -1,8 +1,8 @@
-//! How much a suite runs, and what that may cost.
+//! The extent of a suite, and the limits of its runs.
 
 use crate::engine::{Accuracy, Limits, Stepping};
 
-/// How much is run.
+/// The extent of the run: quick or full.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum, serde::Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Suite {
@@ -46,7 +46,8 @@ impl SuiteScope {
         &self.tolerances
     }
 
-    /// What engines are asked for that choose their accuracy in this way.
+    /// The accuracies that the suite asks for, given the way in which an engine's accuracy is
+    /// chosen.
     #[must_use]
     pub fn accuracies(&self, stepping: Stepping) -> Vec<Accuracy> {
         let chosen = |it: &Accuracy| it.tolerance().is_none_or(|it| self.tolerances.contains(&it));
@@ -62,7 +63,8 @@ impl SuiteScope {
 }
 
 impl Suite {
-    /// What engines are asked for that choose their accuracy in this way.
+    /// The accuracies that the suite asks for, given the way in which an engine's accuracy is
+    /// chosen.
     #[must_use]
     pub fn accuracies(self, stepping: Stepping) -> Vec<Accuracy> {
         let decades = |exponents: &[i32]| {
@@ -104,7 +106,7 @@ impl Suite {
         }
     }
 
-    /// What a row's run may cost before it is given up as a failure. The slowest method takes a
+    /// The limits beyond which a row's run is given up as a failure. The slowest method takes a
     /// microsecond a call.
     #[must_use]
     pub fn limits(self) -> Limits {

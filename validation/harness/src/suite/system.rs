@@ -62,7 +62,7 @@ impl PreparedSystem {
         Ok(Self { case, truth, task, grazes, decisions, restart, names, occurrences })
     }
 
-    /// What an engine's run measures, without restarts.
+    /// The measures of an engine's run, without restarts.
     ///
     /// # Errors
     /// The engine's failure.

@@ -13,7 +13,7 @@ use percuss::insides::flow::{Flow, Point};
 use percuss::number::Number;
 use percuss::{Instant, Parameters, Phase, State};
 
-/// How a phase begins: what is known exactly at that instant.
+/// The beginning of a phase, with the values that are known exactly at that instant.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum TruthEntry<T> {
     /// No contact, the mass away from the slider.

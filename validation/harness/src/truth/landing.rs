@@ -1,4 +1,4 @@
-//! What begins where a phase ends, and where a run starts, with what is known there imposed.
+//! The next phase at an event, and the first phase of a run, with the known values imposed.
 
 use super::DoubleDouble;
 use super::forms::{TruthEntry, TruthForms, TruthMotion};

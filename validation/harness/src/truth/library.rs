@@ -77,7 +77,7 @@ impl Library {
         (!self.is_replayed(case)).then(|| self.full_name(&format!("events/{case}.csv")))
     }
 
-    /// What is true of a case.
+    /// The truth of a case.
     ///
     /// # Errors
     /// [`FileError`] names a file that is missing, altered (its hash differs), malformed, or of
@@ -91,7 +91,7 @@ impl Library {
             .map_err(|error| self.of_another(&case.name, error))
     }
 
-    /// What is true of a case of a system.
+    /// The truth of a case of a system.
     ///
     /// # Errors
     /// As [`Library::truth`].

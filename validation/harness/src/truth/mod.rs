@@ -1,4 +1,4 @@
-//! What is true: the proved tables of `reference_data/`, read and checked, and for any other start
+//! The truth: the proved tables of `reference_data/`, read and checked, and for any other start
 //! the exact solver's run made again in 106 bits.
 
 mod cautious;

@@ -18,9 +18,9 @@ use percuss::{Entry, Instant, Parameters, Phase, State};
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 #[error("undecided in 106 bits: {what} in the phase that begins {elapsed:e} after the start")]
 pub struct Undecided {
-    /// What could not be decided.
+    /// The decision that 106 bits leave open.
     pub what: &'static str,
-    /// When the phase began, since the start.
+    /// The time at which the phase began, since the start.
     pub elapsed: f64,
 }
 

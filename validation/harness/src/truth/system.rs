@@ -15,15 +15,15 @@ const FAINT: f64 = 1e-3;
 pub struct SystemTruthRow {
     /// The number of the event in the mode that it ends, or in which it is counted.
     pub event: usize,
-    /// The mode that begins, or holds.
+    /// The mode that begins at an event, or holds at a sample.
     pub mode: usize,
     /// Time since the start.
     pub elapsed: TwoWord,
     /// The state after the event.
     pub state: Vec<TwoWord>,
-    /// How much errors have grown in the event's time; 1 in a sample.
+    /// The growth of errors in the event time; 1 for samples.
     pub growth_time: f64,
-    /// How much errors have grown in each state.
+    /// The growth of errors in each state.
     pub growth: Vec<f64>,
     /// The largest state of the run so far, over its scale: what rounds in one state grows into the
     /// others.
@@ -39,7 +39,7 @@ impl SystemTruthRow {
     }
 }
 
-/// What is true of a case of a system.
+/// The truth of a case of a system.
 #[derive(Clone, Debug)]
 pub struct SystemTruth {
     /// The start.
@@ -48,9 +48,9 @@ pub struct SystemTruth {
     pub events: Vec<SystemTruthRow>,
     /// The last state of the run.
     pub end: SystemTruthRow,
-    /// How the run ends.
+    /// The ending of the run.
     pub ended: Ended,
-    /// How long engines run: up to the horizon, or until infinitely many impacts have passed.
+    /// The time for which engines run: up to the horizon, or past an accumulation of impacts.
     pub span: f64,
     /// The states at the instants asked for, as far as the run goes.
     pub samples: Vec<SystemTruthRow>,

@@ -1,4 +1,4 @@
-//! How errors grow along a system's true run, for a truth that is no proved table.
+//! The growth of errors along a system's true run, for a truth that is no proved table.
 //!
 //! In every mode z' = M z, so the derivative of a segment's flow is a matrix exponential; at an
 //! event it is completed by the saltation matrix. The growth of a quantity at event n is the
@@ -31,7 +31,7 @@ struct SystemMatrices {
     system: System,
     forced: usize,
     states: usize,
-    /// What theta and each state are divided by.
+    /// The scales of theta and of each state.
     scales: Vec<f64>,
     begin: f64,
     backward: bool,

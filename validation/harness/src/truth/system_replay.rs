@@ -107,7 +107,8 @@ impl SystemReplay<'_> {
         Ok(events)
     }
 
-    /// How close an event may be to the horizon, or to an instant at which the state is tabulated.
+    /// The least distance of an event from the horizon and from instants at which the state is
+    /// tabulated.
     fn nearest(&self) -> f64 {
         NEAREST * self.case.system.time_scale
     }

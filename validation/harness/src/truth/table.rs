@@ -11,7 +11,7 @@ const END: &str = "end";
 /// A row of a table.
 #[derive(Clone, Copy, Debug)]
 pub struct TruthRow {
-    /// The phase that begins, or holds; `None` on the row at the horizon.
+    /// The phase that begins at an event, or holds at a sample; `None` at the horizon.
     pub phase: Option<Phase>,
     /// Time since the start.
     pub elapsed: TwoWord,
@@ -19,7 +19,7 @@ pub struct TruthRow {
     pub state: [TwoWord; 4],
 }
 
-/// What is true of a case.
+/// The truth of a case.
 #[derive(Clone, Debug)]
 pub struct Truth {
     /// The start.
@@ -28,7 +28,7 @@ pub struct Truth {
     pub events: Vec<TruthRow>,
     /// The horizon.
     pub end: TruthRow,
-    /// Eight instants a forcing period, the start among them.
+    /// Eight instants per forcing period, the start among them.
     pub samples: Vec<TruthRow>,
 }
 
@@ -41,7 +41,7 @@ impl TruthRow {
 }
 
 impl Truth {
-    /// Samples a forcing period.
+    /// Samples per forcing period.
     pub const SAMPLES_PER_PERIOD: u32 = 8;
 
     /// Reads both tables and holds them against the case they are said to be of.

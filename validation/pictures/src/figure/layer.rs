@@ -1,4 +1,4 @@
-//! What a panel of a figure is made of.
+//! The layers of a figure's panel.
 
 use super::super::canvas::{At, Canvas, Stroke, TextSide};
 use super::super::frame::Panel;
@@ -25,7 +25,7 @@ pub enum Layer {
         colour: Colour,
         /// The line's width in pixels.
         width: f64,
-        /// How it is broken.
+        /// The dash pattern of the line.
         stroke: Stroke,
     },
     /// Points.
@@ -61,7 +61,7 @@ pub struct KeyEntry {
     pub name: String,
     /// The colour of what it names.
     pub colour: Colour,
-    /// How its line is broken.
+    /// The dash pattern of the entry's line.
     pub stroke: Option<Stroke>,
 }
 
@@ -80,7 +80,7 @@ impl Layer {
         Self::Dots { points, colour, size }
     }
 
-    /// How many marks it takes to draw.
+    /// The number of marks that the layer takes to draw.
     pub(super) fn points(&self) -> usize {
         match self {
             Self::Line { points, .. } | Self::Dots { points, .. } => points.len(),
@@ -89,7 +89,7 @@ impl Layer {
         }
     }
 
-    /// What an axis has to show of it.
+    /// The values of the layer along one axis.
     pub(super) fn extent(&self, axis: usize) -> Vec<f64> {
         match self {
             Self::Line { points, .. } | Self::Dots { points, .. } => {

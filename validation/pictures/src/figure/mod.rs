@@ -21,7 +21,7 @@ const MARGIN: f64 = 24.0;
 /// Panels under a title, row by row.
 #[derive(Clone, Debug)]
 pub struct Figure {
-    /// What it shows.
+    /// The title of the picture.
     pub title: String,
     /// Parameters, axes, what is assumed: wrapped under the panels.
     pub caption: String,
@@ -49,7 +49,7 @@ impl Figure {
         self.plots.len().div_ceil(self.columns.max(1))
     }
 
-    /// How many marks it takes to draw: what decides whether an SVG of it stays small.
+    /// The number of marks that the figure takes to draw, which decides whether an SVG stays small.
     #[must_use]
     pub fn points(&self) -> usize {
         self.plots.iter().flat_map(|plot| &plot.layers).map(Layer::points).sum()

@@ -5,7 +5,7 @@ use super::super::frame::{AxisScale, Panel, Ruler};
 use super::super::palette;
 use super::layer::Layer;
 
-/// What a panel shows of the plane; where an end is not finite the data decide.
+/// The window of a panel; where an end is not finite the data decide.
 pub type PlotWindow = [(f64, f64); 2];
 
 /// A panel.
@@ -17,7 +17,7 @@ pub struct Plot {
     pub axes: [String; 2],
     /// Ranges of both axes; `None` shows all data.
     pub window: Option<PlotWindow>,
-    /// What is drawn, later layers above earlier ones.
+    /// The layers, later ones above earlier ones.
     pub layers: Vec<Layer>,
 }
 

@@ -1,4 +1,4 @@
-//! Where the parts of a picture of a run stand.
+//! The layout of a picture of a run.
 
 use super::super::canvas::At;
 use super::{MARGIN, WIDTH};

@@ -29,7 +29,7 @@ const SMALL: f64 = 17.0;
 const LINE: f64 = 28.0;
 /// The baseline of the title.
 const TITLE: f64 = 30.0;
-/// What a sample of the key and the space after a name take.
+/// The width of a key's sample with the space after a name.
 const KEY_ROOM: f64 = 70.0;
 /// The width of the curves.
 const CURVE: f64 = 2.0;
@@ -44,7 +44,7 @@ pub struct SystemMotion {
     modes: Vec<String>,
     /// The names of the events that occur.
     events: Vec<String>,
-    /// What time and the states are counted in.
+    /// The units of time and of the states.
     units: Vec<AxisUnit>,
     pieces: Vec<SampledSegment>,
     marks: Vec<Mark>,

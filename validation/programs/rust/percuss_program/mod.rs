@@ -28,7 +28,7 @@ struct Request {
     run: Option<Run>,
 }
 
-/// What is asked for.
+/// A run that percuss asks for.
 #[derive(Deserialize)]
 pub struct Run {
     pub setup: String,

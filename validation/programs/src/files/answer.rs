@@ -1,8 +1,8 @@
 //! An answer in files, as the reply of a program would say it.
 
+use super::rows::sample_times;
 use super::table::{Cells, EVENTS, SAMPLES, Table};
-use super::times::sample_times;
-use crate::answer::{Place, Wrong, checked};
+use crate::answer::{AnswerPart, Wrong, checked};
 use crate::text::plain;
 use crate::wire::{BoundedList, Count, EndedBy, EventReply, RunReply, StateReply};
 use percuss_engines::engine::{Limits, Numbers, Outcome, Task};
@@ -42,16 +42,16 @@ pub(super) fn answer(
         work: Default::default(),
         own_ns: None,
     };
-    checked(&reply, task, (asked, Duration::ZERO), limits).map_err(|Wrong { place, what }| {
-        match place {
-            Place::Event(n) => events.error_in(told.lines[n], &what),
-            Place::Sample(n) => samples.error_in(lines[n], &what),
-            Place::End | Place::Run => events.error(&what),
-        }
-    })
+    checked(&reply, task, (asked, Duration::ZERO), limits).map_err(
+        |Wrong { part, what }| match part {
+            AnswerPart::Event(n) => events.error_in(told.lines[n], &what),
+            AnswerPart::Sample(n) => samples.error_in(lines[n], &what),
+            AnswerPart::End | AnswerPart::Run => events.error(&what),
+        },
+    )
 }
 
-/// What a file of events tells.
+/// The content of a file of events.
 #[derive(Default)]
 struct Told {
     events: Vec<EventReply>,

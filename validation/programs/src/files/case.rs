@@ -1,8 +1,7 @@
-//! What a case asks, in JSON and in plain CSV.
+//! A case's task as files: JSON, and plain CSV.
 
 use super::equations::equations;
-use super::rows::{rows, start};
-use super::times::sample_times;
+use super::rows::{rows, sample_times, start};
 use crate::wire::{ModeAsk, TimesAsk};
 use percuss_engines::engine::Task;
 use percuss_engines::number::shortest;
@@ -10,7 +9,8 @@ use percuss_engines::system::System;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What a case asks: the system, the start, the horizon, and when the state is wanted.
+/// The task of a case: the system, the start, the horizon, and the times at which the state is
+/// wanted.
 ///
 /// Its serialization is `CASE.json`, whose modes are those of the protocol's requests.
 #[derive(Serialize)]

@@ -13,13 +13,13 @@ use std::path::PathBuf;
 pub struct Answerer {
     /// The engine's name.
     pub name: &'static str,
-    /// Its library.
+    /// The library of the engine.
     pub library: &'static str,
     /// The library's version.
     pub version: &'static str,
     /// The language.
     pub language: &'static str,
-    /// How its accuracy is chosen, which says what a unit of its error is.
+    /// The way in which the engine's accuracy is chosen, which fixes the unit of its error.
     pub stepping: Stepping,
 }
 

@@ -9,7 +9,6 @@ mod rows;
 mod table;
 #[cfg(test)]
 mod tests;
-mod times;
 
 pub use case::CaseFile;
 pub use engine::{Answerer, FileEngine};

@@ -1,5 +1,6 @@
 //! A system in CSV: every line is a row over (z, cos theta, sin theta, 1).
 
+use crate::wire::samples;
 use percuss_engines::engine::Task;
 use percuss_engines::number::shortest;
 use percuss_engines::system::{Mode, Row, System};
@@ -49,7 +50,7 @@ fn events(system: &System, mode: &Mode, lines: &mut Vec<Fields>) {
     }
 }
 
-/// Where a run begins and ends.
+/// The lines of a run's start and horizon.
 pub(super) fn start(task: &Task) -> String {
     let system = task.system.system();
     let header = ["mode", "horizon", "omega", "phi", "backward"].map(str::to_owned).into_iter();
@@ -64,4 +65,13 @@ pub(super) fn start(task: &Task) -> String {
 
 fn text(lines: &[Fields]) -> String {
     lines.iter().map(|line| line.join(",") + "\n").collect()
+}
+
+/// The instants at which the state is compared, and the horizon.
+pub(super) fn sample_times(task: &Task) -> Vec<f64> {
+    let mut times = samples(task);
+    if times.last() != Some(&task.span) {
+        times.push(task.span);
+    }
+    times
 }

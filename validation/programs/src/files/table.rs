@@ -5,9 +5,9 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// What the name of a file of events ends with, after the case's.
+/// The ending of the name of a file of events, after the case's name.
 pub const EVENTS: &str = ".events.csv";
-/// What the name of a file of samples ends with, after the case's.
+/// The ending of the name of a file of samples, after the case's name.
 pub const SAMPLES: &str = ".samples.csv";
 
 /// The largest file that is read: 100000 events of the largest system, at 25 characters a number,
@@ -56,12 +56,12 @@ impl Table {
         }
     }
 
-    /// What is wrong with the whole of it.
+    /// An error in the whole file.
     pub(super) fn error(&self, what: &str) -> String {
         format!("{}: {what}", self.shown)
     }
 
-    /// What is wrong with a line of it.
+    /// An error in one line of the file.
     pub(super) fn error_in(&self, line: usize, what: &str) -> String {
         format!("{} line {line}: {what}", self.shown)
     }

@@ -19,7 +19,7 @@ pub(super) struct Pipes {
     pub(super) stderr: ChildStderr,
 }
 
-/// How a program ended.
+/// The ending of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum ProgramExit {
     Code(i32),
@@ -27,7 +27,7 @@ pub(super) enum ProgramExit {
     Unknown,
 }
 
-/// How often a program that is about to end is looked at.
+/// The time between two looks at a program that is about to end.
 const PAUSE: Duration = Duration::from_millis(5);
 
 impl Group {

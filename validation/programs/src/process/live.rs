@@ -1,4 +1,4 @@
-//! The programs that run now: what has to be ended before this process ends.
+//! The programs that run now, which have to be ended before this process ends.
 
 use super::sweep::MARK;
 use std::collections::BTreeMap;
@@ -35,7 +35,7 @@ pub(super) fn start(command: &mut Command) -> io::Result<Child> {
     Ok(child)
 }
 
-/// A mark that no other program has.
+/// A unique mark of a program.
 fn mark() -> String {
     static COUNT: AtomicU64 = AtomicU64::new(0);
     let count = COUNT.fetch_add(1, Ordering::Relaxed);

@@ -19,10 +19,10 @@ use streams::{OutputLine, Streams};
 /// The longest line that is read: an answer of so many events and samples as are accepted is
 /// shorter.
 const MOST_LINE: usize = 32 << 20;
-/// How long a program may take to say that it waits for the next request.
+/// The time within which a program has to say that it waits for the next request.
 const READY: Duration = Duration::from_secs(10);
-/// How long a program whose output has ended may take to end itself.
-const PARTING: Duration = Duration::from_millis(500);
+/// The time within which a program whose output has ended has to end itself.
+const EXIT_WAIT: Duration = Duration::from_millis(500);
 
 /// A program that runs. It is ended, with all that it has started, when this is dropped.
 pub(crate) struct Process {
@@ -109,7 +109,7 @@ impl Process {
 
     /// Why there is no answer from a program whose output has ended.
     fn ended(&mut self, how: &str) -> String {
-        let what = match self.group.exit(PARTING) {
+        let what = match self.group.exit(EXIT_WAIT) {
             Some(ProgramExit::Code(code)) => format!("ended {how}, with exit code {code}"),
             Some(ProgramExit::Signal(signal)) => format!("ended {how}, killed by signal {signal}"),
             Some(ProgramExit::Unknown) => format!("ended {how}"),
@@ -135,7 +135,7 @@ impl Process {
 
     /// A reason with the last that the program wrote to its standard error.
     fn with_complaint(&self, what: String) -> String {
-        match last_line(&self.streams.complaint(PARTING)) {
+        match last_line(&self.streams.complaint(EXIT_WAIT)) {
             Some(line) => format!("{what}; it said: {line}"),
             None => what,
         }

@@ -15,7 +15,7 @@ use std::time::Duration;
 /// How much is kept of what a program writes to its standard error: the end of it.
 const MOST_COMPLAINT: usize = 4096;
 
-/// What a program wrote.
+/// A line of a program's output.
 #[derive(Debug)]
 pub(super) enum OutputLine {
     /// A whole line.

@@ -1,4 +1,4 @@
-//! What is written to a program.
+//! Requests to a program.
 
 use super::PROTOCOL;
 use percuss_engines::engine::{Accuracy, Limits, Task};
@@ -18,11 +18,11 @@ pub(crate) struct Ask<'a> {
     run: Option<&'a RunAsk<'a>>,
 }
 
-/// What a request asks for.
+/// The kind of a request.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Asked {
-    /// What the program can do.
+    /// The program's capabilities.
     Capabilities,
     /// A run.
     Run,
@@ -103,7 +103,7 @@ struct Tolerance {
     absolute: f64,
 }
 
-/// What an expert knows of a system.
+/// The time scales that an expert knows of a system.
 #[derive(Serialize)]
 pub(crate) struct TimesAsk {
     period: f64,
@@ -142,14 +142,14 @@ impl<'a> RunAsk<'a> {
         }
     }
 
-    /// How many samples are asked for.
+    /// The number of samples that are asked for.
     pub(crate) fn samples(&self) -> usize {
         self.samples.len()
     }
 }
 
 impl TimesAsk {
-    /// What is known of a system.
+    /// The time scales of a system.
     pub(crate) fn of(system: &CheckedSystem) -> Self {
         Self {
             period: system.period(),
@@ -159,7 +159,7 @@ impl TimesAsk {
     }
 }
 
-/// When a task wants the state.
+/// The times at which a task wants the state.
 pub(crate) fn samples(task: &Task) -> Vec<f64> {
     let times = task.watched.as_ref().map_or(&task.samples, |watched| &watched.instants);
     times.iter().map(|time| time.min(task.span)).collect()

@@ -1,4 +1,4 @@
-//! What is read from a program: an answer, checked as far as no task is needed for that.
+//! Answers of programs, checked as far as no task is needed for that.
 
 use super::PROTOCOL;
 use super::numbers::{BoundedList, Count, StateReply};
@@ -11,32 +11,32 @@ const MOST_ROWS: usize = 100_000;
 /// The most set-ups of a program.
 const MOST_SET_UPS: usize = 64;
 
-/// What an answer says.
+/// The content of an answer.
 #[derive(Clone, Debug)]
 pub(crate) enum ReplyContent {
-    /// What the program can do.
+    /// The program's capabilities.
     Capabilities(Capabilities),
-    /// Why it can do nothing here.
+    /// The reason why the program cannot run on this machine.
     Unavailable(String),
-    /// A run that was made.
+    /// The result of a run.
     Run(Box<RunReply>),
     /// Why a run was not made.
     Failure(String),
-    /// How a run went beyond its limits.
+    /// The limit that a run exceeded.
     GaveUp(String),
     /// The program waits for the next request.
     Ready,
 }
 
-/// What a program says of itself.
+/// A program's declaration of its library and its set-ups.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Capabilities {
-    /// The library that it runs.
+    /// The library that the program runs.
     pub library: String,
     /// The library's version.
     pub version: String,
-    /// The language it is written in, with its version.
+    /// The programming language of the program, with its version.
     pub language: String,
     #[serde(rename = "setups", deserialize_with = "set_ups")]
     /// The ways in which it can be set up, each of which is an engine.
@@ -58,12 +58,12 @@ pub struct SetUp {
     pub events: EventsBy,
     /// Whether the library has dense output of its own.
     pub dense_output: bool,
-    /// How its accuracy is chosen.
+    /// The way in which the engine's accuracy is chosen.
     pub stepping: SteppedBy,
     /// Whether it runs back in time, where the end of a mode ends the run.
     #[serde(default = "yes")]
     pub backward: bool,
-    /// Whether it reports events that end no mode.
+    /// Whether the program reports events that do not end their mode.
     #[serde(default = "yes")]
     pub watch: bool,
 }
@@ -72,17 +72,17 @@ pub struct SetUp {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EventsBy {
-    /// The library locates them.
+    /// Events are located by the library.
     Library,
     /// The program locates them on what the library gives it.
     Program,
 }
 
-/// How the accuracy of a set-up is chosen.
+/// The way in which the accuracy of a set-up is chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SteppedBy {
-    /// A tolerance sets it.
+    /// A tolerance sets the accuracy.
     Adaptive,
     /// A tolerance sets it, and a method of the order that the set-up names holds the error step
     /// by step.
@@ -118,7 +118,7 @@ pub(crate) struct EventReply {
     pub(crate) state: StateReply,
 }
 
-/// What a run cost, as a program counts it.
+/// The work of a run, as a program counts it.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub(crate) struct WorkReply {
@@ -128,7 +128,7 @@ pub(crate) struct WorkReply {
     pub(crate) steps: Count,
 }
 
-/// How a run ended.
+/// The ending of a run.
 #[derive(Clone, Copy, Debug, Default, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum EndedBy {
@@ -142,7 +142,7 @@ pub(crate) enum EndedBy {
 }
 
 impl EndedBy {
-    /// How runs end before their horizon, by their names.
+    /// The names of the endings before the horizon.
     pub(crate) const EARLY: [(&str, Self); 5] = [
         ("no-progress", Self::NoProgress),
         ("accumulation", Self::Accumulation),
@@ -268,7 +268,7 @@ fn parse<'de, T: Deserialize<'de>>(text: &'de str) -> Result<T, String> {
     Ok(parsed)
 }
 
-/// What stands around a column of a line.
+/// The text around a column of a line.
 fn near(text: &str, column: usize) -> String {
     const AROUND: usize = 20;
     let bytes = text.as_bytes();

@@ -1,4 +1,4 @@
-//! Answers, and what a kind makes of them.
+//! Answers, as programs that misbehave alter them.
 
 use serde_json::{Value, json};
 

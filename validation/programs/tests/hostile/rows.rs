@@ -1,4 +1,4 @@
-//! Rows of programs that misbehave, one test a kind.
+//! Rows of programs that misbehave, one test per kind.
 
 use super::kinds::{ExpectedEnd, KINDS};
 use super::left::{left, processes};

@@ -28,11 +28,11 @@ pub(super) struct AttractorArguments {
     pub(super) model: ModelFlags,
 }
 
-/// What attractors are written as; a table where a person reads it on a terminal, JSON elsewhere.
+/// The output format of attractors: a table on a terminal, JSON elsewhere.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum AttractorFormat {
     Json,
-    /// A line an attractor, for people
+    /// One line per attractor, for reading
     #[value(alias = "txt")]
     Table,
 }
@@ -52,13 +52,13 @@ pub(super) struct BasinArguments {
     pub(super) model: ModelFlags,
 }
 
-/// Which starts, and how long they are followed.
+/// The grid of starts and the time for which they are followed.
 #[derive(Args, Clone, Debug)]
 pub(super) struct GridFlags {
     /// Cells along p and along y; starts are their centres
     #[arg(long, value_name = "NXxNY", value_parser = parse::grid)]
     grid: [u32; 2],
-    /// What the cells fill
+    /// Rectangle of p and y that the cells cover
     #[arg(long, value_name = "pmin,pmax,ymin,ymax", value_parser = parse::window, allow_hyphen_values = true)]
     window: Window,
     /// Forcing periods that a start is followed before it is examined; doubled up to three times
@@ -67,7 +67,7 @@ pub(super) struct GridFlags {
     pub(super) transient: u64,
 }
 
-/// What labels are written as.
+/// The output format of labels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Labels {
     Npz,
@@ -138,7 +138,7 @@ pub(super) fn basins(arguments: &BasinArguments, threads: Option<u16>) -> Result
     show(&survey, shown.unwrap_or(usual(&Destination::Stdout)), &Destination::Stdout)
 }
 
-/// A table for whoever reads it on a terminal.
+/// The default format: a table on a terminal, JSON elsewhere.
 fn usual(destination: &Destination) -> AttractorFormat {
     if destination.is_terminal() { AttractorFormat::Table } else { AttractorFormat::Json }
 }

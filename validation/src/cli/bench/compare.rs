@@ -16,7 +16,7 @@ use clap::Args;
 use regex::Regex;
 use std::path::{Path, PathBuf};
 
-/// Hold one version against another: exit 1 where it is slower by 2 % twice in a row
+/// Compare the speed of two versions: exit 1 where it is slower by 2 % twice in a row
 #[derive(Args)]
 pub(in super::super) struct Arguments {
     /// A built percuss, or a recorded version: its number or its commit's first seven digits or

@@ -18,7 +18,7 @@ pub(in super::super) struct Arguments {
     output: OutputFlags<Format>,
 }
 
-/// What is drawn.
+/// The picture's format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(in super::super) enum Format {
     Png,

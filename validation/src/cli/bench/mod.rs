@@ -10,7 +10,7 @@ use super::shared::programs::ProgramFlags;
 use super::shared::{long_work, parse};
 use super::{DONE, OUT_OF_BOUNDS};
 use crate::bench::compare::worker::serve;
-use crate::bench::contest::{self, Finisher, contest, system_contest};
+use crate::bench::contest::{self, SettingResult, contest, system_contest};
 use crate::bench::contestant::Contestant;
 use crate::bench::report::{CaseEntry, Measurement};
 use crate::bench::timed_case::TimedCase;
@@ -52,7 +52,7 @@ pub(super) struct Arguments {
     long: bool,
 }
 
-/// What there is between versions.
+/// The subcommands of `bench`.
 #[derive(Subcommand)]
 enum Other {
     Record(record::Arguments),
@@ -64,7 +64,7 @@ enum Other {
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     match &arguments.other {
-        None => race(arguments),
+        None => time_engines(arguments),
         Some(Other::Record(record)) => record::run(record).map(|()| DONE),
         Some(Other::Compare(compare)) => compare::run(compare),
         Some(Other::History(history)) => history::run(history).map(|()| DONE),
@@ -72,7 +72,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     }
 }
 
-fn race(arguments: &Arguments) -> Result<u8> {
+fn time_engines(arguments: &Arguments) -> Result<u8> {
     if arguments.long && !arguments.case.is_empty() {
         bail!("--long has no effect with --case: long runs are of no case");
     }
@@ -121,7 +121,7 @@ fn measured(
     let own = oscillator.iter().map(|it| (it.entry(), contest(it, contestants, rounds, &done)));
     let others =
         systems.iter().map(|it| (it.entry(), system_contest(it, contestants, rounds, &done)));
-    let contests: Vec<(CaseEntry, Vec<Finisher>)> = own.chain(others).collect();
+    let contests: Vec<(CaseEntry, Vec<SettingResult>)> = own.chain(others).collect();
     let damping = if whole { damping::over_xi(contestants, rounds, &done)? } else { Vec::new() };
     bar.finish_and_clear();
     let measured = Measurement { contests: &contests, floors: &floors, length, damping: &damping };

@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<()> {
     shown.or_else(|error| if reader_left(&error) { Ok(()) } else { Err(error) })
 }
 
-/// What the file holds, untouched: old lines stay as they were written.
+/// The bytes of the file: old lines stay as they were written.
 fn raw(path: &Path) -> Result<String> {
     match std::fs::read_to_string(path) {
         Ok(text) => Ok(text),
@@ -96,7 +96,7 @@ fn figures(case: &TimedCase, halves: &[Floors; 2], i: usize) -> Result<Figures, 
     let mut timed = enter(exact(), case, Accuracy::Exact)?;
     timed.call()?;
     let cost = |half: &Floors| {
-        let cost = half.switches.get(i).cloned();
+        let cost = half.events.get(i).cloned();
         cost.unwrap_or_else(|| Err(Failure::new("not timed")))
     };
     let [first, second] = [cost(&halves[0])?, cost(&halves[1])?];

@@ -58,7 +58,7 @@ pub(super) struct Arguments {
     output: OutputFlags<Format>,
 }
 
-/// What a run is written as.
+/// The output format of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
     Csv,

@@ -7,7 +7,7 @@ use percuss::affine::{Ending, Event, Run, Solver, System, What};
 use percuss::number::Number;
 use serde::Serialize;
 
-/// What is asked for.
+/// The system, horizon and digits of a run.
 pub(super) struct Rows<'a> {
     pub(super) system: &'a System,
     pub(super) solver: &'a Solver<DoubleDouble>,
@@ -15,7 +15,7 @@ pub(super) struct Rows<'a> {
     pub(super) most: Option<usize>,
 }
 
-/// How a run has ended.
+/// The ending of a run.
 #[derive(Default)]
 pub(super) struct RunEnd {
     pub(super) accumulation: Option<Accumulation>,

@@ -55,7 +55,7 @@ pub(crate) fn run(arguments: &Arguments) -> Result<u8> {
     Ok(if why.is_none() { DONE } else { OUT_OF_BOUNDS })
 }
 
-/// Whether a person is told of what goes on.
+/// Whether progress and notes are shown.
 #[derive(Clone, Copy)]
 pub(crate) enum Reporting<'a> {
     /// Shares that are done are told, and what a scan has found.
@@ -86,7 +86,7 @@ pub(crate) fn followed(
         // JSON has null for a NaN: what varies has no value.
         parameters: (&parameter.set(*problem.model.parameters(), f64::NAN)).into(),
         period: branch.as_ref().ok().and_then(|it| it.points.first()).map(|it| it.orbit.period()),
-        course: branch
+        branch: branch
             .as_ref()
             .map(|it| BranchJson::of(it, parameter, complete))
             .unwrap_or_default(),
@@ -169,7 +169,7 @@ fn doubled(
             Criticality::Subcritical => "subcritical",
         },
         period: 2 * period,
-        course: BranchJson::of(&branch, family.parameter(), complete),
+        branch: BranchJson::of(&branch, family.parameter(), complete),
     })
 }
 

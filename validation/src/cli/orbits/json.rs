@@ -7,7 +7,7 @@ use percuss::dynamics::strobe::StrobePoint;
 use percuss::{Model, Parameter, Phase};
 use serde::Serialize;
 
-/// What `orbit` writes; where none was found the lists are empty and the numbers null.
+/// The JSON of `orbit`; if no orbit was found, the lists are empty and the numbers null.
 #[derive(Serialize)]
 pub(super) struct OrbitJson {
     pub(super) schema: u32,
@@ -47,7 +47,7 @@ fn tokens(orbit: &Orbit) -> Vec<&'static str> {
     orbit.phases.iter().copied().map(Phase::as_str).collect()
 }
 
-/// What `continue` writes.
+/// The JSON of `continue`.
 #[derive(Serialize)]
 pub(crate) struct Followed {
     pub(crate) schema: u32,
@@ -55,7 +55,7 @@ pub(crate) struct Followed {
     pub(crate) parameters: ParametersJson,
     pub(crate) period: Option<u32>,
     #[serde(flatten)]
-    pub(crate) course: BranchJson,
+    pub(crate) branch: BranchJson,
     /// The doubled orbit, where `--doubled` asks for it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) doubled: Option<Option<Doubled>>,
@@ -76,7 +76,7 @@ pub(crate) struct Doubled {
     pub(crate) criticality: &'static str,
     pub(crate) period: u32,
     #[serde(flatten)]
-    pub(crate) course: BranchJson,
+    pub(crate) branch: BranchJson,
 }
 
 #[derive(Serialize)]

@@ -6,7 +6,7 @@ pub(super) mod json;
 
 use clap::ValueEnum;
 
-/// What is written.
+/// The output format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
     Json,

@@ -47,7 +47,7 @@ pub(in crate::cli) struct JudgedFlags {
     reference: Option<PathBuf>,
 }
 
-/// Which cases.
+/// The flags that choose cases.
 #[derive(Args)]
 pub(in crate::cli) struct CaseFlags {
     /// Only cases whose name matches; several are alternatives
@@ -194,7 +194,7 @@ impl JudgedFlags {
         Ok(())
     }
 
-    /// The report that this run is held against.
+    /// The baseline report with which this run is compared.
     pub(in crate::cli) fn baseline(&self) -> Result<Option<Baseline>> {
         self.baseline.as_deref().map(read_baseline).transpose()
     }
@@ -207,7 +207,7 @@ impl JudgedFlags {
         Ok(cases)
     }
 
-    /// The bounds and known shortcomings that apply.
+    /// The bounds and expected failures that apply.
     pub(in crate::cli) fn defaults(&self) -> Result<Defaults> {
         Ok(match self.chosen.cases {
             Some(_) => case::defaults_of_own_cases()?,
@@ -224,7 +224,7 @@ impl JudgedFlags {
         given.into_iter().filter_map(shown).collect()
     }
 
-    /// What is worse than in the baseline, or gone of the rows that were `asked` for.
+    /// Rows that are worse than in the baseline, or gone although they were `asked` for.
     pub(in crate::cli) fn worse(
         &self,
         baseline: &Baseline,

@@ -55,17 +55,17 @@ impl Bar {
         self.bar.inc(count);
     }
 
-    /// There is more to do than was said.
+    /// Adds work to the bar.
     pub(in crate::cli) fn inc_length(&self, count: u64) {
         self.bar.inc_length(count);
     }
 
-    /// This share of it is done, 0 to 1.
+    /// Shows the share of the work that is done, 0 to 1.
     pub(in crate::cli) fn show_share(&self, share: f64) {
         self.bar.set_position((share * SHARES) as u64);
     }
 
-    /// Takes it off the terminal.
+    /// Removes the bar from the terminal.
     pub(in crate::cli) fn finish_and_clear(&self) {
         drop(self.waiting.lock().map(|mut waiting| waiting.take()));
         self.bar.finish_and_clear();
@@ -91,7 +91,7 @@ fn shown_later(bar: ProgressBar) -> Sender<()> {
     waiting
 }
 
-/// A bar of so many units.
+/// A progress bar of the given number of units.
 pub(in crate::cli) fn bar(length: u64, unit: &str) -> Bar {
     let style = format!("{{bar:40}} {{pos}}/{{len}} {unit}, {{eta}} to go");
     Bar::new(ProgressBar::new(length), &style)

@@ -15,7 +15,7 @@ const SHOWN: usize = 3;
 pub(in crate::cli) struct Selection<'a> {
     /// The flag.
     pub(in crate::cli) flag: &'a str,
-    /// What the names are of.
+    /// The kind of things that are named.
     pub(in crate::cli) what: &'a str,
     /// The command that lists all names.
     pub(in crate::cli) listed: &'a str,
@@ -60,7 +60,7 @@ impl Selection<'_> {
         Ok(())
     }
 
-    /// What is said of a pattern that matches nothing.
+    /// The error for a pattern that matches nothing.
     pub(in crate::cli) fn nothing(&self, pattern: &str, names: &[&str]) -> String {
         let Self { flag, what, listed } = self;
         let near = match nearest(pattern, names.iter().copied()) {

@@ -1,4 +1,4 @@
-//! Where results go: stdout, or a file that is there whole or not at all.
+//! The destinations of results: stdout, or a file that is there whole or not at all.
 
 use super::compact;
 use crate::unfinished::Unfinished;

@@ -27,7 +27,7 @@ impl Drop for StartedPrograms {
 }
 
 impl ProgramFlags {
-    /// What is known of the programs that falls short.
+    /// The expected failures of the programs.
     pub(in crate::cli) fn shortcomings(&self) -> Result<Vec<Shortcoming>> {
         match &self.programs {
             Some(file) => percuss_programs::shortcomings(file).context("--programs"),

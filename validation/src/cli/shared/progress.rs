@@ -1,4 +1,4 @@
-//! How far a run is, for a bar on stderr; the run takes no notice of it.
+//! The progress of a run, for a bar on stderr; the run does not depend on it.
 
 use super::long_work::Bar;
 use percuss::Instant;

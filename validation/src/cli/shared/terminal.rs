@@ -1,8 +1,9 @@
-//! What is said on stderr: errors, notes, and whether they have colours.
+//! Messages on stderr: errors, notes, and their colours.
 
 use anstream::ColorChoice as Stream;
 use clap::ColorChoice;
 use clap::builder::styling::{AnsiColor, Style};
+use percuss::Endless;
 use std::ffi::OsString;
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -56,6 +57,20 @@ fn put(style: Style, line: &str) {
     let line = line.split_whitespace().collect::<Vec<_>>().join(" ");
     // Where stderr is closed there is no one to tell.
     let _ = writeln!(anstream::stderr(), "{style}percuss:{style:#} {line}");
+}
+
+/// The event that never happens in an endless phase.
+pub(in crate::cli) const fn endless_words(endless: Endless) -> &'static str {
+    match endless {
+        Endless::NeverReturns => "the mass never returns to the slider",
+        Endless::NeverStops => "the slider never stops",
+        Endless::RestsForEver => "the mass rests on the slider for ever",
+    }
+}
+
+/// The note on a run that ends in an endless phase.
+pub(in crate::cli) fn endless_notice(endless: Endless) -> String {
+    format!("{}: the run ends at its horizon", endless_words(endless))
 }
 
 #[cfg(test)]

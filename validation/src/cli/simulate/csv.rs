@@ -8,12 +8,12 @@ use std::io::Write;
 
 pub(super) struct Csv<'a>(pub(super) &'a mut dyn Write);
 
-const SWITCHES: &str = "index,phase,tau,p,y,q,v";
+const EVENTS: &str = "index,phase,tau,p,y,q,v";
 const SAMPLES: &str = "tau,phase,p,y,q,v,x,z";
 
 impl Sink for Csv<'_> {
     fn begin(&mut self, _: &PlannedRun, samples: bool) -> Result<()> {
-        Ok(writeln!(self.0, "{}", if samples { SAMPLES } else { SWITCHES })?)
+        Ok(writeln!(self.0, "{}", if samples { SAMPLES } else { EVENTS })?)
     }
 
     fn row(&mut self, plan: &PlannedRun, row: &RunRow) -> Result<()> {

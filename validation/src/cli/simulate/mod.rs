@@ -41,7 +41,7 @@ pub(super) struct Arguments {
     model: ModelFlags,
 }
 
-/// What a run is written as.
+/// The output format of a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Format {
     Csv,

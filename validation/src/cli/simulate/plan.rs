@@ -1,11 +1,11 @@
-//! How long a run is, and how it ended.
+//! The horizon and the ending of a run.
 
 use super::Arguments;
 use crate::case::Problem;
-use crate::cli::shared::endless::words;
 use crate::cli::shared::long_work::Bar;
 use crate::cli::shared::parse::{MAX_PERIODS, Typed};
 use crate::cli::shared::progress::Progress;
+use crate::cli::shared::terminal::endless_words;
 use anyhow::{Result, bail};
 use percuss::{Endless, Exit, Instant, Segment, Trajectory};
 
@@ -46,7 +46,7 @@ impl PlannedRun {
         self.problem.model.parameters().omega
     }
 
-    /// The run's phases, the last one ending with the run; none where no switch is wanted.
+    /// The run's phases, the last one ending with the run; none where no event is wanted.
     pub(super) fn segments(&self) -> Segments<'_> {
         let run = self.problem.model.trajectory(self.problem.entry).until(self.horizon);
         Segments { run, wanted: self.events, events: 0, progress: &self.progress }
@@ -85,7 +85,7 @@ impl PlannedRun {
     fn how_it_ends(&self, last: &Segment, events: u64) -> Option<String> {
         let found = self.endless(last).map(|endless| {
             let since = last.entry().instant.tau(self.omega());
-            format!("{} after tau = {since:?}", words(endless))
+            format!("{} after tau = {since:?}", endless_words(endless))
         });
         match (self.events, found) {
             (Some(wanted), _) if events >= wanted => None,
@@ -139,7 +139,7 @@ impl PlannedRun {
         }
         match (self.events, segments.last().map(|segment| (segment.entry(), segment.exit()))) {
             (_, Some((_, Exit::Switch(next)))) => next.instant,
-            // Switches were wanted and none came: the last phase is shown for a few periods.
+            // Events were wanted and none came: the last phase is shown for a few periods.
             (Some(_), Some((entry, _))) => entry.instant.after_periods(2, 1),
             (Some(_), None) => self.problem.entry.instant,
             (None, _) => self.horizon,
@@ -147,7 +147,7 @@ impl PlannedRun {
     }
 }
 
-/// A run's phases up to the switch that ends it.
+/// A run's phases up to the event that ends it.
 pub(super) struct Segments<'a> {
     run: Trajectory,
     wanted: Option<u64>,
@@ -177,10 +177,10 @@ impl Iterator for Segments<'_> {
     }
 }
 
-/// What has to be said about a run's end.
+/// The notes on a run's ending.
 #[derive(Debug, Default)]
 pub(super) struct RunEnding {
-    /// How it ends, where that is not what was asked for.
+    /// The ending, if the run ended before its horizon.
     how: Option<String>,
     /// Touches that rounding does not decide.
     pub(super) touches: u64,
@@ -189,7 +189,7 @@ pub(super) struct RunEnding {
 }
 
 impl RunEnding {
-    /// The lines that say so.
+    /// The lines of the notes.
     pub(super) fn lines(&self) -> impl Iterator<Item = String> {
         let touches = match self.touches {
             0 => None,

@@ -17,7 +17,7 @@ pub(super) struct RunRow {
     pub(super) co_ordinates: Option<[f64; 2]>,
 }
 
-/// Something that rows can be written to.
+/// An output for rows.
 pub(super) trait Sink {
     fn begin(&mut self, plan: &PlannedRun, samples: bool) -> Result<()>;
     fn row(&mut self, plan: &PlannedRun, row: &RunRow) -> Result<()>;
@@ -28,7 +28,7 @@ fn state(sample: &Sample) -> [f64; 4] {
     [sample.state.p, sample.state.y, sample.state.q, sample.v]
 }
 
-/// Row 0 is the start, then each switch, and the horizon if that is what ends the run, or where it
+/// Row 0 is the start, then each event, and the horizon if that is what ends the run, or where it
 /// is no longer decided.
 pub(super) fn events(plan: &PlannedRun, sink: &mut dyn Sink) -> Result<RunEnding> {
     let mut index = 0;

@@ -27,7 +27,7 @@ enum Wanted {
     Attractors,
 }
 
-/// What is known of a point before any of its starts is labelled.
+/// The problem, strobe map and grid of a point, before any start is labelled.
 struct Ground {
     problem: Problem,
     map: StrobeMap,
@@ -58,7 +58,7 @@ impl BasinWork {
         Ok(Ground { problem, map, grid })
     }
 
-    /// What the blocks of a point share; made once for blocks in a row.
+    /// The labeller that the blocks of a point share; it is made once for consecutive blocks.
     fn labeller(&self, point: &SweepPoint) -> Result<Arc<BlockLabeller>> {
         let mut last = self.last.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((number, labeller)) = &*last
@@ -82,7 +82,7 @@ impl BasinWork {
     }
 }
 
-/// What the verb `basins` writes, but its axes.
+/// The arrays of the verb `basins`, except its axes.
 fn labels(basins: &Basins, json: &Json) -> Result<Vec<Array>> {
     let shape = [basins.grid.rows as usize, basins.grid.columns as usize];
     let labels = basins.labels.iter().map(|label| label.number()).collect();

@@ -42,7 +42,7 @@ impl SweepVerb for BranchWork {
 
 /// What the verb writes as JSON: its numbers as arrays, and all of it as text.
 fn arrays(followed: &Followed) -> Result<Vec<Array>> {
-    let BranchJson { complete, branch, bifurcations } = &followed.course;
+    let BranchJson { complete, branch, bifurcations } = &followed.branch;
     let count = branch.len();
     let numbers = |of: fn(&JsonPlace) -> f64| branch.iter().map(of).collect::<Vec<f64>>();
     let special = |of: fn(&Special) -> f64| bifurcations.iter().map(of).collect::<Vec<f64>>();

@@ -42,7 +42,7 @@ impl SweepVerb for ExponentWork {
     }
 }
 
-/// What the verb writes as JSON, with infinite exponents as they are.
+/// The arrays of the verb's JSON, with infinite exponents as they are.
 fn arrays(found: &Spectrum) -> Vec<Array> {
     vec![
         Array::f8("exponents_per_period", &[3], found.exponents_per_period.to_vec()),

@@ -1,4 +1,4 @@
-//! Which shard a task of an array is, by the variables that engines set.
+//! The shard of a task in a job array, by the variables that schedulers set.
 
 use crate::cli::note;
 use crate::sweep::Plan;
@@ -9,7 +9,7 @@ use anyhow::{Result, bail};
 const VARIABLES: [(&str, u32); 4] =
     [("HQ_TASK_ID", 0), ("SLURM_ARRAY_TASK_ID", 0), ("PBS_ARRAY_INDEX", 0), ("SGE_TASK_ID", 1)];
 
-/// What Grid Engine sets outside arrays.
+/// The value that Grid Engine sets outside arrays.
 const UNDEFINED: &str = "undefined";
 
 /// The shard that the first variable that is set says; none where none is.

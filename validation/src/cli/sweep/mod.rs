@@ -26,7 +26,7 @@ use clap::{Args, Subcommand};
 use shown::{Format, StatusJson};
 use std::path::PathBuf;
 
-/// A verb over one or two parameters, in shards, on this machine or many
+/// Run a verb over a grid of one or two parameters, split into shards, on this machine or many
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(subcommand)]
@@ -40,7 +40,7 @@ enum SweepStep {
     Merge(MergeArguments),
 }
 
-/// What is swept, and where its shards are.
+/// The plan of a sweep and the folder of its shards.
 #[derive(Args)]
 struct SweepFlags {
     /// What is swept, and in how many shards

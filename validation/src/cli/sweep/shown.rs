@@ -10,12 +10,12 @@ use std::time::Duration;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(super) enum Format {
     Json,
-    /// A line a state, for people
+    /// One line per state, for reading
     #[value(alias = "txt")]
     Table,
 }
 
-/// A table for whoever reads it on a terminal.
+/// The default format: a table on a terminal, JSON elsewhere.
 pub(super) fn usual(destination: &Destination) -> Format {
     if destination.is_terminal() { Format::Table } else { Format::Json }
 }

@@ -9,7 +9,7 @@ use crate::sweep::{Plan, SweepVerb};
 use anyhow::{Result, anyhow, bail};
 use clap::Parser;
 
-/// What a plan's verb does at each of its points.
+/// The work of a plan's verb at each point.
 pub(super) fn work(plan: &Plan) -> Result<Box<dyn SweepVerb>> {
     let verb = plan.verb.as_str();
     let mut words = vec!["percuss".to_owned(), verb.to_owned()];

@@ -1,8 +1,8 @@
-//! Which rows get a picture of their first wrong event.
+//! The choice of rows that get a picture of their first wrong event.
 
 use super::EventPicture;
-use super::course::picture;
 use super::mismatch::EventMismatch;
+use super::scene::picture;
 use super::system;
 use crate::case::{Case, Given};
 use crate::engine::{Engine, Limits, OscillatorTask, SampleGrid};
@@ -17,7 +17,7 @@ const MOST_PICTURES: usize = 200;
 /// A run that took more right-hand sides is not made again for a picture.
 const MOST_WORK: u64 = 10_000_000;
 
-/// Draws a row's picture, within limits of the run that is made again.
+/// Draws a row's picture; the run that is made again stays within limits.
 type Draw<'a> = dyn Fn(&Limits) -> Option<EventPicture> + Send + Sync + 'a;
 
 /// A row that has something to show, and how it is drawn.
@@ -27,7 +27,7 @@ struct RowChoice<'a> {
 }
 
 /// Pictures of rows with a missed or a spurious event, or with a displaced one and out of bounds;
-/// of more rows than can be shown those out of bounds come first, then a row a case in turn.
+/// of more rows than can be shown those out of bounds come first, then one row per case in turn.
 #[must_use]
 pub fn event_pictures(
     cases: (&[Prepared], &[PreparedSystem]),

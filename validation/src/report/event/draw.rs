@@ -1,7 +1,7 @@
 //! Pictures of wrong events as files.
 
 use super::super::setting::{setting, who};
-use super::{EventPicture, View, ViewCourse};
+use super::{EventPicture, View, ViewTrajectory};
 use crate::picture::Colour;
 use crate::picture::{Encounter, Stage, TimeStretch, Trail};
 use percuss::Phase;
@@ -46,12 +46,12 @@ impl EventPicture {
         }
     }
 
-    fn trail(&self, course: &ViewCourse) -> Trail {
+    fn trail(&self, trajectory: &ViewTrajectory) -> Trail {
         let mark = |mark: &super::EventMark| (mark.t, self.stage(&mark.phase), mark.matched);
         Trail {
-            values: course.values.clone(),
-            stage: self.stage(&course.phase),
-            events: course.events.iter().map(mark).collect(),
+            values: trajectory.values.clone(),
+            stage: self.stage(&trajectory.phase),
+            events: trajectory.events.iter().map(mark).collect(),
         }
     }
 

@@ -9,13 +9,13 @@ use percuss::Phase;
 use percuss::TwoWord;
 use serde::Serialize;
 
-/// What is wrong with an event.
+/// The kind of error of an event.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum MismatchKind {
-    /// The truth has it and the engine does not.
+    /// A true event that the engine does not have.
     Missed,
-    /// The engine has it and the truth does not.
+    /// An event of the engine that the truth does not have.
     Spurious,
     /// Truth and engine have the event, and of all events its time is the worst for what errors
     /// have grown to there.

@@ -2,15 +2,15 @@
 //! truly is and as the engine had it, with the engine's steps and what its root finder saw.
 //!
 //! The row's run is made again and watched around the event. The truth is the exact solver's run,
-//! made again in 106 bits. What a picture is made of is the same for all systems ([`course`]); how
-//! it is had of the oscillator is in [`mismatch`], of any other system in [`system`].
+//! made again in 106 bits. A picture has the same parts for all systems ([`scene`]); [`mismatch`]
+//! gets them for the oscillator, [`system`] for any other system.
 
 mod choice;
-mod course;
 mod draw;
 mod guarded;
 mod mismatch;
 mod scales;
+mod scene;
 mod system;
 
 pub use choice::event_pictures;
@@ -52,19 +52,19 @@ pub struct View {
     pub from: f64,
     /// The time at which the view ends.
     pub to: f64,
-    /// What is true.
-    pub truth: ViewCourse,
-    /// What the engine made of it.
-    pub engine: ViewCourse,
+    /// The true run.
+    pub truth: ViewTrajectory,
+    /// The engine's run.
+    pub engine: ViewTrajectory,
     /// Ends of the engine's accepted steps.
     pub steps: Vec<f64>,
     /// The times at which the engine's root finder evaluated the guard, and what it found.
     pub looks: Vec<[f64; 2]>,
 }
 
-/// The course of a run through a view.
+/// The part of a run that lies in a view.
 #[derive(Clone, Debug, Serialize)]
-pub struct ViewCourse {
+pub struct ViewTrajectory {
     /// The phase, or the mode, that holds where the view begins.
     pub phase: String,
     /// The events in the view.
@@ -77,7 +77,7 @@ pub struct ViewCourse {
 /// An event in a view.
 #[derive(Clone, Debug, Serialize)]
 pub struct EventMark {
-    /// When.
+    /// The time of the event, since [`EventPicture::centre`].
     pub t: f64,
     /// The phase, or the mode, that begins.
     pub phase: String,

@@ -1,7 +1,7 @@
 //! The first wrong event of a row of a piecewise-affine system, and its picture.
 
-use super::course::{Scene, SceneCurve, in_order, telling};
 use super::scales::Scales;
+use super::scene::{Scene, SceneCurve, in_order, telling};
 use super::{EventPicture, MismatchKind, View};
 use crate::engine::{Engine, Equations, GuardSample, Limits, Outcome, Task, Watched, contain};
 use crate::score::{EventNames, Matching, Measures, Verdict, WINDOW};
@@ -12,9 +12,10 @@ use crate::truth::SystemTruth;
 /// An event that is wrong, and which events of truth and engine are the same.
 pub(super) struct SystemMismatch {
     kind: MismatchKind,
-    /// When, since the start.
+    /// The time of the event, since the start.
     at: f64,
-    /// How far it is to what it is confused with: the next event on its own side, or its partner.
+    /// The distance to the event that it may be confused with: the next one of the same run, or its
+    /// partner in the other.
     reach: f64,
     /// The mode in which it lies, and its number there.
     event: (usize, usize),
@@ -132,16 +133,45 @@ pub(super) fn picture(
     it: &SystemMismatch,
     (engine, mean_step, limits): (&dyn Engine, f64, &Limits),
 ) -> Option<EventPicture> {
-    let PreparedSystem { task, truth, case, .. } = prepared;
+    let PreparedSystem { task, case, .. } = prepared;
     let system = task.system.system();
     let (mode, event) = it.event;
-    let guard = Guard::of(task, it.event)?;
+    let guard = EventGuard::of(task, it.event)?;
     let scales = Scales::around((it.at, it.reach), mean_step, prepared.period(), task.span);
     let instants = scales.all_instants();
     let states = SystemTruth::states(case, &instants)?;
     let watched = Watched { window: scales.window(), instants: instants.clone() };
     let again = Task { watched: Some(watched), ..task.clone() };
     let outcome = contain(|| engine.run(&again, row.accuracy, limits)).ok()?;
+    let scene = scene(prepared, it, &guard, &outcome, (&instants, &states));
+    let views: Vec<View> = scales.spans.iter().map(|span| scene.view(*span)).collect();
+    let event = system.event_name(mode, event)?;
+    Some(EventPicture {
+        case: row.case.clone(),
+        engine: row.engine.to_owned(),
+        tolerance: row.accuracy.tolerance(),
+        step: row.accuracy.step(),
+        kind: it.kind,
+        title: it.title(prepared, event),
+        guard: format!("guard of {event}"),
+        modes: system.modes.iter().map(|mode| mode.name.clone()).collect(),
+        centre: it.at,
+        telling: telling(&views),
+        views,
+    })
+}
+
+/// The true run and the engine's run around an event, from the true states and the outcome of the
+/// engine's run at the same instants.
+fn scene(
+    prepared: &PreparedSystem,
+    it: &SystemMismatch,
+    guard: &EventGuard,
+    outcome: &Outcome,
+    (instants, states): (&[f64], &[Vec<f64>]),
+) -> Scene {
+    let PreparedSystem { task, truth, .. } = prepared;
+    let system = task.system.system();
     let of_states = |states: &mut dyn Iterator<Item = &[f64]>| -> Vec<f64> {
         instants.iter().zip(states).map(|(t, state)| guard.value(task, *t, state)).collect()
     };
@@ -153,7 +183,7 @@ pub(super) fn picture(
     let name = |mode: usize| system.modes.get(mode).map(|it| it.name.clone()).unwrap_or_default();
     let rows = truth.events.iter().enumerate();
     let own = outcome.events.iter().enumerate();
-    let scene = Scene {
+    Scene {
         at: it.at,
         first: name(task.mode),
         truth: SceneCurve {
@@ -173,27 +203,12 @@ pub(super) fn picture(
         },
         steps: trace.map(|trace| trace.steps.clone()).unwrap_or_default(),
         looks: in_order(looks.filter_map(|look| guard.of_look(look))),
-        instants: instants.clone(),
-    };
-    let views: Vec<View> = scales.spans.iter().map(|span| scene.view(*span)).collect();
-    let event = system.event_name(mode, event)?;
-    Some(EventPicture {
-        case: row.case.clone(),
-        engine: row.engine.to_owned(),
-        tolerance: row.accuracy.tolerance(),
-        step: row.accuracy.step(),
-        kind: it.kind,
-        title: it.title(prepared, event),
-        guard: format!("guard of {event}"),
-        modes: system.modes.iter().map(|mode| mode.name.clone()).collect(),
-        centre: it.at,
-        telling: telling(&views),
-        views,
-    })
+        instants: instants.to_vec(),
+    }
 }
 
 /// The guard whose zero is an event.
-struct Guard {
+struct EventGuard {
     row: Row,
     mode: usize,
     /// The guards of its mode that belong to the event, each with the sign with which it is looked
@@ -201,7 +216,7 @@ struct Guard {
     looked: Vec<(usize, f64)>,
 }
 
-impl Guard {
+impl EventGuard {
     fn of(task: &Task, (mode, event): (usize, usize)) -> Option<Self> {
         let own = task.system.system().modes.get(mode)?;
         let equations = Affine::of(&task.system);

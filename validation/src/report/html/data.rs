@@ -4,7 +4,7 @@
 use super::super::summary::EngineSummary;
 use super::super::{EventPicture, Report, ReportEvidence, ReportRow};
 use super::command;
-use super::scope::Scope;
+use super::scope::ReportScope;
 use crate::picture::Look;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -14,7 +14,7 @@ const MOST_POINTS: usize = 6000;
 
 /// The page's data, fit to stand inside a script element.
 pub(super) fn json(
-    (report, evidence, scope): (&Report, &ReportEvidence, &Scope),
+    (report, evidence, scope): (&Report, &ReportEvidence, &ReportScope),
     engines: &[EngineSummary],
     looks: &[Look],
 ) -> String {
@@ -155,7 +155,7 @@ fn bounds(row: &ReportRow, texts: &mut Texts) -> Vec<Value> {
     row.bounds.iter().map(&mut bound).collect()
 }
 
-/// What a quantity is called where its key does not say it.
+/// The name of a quantity whose key does not say it.
 fn in_words(quantity: &str) -> &str {
     match quantity {
         "events spurious" => "spurious events",

@@ -7,7 +7,6 @@
 
 mod command;
 mod data;
-mod horizons;
 mod ranking;
 mod scope;
 mod view;
@@ -39,11 +38,11 @@ struct Page<'a> {
     failures: Vec<view::FailureView>,
     more_failures: usize,
     ranking: Vec<ranking::RankedLine>,
-    scope: &'a scope::Scope,
+    scope: &'a scope::ReportScope,
     recall_columns: usize,
     grazing: view::GrazingTable,
     trouble: view::TroubleTable,
-    horizons: Vec<horizons::HorizonLine>,
+    horizons: Vec<ranking::HorizonLine>,
     power: view::PowerTable,
     colours: String,
     style: &'static str,
@@ -65,7 +64,7 @@ impl Exporter for Html {
         let summaries = summary::engines(report);
         let names: Vec<_> = report.engines.iter().map(|it| (it.name, it.library)).collect();
         let looks = looks(&names);
-        let scope = scope::Scope::of(report, evidence);
+        let scope = scope::ReportScope::of(report, evidence);
         let (failures, more_failures) = view::failures(report);
         let page = Page {
             report,
@@ -78,7 +77,7 @@ impl Exporter for Html {
             recall_columns: summaries.iter().map(|it| it.settings.len()).max().unwrap_or(0),
             grazing: view::grazing(report, evidence),
             trouble: view::trouble(report, evidence),
-            horizons: horizons::horizons(report),
+            horizons: ranking::horizons(report),
             power: view::power(evidence),
             colours: view::colours(&looks),
             style: STYLE,

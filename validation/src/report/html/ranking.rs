@@ -1,6 +1,6 @@
-//! The ranking of the engines as the page's first table.
+//! The page's tables of engines: their ranking, and their valid horizons.
 
-use super::super::{Ranked, Report};
+use super::super::{Ranked, Report, ReportRow};
 use super::view::{count, glyph};
 use crate::number::brief;
 use crate::picture::Look;
@@ -50,3 +50,25 @@ pub(super) fn ranked(report: &Report, looks: &[Look]) -> Vec<RankedLine> {
 }
 
 const NOTHING: &str = "\u{2013}";
+
+/// The valid horizons of one row, as the page shows them.
+pub(super) struct HorizonLine {
+    pub case: String,
+    pub who: String,
+    pub runs: usize,
+    pub figures: [f64; 3],
+}
+
+/// One line per row with valid horizons.
+pub(super) fn horizons(report: &Report) -> Vec<HorizonLine> {
+    let line = |row: &ReportRow| {
+        let it = row.valid_horizon?;
+        Some(HorizonLine {
+            case: row.case.clone(),
+            who: row.who(),
+            runs: it.runs,
+            figures: [it.q01, it.median, it.predicted_median],
+        })
+    };
+    report.results.iter().filter_map(line).collect()
+}

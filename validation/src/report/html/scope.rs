@@ -6,25 +6,25 @@ use super::super::{CASES_FLAG, CaseNote, OSCILLATOR, Report, ReportEvidence};
 /// More systems, or cases, than these are counted instead of named.
 const FEW_NAMES: usize = 6;
 
-/// What the page says of the cases as a whole.
-pub(super) struct Scope {
+/// The texts of the page on the cases as a whole.
+pub(super) struct ReportScope {
     /// Whether a case of the paper's oscillator is among them.
     pub oscillator: bool,
     /// Whether a case of another system is among them.
     pub systems: bool,
-    /// What is held against the truth.
+    /// The sentence that says which integrators are compared with the truth.
     pub lead: String,
     /// A line on the truth at the head of the page, where it is not that of the tables.
     pub replayed: String,
-    /// What the truth of these cases is.
+    /// The source of the truth of these cases.
     pub truth: String,
-    /// What the error of a state is.
+    /// The definition of a state error.
     pub state_error: String,
-    /// What an error of a state is, in a few words.
+    /// The definition of a state error, in a few words.
     pub state_error_briefly: String,
 }
 
-impl Scope {
+impl ReportScope {
     pub fn of(report: &Report, evidence: &ReportEvidence) -> Self {
         let notes = &evidence.cases;
         let systems = systems(notes);

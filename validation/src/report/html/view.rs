@@ -19,7 +19,7 @@ pub(super) struct EngineLine {
     pub version: String,
     pub method: &'static str,
     pub marker: &'static str,
-    /// A class and words for it.
+    /// The verdict's style class and its text.
     pub verdict: (&'static str, String),
     pub counts: String,
     /// The typical errors of event times and of the state, and the right-hand sides.
@@ -162,7 +162,7 @@ pub(super) struct FailureView {
     pub why: String,
 }
 
-/// What is out of bounds or without a result, and how many more there are.
+/// The failures and errors that the page lists, and the number of further ones.
 pub(super) fn failures(report: &Report) -> (Vec<FailureView>, usize) {
     let bad =
         report.results.iter().filter(|it| matches!(it.verdict, Verdict::Fail | Verdict::Error));
@@ -178,7 +178,7 @@ pub(super) fn failures(report: &Report) -> (Vec<FailureView>, usize) {
     (all.into_iter().take(MOST_FAILURES).collect(), more)
 }
 
-/// Margins, and engines with a cell a margin: class, glyph and title of each setting.
+/// Margins, and engines with one cell per margin: class, glyph and title of each setting.
 pub(super) struct GrazingTable {
     pub margins: Vec<(bool, String)>,
     pub lines: Vec<(String, Vec<Vec<SeenCell>>)>,
@@ -196,14 +196,14 @@ pub(super) struct TroubleTable {
     pub lines: Vec<TroubleLine>,
 }
 
-/// A kind of trouble, how many cases are of it, and a cell an engine.
+/// A kind of trouble, the number of its cases, and one cell per engine.
 pub(super) struct TroubleLine {
     pub kind: String,
     pub cases: usize,
     pub cells: Vec<TroubleSign>,
 }
 
-/// A cell as it is shown.
+/// A cell of the table of troubles.
 pub(super) struct TroubleSign {
     pub engine: &'static str,
     /// The level, as of [`RecallCell`]; 5 where nothing was scored.
@@ -307,7 +307,7 @@ pub(super) fn power(evidence: &ReportEvidence) -> PowerTable {
     PowerTable { gates, lines }
 }
 
-/// A custom property an engine, on white and on black.
+/// One custom property per engine, on white and on black.
 pub(super) fn colours(looks: &[Look]) -> String {
     let rule = |of: fn(&Look) -> crate::picture::Colour| {
         looks.iter().enumerate().fold(String::new(), |mut rule, (i, look)| {

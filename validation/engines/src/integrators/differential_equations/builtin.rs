@@ -180,7 +180,7 @@ impl<E: Equations<State: State<f64>>> Solout<f64, E::State> for BuiltinEvents<'_
         self.ended = match (taken, first) {
             (Err(failure), _) => Some(Err(failure)),
             (Ok(()), Some(CountedCrossing { t, guard, state })) => {
-                Some(Ok(StretchEnd::Switch { t, guard, state }))
+                Some(Ok(StretchEnd::Event { t, guard, state }))
             }
             (Ok(()), None) => return ControlFlag::Continue,
         };

@@ -25,19 +25,19 @@ const ENOUGH: usize = usize::MAX;
 const NEWTON: f64 = 1e-11;
 
 /// The ratio of two steps that Radau5 may take one after the other.
-const RUNG: f64 = 1.25;
+const STEP_RATIO: f64 = 1.25;
 
-/// The largest step on a ladder of fixed ratios. Radau5 keeps its factorised matrices where a step
-/// could grow by less than a fifth, and then forgets to make them anew when the next one changes:
-/// with ratios larger than that it never keeps them.
-fn rungs(h: f64) -> f64 {
-    RUNG.powf((h.ln() / RUNG.ln() + ON_A_RUNG).floor())
+/// The largest power of the step ratio that is at most `h`. Radau5 keeps its factorised matrices
+/// where a step could grow by less than a fifth, and does not make them anew when the next step
+/// changes: with ratios above 1.2 it never keeps them.
+fn power_of_ratio(h: f64) -> f64 {
+    STEP_RATIO.powf((h.ln() / STEP_RATIO.ln() + RATIO_ROUNDING).floor())
 }
 
-/// Takes a step that is on a rung, but for rounding, to be on it.
-const ON_A_RUNG: f64 = 1e-9;
+/// The distance from a power of the ratio, in powers, that counts as rounding.
+const RATIO_ROUNDING: f64 = 1e-9;
 
-/// How a state inside a step is had.
+/// The source of states inside a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(in super::super) enum Inside {
     /// States inside a step come from the library's interpolant.
@@ -94,7 +94,7 @@ pub(in super::super) trait LibraryMethod {
     }
 }
 
-/// How a state inside a step is had, where that is a function of the method.
+/// The source of states inside a step, for methods with a function of their own.
 macro_rules! inside {
     (Again) => {
         fn again<E: Equations<State: State<f64>>>(
@@ -166,7 +166,7 @@ methods! {
     Radau5: implicit "Radau IIA, order 5", Some(5), Again,
         |first| ImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::radau5(),
         newton_tol(0.0), max_rejects(ENOUGH),
-        filter(if first == 0.0 { rungs } else { std::convert::identity });
+        filter(if first == 0.0 { power_of_ratio } else { std::convert::identity });
     /// Kvaerno's method of order 5.
     Kvaerno745: implicit "Kvaerno ESDIRK 5(4)", Some(5), Again,
         |first| DiagonallyImplicitRungeKutta::<Ordinary, _, _, _, _, _, _>::kvaerno745(),
@@ -221,9 +221,10 @@ mod tests {
     #[test]
     fn a_step_on_a_rung_stays_there() {
         for step in [1e-9, 0.3, 0.999, 1.0, 7.0] {
-            let rung = rungs(step);
-            assert!(rung <= step * (1.0 + 1e-8) && step < rung * RUNG * (1.0 + 1e-8));
-            assert_eq!(rungs(rung), rung);
+            let allowed = power_of_ratio(step);
+            assert!(allowed <= step * (1.0 + 1e-8));
+            assert!(step < allowed * STEP_RATIO * (1.0 + 1e-8));
+            assert_eq!(power_of_ratio(allowed), allowed);
         }
     }
 }

@@ -5,7 +5,7 @@ use super::{ModeField, reason};
 use crate::equations::Equations;
 use crate::failure::Failure;
 use crate::integration::{
-    Cubic, CubicEnd, GuardRise, GuardSearch, Moment, Sampler, StateAt, StretchEnd, Walk,
+    Cubic, CubicEnd, GuardRise, GuardSearch, Moment, Sampler, StateAt, StepEnds, StretchEnd,
 };
 use differential_equations::control::ControlFlag;
 use differential_equations::interpolate::Interpolation;
@@ -31,7 +31,7 @@ enum Looks<'a, E: Equations> {
     /// The guards are looked at inside the step, whose interpolant costs nothing.
     Inside(GuardSearch<'a, E>),
     /// The guards are looked at at the step's ends, and inside only where these show something.
-    Ends(Walk<'a, E>),
+    Ends(StepEnds<'a, E>),
 }
 
 impl<'a, M: LibraryMethod, E: Equations<State: State<f64>>> StepWatch<'a, M, E> {
@@ -43,14 +43,14 @@ impl<'a, M: LibraryMethod, E: Equations<State: State<f64>>> StepWatch<'a, M, E> 
     ) -> Self {
         let search = GuardSearch::new(field.equations, from, field.meter);
         let looks = match M::INSIDE {
-            Inside::Again => Looks::Ends(Walk::new(search, from)),
+            Inside::Again => Looks::Ends(StepEnds::new(search, from)),
             Inside::Interpolant | Inside::Cubic => Looks::Inside(search),
         };
         let (last, ended, method) = (from.state, None, PhantomData);
         Self { field, looks, tolerance, span, sampler, last, ended, method }
     }
 
-    /// How the stretch ended, once the library has come back.
+    /// The ending of the stretch, once the library has returned.
     pub(super) fn ended(
         self,
         solved: Result<(), Failure>,
@@ -70,8 +70,8 @@ impl<'a, M: LibraryMethod, E: Equations<State: State<f64>>> StepWatch<'a, M, E> 
         self.field.meter.steps(1);
         let search = match &mut self.looks {
             Looks::Inside(search) => search,
-            Looks::Ends(walk) => {
-                return walk.advance(right, self.sampler, |_, _, t| state_at(t));
+            Looks::Ends(ends) => {
+                return ends.advance(right, self.sampler, |_, _, t| state_at(t));
             }
         };
         let counted = &mut self.sampler.counted;
@@ -80,7 +80,7 @@ impl<'a, M: LibraryMethod, E: Equations<State: State<f64>>> StepWatch<'a, M, E> 
             return Ok(None);
         };
         self.sampler.take(t, &mut *state_at)?;
-        Ok(Some(StretchEnd::Switch { t, guard, state: state_at(t)? }))
+        Ok(Some(StretchEnd::Event { t, guard, state: state_at(t)? }))
     }
 }
 

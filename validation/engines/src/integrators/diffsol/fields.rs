@@ -1,4 +1,4 @@
-//! What diffsol calls back, of the oscillator or of any other system.
+//! The functions of the oscillator, or of another system, that diffsol calls.
 //!
 //! The library is compiled for one type that is either: its solvers are large, and a second copy of
 //! them for the sake of one branch a call would take a third longer to compile.
@@ -47,7 +47,7 @@ pub(super) enum Field<'a> {
     System(DiffsolField<'a, Affine<'a>, usize>),
 }
 
-/// Equations that the library is compiled for.
+/// The equations for which diffsol is compiled.
 pub(super) trait DiffsolEquations: Equations {
     /// These equations, with the mode that is run and who counts the calls.
     fn field<'a>(&self, mode: &'a Cell<Self::Mode>, meter: &'a Meter<Self::Mode>) -> Field<'a>
@@ -73,7 +73,7 @@ impl DiffsolEquations for Affine<'_> {
     }
 }
 
-/// What a problem is made of beside its field.
+/// The settings of a diffsol problem.
 pub(super) struct ProblemSettings<'a> {
     pub(super) state: &'a [f64],
     pub(super) guards: usize,

@@ -27,9 +27,9 @@ pub(in super::super) trait DiffsolMethod: Sync {
     const STEPPING: Stepping;
     /// The order that the method's authors state; none where it varies from 1 on.
     const ORDER: Option<u32>;
-    /// Whether it is explicit.
+    /// Whether the method is explicit.
     const EXPLICIT: bool = false;
-    /// What its engine is run for beside its rows.
+    /// The tests beyond ordinary rows in which the engine takes part.
     const ROLE: Role = Role::Rows;
     /// Whether the step may be shortened without loss: a multistep method would begin anew.
     const ONE_STEP: bool;

@@ -1,14 +1,14 @@
 //! diffsol with its own root finding, as an expert user sets it up.
 //!
 //! - The mode is a `Cell` that the closures read; the problem is built once, the solver anew from
-//!   the state at each switch, because its limit of 50 failed Newton iterations is cumulative.
+//!   the state at each event, because its limit of 50 failed Newton iterations is cumulative.
 //! - On restart the derivative is written afresh and the step chosen anew: a stale derivative makes
 //!   the first steps collapse.
 //! - Root functions know no direction. A root at which the guard falls, such as the double zero
 //!   that begins every separation, is passed over by touching the state; the root finder otherwise
 //!   keeps its old bracket. If another guard has risen by the end of that step, the step is taken
 //!   back to just after the root.
-//! - At a root the library leaves the state at the end of the step: the switch's state is its
+//! - At a root the library leaves the state at the end of the step: the event's state is its
 //!   interpolant there.
 //! - Linear solves are from the library's statistics: Newton's iterations, and in the diagonally
 //!   implicit methods one more for each estimate of a step's error.

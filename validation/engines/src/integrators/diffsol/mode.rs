@@ -15,7 +15,7 @@ pub(super) struct DiffsolRun<'a, E: Equations> {
     pub(super) equations: E,
 }
 
-/// A root that ends nothing.
+/// A root of a guard that does not end the mode.
 struct PassedRoot<E: Equations> {
     mode: E::Mode,
     guard: usize,
@@ -42,6 +42,7 @@ impl<E: Equations> DiffsolRun<'_, E> {
         Ok(ended)
     }
 
+    /// Steps to the end of the mode, or of the run.
     fn follow<'a, M: DiffsolMethod, P: DiffsolProblem + 'a>(
         &self,
         solver: &mut impl OdeSolverMethod<'a, P>,
@@ -66,36 +67,49 @@ impl<E: Equations> DiffsolRun<'_, E> {
                     return Ok(StretchEnd::Inside { t: self.span, state });
                 }
                 OdeSolverStopReason::RootFound(root, guard) => {
-                    let state = state_at(root)?;
-                    let rising = self.rising(from.mode, root, &state, guard);
-                    if let Some(guard) = rising.iter().copied().find(|it| self.ends(from, *it)) {
-                        sampler.take(root, state_at)?;
-                        return Ok(StretchEnd::Switch { t: root, guard, state });
-                    }
-                    for guard in rising {
-                        if !is_known(from, root, guard, sampler) {
-                            sampler.counted.push(CountedCrossing { t: root, guard, state });
-                        }
-                    }
-                    let end: E::State = plain(solver.state().y);
-                    let left = PassedRoot { mode: from.mode, guard, t: root, state };
-                    let more = self.has_more(&left, solver.state().t, &end);
-                    if more && root < solver.state().t {
-                        sampler.take(root, state_at)?;
-                        solver.state_mut_back(root).map_err(Failure::new)?;
-                    } else {
-                        let t = solver.state().t;
-                        sampler.take(t, state_at)?;
-                        if self.span - t <= RESOLUTION * self.span {
-                            // The step with the root ends at the stop, from where none goes on.
-                            return Ok(StretchEnd::Inside { t: self.span, state: end });
-                        }
-                        // Touched, so that the root finder takes a new bracket.
-                        let _ = solver.state_mut();
+                    if let Some(ended) = self.at_root(solver, from, sampler, (root, guard))? {
+                        return Ok(ended);
                     }
                 }
             }
         }
+    }
+
+    /// Ends the stretch at a root, or makes the solver ready to go on after it.
+    fn at_root<'a, P: DiffsolProblem + 'a>(
+        &self,
+        solver: &mut impl OdeSolverMethod<'a, P>,
+        from: &Moment<E>,
+        sampler: &mut Sampler<E::State>,
+        (root, guard): (f64, usize),
+    ) -> Result<Option<StretchEnd<E::State>>, Failure> {
+        let state_at = |t: f64| solver.interpolate(t).map(|u| plain(&u)).map_err(Failure::new);
+        let state = state_at(root)?;
+        let rising = self.rising(from.mode, root, &state, guard);
+        if let Some(guard) = rising.iter().copied().find(|it| self.ends(from, *it)) {
+            sampler.take(root, state_at)?;
+            return Ok(Some(StretchEnd::Event { t: root, guard, state }));
+        }
+        for guard in rising {
+            if !is_known(from, root, guard, sampler) {
+                sampler.counted.push(CountedCrossing { t: root, guard, state });
+            }
+        }
+        let (t, end): (f64, E::State) = (solver.state().t, plain(solver.state().y));
+        let left = PassedRoot { mode: from.mode, guard, t: root, state };
+        if self.has_more(&left, t, &end) && root < t {
+            sampler.take(root, state_at)?;
+            solver.state_mut_back(root).map_err(Failure::new)?;
+            return Ok(None);
+        }
+        sampler.take(t, state_at)?;
+        if self.span - t <= RESOLUTION * self.span {
+            // The step with the root ends at the stop, from where no step goes on.
+            return Ok(Some(StretchEnd::Inside { t: self.span, state: end }));
+        }
+        // The state is touched, so that the root finder takes a new bracket.
+        let _ = solver.state_mut();
+        Ok(None)
     }
 
     fn ends(&self, from: &Moment<E>, guard: usize) -> bool {

@@ -1,4 +1,4 @@
-//! The exact solver's ensembles, as far as an outcome goes: switches and the end of a run, no
+//! The exact solver's ensembles, as far as an outcome goes: events and the end of a run, no
 //! samples.
 
 use crate::case::Problem;
@@ -9,7 +9,7 @@ use percuss::lanes::Instructions;
 use percuss::{Endless, Entry, Instant, Phase};
 use std::ops::ControlFlow;
 
-/// What a task asks for, of a motion in lanes.
+/// The events and the end of one run in lanes.
 struct LaneRecord {
     outcome: OscillatorOutcome,
     start: Instant,

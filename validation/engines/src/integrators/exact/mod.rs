@@ -83,14 +83,14 @@ fn run(task: &OscillatorTask, limits: &Limits) -> Result<Outcome, Failure> {
     Ok(outcome)
 }
 
-/// How many events a run has room for at first.
+/// The number of events for which a run reserves memory at first.
 const USUAL: usize = 128;
 
 /// A phase, passed.
 enum PassedPhase {
-    /// It lasts so long; then this phase begins, in this state.
+    /// The phase lasts for `duration`; then another phase begins in the given state.
     Switch { duration: TwoWord, phase: Phase, state: [f64; 4] },
-    /// It is the run's last.
+    /// The last phase of the run.
     Last(Box<Segment>),
 }
 

@@ -16,7 +16,7 @@ use crate::equations::{Equations, Numbers};
 use crate::failure::Failure;
 use crate::integration::{
     CubicEnd, GuardSearch, Integration, Meter, Moment, Oscillator, Sampler, StretchEnd, join,
-    longest_of_period, longest_step, walk,
+    locate_at_step_ends, longest_of_period, longest_step,
 };
 use crate::integrators::pins;
 use crate::system::Mode;
@@ -39,7 +39,7 @@ const TINY: f64 = 1e-10;
 pub(in super::super) struct Dop853 {
     pub(super) name: &'static str,
     pub(super) role: Role,
-    /// Whether time is one more state.
+    /// Whether time is integrated as one more state.
     pub(super) clock: bool,
 }
 
@@ -101,7 +101,7 @@ impl Engine for Dop853 {
     }
 }
 
-/// Runs an integration on vectors of so many dimensions.
+/// Runs an integration on vectors of dimension `D`.
 fn run<E: Equations, D: Dim>(
     integration: &Integration<'_, E>,
     [clock, heun]: [bool; 2],
@@ -157,7 +157,9 @@ where
             last.0 = until;
         }
         let search = GuardSearch::new(self.integration.equations, from, self.meter);
-        walk(search, from, points, sampler, |left, _, t| self.again(from.mode, left, t))
+        locate_at_step_ends(search, from, points, sampler, |left, _, t| {
+            self.again(from.mode, left, t)
+        })
     }
 
     /// The state at `t` by another integration from a point before it, in one step if that will do.

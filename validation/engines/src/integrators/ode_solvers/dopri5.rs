@@ -72,7 +72,7 @@ impl<E: Coordinates> Engine for Dopri5<E> {
     }
 }
 
-/// Runs an integration on vectors of so many dimensions.
+/// Runs an integration on vectors of dimension `D`.
 fn run<E: Equations, D: Dim>(
     integration: &Integration<'_, E>,
     accuracy: Accuracy,
@@ -94,7 +94,7 @@ where
         };
         sampler.take(t, state_at)?;
         run.step = 0.0;
-        Ok(StretchEnd::Switch { t, guard, state: state_at(t)? })
+        Ok(StretchEnd::Event { t, guard, state: state_at(t)? })
     })
 }
 

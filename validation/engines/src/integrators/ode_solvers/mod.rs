@@ -40,7 +40,7 @@ const LIBRARY: &str = "ode_solvers";
 const COLOURS: Colours = Colours::Hues(8.0, 42.0);
 /// Instead of the library's limit of steps: the meter's is the one that counts.
 const STEPS: u32 = u32::MAX - 1;
-/// Switches its stiffness detection off.
+/// The value that turns the library's stiffness detection off.
 const NEVER_STIFF: u32 = u32::MAX;
 
 /// Calls a function of an integration's vectors with those of so many states. The library allocates

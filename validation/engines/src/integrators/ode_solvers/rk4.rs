@@ -11,7 +11,8 @@ use crate::engine::{Declaration, Engine, Limits, Location, Outcome, Role, Task};
 use crate::equations::Equations;
 use crate::failure::Failure;
 use crate::integration::{
-    Cubic, GuardSearch, Integration, Meter, Moment, Oscillator, Sampler, StretchEnd, join, walk,
+    Cubic, GuardSearch, Integration, Meter, Moment, Oscillator, Sampler, StretchEnd, join,
+    locate_at_step_ends,
 };
 use crate::integrators::pins;
 use nalgebra::allocator::Allocator;
@@ -58,7 +59,7 @@ impl Engine for Rk4 {
     }
 }
 
-/// Runs an integration on vectors of so many dimensions.
+/// Runs an integration on vectors of dimension `D`.
 fn run<E: Equations, D: Dim>(
     integration: &Integration<'_, E>,
     accuracy: Accuracy,
@@ -111,7 +112,7 @@ where
         let points = solver.y_out().iter().enumerate().skip(1);
         let points = points.map(|(k, u)| (time(k), plain(equations, u)));
         let mut cubic: Option<Cubic<E::State>> = None;
-        walk(search, from, points, sampler, |left, right, t| {
+        locate_at_step_ends(search, from, points, sampler, |left, right, t| {
             let known = cubic.take().filter(|known| known.begins_at(left.0));
             let here = known.unwrap_or_else(|| {
                 let ends = [*left, *right];

@@ -1,4 +1,4 @@
-//! What libraries do on odd input: every engine comes back, with a result or a reason.
+//! Libraries on odd input: every engine returns, with a result or a reason.
 
 use crate::case::Given;
 use crate::engine::{

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::integrators::exact::Exact;
 use percuss::{Exit, Model, Parameters, Phase, Segment, Start};
 
-/// What is different.
+/// The difference from the exact solver.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Alteration {
     /// omega + 0.002
@@ -92,7 +92,7 @@ fn drifting(task: &OscillatorTask, limits: &Limits) -> Result<OscillatorOutcome,
     let start = task.problem.entry.instant;
     let omega = task.parameters.omega;
     let times = task.sample_times();
-    let (mut offset, mut switch, mut sample) = (0.0, 0, 0);
+    let (mut offset, mut event, mut sample) = (0.0, 0, 0);
     let mut begin = 0.0;
     for segment in task.problem.model.trajectory(task.problem.entry).until(task.horizon) {
         let end = match segment.exit() {
@@ -105,9 +105,9 @@ fn drifting(task: &OscillatorTask, limits: &Limits) -> Result<OscillatorOutcome,
         }
         offset += left_over(task, &segment, end - begin);
         begin = end;
-        if let Some(event) = outcome.events.get_mut(switch) {
-            event.state[3] += offset;
-            switch += 1;
+        if let Some(found) = outcome.events.get_mut(event) {
+            found.state[3] += offset;
+            event += 1;
         }
     }
     for late in &mut outcome.samples[sample..] {

@@ -17,11 +17,11 @@ use percuss::{Parameters, Phase};
 
 type OscillatorStretch = dopri5::DenseStretch<Oscillator, U4>;
 
-/// What is wrong.
+/// The fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum IntegratorFault {
     None,
-    /// Every so many events one is not noticed.
+    /// One event in so many is dropped.
     Dropped(u64),
     /// An event is put at the end of the step in which it lies.
     AtStepEnd,
@@ -31,7 +31,7 @@ pub(super) enum IntegratorFault {
     Late,
     /// A restart begins with the derivative of the phase before.
     OldDerivative,
-    /// A guard that falls through zero counts as well.
+    /// A guard that falls through zero is an event as well.
     AnyDirection,
     /// Hermite's cubic in place of the method's own interpolant of order 4.
     LowOrder,
@@ -41,9 +41,9 @@ pub(super) enum IntegratorFault {
     GivesUp(u64),
 }
 
-/// How late a late event is, in tolerances.
+/// The delay of a late event, in tolerances.
 const LATE: f64 = 30.0;
-/// How far wrong parameters are off, relative to themselves.
+/// The relative error of wrong parameters.
 const OFF: f64 = 1e-4;
 /// Halvings that narrow a bracket down to rounding.
 const HALVINGS: u32 = 80;
@@ -91,7 +91,7 @@ impl Engine for Faulty {
             run.step = 0.0;
             detection.before = Some(from.mode);
             let state = detection.state_at(&stretch, from.mode, t)?;
-            Ok(StretchEnd::Switch { t, guard, state })
+            Ok(StretchEnd::Event { t, guard, state })
         })?;
         Ok(outcome.into())
     }

@@ -7,7 +7,7 @@ use crate::integration::Integration;
 use crate::system::{Affine, Values};
 use std::cell::{Cell, RefCell};
 
-/// What is wrong.
+/// The fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum SystemFault {
     None,
@@ -25,7 +25,7 @@ pub(super) enum SystemFault {
     MissesAtStart,
     /// States in a step that an event cuts short are those of the whole step.
     UncutOutput,
-    /// An event has the state before its reset.
+    /// An event is reported with the state before its reset.
     StateBefore,
     /// Only the first of the events in one instant is noticed.
     OneAtOnce,
@@ -33,7 +33,7 @@ pub(super) enum SystemFault {
     Cooldown,
 }
 
-/// What a faulty run keeps in mind.
+/// The memory of a faulty run.
 #[derive(Default)]
 pub(super) struct Memory {
     /// A guard that went past zero without being noticed, until it is inside again.
@@ -120,9 +120,9 @@ impl Equations for Misled<'_> {
         self.sound.rates(mode, t, u)
     }
 
-    fn switch(&self, mode: usize, guard: usize, t: f64, u: &Values) -> (usize, Values) {
+    fn after_event(&self, mode: usize, guard: usize, t: f64, u: &Values) -> (usize, Values) {
         self.memory.before.borrow_mut().push(*u);
-        self.sound.switch(mode, guard, t, u)
+        self.sound.after_event(mode, guard, t, u)
     }
 
     fn ends(&self, mode: usize, guard: usize) -> bool {

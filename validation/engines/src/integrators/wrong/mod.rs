@@ -1,33 +1,34 @@
-//! Engines that are wrong on purpose, one fault each: what no fault trips is no gate.
+//! Engines that are wrong on purpose, one fault each: a bound that no fault exceeds tests nothing.
 //!
 //! [`wrong`] are held to the exact solver's bounds, [`faulty`] to those of a good integrator. The
 //! faults of [`wrong_on_systems`] and [`faulty_on_systems`] each show in one [`Way`] of running a
 //! case of a system, and nowhere else.
 //!
 //! They never run beside the others; the power test runs them and asks which bounds notice. Four
-//! are the exact solver on something slightly different; the others are a plain solver that walks
-//! along the closed forms ([`walk`]), which without a fault stays within the bounds it is held to.
+//! are the exact solver on something slightly different; the others are a plain solver that
+//! evaluates the closed forms in steps ([`stepper`]), and that stays within its bounds without a
+//! fault.
 
 mod altered;
 mod closed;
 mod integrator;
 mod misled;
 mod printed;
+mod stepper;
 mod systems;
 mod ties;
-mod walk;
 
 use crate::engine::Engine;
 use altered::{Alteration, Altered};
 pub use closed::Closed;
 use integrator::{Faulty, IntegratorFault};
 use misled::SystemFault;
+use stepper::{ClosedFormStepper, StepperFault};
 pub use systems::COOLDOWN;
 use systems::FaultyOnSystems;
 use ties::LastFirst;
-use walk::{WalkFault, WrongWalk};
 
-/// A wrong engine and what is wrong with it.
+/// A wrong engine with a description of its fault.
 #[derive(Clone, Copy)]
 pub struct WrongEngine {
     /// The engine.
@@ -37,18 +38,25 @@ pub struct WrongEngine {
 }
 
 /// The walking solver without a fault: the control of the power test.
-pub static CONTROL: &dyn Engine = &WrongWalk { name: "walk-control", fault: WalkFault::None };
+pub static CONTROL: &dyn Engine =
+    &ClosedFormStepper { name: "stepper-control", fault: StepperFault::None };
 
-/// How rarely an engine drops an event.
+/// The number of events of which one is dropped.
 pub const DROPPED: [u64; 2] = [100, 1000];
 
 static WRONG: [WrongEngine; 9] = [
     WrongEngine {
-        engine: &WrongWalk { name: "wrong-dropped-100", fault: WalkFault::Dropped(DROPPED[0]) },
+        engine: &ClosedFormStepper {
+            name: "wrong-dropped-100",
+            fault: StepperFault::Dropped(DROPPED[0]),
+        },
         fault: "every hundredth event is dropped",
     },
     WrongEngine {
-        engine: &WrongWalk { name: "wrong-dropped-1000", fault: WalkFault::Dropped(DROPPED[1]) },
+        engine: &ClosedFormStepper {
+            name: "wrong-dropped-1000",
+            fault: StepperFault::Dropped(DROPPED[1]),
+        },
         fault: "every thousandth event is dropped",
     },
     WrongEngine {
@@ -64,15 +72,15 @@ static WRONG: [WrongEngine; 9] = [
         fault: "Eq. (20) as printed, with + before the exponential",
     },
     WrongEngine {
-        engine: &WrongWalk { name: "wrong-arctan", fault: WalkFault::Arctangent },
+        engine: &ClosedFormStepper { name: "wrong-arctan", fault: StepperFault::Arctangent },
         fault: "Eqs. (15) to (17) as printed, with arctan for beta and delta",
     },
     WrongEngine {
-        engine: &WrongWalk { name: "wrong-sign-change", fault: WalkFault::SignChange },
+        engine: &ClosedFormStepper { name: "wrong-sign-change", fault: StepperFault::SignChange },
         fault: "guards are looked at only where a step ends, for a change of sign",
     },
     WrongEngine {
-        engine: &WrongWalk { name: "wrong-impact", fault: WalkFault::ContactAtImpact },
+        engine: &ClosedFormStepper { name: "wrong-impact", fault: StepperFault::ContactAtImpact },
         fault: "every impact goes into contact, none straight into progression",
     },
     WrongEngine {
@@ -81,7 +89,7 @@ static WRONG: [WrongEngine; 9] = [
     },
 ];
 
-/// All of them.
+/// The wrong engines that run the oscillator.
 #[must_use]
 pub fn wrong() -> &'static [WrongEngine] {
     &WRONG
@@ -91,7 +99,7 @@ pub fn wrong() -> &'static [WrongEngine] {
 pub static FAULTY_CONTROL: &dyn Engine =
     &Faulty { name: "dopri5-control", slip: IntegratorFault::None };
 
-/// How rarely an integrator drops an event, or gives up a run.
+/// The number of events, or runs, of which an integrator drops, or gives up, one.
 const SELDOM: u64 = 20;
 
 macro_rules! faulty {
@@ -152,24 +160,24 @@ pub const SOUND: &str = "ode_solvers-dopri5";
 /// A way of running a case of a system, as far as the case itself tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Way {
-    /// Back in time.
+    /// The case runs back in time.
     Backward,
-    /// With a guard that is watched in one direction.
+    /// The case watches a guard in one direction.
     Direction,
-    /// From a state on a guard.
+    /// The case starts on a guard.
     StartOnGuard,
-    /// With states taken where events are: each event has the state after its reset.
+    /// The case asks for states at events: each event has the state after its reset.
     OutputAtEvents,
-    /// With states taken between events, in steps that an event cuts short.
+    /// The case asks for states between events, in steps that an event cuts short.
     OutputBetweenEvents,
-    /// With several events in one instant.
+    /// The case has several events in one instant.
     Simultaneous,
-    /// With events that follow each other closely, as in chatter and before an accumulation.
+    /// The case has events in close succession, as in chatter and before an accumulation.
     CloseEvents,
 }
 
 impl Way {
-    /// What cases of this way have, for people.
+    /// The property of the cases, in words.
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
@@ -189,7 +197,7 @@ impl Way {
 pub struct WrongWay {
     /// The engine and its fault.
     pub wrong: WrongEngine,
-    /// Where the fault shows.
+    /// The way of running a case in which the fault shows.
     pub way: Way,
 }
 
@@ -201,7 +209,7 @@ static WRONG_ON_SYSTEMS: [WrongWay; 1] = [WrongWay {
     way: Way::Simultaneous,
 }];
 
-/// Engines that are held to the exact solver's bounds on systems.
+/// Wrong engines that have to exceed the exact solver's bounds on systems.
 #[must_use]
 pub fn wrong_on_systems() -> &'static [WrongWay] {
     &WRONG_ON_SYSTEMS

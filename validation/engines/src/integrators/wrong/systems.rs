@@ -19,7 +19,7 @@ use crate::system::{Affine, CheckedSystem, Direction, System, Values};
 use nalgebra::Dyn;
 use std::sync::Arc;
 
-/// How long no event is noticed after another, in units of the system's time.
+/// The time after an event in which no other is noticed, in units of the system's time.
 pub const COOLDOWN: f64 = 1e-2;
 
 pub(super) struct FaultyOnSystems {
@@ -56,7 +56,7 @@ impl Engine for FaultyOnSystems {
             let taken = if uncut { end_of_step(&stretch.ends, t) } else { t };
             sampler.take(taken, |t| stretch.at(t))?;
             run.step = 0.0;
-            Ok(StretchEnd::Switch { t, guard, state: stretch.at(t)? })
+            Ok(StretchEnd::Event { t, guard, state: stretch.at(t)? })
         })?;
         if self.slip == SystemFault::StateBefore {
             memory.put_back(&mut outcome, &integration);
@@ -66,7 +66,7 @@ impl Engine for FaultyOnSystems {
 }
 
 impl SystemFault {
-    /// The system as it is understood.
+    /// The system as the faulty integrator reads it.
     fn misread(self, system: &CheckedSystem) -> Result<CheckedSystem, Failure> {
         let backward = system.is_backward();
         let given = system.system();

@@ -38,7 +38,7 @@ pub struct TimeQuotient {
     pub bench: String,
     /// The time of the new side over that of the old one.
     pub value: f64,
-    /// How far the lives' own medians lie apart.
+    /// The spread of the medians of the worker processes.
     pub spread: f64,
 }
 
@@ -53,7 +53,7 @@ pub fn common(pair: &Pair<'_>) -> Result<Common, Failure> {
     Ok(Common { shared, lost, versions: [old.version.clone(), new.version.clone()] })
 }
 
-/// What two binaries have in common.
+/// The workloads that two binaries have in common.
 #[derive(Clone, Debug)]
 pub struct Common {
     /// Workloads of both.

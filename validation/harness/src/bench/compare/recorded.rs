@@ -1,6 +1,6 @@
 //! Two recorded versions against each other, in figures that repeat from run to run.
 //!
-//! Instructions do, where both were counted on the same kind of machine, and evaluations a switch
+//! Instructions do, where both were counted on the same kind of machine, and evaluations per event
 //! do. Times of two runs do not; what does is the least time in units of the least time of the
 //! floor beside it. It is recorded twice, so that here too slower means slower twice in a row.
 //! Where instructions are counted they decide, and times only warn.
@@ -13,7 +13,7 @@ use crate::bench::history::HistoryRecord;
 pub struct RecordedChange {
     /// The workload.
     pub bench: String,
-    /// What is compared.
+    /// The figure that is compared.
     pub figure: &'static str,
     /// The old and the new figure.
     pub figures: [f64; 2],

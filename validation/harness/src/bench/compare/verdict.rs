@@ -1,4 +1,4 @@
-//! When a version is slower: warned of at 1 %, failed at 2 % twice in a row.
+//! The verdict on a version's speed: a warning at 1 %, a failure at 2 % twice in a row.
 //!
 //! A quotient that interleaved rounds give repeats within half a percent on a busy machine, so 1 %
 //! is seldom noise and 2 % hardly ever; but among a dozen workloads something rare happens now and
@@ -9,7 +9,7 @@ pub const WARN: f64 = 1.01;
 /// The quotient from which on a slowdown, seen twice in a row, fails.
 pub const FAIL: f64 = 1.02;
 
-/// What is said of a workload.
+/// The verdict on one workload.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum WorkloadVerdict {
     /// The new version is as fast as the old one, or faster.

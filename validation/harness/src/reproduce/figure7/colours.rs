@@ -1,4 +1,4 @@
-//! One pair of colours an attractor, kept from frame to frame.
+//! One pair of colours per attractor, kept from frame to frame.
 //!
 //! An attractor is followed by carrying its motion along: the frequency is raised in small steps,
 //! each starting where the last ended. The attractor that the motion is on in the next frame

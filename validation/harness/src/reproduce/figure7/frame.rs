@@ -27,7 +27,7 @@ pub(super) struct Frame {
     labels: Vec<i32>,
 }
 
-/// What is kept of an attractor.
+/// The kept figures of an attractor.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct KeptAttractor {
     pub kind: String,

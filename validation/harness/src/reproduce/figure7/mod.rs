@@ -93,7 +93,7 @@ fn run(work: &ItemWork<'_>) -> Result<Findings, Failure> {
     Ok(findings)
 }
 
-/// How many attractors a frame has, and which.
+/// Settles the claims on the number and the kinds of a frame's attractors.
 fn settle(
     work: &ItemWork<'_>,
     frame: &Frame,

@@ -15,7 +15,7 @@ use percuss::{Entry, Instant, Model, Parameters, Segment};
 
 /// Time up to which the paper follows the motion.
 const UNTIL: f64 = 1300.0;
-/// Points a forcing period.
+/// Points per forcing period.
 const POINTS: f64 = 4000.0;
 /// Forcing periods until the motion has settled, and a multiple of the period claimed.
 const SETTLED: u64 = 2000;
@@ -127,7 +127,7 @@ fn settled_orbit(told: &Table1Run) -> Result<Orbit, Failure> {
     Orbit::find(&map, settled.point(), 12).map_err(Failure::new)
 }
 
-/// How many phases there are in one whole period: the strobe may cut one in two.
+/// The number of phases in one whole period: the strobe may cut one in two.
 fn phases(orbit: &Orbit) -> usize {
     let cut = orbit.phases.len() > 1 && orbit.phases.first() == orbit.phases.last();
     orbit.phases.len() - usize::from(cut)

@@ -35,7 +35,7 @@ pub struct Calibration {
     pub calibrated: Calibrated,
     /// The largest standardized distance of any run.
     pub z: f64,
-    /// The name of that distance.
+    /// The name of the farthest distance.
     pub farthest: &'static str,
 }
 
@@ -82,7 +82,7 @@ impl Null {
     }
 }
 
-/// What makes a distance comparable with the others.
+/// The scale that makes a distance comparable with the others.
 struct DistanceScale {
     name: &'static str,
     is_signed: bool,
@@ -100,7 +100,7 @@ impl DistanceScale {
         Self { name, is_signed, mean, deviation, floor }
     }
 
-    /// How many deviations a run is above the mean; nothing where the floor forgives it.
+    /// The number of standard deviations by which a run is above the mean; zero below the floor.
     fn standardized(&self, null: &Null) -> f64 {
         if null.distances[self.name] <= self.floor {
             return 0.0;

@@ -11,11 +11,11 @@ use crate::engine::{Accuracy, Engine, Failure, Limits};
 pub struct AttractorTest {
     /// Plan and limits.
     pub calibrated: Calibrated,
-    /// What sections are compared with.
+    /// The reference section.
     pub reference: RunSection,
 }
 
-/// How far an engine's section is from the reference.
+/// The distances of an engine's section from the reference.
 #[derive(Clone, Debug)]
 pub struct Comparison {
     /// Each distance with its limit, by name.

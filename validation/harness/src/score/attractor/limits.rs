@@ -6,11 +6,11 @@ use std::collections::BTreeMap;
 
 const FILE: &str = include_str!("../../../attractors.toml");
 
-/// How the comparison of a case is made.
+/// The plan of the comparison on one case.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub struct ComparisonPlan {
-    /// Forcing periods that are left out.
+    /// The transient: forcing periods that are left out.
     pub transient: u32,
     /// Forcing periods of an engine's section.
     pub periods: u32,
@@ -24,7 +24,7 @@ pub struct ComparisonPlan {
 pub struct Calibrated {
     /// The case.
     pub case: String,
-    /// How the runs are made.
+    /// The plan of the runs.
     pub plan: ComparisonPlan,
     /// The limit of each distance.
     pub limits: BTreeMap<String, f64>,

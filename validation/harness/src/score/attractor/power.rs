@@ -1,4 +1,4 @@
-//! What the test notices: alarms on fresh runs of the exact solver, right ones and changed ones.
+//! The power of the test: alarms on fresh runs of the exact solver, right ones and changed ones.
 
 use super::comparison::AttractorTest;
 use super::distance::{distances, is_sampled};
@@ -22,7 +22,7 @@ pub enum Changed {
 }
 
 impl Changed {
-    /// All of them.
+    /// All parameters that are changed.
     pub const ALL: [Self; 3] = [Self::Xi, Self::Omega, Self::B];
 
     /// The parameter's symbol.
@@ -50,9 +50,9 @@ impl Changed {
 /// Alarms of a number of runs.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Alarms {
-    /// Runs that were made.
+    /// The number of runs.
     pub runs: u32,
-    /// Runs with a distance beyond its limit.
+    /// The number of runs with a distance beyond its limit.
     pub raised: u32,
     /// Runs with a distance from the reference section beyond its limit; the errors of single
     /// periods are left out.

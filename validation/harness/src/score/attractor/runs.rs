@@ -7,7 +7,7 @@ use crate::engine::{Accuracy, Engine, Failure, Limits, answer_oscillator};
 use crate::integrators;
 use percuss::{Parameters, Start};
 
-/// Which runs of the exact solver: no two kinds share a start.
+/// The kinds of runs of the exact solver: no two kinds share a start.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RunKind {
     /// Runs by which limits are measured.

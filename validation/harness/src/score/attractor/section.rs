@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 pub struct RunSection {
     /// p, y and q at successive strobes.
     pub points: Vec<[f64; 3]>,
-    /// How often each sequence of phases begins within a forcing period, as frequencies.
+    /// The frequency of each sequence of phases that begin within a forcing period.
     pub phase_sequences: BTreeMap<String, f64>,
     /// Mean drift per forcing period.
     pub drift: f64,

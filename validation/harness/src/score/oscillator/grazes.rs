@@ -40,14 +40,14 @@ struct Scan<'a> {
 }
 
 /// The closed form of one segment with its guards.
-struct GuardedSegment {
+struct ScannedSegment {
     phase: Phase,
     began: f64,
     oscillator: Oscillator,
     closed: Closed,
 }
 
-impl GuardedSegment {
+impl ScannedSegment {
     fn guards(&self, d: f64) -> [f64; GUARDS] {
         self.oscillator.guards(self.phase, self.began + d, &self.closed.at(d))
     }
@@ -89,7 +89,7 @@ impl Scan<'_> {
         let length = end.elapsed.minus(begin.elapsed).value();
         let parameters = &self.task.parameters;
         let angle = self.task.forcing_angle + parameters.omega * began;
-        let segment = GuardedSegment {
+        let segment = ScannedSegment {
             phase,
             began,
             oscillator: Oscillator::of(parameters, self.task.forcing_angle),
@@ -112,7 +112,7 @@ impl Scan<'_> {
     fn near_misses(
         &self,
         n: usize,
-        segment: &GuardedSegment,
+        segment: &ScannedSegment,
         guard: usize,
         length: f64,
     ) -> Vec<Graze> {
@@ -135,7 +135,7 @@ impl Scan<'_> {
     }
 
     /// The crossing that ends a segment, where the guard would have turned soon after it.
-    fn crossing(&self, n: usize, segment: &GuardedSegment, length: f64) -> Option<Graze> {
+    fn crossing(&self, n: usize, segment: &ScannedSegment, length: f64) -> Option<Graze> {
         let guards = segment.guards(length);
         let guard = usize::from(guards[1] > guards[0]);
         let beyond = length + self.task.problem.model.period();
@@ -152,7 +152,7 @@ impl Scan<'_> {
     fn graze(
         &self,
         n: usize,
-        segment: &GuardedSegment,
+        segment: &ScannedSegment,
         (guard, at): (usize, f64),
         events: Vec<usize>,
     ) -> Graze {
@@ -183,7 +183,7 @@ impl Scan<'_> {
     }
 }
 
-/// How a guard depends on p, y and q, but for its sign.
+/// The gradient of a guard with respect to p, y and q, but for its sign.
 fn gradient(phase: Phase, parameters: &Parameters) -> [f64; 3] {
     match phase {
         Phase::NoContact => [1.0, 0.0, 1.0],

@@ -124,7 +124,7 @@ fn rates_are_the_slopes_of_guards_in_segments_that_begin_late() {
     for phase in Phase::ALL {
         let begun = [0.3 + parameters.g, 0.1, 0.3, 0.0];
         let angle_there = angle + parameters.omega * began;
-        let segment = GuardedSegment {
+        let segment = ScannedSegment {
             phase,
             began,
             oscillator: Oscillator::of(&parameters, angle),

@@ -1,4 +1,4 @@
-//! How errors grow along the true run, from the truth's rows alone.
+//! The growth of errors along the true run, from the truth's rows alone.
 //!
 //! In every phase (p, y, q, v, cos, sin, 1) obeys a linear system with constant coefficients, so
 //! the derivative of a phase's flow is a matrix exponential: no closed form of the solver is used.
@@ -75,7 +75,7 @@ impl RunGrowth {
                 growth.end = motion.plain(&linear, &descents, &begin, next);
                 break;
             }
-            motion.switch(phase, &linear, &mut descents, &begin, next);
+            motion.after_event(phase, &linear, &mut descents, &begin, next);
             growth.events.push(largest(&descents, |it| {
                 let row = |i: usize| it.state.row(i).norm();
                 [it.times.norm(), row(0), row(1), row(2), row(3)]
@@ -150,7 +150,7 @@ impl GrowthMotion {
         bundle
     }
 
-    fn switch(
+    fn after_event(
         &self,
         phase: Phase,
         linear: &Linear,
@@ -256,7 +256,7 @@ mod tests {
             let (by_p, by_y) = ([p(STEP), p(-STEP)], [y(STEP), y(-STEP)]);
             for n in 0..EVENTS {
                 let phase = begin.phase.unwrap_or(Phase::Contact);
-                motion.switch(
+                motion.after_event(
                     phase,
                     &motion.linear(phase),
                     &mut descents,

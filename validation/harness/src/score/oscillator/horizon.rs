@@ -39,7 +39,7 @@ struct HorizonRun {
 /// Runs from states on one attractor.
 pub struct HorizonTest {
     runs: Vec<HorizonRun>,
-    /// Runs that 106 bits do not decide.
+    /// The number of runs that 106 bits do not decide.
     pub undecided: usize,
     periods: u32,
 }
@@ -61,7 +61,8 @@ impl HorizonTest {
         Self { undecided: count - runs.len(), runs, periods }
     }
 
-    /// How many periods the truth itself lasts in each run, at most those it was followed.
+    /// The number of periods for which the truth itself holds in each run, at most those that were
+    /// followed.
     #[must_use]
     pub fn trusted(&self) -> Vec<u32> {
         self.runs.iter().map(HorizonRun::trusted).collect()
@@ -163,7 +164,7 @@ impl HorizonRun {
         (ValidHorizon { valid, predicted, outlasts }, found.is_err())
     }
 
-    /// How long a run of so many periods is right.
+    /// The valid horizon of a run of the given number of periods.
     fn followed(
         &self,
         periods: u32,

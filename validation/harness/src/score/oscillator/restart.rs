@@ -22,13 +22,13 @@ pub const MOST_PERIODS: u64 = 8;
 
 /// A run with its truth.
 pub struct RestartRun {
-    /// What an engine is asked.
+    /// The task that an engine is given.
     pub task: OscillatorTask,
-    /// What is true.
+    /// The true run.
     pub truth: Truth,
-    /// How errors grow along it.
+    /// The growth of errors along the true run.
     pub growth: RunGrowth,
-    /// Whether it has an impact.
+    /// Whether the run has an impact.
     pub impact: bool,
 }
 

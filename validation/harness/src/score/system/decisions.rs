@@ -1,4 +1,4 @@
-//! Where a true run's next mode hangs by little: the value that decides it is close to zero.
+//! Events at which the next mode is decided by a value close to zero.
 //!
 //! An engine whose error may be larger than that value cannot be asked for the mode that the model
 //! says, and what follows depends on it.

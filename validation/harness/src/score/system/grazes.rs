@@ -94,7 +94,7 @@ impl SystemScan<'_> {
         row.mode == mode && row.event >= self.system.modes[mode].until.len()
     }
 
-    /// How many events a crossing makes that turns back at once.
+    /// The number of events that a crossing makes which turns back at once.
     fn makes(&self, mode: usize, guard: &ScannedGuard<'_>) -> usize {
         match guard.direction {
             Some(Direction::Both) => 2,
@@ -106,7 +106,7 @@ impl SystemScan<'_> {
         }
     }
 
-    /// What one unit of error in the states may have become in a guard.
+    /// The error in a guard that one unit of error in the states may have become.
     fn growth(&self, guard: &[f64], elapsed: f64) -> f64 {
         let passed = |it: &&SystemTruthRow| it.elapsed.value() <= elapsed;
         let sample = self.truth.samples.iter().take_while(passed).last();

@@ -26,11 +26,11 @@ pub(super) struct SystemRun<'a> {
     pub(super) unit: f64,
 }
 
-/// How many units of error a method may be off anywhere: the widest bound on the constants of a
+/// The largest error of a method in units of its error: the widest bound on the constants of a
 /// class of methods.
 pub(super) const MOST_UNITS: f64 = 20.0;
 
-/// What tells how far a run of a system is scored.
+/// The figures that decide how far a run of a system is scored.
 #[derive(Clone, Copy, Debug)]
 pub struct SystemScale<'a> {
     /// The engine's unit of error: its tolerance, or eps.
@@ -42,7 +42,7 @@ pub struct SystemScale<'a> {
 }
 
 impl<'a> SystemScale<'a> {
-    /// What an engine is held to along a true run.
+    /// The scale to which an engine's errors are held along a true run.
     #[must_use]
     pub fn of(
         (accuracy, unit): (Accuracy, f64),
@@ -146,7 +146,7 @@ fn in_doubt(times: &[f64], scale: SystemScale<'_>) -> impl Iterator<Item = f64> 
     grazed.chain(decisions.map(|it| it.elapsed))
 }
 
-/// How far an event is from the nearest one at another instant, or from the start.
+/// The distance of an event from the nearest one at another instant, or from the start.
 fn gap(times: &[f64], n: usize) -> f64 {
     let before = times[..n].iter().rev().chain([&0.0]).map(|it| times[n] - it);
     let after = times[n + 1..].iter().map(|it| it - times[n]);

@@ -30,9 +30,9 @@ const CLOSE: f64 = 1e-5;
 
 /// A run with its truth.
 pub struct SystemRestartRun {
-    /// What an engine is asked.
+    /// The task that an engine is given.
     pub task: Task,
-    /// What is true.
+    /// The true run.
     pub truth: SystemTruth,
     grazes: Vec<Graze>,
     decisions: Vec<Decision>,
@@ -47,7 +47,7 @@ pub struct SystemRestartTest {
     names: EventNames,
 }
 
-/// Where restarts come from: a case with its truth, and what its runs share.
+/// The source of restarts: a case with its truth, and the data that its runs share.
 struct Restarts<'a> {
     case: &'a SystemCase,
     problem: &'a SystemProblem,
@@ -108,7 +108,7 @@ impl SystemRestartTest {
 }
 
 impl Restarts<'_> {
-    /// How long the run from a sample takes; none where too few events follow.
+    /// The length of the run from a sample; none if too few events follow.
     fn span(&self, row: &SystemTruthRow) -> Option<f64> {
         let close = CLOSE * self.case.system.time_scale;
         let begin = row.elapsed.value();

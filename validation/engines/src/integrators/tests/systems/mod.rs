@@ -13,7 +13,7 @@ use crate::integrators::all;
 use crate::system::{CheckedSystem, System};
 use std::sync::Arc;
 
-/// What is asked of every integrator.
+/// The tolerance that every integrator is asked for.
 const TOLERANCE: f64 = 1e-8;
 /// Fixed steps whose own error is about the tolerance: step^4/120.
 const STEP: f64 = 1.0 / 32.0;
@@ -39,14 +39,14 @@ impl AskedRun<'_> {
 
     /// The events by the closed form.
     fn truth(&self, step: f64) -> Vec<truth::TrueEvent> {
-        truth::Walked::new(self.system, step).run(self.mode, self.state, self.span).0
+        truth::SteppedClosedForm::new(self.system, step).run(self.mode, self.state, self.span).0
     }
 }
 
 /// Samples of each run, after the one at its start.
 const SAMPLES: u32 = 50;
 
-/// What each integrator makes of a run, with its unit of error.
+/// The answer of each integrator to a run, with its unit of error.
 fn every(asked: &AskedRun<'_>) -> Vec<EngineAnswer> {
     every_on(&asked.task())
 }

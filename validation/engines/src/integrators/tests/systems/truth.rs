@@ -9,13 +9,13 @@ pub(super) type TrueEvent = (usize, usize, f64);
 
 type SquareRows = Vec<Vec<f64>>;
 
-/// A system walked in steps.
-pub(super) struct Walked<'a> {
+/// A system whose closed form is evaluated in steps.
+pub(super) struct SteppedClosedForm<'a> {
     system: &'a System,
     step: f64,
 }
 
-impl<'a> Walked<'a> {
+impl<'a> SteppedClosedForm<'a> {
     pub(super) fn new(system: &'a System, step: f64) -> Self {
         Self { system, step }
     }

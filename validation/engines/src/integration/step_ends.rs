@@ -1,5 +1,5 @@
-//! A walk along the ends of steps, for methods whose states inside a step are expensive: they come
-//! from a second integration, or from an interpolant that costs right-hand sides.
+//! Event location from step ends, for methods whose states inside a step are expensive: such states
+//! come from a second integration, or from an interpolant that costs right-hand sides.
 //!
 //! A method is watched alike whatever library it comes from, so that differences between its rows
 //! are the libraries' own. Steps are at most an eighth of a forcing period and of a turn of the
@@ -12,35 +12,35 @@ use super::sampler::Sampler;
 use crate::equations::Equations;
 use crate::failure::Failure;
 
-/// The longest step, in forcing periods; of a method that is walked, also in turns of the elastic
-/// contact.
+/// The longest step, in forcing periods; for a method whose events are located from step ends, also
+/// in turns of the elastic contact.
 const LONGEST_STEP: f64 = 0.125;
 
-/// The longest step on a motion of such a period.
+/// The longest step on a motion of the given period.
 pub(crate) const fn longest_of_period(period: f64) -> f64 {
     LONGEST_STEP * period
 }
 
-/// The longest step of a method that is walked.
+/// The longest step of a method whose events are located from step ends.
 pub(crate) fn longest_step(times: &Times) -> f64 {
     longest_of_period(times.period.min(times.turn))
 }
 
-/// A walk that has come to the end of a step.
-pub(crate) struct Walk<'a, E: Equations> {
+/// A search for events that has come to the end of a step.
+pub(crate) struct StepEnds<'a, E: Equations> {
     search: GuardSearch<'a, E>,
     at: CubicEnd<E::State>,
     look: GuardValues<E::Guards>,
 }
 
-impl<'a, E: Equations> Walk<'a, E> {
-    /// Starts a walk at the beginning of a stretch.
+impl<'a, E: Equations> StepEnds<'a, E> {
+    /// Starts the search at the beginning of a stretch.
     pub(crate) fn new(search: GuardSearch<'a, E>, from: &Moment<E>) -> Self {
         let look = search.look(from.t, &from.state);
         Self { search, at: (from.t, from.state), look }
     }
 
-    /// Goes to the end of the next step, `right`, or to a switch before it. Evaluates the guards at
+    /// Goes to the end of the next step, `right`, or to an event before it. Evaluates the guards at
     /// the step's end, and inside the step only where both ends together show a crossing or a peak.
     /// `inside` returns the state at a time between the two ends.
     pub(crate) fn advance(
@@ -63,7 +63,7 @@ impl<'a, E: Equations> Walk<'a, E> {
         let found = self.search.between(&self.look, &look, &mut state_at, &mut sampler.counted)?;
         sampler.take(found.map_or(right.0, |it| it.t), &mut state_at)?;
         if let Some(it) = found {
-            return Ok(Some(StretchEnd::Switch {
+            return Ok(Some(StretchEnd::Event {
                 t: it.t,
                 guard: it.guard,
                 state: state_at(it.t)?,
@@ -73,27 +73,27 @@ impl<'a, E: Equations> Walk<'a, E> {
         Ok(None)
     }
 
-    /// The end of a stretch that met no switch.
+    /// The end of a stretch without an event.
     pub(crate) fn ended(&self) -> StretchEnd<E::State> {
         StretchEnd::Inside { t: self.at.0, state: self.at.1 }
     }
 }
 
-/// Walks along the ends of steps that are known beforehand.
-pub(crate) fn walk<E: Equations>(
+/// Locates the first event among steps whose ends are known beforehand.
+pub(crate) fn locate_at_step_ends<E: Equations>(
     search: GuardSearch<'_, E>,
     from: &Moment<E>,
     points: impl IntoIterator<Item = CubicEnd<E::State>>,
     sampler: &mut Sampler<E::State>,
     mut inside: impl FnMut(&CubicEnd<E::State>, &CubicEnd<E::State>, f64) -> Result<E::State, Failure>,
 ) -> Result<StretchEnd<E::State>, Failure> {
-    let mut walk = Walk::new(search, from);
+    let mut ends = StepEnds::new(search, from);
     for right in points {
-        if let Some(ended) = walk.advance(right, sampler, &mut inside)? {
+        if let Some(ended) = ends.advance(right, sampler, &mut inside)? {
             return Ok(ended);
         }
     }
-    Ok(walk.ended())
+    Ok(ends.ended())
 }
 
 #[cfg(test)]

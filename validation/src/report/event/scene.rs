@@ -1,9 +1,9 @@
-//! Truth and engine through the views of one wrong event.
+//! The true run and the engine's run in the views of one wrong event.
 
 use super::guarded::GuardCurve;
 use super::mismatch::EventMismatch;
 use super::scales::Scales;
-use super::{EventMark, EventPicture, View, ViewCourse};
+use super::{EventMark, EventPicture, View, ViewTrajectory};
 use crate::engine::{Engine, Limits, OscillatorOutcome, OscillatorTask, Task, Watched, contain};
 use crate::suite::{Prepared, Scored};
 use crate::truth::Replay;
@@ -106,12 +106,12 @@ fn engine_at(task: &OscillatorTask, guarded: GuardCurve, outcome: &OscillatorOut
     states.map(|state| guarded.of_state(&task.parameters, state)).collect()
 }
 
-/// What the views are cut from, whatever the system.
+/// The data of all views of one event, for any system.
 pub(super) struct Scene {
     /// The time about which all views are drawn.
     pub(super) at: f64,
     pub(super) instants: Vec<f64>,
-    /// What holds at the start.
+    /// The phase, or the mode, that holds at the start.
     pub(super) first: String,
     pub(super) truth: SceneCurve,
     pub(super) engine: SceneCurve,
@@ -137,14 +137,14 @@ impl Scene {
         View {
             from: since(from),
             to: since(to),
-            truth: self.course(span, &self.truth),
-            engine: self.course(span, &self.engine),
+            truth: self.trajectory(span, &self.truth),
+            engine: self.trajectory(span, &self.engine),
             steps,
             looks: self.looks(span),
         }
     }
 
-    fn course(&self, [from, to]: [f64; 2], side: &SceneCurve) -> ViewCourse {
+    fn trajectory(&self, [from, to]: [f64; 2], side: &SceneCurve) -> ViewTrajectory {
         let SceneCurve { values, events } = side;
         let before = events.iter().take_while(|event| event.0 < from).last();
         let phase = before.map_or(&self.first, |event| &event.1).clone();
@@ -156,7 +156,7 @@ impl Scene {
         };
         let place = |t: f64| self.instants.partition_point(|it| *it < t);
         let known = |t: f64| values.get(place(t)).copied();
-        ViewCourse {
+        ViewTrajectory {
             phase,
             events: inside.map(mark).collect(),
             values: Scales::instants([from, to]).filter_map(known).collect(),

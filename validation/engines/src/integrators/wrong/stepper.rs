@@ -1,8 +1,8 @@
-//! A plain solver that walks along the closed forms in steps and looks at the guards: what someone
-//! would write who knows the formulas and not how they fail.
+//! A plain solver that evaluates the closed forms and the guards at fixed steps, as someone would
+//! write it who knows the formulas and not how they fail.
 //!
-//! Without a fault it looks finely enough for what the power test asks of it. It is no peer: it has
-//! no proof, and its steps miss what is shorter than they are.
+//! Without a fault the steps are fine enough for the power test. The solver is no peer: it has no
+//! proof, and misses what is shorter than a step.
 
 use super::closed::Closed;
 use crate::accuracy::Accuracy;
@@ -16,31 +16,31 @@ use crate::integration::{GUARDS, Oscillator, Sampler};
 use crate::integrators::exact::Exact;
 use percuss::Phase;
 
-/// What is wrong.
+/// The fault of a [`ClosedFormStepper`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum WalkFault {
+pub(super) enum StepperFault {
     None,
-    /// Every so many events one is not noticed.
+    /// One event in so many is dropped.
     Dropped(u64),
-    /// Contact by the printed equations.
+    /// The contact phase follows the equations as printed in the paper.
     Arctangent,
-    /// Guards only at the ends of long steps, any change of sign.
+    /// Guards are evaluated only at the ends of long steps, and any change of sign is an event.
     SignChange,
     /// An impact never goes straight into progression.
     ContactAtImpact,
 }
 
-pub(super) struct WrongWalk {
+pub(super) struct ClosedFormStepper {
     pub(super) name: &'static str,
-    pub(super) fault: WalkFault,
+    pub(super) fault: StepperFault,
 }
 
-/// Steps a forcing period.
+/// The number of steps per forcing period without that fault.
 const FINE: f64 = 512.0;
 /// The number of steps per forcing period, as coarse as an integrator's longest steps.
 const COARSE: f64 = 24.0;
 
-impl Engine for WrongWalk {
+impl Engine for ClosedFormStepper {
     fn declaration(&self) -> Declaration {
         Declaration {
             name: self.name,
@@ -53,12 +53,12 @@ impl Engine for WrongWalk {
 
     fn run(&self, task: &Task, _: Accuracy, limits: &Limits) -> Result<Outcome, Failure> {
         let task = task.of_the_oscillator()?;
-        let mut run = WrongRun {
+        let mut run = StepperRun {
             task,
             fault: self.fault,
             oscillator: Oscillator::of(&task.parameters, task.forcing_angle),
             step: task.problem.model.period()
-                / if self.fault == WalkFault::SignChange { COARSE } else { FINE },
+                / if self.fault == StepperFault::SignChange { COARSE } else { FINE },
             events: task.events_before,
             evaluations: 0,
         };
@@ -66,17 +66,17 @@ impl Engine for WrongWalk {
     }
 }
 
-struct WrongRun<'a> {
+struct StepperRun<'a> {
     task: &'a OscillatorTask,
-    fault: WalkFault,
+    fault: StepperFault,
     oscillator: Oscillator,
     step: f64,
-    /// Over the engine's whole life.
+    /// Events over the engine's whole life.
     events: u64,
     evaluations: u64,
 }
 
-impl WrongRun<'_> {
+impl StepperRun<'_> {
     fn all(&mut self, limits: &Limits) -> Result<OscillatorOutcome, Failure> {
         let mut outcome = OscillatorOutcome::default();
         let mut sampler = Sampler::new(self.task.sample_times());
@@ -91,7 +91,7 @@ impl WrongRun<'_> {
                 outcome.end = there;
                 break;
             };
-            let (next, on_surface) = self.switch(phase, guard, at, &there);
+            let (next, on_surface) = self.after_event(phase, guard, at, &there);
             (t, phase, state) = (at, next, on_surface);
             outcome.events.push(Event { event: guard, mode: phase, elapsed: t, state });
             if outcome.events.len() > limits.events {
@@ -106,17 +106,23 @@ impl WrongRun<'_> {
 
     fn closed(&self, phase: Phase, t: f64, state: [f64; 4]) -> Closed {
         let angle = self.task.forcing_angle + self.task.parameters.omega * t;
-        let printed = self.fault == WalkFault::Arctangent;
+        let printed = self.fault == StepperFault::Arctangent;
         Closed::new(&self.task.parameters, phase, state, angle, printed)
     }
 
-    fn switch(&self, phase: Phase, guard: usize, t: f64, there: &[f64; 4]) -> (Phase, [f64; 4]) {
-        let (next, state) = self.oscillator.switch(phase, guard, t, there);
-        let impact = phase == Phase::NoContact && self.fault == WalkFault::ContactAtImpact;
+    fn after_event(
+        &self,
+        phase: Phase,
+        guard: usize,
+        t: f64,
+        there: &[f64; 4],
+    ) -> (Phase, [f64; 4]) {
+        let (next, state) = self.oscillator.after_event(phase, guard, t, there);
+        let impact = phase == Phase::NoContact && self.fault == StepperFault::ContactAtImpact;
         (if impact { Phase::Contact } else { next }, state)
     }
 
-    /// The first event that is noticed.
+    /// The first event that is not dropped.
     fn first(
         &mut self,
         closed: &Closed,
@@ -148,7 +154,7 @@ impl WrongRun<'_> {
     }
 
     fn drops(&self) -> bool {
-        matches!(self.fault, WalkFault::Dropped(every) if self.events.is_multiple_of(every))
+        matches!(self.fault, StepperFault::Dropped(every) if self.events.is_multiple_of(every))
     }
 
     /// Whether a guard is positive, and by the equations of motion not on its way back.
@@ -156,7 +162,7 @@ impl WrongRun<'_> {
         self.evaluations += 1;
         let state = closed.at(t - from);
         let positive = self.oscillator.guards(phase, t, &state)[guard] > 0.0;
-        let blind = self.fault == WalkFault::SignChange;
+        let blind = self.fault == StepperFault::SignChange;
         positive && (blind || self.oscillator.rates(phase, t, &state)[guard] > 0.0)
     }
 

@@ -9,15 +9,15 @@ use super::MOST_STATES;
 /// A row over (x, cos theta, sin theta, 1).
 pub(super) type AugmentedRow = [f64; MOST_STATES + 3];
 
-/// How far rounding may take a sum from zero, relative to its terms.
+/// The distance from zero to which rounding may take a sum, relative to its terms.
 const ROUNDINGS: f64 = 64.0 * f64::EPSILON;
-/// How far the time of an event may be off by rounding, relative to the time.
+/// The error of an event time by rounding, relative to the time.
 const TIME_ROUNDINGS: f64 = 4.0 * f64::EPSILON;
 
 /// The matrix M of z' = M z, with z = (x, cos theta, sin theta, 1).
 #[derive(Clone, Debug)]
 pub(super) struct ModeMatrix {
-    /// How many states there are.
+    /// The number of states.
     pub(super) size: usize,
     pub(super) rows: Vec<AugmentedRow>,
 }
@@ -52,13 +52,13 @@ pub(super) fn value(row: &AugmentedRow, x: &[f64], [cos, sin]: [f64; 2]) -> (f64
     terms.fold((0.0, 0.0), |(sum, all), term| (sum + term, all + term.abs()))
 }
 
-/// A row with its derivatives in one mode.
+/// A row and the rows of its derivatives along the motion in one mode.
 #[derive(Clone, Debug)]
-pub(super) struct Chain {
+pub(super) struct DerivativeRows {
     pub(super) rows: Vec<AugmentedRow>,
 }
 
-/// The first derivative that is not zero.
+/// The order and the sign of the first derivative that is not zero.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Leading {
     /// The derivative's order.
@@ -66,8 +66,8 @@ pub(super) struct Leading {
     pub(super) positive: bool,
 }
 
-impl Chain {
-    /// As many derivatives as z has entries: if these are zero, all are.
+impl DerivativeRows {
+    /// A row with as many derivatives as z has entries: if these are zero, all are.
     pub(super) fn new(row: AugmentedRow, motion: &ModeMatrix) -> Self {
         let next = |row: &AugmentedRow| Some(motion.derivative(row));
         Self { rows: std::iter::successors(Some(row), next).take(motion.size + 3).collect() }
