@@ -5,7 +5,7 @@ use crate::crossing::allowances::{ATTEMPTS, LONGEST_STEP, RESIDUAL, SLACK};
 use crate::crossing::{Counters, Guarded, Proof, Root, SearchHint, Side, ThresholdEnds, slack};
 use crate::flow::Point;
 use crate::flow::steps::Steps;
-use crate::numeric::roots::{Cubic, EXACT_SQUARE};
+use crate::numeric::roots::{CubicPolynomial, EXACT_SQUARE};
 use crate::numeric::series::{SHORT_TERMS, Series, TERMS};
 use crate::numeric::two_word::TwoWord;
 
@@ -90,7 +90,7 @@ pub(super) fn cubic_step<G: Guarded>(phase: &G, point: &Point<f64>) -> CubicStep
     let (above, below) = (value - corridor.high, value - corridor.low);
     let rises = above.abs() <= below.abs();
     let over = if rises { above } else { below };
-    let cubic = Cubic { value: over, slope, bend, third };
+    let cubic = CubicPolynomial { value: over, slope, bend, third };
     let step = cubic.near_zero().unwrap_or_else(|| cubic.zero());
     let room = SLACK * point.guard.largest_term + RESIDUAL * over.abs();
     CubicStep { step, rises, settled: cubic.at(step).abs() <= room }

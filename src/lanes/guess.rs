@@ -114,7 +114,7 @@ impl<S: Simd> LaneEnvelope<'_, S> {
         let rising = self.curvature.times_plus(here.elapsed, self.slope);
         let square = (self.curvature * value * 2.0).times_from(value.same(1.0), rising * rising);
         let root = square.sqrt();
-        // Of the two forms of the root the one that adds.
+        // One of the root's two forms subtracts numbers that may be close; this takes the other.
         let falling = rising.below(0.0);
         let above = falling.choose(root - rising, value * -2.0);
         let time = above / falling.choose(self.curvature, rising + root);

@@ -96,7 +96,7 @@ impl ModeEntry {
         let state = at(q);
         if f < 0.0 {
             let h_rate = f * rate;
-            // Of a force without a speed nothing is known but that it is at the threshold.
+            // A force whose speed underflows is known only to be at the threshold.
             if h_rate == 0.0 { imposed(0.0, -damper) } else { (state, Self::Separation { h_rate }) }
         } else if f < 1.0 {
             (state, Self::Contact { offset: f, reference: 0.0 })

@@ -24,7 +24,7 @@ pub fn first_root(value: f64, rising: f64, curvature: f64) -> Option<f64> {
         return None; // curvature < 0 and the crest stays below zero
     }
     let root = discriminant.sqrt();
-    // Of the two forms of the root the one that adds.
+    // One of the root's two forms subtracts numbers that may be close; this takes the other.
     let time =
         if rising >= 0.0 { -2.0 * value / (rising + root) } else { (root - rising) / curvature };
     (time >= 0.0 && time.is_finite()).then_some(time)
@@ -65,7 +65,7 @@ pub fn zero_between(left: f64, right: f64, (left_slope, right_slope): (f64, f64)
 
 /// A cubic by its value and its three derivatives at zero.
 #[derive(Clone, Copy, Debug)]
-pub struct Cubic {
+pub struct CubicPolynomial {
     /// Value.
     pub value: f64,
     /// First derivative.
@@ -76,7 +76,7 @@ pub struct Cubic {
     pub third: f64,
 }
 
-impl Cubic {
+impl CubicPolynomial {
     /// The value at a step from zero.
     pub fn at(&self, step: f64) -> f64 {
         let Self { value, slope, bend, third } = *self;

@@ -19,7 +19,7 @@ const OFF: f64 = 1e-9;
 
 /// The decaying term of a guard, with the sign that makes the guard positive outside its mode.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Decay {
+pub(super) struct DecayTerm {
     /// The term's value at the point.
     pub value: f64,
     /// The rate at which the term decays.
@@ -30,10 +30,10 @@ pub(super) struct Decay {
 /// The rounding error of the guard's value, which `rest` holds, includes that of the decay.
 pub(super) struct QuotientWithDecay<const N: usize> {
     pub rest: Quotient<N>,
-    pub decay: Decay,
+    pub decay: DecayTerm,
 }
 
-impl Decay {
+impl DecayTerm {
     /// The term's value at a time.
     #[inline]
     fn at(&self, time: f64) -> f64 {
@@ -128,7 +128,7 @@ mod tests {
     #[derive(Clone, Debug)]
     struct Guard {
         powers: [f64; 9],
-        decay: Decay,
+        decay: DecayTerm,
     }
 
     impl Guard {
@@ -167,7 +167,7 @@ mod tests {
                 powers.copy_from_slice(&coefficients);
                 powers[0] = -begin - value.max(0.0);
                 powers[1] += slope;
-                (Guard { powers, decay: Decay { value, rate } }, rough)
+                (Guard { powers, decay: DecayTerm { value, rate } }, rough)
             },
         )
     }
@@ -227,7 +227,7 @@ mod tests {
     #[test]
     fn a_rise_that_the_decay_ends_is_no_crossing() {
         let rate = 16.0_f64;
-        let decay = Decay { value: -rate.exp(), rate };
+        let decay = DecayTerm { value: -rate.exp(), rate };
         let guard = Guard { powers: [13.0, -12.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -0.035], decay };
         assert!((1..4000).all(|n| guard.value(f64::from(n) * 0.001) < 0.0));
         let (quotient, last) = guard.quotient();
@@ -241,7 +241,7 @@ mod tests {
     fn a_decay_with_a_drift_is_proved() {
         let drift = |begin: f64, slope: f64, value: f64| Guard {
             powers: [begin, slope, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-            decay: Decay { value, rate: 8.0 },
+            decay: DecayTerm { value, rate: 8.0 },
         };
         for guard in [drift(-3.0, 4.0, -2.0), drift(-1.5, 1.5, 1.0)] {
             let (quotient, last) = guard.quotient();
@@ -261,7 +261,7 @@ mod tests {
     #[test]
     fn what_overflows_tells_nothing() {
         let powers = [-1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
-        let guard = |value, rate| Guard { powers, decay: Decay { value, rate } }.quotient().0;
+        let guard = |value, rate| Guard { powers, decay: DecayTerm { value, rate } }.quotient().0;
         let known = guard(0.1, 20.0);
         assert!(known.crosses(1.0, 0.0).is_some() && known.is_negative(0.8, 0.0));
         for last in [f64::INFINITY, f64::NAN] {

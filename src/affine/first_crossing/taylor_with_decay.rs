@@ -6,7 +6,7 @@
 
 use super::crossing::FirstCrossing;
 use super::quotient::{Quotient, WINDOW};
-use super::quotient_with_decay::{Decay, QuotientWithDecay};
+use super::quotient_with_decay::{DecayTerm, QuotientWithDecay};
 use super::reach::part_of;
 use super::taylor::{
     ALL, Attempt, FEW, FailedAttempts, LITTLE, NOTHING, positive_root, rough_root,
@@ -169,7 +169,7 @@ impl<T: Number> GuardedSegment<'_, T> {
         let lost = LOST * (1.0 + at.norms[..self.flow.blocks.len()].iter().sum::<f64>());
         let errors = [at.slack[n], lost];
         let rest = Quotient::of([&orders, &sizes], 0, self.margin, errors);
-        Some(QuotientWithDecay { rest, decay: Decay { value, rate } })
+        Some(QuotientWithDecay { rest, decay: DecayTerm { value, rate } })
     }
 
     /// A bound of a derivative of a guard without its decaying term.

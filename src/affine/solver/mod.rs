@@ -20,7 +20,7 @@ use crate::affine::model::system::{LARGEST_DIMENSION, Mode, Row, Successor, Syst
 use crate::affine::zeros::graph::ZeroGraph;
 use crate::numeric::number::Number;
 use event::Event;
-use pool::Pool;
+use pool::CachePool;
 
 /// A piecewise-affine system in closed form, in an arithmetic of one or two words.
 #[derive(Clone, Debug)]
@@ -28,7 +28,7 @@ pub struct Solver<T> {
     pub(super) system: System,
     pub(super) modes: Vec<SolverMode<T>>,
     pub(super) clock: Option<Clock<T>>,
-    pub(super) pool: Pool<T>,
+    pub(super) pool: CachePool<T>,
     pub(super) backward: bool,
 }
 
@@ -117,7 +117,7 @@ impl<T: Number> Solver<T> {
         };
         let modes = system.modes.iter().enumerate().map(mode).collect();
         let clock = system.forcing.as_ref().map(Clock::of);
-        Ok(Self { modes, clock, pool: Pool::of(graph), backward, system })
+        Ok(Self { modes, clock, pool: CachePool::of(graph), backward, system })
     }
 
     /// The state at a time in the segment that an event of a run of this solver begins.

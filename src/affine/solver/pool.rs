@@ -14,7 +14,7 @@ const MOST: usize = 64;
 
 /// A pool of the graphs and starts that no run uses at present.
 #[derive(Clone, Debug)]
-pub struct Pool<T> {
+pub struct CachePool<T> {
     /// A graph without nodes, for runs that find the pool empty.
     blank: ZeroGraph,
     returned: Arc<Mutex<Vec<PooledCaches<T>>>>,
@@ -31,10 +31,10 @@ struct PooledCaches<T> {
 #[derive(Debug)]
 pub struct Loan<'a, T> {
     own: PooledCaches<T>,
-    pool: &'a Pool<T>,
+    pool: &'a CachePool<T>,
 }
 
-impl<T> Pool<T> {
+impl<T> CachePool<T> {
     pub fn of(blank: ZeroGraph) -> Self {
         Self { blank, returned: Arc::default() }
     }

@@ -12,7 +12,7 @@ pub trait Numbers: Copy + Debug + Default + PartialEq + AsRef<[f64]> + AsMut<[f6
     /// Holds a copy of these numbers.
     fn of(values: &[f64]) -> Self;
 
-    /// The same value `count` times; arrays have a length of their own.
+    /// Repeats a value `count` times; an array ignores `count`, because its length is fixed.
     fn all(count: usize, value: f64) -> Self;
 }
 
